@@ -21,8 +21,8 @@ from carom.kinematics.flight import point_bound
 from carom.model.workspace import FREE, RESTS
 
 #: verdicts on a step: no touch; a point is inside at the end; undecided because the step is too long; a rim in
-#: persistent contact on one side passes the flat position; the implicit method is to repeat the step
-CLEAR, BELOW, UNSURE, FLAT_RIM, AGAIN = range(5)
+#: persistent contact on one side passes the flat position
+CLEAR, BELOW, UNSURE, FLAT_RIM = range(4)
 MISSED = 1e-9  # relative to the body: if no more can be missed, the cubic decides in any flight
 
 

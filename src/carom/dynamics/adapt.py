@@ -26,7 +26,6 @@ import numpy as np
 
 from carom._compiled.decorators import kernel
 from carom.geometry.rotation import norm
-from carom.model.workspace import ONE
 
 SAFETY, LEAST, MOST = 0.9, 0.2, 10.0
 LOCAL = 0.1
@@ -47,7 +46,7 @@ def forget_misses(work):
 def note_misses(system, E, h, work):
     """Store for each body the greatest of its errors [m] by the rows of E, and its scale max(L, h V)."""
     for b in range(work.body.shape[0]):
-        if system.bodies[b].ballistic == 1 and work.body[b].status != ONE:
+        if system.bodies[b].ballistic == 1:
             continue
         note_miss(system, E, h, math.inf, b, work)
 
@@ -130,7 +129,7 @@ def shorter(dt, error, controls, clock, work):
     """Return the length to try after a step whose error was too large."""
     factor = LEAST
     if math.isfinite(error):
-        factor = max(LEAST, SAFETY * error ** (-1.0 / controls.order))
+        factor = max(LEAST, SAFETY * error ** (-1.0 / work.result[0].order))
     clock.rejected += 1
     for b in range(work.body.shape[0]):
         work.body[b].ahead = factor * dt
@@ -147,7 +146,7 @@ def plan_next(dt, error, again, controls, work):
     """
     factor = MOST
     if error > 0.0:
-        factor = min(MOST, SAFETY * error ** (-1.0 / controls.order))
+        factor = min(MOST, SAFETY * error ** (-1.0 / work.result[0].order))
     for b in range(work.body.shape[0]):
         memory, fits = work.body[b], factor * dt
         trend = fits / memory.fits if memory.fits > fits else 1.0

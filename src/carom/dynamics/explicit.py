@@ -11,17 +11,16 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
-from carom.dynamics.acceleration import accelerations, note_slip_directions
+from carom.dynamics.acceleration import accelerations
 from carom.dynamics.adapt import forget_misses, note_misses
 from carom.dynamics.joint_friction import stay_stuck
 from carom.dynamics.known_end import keep_end, of_state_alone, recall
 from carom.dynamics.loops import dropped_rows
 from carom.dynamics.project import LOST, project_position, project_velocity
-from carom.dynamics.return_to_surface import return_active, stay_active
 from carom.dynamics.singular_positions import SINGULAR, is_singular, pass_round, return_stage, steps
 from carom.geometry.rotation import multiply, normalize
 from carom.kinematics.flight import free_flight
-from carom.model.workspace import FREE, ONE, RESTS, SEVERAL
+from carom.model.workspace import FREE, HELD, RESTS
 
 CONSTRAINTS_LOST = 7
 MANY = 1 << 30  # more rows than any system has
@@ -67,7 +66,6 @@ def whole_step(method, system, active, start, h, end, work):
     stages, estimates = method.b.size, method.E.shape[0] > 0
     applied, friction = 0.0, 0.0
     forget_bounds(work)
-    note_slip_directions(system, active, start, work)
     for part in range(MOST_PARTS):
         dt = left
         if not estimates and part < MOST_PARTS - 1:
@@ -91,7 +89,7 @@ def fastest_spin(system, state, work):
     most = 0.0
     for b in range(state.shape[0]):
         status, w = work.body[b].status, state[b].w
-        if status == ONE or (status != RESTS and system.bodies[b].ballistic == 0):
+        if status != RESTS and system.bodies[b].ballistic == 0:
             most = max(most, w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
     return math.sqrt(most)
 
@@ -113,18 +111,22 @@ def with_care(tableau, system, active, start, h, end, work):
 
 @inlined
 def fly(system, active, start, h, end, work):
-    """Move the bodies in free flight, keep those at rest; return whether other bodies remain."""
+    """Move the bodies in free flight, keep those at rest; return whether joined or loaded bodies remain.
+
+    Those in persistent contact are left to `carom.persistent.contact_step`, with all joined and loaded bodies if
+    one of these is among them.
+    """
     mark_active(system, active, work)
-    pending = False
+    pending, held = False, False
     for b in range(system.bodies.shape[0]):
         status = work.body[b].status
         if status == RESTS:
             copy_state(start[b], end[b])
-        elif status != ONE and system.bodies[b].ballistic == 1:
+        elif system.bodies[b].ballistic == 0:
+            pending, held = True, held or status == HELD
+        elif status == FREE:
             free_flight(system.bodies[b], system.gravity, h, start[b], end[b], work.body[b])
-        else:
-            pending = True
-    return pending
+    return pending and not held
 
 
 @inlined
@@ -138,12 +140,12 @@ def copy_state(start, end):
 
 @inlined
 def mark_active(system, active, work):
-    """Store for each body whether it is free, in contact at one point or at several, or at rest."""
+    """Store for each body whether it is free, in persistent contact, or at rest."""
     for b in range(work.body.shape[0]):
         work.body[b].status = FREE
     for i in range(active.count[0]):
         active_point = active.points[i]
-        status = RESTS if active_point.rest == 1 else SEVERAL if active_point.several == 1 else ONE
+        status = RESTS if active_point.rest == 1 else HELD
         work.body[active_point.body].status = status
         if active_point.other >= 0:
             work.body[active_point.other].status = status
@@ -214,10 +216,8 @@ def return_to_joints(system, active, state, end, work):
             copy_state(end[b], state[b])
     if not (project_position(system, state, True, 1e-14, work) <= LOST):
         return False
-    return_active(system, active, state, work)
     project_velocity(system, state, work)
     stay_stuck(system, state, work)
-    stay_active(system, active, state, work)
     return True
 
 

@@ -24,7 +24,7 @@ from carom.dynamics.loops import dropped_rows
 from carom.dynamics.project import project_position, project_velocity
 from carom.geometry.rotation import exp, multiply
 from carom.model.arrays import LOOPS
-from carom.model.workspace import ONE, RESTS
+from carom.model.workspace import RESTS
 
 SINGULAR = 1e-5  # relative to a row's diagonal: the square of the angle to the rows before it
 # bodies turn by this angle in the time T; if rows still depend on each other, by more
@@ -34,8 +34,7 @@ NEAR, FARTHER, TRIES = 1e-2, 3.0, 2
 @kernel
 def steps(system, b, work):
     """Return whether the stages of the step move a body: it is neither at rest nor in free flight."""
-    status = work.body[b].status
-    return status == ONE or (status != RESTS and system.bodies[b].ballistic == 0)
+    return work.body[b].status != RESTS and system.bodies[b].ballistic == 0
 
 
 @unit

@@ -32,6 +32,11 @@ CLOSED_POINT = [
     ("point", "f8", 3),  # point of the core, body axes
     ("rows", "i8"),  # number of rows that the return to the surface uses
     ("stopped", "i8"),  # 1 where slip has stopped within the step
+    ("own", "i8"),  # 1 if it is the active point of its place, 0 if that only stands for its pair
+    ("loaded", "i8"),  # 1 if it presses: its spring carries
+    ("patch", "i8"),  # the first point of its patch
+    ("weight", "f8"),  # stiffness of its spring, as a part of that of its patch
+    ("spring", "f8"),  # compliance of its spring [1/kg]
     ("turns", "i8"),  # as in its POINT
     (
         "parent",

@@ -1,3 +1,3 @@
 """Actions of the loop on a closed point."""
 
-NOTHING, STRIKE, PERSIST, RENEW_MODE = range(4)
+NOTHING, STRIKE, PERSIST = range(3)

@@ -10,6 +10,7 @@ from carom._compiled.record_arrays import Columns, table
 from carom.collision.layout import new_pair_work, new_points
 from carom.model.allowance import SAVED
 from carom.model.arrays import STATE, System
+from carom.model.method import ESDIRK
 from carom.model.workspace import (
     ACTIVE_POINT,
     BODY_WORK,
@@ -195,7 +196,7 @@ def new_work(system: System, stages: int) -> Work:
     return Work(
         body=body,
         joint=table(JOINT_WORK, j),
-        stages=table(STAGE, stages + 1, n),
+        stages=table(STAGE, max(stages, len(ESDIRK)) + 1, n),
         known=table(KNOWN, n),
         stage=table(STATE, n),
         trial=table(STATE, n),

@@ -38,6 +38,11 @@ ACTIVE_POINT = [
     ("force", "f8", 3),  # of the last solve, contact axes
     ("heading", "f8", 2),  # direction of slip at the start of the step, or of starting slip
     ("speed", "f8"),  # of slip at the start of the step
+    (
+        "turning",
+        "f8",
+        (2, 3),
+    ),  # of rolling and pivoting: direction and speed at the start of the step
     ("stop", "f8"),  # for several points: time until slip stops under the last forces
     ("lift", "f8"),  # for several points: margin before opening at the end of a step, below 0: open
     ("grip", "f8"),  # the same before slip
@@ -97,7 +102,7 @@ BODY_WORK = [
     ("inverse", "f8", 6),  # inverse inertia, world axes
     ("label", "i8"),  # bodies with the same label move each other, by joints or active contacts
     ("n_active", "i8"),  # of the body with the number of a label: active points of the group
-    ("status", "i8"),  # FREE, ONE, RESTS or SEVERAL active points
+    ("status", "i8"),  # FREE, HELD or RESTS
     ("push", "f8", 6),  # change of momentum (linear, angular about the centre) in a step
     ("spin", "f8", 3),  # angular velocity that belongs to `momentum`, in the three-field step
     ("momentum", "f8", 3),  # spatial angular momentum
@@ -137,6 +142,8 @@ RESULT = [
     ("unnamed", "f8"),  # greatest of these: unexplained loss of energy, relative to the tolerance
     # time within the trial step at which a slide ends: the step is repeated up to there
     ("until", "f8"),
+    ("order", "i8"),  # of the estimate of its error
+    ("stiff", "i8"),  # 1 if a trial of this step was taken by the implicit member
     ("parts", "i8"),  # additional parts of steps in which bodies turned far
     ("fallen", "i8"),  # steps of a symplectic method that the explicit method took instead
     ("start", "f8"),  # time at which the trial step starts
@@ -160,8 +167,6 @@ SEARCH = [
     ("before", "f8"),  # the same one trial before: its time, value and rate
     ("f_before", "f8"),
     ("rate_before", "f8"),
-    ("d1", "f8"),  # direction of slip at the start
-    ("d2", "f8"),
     ("width", "f8"),
     ("tolerance", "f8"),
     ("eager", "i8"),  # 0 if events of several points wait for the end of the step
@@ -176,12 +181,11 @@ SEARCH = [
     ("code", "i8"),  # of the step without contacts,
     ("applied", "f8"),  # work of loads and of friction in it,
     ("friction", "f8"),
-    ("alone", "f8"),  # work of friction at points that are alone on their body,
     ("found", "i8"),  # whether an event is at its end
 ]
 
-#: state of a body: in FREE flight, in contact at ONE point, at rest (RESTS), in contact at SEVERAL points
-FREE, ONE, RESTS, SEVERAL = range(4)
+#: state of a body: in FREE flight, HELD by persistent contact, at rest (RESTS)
+FREE, HELD, RESTS = range(3)
 
 #: an impact while it is computed
 HIT = [

@@ -104,13 +104,6 @@ def copy(a, b):
 
 
 @kernel
-def always_several(contact):
-    """Return whether a point of a contact is always stepped as one of several."""
-    own = contact.touches == 0 or (contact.touches == 1 and on_half_space(contact))
-    return not own or any_turning(contact)
-
-
-@kernel
 def any_turning(contact):
     """Return whether a contact has rolling or pivoting friction."""
     return contact.turning[0] > 0.0 or contact.turning[1] > 0.0
@@ -118,9 +111,13 @@ def any_turning(contact):
 
 @kernel
 def regroup(system, active, work):
-    """Label the groups of active points, and mark points whose bodies have other active points."""
+    """Label the groups of active points, and mark points whose bodies have other active points.
+
+    All joined and loaded bodies have one right-hand side, so that they are one group.
+    """
     label_groups(system, active, work)
-    joined, n = 0, work.body.shape[0]  # label N: all bodies with joints
+    unite_loaded(system, work)
+    joined, n = 0, work.body.shape[0]
     for b in range(n):
         work.body[b].n_active = 0
     for i in range(active.count[0]):
@@ -130,12 +127,21 @@ def regroup(system, active, work):
         else:
             joined += 1
     for i in range(active.count[0]):
-        active_point = active.points[i]
-        label = work.body[active_point.body].label
-        others = (work.body[label].n_active if label < n else joined) - 1
-        active_point.several = (
-            1 if others > 0 or always_several(system.contacts[active_point.contact]) else 0
-        )
+        label = work.body[active.points[i].body].label
+        count = work.body[label].n_active if label < n else joined
+        active.points[i].several = 1 if count > 1 else 0
+
+
+@kernel
+def unite_loaded(system, work):
+    """Give all joined and loaded bodies, and those in contact with them, the label N."""
+    n = work.body.shape[0]
+    for b in range(n):
+        label = work.body[b].label
+        if system.bodies[b].ballistic == 0 and label != n:
+            for i in range(n):
+                if work.body[i].label == label:
+                    work.body[i].label = n
 
 
 @kernel

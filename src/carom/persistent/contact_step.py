@@ -1,18 +1,10 @@
-"""A step of bodies in contact at several points: midpoint rows carry the impulse, end rows the constraint.
+"""A step of bodies in persistent contact: one right-hand side, three members, for every group.
 
-The step without the contacts is known (any method). With the impulses p of all k points,
-
-    pi_1 = pi_free + G_0^T p,    v_1 = M(q_1)^-1 pi_1,    q_1 = Exp_q_free(h/2 P G_0^T p), then gap_i = 0,
-    w = G_1 v_1,    0 <= p_n _|_ w_n >= 0,    p_t in -mu p_n d|w_t|,
-
-with G_0 at the middle of the step, G_1 at its end, and momenta pi about each centre in world axes. For a point
-that slips during the whole step, the direction of friction is that of the velocity at the middle of the step;
-if slip has stopped, Coulomb's law holds with the velocity at the end. Each iteration uses the symmetric W = G_0
-P G_0^T to solve for
-
-    w = w(p_old) + W (p - p_old),
-
-so the fixed point is exact. Order 2. (Mathematics page, §3.1.)
+"The contact is modeled as a bilateral constraint up to a point where separation of the contacting bodies occurs":
+between events a group in contact moves as Eq. (4) with more rows (`carom.persistent.rows`). The explicit member
+takes a step while modes last, the implicit one where slip is stiff, begins, ends or turns about a corner, and
+where its step falls below the length in which friction cannot move a body by its tolerance, one time-stepping step
+closes. (Mathematics page, persistent contact; `docs/development/a_step.md`.)
 """
 
 from __future__ import annotations
@@ -21,64 +13,35 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.contact.closed_points import gather_active, place_closed
+from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.dynamics.acceleration import SLIP
-from carom.dynamics.elements import driven_power
-from carom.dynamics.explicit import copy_state
-from carom.dynamics.forces import difference_of_loads
-from carom.dynamics.kick import add_momentum
-from carom.dynamics.project import carry_velocity, shift
-from carom.dynamics.rotors import add_rates, note_rates
-from carom.dynamics.several_points import (
-    any_turns,
-    inverse_masses,
-    of_one_body,
-    spread_all,
-    velocities,
+from carom.dynamics.adapt import allowed_error, note_miss
+from carom.dynamics.explicit import bound_accelerations_of, copy_state, note_velocity, stages_within
+from carom.friction.layout import SLIDING
+from carom.impact.workspace import C, P, U
+from carom.persistent.finish import (
+    land,
+    note_modes,
+    review,
+    solve_cones_of,
 )
-from carom.dynamics.solve import solve
-from carom.friction.layout import BUDGET, CONE, ENOUGH, NEAR
-from carom.friction.residual import measure
-from carom.friction.solve import solve_cones
-from carom.geometry.rotation import rotate, rotate_back
-from carom.impact.workspace import BACK, OLD, C, P, U
-from carom.kinematics.contact_point import contact_velocity
-from carom.model.allowance import affordable
-from carom.model.method import RUNGE_KUTTA
-from carom.persistent.error_bound import (
-    is_better_bounded,
-    note_bounds,
-    turns_too_far,
-)
-from carom.persistent.finish import finish, forces_at_end, gained
-from carom.persistent.middle_state import halfway, mean_velocity, power_of_path, spin_momentum
-from carom.persistent.return_to_surfaces import onto_surfaces
-from carom.persistent.rolling_friction import bound_turning, first_torque
-from carom.persistent.slide import GOES_ON, NOT, forget_stops, slide_step
-from carom.persistent.smooth_group import can_be_smooth, smooth_group_step
-from carom.persistent.smooth_step import note_error, smooth_step
-from carom.persistent.step_control import (
-    charge_iterations,
-    iterations_left,
-    plain_step,
-    unnamed,
-)
+from carom.persistent.members import closing_member, explicit_member, implicit_member
+from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
+from carom.persistent.springs import solve_springs
+from carom.persistent.step_control import unnamed
 
-ROUNDS = 50
-CONVERGED = 1e-14  # relative change of velocities by a round that is the last
-# while rounds change them by more than FAR they need no forces better than ROUGH, but W anew; then W stays: the
-# fixed point does not depend on it
-FAR, ROUGH = 1e-4, 1e-8
-# of a body alone, whose motion is unique though forces are not: how well the first round solves for these, and
-# the others as a part of what the last has changed
-FIRST, PART = 1e-5, 1e-4
-ROUND = 1.0  # of a round of joined bodies, by a step without contacts
+#: change of slip by friction in a step, relative to its speed, above which its direction is stiff
+STIFF = 1.5
+#: of the allowed error: what friction may move a body in a closing step
+CLOSE = 0.1
+STIFF_ORDER, CLOSING_ORDER = 4, 2
+EXPLICIT, IMPLICIT, CLOSING = range(3)
 
 
 @unit
 def contact_step(model, data, method, h):
-    """Correct the step from `start` to `end` of all bodies that are in contact at several points.
+    """Write the end of a step of all groups that are in persistent contact and do not rest to `work.trial`.
 
     The forces at the end are written to the active points; the work of friction and of loads, and a status, to
     `work.result`.
@@ -88,59 +51,9 @@ def contact_step(model, data, method, h):
     result.applied, result.friction, result.code = 0.0, 0.0, 0
     result.residual, result.unnamed = 0.0, 0.0
     for i in range(active.count[0]):
-        active_point = active.points[i]
-        label = work.body[active_point.body].label
-        if active_point.several == 0 or active_point.rest == 1 or seen(active, i, label, work):
-            continue
-        step_group(model, data, method, label, h)
-        if result.code != 0:
-            return
-
-
-@kernel
-def step_group(model, data, method, label, h):
-    """Correct the step of one group; for a single body with constant modes by the method of the run."""
-    system, controls, active = model.system, model.controls, data.active
-    start, end, group, work = data.state, data.work.trial, data.group, data.work
-    result = work.result[0]
-    k = gather_active(system, active, label, start, group, work)
-    count = members(work, label, group.member)
-    loaded = False
-    for m in range(count):
-        b = group.member[m]
-        copy_state(end[b], group.flight[b])
-        loaded = loaded or system.bodies[b].ballistic == 0
-    alone = of_one_body(system, k, group.points[0]) and not loaded
-    alone = alone and method.kind == RUNGE_KUTTA
-    friction, over = result.friction, result.unnamed
-    slid = slide_step(model, data, method, k, h) if alone else NOT
-    smooth = slid != NOT or (alone and smooth_step(model, data, method, k, h))
-    joined = loaded and can_be_smooth(system, active, method, k, count, group)
-    if joined:
-        smooth = smooth_group_step(model, data, method, k, count, h)
-    if smooth and alone:
-        forces_at_end(model, data, k, True, end)
-        if slid == GOES_ON:
-            forget_stops(active, k, group)
-        if slid != NOT or controls.order == 0:
-            return
-        note_error(model, data, method, k, h, result.friction - friction)
-        if not is_better_bounded(model, data, k, h):
-            return
-        smooth = False
-    if not smooth:
-        result.friction, result.unnamed = friction, over
-        for m in range(count):
-            copy_state(group.flight[group.member[m]], end[group.member[m]])
-        free = controls.order > 0 and work.search[0].active == 0  # to choose the length of the step
-        if free and turns_too_far(model, data, count, h):
-            return
-        if alone or joined:
-            place_closed(system, k, start, group, group.points[0], work)
-        step_once(model, data, k, count, loaded, h)
-        if controls.order > 0:
-            note_bounds(model, data, k, count, h)
-    forces_at_end(model, data, k, False, end)
+        label = work.body[active.points[i].body].label
+        if active.points[i].rest == 0 and not seen(active, i, label, work):
+            step_group(model, data, method, label, h)
 
 
 @kernel
@@ -153,243 +66,174 @@ def seen(active, i, label, work):
 
 
 @kernel
-def step_once(model, data, k, count, loaded, h):
-    """Correct the step of one group of k points and `count` bodies to order 2."""
-    system, controls, clock = model.system, model.controls, data.clocks[0]
-    start, end, group, work = data.state, data.work.trial, data.group, data.work
-    begin(model, data, k, h, count, loaded)
-    loads, rubbing = power_of_path(system, h, start, end, work) if loaded else (0.0, 0.0)
-    before, single = math.inf, of_one_body(system, k, group.points[0])
-    single = single and not any_turns(k, group.points[0])
+def step_group(model, data, method, label, h):
+    """Step one group: by the explicit member while modes last, else by the implicit one or the closing one."""
+    system, controls, work, clock = model.system, model.controls, data.work, data.clocks[0]
+    group, result = data.group, data.work.result[0]
+    count, loaded = members(work, label, group.member), False
+    for m in range(count):
+        loaded = loaded or system.bodies[group.member[m]].ballistic == 0
+    k, rate, push = first_stage(model, data, label, loaded, count)
+    applied, friction = result.power, result.drag  # powers at the start
+    had, rubbed = result.applied, result.friction
     clock.contact_steps += 1
-    for turn in range(ROUNDS):
-        # where impulses are not unique: those of least norm, then those near them
-        group.cone.count[NEAR] = min(turn, 1)
-        for m in range(count):
-            halfway(start[group.member[m]], end[group.member[m]], work.stage[group.member[m]])
-        place_closed(system, k, work.stage, group, group.points[0], work)
-        far = before > FAR
-        if turn < 2 or far:
-            inverse_masses(system, k, group.points[0], work.stage, work, group.m[0])
-        impose(model, data, k, h, count, loaded)
-        for m in range(count):
-            mean_velocity(start[group.member[m]], end[group.member[m]], work.stage[group.member[m]])
-        pose(k, start, group, work)
-        bound_turning(system, k, group)
-        enough = ROUGH if turn > 0 and far else 0.0
-        if single:
-            enough = FIRST if turn == 0 else PART * before
-        change = find_impulses(model, data, k, enough)
-        if enough > 0.0 and change <= CONVERGED:  # good enough as they were: or the solution?
-            change = find_impulses(model, data, k, 0.0)
-        if change <= CONVERGED or (change <= 1e-7 and change >= 0.3 * before):
-            break
-        if controls.retry == 1 and clock.effort > affordable(controls, clock):
-            break  # to be given up, where there is another way
-        before = change
-        clock.rounds += 1
-        clock.effort += ROUND * plain_step(system) if loaded else 0.0
-    group.cone.count[NEAR], group.cone.mismatch[ENOUGH] = 0, 0.0
-    driven = impose(model, data, k, h, count, loaded)
-    check(model, data, k, count)
-    friction = finish(model, data, k, h, count)
-    work.result[0].friction += friction
-    if loaded:
-        taken, rubbed = power_of_path(system, h, start, end, work)
-        work.result[0].applied += driven + h / 6.0 * (taken - loads)
-        work.result[0].friction += h / 6.0 * (rubbed - rubbing)
-    else:
-        over = unnamed(system, controls, start, end, friction, count, group.member)
-        work.result[0].unnamed = max(work.result[0].unnamed, over)
+    clock.since += 5.0 * k * stages_within(method)
+    order = controls.order
+    if h * rate <= STIFF and not (result.stiff == 1 and work.search[0].again == 1):
+        result.applied, result.friction = (
+            had + h * method.b[0] * applied,
+            rubbed + h * method.b[0] * friction,
+        )
+        k, s = explicit_member(model, data, method, label, loaded, count, h), method.b.size
+        s = s - 1 if stages_within(method) < s else s
+        if k > 0 and land(model, data, loaded, k, count, h):
+            if review(model, data, label, loaded, count, s, h, True):
+                note_errors(model, data, method.E, loaded, count, h)
+                check(model, data, loaded, count, result.friction - rubbed)
+                return
+        result.stiff = 1
+    size = closing_size(system, controls, count, group)
+    if not (order > 0 and 0.5 * h * h * push <= size):
+        first_modes(data, label)
+        weight = method.stiff[method.stiff.shape[0] - 1, 0]
+        result.applied, result.friction = had + h * weight * applied, rubbed + h * weight * friction
+        k = implicit_member(model, data, method, label, loaded, count, h)
+        if k > 0:
+            note_modes(model, data, k, 0.0)
+            if land(model, data, loaded, k, count, h):
+                review(model, data, label, loaded, count, method.stiff.shape[0], h, False)
+                note_errors(model, data, method.stiff_E, loaded, count, h)
+                if order > 0:
+                    result.order = min(order, STIFF_ORDER)
+                check(model, data, loaded, count, result.friction - rubbed)
+                return
+    first_modes(data, label)
+    result.applied, result.friction = had, rubbed
+    k = closing_member(model, data, label, loaded, count, h)
+    note_modes(model, data, k, 0.0)
+    if not land(model, data, loaded, k, count, h):
+        result.code = 7
+    review(model, data, label, loaded, count, 2, h, False)
+    for m in range(count):
+        miss, b = work.body[group.member[m]].miss, group.member[m]
+        bound_accelerations_of(work, b, 2)
+        miss[0], miss[1], miss[2] = max(miss[0], 0.5 * h * h * push), 0.0, max(miss[2], 0.0)
+    if order > 0:
+        result.order = CLOSING_ORDER
 
 
 @kernel
-def find_impulses(model, data, k, enough):
-    """Solve for the impulses of an iteration, to `enough` (0: to round-off); return their relative change."""
-    controls = model.controls
-    group, clock = data.group, data.clocks[0]
-    group.cone.mismatch[ENOUGH] = enough
-    group.cone.count[BUDGET] = iterations_left(controls, clock, k)
-    _, _, iterations = solve_cones(
-        k, group.m[0], group.v[C], group.mu, group.kind, group.heading, group.v[P],
-        group.cone,
-    )  # fmt: skip
-    charge_iterations(clock, k, iterations)
-    clock.since += 5.0 * k
-    return moved(3 * k, group)
+def closing_size(system, controls, count, group):
+    """Return the displacement by friction [m] that a closing step may neglect."""
+    least = math.inf
+    for m in range(count):
+        size = system.bodies[group.member[m]].extent
+        least = min(least, CLOSE * allowed_error(controls.rtol, controls.atol, size, 0.0))
+    return least
 
 
 @kernel
-def check(model, data, k, count):
-    """Compute the residual of the contact law for the impulses and velocities, independent of the solver.
+def first_modes(data, label):
+    """Take the modes of the start of the step for those of its end, until the end is known."""
+    active = data.active
+    for i in range(active.count[0]):
+        if data.work.body[active.points[i].body].label == label:
+            active.points[i].next = active.points[i].mode
 
-    The velocities are those of the bodies: w(p) = W p + c with the c of one more iteration.
+
+@kernel
+def first_stage(model, data, label, loaded, count):
+    """Write the accelerations of a group at the start of a step as stage 0, and the ways of its points.
+
+    Return the number of points, the greatest rate at which friction turns a slip, and the greatest acceleration
+    by friction. The powers go to `work.result`.
     """
-    system = model.system
-    start, end, group, work = data.state, data.work.trial, data.group, data.work
+    start, group, work = data.state, data.group, data.work
+    result, controls = work.result[0], model.controls
+    for b in range(start.shape[0]):
+        copy_state(start[b], work.stage[b])
+    for m in range(count):
+        note_velocity(work.stage[group.member[m]], work.stages[0, group.member[m]])
+    first_modes(data, label)
+    result.time = result.start
+    power, drag = accelerate_freely(model, data, loaded, count, 0)
+    k = write_rows(model, data, label, 0)
+    push = 0.0
+    for row in range(3 * k):
+        push = max(push, abs(group.v[C][row]))
+    known = True
+    for i in range(k):
+        known = note_way(model, data, i, controls.rest * push * controls.step) and known
+    set_modes(data.active, k, group)
+    if not (known and solve_springs(k, group)):
+        solve_cones_of(model, data, k)
+    driven, rubbed = push_bodies(model, data, loaded, k, count, 0)
+    result.power, result.drag = power + driven, drag + rubbed
+    rate, friction = rates(k, group)
+    return k, rate if known else math.inf, friction
+
+
+@kernel
+def note_way(model, data, i, still):
+    """Store direction and speed of the slip of a point at the start; return whether they are known if it slips."""
+    group, active = data.group, data.active
+    closed_point = group.closed[i]
+    active_point = active.points[closed_point.active]
+    u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
+    speed = math.hypot(u1, u2)
+    contact = model.system.contacts[closed_point.contact]
+    moves = speed > max(10.0 * slow(contact, data.state), still)
+    d1, d2 = u1 / speed if moves else 0.0, u2 / speed if moves else 0.0
+    if closed_point.own == 0:
+        return moves or active_point.mode != SLIP or group.mu[i] == 0.0
+    if closed_point.turns > 0:
+        way = active_point.turning[closed_point.turns - 1]
+        way[0], way[1], way[2] = d1, d2, speed if moves else 0.0
+        return True
+    slips = active_point.mode == SLIP
+    active_point.heading[0], active_point.heading[1] = d1 if slips else 0.0, d2 if slips else 0.0
+    active_point.speed = speed
+    return moves or not slips or group.mu[i] == 0.0
+
+
+@kernel
+def rates(k, group):
+    """Return the greatest rate at which friction turns a slip, and the greatest acceleration by friction."""
+    rate, most, W = 0.0, 0.0, group.m[0]
+    for i in range(k):
+        q = 3 * i
+        force = math.hypot(group.v[P][q + 1], group.v[P][q + 2])
+        if group.kind[i] != SLIDING:
+            normal = q if group.closed[i].turns == 0 else 3 * group.closed[i].parent
+            force = max(force, group.mu[i] * group.v[P][normal])
+        braked = force * max(W[q + 1, q + 1], W[q + 2, q + 2])
+        most = max(most, braked)
+        speed = math.hypot(group.v[U][q + 1], group.v[U][q + 2])
+        if group.kind[i] == SLIDING and group.mu[i] > 0.0 and braked > 0.0:
+            rate = max(rate, braked / speed if speed > 0.0 else math.inf)
+    return rate, most
+
+
+@kernel
+def note_errors(model, data, E, loaded, count, h):
+    """Write the errors of the bodies of a group by its stages, and bounds of their accelerations."""
+    system, group, work = model.system, data.group, data.work
     for m in range(count):
         b = group.member[m]
-        mean_velocity(start[b], end[b], work.stage[b])
-    pose(k, start, group, work)
-    bound_turning(system, k, group)
-    found = measure(k, group.m[0], group.v[C], group.mu, group.kind, group.heading, group.v[P])
-    if not found[0] <= work.result[0].residual:
-        work.result[0].residual = found[0]
+        work.body[b].bound[:3] = 0.0
+        bound_accelerations_of(work, b, E.shape[1])
+        if model.controls.order > 0:
+            work.body[b].miss[:3] = 0.0
+            note_miss(system, E, h, math.inf, b, work)
 
 
 @kernel
-def moved(n, group):
-    """Return the effect of the last change of p on the velocities, relative to the effect of p.
-
-    The forces themselves may continue to change if they are not unique.
-    """
-    change, largest = 0.0, 0.0
-    for i in range(n):
-        s, t = 0.0, 0.0
-        for j in range(n):
-            s += group.m[0][i, j] * (group.v[P][j] - group.v[OLD][j])
-            t += abs(group.m[0][i, j] * group.v[P][j])
-        change, largest = max(change, abs(s)), max(largest, t)
-    return change / largest if largest > 0.0 else 0.0
-
-
-@kernel
-def begin(model, data, k, h, count, loaded):
-    """Store the directions of slip, and the last forces as a first guess."""
-    system, controls = model.system, model.controls
-    active, start, end, group, work = (
-        data.active,
-        data.state,
-        data.work.trial,
-        data.group,
-        data.work,
+def check(model, data, loaded, count, friction):
+    """Note the energy that no force explains, of bodies on which only gravity acts."""
+    if loaded:
+        return
+    work, group = data.work, data.group
+    over = unnamed(
+        model.system, model.controls, data.state, work.trial, friction, count, group.member
     )
-    if loaded:  # springs may lead to any body
-        for b in range(start.shape[0]):
-            halfway(start[b], end[b], work.stage[b])
-            halfway(start[b], end[b], work.middle[b])
-    still = controls.rest * gained(start, count, group) * controls.step / h
-    for i in range(3 * k):
-        group.v[BACK][i] = 0.0
-    for i in range(k):
-        closed_point = group.closed[i]
-        active_point = active.points[closed_point.active]
-        _, u1, u2 = contact_velocity(group.points[0][i], start)
-        speed = math.sqrt(u1 * u1 + u2 * u2)
-        if closed_point.turns == 0:
-            group.mu[i] = system.contacts[active_point.contact].friction_held
-            for r in range(3):
-                group.v[P][3 * i + r] = h * active_point.first_force[r]
-            slips, active_point.speed = active_point.mode == SLIP and speed > 0.0, speed
-        else:
-            group.mu[i] = 1.0
-            first_torque(system, active_point, i, h, group)
-            slips = speed > still
-        stop = active_point.first_stop[closed_point.turns]
-        group.heading[i, 0] = u1 / speed if slips else 0.0
-        group.heading[i, 1] = u2 / speed if slips else 0.0
-        group.kind[i] = CONE
-        closed_point.stopped = 0 if slips and stop > h * (1.0 + 1e-9) else 1
-
-
-@kernel
-def any_joined(system, count, member):
-    """Return whether a body of the group has a joint."""
-    for m in range(count):
-        if system.bodies[member[m]].isolated == 0:
-            return True
-    return False
-
-
-@kernel
-def impose(model, data, k, h, count, loaded):
-    """Move `end` by the impulses p of the rows at the middle of the step; write u = G_1 v_1.
-
-    Return the work of drivers: in response to p, and in the return to the joints.
-    """
-    system = model.system
-    active, end, group, work = data.active, data.work.trial, data.group, data.work
-    member, flight, result, driven = group.member, group.flight, work.result[0], 0.0
-    spread_all(system, k, group.points[0], group.v[P], count, member, work.stage, work)
-    joined = system.joints.shape[0] > 0 and any_joined(system, count, member)
-    if joined:
-        result.time = result.start + 0.5 * h
-        note_rates(system, flight)
-        add_rates(system, work.stage, work)
-        driven += driven_power(system, work.stage, work)  # of an impulse: its work
-        result.time = result.start + h
-    for m in range(count):
-        b = member[m]
-        motion, push = work.body[b].motion, work.body[b].push
-        for i in range(6):
-            push[i] = 0.0
-        add_momentum(system.bodies[b], work.stage[b].Q, 1.0, work.body[b])
-        for i in range(6):
-            motion[i] *= 0.5 * h
-        copy_state(flight[b], end[b])
-        shift(motion, end[b])
-    if loaded:
-        add_difference(system, h, count, joined, group, work)
-    onto_surfaces(system, active, k, count, end, group, work)
-    for m in range(count):
-        b = member[m]
-        body, push, J = system.bodies[b], work.body[b].push, system.bodies[b].inertia
-        v, w, q = end[b].v, end[b].w, end[b].Q
-        l = spin_momentum(body, flight[b].Q, flight[b].w[0], flight[b].w[1], flight[b].w[2])
-        for i in range(3):
-            v[i] = flight[b].v[i] + push[i] / body.mass
-        a = rotate_back(q[0], q[1], q[2], q[3], l[0] + push[3], l[1] + push[4], l[2] + push[5])
-        w[0], w[1], w[2] = rotate(q[0], q[1], q[2], q[3], a[0] / J[0], a[1] / J[1], a[2] / J[2])
-    if joined:
-        carry_velocity(system, end, work)
-        driven += driven_power(system, end, work)
-    place_closed(system, k, end, group, group.points[1], work)
-    velocities(k, group.points[1], end, group.v[U])
-    return driven
-
-
-@kernel
-def add_difference(system, h, count, joined, group, work):
-    """Add to the push the effect of applied forces on the actual path minus that on the path without contacts.
-
-    It is computed with the joints, because the effect of a torque on a single light body would lose all its
-    digits in the projection.
-    """
-    difference_of_loads(system, h, work.stage, work.middle, work)
-    if joined:
-        solve(system, work.stage, False, work)
-        add_rates(system, work.stage, work)
-    for m in range(count):
-        b = group.member[m]
-        if joined:
-            add_momentum(system.bodies[b], work.stage[b].Q, 1.0, work.body[b])
-            continue
-        for i in range(6):
-            work.body[b].push[i] += work.body[b].wrench[i]
-
-
-@kernel
-def pose(k, start, group, work):
-    """Write c = w(p_old) - W p_old of the contact problem, with the slip for the friction of each point.
-
-    If a point continues to slip, this slip is twice the velocity at the middle of the step, G_0 (v_0 + v_1);
-    otherwise it is that at the end. (With friction along the slip of the last iteration, the iteration would
-    not converge at speeds below mu N h W_tt.)
-    """
-    for i in range(k):
-        w, point, q = group.v[U], group.points[0][i], 3 * i
-        c = (w[q], w[q + 1], w[q + 2])
-        if group.closed[i].stopped == 0:
-            _, m1, m2 = contact_velocity(point, work.stage)
-            d1, d2 = group.heading[i, 0], group.heading[i, 1]
-            if m1 * d1 + m2 * d2 > 0.0 and w[q + 1] * d1 + w[q + 2] * d2 > 0.0:
-                c = (w[q], 2.0 * m1, 2.0 * m2)
-            else:
-                group.closed[i].stopped = 1
-        for r in range(3):
-            s = c[r]
-            for j in range(3 * k):
-                s -= group.m[0][q + r, j] * group.v[P][j]
-            group.v[C][q + r] = s
-    for i in range(3 * k):
-        group.v[OLD][i] = group.v[P][i]
+    work.result[0].unnamed = max(work.result[0].unnamed, over)

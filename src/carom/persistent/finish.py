@@ -1,4 +1,4 @@
-"""The end of a step of bodies in contact at several points: rest, modes, forces, and the end of slip."""
+"""The end of a contact step: return to joints and surfaces, modes, forces, the end of slip, rest."""
 
 from __future__ import annotations
 
@@ -8,94 +8,265 @@ from carom._compiled.decorators import kernel
 from carom.contact.closed_points import place_closed
 from carom.contact.gap import slow
 from carom.dynamics.acceleration import OPEN, SLIP, STICK
-from carom.dynamics.explicit import copy_state
-from carom.dynamics.several_points import inverse_masses
-from carom.impact.workspace import P, U
-from carom.kinematics.contact_point import contact_velocity
-from carom.persistent.forces import pose_forces, solve_forces, take_forces
+from carom.dynamics.adapt import allowed_error
+from carom.dynamics.explicit import copy_state, note_velocity
+from carom.dynamics.joint_friction import stay_stuck
+from carom.dynamics.project import LOST, project_position, project_velocity
+from carom.dynamics.several_points import velocities
+from carom.friction.layout import CONE, SLIDING
+from carom.impact.workspace import BACK, OLD, C, P, U
+from carom.persistent.forces import solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among
-from carom.persistent.known_modes import as_known, note_accelerations, solve_given
 from carom.persistent.margins import greatest_push, set_margins
+from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
+from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
+from carom.persistent.springs import note_accelerations, solve_springs
 from carom.persistent.step_control import POORLY, rest_speed
 
-FULL = 1e-9  # of the greatest friction: what is less than it by so little is all of it
+REST = 0.1  # of the error of a step: slip that ends within so little has ended
+ON_CONE = 1.0 - 1e-9  # of the greatest friction: less is within it
 
 
 @kernel
-def gained(start, count, group):
-    """Return the greatest speed that the bodies gain without the contacts."""
-    most = 0.0
+def land(model, data, loaded, k, count, h):
+    """Return the bodies of k points to joints and surfaces, their velocities to the tangents; return whether."""
+    system, active, group, work = model.system, data.active, data.group, data.work
+    end = work.trial
+    if loaded and not (project_position(system, end, True, 1e-14, work) <= LOST):
+        return False
+    for row in range(3 * k):
+        group.v[BACK][row] = 0.0
+    show(count, end, group, work)
+    onto_surfaces(system, active, k, count, end, group, work)
+    if loaded:
+        project_velocity(system, end, work)
+        stay_stuck(system, end, work)
+    show(count, end, group, work)
+    place_closed(system, k, end, group, group.points[0], work)
+    for _ in range(2):  # the factor is that of the last stage
+        for i in range(k):
+            closed_point = group.closed[i]
+            presses = closed_point.turns == 0 and group.v[P][3 * i] > 0.0
+            closed_point.rows = 0 if not presses else 1 if group.kind[i] == SLIDING else 3
+        onto_tangents(system, k, count, end, group, work)
+    show(count, end, group, work)
+    return True
+
+
+@kernel
+def show(count, state, group, work):
+    """Copy the bodies of a group to `work.stage`."""
     for m in range(count):
-        b = group.member[m]
-        for r in range(3):
-            most = max(most, abs(group.flight[b].v[r] - start[b].v[r]))
-    return most
+        copy_state(state[group.member[m]], work.stage[group.member[m]])
 
 
 @kernel
-def finish(model, data, k, h, count):
-    """Set the bodies to rest if nothing moves them; write modes and bounds; return the work of friction.
+def note_modes(model, data, k, still):
+    """Write the modes at the end of a step whose stages have none: a point sticks where its disc holds it."""
+    active, group = data.active, data.group
+    for i in range(k):
+        closed_point, u, p = group.closed[i], group.v[U], group.v[P]
+        slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
+        force = math.hypot(p[3 * i + 1], p[3 * i + 2])
+        normal = closed_point.parent if closed_point.turns > 0 else i
+        full = not force < ON_CONE * group.mu[i] * p[3 * normal]
+        group.kind[i] = SLIDING if group.mu[i] == 0.0 or (full and slip > still) else CONE
+        if closed_point.own == 0:
+            continue
+        active_point = active.points[closed_point.active]
+        slides = group.kind[i] == SLIDING and slip > 0.0
+        d1, d2 = u[3 * i + 1] / slip if slides else 0.0, u[3 * i + 2] / slip if slides else 0.0
+        if closed_point.turns == 0:
+            active_point.next = SLIP if group.kind[i] == SLIDING else STICK
+            active_point.heading[0], active_point.heading[1], active_point.speed = d1, d2, slip
+        else:
+            way = active_point.turning[closed_point.turns - 1]
+            way[0], way[1], way[2] = d1, d2, slip if slides else 0.0
 
-    The work is never positive: a gain, from directions that turn within the step, is an error of the step.
+
+@kernel
+def review(model, data, label, loaded, count, s, h, given):
+    """Write forces, margins and modes at the end of a step, in `work.stage`; return whether given modes lasted.
+
+    The accelerations there are those of stage s. With `given` modes, slip must not have turned back, and what
+    sticks must be within its cones, or slip begins at an event that is located.
     """
-    system, controls = model.system, model.controls
-    active, start, end, group, work = (
-        data.active,
-        data.state,
-        data.work.trial,
-        data.group,
-        data.work,
-    )
-    friction = 0.0
-    gain = gained(start, count, group)
+    system, controls, active = model.system, model.controls, data.active
+    start, end, group, work = data.state, data.work.trial, data.group, data.work
+    for m in range(count):
+        note_velocity(work.stage[group.member[m]], work.stages[s, group.member[m]])
+    accelerate_freely(model, data, loaded, count, s)
+    k = write_rows(model, data, label, s)
+    push = 0.0
+    for row in range(3 * k):
+        push = max(push, abs(group.v[C][row]))
+    same = set_modes(active, k, group) or not given
+    status = 0
+    solved = same and solve_springs(k, group)
+    lasts = solved and within_cones(k, group)
+    if solved and controls.order > 0 and stick_where_slip_ends(model, data, k):
+        lasts = True
+        onto_tangents_of(model, data, k, count)
+    if not lasts:
+        if given and not same:
+            return False
+        status = solve_cones_of(model, data, k)
+    push_bodies(model, data, loaded, k, count, s)
+    located = greatest_push(k, group)
+    for i in range(active.count[0]):
+        if work.body[active.points[i].body].label == label:
+            clear(active.points[i])
+    gain = h * push
     tolerance = rest_speed(controls, gain, work.result[0].residual, k, POORLY)
     at_rest = come_to_rest(system, tolerance, start, end, count, group)
-    stop, away = tolerance * controls.step / h, 1e-6 * gain
     for i in range(k):
-        active_point, p, u = active.points[group.closed[i].active], group.v[P], group.v[U]
-        contact = system.contacts[active_point.contact]
-        s1, s2 = u[3 * i + 1], u[3 * i + 2]
-        _, m1, m2 = contact_velocity(group.points[0][i], start)
-        _, e1, e2 = contact_velocity(group.points[0][i], end)
-        friction += 0.5 * (p[3 * i + 1] * (m1 + e1) + p[3 * i + 2] * (m2 + e2))
-        if group.closed[i].turns > 0:
+        closed_point = group.closed[i]
+        if closed_point.own == 0:
             continue
-        still = max(stop, 10.0 * max(slow(contact, start), slow(contact, end)))
-        if p[3 * i] <= 0.0 and u[3 * i] > max(still, away):
+        active_point = active.points[closed_point.active]
+        take_forces(active_point, i, group)
+        if closed_point.turns > 0:
+            continue
+        if not lasts and group.kind[i] == CONE and active_point.next == SLIP:
+            active_point.next = STICK
+        still = max(1e-6 * gain, 10.0 * slow(system.contacts[closed_point.contact], end))
+        away = group.v[P][3 * i] <= 0.0 and group.v[U][3 * i] > still
+        slips_off = gains(i, push, group)
+        if given and not lasts and slips_off and active_point.next == STICK:
+            if not (located > 0.0 and work.search[0].eager == 1):
+                if work.search[0].active == 0:
+                    return False
+                active_point.next = SLIP
+        if away:
             active_point.next = OPEN
-        else:
-            speed = math.sqrt(s1 * s1 + s2 * s2)
-            slips = speed > still
-            if controls.order > 0:  # steps may be as short as the tolerance asks for
-                slips = slips or begins(active_point, i, speed, group)
-            active_point.next = SLIP if slips else STICK
         if at_rest:
             active_point.next = STICK
         active_point.comes_to_rest = 1 if at_rest else 0
-    for m in range(count):
-        b = group.member[m]
-        linear, angular, spin = 0.0, 0.0, 0.0
-        for r in range(3):
-            linear += (end[b].v[r] - start[b].v[r]) ** 2
-            angular += (end[b].w[r] - start[b].w[r]) ** 2
-            spin += max(end[b].w[r] ** 2, start[b].w[r] ** 2)
-        bound = work.body[b].bound
-        bound[0], bound[1] = 2.0 * math.sqrt(linear) / h, 2.0 * math.sqrt(angular) / h
-        bound[2] = math.sqrt(spin)
-    return min(0.0, friction)
+        set_margins(active_point, i, located, group)
+        active_point.jams = jams_among(active_point, i, status, group)
+    note_residual(k, group, work)
+    return True
 
 
 @kernel
-def begins(active_point, i, speed, group):
-    """Return whether slip has just begun: however slow it is, it grows against all the friction there is."""
-    p, q = group.v[P], 3 * i
-    most = group.mu[i] * p[q]
-    return (
-        active_point.mode == SLIP
-        and most > 0.0
-        and math.hypot(p[q + 1], p[q + 2]) >= (1.0 - FULL) * most
-        and speed > active_point.speed
+def clear(active_point):
+    """Take the force from an active point: it has one only if it is among the points found."""
+    active_point.stop, active_point.jams, active_point.lift, active_point.grip = (
+        math.inf,
+        0,
+        1.0,
+        1.0,
     )
+    active_point.comes_to_rest = 0
+    for r in range(3):
+        active_point.force[r], active_point.torque[r] = 0.0, 0.0
+    active_point.turn_stop[0], active_point.turn_stop[1] = math.inf, math.inf
+
+
+@kernel
+def gains(i, push, group):
+    """Return whether a point accelerates along its surface."""
+    a = group.v[OLD]
+    return math.hypot(a[3 * i + 1], a[3 * i + 2]) > 1e-7 * push
+
+
+@kernel
+def within_cones(k, group):
+    """Return whether the friction of all points that stick, and torques that keep from turning, is allowed."""
+    p, most = group.v[P], 0.0
+    for i in range(k):
+        most = max(most, p[3 * i])
+    for i in range(k):
+        if group.kind[i] == SLIDING:
+            continue
+        closed_point = group.closed[i]
+        normal = closed_point.parent if closed_point.turns > 0 else i
+        force = math.hypot(p[3 * i + 1], p[3 * i + 2])
+        if force > group.mu[i] * max(0.0, p[3 * normal]) * (1.0 + 1e-10) + 1e-13 * most:
+            return False
+    return True
+
+
+@kernel
+def solve_cones_of(model, data, k):
+    """Solve the contact problem of accelerations: slip along the headings that are known, else within cones."""
+    group = data.group
+    for i in range(k):
+        group.closed[i].stays = 1
+        known = group.heading[i, 0] != 0.0 or group.heading[i, 1] != 0.0
+        if group.kind[i] == SLIDING and not known:
+            group.kind[i] = CONE
+        if group.closed[i].turns > 0:
+            group.mu[i] = 1.0
+    return solve_forces(model, data, k)
+
+
+@kernel
+def stick_where_slip_ends(model, data, k):
+    """Let points stick whose slip ends within a part of the tolerance, if friction holds all; return whether any.
+
+    Forces and accelerations are those of stick then.
+    """
+    controls, group, active, found = model.controls, data.group, data.active, False
+    for i in range(k):
+        closed_point = group.closed[i]
+        closed_point.stays = 0
+        if group.kind[i] != SLIDING or group.mu[i] == 0.0 or closed_point.own == 0:
+            continue
+        size = model.system.bodies[group.points[0][i].a].extent
+        allowed = REST * allowed_error(controls.rtol, controls.atol, size, 0.0)
+        speed = math.hypot(group.v[U][3 * i + 1], group.v[U][3 * i + 2])
+        if speed == 0.0 or 0.5 * speed * time_to_stop(i, group) <= allowed:
+            closed_point.stays, found = 1, True
+    if not found:
+        return False
+    for sticks in range(1, -1, -1):
+        for i in range(k):
+            closed_point = group.closed[i]
+            closed_point.loaded = 1 if closed_point.weight > 0.0 else 0
+            if closed_point.stays == 1:
+                group.kind[i] = CONE if sticks == 1 else SLIDING
+        if solve_springs(k, group) and (sticks == 0 or within_cones(k, group)):
+            break
+    if sticks == 0:
+        return False
+    for i in range(k):
+        closed_point = group.closed[i]
+        if closed_point.stays == 1:
+            active_point = active.points[closed_point.active]
+            if closed_point.turns == 0:
+                active_point.next = STICK
+            else:
+                active_point.turning[closed_point.turns - 1, 2] = 0.0
+    return True
+
+
+@kernel
+def onto_tangents_of(model, data, k, count):
+    """Remove the velocities of points that stick from the end of the step."""
+    group, work = data.group, data.work
+    for i in range(k):
+        closed_point = group.closed[i]
+        closed_point.rows = 0 if closed_point.loaded == 0 or closed_point.turns > 0 else 3
+        if group.kind[i] == SLIDING:
+            closed_point.rows = min(closed_point.rows, 1)
+    onto_tangents(model.system, k, count, work.trial, group, work)
+    velocities(k, group.points[0], work.trial, group.v[U])
+    note_accelerations(k, group)
+    show(count, work.trial, group, work)
+
+
+@kernel
+def note_residual(k, group, work):
+    """Raise the residual of the step to the greatest forbidden velocity."""
+    worst = 0.0
+    for i in range(k):
+        if group.closed[i].turns > 0 or not group.v[P][3 * i] > 0.0:
+            continue
+        worst = max(worst, abs(group.v[U][3 * i]))
+        if group.kind[i] == CONE:
+            worst = max(worst, math.hypot(group.v[U][3 * i + 1], group.v[U][3 * i + 2]))
+    work.result[0].residual = max(work.result[0].residual, worst)
 
 
 @kernel
@@ -120,32 +291,3 @@ def come_to_rest(system, tolerance, start, end, count, group):
         for r in range(3):
             end[b].v[r], end[b].w[r] = 0.0, 0.0
     return before == 0.0
-
-
-@kernel
-def forces_at_end(model, data, k, known, end):
-    """Write the forces at the end to the active points, by the `known` modes if these are still valid.
-
-    If modes are known, the points are placed and W is written for the end.
-    """
-    system, active, group, work = model.system, data.active, data.group, data.work
-    for i in range(k):
-        closed_point = group.closed[i]
-        active_point = active.points[closed_point.active]
-        closed_point.stays = 1 if active_point.next != OPEN else 0
-    if not known:
-        place_closed(system, k, end, group, group.points[0], work)
-        inverse_masses(system, k, group.points[0], end, work, group.m[0])
-    pose_forces(system, model.controls, active, k, end, group, work)
-    status = 0
-    if known and as_known(k, group) and solve_given(system, k, end, group, work):
-        note_accelerations(k, group, work)
-    else:
-        status = solve_forces(model, data, k)
-    push = greatest_push(k, group)
-    for i in range(k):
-        active_point = active.points[group.closed[i].active]
-        take_forces(active_point, i, group)
-        if group.closed[i].turns == 0:
-            set_margins(active_point, i, push, group)
-            active_point.jams = jams_among(active_point, i, status, group)

@@ -1,4 +1,4 @@
-"""Conditions under which a contact becomes persistent, slips, sticks or comes to rest.
+"""Conditions under which a contact becomes persistent.
 
 After an impact with exit speed u_n, a contact whose free acceleration of approach is g_i bounces for the time
 
@@ -14,8 +14,7 @@ from __future__ import annotations
 
 from carom._compiled.units import unit
 from carom.contact.closed_points import gather_closed
-from carom.persistent.active_set import always_several, regroup, set_anchor
-from carom.persistent.one_point import activate_one, renew_mode_of_one
+from carom.persistent.active_set import regroup
 from carom.persistent.several_points import activate_several
 
 TOO_MANY_POINTS = 10
@@ -33,20 +32,9 @@ def activate_contact(model, data, c, horizon):
     for i in range(active.count[0]):
         active_point = active.points[i]
         if work.body[active_point.body].label == label:
-            if active_point.several == 0:  # from now on its position is kept
-                set_anchor(system, active_point, state, work)
-            active_point.rest, active_point.several = 0, 1  # together with the new one
+            active_point.rest = 0  # together with the new one
     if k < 0:
         hit.code = TOO_MANY_POINTS
-    elif k == 1 and group.closed[0].active < 0 and not always_several(contact):
-        activate_one(model, data, horizon)
     elif k > 0:
         activate_several(model, data, k, label, horizon)
     regroup(system, active, work)
-
-
-@unit
-def renew_mode(model, data, i):
-    """Find the new mode of point i, the only one of its body, whose slip has stopped or turned."""
-    active = data.active
-    renew_mode_of_one(model, data, active.points[i])

@@ -15,7 +15,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.dynamics.acceleration import OPEN, SLIP, STICK
 from carom.impact.workspace import OLD, C, P
-from carom.persistent.events import SEPARATE
+from carom.persistent.events import JAM, SEPARATE
 
 LEAST = 1e-5  # least margin before an event
 NONE = 1e-7  # accelerations below this part count as zero: those of two bodies have errors of 1e-9
@@ -77,18 +77,14 @@ def note_due(active, search, work):
     label = work.body[active.points[search.contact].body].label
     for i in range(active.count[0]):
         active_point = active.points[i]
-        same = (
-            active_point.several == 1
-            and active_point.rest == 0
-            and work.body[active_point.body].label == label
-        )
+        same = active_point.rest == 0 and work.body[active_point.body].label == label
         active_point.due = 1 if same and margin(active_point, search.kind) < 0.0 else 0
 
 
 @kernel
 def switch_due(active, search):
-    """Set the new mode of the points whose event has been located; return whether there are any."""
-    if active.points[search.contact].several == 0:
+    """Set the new mode of the points whose event has been located; return whether it is one of these."""
+    if search.kind == JAM:
         return False
     for i in range(active.count[0]):
         active_point = active.points[i]

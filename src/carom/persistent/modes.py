@@ -3,26 +3,18 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.dynamics.acceleration import OPEN, SLIP, STICK
+from carom.dynamics.acceleration import OPEN, STICK
 from carom.model import records as r
-from carom.model.actions import NOTHING, RENEW_MODE
+from carom.model.actions import NOTHING
 from carom.model.event_rows import begin_event, end_event
 from carom.persistent.active_set import deactivate, refresh_pairs, regroup, set_anchor
-from carom.persistent.events import (
-    CONE,
-    JAM,
-    REVERSE,
-    SEPARATE,
-    contact_event_value,
-    residual,
-    slides_on,
-)
+from carom.persistent.events import jam_margin, slides_on
 from carom.persistent.jam import JAMMED, note_jam, presses
 
 
 @kernel
-def change_mode(model, data, i, kind):
-    """Handle the event of an active point; return the remaining action."""
+def jam_point(model, data, i):
+    """Handle a jam of an active point: it presses, and an impact follows; or it opens. Return the action."""
     system = model.system
     active, now, work, clock, records = (
         data.active,
@@ -31,26 +23,15 @@ def change_mode(model, data, i, kind):
         data.clocks[0],
         data.records,
     )
-    if kind == REVERSE:
-        return RENEW_MODE
     active_point = active.points[i]
-    if kind == JAM:
-        k = (
-            contact_event_value(system, active_point, JAM, 0.0, 0.0, now, work)
-            + JAMMED * active_point.W[0, 0]
-        )
-        if presses(active_point, k):
-            note_jam(active, active_point)
-            return NOTHING
-        kind = SEPARATE
+    k = jam_margin(system, active_point) + JAMMED * active_point.W[0, 0]
+    if presses(active_point, k):
+        note_jam(active, active_point)
+        return NOTHING
     begin_event(system, active_point.contact, active_point.feature, now, clock, records)
-    if kind == SEPARATE:
-        deactivate(active, i)
-        regroup(system, active, work)
-        end_event(system, r.OPENS, now, clock, records)
-    elif kind == CONE:
-        active_point.mode = SLIP
-        end_event(system, r.SLIPS, now, clock, records)
+    deactivate(active, i)
+    regroup(system, active, work)
+    end_event(system, r.OPENS, now, clock, records)
     return NOTHING
 
 
@@ -76,19 +57,17 @@ def turn_modes(model, data):
         data.records,
     )
     changed = False
-    clock.residual = max(
-        clock.residual, max(residual(system, active, now, work), work.result[0].residual)
-    )
+    clock.residual = max(clock.residual, work.result[0].residual)
     for i in range(active.count[0] - 1, -1, -1):
         active_point = active.points[i]
-        if active_point.several == 0 or active_point.rest == 1:
+        if active_point.rest == 1:
             continue
         if active_point.comes_to_rest == 1 and only_free(system, active_point.body, work):
             active_point.rest = 1
         if active_point.jams == 1:
             note_jam(active, active_point)
         if active_point.next == active_point.mode:
-            changed = changed or slides_on(system, active_point, now, controls.step, work)
+            changed = changed or slides_on(system, active_point, controls.step)
             continue
         changed = True
         begin_event(system, active_point.contact, active_point.feature, now, clock, records)

@@ -23,9 +23,9 @@ from carom.kinematics.contact_point import contact_velocity
 from carom.model.event_rows import begin_event, end_event
 from carom.model.records import OPENS, PERSIST, SLIPS, STICKS
 from carom.persistent.active_set import activate, any_turning, deactivate, set_anchor
+from carom.persistent.bounces import bounces_end, name_work, spare, time_of_bounces
 from carom.persistent.forces import pose_forces, solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among, note_jam
-from carom.persistent.one_point import bounces_end, name_work, spare, time_of_bounces
 from carom.persistent.return_to_surfaces import onto_surfaces
 
 LAID = 1e-9  # of the size of a body: the gap of a point that is on its surface
@@ -303,7 +303,6 @@ def first_forces(model, data, label):
     active, state, group, work = data.active, data.state, data.group, data.work
     k = gather_active(system, active, label, state, group, work)
     for i in range(k):
-        active.points[group.closed[i].active].several = 1
         group.closed[i].stays = 1
     inverse_masses(system, k, group.points[0], state, work, group.m[0])
     pose_forces(system, controls, active, k, state, group, work)

@@ -12,7 +12,6 @@ from carom._compiled.decorators import inlined, kernel
 from carom.geometry.rotation import norm
 from carom.model.allowance import affordable
 from carom.model.arrays import LOOPS
-from carom.model.workspace import ONE
 from carom.persistent.middle_state import spin_momentum
 
 # Allowed loss in a step of several bodies: OF_MOTION of the kinetic energy at its start, plus the lesser of
@@ -24,8 +23,8 @@ OF_MOTION, OF_FALL, OF_SIZE = 1e-6, 1e-2, 1e-7
 MUCH, LEAST = 1e3, 1e-4
 CAREFUL = 0.01
 SURE = 1.0 / 32.0  # of the allowed loss: with less, the next step is twice as long (order 4: 2^5)
-# Allowed loss of one body, relative to its kinetic energy plus m g times its size, at one point and at several.
-OF_ONE, OF_SEVERAL = 1e-9, 2e-8
+# Allowed loss of one body, relative to its kinetic energy plus m g times its size.
+OF_ONE = 2e-8
 # Greatest rotation in a step [rad]: the methods are useful below one radian.
 TURN = 0.5
 # Residual of contacts, relative to the speed that gravity gives in a step: above UNSOLVED a step is cut, and at
@@ -37,8 +36,8 @@ POORLY, MANY = 10.0, 1e3
 SHORTEST, RETRIED = 1e-4, 1e-2
 # If the loss of a shortest step is so many times the allowed one, its length is not the reason: where a force
 # grows without bound (near a jam, or as a rim becomes flat) no step is short enough, and a time-stepping step
-# replaces it. Of groups, and of one body.
-WILD, GROSS = 100.0, 1e4
+# replaces it.
+WILD = 100.0
 # Approximate time for one body in a step without contacts [us], with closed loops and without.
 LOOPS_STEP, OTHER_STEP = 25.0, 0.6
 # A search for impulses: time of an iteration for k points, divided by k^2 [us]; its least number of iterations.
@@ -92,20 +91,7 @@ def unnamed(system, controls, start, end, friction, count, member):
         may += OF_MOTION * kinetic(body, start[b])
         may += min(body.mass * fall, OF_SIZE * weigh(system, b, start, end))
     if count == 1:
-        may = may_lose(system, member[0], start, OF_SEVERAL)
-    return abs(lost) / may if may > 0.0 else 0.0
-
-
-@kernel
-def unnamed_alone(system, start, end, friction, work):
-    """Return the same for bodies in contact at one point each, if only gravity acts on them otherwise."""
-    lost, may = friction, 0.0
-    for b in range(start.shape[0]):
-        if work.body[b].status == ONE:
-            if system.bodies[b].ballistic == 0:
-                return 0.0
-            lost += lost_by(system, b, start, end)
-            may += may_lose(system, b, start, OF_ONE)
+        may = may_lose(system, member[0], start, OF_ONE)
     return abs(lost) / may if may > 0.0 else 0.0
 
 
@@ -141,13 +127,11 @@ def too_long(model, data):
     if dt > RETRIED * controls.step and unsolved(system, controls, work, UNSOLVED):
         return True
     shortest = dt <= SHORTEST * controls.step
-    if not shortest and turns_far(system, active, start, end, dt):
+    if controls.order == 0 and not shortest and turns_far(system, active, start, end, dt):
         return True
     result = work.result[0]
-    alone = unnamed_alone(system, start, end, search.alone, work)
     if shortest:
-        return not (alone <= GROSS)
-    result.unnamed = max(result.unnamed, alone)
+        return False
     return not (result.unnamed <= (CAREFUL if search.pace < math.inf else 1.0))
 
 

@@ -13,13 +13,13 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom.contact.closed_points import round_off_of_both
-from carom.contact.continuous_detection import AGAIN, BELOW, CLEAR, FLAT_RIM, UNSURE, passage
+from carom.contact.continuous_detection import BELOW, CLEAR, FLAT_RIM, UNSURE, passage
 from carom.contact.continuous_detection_pair import lowest_pair, passage_pair
 from carom.contact.gap import gap_and_rate, lowest, plane_in_body, round_off
 from carom.contact.pair_point import smaller
 from carom.contact.stop import passage_stop, stop_gap
 from carom.model.arrays import STOP
-from carom.persistent.events import GAP, contact_event_value, find_contact_event, turned
+from carom.persistent.events import GAP, JAM, contact_event_value, find_contact_event
 from carom.persistent.joint_events import STOPS, find_joint_event, joint_event_value
 from carom.persistent.margins import LEAST, NEAR
 
@@ -28,7 +28,7 @@ NEWTON = 6  # steps to the root of a cubic from a near start
 
 @inlined
 def detect_event(system, controls, active, now, dt, work):
-    """Return the first event of the trial step: verdict, event, contact, a time before it, slip."""
+    """Return the first event of the trial step: verdict, event, contact, a time before it."""
     found, which, low = CLEAR, -1, 0.0
     for c in range(active.contact_states.shape[0]):
         contact = system.contacts[c]
@@ -39,25 +39,20 @@ def detect_event(system, controls, active, now, dt, work):
         else:
             verdict, first = passage_pair(system, controls, active, c, now, dt, work)
         if verdict in (UNSURE, FLAT_RIM):
-            return verdict, GAP, c, 0.0, 0.0, 0.0
+            return verdict, GAP, c, 0.0
         if verdict == BELOW and found == CLEAR:
             found, which, low = BELOW, c, 0.5 * first
         elif verdict == CLEAR and active.contact_states[c].leaving == 1 and first > 0.0:
             active.contact_states[c].leaving = 0
     if found == BELOW:
-        return BELOW, GAP, which, low, 0.0, 0.0
-    kind, i, d1, d2 = find_contact_event(system, active, work.trial, dt, work)
+        return BELOW, GAP, which, low
+    kind, i = find_contact_event(system, active, work)
     if i >= 0:
-        return BELOW, kind, i, 0.0, d1, d2
+        return BELOW, kind, i, 0.0
     kind, i = find_joint_event(system, active, work.trial, work)
     if i >= 0:
-        return BELOW, kind, i, 0.0, 0.0, 0.0
-    far = turned(system, active, work.trial, dt, work)
-    if far == 2:
-        return AGAIN, GAP, -1, 0.0, 0.0, 0.0
-    if far == 1 and dt > 1e-3 * controls.step:
-        return UNSURE, GAP, -1, 0.0, 0.0, 0.0
-    return CLEAR, GAP, -1, 0.0, 0.0, 0.0
+        return BELOW, kind, i, 0.0
+    return CLEAR, GAP, -1, 0.0
 
 
 @kernel
@@ -74,20 +69,16 @@ def event_value(system, controls, active, search, state, work):
         return lowest_pair(system, contact, search.contact, active, state, work)
     if search.kind >= STOPS:
         return joint_event_value(system, search.kind, search.contact, active, state, work), 0.0
-    active_point = active.points[search.contact]
-    if active_point.several == 1:
+    if search.kind != JAM:
         search.tolerance = NEAR
-    return contact_event_value(
-        system, active_point, search.kind, search.d1, search.d2, state, work
-    ), 0.0
+    return contact_event_value(system, active.points[search.contact], search.kind), 0.0
 
 
 @kernel
-def begin_search(search, kind, contact, low, high, d1, d2):
+def begin_search(search, kind, contact, low, high):
     """Start the search for an event between `low` and `high`; its function is negative at `high`."""
     search.active, search.kind, search.contact = 1, kind, contact
     search.low, search.high, search.width = low, high, high
-    search.d1, search.d2 = d1, d2
     search.f_low, search.side, search.tolerance = -1.0, 0, -1.0
     search.t, search.f, search.rate = 0.0, 0.0, 0.0
 

@@ -21,7 +21,7 @@ from carom.geometry.rotation import norm
 from carom.impact.strike import strike
 from carom.kinematics.contact_point import contact_velocity
 from carom.model import records as r
-from carom.model.actions import NOTHING, PERSIST, RENEW_MODE, STRIKE
+from carom.model.actions import NOTHING, PERSIST, STRIKE
 from carom.model.allowance import affordable
 from carom.model.arrays import STOP
 from carom.model.controls import LOCATE
@@ -31,9 +31,9 @@ from carom.persistent.events import (
     GAP,
 )
 from carom.persistent.joint_events import STOPS, review_joints, turn_joint
-from carom.persistent.lifecycle import activate_contact, renew_mode
+from carom.persistent.lifecycle import activate_contact
 from carom.persistent.margins import switch_due
-from carom.persistent.modes import change_mode, turn_modes
+from carom.persistent.modes import jam_point, turn_modes
 from carom.persistent.step_control import (
     UNSOLVED,
     USELESS,
@@ -161,9 +161,7 @@ def accept_step(model, data):
         return 0, NOTHING
     if met:
         return 0, NOTHING
-    return 0, STRIKE if search.kind == GAP else change_mode(
-        model, data, search.contact, search.kind
-    )
+    return 0, STRIKE if search.kind == GAP else jam_point(model, data, search.contact)
 
 
 @inlined
@@ -211,12 +209,9 @@ def act(model, data, method, action):
 def persist(model, data, action):
     """Make the closed points of the contact persistent, or change their modes; return a code."""
     work, clock, search = data.work, data.clocks[0], data.work.search[0]
-    if action == RENEW_MODE:
-        renew_mode(model, data, search.contact)
-    else:
-        activate_contact(model, data, search.contact, search.horizon)
-        if work.hit[0].code != 0:
-            return work.hit[0].code
+    activate_contact(model, data, search.contact, search.horizon)
+    if work.hit[0].code != 0:
+        return work.hit[0].code
     if clock.now == 0.0:  # in contact from the start: write it to the first row
         clock.touched = clock.first_touch
         save_contacts(model.system, data.active, data.state, 0, clock, work, data.records)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom.contact.continuous_detection import AGAIN, CLEAR, FLAT_RIM, UNSURE
+from carom.contact.continuous_detection import CLEAR, FLAT_RIM, UNSURE
 from carom.dynamics.acceleration import SLIP
 from carom.dynamics.adapt import NOTHING_LEFT, allowed_step, plan_next, shorter, step_error
 from carom.dynamics.explicit import CONSTRAINTS_LOST
@@ -16,7 +16,7 @@ from carom.model.actions import STRIKE
 from carom.model.allowance import affordable
 from carom.model.controls import LOCATE
 from carom.persistent.contact_step import contact_step
-from carom.persistent.events import GAP, end_forces, note_first_forces
+from carom.persistent.events import GAP, note_first_forces
 from carom.persistent.joint_events import STOPS
 from carom.persistent.margins import note_due
 from carom.persistent.step_control import plain_step, too_long
@@ -55,6 +55,7 @@ def propose_step(model, data):
     if data.active.count[0] > 0:
         dt = until_bounces_end(data.active, until_stop(model.controls, data.active, dt, clock))
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
+    data.work.result[0].stiff = 0
     search.effort = clock.effort
     search.eager = 1 if clock.in_moment < MANY else 0
 
@@ -76,7 +77,7 @@ def until_stop(controls, active, dt, clock):
     first = dt
     for i in range(active.count[0]):
         active_point = active.points[i]
-        if active_point.several == 1 and active_point.rest == 0:
+        if active_point.rest == 0:
             first = min(first, active_point.stop if active_point.mode == SLIP else first)
             first = min(first, min(active_point.turn_stop[0], active_point.turn_stop[1]))
     # except if stops follow each other without end, or the difference is round-off of the step
@@ -121,10 +122,10 @@ def trial_step(model, data, method):
     """
     system, controls, active, now = model.system, model.controls, data.active, data.state
     work, clock, search = data.work, data.clocks[0], data.work.search[0]
-    work.result[0].start, work.result[0].until = clock.now, math.inf
+    result = work.result[0]
+    result.start, result.until, result.order = clock.now, math.inf, controls.order
     applied, friction, code = step(method, system, active, now, search.dt, work.trial, work)
     search.applied, search.friction, search.code = applied, friction, code
-    search.alone = friction  # of points that are the only active ones of their bodies
     clock.trials += 1
     clock.tries += 1
     clock.effort += plain_step(system) if system.joints.shape[0] > 0 else 0.0
@@ -134,7 +135,6 @@ def trial_step(model, data, method):
     if retry and (clock.tries > TRIES or clock.effort > affordable(controls, clock)):
         return TOO_MANY
     if active.count[0] > 0 and code == 0:
-        end_forces(system, active, work.trial, work)
         contact_step(model, data, method, search.dt)
         if work.result[0].code != 0:
             return work.result[0].code
@@ -215,7 +215,7 @@ def event_within(model, data):
         return halve(model, data, True)
 
     # does an event lie inside?
-    verdict, kind, other, low, d1, d2 = detect_event(system, controls, active, now, search.dt, work)
+    verdict, kind, other, low = detect_event(system, controls, active, now, search.dt, work)
     if verdict == FLAT_RIM:  # its points strike together at the present position
         search.pending, search.contact, search.horizon = STRIKE, other, search.left
         return 0
@@ -223,12 +223,9 @@ def event_within(model, data):
     if verdict == CLEAR or (own and verdict != UNSURE):
         search.found = search.active
         return 0
-    if verdict == AGAIN:
-        search.active = 0
-        return ONCE_MORE
     if verdict == UNSURE:
         return halve(model, data, False)
-    begin_search(search, kind, other, low, search.dt, d1, d2)
+    begin_search(search, kind, other, low, search.dt)
     return bracket(model, data)
 
 

@@ -1,0 +1,193 @@
+"""The contact problem of a stage of the implicit member: Coulomb's law at the velocity of the stage.
+
+    (du/dt)_n = W_n p + c_n = 0 where a point presses,     u = u~ + h g W_t p,
+    p_t in the disc of radius mu N, against u: p_t = projection of p_t - rho u to that disc,
+
+u~ the slip of the stage without its contact forces. Slip that begins, ends or turns needs no mode: the disc
+decides. Rolling and pivoting friction are discs whose radius is that of the normal force of their point times
+delta over a length. Newton's method on the equations as they stand (semismooth, damped); forces that are not
+unique stay on the springs of `carom.persistent.springs`, whose compliance eps S acts on the change of an
+iteration only.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.friction import lu
+from carom.impact.workspace import BACK, OLD, C, P, U
+from carom.persistent.springs import EPS, PULL, compliance_of, moves
+
+ITERATIONS, HALVES = 40, 6
+FITS = 1e-13  # of the accelerations without forces: error of the equations
+ENOUGH = 1e-9  # the same for an error that no iteration makes less
+
+
+@kernel
+def solve_stage(k, hg, group):
+    """Write the forces of a stage to P; return whether they exist. U has u~, C the accelerations without forces."""
+    closed = group.closed
+    for i in range(k):
+        closed[i].loaded = 1 if closed[i].weight > 0.0 else 0
+    for _ in range(2 * k + 2):
+        if not newton(k, hg, group):
+            return False
+        if not change_loads(k, group):
+            return True
+    return False
+
+
+@kernel
+def change_loads(k, group):
+    """Unload the spring that pulls most, or load one whose point approaches; return whether there is one."""
+    p, closed, most, worst, which = group.v[P], group.closed, 0.0, 0.0, -1
+    push = largest(k, group)
+    for i in range(k):
+        if closed[i].turns == 0:
+            most = max(most, p[3 * i])
+    for i in range(k):
+        if closed[i].turns == 0 and closed[i].loaded == 1 and p[3 * i] < worst - PULL * most:
+            worst, which = p[3 * i], i
+    if which >= 0:
+        closed[which].loaded = 0
+        for row in range(3 * which, 3 * which + 3):
+            p[row] = 0.0
+        return True
+    for i in range(k):
+        if closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0:
+            if product(k, 3 * i, group) + group.v[C][3 * i] < -ENOUGH * push:
+                closed[i].loaded = 1
+                return True
+    return False
+
+
+@kernel
+def largest(k, group):
+    """Return the greatest normal acceleration without forces."""
+    push = 0.0
+    for i in range(k):
+        if group.closed[i].turns == 0:
+            push = max(push, abs(group.v[C][3 * i]))
+    return push
+
+
+@kernel
+def product(k, row, group):
+    """Return a row of W p."""
+    W, p, total = group.m[0][row], group.v[P], 0.0
+    for j in range(3 * k):
+        total += W[j] * p[j]
+    return total
+
+
+@kernel
+def list_unknowns(k, group):
+    """List the rows of the unknown forces; return their number. Other forces are zero."""
+    rows, n = group.cone.active, 0
+    for i in range(k):
+        closed_point = group.closed[i]
+        parent = i if closed_point.turns == 0 else closed_point.parent
+        first = 0 if closed_point.turns == 0 else 1
+        for a in range(3):
+            row = 3 * i + a
+            there = group.closed[parent].loaded == 1 and a >= first and moves(group.m[0], row)
+            if there and (a == 0 or group.mu[i] > 0.0):
+                rows[n], n = row, n + 1
+            else:
+                group.v[P][row] = 0.0
+    return n
+
+
+@kernel
+def newton(k, hg, group):
+    """Solve for given loads; return whether the equations hold."""
+    n, p, x, kept = list_unknowns(k, group), group.v[P], group.v[OLD], group.v[BACK]
+    rows, L = group.cone.active, group.cone.matrix
+    push, slip = largest(k, group), 0.0
+    for i in range(k):
+        slip = max(slip, max(abs(group.v[U][3 * i + 1]), abs(group.v[U][3 * i + 2])))
+    enough = FITS * push + 1e-15 * slip / hg
+    size = write_equations(k, n, hg, group)
+    for _ in range(ITERATIONS):
+        if size <= enough:
+            return True
+        lu.factor(L, n, group.cone.pivot, 0.0)
+        for i in range(n):
+            x[i], kept[i] = -x[i], p[rows[i]]
+        lu.substitute(L, n, group.cone.pivot, x)
+        part, best = 1.0, size
+        for i in range(n):
+            group.cone.vector[0, i] = x[i]
+        for _ in range(HALVES):
+            for i in range(n):
+                p[rows[i]] = kept[i] + part * group.cone.vector[0, i]
+            size = write_equations(k, n, hg, group)
+            if size < (1.0 - 0.1 * part) * best:
+                break
+            part *= 0.5
+        if not size < math.inf:
+            return False
+        if size >= 0.9 * best and size <= ENOUGH * push + 1e3 * enough:
+            return True
+    return size <= ENOUGH * push
+
+
+@kernel
+def write_equations(k, n, hg, group):
+    """Write the errors of the equations, as accelerations, to OLD, and their Jacobian; return the greatest."""
+    rows, x, L, W, most = group.cone.active, group.v[OLD], group.cone.matrix, group.m[0], 0.0
+    i = 0
+    while i < n:
+        row = rows[i]
+        if row % 3 == 0:
+            x[i] = group.v[C][row] + product(k, row, group)
+            for j in range(n):
+                L[i, j] = W[row, rows[j]]
+            L[i, i] += EPS * compliance_of(group, row)
+            most, i = max(most, abs(x[i])), i + 1
+            continue
+        width = 2 if i + 1 < n and rows[i + 1] // 3 == row // 3 else 1
+        write_disc(k, n, i, width, hg, group)
+        for r in range(i, i + width):
+            if not abs(x[r]) <= most:
+                most = abs(x[r])
+        i += width
+    return most
+
+
+@kernel
+def write_disc(k, n, i, width, hg, group):
+    """Write the equations of the friction of one point: unknowns i and, if `width` is 2, i + 1."""
+    rows, x, L, W, p = group.cone.active, group.v[OLD], group.cone.matrix, group.m[0], group.v[P]
+    a, b, unit = rows[i], rows[i + width - 1], rows[i] // 3
+    closed_point = group.closed[unit]
+    normal = 3 * (unit if closed_point.turns == 0 else closed_point.parent)
+    scale = 0.5 * (W[a, a] + W[b, b])
+    ga = group.v[U][a] / hg + product(k, a, group)
+    gb = group.v[U][b] / hg + product(k, b, group) if width == 2 else 0.0
+    za, zb = p[a] - ga / scale, p[b] - gb / scale if width == 2 else 0.0
+    z, radius = math.sqrt(za * za + zb * zb), group.mu[unit] * max(0.0, p[normal])
+    if z <= radius:
+        for r in range(width):
+            for j in range(n):
+                L[i + r, j] = W[rows[i + r], rows[j]]
+            L[i + r, i + r] += EPS * compliance_of(group, rows[i + r])
+        x[i], x[i + width - 1] = ga, gb if width == 2 else ga
+        return
+    ea, eb, part = za / z, zb / z, radius / z
+    x[i] = scale * (p[a] - radius * ea)
+    if width == 2:
+        x[i + 1] = scale * (p[b] - radius * eb)
+    grows = group.mu[unit] if p[normal] > 0.0 else 0.0
+    for j in range(n):
+        row = rows[j]
+        da, db = -W[a, row] / scale, -W[b, row] / scale if width == 2 else 0.0
+        da, db = da + (1.0 if j == i else 0.0), db + (1.0 if width == 2 and j == i + 1 else 0.0)
+        along = ea * da + eb * db
+        g = grows if row == normal else 0.0
+        own = 1.0 if j == i else 0.0
+        L[i, j] = scale * (own - part * (da - ea * along) - ea * g)
+        if width == 2:
+            own = 1.0 if j == i + 1 else 0.0
+            L[i + 1, j] = scale * (own - part * (db - eb * along) - eb * g)

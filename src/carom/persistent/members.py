@@ -1,0 +1,203 @@
+"""The three members of the contact step: explicit, implicit, and implicit of one stage.
+
+All step the bodies of a group along one right-hand side (`carom.persistent.rows`) from `data.state` to
+`work.trial`. Stage 0, at the start, is known (`carom.persistent.contact_step`).
+
+explicit    the method of the run, with given modes (`carom.persistent.springs`)
+implicit    L-stable, of order 4: Coulomb's law at the velocity of each stage (`carom.persistent.coulomb_stage`)
+closing     implicit Euler with impulses of the whole step, which is Moreau's time-stepping step, of order 1
+
+Each returns whether it has made the step. The work of loads, and of friction, is added to `work.result`.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.dynamics.explicit import combine_body, copy_state, node, note_velocity, stages_within
+from carom.dynamics.several_points import velocities
+from carom.friction.layout import BUDGET, CONE, ENOUGH, NEAR
+from carom.friction.solve import solve_cones
+from carom.geometry.rotation import normalize
+from carom.impact.workspace import C, P, U
+from carom.persistent.coulomb_stage import solve_stage
+from carom.persistent.rolling_friction import bound_turning
+from carom.persistent.rows import (
+    accelerate_freely,
+    push_bodies,
+    set_modes,
+    write_rows,
+)
+from carom.persistent.springs import solve_springs
+
+FIXED_POINT = 25  # iterations of the pose of a stage
+SAME = 1e-14  # change of velocities by an iteration that is the last, relative to the velocities
+
+
+@kernel
+def explicit_member(model, data, method, label, loaded, count, h):
+    """Make the stages of the method of the run; return the number of points at its last one, 0 if modes end."""
+    start, end, group, work = data.state, data.work.trial, data.group, data.work
+    result, k = work.result[0], 0
+    for s in range(1, stages_within(method)):
+        for m in range(count):
+            b = group.member[m]
+            combine_body(method.A[s], s, h, start[b], work.stages, b, work.stage[b])
+            note_velocity(work.stage[b], work.stages[s, b])
+        result.time = result.start + h * node(method.A[s], s)
+        power, drag = accelerate_freely(model, data, loaded, count, s)
+        k = write_rows(model, data, label, s)
+        if not (set_modes(data.active, k, group) and solve_springs(k, group)):
+            return 0
+        driven, rubbed = push_bodies(model, data, loaded, k, count, s)
+        result.applied += h * method.b[s] * (power + driven)
+        result.friction += h * method.b[s] * (drag + rubbed)
+    for m in range(count):
+        b = group.member[m]
+        combine_body(method.b, stages_within(method), h, start[b], work.stages, b, end[b])
+    result.time = result.start + h
+    return k
+
+
+@kernel
+def implicit_member(model, data, method, label, loaded, count, h):
+    """Make the stages of the stiff method; return the number of points at the end, 0 if a stage is not solved."""
+    start, end, group, work = data.state, data.work.trial, data.group, data.work
+    result, A, k = work.result[0], method.stiff, 0
+    stages = A.shape[0]
+    for s in range(1, stages):
+        for m in range(count):
+            b = group.member[m]
+            combine_body(A[s], s, h, start[b], work.stages, b, work.first[b])
+            for r in range(6):
+                work.stages[s, b].rate[r] = work.stages[s - 1, b].rate[r]
+        result.time = result.start + h * node(A[s], s + 1)
+        k, power, rubbed = implicit_stage(model, data, label, loaded, count, s, h * A[s, s])
+        if k < 0:
+            return 0
+        result.applied += h * A[stages - 1, s] * power
+        result.friction += h * A[stages - 1, s] * rubbed
+    for m in range(count):
+        b = group.member[m]
+        copy_state(work.stage[b], end[b])
+    return k
+
+
+@kernel
+def implicit_stage(model, data, label, loaded, count, s, hg):
+    """Solve for stage s, from `work.first` without it, in `work.stage`; return points, and powers as `push_bodies`.
+
+    The number of points is -1 if there is no solution.
+    """
+    group, work = data.group, data.work
+    k, driven, power, rubbed = -1, 0.0, 0.0, 0.0
+    for m in range(count):
+        copy_state(work.first[group.member[m]], work.stage[group.member[m]])
+    for turn in range(FIXED_POINT):
+        change = 0.0
+        for m in range(count):
+            b = group.member[m]
+            change = max(change, move_stage(work.first[b], hg, work.stages[s, b], work.stage[b]))
+        if turn > 0 and change <= SAME:
+            break
+        applied, drag = accelerate_freely(model, data, loaded, count, s)
+        before = k
+        k = write_rows(model, data, label, s)
+        for m in range(count):
+            b = group.member[m]
+            add_velocity(work.first[b], hg, work.stages[s, b], work.middle[b])
+        velocities(k, group.points[0], work.middle, group.v[U])
+        if k != before:
+            for row in range(3 * k):
+                group.v[P][row] = 0.0
+        if not solve_stage(k, hg, group):
+            return -1, 0.0, 0.0
+        velocities(k, group.points[0], work.stage, group.v[U])
+        driven, rubbed = push_bodies(model, data, loaded, k, count, s)
+        power, rubbed = applied + driven, drag + rubbed
+    return k, power, rubbed
+
+
+@kernel
+def add_velocity(base, hg, stage, out):
+    """Write the velocities base + h g a."""
+    for r in range(3):
+        out.v[r] = base.v[r] + hg * stage.rate[r]
+        out.w[r] = base.w[r] + hg * stage.rate[3 + r]
+
+
+@kernel
+def move_stage(base, hg, stage, out):
+    """Write the state base + h g times its own derivative; return the relative change of its velocities."""
+    size, change = 0.0, 0.0
+    for r in range(3):
+        v, w = base.v[r] + hg * stage.rate[r], base.w[r] + hg * stage.rate[3 + r]
+        change = max(change, max(abs(v - out.v[r]), abs(w - out.w[r])))
+        size = max(size, max(abs(v), abs(w)))
+        out.v[r], out.w[r] = v, w
+    note_velocity(out, stage)
+    q, Q = stage.turn, base.Q
+    for r in range(3):
+        out.x[r] = base.x[r] + hg * stage.speed[r]
+    out.Q[0], out.Q[1], out.Q[2], out.Q[3] = normalize(
+        Q[0] + hg * q[0], Q[1] + hg * q[1], Q[2] + hg * q[2], Q[3] + hg * q[3]
+    )
+    return change / size if size > 0.0 else 0.0
+
+
+@kernel
+def closing_member(model, data, label, loaded, count, h):
+    """Make a time-stepping step: velocities by impulses at its end; return the number of points."""
+    start, end, group, work = data.state, data.work.trial, data.group, data.work
+    result, k = work.result[0], 0
+    for m in range(count):
+        b = group.member[m]
+        copy_state(start[b], work.first[b])
+        copy_state(start[b], work.stage[b])
+    result.time = result.start + h
+    for turn in range(3):
+        power, drag = accelerate_freely(model, data, loaded, count, 1)
+        k = write_rows(model, data, label, 1)
+        for m in range(count):
+            b = group.member[m]
+            add_velocity(work.first[b], h, work.stages[1, b], work.middle[b])
+        velocities(k, group.points[0], work.middle, group.v[U])
+        solve_impulses(model, data, k, h if turn > 0 else 0.0)
+        for row in range(3 * k):
+            group.v[P][row] /= h
+        velocities(k, group.points[0], work.stage, group.v[U])
+        driven, rubbed = push_bodies(model, data, loaded, k, count, 1)
+        for m in range(count):
+            b = group.member[m]
+            move_stage(work.first[b], h, work.stages[1, b], work.stage[b])
+        if turn == 2:
+            velocities(k, group.points[0], work.stage, group.v[U])
+            result.applied += h * (power + driven)
+            result.friction += h * drag
+            for i in range(k):
+                u, p = group.v[U], group.v[P]
+                result.friction += h * (p[3 * i + 1] * u[3 * i + 1] + p[3 * i + 2] * u[3 * i + 2])
+    for m in range(count):
+        copy_state(work.stage[group.member[m]], end[group.member[m]])
+    return k
+
+
+@kernel
+def solve_impulses(model, data, k, h):
+    """Write the impulses to P for which Coulomb's law holds with the velocities W p + U; h P is the first guess."""
+    group = data.group
+    for i in range(3 * k):
+        group.v[P][i] *= h
+        group.v[C][i] = group.v[U][i]
+    turning = False
+    for i in range(k):
+        group.kind[i] = CONE
+        if group.closed[i].turns > 0:
+            group.mu[i], turning = 1.0, True
+    group.cone.count[NEAR], group.cone.mismatch[ENOUGH], group.cone.count[BUDGET] = 0, 0.0, 0
+    for _ in range(50 if turning else 1):
+        change = bound_turning(model.system, k, group)
+        solve_cones(
+            k, group.m[0], group.v[C], group.mu, group.kind, group.heading, group.v[P], group.cone
+        )
+        if turning and not change > 1e-14:
+            break

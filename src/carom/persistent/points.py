@@ -1,0 +1,276 @@
+"""The points that carry the contact of a group of bodies in a state, found anew in each, and their springs.
+
+Points have no memory: a corner of an overlap that wanders, appears or vanishes is no event. That needs one rule
+for who carries, which is continuous in the positions. The points of two bodies (or of a body and all that never
+moves) in one plane are a patch; only the corners of its convex hull carry, each with the weight
+
+    k_i = half of the two sides next to it, over the perimeter.
+
+A corner that splits into two at an edge, or two that merge, change no sum of forces. A line has weights 1/2, 1/2,
+a single point 1. A point presses like a spring: its compliance is (1/m_a + 1/m_b)/k_i, in units so small that
+only the ratios matter (`carom.persistent.springs`). (Mathematics page, persistent contact.)
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
+from carom.contact.closed_points import write_closed
+from carom.contact.pair_point import (
+    ACTIVE_REACH,
+    find_touches,
+    own_point,
+    smaller,
+    which_touch,
+    write_touch,
+)
+from carom.contact.place import place_any
+from carom.contact.rim import same_point
+from carom.kinematics.contact_point import copy_point
+
+FACE = (
+    1e-3  # of the smaller body: points of a face that are no higher than that belong to its patch
+)
+WHOLE = 3  # points of a pair from which on it is a face, all of whose corners may carry
+#: normals (a sine) and heights (of the size of the body) that differ by less are those of one plane
+LEVEL = 1e-6
+#: distance, of the size of the body, below which two corners are one, and one on a line between others is none
+CORNER = 1e-11
+
+
+@kernel
+def find_points(system, active, label, state, group, work):
+    """List the points of all pairs of a group in a state, then those of rolling and pivoting; return the number."""
+    k = 0
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        if work.body[active_point.body].label != label:
+            continue
+        if active_point.touches != 1:
+            k = add_known(system, active, i, state, k, group, work)
+        elif is_first(active, i):
+            k = add_pair(system, active, i, state, k, group, work)
+    k = add_turning(system, active, k, group)
+    weigh(system, k, group)
+    return k
+
+
+@kernel
+def is_first(active, i):
+    """Return whether an active point is the first of its contact."""
+    for j in range(i):
+        if active.points[j].contact == active.points[i].contact:
+            return False
+    return True
+
+
+@kernel
+def add_known(system, active, i, state, k, group, work):
+    """Add a vertex on a half-space, or a stop; return the new count."""
+    if k == group.closed.shape[0]:
+        return k
+    active_point, closed_point = active.points[i], group.closed[k]
+    contact = system.contacts[active_point.contact]
+    write_closed(active_point.contact, active_point.feature, active_point.point, closed_point)
+    closed_point.active, closed_point.own = i, 1
+    place_any(
+        system, contact, active_point.feature, active_point.point, state, group.points[0][k], work
+    )
+    return k + 1
+
+
+@unit
+def _add_pair(system, active, i, state, k, group, work) -> int:
+    """Add the points of two solids: of a face all its corners, else those of the active features."""
+    c = active.points[i].contact
+    contact, members = system.contacts[c], 0
+    for j in range(i, active.count[0]):
+        members += 1 if active.points[j].contact == c else 0
+    count = find_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+    if members < WHOLE:
+        for j in range(i, active.count[0]):
+            if active.points[j].contact == c:
+                k = add_nearest(system, active, j, count, state, k, group, work)
+        return k
+    least = math.inf
+    for t in range(count):
+        least = min(least, work.touches[t].gap)
+    for t in range(count):
+        if work.touches[t].gap <= least + FACE * smaller(contact):
+            k = add_touch(system, contact, c, work.touches[t], i, state, k, group)
+            note_own(system, active, i, work.touches[t], state, group.closed[k - 1])
+    return k
+
+
+@kernel
+def note_own(system, active, first, touch, state, closed_point):
+    """Write the place of a found point among the active ones, if it is there."""
+    contact = system.contacts[closed_point.contact]
+    for j in range(first, active.count[0]):
+        active_point = active.points[j]
+        if active_point.contact == closed_point.contact and same_point(
+            system, contact, touch, active_point.feature, active_point.point, state
+        ):
+            closed_point.active, closed_point.own = j, 1
+            return
+
+
+@kernel
+def add_nearest(system, active, j, count, state, k, group, work):
+    """Add the found point with the feature of an active one, or the one nearest to it, if it is not there yet."""
+    active_point = active.points[j]
+    c = active_point.contact
+    contact = system.contacts[c]
+    t = which_touch(system, contact, count, active_point.feature, active_point.point, state, work)
+    touch = work.touches[t]
+    for i in range(k):
+        if group.closed[i].contact == c and group.closed[i].feature == touch.feature:
+            if same_point(system, contact, touch, touch.feature, group.closed[i].point, state):
+                return k
+    k = add_touch(system, contact, c, touch, j, state, k, group)
+    group.closed[k - 1].own = 1
+    return k
+
+
+@kernel
+def add_touch(system, contact, c, touch, j, state, k, group):
+    """Add a found point, with the active point j to stand for it; return the new count."""
+    if k == group.closed.shape[0]:
+        return k
+    closed_point = group.closed[k]
+    own_point(contact, touch, state, closed_point.point)
+    write_closed(c, touch.feature, closed_point.point, closed_point)
+    closed_point.active, closed_point.own = j, 0
+    write_touch(contact, touch, state, group.points[0][k])
+    return k + 1
+
+
+@kernel
+def add_pair(system, active, i, state, k, group, work):
+    """Add the points of two solids; return the new count."""
+    if system.solids.shape[0] > 0:
+        return _add_pair(system, active, i, state, k, group, work)
+    return k
+
+
+@kernel
+def add_turning(system, active, k, group):
+    """Add entries for the rolling and pivoting friction of k points; return the new count.
+
+    While bounces that were left out would last, these torques do not act.
+    """
+    total = k
+    for i in range(k):
+        closed_point = group.closed[i]
+        turning = system.contacts[closed_point.contact].turning
+        if active.points[closed_point.active].bounces > 0.0:
+            continue
+        for turns in range(1, 3):
+            if turning[turns - 1] > 0.0 and total < group.closed.shape[0]:
+                more, point = group.closed[total], group.points[0][total]
+                write_closed(closed_point.contact, closed_point.feature, closed_point.point, more)
+                more.active, more.parent, more.turns = closed_point.active, i, turns
+                more.own = closed_point.own
+                copy_point(group.points[0][i], point)
+                point.turns = turns
+                point.length = smaller(system.contacts[closed_point.contact])
+                total += 1
+    return total
+
+
+@kernel
+def weigh(system, k, group):
+    """Write weight and compliance of the spring of each point: those of the corners of the hull of its patch."""
+    points = group.points[0]
+    for i in range(k):
+        group.closed[i].weight, group.closed[i].patch, group.closed[i].loaded = -1.0, -1, 0
+    for i in range(k):
+        closed_point = group.closed[i]
+        if closed_point.turns > 0:
+            closed_point.weight = 1.0
+        elif closed_point.weight < 0.0:
+            weigh_patch(system, i, k, group)
+        s = 1.0 / system.bodies[points[i].a].mass
+        if points[i].b >= 0:
+            s += 1.0 / system.bodies[points[i].b].mass
+        closed_point.spring = s / closed_point.weight if closed_point.weight > 0.0 else 0.0
+
+
+@kernel
+def in_patch(system, p, q):
+    """Return whether two points are of the same bodies, in one plane."""
+    if p.a != q.a or p.turns != 0 or q.turns != 0 or (p.b != q.b and max(p.b, q.b) >= 0):
+        return False
+    n, m, size = p.axes[0], q.axes[0], system.bodies[p.a].extent
+    across, height = 0.0, 0.0
+    for r in range(3):
+        across = max(across, abs(n[r] - m[r]))
+        height += n[r] * (q.arm_a[r] - p.arm_a[r])
+    return across <= LEVEL and abs(height) <= LEVEL * size
+
+
+@kernel
+def weigh_patch(system, first, k, group):
+    """Write the weights of the patch of a point: walk round its hull from the outermost point, side by side."""
+    points, closed, perimeter = group.points[0], group.closed, 0.0
+    size, start = system.bodies[points[first].a].extent, first
+    for j in range(first, k):
+        if closed[j].turns == 0 and closed[j].weight < 0.0:
+            if in_patch(system, points[first], points[j]):
+                closed[j].weight, closed[j].patch = 0.0, first
+                x, y = in_plane(points[first], points[j])
+                a, b = in_plane(points[first], points[start])
+                if x < a - CORNER * size or (x < a + CORNER * size and y < b):
+                    start = j
+    here = start
+    for _ in range(k):
+        there, side = next_corner(size, first, here, k, group)
+        if there < 0:
+            break
+        closed[here].weight += 0.5 * side
+        closed[there].weight += 0.5 * side
+        perimeter += side
+        here = there
+        if here == start:
+            break
+    for j in range(first, k):
+        if closed[j].patch == first:
+            closed[j].weight = closed[j].weight / perimeter if perimeter > 0.0 else 0.0
+    if not perimeter > 0.0:
+        closed[start].weight = 1.0
+
+
+@kernel
+def in_plane(origin, point):
+    """Return the place of a point in the plane of the patch."""
+    r, E = point.arm_a, origin.axes
+    return (
+        E[1, 0] * r[0] + E[1, 1] * r[1] + E[1, 2] * r[2],
+        E[2, 0] * r[0] + E[2, 1] * r[1] + E[2, 2] * r[2],
+    )
+
+
+@kernel
+def next_corner(size, first, here, k, group):
+    """Return the corner that follows another one counter-clockwise, and the side between; -1 if there is none."""
+    points, closed = group.points[0], group.closed
+    x0, y0 = in_plane(points[first], points[here])
+    best, length, bx, by = -1, 0.0, 0.0, 0.0
+    for j in range(first, k):
+        if closed[j].patch != first or j == here:
+            continue
+        x, y = in_plane(points[first], points[j])
+        x, y = x - x0, y - y0
+        d = math.sqrt(x * x + y * y)
+        if d <= CORNER * size:  # the same corner
+            continue
+        if best >= 0:
+            turn = bx * y - by * x  # below 0: to the right of the side
+            if turn > CORNER * size * length:
+                continue
+            if turn >= -CORNER * size * length and d <= length:
+                continue
+        best, length, bx, by = j, d, x, y
+    return best, length

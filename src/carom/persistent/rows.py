@@ -1,0 +1,130 @@
+"""The rows of a group in a state: W, and velocities and accelerations of its points without their forces.
+
+    du/dt = W lam + c,    c = G a + (d/dt G) v,
+
+with the accelerations a of the bodies under all other forces and joints. One right-hand side for all groups: a
+body on the ground, bodies on bodies, trees and loops of joints, stops.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.contact.place import drift_of
+from carom.dynamics.acceleration import SLIP, accelerate, acceleration_unit
+from carom.dynamics.elements import driven_power
+from carom.dynamics.several_points import accelerations, inverse_masses, spread_all, velocities
+from carom.friction.layout import CONE, SLIDING
+from carom.impact.workspace import C, P, U
+from carom.kinematics.flight import free_rates
+from carom.persistent.points import find_points
+from carom.persistent.springs import bound_per_force
+
+# least cosine between the directions of slip in a step; part of the slip at its start below which a direction is
+# that of the start: a slip that stops at the end of a step
+SAME_WAY, STOPS = 0.5, 1e-3
+
+
+@kernel
+def accelerate_freely(model, data, loaded, count, s):
+    """Write the accelerations of the bodies of a group in `work.stage` without contact forces, as stage s.
+
+    Return the powers of loads and of friction in joints.
+    """
+    system, work = model.system, data.work
+    if loaded:
+        acceleration_unit(system, work.stage, data.active, work, work.stages[s])
+        return work.result[0].power, work.result[0].drag
+    for m in range(count):
+        b = data.group.member[m]
+        free_rates(system.bodies[b], system.gravity, work.stage[b], work.stages[s, b].rate)
+    return 0.0, 0.0
+
+
+@kernel
+def write_rows(model, data, label, s):
+    """Find the points of a group in `work.stage`, and write W, U and C for the accelerations of stage s.
+
+    Return the number of points, with the entries of rolling and pivoting.
+    """
+    system, group, work = model.system, data.group, data.work
+    points, state = group.points[0], work.stage
+    k = find_points(system, data.active, label, state, group, work)
+    inverse_masses(system, k, points, state, work, group.m[0])
+    write_motion(model, data, k, s)
+    return k
+
+
+@kernel
+def write_motion(model, data, k, s):
+    """Write U and C of k points of a group in `work.stage` for the accelerations of stage s, and their friction."""
+    system, group, work = model.system, data.group, data.work
+    points, state = group.points[0], work.stage
+    velocities(k, points, state, group.v[U])
+    accelerations(k, points, state, work.stages[s], group.v[C])
+    for i in range(k):
+        closed_point = group.closed[i]
+        contact = system.contacts[closed_point.contact]
+        group.mu[i] = contact.friction_held
+        if closed_point.turns > 0:
+            group.mu[i] = bound_per_force(system, points[i], closed_point)
+        elif contact.touches != 0:
+            d = drift_of(
+                system, contact, closed_point.feature, closed_point.point, points[i], state, work
+            )
+            for r in range(3):
+                group.v[C][3 * i + r] += d[r]
+
+
+@kernel
+def set_modes(active, k, group):
+    """Write which of k points slide, and where to; return whether that is the way of the start of the step.
+
+    All springs press at first.
+    """
+    same = True
+    for i in range(k):
+        closed_point = group.closed[i]
+        active_point = active.points[closed_point.active]
+        slips, d1, d2, speed = way_of(active_point, closed_point.turns)
+        closed_point.loaded = 1 if closed_point.weight > 0.0 else 0
+        group.kind[i] = SLIDING if slips or group.mu[i] == 0.0 else CONE
+        group.heading[i, 0], group.heading[i, 1] = d1, d2
+        if not slips or group.mu[i] == 0.0:
+            continue
+        u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
+        slip = math.sqrt(u1 * u1 + u2 * u2)
+        if closed_point.own == 1 and not slip > STOPS * speed:
+            continue
+        if closed_point.own == 1 and not u1 * d1 + u2 * d2 > SAME_WAY * slip:
+            same = False
+        if slip > 0.0:
+            group.heading[i, 0], group.heading[i, 1] = u1 / slip, u2 / slip
+    return same
+
+
+@kernel
+def way_of(active_point, turns):
+    """Return whether a point slips (or rolls, or pivots), and direction and speed at the start of the step."""
+    if turns > 0:
+        way = active_point.turning[turns - 1]
+        return way[2] > 0.0, way[0], way[1], way[2]
+    d = active_point.heading
+    return active_point.next == SLIP, d[0], d[1], active_point.speed
+
+
+@kernel
+def push_bodies(model, data, loaded, k, count, s):
+    """Add the accelerations by the forces in P to those of stage s; return the powers of motors and friction."""
+    system, group, work = model.system, data.group, data.work
+    u, p, power, driven = group.v[U], group.v[P], 0.0, 0.0
+    spread_all(system, k, group.points[0], p, count, group.member, work.stage, work)
+    if loaded:
+        driven = driven_power(system, work.stage, work)
+    for m in range(count):
+        b = group.member[m]
+        accelerate(work.body[b].motion, work.stages[s, b].rate)
+    for i in range(k):
+        power += p[3 * i + 1] * u[3 * i + 1] + p[3 * i + 2] * u[3 * i + 2]
+    return driven, power

@@ -1,0 +1,216 @@
+"""Forces of the points of a group whose modes are known: springs that do not pull.
+
+    (du/dt)_n = 0 for points that press, all three rows for those that stick, and for those that slip along d
+
+        lam = N (1, -mu d),    and along the axis e of a rotation the torque -delta N e.
+
+Forces need not be unique (four corners of a face). They are those of springs in the limit of infinite stiffness,
+
+    N_i = max(0, G_i xi)/s_i,    xi: a displacement of the bodies,  s_i: compliance (`carom.persistent.points`),
+
+so that they are continuous in the positions. With R the rows, F the directions of forces and S the compliances of
+the points that press, (R P F^T + eps S) lam = -c for eps -> 0: corrections with one factor remove what eps
+leaves. With eps a point that does not press must not be deeper than its neighbours let it be: its spring would
+press, too.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.friction import lu
+from carom.friction.layout import SLIDING
+from carom.impact.workspace import OLD, C, P
+
+EPS = 1e-5
+CORRECTIONS = 12  # of the forces
+FITS = 1e-13  # of the accelerations without forces: error of the rows
+PULL = 1e-11  # of the greatest normal force: less is round-off of zero
+DEEPER = 1e-12  # of the accelerations without forces, of a point whose spring is unloaded
+
+
+@kernel
+def bound_per_force(system, point, closed_point):
+    """Return the greatest impulse in the rows of rolling or pivoting for a unit normal one: d over a length."""
+    return system.contacts[closed_point.contact].turning[closed_point.turns - 1] / point.length
+
+
+@kernel
+def solve_springs(k, group):
+    """Write the forces of given modes to P and the accelerations of all points to OLD; return whether they exist.
+
+    C has the accelerations without forces; `kind` says which points slide along `heading`, `loaded` which
+    press at first.
+    """
+    closed, push = group.closed, 0.0
+    for row in range(3 * k):
+        push = max(push, abs(group.v[C][row]))
+    for i in range(k):
+        closed[i].rows = rows_of(k, i, group)
+    for turn in range(3 * k + 4):
+        n = factor_rows(k, group)
+        changed = first_forces(k, n, turn, push, group)
+        if changed < 0:
+            return False
+        if changed == 0:
+            return True
+        for i in range(k):
+            closed[i].rows = rows_of(k, i, group)
+    return False
+
+
+@kernel
+def rows_of(k, i, group):
+    """Return the number of given rows of a point.
+
+    A torque that keeps a body from turning is not needed where the other points alone do so: three that press
+    from rolling, two that stick from pivoting.
+    """
+    closed_point = group.closed[i]
+    if closed_point.turns == 0:
+        return 0 if closed_point.loaded == 0 else 1 if group.kind[i] == SLIDING else 3
+    if group.kind[i] == SLIDING or group.closed[closed_point.parent].loaded == 0:
+        return 0
+    press, stick = 0, 0
+    for j in range(k):
+        if group.closed[j].turns == 0 and group.closed[j].loaded == 1:
+            press, stick = press + 1, stick + (0 if group.kind[j] == SLIDING else 1)
+    if closed_point.turns == 1:
+        return 0 if press > 2 else 2
+    return 0 if stick > 1 else 1
+
+
+@kernel
+def factor_rows(k, group):
+    """List the given rows, write the factor of R P F^T + eps S to `cone.matrix`; return their number."""
+    rows, L, W, n = group.cone.active, group.cone.matrix, group.m[0], 0
+    for i in range(k):
+        first = 1 if group.closed[i].turns > 0 else 0
+        for a in range(first, first + group.closed[i].rows):
+            if moves(W, 3 * i + a):
+                rows[n], n = 3 * i + a, n + 1
+    for i in range(n):
+        for j in range(n):
+            L[i, j] = response(k, group, rows[i], rows[j])
+        L[i, i] += EPS * compliance_of(group, rows[i])
+    lu.factor(L, n, group.cone.pivot, 0.0)
+    return n
+
+
+@kernel
+def compliance_of(group, row):
+    """Return the compliance of a row: that of its point, or of its torque."""
+    if group.closed[row // 3].turns > 0:
+        return group.m[0][row, row]
+    return group.closed[row // 3].spring
+
+
+@kernel
+def moves(W, row):
+    """Return whether a force along a row moves its point; if not, its W is round-off (planar motion)."""
+    n = row - row % 3
+    return W[row, row] > 1e-12 * (W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2])
+
+
+@kernel
+def response(k, group, a, row):
+    """Return the acceleration in row a by a unit force along a given row, with its friction."""
+    W, i = group.m[0], row // 3
+    total = W[a, row]
+    if row % 3 > 0:
+        return total
+    if group.kind[i] == SLIDING:
+        d = group.heading[i]
+        total -= group.mu[i] * (d[0] * W[a, row + 1] + d[1] * W[a, row + 2])
+    for j in range(i + 1, k):
+        if turns_with(group, j, i):
+            d = group.heading[j]
+            total -= group.mu[j] * (d[0] * W[a, 3 * j + 1] + d[1] * W[a, 3 * j + 2])
+    return total
+
+
+@kernel
+def turns_with(group, j, i):
+    """Return whether entry j is a torque of rotation that the normal force of point i bounds."""
+    closed_point = group.closed[j]
+    return closed_point.turns > 0 and closed_point.parent == i and group.kind[j] == SLIDING
+
+
+@kernel
+def first_forces(k, n, turn, push, group):
+    """Solve for the forces; return how many points begin or cease to press, -1 if the rows cannot be met."""
+    p, x, rows, closed = group.v[P], group.v[OLD], group.cone.active, group.closed
+    for row in range(3 * k):
+        p[row] = 0.0
+    changed = 0
+    for correction in range(CORRECTIONS):
+        wrong = 0.0
+        for i in range(n):
+            x[i] = -acceleration_of(k, rows[i], group)
+            wrong = max(wrong, abs(x[i]))
+        if wrong <= FITS * push or (correction > 3 and wrong <= 1e2 * FITS * push):
+            break
+        if correction == CORRECTIONS - 1:
+            return -1
+        lu.substitute(group.cone.matrix, n, group.cone.pivot, x)
+        for i in range(n):
+            add_force(k, group, rows[i], x[i])
+        if correction == 0:  # the springs give way by eps S lam
+            for i in range(k):
+                free = closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0
+                if free and acceleration_of(k, 3 * i, group) < -DEEPER * push:
+                    closed[i].loaded, changed = 1, changed + 1
+            if changed > 0 and turn < 2 * k:
+                return changed
+    return changed + unload(k, turn, group)
+
+
+@kernel
+def unload(k, turn, group):
+    """Unload the springs that pull, after many turns only that which pulls most; note the accelerations."""
+    p, closed, most, worst, which, count = group.v[P], group.closed, 0.0, 0.0, -1, 0
+    for i in range(k):
+        if closed[i].turns == 0:
+            most = max(most, p[3 * i])
+    for i in range(k):
+        if closed[i].turns == 0 and closed[i].loaded == 1 and p[3 * i] < -PULL * most:
+            if turn < k:
+                closed[i].loaded, count = 0, count + 1
+            elif p[3 * i] < worst:
+                worst, which = p[3 * i], i
+    if which >= 0:
+        closed[which].loaded, count = 0, 1
+    if count == 0:
+        note_accelerations(k, group)
+    return count
+
+
+@kernel
+def acceleration_of(k, row, group):
+    """Return the acceleration in a row under the forces in P."""
+    W, p, total = group.m[0], group.v[P], group.v[C][row]
+    for j in range(3 * k):
+        total += W[row, j] * p[j]
+    return total
+
+
+@kernel
+def note_accelerations(k, group):
+    """Write the accelerations of all points under the forces in P to OLD."""
+    for row in range(3 * k):
+        group.v[OLD][row] = acceleration_of(k, row, group)
+
+
+@kernel
+def add_force(k, group, row, x):
+    """Add a force along a given row; with a normal force, its friction of slip, rolling and pivoting."""
+    p, i = group.v[P], row // 3
+    p[row] += x
+    if row % 3 > 0:
+        return
+    if group.kind[i] == SLIDING:
+        for r in range(2):
+            p[row + 1 + r] -= group.mu[i] * group.heading[i, r] * x
+    for j in range(i + 1, k):
+        if turns_with(group, j, i):
+            for r in range(2):
+                p[3 * j + 1 + r] -= group.mu[j] * group.heading[j, r] * x
