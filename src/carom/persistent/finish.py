@@ -103,6 +103,8 @@ def review(model, data, label, loaded, count, s, h, given):
     same = set_modes(active, k, group) or not given
     status = 0
     solved = same and solve_springs(k, group)
+    if solved:  # the accelerations before modes change: those that the estimate of the error needs
+        push_bodies(model, data, loaded, k, count, s)
     lasts = solved and within_cones(k, group)
     if solved and controls.order > 0 and stick_where_slip_ends(model, data, k):
         lasts = True
@@ -111,7 +113,8 @@ def review(model, data, label, loaded, count, s, h, given):
         if given and not same:
             return False
         status = solve_cones_of(model, data, k)
-    push_bodies(model, data, loaded, k, count, s)
+        if not solved:
+            push_bodies(model, data, loaded, k, count, s)
     located = greatest_push(k, group)
     for i in range(active.count[0]):
         if work.body[active.points[i].body].label == label:
