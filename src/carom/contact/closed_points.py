@@ -227,6 +227,8 @@ def place_closed(system, k, state, group, points, work):
     """Write the positions of all closed points in a state."""
     for i in range(k):
         closed_point = group.closed[i]
+        if closed_point.contact < 0:  # friction in a joint
+            continue
         place_any(
             system,
             system.contacts[closed_point.contact],

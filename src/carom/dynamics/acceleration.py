@@ -33,6 +33,15 @@ def acceleration_unit(system, state, active, work, stage):
     accelerations(system, state, active, work, stage)
 
 
+@unit
+def acceleration_without_friction(system, state, work, stage):
+    """Do the same without friction in joints, which is among the rows of a group in contact."""
+    applied = applied_wrenches(system, state, True, work)
+    applied += add_stiff(system, state, work)
+    bias_joints(system, state, work)
+    note_accelerations(system, state, applied, 0.0, work, stage)
+
+
 @kernel
 def accelerations(system, state, active, work, stage):
     """Do the same as `acceleration_unit`, compiled as a part of the caller."""
@@ -40,6 +49,12 @@ def accelerations(system, state, active, work, stage):
     applied += add_stiff(system, state, work)
     bias_joints(system, state, work)
     friction = joint_friction(system, state, work)
+    note_accelerations(system, state, applied, friction, work, stage)
+
+
+@kernel
+def note_accelerations(system, state, applied, friction, work, stage):
+    """Solve for the accelerations under the wrenches of all bodies, and note them and the powers."""
     solve(system, state, True, work)
     applied += driven_power(system, state, work)
     for b in range(system.bodies.shape[0]):

@@ -49,6 +49,8 @@ def add_impulse(point, ln, l1, l2, work):
         return
     if point.turns == 4:
         l1, l2 = 0.0, 0.0
+    elif point.turns == 5:
+        ln, l1, l2 = l1, 0.0, 0.0
     elif point.turns > 0:
         i, j = (1, 2) if point.turns == 1 else (0, 2)
         f1, f2 = point.length * l1, point.length * l2 if point.turns == 1 else 0.0

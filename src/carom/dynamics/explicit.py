@@ -126,6 +126,7 @@ def fly(system, active, start, h, end, work):
             pending, held = True, held or status == HELD
         elif status == FREE:
             free_flight(system.bodies[b], system.gravity, h, start[b], end[b], work.body[b])
+    work.result[0].held = 1 if held else 0
     return pending and not held
 
 

@@ -81,7 +81,7 @@ def inverse_masses(system, k, points, state, work, W):
             m = 0.5 * (W[i, j] + W[j, i])
             W[i, j], W[j, i] = m, m
     for i in range(k):
-        if points[i].turns >= 3:  # no tangents: any positive values do
+        if points[i].turns == 3 or points[i].turns == 4:  # no tangents: any positive values do
             W[3 * i + 1, 3 * i + 1] = W[3 * i + 2, 3 * i + 2] = W[3 * i, 3 * i]
 
 

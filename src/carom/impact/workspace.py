@@ -37,7 +37,7 @@ CLOSED_POINT = [
     ("patch", "i8"),  # the first point of its patch
     ("weight", "f8"),  # stiffness of its spring, as a part of that of its patch
     ("spring", "f8"),  # compliance of its spring [1/kg]
-    ("turns", "i8"),  # as in its POINT
+    ("turns", "i8"),  # as in its POINT, 5 for all friction in joints (then `active` is its number)
     (
         "parent",
         "i8",
@@ -89,15 +89,15 @@ def capacity(system: System, more: bool) -> int:
     """Return the greatest number of closed points in one group; `more` says that contacts may be added."""
     if more:
         return MOST
-    contacts = system.contacts
+    contacts, more_rows = system.contacts, len(system.relations.frictions)
     vertices, found = contacts["last"] - contacts["first"], contacts["touches"] == 1
     if found.any():
         points = np.where(found, MOST_POINTS, vertices)
-        return max(1, min(MOST, int(points.sum())))
+        return max(1, min(MOST, int(points.sum()) + more_rows))
     count = np.zeros(system.bodies.size + 1, dtype=np.int64)
     rows = 1 + (contacts["turning"] > 0.0).sum(axis=1)
     np.add.at(count, system.bodies["component"][contacts["body"]], rows * vertices)
-    return max(1, min(MOST, int(count.max())))
+    return max(1, min(MOST, int(count.max()) + more_rows))
 
 
 def new_group(system: System, more: bool = False) -> Group:

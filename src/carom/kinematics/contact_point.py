@@ -64,9 +64,11 @@ def turning_rows(point, x, y, z):
 
 @kernel
 def own_rows(point, u):
-    """Return u; for a stop that ends a slide, only the normal component."""
+    """Return u; for a stop that ends a slide, or a slide with friction, only the normal component."""
     if point.turns == 4:
         return u[0], 0.0, 0.0
+    if point.turns == 5:
+        return 0.0, u[0], 0.0
     return u
 
 

@@ -67,7 +67,8 @@ POINT = [
     ("axes", "f8", (3, 3)),  # rows n, t1, t2
     ("gap", "f8"),
     # 0 for a usual point; rows of relative rotation: 1 rolling (t1, t2), 2 pivoting (t1), 3 a stop that ends a
-    # turn (n); 4: the normal row alone, of a stop that ends a slide
+    # turn (n); 4: the normal row alone, of a stop that ends a slide; 5: the same in the place of t1, of a
+    # joint with friction
     ("turns", "i8"),
     ("length", "f8"),  # that converts an angular velocity to a speed
 ]
@@ -143,6 +144,7 @@ RESULT = [
     # time within the trial step at which a slide ends: the step is repeated up to there
     ("until", "f8"),
     ("order", "i8"),  # of the estimate of its error
+    ("held", "i8"),  # 1 if joined or loaded bodies are in persistent contact
     ("stiff", "i8"),  # 1 if a trial of this step was taken by the implicit member
     ("parts", "i8"),  # additional parts of steps in which bodies turned far
     ("fallen", "i8"),  # steps of a symplectic method that the explicit method took instead

@@ -26,6 +26,7 @@ from carom.persistent.finish import (
     review,
     solve_cones_of,
 )
+from carom.persistent.joint_rows import JOINT, first_frictions, is_driven, radius_of
 from carom.persistent.members import closing_member, explicit_member, implicit_member
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
 from carom.persistent.springs import solve_springs
@@ -94,7 +95,7 @@ def step_group(model, data, method, label, h):
         result.stiff = 1
     size = closing_size(system, controls, count, group)
     if not (order > 0 and 0.5 * h * h * push <= size):
-        first_modes(data, label)
+        first_modes(system, data, label)
         weight = method.stiff[method.stiff.shape[0] - 1, 0]
         result.applied, result.friction = had + h * weight * applied, rubbed + h * weight * friction
         k = implicit_member(model, data, method, label, loaded, count, h)
@@ -107,7 +108,7 @@ def step_group(model, data, method, label, h):
                     result.order = min(order, STIFF_ORDER)
                 check(model, data, loaded, count, result.friction - rubbed)
                 return
-    first_modes(data, label)
+    first_modes(system, data, label)
     result.applied, result.friction = had, rubbed
     k = closing_member(model, data, label, loaded, count, h)
     note_modes(model, data, k, 0.0)
@@ -133,12 +134,14 @@ def closing_size(system, controls, count, group):
 
 
 @kernel
-def first_modes(data, label):
+def first_modes(system, data, label):
     """Take the modes of the start of the step for those of its end, until the end is known."""
     active = data.active
     for i in range(active.count[0]):
         if data.work.body[active.points[i].body].label == label:
             active.points[i].next = active.points[i].mode
+    if data.work.body.shape[0] == label:
+        first_frictions(system)
 
 
 @kernel
@@ -148,15 +151,15 @@ def first_stage(model, data, label, loaded, count):
     Return the number of points, the greatest rate at which friction turns a slip, and the greatest acceleration
     by friction. The powers go to `work.result`.
     """
-    start, group, work = data.state, data.group, data.work
+    start, group, work, system = data.state, data.group, data.work, model.system
     result, controls = work.result[0], model.controls
     for b in range(start.shape[0]):
         copy_state(start[b], work.stage[b])
     for m in range(count):
         note_velocity(work.stage[group.member[m]], work.stages[0, group.member[m]])
-    first_modes(data, label)
+    first_modes(system, data, label)
     result.time = result.start
-    power, drag = accelerate_freely(model, data, loaded, count, 0)
+    power = accelerate_freely(model, data, loaded, count, 0)
     k = write_rows(model, data, label, 0)
     push = 0.0
     for row in range(3 * k):
@@ -164,11 +167,11 @@ def first_stage(model, data, label, loaded, count):
     known = True
     for i in range(k):
         known = note_way(model, data, i, controls.rest * push * controls.step) and known
-    set_modes(data.active, k, group)
+    set_modes(system, data.active, k, group)
     if not (known and solve_springs(k, group)):
         solve_cones_of(model, data, k)
     driven, rubbed = push_bodies(model, data, loaded, k, count, 0)
-    result.power, result.drag = power + driven, drag + rubbed
+    result.power, result.drag = power + driven, rubbed
     rate, friction = rates(k, group)
     return k, rate if known else math.inf, friction
 
@@ -178,9 +181,13 @@ def note_way(model, data, i, still):
     """Store direction and speed of the slip of a point at the start; return whether they are known if it slips."""
     group, active = data.group, data.active
     closed_point = group.closed[i]
-    active_point = active.points[closed_point.active]
     u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
     speed = math.hypot(u1, u2)
+    if closed_point.turns == JOINT:
+        one = model.system.relations.frictions[closed_point.active]
+        one.speed = speed
+        return one.mode == 0 or speed > still or is_driven(group, i)
+    active_point = active.points[closed_point.active]
     contact = model.system.contacts[closed_point.contact]
     moves = speed > max(10.0 * slow(contact, data.state), still)
     d1, d2 = u1 / speed if moves else 0.0, u2 / speed if moves else 0.0
@@ -204,8 +211,7 @@ def rates(k, group):
         q = 3 * i
         force = math.hypot(group.v[P][q + 1], group.v[P][q + 2])
         if group.kind[i] != SLIDING:
-            normal = q if group.closed[i].turns == 0 else 3 * group.closed[i].parent
-            force = max(force, group.mu[i] * group.v[P][normal])
+            force = max(force, radius_of(group, i))
         braked = force * max(W[q + 1, q + 1], W[q + 2, q + 2])
         most = max(most, braked)
         speed = math.hypot(group.v[U][q + 1], group.v[U][q + 2])

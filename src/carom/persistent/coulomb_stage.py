@@ -17,6 +17,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.friction import lu
 from carom.impact.workspace import BACK, OLD, C, P, U
+from carom.persistent.joint_rows import JOINT, is_driven, radius_of
 from carom.persistent.springs import EPS, PULL, compliance_of, moves
 
 ITERATIONS, HALVES = 40, 6
@@ -64,11 +65,13 @@ def change_loads(k, group):
 
 @kernel
 def largest(k, group):
-    """Return the greatest normal acceleration without forces."""
+    """Return the greatest normal acceleration, or acceleration by friction of joints, without other forces."""
     push = 0.0
     for i in range(k):
         if group.closed[i].turns == 0:
             push = max(push, abs(group.v[C][3 * i]))
+        elif group.closed[i].turns == JOINT:
+            push = max(push, group.mu[i] * group.m[0][3 * i + 1, 3 * i + 1])
     return push
 
 
@@ -89,13 +92,16 @@ def list_unknowns(k, group):
         closed_point = group.closed[i]
         parent = i if closed_point.turns == 0 else closed_point.parent
         first = 0 if closed_point.turns == 0 else 1
+        bound = closed_point.turns == JOINT or group.closed[parent].loaded == 1
         for a in range(3):
             row = 3 * i + a
-            there = group.closed[parent].loaded == 1 and a >= first and moves(group.m[0], row)
-            if there and (a == 0 or group.mu[i] > 0.0):
+            if bound and a >= first and moves(group, row) and (a == 0 or group.mu[i] > 0.0):
                 rows[n], n = row, n + 1
             else:
                 group.v[P][row] = 0.0
+        if closed_point.turns == JOINT and is_driven(group, i):
+            u = group.v[U][3 * i + 1]
+            group.v[P][3 * i + 1] = -group.mu[i] if u > 0.0 else group.mu[i] if u < 0.0 else 0.0
     return n
 
 
@@ -162,12 +168,12 @@ def write_disc(k, n, i, width, hg, group):
     rows, x, L, W, p = group.cone.active, group.v[OLD], group.cone.matrix, group.m[0], group.v[P]
     a, b, unit = rows[i], rows[i + width - 1], rows[i] // 3
     closed_point = group.closed[unit]
-    normal = 3 * (unit if closed_point.turns == 0 else closed_point.parent)
+    normal = 3 * (unit if closed_point.turns == 0 else closed_point.parent)  # below 0 for a joint
     scale = 0.5 * (W[a, a] + W[b, b])
     ga = group.v[U][a] / hg + product(k, a, group)
     gb = group.v[U][b] / hg + product(k, b, group) if width == 2 else 0.0
     za, zb = p[a] - ga / scale, p[b] - gb / scale if width == 2 else 0.0
-    z, radius = math.sqrt(za * za + zb * zb), group.mu[unit] * max(0.0, p[normal])
+    z, radius = math.sqrt(za * za + zb * zb), radius_of(group, unit)
     if z <= radius:
         for r in range(width):
             for j in range(n):
@@ -179,7 +185,7 @@ def write_disc(k, n, i, width, hg, group):
     x[i] = scale * (p[a] - radius * ea)
     if width == 2:
         x[i + 1] = scale * (p[b] - radius * eb)
-    grows = group.mu[unit] if p[normal] > 0.0 else 0.0
+    grows = group.mu[unit] if normal >= 0 and p[normal] > 0.0 else 0.0
     for j in range(n):
         row = rows[j]
         da, db = -W[a, row] / scale, -W[b, row] / scale if width == 2 else 0.0

@@ -10,13 +10,13 @@ from carom.contact.gap import slow
 from carom.dynamics.acceleration import OPEN, SLIP, STICK
 from carom.dynamics.adapt import allowed_error
 from carom.dynamics.explicit import copy_state, note_velocity
-from carom.dynamics.joint_friction import stay_stuck
 from carom.dynamics.project import LOST, project_position, project_velocity
 from carom.dynamics.several_points import velocities
-from carom.friction.layout import CONE, SLIDING
+from carom.friction.layout import CONE, DISC, SLIDING
 from carom.impact.workspace import BACK, OLD, C, P, U
 from carom.persistent.forces import solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among
+from carom.persistent.joint_rows import JOINT, place_coordinate, radius_of
 from carom.persistent.margins import greatest_push, set_margins
 from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
@@ -40,14 +40,20 @@ def land(model, data, loaded, k, count, h):
     onto_surfaces(system, active, k, count, end, group, work)
     if loaded:
         project_velocity(system, end, work)
-        stay_stuck(system, end, work)
     show(count, end, group, work)
     place_closed(system, k, end, group, group.points[0], work)
+    for i in range(k):
+        if group.closed[i].turns == JOINT:
+            one = system.relations.frictions[group.closed[i].active]
+            place_coordinate(system.relations.coordinates[one.coordinate], end, group.points[0][i])
     for _ in range(2):  # the factor is that of the last stage
         for i in range(k):
-            closed_point = group.closed[i]
-            presses = closed_point.turns == 0 and group.v[P][3 * i] > 0.0
-            closed_point.rows = 0 if not presses else 1 if group.kind[i] == SLIDING else 3
+            closed_point, sticks = group.closed[i], group.kind[i] != SLIDING
+            closed_point.rows = 0
+            if closed_point.turns == JOINT:
+                closed_point.rows = 1 if sticks else 0
+            elif closed_point.turns == 0 and group.v[P][3 * i] > 0.0:
+                closed_point.rows = 3 if sticks else 1
         onto_tangents(system, k, count, end, group, work)
     show(count, end, group, work)
     return True
@@ -68,13 +74,17 @@ def note_modes(model, data, k, still):
         closed_point, u, p = group.closed[i], group.v[U], group.v[P]
         slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
         force = math.hypot(p[3 * i + 1], p[3 * i + 2])
-        normal = closed_point.parent if closed_point.turns > 0 else i
-        full = not force < ON_CONE * group.mu[i] * p[3 * normal]
+        full = not force < ON_CONE * radius_of(group, i)
         group.kind[i] = SLIDING if group.mu[i] == 0.0 or (full and slip > still) else CONE
         if closed_point.own == 0:
             continue
-        active_point = active.points[closed_point.active]
         slides = group.kind[i] == SLIDING and slip > 0.0
+        if closed_point.turns == JOINT:
+            one = model.system.relations.frictions[closed_point.active]
+            one.next = 0 if not slides else 1 if u[3 * i + 1] > 0.0 else -1
+            one.speed = slip
+            continue
+        active_point = active.points[closed_point.active]
         d1, d2 = u[3 * i + 1] / slip if slides else 0.0, u[3 * i + 2] / slip if slides else 0.0
         if closed_point.turns == 0:
             active_point.next = SLIP if group.kind[i] == SLIDING else STICK
@@ -100,7 +110,7 @@ def review(model, data, label, loaded, count, s, h, given):
     push = 0.0
     for row in range(3 * k):
         push = max(push, abs(group.v[C][row]))
-    same = set_modes(active, k, group) or not given
+    same = set_modes(system, active, k, group) or not given
     status = 0
     solved = same and solve_springs(k, group)
     if solved:  # the accelerations before modes change: those that the estimate of the error needs
@@ -125,6 +135,14 @@ def review(model, data, label, loaded, count, s, h, given):
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.own == 0:
+            continue
+        if closed_point.turns == JOINT:
+            one = system.relations.frictions[closed_point.active]
+            one.force = group.v[P][3 * i + 1]
+            if given and not lasts and one.next == 0 and gains(i, push, group):
+                if work.search[0].active == 0:
+                    return False
+                one.next = -1 if one.force > 0.0 else 1
             continue
         active_point = active.points[closed_point.active]
         take_forces(active_point, i, group)
@@ -182,10 +200,8 @@ def within_cones(k, group):
     for i in range(k):
         if group.kind[i] == SLIDING:
             continue
-        closed_point = group.closed[i]
-        normal = closed_point.parent if closed_point.turns > 0 else i
         force = math.hypot(p[3 * i + 1], p[3 * i + 2])
-        if force > group.mu[i] * max(0.0, p[3 * normal]) * (1.0 + 1e-10) + 1e-13 * most:
+        if force > radius_of(group, i) * (1.0 + 1e-10) + 1e-13 * most:
             return False
     return True
 
@@ -199,9 +215,27 @@ def solve_cones_of(model, data, k):
         known = group.heading[i, 0] != 0.0 or group.heading[i, 1] != 0.0
         if group.kind[i] == SLIDING and not known:
             group.kind[i] = CONE
-        if group.closed[i].turns > 0:
+        if group.closed[i].turns == JOINT:
+            fix_friction(k, i, group)
+        elif group.closed[i].turns > 0:
             group.mu[i] = 1.0
-    return solve_forces(model, data, k)
+    status = solve_forces(model, data, k)
+    for i in range(k):
+        if group.closed[i].turns == JOINT and group.closed[i].stays == 0:
+            group.v[P][3 * i + 1] = -group.mu[i] * group.heading[i, 0]
+    return status
+
+
+@kernel
+def fix_friction(k, i, group):
+    """Pose friction in a joint: a disc where it sticks, a given force, in C, where it slips."""
+    if group.kind[i] == SLIDING:
+        group.closed[i].stays = 0
+        for row in range(3 * k):
+            group.v[C][row] -= group.m[0][row, 3 * i + 1] * group.mu[i] * group.heading[i, 0]
+        return
+    group.kind[i] = DISC
+    group.heading[i, 0], group.heading[i, 1] = group.mu[i], 0.0
 
 
 @kernel
@@ -236,6 +270,9 @@ def stick_where_slip_ends(model, data, k):
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.stays == 1:
+            if closed_point.turns == JOINT:
+                model.system.relations.frictions[closed_point.active].next = 0
+                continue
             active_point = active.points[closed_point.active]
             if closed_point.turns == 0:
                 active_point.next = STICK
@@ -253,6 +290,8 @@ def onto_tangents_of(model, data, k, count):
         closed_point.rows = 0 if closed_point.loaded == 0 or closed_point.turns > 0 else 3
         if group.kind[i] == SLIDING:
             closed_point.rows = min(closed_point.rows, 1)
+        elif closed_point.turns == JOINT:
+            closed_point.rows = 1
     onto_tangents(model.system, k, count, work.trial, group, work)
     velocities(k, group.points[0], work.trial, group.v[U])
     note_accelerations(k, group)

@@ -79,7 +79,7 @@ def solve_forces(model, data, k):
     """Write the forces of the points that stay closed to P, and the accelerations of all k points to OLD."""
     system, group, turning = model.system, data.group, False
     for i in range(k):
-        turning = turning or group.closed[i].turns > 0
+        turning = turning or 0 < group.closed[i].turns < 3
     for i in range(3 * k):
         group.v[P][i] = 0.0
     status = solve_once(model, data, k)

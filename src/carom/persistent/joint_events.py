@@ -112,7 +112,7 @@ def _review_joints(system, active, now, work):
 @inlined
 def find_joint_event(system, active, state, work):
     """Return (event, number) of the first friction in a joint whose mode has ended in `state`; -1 if none."""
-    if system.relations.there == 1:
+    if system.relations.there == 1 and work.result[0].held == 0:
         return _find_joint_event(system, active, state, work)
     return 0, -1
 

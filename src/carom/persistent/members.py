@@ -15,11 +15,12 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.dynamics.explicit import combine_body, copy_state, node, note_velocity, stages_within
 from carom.dynamics.several_points import velocities
-from carom.friction.layout import BUDGET, CONE, ENOUGH, NEAR
+from carom.friction.layout import BUDGET, CONE, DISC, ENOUGH, NEAR
 from carom.friction.solve import solve_cones
 from carom.geometry.rotation import normalize
 from carom.impact.workspace import C, P, U
 from carom.persistent.coulomb_stage import solve_stage
+from carom.persistent.joint_rows import JOINT
 from carom.persistent.rolling_friction import bound_turning
 from carom.persistent.rows import (
     accelerate_freely,
@@ -44,13 +45,13 @@ def explicit_member(model, data, method, label, loaded, count, h):
             combine_body(method.A[s], s, h, start[b], work.stages, b, work.stage[b])
             note_velocity(work.stage[b], work.stages[s, b])
         result.time = result.start + h * node(method.A[s], s)
-        power, drag = accelerate_freely(model, data, loaded, count, s)
+        power = accelerate_freely(model, data, loaded, count, s)
         k = write_rows(model, data, label, s)
-        if not (set_modes(data.active, k, group) and solve_springs(k, group)):
+        if not (set_modes(model.system, data.active, k, group) and solve_springs(k, group)):
             return 0
         driven, rubbed = push_bodies(model, data, loaded, k, count, s)
         result.applied += h * method.b[s] * (power + driven)
-        result.friction += h * method.b[s] * (drag + rubbed)
+        result.friction += h * method.b[s] * rubbed
     for m in range(count):
         b = group.member[m]
         combine_body(method.b, stages_within(method), h, start[b], work.stages, b, end[b])
@@ -99,7 +100,7 @@ def implicit_stage(model, data, label, loaded, count, s, hg):
             change = max(change, move_stage(work.first[b], hg, work.stages[s, b], work.stage[b]))
         if turn > 0 and change <= SAME:
             break
-        applied, drag = accelerate_freely(model, data, loaded, count, s)
+        applied = accelerate_freely(model, data, loaded, count, s)
         before = k
         k = write_rows(model, data, label, s)
         for m in range(count):
@@ -113,7 +114,7 @@ def implicit_stage(model, data, label, loaded, count, s, hg):
             return -1, 0.0, 0.0
         velocities(k, group.points[0], work.stage, group.v[U])
         driven, rubbed = push_bodies(model, data, loaded, k, count, s)
-        power, rubbed = applied + driven, drag + rubbed
+        power = applied + driven
     return k, power, rubbed
 
 
@@ -155,24 +156,23 @@ def closing_member(model, data, label, loaded, count, h):
         copy_state(start[b], work.stage[b])
     result.time = result.start + h
     for turn in range(3):
-        power, drag = accelerate_freely(model, data, loaded, count, 1)
+        power = accelerate_freely(model, data, loaded, count, 1)
         k = write_rows(model, data, label, 1)
         for m in range(count):
             b = group.member[m]
             add_velocity(work.first[b], h, work.stages[1, b], work.middle[b])
         velocities(k, group.points[0], work.middle, group.v[U])
-        solve_impulses(model, data, k, h if turn > 0 else 0.0)
+        solve_impulses(model, data, k, h if turn > 0 else 0.0, h)
         for row in range(3 * k):
             group.v[P][row] /= h
         velocities(k, group.points[0], work.stage, group.v[U])
-        driven, rubbed = push_bodies(model, data, loaded, k, count, 1)
+        driven, _ = push_bodies(model, data, loaded, k, count, 1)
         for m in range(count):
             b = group.member[m]
             move_stage(work.first[b], h, work.stages[1, b], work.stage[b])
         if turn == 2:
             velocities(k, group.points[0], work.stage, group.v[U])
             result.applied += h * (power + driven)
-            result.friction += h * drag
             for i in range(k):
                 u, p = group.v[U], group.v[P]
                 result.friction += h * (p[3 * i + 1] * u[3 * i + 1] + p[3 * i + 2] * u[3 * i + 2])
@@ -182,8 +182,11 @@ def closing_member(model, data, label, loaded, count, h):
 
 
 @kernel
-def solve_impulses(model, data, k, h):
-    """Write the impulses to P for which Coulomb's law holds with the velocities W p + U; h P is the first guess."""
+def solve_impulses(model, data, k, h, length):
+    """Write the impulses to P for which Coulomb's law holds with the velocities W p + U; h P is the first guess.
+
+    The step has the given length.
+    """
     group = data.group
     for i in range(3 * k):
         group.v[P][i] *= h
@@ -191,7 +194,9 @@ def solve_impulses(model, data, k, h):
     turning = False
     for i in range(k):
         group.kind[i] = CONE
-        if group.closed[i].turns > 0:
+        if group.closed[i].turns == JOINT:
+            group.kind[i], group.heading[i, 0] = DISC, length * group.mu[i]
+        elif group.closed[i].turns > 0:
             group.mu[i], turning = 1.0, True
     group.cone.count[NEAR], group.cone.mismatch[ENOUGH], group.cone.count[BUDGET] = 0, 0.0, 0
     for _ in range(50 if turning else 1):

@@ -29,6 +29,7 @@ from carom.contact.pair_point import (
 from carom.contact.place import place_any
 from carom.contact.rim import same_point
 from carom.kinematics.contact_point import copy_point
+from carom.persistent.joint_rows import add_frictions
 
 FACE = (
     1e-3  # of the smaller body: points of a face that are no higher than that belong to its patch
@@ -53,6 +54,7 @@ def find_points(system, active, label, state, group, work):
         elif is_first(active, i):
             k = add_pair(system, active, i, state, k, group, work)
     k = add_turning(system, active, k, group)
+    k = add_frictions(system, label, state, k, group, work)
     weigh(system, k, group)
     return k
 
@@ -190,7 +192,8 @@ def weigh(system, k, group):
         closed_point = group.closed[i]
         if closed_point.turns > 0:
             closed_point.weight = 1.0
-        elif closed_point.weight < 0.0:
+            continue
+        if closed_point.weight < 0.0:
             weigh_patch(system, i, k, group)
         s = 1.0 / system.bodies[points[i].a].mass
         if points[i].b >= 0:

@@ -32,10 +32,10 @@ def mark_rows(system, active, k, group):
     """
     some = False
     for i in range(k):
-        active_point, p, q = active.points[group.closed[i].active], group.v[P], 3 * i
         group.closed[i].rows = 0
         if group.closed[i].turns > 0:
             continue
+        active_point, p, q = active.points[group.closed[i].active], group.v[P], 3 * i
         if group.points[1][i].gap < -1e-12 * system.contacts[active_point.contact].extent:
             some = True
             group.closed[i].rows = 1
@@ -133,12 +133,13 @@ def errors(system, active, k, state, group, x, work):
     """Write the errors of all rows (0 for rows not given); return whether all are round-off."""
     small = True
     for i in range(k):
-        active_point, point = active.points[group.closed[i].active], group.points[1][i]
-        contact = system.contacts[active_point.contact]
+        closed_point, point = group.closed[i], group.points[1][i]
         x[3 * i], x[3 * i + 1], x[3 * i + 2] = 0.0, 0.0, 0.0
-        if group.closed[i].rows == 0:
+        if closed_point.rows == 0:
             continue
-        place_any(system, contact, active_point.feature, active_point.point, state, point, work)
+        active_point = active.points[closed_point.active]
+        contact = system.contacts[closed_point.contact]
+        place_any(system, contact, closed_point.feature, closed_point.point, state, point, work)
         tiny = round_off(contact, state)
         if contact.touches == 1:
             tiny = 4.0 * round_off_of_both(contact, state)

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.impact.workspace import C, P
+from carom.persistent.joint_rows import JOINT
 
 
 @kernel
@@ -20,7 +21,7 @@ def bound_turning(system, k, group):
     change, largest = 0.0, 0.0
     for i in range(k):
         closed_point = group.closed[i]
-        if closed_point.turns == 0:
+        if closed_point.turns == 0 or closed_point.turns == JOINT:
             continue
         q, W = 3 * i, group.m[0]
         d = system.contacts[closed_point.contact].turning[closed_point.turns - 1]

@@ -12,12 +12,13 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.contact.place import drift_of
-from carom.dynamics.acceleration import SLIP, accelerate, acceleration_unit
+from carom.dynamics.acceleration import SLIP, accelerate, acceleration_without_friction
 from carom.dynamics.elements import driven_power
 from carom.dynamics.several_points import accelerations, inverse_masses, spread_all, velocities
 from carom.friction.layout import CONE, SLIDING
 from carom.impact.workspace import C, P, U
 from carom.kinematics.flight import free_rates
+from carom.persistent.joint_rows import JOINT, drift_of_coordinate, is_driven
 from carom.persistent.points import find_points
 from carom.persistent.springs import bound_per_force
 
@@ -28,18 +29,18 @@ SAME_WAY, STOPS = 0.5, 1e-3
 
 @kernel
 def accelerate_freely(model, data, loaded, count, s):
-    """Write the accelerations of the bodies of a group in `work.stage` without contact forces, as stage s.
+    """Write the accelerations of the bodies of a group in `work.stage` without its rows, as stage s.
 
-    Return the powers of loads and of friction in joints.
+    Return the power of loads.
     """
     system, work = model.system, data.work
     if loaded:
-        acceleration_unit(system, work.stage, data.active, work, work.stages[s])
-        return work.result[0].power, work.result[0].drag
+        acceleration_without_friction(system, work.stage, work, work.stages[s])
+        return work.result[0].power
     for m in range(count):
         b = data.group.member[m]
         free_rates(system.bodies[b], system.gravity, work.stage[b], work.stages[s, b].rate)
-    return 0.0, 0.0
+    return 0.0
 
 
 @kernel
@@ -65,6 +66,11 @@ def write_motion(model, data, k, s):
     accelerations(k, points, state, work.stages[s], group.v[C])
     for i in range(k):
         closed_point = group.closed[i]
+        if closed_point.turns == JOINT:
+            c = drift_of_coordinate(system, closed_point.active, state, work)
+            group.v[C][3 * i + 1] += c
+            group.mu[i] = system.relations.frictions[closed_point.active].bound
+            continue
         contact = system.contacts[closed_point.contact]
         group.mu[i] = contact.friction_held
         if closed_point.turns > 0:
@@ -78,7 +84,7 @@ def write_motion(model, data, k, s):
 
 
 @kernel
-def set_modes(active, k, group):
+def set_modes(system, active, k, group):
     """Write which of k points slide, and where to; return whether that is the way of the start of the step.
 
     All springs press at first.
@@ -86,11 +92,15 @@ def set_modes(active, k, group):
     same = True
     for i in range(k):
         closed_point = group.closed[i]
-        active_point = active.points[closed_point.active]
-        slips, d1, d2, speed = way_of(active_point, closed_point.turns)
+        slips, d1, d2, speed = way_of(system, active, closed_point)
         closed_point.loaded = 1 if closed_point.weight > 0.0 else 0
         group.kind[i] = SLIDING if slips or group.mu[i] == 0.0 else CONE
         group.heading[i, 0], group.heading[i, 1] = d1, d2
+        if closed_point.turns == JOINT and is_driven(group, i):
+            group.kind[i] = SLIDING
+            speed = group.v[U][3 * i + 1]
+            group.heading[i, 0] = 1.0 if speed > 0.0 else -1.0 if speed < 0.0 else 0.0
+            continue
         if not slips or group.mu[i] == 0.0:
             continue
         u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
@@ -105,10 +115,14 @@ def set_modes(active, k, group):
 
 
 @kernel
-def way_of(active_point, turns):
+def way_of(system, active, closed_point):
     """Return whether a point slips (or rolls, or pivots), and direction and speed at the start of the step."""
-    if turns > 0:
-        way = active_point.turning[turns - 1]
+    if closed_point.turns == JOINT:
+        one = system.relations.frictions[closed_point.active]
+        return one.next != 0, float(one.next), 0.0, one.speed
+    active_point = active.points[closed_point.active]
+    if closed_point.turns > 0:
+        way = active_point.turning[closed_point.turns - 1]
         return way[2] > 0.0, way[0], way[1], way[2]
     d = active_point.heading
     return active_point.next == SLIP, d[0], d[1], active_point.speed

@@ -20,6 +20,7 @@ from carom._compiled.decorators import kernel
 from carom.friction import lu
 from carom.friction.layout import SLIDING
 from carom.impact.workspace import OLD, C, P
+from carom.persistent.joint_rows import JOINT, is_driven
 
 EPS = 1e-5
 CORRECTIONS = 12  # of the forces
@@ -66,6 +67,8 @@ def rows_of(k, i, group):
     from rolling, two that stick from pivoting.
     """
     closed_point = group.closed[i]
+    if closed_point.turns == JOINT:
+        return 0 if group.kind[i] == SLIDING else 1
     if closed_point.turns == 0:
         return 0 if closed_point.loaded == 0 else 1 if group.kind[i] == SLIDING else 3
     if group.kind[i] == SLIDING or group.closed[closed_point.parent].loaded == 0:
@@ -82,11 +85,11 @@ def rows_of(k, i, group):
 @kernel
 def factor_rows(k, group):
     """List the given rows, write the factor of R P F^T + eps S to `cone.matrix`; return their number."""
-    rows, L, W, n = group.cone.active, group.cone.matrix, group.m[0], 0
+    rows, L, n = group.cone.active, group.cone.matrix, 0
     for i in range(k):
         first = 1 if group.closed[i].turns > 0 else 0
         for a in range(first, first + group.closed[i].rows):
-            if moves(W, 3 * i + a):
+            if moves(group, 3 * i + a):
                 rows[n], n = 3 * i + a, n + 1
     for i in range(n):
         for j in range(n):
@@ -105,9 +108,11 @@ def compliance_of(group, row):
 
 
 @kernel
-def moves(W, row):
+def moves(group, row):
     """Return whether a force along a row moves its point; if not, its W is round-off (planar motion)."""
-    n = row - row % 3
+    n, W = row - row % 3, group.m[0]
+    if group.closed[row // 3].turns == JOINT:
+        return row % 3 == 1 and not is_driven(group, row // 3)
     return W[row, row] > 1e-12 * (W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2])
 
 
@@ -141,6 +146,9 @@ def first_forces(k, n, turn, push, group):
     p, x, rows, closed = group.v[P], group.v[OLD], group.cone.active, group.closed
     for row in range(3 * k):
         p[row] = 0.0
+    for i in range(k):
+        if closed[i].turns == JOINT and group.kind[i] == SLIDING:
+            p[3 * i + 1] = -group.mu[i] * group.heading[i, 0]
     changed = 0
     for correction in range(CORRECTIONS):
         wrong = 0.0

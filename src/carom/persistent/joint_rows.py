@@ -1,0 +1,123 @@
+"""Dry friction in joints as rows of a group: an interval of constant width, beside the discs of its points.
+
+The coordinate q of a joint has the row q' and the force |F| <= bound against it. Its entry follows those of
+rolling and pivoting: the same equations, with the bound in the place of mu times a normal force.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
+from carom.contact.closed_points import write_closed
+from carom.contact.pair_point import tangents
+from carom.dynamics.contact_impulse import clear_wrenches
+from carom.dynamics.solve import free_body
+from carom.impact.workspace import P
+from carom.kinematics.coordinate import drift, motion_along, push
+from carom.kinematics.joints import arm, axis, parent_arm
+from carom.model.arrays import PRISMATIC
+
+JOINT = 5  # `turns` of such an entry, and of its point if the coordinate is a displacement
+PIVOT = 2  # of its point if it is an angle
+DRIVEN = (
+    1e-13  # of the effect of a force without joints: with less, joints and motors leave no freedom
+)
+
+
+@kernel
+def add_frictions(system, label, state, k, group, work):
+    """Add an entry for each dry friction in the joints of a group; return the new count."""
+    if system.relations.there == 1 and label == work.body.shape[0]:
+        return _add_frictions(system, state, k, group, work)
+    return k
+
+
+@unit
+def _add_frictions(system, state, k, group, work) -> int:
+    """Add the entries of all frictions in joints."""
+    relations = system.relations
+    for i in range(relations.frictions.shape[0]):
+        if k == group.closed.shape[0]:
+            break
+        c = relations.coordinates[relations.frictions[i].coordinate]
+        closed_point, point = group.closed[k], group.points[0][k]
+        write_closed(-1, 0, point.core, closed_point)
+        closed_point.turns, closed_point.active, closed_point.parent = JOINT, i, -1
+        closed_point.own, closed_point.weight = 1, 1.0
+        place_coordinate(c, state, point)
+        closed_point.spring = DRIVEN * response_alone(system, c, state, work)
+        group.mu[k] = relations.frictions[i].bound
+        k += 1
+    return k
+
+
+@kernel
+def place_coordinate(c, state, point):
+    """Write a coordinate as a point: its row is the second of the point."""
+    nx, ny, nz = axis(state, c.parent, c.parent_frame, 0)
+    s = 1.0 if c.child >= 0 else -1.0
+    point.a, point.b = (c.child, c.parent) if c.child >= 0 else (c.parent, -1)
+    tangents(s * nx, s * ny, s * nz, point.axes)
+    for k in range(3):
+        point.core[k], point.arm_a[k], point.arm_b[k] = 0.0, 0.0, 0.0
+    if c.kind == PRISMATIC:
+        r = arm(state, c.child, c.child_anchor) if c.child >= 0 else parent_arm(c, state)
+        point.arm_a[0], point.arm_a[1], point.arm_a[2] = r
+        if c.child >= 0:
+            r = parent_arm(c, state)
+            point.arm_b[0], point.arm_b[1], point.arm_b[2] = r
+    point.gap, point.length = 0.0, 1.0
+    point.turns = JOINT if c.kind == PRISMATIC else PIVOT
+
+
+@kernel
+def response_alone(system, c, state, work):
+    """Return the acceleration of a coordinate by a unit force along it, of its bodies without joints."""
+    clear_wrenches(work)
+    push(c, state, 1.0, work)
+    for b in (c.child, c.parent):
+        if b >= 0:
+            free_body(system.bodies[b], state[b].Q, work.body[b])
+    return motion_along(c, state, work)
+
+
+@kernel
+def drift_of_coordinate(system, i, state, work):
+    """Return q'' of the coordinate of friction i for bodies without acceleration."""
+    relations = system.relations
+    c = relations.coordinates[relations.frictions[i].coordinate]
+    return drift(c, state, work.joint[0].target)
+
+
+@kernel
+def is_driven(group, i):
+    """Return whether joints and motors leave the coordinate of an entry no freedom."""
+    return not group.m[0][3 * i + 1, 3 * i + 1] > group.closed[i].spring
+
+
+@kernel
+def radius_of(group, i):
+    """Return the greatest friction of a point or an entry under the forces in P."""
+    closed_point = group.closed[i]
+    if closed_point.turns == JOINT:
+        return group.mu[i]
+    normal = closed_point.parent if closed_point.turns > 0 else i
+    return group.mu[i] * max(0.0, group.v[P][3 * normal])
+
+
+@kernel
+def first_frictions(system):
+    """Take the modes of the start of a step for those of its end, until the end is known."""
+    if system.relations.there == 1:
+        frictions = system.relations.frictions
+        for i in range(frictions.shape[0]):
+            frictions[i].next = frictions[i].mode
+
+
+@kernel
+def turn_frictions(system):
+    """Take the modes of the end of an accepted step."""
+    if system.relations.there == 1:
+        frictions = system.relations.frictions
+        for i in range(frictions.shape[0]):
+            frictions[i].mode = frictions[i].next
