@@ -113,8 +113,8 @@ def with_care(tableau, system, active, start, h, end, work):
 def fly(system, active, start, h, end, work):
     """Move the bodies in free flight, keep those at rest; return whether joined or loaded bodies remain.
 
-    Those in persistent contact are left to `carom.persistent.contact_step`, with all joined and loaded bodies if
-    one of these is among them.
+    Those in persistent contact are left to `carom.persistent.contact_step`, with all joined and loaded bodies
+    if one of these is among them.
     """
     mark_active(system, active, work)
     pending, held = False, False

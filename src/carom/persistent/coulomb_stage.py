@@ -27,7 +27,10 @@ ENOUGH = 1e-9  # the same for an error that no iteration makes less
 
 @kernel
 def solve_stage(k, hg, group):
-    """Write the forces of a stage to P; return whether they exist. U has u~, C the accelerations without forces."""
+    """Write the forces of a stage to P; return whether they exist.
+
+    U has u~, C the accelerations without forces.
+    """
     closed = group.closed
     for i in range(k):
         closed[i].loaded = 1 if closed[i].weight > 0.0 else 0

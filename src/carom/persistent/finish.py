@@ -29,7 +29,7 @@ ON_CONE = 1.0 - 1e-9  # of the greatest friction: less is within it
 
 @kernel
 def land(model, data, loaded, k, count, h):
-    """Return the bodies of k points to joints and surfaces, their velocities to the tangents; return whether."""
+    """Bring bodies back to joints and surfaces, velocities to the tangents; return whether the joints close."""
     system, active, group, work = model.system, data.active, data.group, data.work
     end = work.trial
     if loaded and not (project_position(system, end, True, 1e-14, work) <= LOST):
@@ -240,7 +240,7 @@ def fix_friction(k, i, group):
 
 @kernel
 def stick_where_slip_ends(model, data, k):
-    """Let points stick whose slip ends within a part of the tolerance, if friction holds all; return whether any.
+    """Let points stick whose slip ends within a part of the tolerance; return whether friction holds them.
 
     Forces and accelerations are those of stick then.
     """

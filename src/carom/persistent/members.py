@@ -61,7 +61,7 @@ def explicit_member(model, data, method, label, loaded, count, h):
 
 @kernel
 def implicit_member(model, data, method, label, loaded, count, h):
-    """Make the stages of the stiff method; return the number of points at the end, 0 if a stage is not solved."""
+    """Make the stages of the stiff method; return the number of points at the end, 0 if one is not solved."""
     start, end, group, work = data.state, data.work.trial, data.group, data.work
     result, A, k = work.result[0], method.stiff, 0
     stages = A.shape[0]
@@ -85,9 +85,9 @@ def implicit_member(model, data, method, label, loaded, count, h):
 
 @kernel
 def implicit_stage(model, data, label, loaded, count, s, hg):
-    """Solve for stage s, from `work.first` without it, in `work.stage`; return points, and powers as `push_bodies`.
+    """Solve for stage s in `work.stage`, from `work.first` without it.
 
-    The number of points is -1 if there is no solution.
+    Return the number of points, -1 if there is no solution, and the powers of loads and of friction.
     """
     group, work = data.group, data.work
     k, driven, power, rubbed = -1, 0.0, 0.0, 0.0
@@ -183,9 +183,9 @@ def closing_member(model, data, label, loaded, count, h):
 
 @kernel
 def solve_impulses(model, data, k, h, length):
-    """Write the impulses to P for which Coulomb's law holds with the velocities W p + U; h P is the first guess.
+    """Write the impulses to P for which Coulomb's law holds with the velocities W p + U.
 
-    The step has the given length.
+    The step has the given length; h P is the first guess.
     """
     group = data.group
     for i in range(3 * k):

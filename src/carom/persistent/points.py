@@ -6,8 +6,8 @@ moves) in one plane are a patch; only the corners of its convex hull carry, each
 
     k_i = half of the two sides next to it, over the perimeter.
 
-A corner that splits into two at an edge, or two that merge, change no sum of forces. A line has weights 1/2, 1/2,
-a single point 1. A point presses like a spring: its compliance is (1/m_a + 1/m_b)/k_i, in units so small that
+A corner that splits into two at an edge, or two that merge, change no sum of forces. A line has weights 1/2,
+1/2, a single point 1. A point presses like a spring: its compliance is (1/m_a + 1/m_b)/k_i, in units so small that
 only the ratios matter (`carom.persistent.springs`). (Mathematics page, persistent contact.)
 """
 
@@ -43,7 +43,7 @@ CORNER = 1e-11
 
 @kernel
 def find_points(system, active, label, state, group, work):
-    """List the points of all pairs of a group in a state, then those of rolling and pivoting; return the number."""
+    """List the points of all pairs of a group in a state, then friction of other kinds; return the number."""
     k = 0
     for i in range(active.count[0]):
         active_point = active.points[i]
@@ -121,7 +121,7 @@ def note_own(system, active, first, touch, state, closed_point):
 
 @kernel
 def add_nearest(system, active, j, count, state, k, group, work):
-    """Add the found point with the feature of an active one, or the one nearest to it, if it is not there yet."""
+    """Add the found point with the feature of an active one, or the nearest one, if it is not there yet."""
     active_point = active.points[j]
     c = active_point.contact
     contact = system.contacts[c]
@@ -184,7 +184,7 @@ def add_turning(system, active, k, group):
 
 @kernel
 def weigh(system, k, group):
-    """Write weight and compliance of the spring of each point: those of the corners of the hull of its patch."""
+    """Write weight and compliance of the spring of each point: corners of the hull of its patch have one."""
     points = group.points[0]
     for i in range(k):
         group.closed[i].weight, group.closed[i].patch, group.closed[i].loaded = -1.0, -1, 0
@@ -257,7 +257,7 @@ def in_plane(origin, point):
 
 @kernel
 def next_corner(size, first, here, k, group):
-    """Return the corner that follows another one counter-clockwise, and the side between; -1 if there is none."""
+    """Return the next corner counter-clockwise, and the side in between; -1 if there is none."""
     points, closed = group.points[0], group.closed
     x0, y0 = in_plane(points[first], points[here])
     best, length, bx, by = -1, 0.0, 0.0, 0.0

@@ -22,8 +22,8 @@ from carom.persistent.joint_rows import JOINT, drift_of_coordinate, is_driven
 from carom.persistent.points import find_points
 from carom.persistent.springs import bound_per_force
 
-# least cosine between the directions of slip in a step; part of the slip at its start below which a direction is
-# that of the start: a slip that stops at the end of a step
+# least cosine between the directions of slip in a step; part of the slip at its start below which a direction
+# is that of the start: a slip that stops at the end of a step
 SAME_WAY, STOPS = 0.5, 1e-3
 
 
@@ -59,7 +59,7 @@ def write_rows(model, data, label, s):
 
 @kernel
 def write_motion(model, data, k, s):
-    """Write U and C of k points of a group in `work.stage` for the accelerations of stage s, and their friction."""
+    """Write U, C and the friction of k points of a group in `work.stage` for the accelerations of stage s."""
     system, group, work = model.system, data.group, data.work
     points, state = group.points[0], work.stage
     velocities(k, points, state, group.v[U])
@@ -130,7 +130,7 @@ def way_of(system, active, closed_point):
 
 @kernel
 def push_bodies(model, data, loaded, k, count, s):
-    """Add the accelerations by the forces in P to those of stage s; return the powers of motors and friction."""
+    """Add the accelerations by the forces in P to stage s; return the powers of motors and friction."""
     system, group, work = model.system, data.group, data.work
     u, p, power, driven = group.v[U], group.v[P], 0.0, 0.0
     spread_all(system, k, group.points[0], p, count, group.member, work.stage, work)

@@ -4,12 +4,12 @@
 
         lam = N (1, -mu d),    and along the axis e of a rotation the torque -delta N e.
 
-Forces need not be unique (four corners of a face). They are those of springs in the limit of infinite stiffness,
+Forces need not be unique (four corners of a face). They are those of springs of infinite stiffness,
 
     N_i = max(0, G_i xi)/s_i,    xi: a displacement of the bodies,  s_i: compliance (`carom.persistent.points`),
 
-so that they are continuous in the positions. With R the rows, F the directions of forces and S the compliances of
-the points that press, (R P F^T + eps S) lam = -c for eps -> 0: corrections with one factor remove what eps
+so that they are continuous in the positions. With R the rows, F the directions of forces and S the compliances
+of the points that press, (R P F^T + eps S) lam = -c for eps -> 0: corrections with one factor remove what eps
 leaves. With eps a point that does not press must not be deeper than its neighbours let it be: its spring would
 press, too.
 """
@@ -37,7 +37,7 @@ def bound_per_force(system, point, closed_point):
 
 @kernel
 def solve_springs(k, group):
-    """Write the forces of given modes to P and the accelerations of all points to OLD; return whether they exist.
+    """Write the forces of given modes to P, accelerations of all points to OLD; return whether they exist.
 
     C has the accelerations without forces; `kind` says which points slide along `heading`, `loaded` which
     press at first.
