@@ -21,10 +21,12 @@ from carom.dynamics.explicit import bound_accelerations_of, copy_state, note_vel
 from carom.friction.layout import SLIDING
 from carom.impact.workspace import C, P, U
 from carom.persistent.finish import (
+    gains,
     land,
     note_modes,
     review,
     solve_cones_of,
+    within_cones,
 )
 from carom.persistent.joint_rows import JOINT, first_frictions, is_driven, radius_of
 from carom.persistent.members import closing_member, explicit_member, implicit_member
@@ -168,12 +170,30 @@ def first_stage(model, data, label, loaded, count):
     for i in range(k):
         known = note_way(model, data, i, controls.rest * push * controls.step) and known
     set_modes(system, data.active, k, group)
-    if not (known and solve_springs(k, group)):
+    if not (known and solve_springs(k, group) and within_cones(k, group)):
         solve_cones_of(model, data, k)
+        known = note_break_away(system, data, k, push) and known
     driven, rubbed = push_bodies(model, data, loaded, k, count, 0)
     result.power, result.drag = power + driven, rubbed
     rate, friction = rates(k, group)
     return k, rate if known else math.inf, friction
+
+
+@kernel
+def note_break_away(system, data, k, push):
+    """Let points slip that stick but accelerate along their surfaces; return whether there is none."""
+    group, none = data.group, True
+    for i in range(k):
+        closed_point = group.closed[i]
+        if group.kind[i] == SLIDING or closed_point.own == 0 or not gains(i, push, group):
+            continue
+        none = False
+        if closed_point.turns == JOINT:
+            force = group.v[P][3 * i + 1]
+            system.relations.frictions[closed_point.active].next = -1 if force > 0.0 else 1
+        elif closed_point.turns == 0 and group.v[P][3 * i] > 0.0:
+            data.active.points[closed_point.active].next = SLIP
+    return none
 
 
 @kernel

@@ -112,11 +112,13 @@ def review(model, data, label, loaded, count, s, h, given):
         push = max(push, abs(group.v[C][row]))
     same = set_modes(system, active, k, group) or not given
     status = 0
+    gain = h * push
+    tolerance = rest_speed(controls, gain, work.result[0].residual, k, POORLY)
     solved = same and solve_springs(k, group)
     if solved:  # the accelerations before modes change: those that the estimate of the error needs
         push_bodies(model, data, loaded, k, count, s)
     lasts = solved and within_cones(k, group)
-    if solved and controls.order > 0 and stick_where_slip_ends(model, data, k):
+    if solved and stick_where_slip_ends(model, data, k, tolerance * controls.step / h):
         lasts = True
         onto_tangents_of(model, data, k, count)
     if not lasts:
@@ -129,8 +131,6 @@ def review(model, data, label, loaded, count, s, h, given):
     for i in range(active.count[0]):
         if work.body[active.points[i].body].label == label:
             clear(active.points[i])
-    gain = h * push
-    tolerance = rest_speed(controls, gain, work.result[0].residual, k, POORLY)
     at_rest = come_to_rest(system, tolerance, start, end, count, group)
     for i in range(k):
         closed_point = group.closed[i]
@@ -239,9 +239,10 @@ def fix_friction(k, i, group):
 
 
 @kernel
-def stick_where_slip_ends(model, data, k):
+def stick_where_slip_ends(model, data, k, still):
     """Let points stick whose slip ends within a part of the tolerance; return whether friction holds them.
 
+    The slip of a step of given length has ended where it is `still`.
     Forces and accelerations are those of stick then.
     """
     controls, group, active, found = model.controls, data.group, data.active, False
@@ -253,7 +254,8 @@ def stick_where_slip_ends(model, data, k):
         size = model.system.bodies[group.points[0][i].a].extent
         allowed = REST * allowed_error(controls.rtol, controls.atol, size, 0.0)
         speed = math.hypot(group.v[U][3 * i + 1], group.v[U][3 * i + 2])
-        if speed == 0.0 or 0.5 * speed * time_to_stop(i, group) <= allowed:
+        ends = controls.order > 0 and 0.5 * speed * time_to_stop(i, group) <= allowed
+        if ends or speed <= still:
             closed_point.stays, found = 1, True
     if not found:
         return False

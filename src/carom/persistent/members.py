@@ -15,7 +15,7 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.dynamics.explicit import combine_body, copy_state, node, note_velocity, stages_within
 from carom.dynamics.several_points import velocities
-from carom.friction.layout import BUDGET, CONE, DISC, ENOUGH, NEAR
+from carom.friction.layout import BUDGET, CONE, DISC, ENOUGH, NEAR, SLIDING
 from carom.friction.solve import solve_cones
 from carom.geometry.rotation import normalize
 from carom.impact.workspace import C, P, U
@@ -112,6 +112,8 @@ def implicit_stage(model, data, label, loaded, count, s, hg):
                 group.v[P][row] = 0.0
         if not solve_stage(k, hg, group):
             return -1, 0.0, 0.0
+        for i in range(k):  # the work of friction of all points: what sticks has no velocity
+            group.kind[i] = SLIDING
         velocities(k, group.points[0], work.stage, group.v[U])
         driven, rubbed = push_bodies(model, data, loaded, k, count, s)
         power = applied + driven

@@ -140,5 +140,6 @@ def push_bodies(model, data, loaded, k, count, s):
         b = group.member[m]
         accelerate(work.body[b].motion, work.stages[s, b].rate)
     for i in range(k):
-        power += p[3 * i + 1] * u[3 * i + 1] + p[3 * i + 2] * u[3 * i + 2]
+        if group.kind[i] == SLIDING:
+            power += p[3 * i + 1] * u[3 * i + 1] + p[3 * i + 2] * u[3 * i + 2]
     return driven, power

@@ -24,7 +24,9 @@ MUCH, LEAST = 1e3, 1e-4
 CAREFUL = 0.01
 SURE = 1.0 / 32.0  # of the allowed loss: with less, the next step is twice as long (order 4: 2^5)
 # Allowed loss of one body, relative to its kinetic energy plus m g times its size.
-OF_ONE = 2e-8
+OF_ONE = 1e-5
+# Tolerance of a run above which more may be lost, in proportion.
+TIGHT = 1e-8
 # Greatest rotation in a step [rad]: the methods are useful below one radian.
 TURN = 0.5
 # Residual of contacts, relative to the speed that gravity gives in a step: above UNSOLVED a step is cut, and at
@@ -132,7 +134,8 @@ def too_long(model, data):
     result = work.result[0]
     if shortest:
         return False
-    return not (result.unnamed <= (CAREFUL if search.pace < math.inf else 1.0))
+    part = CAREFUL if search.pace < math.inf else 1.0
+    return not (result.unnamed <= part * max(1.0, controls.rtol / TIGHT))
 
 
 @inlined
