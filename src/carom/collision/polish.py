@@ -12,8 +12,8 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom.collision.frame import from_a, to_a
-from carom.collision.layout import CYLINDER, ELLIPSOID
-from carom.collision.support import propose, separation
+from carom.collision.layout import CYLINDER
+from carom.collision.support import change_of_support, propose, separation
 
 STEPS = 8
 NEAR = 0.99  # cosine of the largest angle by which the method may turn the normal
@@ -89,24 +89,10 @@ def _edges(pair):
 
 @kernel
 def _bend(solid, n, u, v):
-    """Return u^T H v, with the Hessian H of the support function at the unit vector n, in the solid's axes."""
-    (x, y, z), (ux, uy, uz), (vx, vy, vz) = n, u, v
-    h = solid.half
-    if solid.kind == CYLINDER:
-        across = math.sqrt(x * x + y * y)
-        if not across > 0.0:
-            return 0.0
-        return h[0] / across**3 * (x * uy - y * ux) * (x * vy - y * vx)
-    if solid.kind == ELLIPSOID:
-        p, q, r = h[0] * h[0], h[1] * h[1], h[2] * h[2]
-        f = math.sqrt(p * x * x + q * y * y + r * z * z)
-        mu = p * x * ux + q * y * uy + r * z * uz
-        mv = p * x * vx + q * y * vy + r * z * vz
-        straight = ux * vx + uy * vy + uz * vz
-        return (
-            (p * ux * vx + q * uy * vy + r * uz * vz) / f - mu * mv / f**3 - solid.inner * straight
-        )
-    return 0.0
+    """Return u^T H v, with the Hessian H of the support function of the core at n, in the solid's axes."""
+    x, y, z = change_of_support(solid, n, v)
+    straight = u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+    return u[0] * x + u[1] * y + u[2] * z - solid.inner * straight
 
 
 @kernel
