@@ -8,7 +8,7 @@ from carom._compiled.decorators import inlined, kernel
 from carom.collision.features import (
     NOBODY,
     OF_B,
-    SUPPORT,
+    OF_SUPPORT,
     edge_part,
     face_part,
     of_edges,
@@ -52,7 +52,7 @@ def point_box(pair):
     gap = d - pair.a.radius - pair.b.radius
     put(pair.found[0], gap, (nx, ny, nz), (px, py, pz), (qx, qy, qz), of_vertex_a(0))
     part, owner = _part(nx, ny, nz)
-    put_parts(pair.found[0], owner, SUPPORT, part)
+    put_parts(pair.found[0], owner, OF_SUPPORT, part)
 
 
 @kernel
@@ -65,7 +65,7 @@ def _part(nx, ny, nz):
         return face_part(2 * axis + (1 if corner > 0 else 0)), OF_B
     if beyond == 2:
         return edge_part(corner, corner + (4 if i == 0 else 2 if j == 0 else 1)), NOBODY
-    return SUPPORT, NOBODY
+    return OF_SUPPORT, NOBODY
 
 
 @kernel
@@ -123,7 +123,7 @@ def segment_box(pair):
     n, gap = (nx / d, ny / d, nz / d), d - (pair.a.radius + pair.b.radius)
     put(pair.found[0], gap, n, (ax, ay, az), (bx, by, bz), _feature(ax, ay, az, g, t, h))
     part, owner = _part(nx, ny, nz)
-    put_parts(pair.found[0], owner, SUPPORT if abs(t) == h else edge_part(0, 1), part)
+    put_parts(pair.found[0], owner, OF_SUPPORT if abs(t) == h else edge_part(0, 1), part)
 
 
 @inlined
@@ -187,4 +187,4 @@ def _through(pair, u):
     feature = 0 if cross else of_vertex_a(1 if t > 0.0 else 0)
     put(pair.found[0], gap, (n[0], n[1], n[2]), (ax, ay, az), on_b, feature)
     part, owner = _part(n[0], n[1], n[2])
-    put_parts(pair.found[0], owner, edge_part(0, 1) if cross else SUPPORT, part)
+    put_parts(pair.found[0], owner, edge_part(0, 1) if cross else OF_SUPPORT, part)

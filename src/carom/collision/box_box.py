@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom.collision.features import NOBODY, OF_A, OF_B, SUPPORT, edge_part, of_edges
+from carom.collision.features import NOBODY, OF_A, OF_B, OF_SUPPORT, edge_part, of_edges
 from carom.collision.found import put, put_parts
 
 ROUNDING = 1e-13  # relative to the size: a later axis must be better by more than this to be chosen
@@ -119,5 +119,5 @@ def face_or_edges(pair):
         x, y, z = -x, -y, -z
     nowhere = (0.0, 0.0, 0.0)
     put(pair.found[0], best - (pair.a.radius + pair.b.radius), (x, y, z), nowhere, nowhere, 0)
-    put_parts(pair.found[0], OF_B if axis < 3 else OF_A, SUPPORT, SUPPORT)
+    put_parts(pair.found[0], OF_B if axis < 3 else OF_A, OF_SUPPORT, OF_SUPPORT)
     return True

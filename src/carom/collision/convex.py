@@ -18,7 +18,7 @@ from carom.collision.features import (
     NOBODY,
     OF_A,
     OF_B,
-    SUPPORT,
+    OF_SUPPORT,
     edge_part,
     face_part,
     of_edges,
@@ -80,7 +80,7 @@ def closest(pair):
             feature = 0
         if on_face:  # the farthest point of the other solid, over the face
             bx, by, bz = _foot_on_b(s, owner, best, (nx, ny, nz))
-            part_a = part_b = SUPPORT
+            part_a = part_b = OF_SUPPORT
     # The two points differ by `best` n; any other difference is rounding along a face, and is dropped.
     e = b.inner
     bx, by, bz = bx + e * nx, by + e * ny, bz + e * nz
@@ -296,4 +296,4 @@ def _part(s, side):
             if j not in (i, s.ids[k, side]):
                 return face_part(0)
             j = s.ids[k, side]
-    return edge_part(i, j) if j != i else SUPPORT
+    return edge_part(i, j) if j != i else OF_SUPPORT

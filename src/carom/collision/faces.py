@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom.collision.features import FIXED, SUPPORT
+from carom.collision.features import OF_FIXED, OF_SUPPORT
 from carom.collision.frame import from_a, to_a
 from carom.collision.layout import BOX, CYLINDER, HULL, MOST_CORNERS, POINT, SEGMENT
 
@@ -32,7 +32,7 @@ def rim_point(k):
 @inlined
 def corner_part(solid, number):
     """Return the part of a corner of a face."""
-    return FIXED if solid.kind == CYLINDER and number < LOWEST else SUPPORT
+    return OF_FIXED if solid.kind == CYLINDER and number < LOWEST else OF_SUPPORT
 
 
 @kernel

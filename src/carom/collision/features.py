@@ -18,6 +18,7 @@ from carom._compiled.decorators import inlined, kernel
 
 VERTEX_A, VERTEX_B, EDGES = 1, 2, 3
 SUPPORT, FIXED, EDGE, FACE = range(4)
+OF_SUPPORT, OF_FIXED = SUPPORT << 30, FIXED << 30  # parts that have no numbers
 NOBODY, OF_A, OF_B = range(3)  # owners of a normal
 
 

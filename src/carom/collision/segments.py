@@ -9,7 +9,14 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom.collision.faces import corner_part
-from carom.collision.features import NOBODY, SUPPORT, edge_part, of_edges, of_vertex_a, of_vertex_b
+from carom.collision.features import (
+    NOBODY,
+    OF_SUPPORT,
+    edge_part,
+    of_edges,
+    of_vertex_a,
+    of_vertex_b,
+)
 from carom.collision.found import known, put, put_parts
 
 PARALLEL = 1e-14  # square of the sine below which two segments count as parallel
@@ -89,8 +96,8 @@ def edge_on_edge(pair, ends_a, ends_b):
     elif z == 0.0 or z == h:
         feature = of_vertex_b(s.number[1, k] if z == 0.0 else s.number[1, l])
     put(pair.found[0], d - (pair.a.radius + pair.b.radius), n, on_a, on_b, feature)
-    part_a = SUPPORT if t == 0.0 or t == g else edge_part(0, 1)
-    put_parts(pair.found[0], NOBODY, part_a, SUPPORT if z == 0.0 or z == h else edge_part(0, 1))
+    part_a = OF_SUPPORT if t == 0.0 or t == g else edge_part(0, 1)
+    put_parts(pair.found[0], NOBODY, part_a, OF_SUPPORT if z == 0.0 or z == h else edge_part(0, 1))
 
 
 @kernel
