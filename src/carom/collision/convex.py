@@ -15,6 +15,7 @@ from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.collision.faces import load_face
 from carom.collision.features import (
+    FACE,
     NOBODY,
     OF_A,
     OF_B,
@@ -41,7 +42,9 @@ LEAST = 1e-3  # least clearance, relative to the usual one; a smaller one gives 
 ROUNDS = 30
 ROUGH = 1e-6  # accuracy of the search for curved cores, which Newton's method then refines
 NEARLY = 1e-5  # 1 - cosine of the angle, up to which a normal may be that of a face
-FACE = 1e-12  # relative to the size: a face's normal is preferred if it is worse by at most this
+NO_WORSE = (
+    1e-12  # relative to the size: a face's normal is preferred if it is worse by at most this
+)
 
 
 @unit
@@ -54,17 +57,18 @@ def closest(pair):
     s, a, b = pair.state, pair.a, pair.b
     size = min(a.extent, b.extent)
     curved = a.kind >= CYLINDER or b.kind >= CYLINDER
+    # the normal by a search, and by Newton's method
     best, nx, ny, nz = _search(pair, size, ROUGH if curved else EXACT)
     feature, part_a, part_b = _feature(s), _part(s, 0), _part(s, 1)
     value, x, y, z, polished = polish(pair, nx, ny, nz)
     bx, by, bz = s.on_b[4, 0], s.on_b[4, 1], s.on_b[4, 2]
     if polished == 1:
         best, nx, ny, nz = value, x, y, z
+    # the normal of a face; of two faces, that of the one on which a vertex of the other solid lies
     owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, curved)
-    on_face = curved and owner != NOBODY
-    if (
-        curved and not on_face
-    ):  # a face beyond whose sides the farthest point lies, or parallel edges
+    over = curved and owner != NOBODY
+    if curved and not over:
+        # parallel edges, or a face with the farthest point of the other solid beyond its sides
         owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, False)
         if owner != NOBODY or polished == 0:
             best, nx, ny, nz = _search(pair, size, EXACT)
@@ -73,14 +77,15 @@ def closest(pair):
             owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, False)
     elif not curved and (owner != NOBODY or polished == 0):
         bx, by, bz = point_on_b(s)
-        on_face = owner != NOBODY and feature == _farthest_vertex(s, owner)
-    if owner != NOBODY:  # the normal of a face is exact
+        over = owner != NOBODY and feature == _farthest_vertex(s, owner)
+    if owner != NOBODY:
         best, nx, ny, nz = value, x, y, z
         if curved:  # the points may be anywhere on the face
             feature = 0
-        if on_face:  # the farthest point of the other solid, over the face
+        if over:
             bx, by, bz = _foot_on_b(s, owner, best, (nx, ny, nz))
             part_a = part_b = OF_SUPPORT
+    owner, part_a, part_b = _owner_by_parts(owner, part_a, part_b)
     # The two points differ by `best` n; any other difference is rounding along a face, and is dropped.
     e = b.inner
     bx, by, bz = bx + e * nx, by + e * ny, bz + e * nz
@@ -91,13 +96,22 @@ def closest(pair):
     put_parts(pair.found[0], owner, part_a, part_b)
 
 
+@inlined
+def _owner_by_parts(owner, part_a, part_b):
+    """Return the owner and the parts, without faces among these: the owner has the face."""
+    face_a, face_b = part_a >> 30 == FACE, part_b >> 30 == FACE
+    if owner != NOBODY and face_a != face_b:
+        owner = OF_A if face_a else OF_B
+    return owner, OF_SUPPORT if face_a else part_a, OF_SUPPORT if face_b else part_b
+
+
 @kernel
 def _normal_of_face(pair, n, best, within):
-    """Return the owner of the face whose normal is that of the contact, the separation along it, and the normal.
+    """Return the owner of the face whose normal is that of the contact, the separation, and the normal.
 
-    The owner is NOBODY if there is none. A face takes part if its normal separates the solids as much as n does;
-    with `within`, if the foot of the farthest point of the other solid is inside the face: then no other
-    direction near n separates them more.
+    The owner is NOBODY if there is none. A face counts if its normal separates the solids as much as n does; with
+    `within`, if the foot of the farthest point of the other solid is inside the face: then no other direction
+    near n separates them more.
     """
     s, size = pair.state, min(pair.a.extent, pair.b.extent)
     for side in (1, 0):
@@ -105,7 +119,7 @@ def _normal_of_face(pair, n, best, within):
         if load_face(pair, side, f * n[0], f * n[1], f * n[2]) > 1.0 - NEARLY:
             m = s.normal[side]
             value = separation(pair, f * m[0], f * m[1], f * m[2])
-            if _over_face(pair, side) if within else value >= best - FACE * size:
+            if _over_face(pair, side) if within else value >= best - NO_WORSE * size:
                 owner = OF_B if side == 1 else OF_A
                 return owner, value, f * m[0], f * m[1], f * m[2]
     return NOBODY, best, n[0], n[1], n[2]
@@ -113,7 +127,7 @@ def _normal_of_face(pair, n, best, within):
 
 @kernel
 def _over_face(pair, side):
-    """Return whether the farthest point of the other solid, in row 4, has its foot inside the face of a side."""
+    """Return whether the farthest point of the other solid, in row 4, has its foot inside the face."""
     s = pair.state
     solid, p, n = pair.a if side == 0 else pair.b, s.corner[side], s.normal[side]
     count, q = s.count[side], s.on_b[4] if side == 0 else s.on_a[4]

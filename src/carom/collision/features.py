@@ -6,7 +6,8 @@ Then follow 15 bits for each of the vertices a1, a2 of A and b1, b2 of B.
 How a point moves (`carom.contact.drift`) depends on the part of each core on which it lies. Bits 30-31 of the
 number of a part are its kind:
 
-    SUPPORT   the point of the core that is farthest along the normal: a vertex, a point of a curved surface or rim
+    SUPPORT   the point of the core that is farthest along the normal: a vertex, a point of a curved surface
+              or of a rim
     FIXED     a point fixed to the solid although its surface is curved there: one of the eight of a rim
     EDGE      a point of an edge; the ends follow, 15 bits each
     FACE      a point inside a face; its number follows

@@ -53,7 +53,7 @@ def support(solid, hulls, x, y, z):
 
 @kernel
 def change_of_support(solid, n, v):
-    """Return H v, the change of the farthest point along the unit vector n if n changes by v, in the solid's axes.
+    """Return H v, the change of the farthest point along a unit vector n that changes by v, in the solid's axes.
 
     H is the Hessian of the support function, with H n = 0:
 

@@ -17,7 +17,7 @@ from carom.collision.faces import load_face
 from carom.collision.features import EDGES
 from carom.collision.found import hand_on, swap
 from carom.collision.frame import enter
-from carom.collision.layout import BOX, POINT, SEGMENT, Pair
+from carom.collision.layout import BOX, CYLINDER, POINT, SEGMENT, Pair
 from carom.collision.round import point_point, point_segment, segment_segment
 from carom.collision.segments import ends_of_line
 from carom.collision.support import separation
@@ -120,7 +120,8 @@ def _manifold(pair, reach):
         apart = separation(pair, f * m[0], f * m[1], f * m[2])
         if apart - a.inner - b.inner - (a.radius + b.radius) >= least - reach - tolerance:
             count = overlap(pair, ref, least - tolerance, most, count)
-    if not max(on_a, on_b) > ON_FACE:
+    rims = (a.kind == CYLINDER and s.count[0] > 2) or (b.kind == CYLINDER and s.count[1] > 2)
+    if not (rims or max(on_a, on_b) > ON_FACE):  # the sides of a rim's polygon are no edges
         ends_a, ends_b = _lowest_side(s, 0, nx, ny, nz), _lowest_side(s, 1, -nx, -ny, -nz)
         before = count
         count = ends_of_line(pair, ends_a, ends_b, least - tolerance, most, count)
