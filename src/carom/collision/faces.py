@@ -165,9 +165,11 @@ def normal_of_face(solid, hulls, face):
 
 
 @kernel
-def _vertex(solid, hulls, i):
-    """Return a corner of a box, a hull or a cap of a cylinder, in the solid's own axes."""
+def vertex(solid, hulls, i):
+    """Return the end of a segment, or a corner of a box, a hull or a cap of a cylinder, in the solid's own axes."""
     h = solid.half
+    if solid.kind == SEGMENT:
+        return 0.0, 0.0, h[2] if i == 1 else -h[2]
     if solid.kind == HULL:
         p = hulls.vertices[solid.first + i]
         return p[0], p[1], p[2]
@@ -182,7 +184,7 @@ def along_edge(solid, hulls, i, j):
     """Return the unit direction of the edge from vertex i to j, in the solid's own axes."""
     if solid.kind == SEGMENT or (solid.kind == CYLINDER and i >= LOWEST):
         return 0.0, 0.0, 1.0
-    p, q = _vertex(solid, hulls, i), _vertex(solid, hulls, j)
+    p, q = vertex(solid, hulls, i), vertex(solid, hulls, j)
     x, y, z = q[0] - p[0], q[1] - p[1], q[2] - p[2]
     f = 1.0 / math.sqrt(x * x + y * y + z * z)
     return f * x, f * y, f * z

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
+from carom.collision.faces import LOWEST, vertex
 from carom.collision.frame import from_a, to_a
 from carom.collision.layout import CYLINDER
 from carom.collision.support import change_of_support, propose, separation
@@ -18,6 +19,7 @@ from carom.collision.support import change_of_support, propose, separation
 STEPS = 8
 NEAR = 0.99  # cosine of the largest angle by which the method may turn the normal
 ROUNDING = 1e-15  # relative to the smaller solid
+TIE = 1e-12  # relative to the smaller solid: difference of the distances of two vertices that count as equal
 STRAIGHT = 1e-6  # sine below which two edges count as parallel
 
 
@@ -171,10 +173,37 @@ def polish(pair, nx, ny, nz):
     if not x * nx + y * ny + z * nz > NEAR:
         return best, nx, ny, nz, 0
     value = separation(pair, x, y, z)
+    _keep_vertices(pair, (x, y, z))
     if not value >= best - ROUNDING * min(pair.a.extent, pair.b.extent):
         return best, nx, ny, nz, 0
     _points(s, edges, value, x, y, z)
     return value, x, y, z, 1
+
+
+@kernel
+def _keep_vertices(pair, n):
+    """Replace a farthest point by the vertex of the simplex if both are as far: the ends of an edge across n."""
+    s = pair.state
+    tie = TIE * min(pair.a.extent, pair.b.extent)
+    for side in range(2):
+        i, same = s.ids[0, side], True
+        for k in range(1, s.points):
+            same = same and s.ids[k, side] == i
+        if not same or s.ids[4, side] == i:
+            continue
+        solid, p = (pair.a, s.on_a[4]) if side == 0 else (pair.b, s.on_b[4])
+        if solid.kind == CYLINDER:  # to the other rim
+            f = 2.0 * solid.half[2] * (1.0 if i > LOWEST else -1.0)
+            x, y, z = (0.0, 0.0, f) if side == 1 else from_a(s, 0.0, 0.0, f)
+        else:
+            x, y, z = vertex(solid, pair.hulls, i)
+            if side == 0:
+                x, y, z = from_a(s, x, y, z)
+                x, y, z = x + s.p[0], y + s.p[1], z + s.p[2]
+            x, y, z = x - p[0], y - p[1], z - p[2]
+        if abs(x * n[0] + y * n[1] + z * n[2]) <= tie:
+            p[0], p[1], p[2] = p[0] + x, p[1] + y, p[2] + z
+            s.ids[4, side] = i
 
 
 @kernel

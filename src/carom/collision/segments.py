@@ -18,6 +18,7 @@ from carom.collision.features import (
     of_vertex_b,
 )
 from carom.collision.found import known, put, put_parts
+from carom.collision.layout import CYLINDER
 
 PARALLEL = 1e-14  # square of the sine below which two segments count as parallel
 TOUCHING = 1e-9  # relative to the lengths: a shorter distance has no reliable direction
@@ -32,6 +33,19 @@ def _line(s, side, ends):
     d = math.sqrt(x * x + y * y + z * z)
     f = 1.0 / d if d > 0.0 else 0.0
     return (p[0], p[1], p[2]), (f * x, f * y, f * z), d
+
+
+@kernel
+def _axis_below(pair, side, p, u):
+    """Return the point of the axis below a point of the mantle of a cylinder, and the radius.
+
+    An edge of another solid is its own axis, with the radius 0. `u` is the direction of the axis.
+    """
+    s, solid = pair.state, pair.a if side == 0 else pair.b
+    if solid.kind != CYLINDER:
+        return p, 0.0
+    c = (s.p[0], s.p[1], s.p[2]) if side == 0 else (0.0, 0.0, 0.0)
+    return _at(c, _dot(_minus(p, c), u), u), solid.half[0]
 
 
 @inlined
@@ -104,12 +118,16 @@ def edge_on_edge(pair, ends_a, ends_b):
 def ends_of_line(pair, ends_a, ends_b, least, most, count):
     """Add the ends of each segment that project into the other, with gaps from `least` to `most`.
 
-    These ends carry a contact along a line. Each has its own distance and normal. The normal must be near that
-    of the first point: an end that hangs over another edge is no contact. Return the new count.
+    These ends carry a contact along a line. Each has its own distance and normal; those of a line of a mantle
+    are found from the axis, exactly at any gap. The normal must be near that of the first point: an end that
+    hangs over another edge is no contact. Return the new count.
     """
-    s, found, radii = pair.state, pair.found, pair.a.radius + pair.b.radius
+    s, found = pair.state, pair.found
     p, u, g = _line(s, 0, ends_a)
     q, w, h = _line(s, 1, ends_b)
+    p, round_a = _axis_below(pair, 0, p, u)
+    q, round_b = _axis_below(pair, 1, q, w)
+    radii = pair.a.radius + pair.b.radius + round_a + round_b
     edge_a = edge_part(s.number[0, ends_a[0]], s.number[0, ends_a[1]])
     edge_b = edge_part(s.number[1, ends_b[0]], s.number[1, ends_b[1]])
     d, c = _minus(p, q), _dot(u, w)
@@ -137,9 +155,16 @@ def ends_of_line(pair, ends_a, ends_b, least, most, count):
         else:  # sharp edges that touch: their distance has no direction
             n, owner = (first[0], first[1], first[2]), found[0].owner
         beside = n[0] * first[0] + n[1] * first[1] + n[2] * first[2] > BESIDE
-        inside = inside and beside and least <= gap <= most
-        if inside and not known(found, count, feature):
+        if not (inside and beside and least <= gap <= most):
+            continue
+        on_a, on_b = _at(on_a, -round_a, n), _at(on_b, round_b, n)
+        if not known(found, count, feature):
             put(found[count], gap, n, on_a, on_b, feature)
             put_parts(found[count], owner, part_a, part_b)
             count += 1
+        elif (
+            found[0].feature == feature and round_a + round_b > 0.0
+        ):  # a search found it less exactly
+            put(found[0], gap, n, on_a, on_b, feature)
+            put_parts(found[0], owner, part_a, part_b)
     return count
