@@ -41,7 +41,7 @@ class Motion(NamedTuple):
 
 
 class Rate(NamedTuple):
-    """The rates of the rows of one point, by the closed form and by a difference, which may be off by `doubt`."""
+    """The rates of the rows of a point: the closed form, and a difference that may be off by `doubt`."""
 
     feature: int
     owner: int

@@ -109,9 +109,9 @@ def _owner_by_parts(owner, part_a, part_b):
 def _normal_of_face(pair, n, best, within):
     """Return the owner of the face whose normal is that of the contact, the separation, and the normal.
 
-    The owner is NOBODY if there is none. A face counts if its normal separates the solids as much as n does; with
-    `within`, if the foot of the farthest point of the other solid is inside the face: then no other direction
-    near n separates them more.
+    The owner is NOBODY if there is none. A face counts if its normal separates the solids as much as n does;
+    with `within`, if the foot of the farthest point of the other solid is inside the face: then no other
+    direction near n separates them more.
     """
     s, size = pair.state, min(pair.a.extent, pair.b.extent)
     for side in (1, 0):

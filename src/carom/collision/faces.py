@@ -166,7 +166,7 @@ def normal_of_face(solid, hulls, face):
 
 @kernel
 def vertex(solid, hulls, i):
-    """Return the end of a segment, or a corner of a box, a hull or a cap of a cylinder, in the solid's own axes."""
+    """Return an end of a segment, or a corner of a box, a hull or a cap, in the solid's own axes."""
     h = solid.half
     if solid.kind == SEGMENT:
         return 0.0, 0.0, h[2] if i == 1 else -h[2]

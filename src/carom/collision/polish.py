@@ -19,7 +19,7 @@ from carom.collision.support import change_of_support, propose, separation
 STEPS = 8
 NEAR = 0.99  # cosine of the largest angle by which the method may turn the normal
 ROUNDING = 1e-15  # relative to the smaller solid
-TIE = 1e-12  # relative to the smaller solid: difference of the distances of two vertices that count as equal
+TIE = 1e-12  # relative to the smaller solid: two vertices are as far if they differ by less
 STRAIGHT = 1e-6  # sine below which two edges count as parallel
 
 
@@ -182,7 +182,7 @@ def polish(pair, nx, ny, nz):
 
 @kernel
 def _keep_vertices(pair, n):
-    """Replace a farthest point by the vertex of the simplex if both are as far: the ends of an edge across n."""
+    """Replace a farthest point by the vertex of the simplex if both are as far: ends of an edge across n."""
     s = pair.state
     tie = TIE * min(pair.a.extent, pair.b.extent)
     for side in range(2):

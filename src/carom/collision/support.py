@@ -53,9 +53,9 @@ def support(solid, hulls, x, y, z):
 
 @kernel
 def change_of_support(solid, n, v):
-    """Return H v, the change of the farthest point along a unit vector n that changes by v, in the solid's axes.
+    """Return H v, the change of the farthest point along a unit vector n that changes by v.
 
-    H is the Hessian of the support function, with H n = 0:
+    All are in the solid's own axes. H is the Hessian of the support function, with H n = 0:
 
         rim, mantle    r/s^3 g g^T,  g = (-n_y, n_x, 0), s = |g|
         ellipsoid      D/s - D n (D n)^T/s^3,  D = diag(a^2, b^2, c^2), s^2 = n.D n

@@ -119,7 +119,13 @@ def _manifold(pair, reach):
         m, f = s.normal[ref], 2.0 * ref - 1.0
         apart = separation(pair, f * m[0], f * m[1], f * m[2])
         if apart - a.inner - b.inner - (a.radius + b.radius) >= least - reach - tolerance:
+            inc = 1 - ref
+            mantle = (a.kind if inc == 0 else b.kind) == CYLINDER and s.count[inc] == 2
+            if mantle:  # the line of the mantle that is lowest over the face
+                load_face(pair, inc, -m[0], -m[1], -m[2])
             count = overlap(pair, ref, least - tolerance, most, count)
+            if mantle:
+                load_face(pair, inc, -f * nx, -f * ny, -f * nz)
     rims = (a.kind == CYLINDER and s.count[0] > 2) or (b.kind == CYLINDER and s.count[1] > 2)
     if not (rims or max(on_a, on_b) > ON_FACE):  # the sides of a rim's polygon are no edges
         ends_a, ends_b = _lowest_side(s, 0, nx, ny, nz), _lowest_side(s, 1, -nx, -ny, -nz)

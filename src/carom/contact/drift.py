@@ -6,13 +6,13 @@ u = v_A + w_A x (p_A - x_A) - v_B - w_B x (p_B - x_B), has the rate
 
     u' = w_A x (p_A' - v_A) - w_B x (p_B' - v_B),
 
-so the rows have the rates n.u' + n'.u and t.u' (t is constant). The motion of n and of the points follows from the
-parts of the cores on which the points lie (`carom.collision.features`).
+so the rows have the rates n.u' + n'.u and t.u' (t is constant). The motion of n and of the points follows from
+the parts of the cores on which the points lie (`carom.collision.features`).
 
 *The normal is that of a face:* n' = w_B x n for a face of B, n' = w_A x n for one of A.
 
-*No face owns the normal:* with v_cA, v_cB the velocities of the material points of the cores, H the change of the
-farthest point of a core with the normal (`support.change_of_support`), and e tau a motion along an edge,
+*No face owns the normal:* with v_cA, v_cB the velocities of the material points of the cores, H the change of
+the farthest point of a core with the normal (`support.change_of_support`), e tau a motion along an edge,
 
     c_A' = v_cA - H_A (n' - w_A x n) + e_A tau_A,    c_B' = v_cB + H_B (n' - w_B x n) + e_B tau_B.
 
@@ -20,12 +20,12 @@ The tangential part of c_A' - c_B' = d' n + d n' is
 
     (d + H_A + H_B) n' = v_cA - v_cB + H_A (w_A x n) + H_B (w_B x n) + e_A tau_A - e_B tau_B,
 
-and n stays perpendicular to each edge: n'.e = -n.(w x e). Two edges determine n'. One edge determines one of its
-components, and the equation across the edge the other. Without edges there are two equations.
+and n stays perpendicular to each edge: n'.e = -n.(w x e). Two edges determine n'. One edge determines one of
+its components, and the equation across the edge the other. Without edges there are two equations.
 
-One of the two points, the leading one, is then known; the other follows from c_A' - c_B' = d' n + d n', where d' is
-such that it stays on its face, and tau such that it stays on its edge. A sharp vertex that touches a sharp edge or
-vertex has no definite n': the normal then moves with the solid of the edge, or with B.
+One of the two points, the leading one, is then known. The other follows from c_A' - c_B' = d' n + d n', where
+d' is such that it stays on its face, and tau such that it stays on its edge. A sharp vertex that touches a
+sharp edge or vertex has no definite n': the normal then moves with the solid of the edge, or with B.
 """
 
 from __future__ import annotations

@@ -154,7 +154,7 @@ def slip_velocity(contact, touch, state):
 
 @unit
 def _drift(system, contact, feature, point, state) -> tuple[float, float, float]:
-    """Return (d/dt G) v, contact axes: the change of the velocity at the point with constant body velocities."""
+    """Return (d/dt G) v, contact axes: the change of the velocity at the point for constant velocities."""
     if on_half_space(contact):
         return roll_on_plane(system, contact, feature, point, state)
     return drift_of_solids(system, contact, point, state)
