@@ -182,14 +182,17 @@ def polish(pair, nx, ny, nz):
 
 @kernel
 def _keep_vertices(pair, n):
-    """Replace a farthest point by the vertex of the simplex if both are as far: ends of an edge across n."""
+    """Replace a farthest vertex that is not in the simplex by one that is, if both are as far.
+
+    All ends of an edge, and all corners of a face, are as far if n is perpendicular to it.
+    """
     s = pair.state
     tie = TIE * min(pair.a.extent, pair.b.extent)
     for side in range(2):
-        i, same = s.ids[0, side], True
-        for k in range(1, s.points):
-            same = same and s.ids[k, side] == i
-        if not same or s.ids[4, side] == i:
+        i, there = s.ids[0, side], False
+        for k in range(s.points):
+            there = there or s.ids[k, side] == s.ids[4, side]
+        if there:
             continue
         solid, p = (pair.a, s.on_a[4]) if side == 0 else (pair.b, s.on_b[4])
         if solid.kind == CYLINDER:  # to the other rim
