@@ -5,8 +5,17 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom.collision.features import of_edges, of_vertex_a, of_vertex_b
-from carom.collision.found import put
+from carom.collision.features import (
+    NOBODY,
+    OF_B,
+    OF_SUPPORT,
+    edge_part,
+    face_part,
+    of_edges,
+    of_vertex_a,
+    of_vertex_b,
+)
+from carom.collision.found import put, put_parts
 from carom.collision.frame import from_a
 
 TOUCHING = 1e-9  # relative to the size of the cores: a shorter distance has no reliable direction
@@ -42,6 +51,21 @@ def point_box(pair):
         qx, qy, qz = px - d * nx, py - d * ny, pz - d * nz
     gap = d - pair.a.radius - pair.b.radius
     put(pair.found[0], gap, (nx, ny, nz), (px, py, pz), (qx, qy, qz), of_vertex_a(0))
+    part, owner = _part(nx, ny, nz)
+    put_parts(pair.found[0], owner, OF_SUPPORT, part)
+
+
+@kernel
+def _part(nx, ny, nz):
+    """Return the part of a box that has the normal n, and the owner of the normal."""
+    i, j, k = _outside(nx, 0.0), _outside(ny, 0.0), _outside(nz, 0.0)
+    corner, beyond = 4 * (i > 0) + 2 * (j > 0) + (k > 0), abs(i) + abs(j) + abs(k)
+    if beyond == 1:
+        axis = 0 if i != 0 else 1 if j != 0 else 2
+        return face_part(2 * axis + (1 if corner > 0 else 0)), OF_B
+    if beyond == 2:
+        return edge_part(corner, corner + (4 if i == 0 else 2 if j == 0 else 1)), NOBODY
+    return OF_SUPPORT, NOBODY
 
 
 @kernel
@@ -98,6 +122,8 @@ def segment_box(pair):
         return
     n, gap = (nx / d, ny / d, nz / d), d - (pair.a.radius + pair.b.radius)
     put(pair.found[0], gap, n, (ax, ay, az), (bx, by, bz), _feature(ax, ay, az, g, t, h))
+    part, owner = _part(nx, ny, nz)
+    put_parts(pair.found[0], owner, OF_SUPPORT if abs(t) == h else edge_part(0, 1), part)
 
 
 @inlined
@@ -160,3 +186,5 @@ def _through(pair, u):
     on_b = (ax - best * n[0], ay - best * n[1], az - best * n[2])
     feature = 0 if cross else of_vertex_a(1 if t > 0.0 else 0)
     put(pair.found[0], gap, (n[0], n[1], n[2]), (ax, ay, az), on_b, feature)
+    part, owner = _part(n[0], n[1], n[2])
+    put_parts(pair.found[0], owner, edge_part(0, 1) if cross else OF_SUPPORT, part)

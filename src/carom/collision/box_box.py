@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom.collision.features import of_edges
-from carom.collision.found import put
+from carom.collision.features import NOBODY, OF_A, OF_B, OF_SUPPORT, edge_part, of_edges
+from carom.collision.found import put, put_parts
 
 ROUNDING = 1e-13  # relative to the size: a later axis must be better by more than this to be chosen
 PARALLEL = 1e-7  # sine below which two edges count as parallel, without a common normal
@@ -91,6 +91,11 @@ def edge_pair(pair, best, axis):
     gap = best - (pair.a.radius + pair.b.radius)
     on_b = (ax - best * n[0], ay - best * n[1], az - best * n[2])
     put(pair.found[0], gap, (n[0], n[1], n[2]), (ax, ay, az), on_b, feature)
+    part_a, part_b = (
+        edge_part(corner_a, corner_a + (4 >> j)),
+        edge_part(corner_b, corner_b + (4 >> i)),
+    )
+    put_parts(pair.found[0], NOBODY, part_a, part_b)
     return inside
 
 
@@ -114,4 +119,5 @@ def face_or_edges(pair):
         x, y, z = -x, -y, -z
     nowhere = (0.0, 0.0, 0.0)
     put(pair.found[0], best - (pair.a.radius + pair.b.radius), (x, y, z), nowhere, nowhere, 0)
+    put_parts(pair.found[0], OF_B if axis < 3 else OF_A, OF_SUPPORT, OF_SUPPORT)
     return True

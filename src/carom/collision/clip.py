@@ -11,8 +11,21 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom.collision.features import of_edges, of_vertex_a, of_vertex_b
-from carom.collision.found import known, put
+from carom.collision.faces import corner_part
+from carom.collision.features import (
+    EDGES,
+    OF_A,
+    OF_B,
+    VERTEX_A,
+    edge_part,
+    face_part,
+    of_edges,
+    of_vertex_a,
+    of_vertex_b,
+    vertex_a,
+    vertex_b,
+)
+from carom.collision.found import known, put, put_parts
 from carom.collision.layout import MOST_CORNERS
 
 ROUNDING = 1e-12  # tolerance relative to the size of the reference face: a corner on a side is kept
@@ -73,6 +86,19 @@ def _cut(s, ref, source, count, j, tolerance):
 
 
 @kernel
+def _parts(pair, label):
+    """Return the parts of A and of B on which a corner with this feature lies."""
+    s = pair.state
+    if label >> 60 == EDGES:
+        return edge_part((label >> 45) & 0x7FFF, (label >> 30) & 0x7FFF), edge_part(
+            (label >> 15) & 0x7FFF, label & 0x7FFF
+        )
+    if label >> 60 == VERTEX_A:
+        return corner_part(pair.a, vertex_a(label)), face_part(s.face[1])
+    return face_part(s.face[0]), corner_part(pair.b, vertex_b(label))
+
+
+@kernel
 def overlap(pair, ref, least, most, count):
     """Add the corners of the overlap with gaps from `least` to `most`; return the new count.
 
@@ -105,5 +131,7 @@ def overlap(pair, ref, least, most, count):
                 put(found[count], gap, (n[0], n[1], n[2]), corner, foot, label)
             else:
                 put(found[count], gap, (-n[0], -n[1], -n[2]), foot, corner, label)
+            part_a, part_b = _parts(pair, label)
+            put_parts(found[count], OF_B if ref == 1 else OF_A, part_a, part_b)
             count += 1
     return count

@@ -11,11 +11,22 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.collision.faces import load_face
-from carom.collision.features import of_edges, of_vertex_a, of_vertex_b
-from carom.collision.found import put
+from carom.collision.features import (
+    FACE,
+    NOBODY,
+    OF_A,
+    OF_B,
+    OF_SUPPORT,
+    edge_part,
+    face_part,
+    of_edges,
+    of_vertex_a,
+    of_vertex_b,
+)
+from carom.collision.found import put, put_parts
 from carom.collision.gjk import EXACT, distance, point_on_b
 from carom.collision.layout import CYLINDER
 from carom.collision.polish import polish
@@ -30,7 +41,10 @@ NEARER = 30.0  # clearance of the second phase of a climb, relative to the depth
 LEAST = 1e-3  # least clearance, relative to the usual one; a smaller one gives no better direction
 ROUNDS = 30
 ROUGH = 1e-6  # accuracy of the search for curved cores, which Newton's method then refines
-FACE = 1e-12  # relative to the size: a face's normal is preferred if it is worse by at most this
+NEARLY = 1e-5  # 1 - cosine of the angle, up to which a normal may be that of a face
+NO_WORSE = (
+    1e-12  # relative to the size: a face's normal is preferred if it is worse by at most this
+)
 
 
 @unit
@@ -43,31 +57,35 @@ def closest(pair):
     s, a, b = pair.state, pair.a, pair.b
     size = min(a.extent, b.extent)
     curved = a.kind >= CYLINDER or b.kind >= CYLINDER
+    # the normal by a search, and by Newton's method
     best, nx, ny, nz = _search(pair, size, ROUGH if curved else EXACT)
-    feature = _feature(s)
+    feature, part_a, part_b = _feature(s), _part(s, 0), _part(s, 1)
     value, x, y, z, polished = polish(pair, nx, ny, nz)
     bx, by, bz = s.on_b[4, 0], s.on_b[4, 1], s.on_b[4, 2]
     if polished == 1:
         best, nx, ny, nz = value, x, y, z
-    # The normal of a face is exact; it is used if its separation is as large.
-    flat = False
-    for side in (1, 0):
-        f = 1.0 if side == 1 else -1.0
-        aligned = load_face(pair, side, f * nx, f * ny, f * nz)
-        n = s.normal[side]
-        if not flat and aligned > 1.0 - 1e-6:
-            value = separation(pair, f * n[0], f * n[1], f * n[2])
-            if value >= best - FACE * size:
-                best, nx, ny, nz, flat = value, f * n[0], f * n[1], f * n[2], True
-    if flat or polished == 0:
-        if curved:  # Newton's method does not apply to a point inside a face or parallel edges
-            value, x, y, z = _search(pair, size, EXACT)
-            feature = _feature(s)
-            if not flat:
-                best, nx, ny, nz = value, x, y, z
+    # the normal of a face; of two faces, that of the one on which a vertex of the other solid lies
+    owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, curved)
+    over = curved and owner != NOBODY
+    if curved and not over:
+        # parallel edges, or a face with the farthest point of the other solid beyond its sides
+        owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, False)
+        if owner != NOBODY or polished == 0:
+            best, nx, ny, nz = _search(pair, size, EXACT)
+            feature, part_a, part_b = _feature(s), _part(s, 0), _part(s, 1)
+            bx, by, bz = point_on_b(s)
+            owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, False)
+    elif not curved and (owner != NOBODY or polished == 0):
         bx, by, bz = point_on_b(s)
-    if flat and curved:  # the points may be anywhere on the face
-        feature = 0
+        over = owner != NOBODY and feature == _farthest_vertex(s, owner)
+    if owner != NOBODY:
+        best, nx, ny, nz = value, x, y, z
+        if curved:  # the points may be anywhere on the face
+            feature = 0
+        if over:
+            bx, by, bz = _foot_on_b(s, owner, best, (nx, ny, nz))
+            part_a = part_b = OF_SUPPORT
+    owner, part_a, part_b = _owner_by_parts(owner, part_a, part_b)
     # The two points differ by `best` n; any other difference is rounding along a face, and is dropped.
     e = b.inner
     bx, by, bz = bx + e * nx, by + e * ny, bz + e * nz
@@ -75,6 +93,74 @@ def closest(pair):
     on_a = (bx + core * nx, by + core * ny, bz + core * nz)
     gap = core - a.radius - b.radius
     put(pair.found[0], gap, (nx, ny, nz), on_a, (bx, by, bz), feature)
+    put_parts(pair.found[0], owner, part_a, part_b)
+
+
+@inlined
+def _owner_by_parts(owner, part_a, part_b):
+    """Return the owner and the parts, without faces among these: the owner has the face."""
+    face_a, face_b = part_a >> 30 == FACE, part_b >> 30 == FACE
+    if owner != NOBODY and face_a != face_b:
+        owner = OF_A if face_a else OF_B
+    return owner, OF_SUPPORT if face_a else part_a, OF_SUPPORT if face_b else part_b
+
+
+@kernel
+def _normal_of_face(pair, n, best, within):
+    """Return the owner of the face whose normal is that of the contact, the separation, and the normal.
+
+    The owner is NOBODY if there is none. A face counts if its normal separates the solids as much as n does;
+    with `within`, if the foot of the farthest point of the other solid is inside the face: then no other
+    direction near n separates them more.
+    """
+    s, size = pair.state, min(pair.a.extent, pair.b.extent)
+    for side in (1, 0):
+        f = 1.0 if side == 1 else -1.0
+        if load_face(pair, side, f * n[0], f * n[1], f * n[2]) > 1.0 - NEARLY:
+            m = s.normal[side]
+            value = separation(pair, f * m[0], f * m[1], f * m[2])
+            if _over_face(pair, side) if within else value >= best - NO_WORSE * size:
+                owner = OF_B if side == 1 else OF_A
+                return owner, value, f * m[0], f * m[1], f * m[2]
+    return NOBODY, best, n[0], n[1], n[2]
+
+
+@kernel
+def _over_face(pair, side):
+    """Return whether the farthest point of the other solid, in row 4, has its foot inside the face."""
+    s = pair.state
+    solid, p, n = pair.a if side == 0 else pair.b, s.corner[side], s.normal[side]
+    count, q = s.count[side], s.on_b[4] if side == 0 else s.on_a[4]
+    if solid.kind == CYLINDER:
+        c = p[count // 2]  # opposite corner 0
+        x, y, z = (
+            q[0] - 0.5 * (p[0, 0] + c[0]),
+            q[1] - 0.5 * (p[0, 1] + c[1]),
+            q[2] - 0.5 * (p[0, 2] + c[2]),
+        )
+        along = x * n[0] + y * n[1] + z * n[2]
+        return x * x + y * y + z * z - along * along <= solid.half[0] * solid.half[0]
+    for k in range(count):
+        o, v = p[k], p[(k + 1) % count]
+        ex, ey, ez = v[0] - o[0], v[1] - o[1], v[2] - o[2]
+        x, y, z = q[0] - o[0], q[1] - o[1], q[2] - o[2]
+        across = n[0] * (ey * z - ez * y) + n[1] * (ez * x - ex * z) + n[2] * (ex * y - ey * x)
+        if not across >= 0.0:
+            return False
+    return True
+
+
+@inlined
+def _farthest_vertex(s, owner):
+    """Return the feature of the farthest point, in row 4, of the solid that does not own the normal."""
+    return of_vertex_a(s.ids[4, 0]) if owner == OF_B else of_vertex_b(s.ids[4, 1])
+
+
+@inlined
+def _foot_on_b(s, owner, best, n):
+    """Return the point of B that belongs to the farthest point of the solid that does not own the normal."""
+    p, f = (s.on_a[4], best) if owner == OF_B else (s.on_b[4], 0.0)
+    return p[0] - f * n[0], p[1] - f * n[1], p[2] - f * n[2]
 
 
 @kernel
@@ -213,3 +299,15 @@ def _feature(s):
     if not more_a and not more_b:
         return of_edges(ids[0, 0], a2, ids[0, 1], b2)
     return 0
+
+
+@kernel
+def _part(s, side):
+    """Return the part of a core on which its nearest point lies, from its vertices in the simplex."""
+    i = j = s.ids[0, side]
+    for k in range(1, s.points):
+        if s.ids[k, side] != i:
+            if j not in (i, s.ids[k, side]):
+                return face_part(0)
+            j = s.ids[k, side]
+    return edge_part(i, j) if j != i else OF_SUPPORT

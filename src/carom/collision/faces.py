@@ -9,10 +9,14 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
+from carom.collision.features import OF_FIXED, OF_SUPPORT
 from carom.collision.frame import from_a, to_a
 from carom.collision.layout import BOX, CYLINDER, HULL, MOST_CORNERS, POINT, SEGMENT
 
 RIM = 8  # points of a rim
+LOWEST = (
+    2 * RIM
+)  # number of the point of a rim that is lowest along a normal; fixed points have smaller ones
 HALF_ROOT = math.sqrt(0.5)
 
 
@@ -23,6 +27,12 @@ def rim_point(k):
     c = 1.0 if i == 0 else -1.0 if i == 4 else 0.0 if i == 2 or i == 6 else HALF_ROOT
     z = 1.0 if i == 2 else -1.0 if i == 6 else 0.0 if i == 0 or i == 4 else HALF_ROOT
     return -c if 2 < i < 6 and i != 4 else c, -z if i > 4 and i != 6 else z
+
+
+@inlined
+def corner_part(solid, number):
+    """Return the part of a corner of a face."""
+    return OF_FIXED if solid.kind == CYLINDER and number < LOWEST else OF_SUPPORT
 
 
 @kernel
@@ -65,7 +75,7 @@ def _box_face(s, side, half, axis, sense):
         sense if axis == 1 else 0.0,
         sense if axis == 2 else 0.0,
     )
-    s.count[side] = 4
+    s.count[side], s.face[side] = 4, 2 * axis + (1 if sense > 0.0 else 0)
 
 
 @kernel
@@ -86,7 +96,7 @@ def _hull_face(pair, side, x, y, z):
         p = hulls.vertices[solid.first + i]
         _corner(s, side, k, i, p[0], p[1], p[2])
     _set_normal(s, side, face.normal[0], face.normal[1], face.normal[2])
-    s.count[side] = count
+    s.count[side], s.face[side] = count, chosen - solid.first_face
     return best
 
 
@@ -101,11 +111,11 @@ def _cylinder_face(s, side, half, x, y, z):
             cap = RIM if sense > 0.0 else 0
             _corner(s, side, k, cap + k, half[0] * c, sense * half[0] * v, sense * half[2])
         _set_normal(s, side, 0.0, 0.0, sense)
-        s.count[side] = RIM
+        s.count[side], s.face[side] = RIM, 1 if sense > 0.0 else 0
         return abs(z)
     c, v = half[0] * x / across, half[0] * y / across
-    _corner(s, side, 0, 2 * RIM, c, v, -half[2])
-    _corner(s, side, 1, 2 * RIM + 1, c, v, half[2])
+    _corner(s, side, 0, LOWEST, c, v, -half[2])
+    _corner(s, side, 1, LOWEST + 1, c, v, half[2])
     s.count[side] = 2
     return 0.0
 
@@ -141,3 +151,40 @@ def load_face(pair, side, x, y, z):
     elif kind == POINT:
         _corner(s, side, 0, 0, 0.0, 0.0, 0.0)
     return 0.0
+
+
+@kernel
+def normal_of_face(solid, hulls, face):
+    """Return the outward normal of a face of a box, a hull or a cylinder, in the solid's own axes."""
+    if solid.kind == HULL:
+        n = hulls.faces[solid.first_face + face].normal
+        return n[0], n[1], n[2]
+    sense = 1.0 if face % 2 == 1 else -1.0
+    axis = face // 2 if solid.kind == BOX else 2
+    return sense * (axis == 0), sense * (axis == 1), sense * (axis == 2)
+
+
+@kernel
+def vertex(solid, hulls, i):
+    """Return an end of a segment, or a corner of a box, a hull or a cap, in the solid's own axes."""
+    h = solid.half
+    if solid.kind == SEGMENT:
+        return 0.0, 0.0, h[2] if i == 1 else -h[2]
+    if solid.kind == HULL:
+        p = hulls.vertices[solid.first + i]
+        return p[0], p[1], p[2]
+    if solid.kind == BOX:
+        return h[0] if i & 4 else -h[0], h[1] if i & 2 else -h[1], h[2] if i & 1 else -h[2]
+    c, z = rim_point(i)
+    return h[0] * c, h[0] * z if i >= RIM else -h[0] * z, h[2]
+
+
+@kernel
+def along_edge(solid, hulls, i, j):
+    """Return the unit direction of the edge from vertex i to j, in the solid's own axes."""
+    if solid.kind == SEGMENT or (solid.kind == CYLINDER and i >= LOWEST):
+        return 0.0, 0.0, 1.0
+    p, q = vertex(solid, hulls, i), vertex(solid, hulls, j)
+    x, y, z = q[0] - p[0], q[1] - p[1], q[2] - p[2]
+    f = 1.0 / math.sqrt(x * x + y * y + z * z)
+    return f * x, f * y, f * z

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import inlined, kernel
-from carom.collision.features import exchanged
+from carom.collision.features import NOBODY, exchanged
 from carom.collision.frame import to_world
 from carom.collision.layout import MOST_POINTS
 
@@ -15,6 +15,12 @@ def put(row, gap, n, on_a, on_b, feature):
     row.normal[0], row.normal[1], row.normal[2] = n
     row.on_a[0], row.on_a[1], row.on_a[2] = on_a
     row.on_b[0], row.on_b[1], row.on_b[2] = on_b
+
+
+@inlined
+def put_parts(row, owner, part_a, part_b):
+    """Write the owner of the normal of a point, and the parts on which it lies."""
+    row.owner, row.parts[0], row.parts[1] = owner, part_a, part_b
 
 
 @kernel
@@ -32,6 +38,9 @@ def swap(found, i, j):
     a, b = found[i], found[j]
     a.gap, b.gap = b.gap, a.gap
     a.feature, b.feature = b.feature, a.feature
+    a.owner, b.owner = b.owner, a.owner
+    for c in range(2):
+        a.parts[c], b.parts[c] = b.parts[c], a.parts[c]
     for c in range(3):
         a.normal[c], b.normal[c] = b.normal[c], a.normal[c]
         a.on_a[c], b.on_a[c] = b.on_a[c], a.on_a[c]
@@ -85,10 +94,13 @@ def hand_on(pair, count, flip, out):
         ax, ay, az = to_world(s, p[0] - r * n[0], p[1] - r * n[1], p[2] - r * n[2])
         p, r = row.on_b, pair.b.radius
         bx, by, bz = to_world(s, p[0] + r * n[0], p[1] + r * n[1], p[2] + r * n[2])
-        o = s.origin
+        o, parts = s.origin, row.parts
         a, b = (ax + o[0], ay + o[1], az + o[2]), (bx + o[0], by + o[1], bz + o[2])
         if flip:
             put(point, row.gap, (-nx, -ny, -nz), b, a, exchanged(row.feature))
+            owner = row.owner if row.owner == NOBODY else 3 - row.owner
+            put_parts(point, owner, parts[1], parts[0])
         else:
             put(point, row.gap, (nx, ny, nz), a, b, row.feature)
+            put_parts(point, row.owner, parts[0], parts[1])
     return count

@@ -43,6 +43,8 @@ TOUCH_POINT = [
     ("on_a", "f8", 3),
     ("on_b", "f8", 3),
     ("feature", "i8"),
+    ("owner", "i8"),  # of the normal: OF_A or OF_B for that of a face, else NOBODY (`features`)
+    ("parts", "i8", 2),  # parts of A and of B on which the point lies
 ]
 
 MOST_POINTS = 8  # of one pair
@@ -59,6 +61,7 @@ PAIR_STATE = [
     ("number", "i8", (2, MOST_CORNERS)),  # numbers of their corners
     ("count", "i8", 2),
     ("normal", "f8", (2, 3)),  # their outward normals
+    ("face", "i8", 2),  # their numbers in the two solids
     ("ring", "f8", (2, 2 * MOST_CORNERS, 3)),  # polygon before and after a cut
     ("side", "i8", (2, 2 * MOST_CORNERS)),  # side after each corner: k incident, -1 - j reference
     ("label", "i8", (2, 2 * MOST_CORNERS)),  # feature of each of its corners

@@ -6,7 +6,7 @@ import math
 
 from carom._compiled.decorators import entry, inlined, kernel
 from carom._compiled.units import unit
-from carom.collision.faces import RIM, rim_point
+from carom.collision.faces import LOWEST, RIM, rim_point
 from carom.collision.features import of_vertex_a
 from carom.collision.found import put, spread
 from carom.collision.layout import BOX, CYLINDER, HULL, SEGMENT
@@ -14,7 +14,6 @@ from carom.collision.support import support
 from carom.geometry.rotation import rotate, rotate_back
 
 UPRIGHT = 1e-12  # sine of the tilt up to which a rim is flat: none of its points is the lowest
-LOWEST = 2 * RIM  # number of the lowest point of a rim; fixed points of both rims have smaller ones
 
 
 @inlined

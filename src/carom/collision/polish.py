@@ -11,13 +11,15 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
+from carom.collision.faces import LOWEST, vertex
 from carom.collision.frame import from_a, to_a
-from carom.collision.layout import CYLINDER, ELLIPSOID
-from carom.collision.support import propose, separation
+from carom.collision.layout import CYLINDER
+from carom.collision.support import change_of_support, propose, separation
 
 STEPS = 8
 NEAR = 0.99  # cosine of the largest angle by which the method may turn the normal
 ROUNDING = 1e-15  # relative to the smaller solid
+TIE = 1e-12  # relative to the smaller solid: two vertices are as far if they differ by less
 STRAIGHT = 1e-6  # sine below which two edges count as parallel
 
 
@@ -89,24 +91,10 @@ def _edges(pair):
 
 @kernel
 def _bend(solid, n, u, v):
-    """Return u^T H v, with the Hessian H of the support function at the unit vector n, in the solid's axes."""
-    (x, y, z), (ux, uy, uz), (vx, vy, vz) = n, u, v
-    h = solid.half
-    if solid.kind == CYLINDER:
-        across = math.sqrt(x * x + y * y)
-        if not across > 0.0:
-            return 0.0
-        return h[0] / across**3 * (x * uy - y * ux) * (x * vy - y * vx)
-    if solid.kind == ELLIPSOID:
-        p, q, r = h[0] * h[0], h[1] * h[1], h[2] * h[2]
-        f = math.sqrt(p * x * x + q * y * y + r * z * z)
-        mu = p * x * ux + q * y * uy + r * z * uz
-        mv = p * x * vx + q * y * vy + r * z * vz
-        straight = ux * vx + uy * vy + uz * vz
-        return (
-            (p * ux * vx + q * uy * vy + r * uz * vz) / f - mu * mv / f**3 - solid.inner * straight
-        )
-    return 0.0
+    """Return u^T H v, with the Hessian H of the support function of the core at n, in the solid's axes."""
+    x, y, z = change_of_support(solid, n, v)
+    straight = u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+    return u[0] * x + u[1] * y + u[2] * z - solid.inner * straight
 
 
 @kernel
@@ -185,10 +173,40 @@ def polish(pair, nx, ny, nz):
     if not x * nx + y * ny + z * nz > NEAR:
         return best, nx, ny, nz, 0
     value = separation(pair, x, y, z)
+    _keep_vertices(pair, (x, y, z))
     if not value >= best - ROUNDING * min(pair.a.extent, pair.b.extent):
         return best, nx, ny, nz, 0
     _points(s, edges, value, x, y, z)
     return value, x, y, z, 1
+
+
+@kernel
+def _keep_vertices(pair, n):
+    """Replace a farthest vertex that is not in the simplex by one that is, if both are as far.
+
+    All ends of an edge, and all corners of a face, are as far if n is perpendicular to it.
+    """
+    s = pair.state
+    tie = TIE * min(pair.a.extent, pair.b.extent)
+    for side in range(2):
+        i, there = s.ids[0, side], False
+        for k in range(s.points):
+            there = there or s.ids[k, side] == s.ids[4, side]
+        if there:
+            continue
+        solid, p = (pair.a, s.on_a[4]) if side == 0 else (pair.b, s.on_b[4])
+        if solid.kind == CYLINDER:  # to the other rim
+            f = 2.0 * solid.half[2] * (1.0 if i > LOWEST else -1.0)
+            x, y, z = (0.0, 0.0, f) if side == 1 else from_a(s, 0.0, 0.0, f)
+        else:
+            x, y, z = vertex(solid, pair.hulls, i)
+            if side == 0:
+                x, y, z = from_a(s, x, y, z)
+                x, y, z = x + s.p[0], y + s.p[1], z + s.p[2]
+            x, y, z = x - p[0], y - p[1], z - p[2]
+        if abs(x * n[0] + y * n[1] + z * n[2]) <= tie:
+            p[0], p[1], p[2] = p[0] + x, p[1] + y, p[2] + z
+            s.ids[4, side] = i
 
 
 @kernel

@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom.collision.features import of_vertex_a
-from carom.collision.found import put
+from carom.collision.features import NOBODY, OF_SUPPORT, edge_part, of_vertex_a
+from carom.collision.found import put, put_parts
 from carom.collision.frame import from_a
 from carom.collision.segments import edge_on_edge
 
@@ -32,6 +32,7 @@ def point_point(pair):
     put(
         pair.found[0], gap, (nx, ny, nz), (p[0], p[1], p[2]), (0.0, 0.0, 0.0), of_vertex_a(0)
     )  # fmt: skip
+    put_parts(pair.found[0], NOBODY, OF_SUPPORT, OF_SUPPORT)
 
 
 @kernel
@@ -42,6 +43,7 @@ def point_segment(pair):
     d, nx, ny, nz = direction(p[0], p[1], p[2] - z, 1.0, 0.0, 0.0)
     gap = d - pair.a.radius - pair.b.radius
     put(pair.found[0], gap, (nx, ny, nz), (p[0], p[1], p[2]), (0.0, 0.0, z), of_vertex_a(0))
+    put_parts(pair.found[0], NOBODY, OF_SUPPORT, OF_SUPPORT if abs(z) == h else edge_part(0, 1))
 
 
 @kernel

@@ -8,8 +8,17 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom.collision.features import of_edges, of_vertex_a, of_vertex_b
-from carom.collision.found import known, put
+from carom.collision.faces import corner_part
+from carom.collision.features import (
+    NOBODY,
+    OF_SUPPORT,
+    edge_part,
+    of_edges,
+    of_vertex_a,
+    of_vertex_b,
+)
+from carom.collision.found import known, put, put_parts
+from carom.collision.layout import CYLINDER
 
 PARALLEL = 1e-14  # square of the sine below which two segments count as parallel
 TOUCHING = 1e-9  # relative to the lengths: a shorter distance has no reliable direction
@@ -24,6 +33,19 @@ def _line(s, side, ends):
     d = math.sqrt(x * x + y * y + z * z)
     f = 1.0 / d if d > 0.0 else 0.0
     return (p[0], p[1], p[2]), (f * x, f * y, f * z), d
+
+
+@kernel
+def _axis_below(pair, side, p, u):
+    """Return the point of the axis below a point of the mantle of a cylinder, and the radius.
+
+    An edge of another solid is its own axis, with the radius 0. `u` is the direction of the axis.
+    """
+    s, solid = pair.state, pair.a if side == 0 else pair.b
+    if solid.kind != CYLINDER:
+        return p, 0.0
+    c = (s.p[0], s.p[1], s.p[2]) if side == 0 else (0.0, 0.0, 0.0)
+    return _at(c, _dot(_minus(p, c), u), u), solid.half[0]
 
 
 @inlined
@@ -88,18 +110,26 @@ def edge_on_edge(pair, ends_a, ends_b):
     elif z == 0.0 or z == h:
         feature = of_vertex_b(s.number[1, k] if z == 0.0 else s.number[1, l])
     put(pair.found[0], d - (pair.a.radius + pair.b.radius), n, on_a, on_b, feature)
+    part_a = OF_SUPPORT if t == 0.0 or t == g else edge_part(0, 1)
+    put_parts(pair.found[0], NOBODY, part_a, OF_SUPPORT if z == 0.0 or z == h else edge_part(0, 1))
 
 
 @kernel
 def ends_of_line(pair, ends_a, ends_b, least, most, count):
     """Add the ends of each segment that project into the other, with gaps from `least` to `most`.
 
-    These ends carry a contact along a line. Each has its own distance and normal. The normal must be near that
-    of the first point: an end that hangs over another edge is no contact. Return the new count.
+    These ends carry a contact along a line. Each has its own distance and normal; those of a line of a mantle
+    are found from the axis, exactly at any gap. The normal must be near that of the first point: an end that
+    hangs over another edge is no contact. Return the new count.
     """
-    s, found, radii = pair.state, pair.found, pair.a.radius + pair.b.radius
+    s, found = pair.state, pair.found
     p, u, g = _line(s, 0, ends_a)
     q, w, h = _line(s, 1, ends_b)
+    p, round_a = _axis_below(pair, 0, p, u)
+    q, round_b = _axis_below(pair, 1, q, w)
+    radii = pair.a.radius + pair.b.radius + round_a + round_b
+    edge_a = edge_part(s.number[0, ends_a[0]], s.number[0, ends_a[1]])
+    edge_b = edge_part(s.number[1, ends_b[0]], s.number[1, ends_b[1]])
     d, c = _minus(p, q), _dot(u, w)
     du, dw = _dot(d, u), _dot(d, w)
     first = found[0].normal
@@ -107,22 +137,34 @@ def ends_of_line(pair, ends_a, ends_b, least, most, count):
         if end < 2:
             t = g * end
             z = dw + c * t
-            inside, feature = 0.0 < z < h, of_vertex_a(s.number[0, ends_a[end]])
+            i = s.number[0, ends_a[end]]
+            inside, feature = 0.0 < z < h, of_vertex_a(i)
+            part_a, part_b = corner_part(pair.a, i), edge_b
         else:
             z = h * (end - 2)
             t = c * z - du
-            inside, feature = 0.0 < t < g, of_vertex_b(s.number[1, ends_b[end - 2]])
+            i = s.number[1, ends_b[end - 2]]
+            inside, feature = 0.0 < t < g, of_vertex_b(i)
+            part_a, part_b = edge_a, corner_part(pair.b, i)
         on_a, on_b = _at(p, t, u), _at(q, z, w)
         n = _minus(on_a, on_b)
         size = math.sqrt(_dot(n, n))
-        gap = size - radii
+        gap, owner = size - radii, NOBODY
         if size > TOUCHING * (g + h):
             n = n[0] / size, n[1] / size, n[2] / size
         else:  # sharp edges that touch: their distance has no direction
-            n = first[0], first[1], first[2]
+            n, owner = (first[0], first[1], first[2]), found[0].owner
         beside = n[0] * first[0] + n[1] * first[1] + n[2] * first[2] > BESIDE
-        inside = inside and beside and least <= gap <= most
-        if inside and not known(found, count, feature):
+        if not (inside and beside and least <= gap <= most):
+            continue
+        on_a, on_b = _at(on_a, -round_a, n), _at(on_b, round_b, n)
+        if not known(found, count, feature):
             put(found[count], gap, n, on_a, on_b, feature)
+            put_parts(found[count], owner, part_a, part_b)
             count += 1
+        elif (
+            found[0].feature == feature and round_a + round_b > 0.0
+        ):  # a search found it less exactly
+            put(found[0], gap, n, on_a, on_b, feature)
+            put_parts(found[0], owner, part_a, part_b)
     return count

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
+from carom.collision.faces import LOWEST
 from carom.collision.frame import from_a, to_a
 from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, SEGMENT
 
@@ -19,7 +20,7 @@ def support(solid, hulls, x, y, z):
     """Return the farthest point along (x, y, z), in the solid's own axes, and the number of the vertex.
 
     For an ellipsoid, it is the farthest point of a smaller convex body; a ball of radius `inner` enlarges this
-    body to the ellipsoid. Smooth points have the number 0.
+    body to the ellipsoid. Smooth points have the number 0, those of a rim the number of its lowest point.
     """
     h, kind = solid.half, solid.kind
     if kind == SEGMENT:
@@ -39,7 +40,7 @@ def support(solid, hulls, x, y, z):
     if kind == CYLINDER:
         across = math.sqrt(x * x + y * y)
         f = h[0] / across if across > 0.0 else 0.0
-        return f * x, f * y, _end(z, h[2]), 1 if z > 0.0 and h[2] > 0.0 else 0
+        return f * x, f * y, _end(z, h[2]), LOWEST + (1 if z > 0.0 and h[2] > 0.0 else 0)
     if kind == ELLIPSOID:
         u, v, w = h[0] * x, h[1] * y, h[2] * z
         f = math.sqrt(u * u + v * v + w * w)
@@ -48,6 +49,31 @@ def support(solid, hulls, x, y, z):
         e = solid.inner / d if d > 0.0 else 0.0
         return f * h[0] * u - e * x, f * h[1] * v - e * y, f * h[2] * w - e * z, 0
     return 0.0, 0.0, 0.0, 0
+
+
+@kernel
+def change_of_support(solid, n, v):
+    """Return H v, the change of the farthest point along a unit vector n that changes by v.
+
+    All are in the solid's own axes. H is the Hessian of the support function, with H n = 0:
+
+        rim, mantle    r/s^3 g g^T,  g = (-n_y, n_x, 0), s = |g|
+        ellipsoid      D/s - D n (D n)^T/s^3,  D = diag(a^2, b^2, c^2), s^2 = n.D n
+        all else       0: a vertex.
+    """
+    h, (x, y, z) = solid.half, n
+    if solid.kind == CYLINDER:
+        across = math.sqrt(x * x + y * y)
+        if across > 0.0:
+            f = h[0] * (x * v[1] - y * v[0]) / across**3
+            return -f * y, f * x, 0.0
+    if solid.kind == ELLIPSOID:
+        p, q, r = h[0] * h[0], h[1] * h[1], h[2] * h[2]
+        square = p * x * x + q * y * y + r * z * z
+        f = (p * x * v[0] + q * y * v[1] + r * z * v[2]) / square
+        s = square**-0.5
+        return p * s * (v[0] - f * x), q * s * (v[1] - f * y), r * s * (v[2] - f * z)
+    return 0.0, 0.0, 0.0
 
 
 @kernel

@@ -17,7 +17,7 @@ from carom.collision.faces import load_face
 from carom.collision.features import EDGES
 from carom.collision.found import hand_on, swap
 from carom.collision.frame import enter
-from carom.collision.layout import BOX, POINT, SEGMENT, Pair
+from carom.collision.layout import BOX, CYLINDER, POINT, SEGMENT, Pair
 from carom.collision.round import point_point, point_segment, segment_segment
 from carom.collision.segments import ends_of_line
 from carom.collision.support import separation
@@ -119,8 +119,15 @@ def _manifold(pair, reach):
         m, f = s.normal[ref], 2.0 * ref - 1.0
         apart = separation(pair, f * m[0], f * m[1], f * m[2])
         if apart - a.inner - b.inner - (a.radius + b.radius) >= least - reach - tolerance:
+            inc = 1 - ref
+            mantle = (a.kind if inc == 0 else b.kind) == CYLINDER and s.count[inc] == 2
+            if mantle:  # the line of the mantle that is lowest over the face
+                load_face(pair, inc, -m[0], -m[1], -m[2])
             count = overlap(pair, ref, least - tolerance, most, count)
-    if not max(on_a, on_b) > ON_FACE:
+            if mantle:
+                load_face(pair, inc, -f * nx, -f * ny, -f * nz)
+    rims = (a.kind == CYLINDER and s.count[0] > 2) or (b.kind == CYLINDER and s.count[1] > 2)
+    if not (rims or max(on_a, on_b) > ON_FACE):  # the sides of a rim's polygon are no edges
         ends_a, ends_b = _lowest_side(s, 0, nx, ny, nz), _lowest_side(s, 1, -nx, -ny, -nz)
         before = count
         count = ends_of_line(pair, ends_a, ends_b, least - tolerance, most, count)

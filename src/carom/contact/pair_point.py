@@ -13,10 +13,11 @@ from carom.collision.frame import place
 from carom.collision.layout import Placed, Plane
 from carom.collision.plane import plane_unit
 from carom.collision.touch import touch_unit
+from carom.contact.drift import drift_of_solids
 from carom.contact.place_of_other import on_half_space
 from carom.contact.rim import same_point
 from carom.contact.roll import roll_on_plane
-from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
+from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.wrench import point_velocity
 from carom.model.workspace import STATIC
 
@@ -79,6 +80,7 @@ def write_touch(contact, touch, state, point):
     """Write a found point as a contact point."""
     n = touch.normal
     point.a, point.b, point.gap, point.turns = contact.body, contact.other, touch.gap, 0
+    point.owner, point.parts[0], point.parts[1] = touch.owner, touch.parts[0], touch.parts[1]
     if contact.static == 1:
         point.b = STATIC
     for k in range(3):
@@ -150,57 +152,12 @@ def slip_velocity(contact, touch, state):
     return ax - bx, ay - by, az - bz
 
 
-@kernel
-def advance(start, t, end):
-    """Move the pose of a body along its velocity for a time t."""
-    Q, w = start.Q, start.w
-    for k in range(3):
-        end.x[k] = start.x[k] + t * start.v[k]
-        end.v[k], end.w[k] = start.v[k], w[k]
-    r = exp(t * w[0], t * w[1], t * w[2])
-    q = multiply(r[0], r[1], r[2], r[3], Q[0], Q[1], Q[2], Q[3])
-    end.Q[0], end.Q[1], end.Q[2], end.Q[3] = normalize(q[0], q[1], q[2], q[3])
-
-
 @unit
-def _drift(system, contact, feature, p, point, state, work) -> tuple[float, float, float]:
-    """Return (d/dt G) v, contact axes: the change of the velocity at the point with constant body velocities.
-
-    It is a closed form on a half-space. For two bodies it is a central difference over a displacement of 1e-5
-    of the smaller one, which includes the motion of normals and points for shapes of any kind.
-    """
-    a, b = contact.body, contact.other
+def _drift(system, contact, feature, point, state) -> tuple[float, float, float]:
+    """Return (d/dt G) v, contact axes: the change of the velocity at the point for constant velocities."""
     if on_half_space(contact):
         return roll_on_plane(system, contact, feature, point, state)
-    speed = 0.0
-    for side in range(2 if b >= 0 else 1):
-        body = a if side == 0 else b
-        v, w = state[body].v, state[body].w
-        spin = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
-        extent = contact.extent if side == 0 else contact.other_extent
-        speed = max(speed, math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + extent * spin)
-    if not speed > 0.0:
-        return 0.0, 0.0, 0.0
-    t = 1e-5 * smaller(contact) / speed
-    E, moved, other = point.axes, work.middle, work.solid_rate
-    for side in range(2):
-        s = t if side == 1 else -t
-        advance(state[a], s, moved[a])
-        if b >= 0:
-            advance(state[b], s, moved[b])
-        count = find_touches(system, contact, moved, ACTIVE_REACH * smaller(contact), work)
-        touch = work.touches[which_touch(system, contact, count, feature, p, moved, work)]
-        ux, uy, uz = slip_velocity(contact, touch, moved)
-        n = touch.normal
-        other[side, 0] = n[0] * ux + n[1] * uy + n[2] * uz
-        other[side, 1] = E[1, 0] * ux + E[1, 1] * uy + E[1, 2] * uz
-        other[side, 2] = E[2, 0] * ux + E[2, 1] * uy + E[2, 2] * uz
-    f = 0.5 / t
-    return (
-        f * (other[1, 0] - other[0, 0]),
-        f * (other[1, 1] - other[0, 1]),
-        f * (other[1, 2] - other[0, 2]),
-    )
+    return drift_of_solids(system, contact, point, state)
 
 
 @inlined
@@ -211,8 +168,17 @@ def place_pair(system, contact, feature, p, state, point, work):
 
 
 @inlined
-def drift(system, contact, feature, p, point, state, work):
-    """Return (d/dt G) v, contact axes: the change of the velocity at the point for constant velocities."""
+def drift_of_found(system, contact, feature, point, state):
+    """Return (d/dt G) v, contact axes: the change of the velocity at the point for constant velocities.
+
+    The point must have been written for this state (`write_touch`). For two solids `feature` is not used.
+    """
     if system.solids.shape[0] > 0:
-        return _drift(system, contact, feature, p, point, state, work)
+        return _drift(system, contact, feature, point, state)
     return 0.0, 0.0, 0.0
+
+
+@inlined
+def drift(system, contact, feature, p, point, state, work):
+    """Return `drift_of_found`; the core point p and the workspace are not used."""
+    return drift_of_found(system, contact, feature, point, state)

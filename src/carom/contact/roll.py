@@ -1,11 +1,8 @@
 """The motion of the lowest point of a curved solid on its body while the body rotates on a half-space.
 
-With the normal u in axes of the solid, u' = -W x u, and the point p that is lowest,
-
-    cylinder, disc     p = (r e, -+h),  e = -(u_x, u_y)/|(u_x, u_y)|:     p' = r phi' (-e_y, e_x, 0),
-                                        phi' = (u_x u_y' - u_y u_x')/(u_x^2 + u_y^2)
-    ellipsoid          p = -H u/s,  s^2 = u.H u,  H = diag(a^2, b^2, c^2):  p' = -H u'/s + H u (u.H u')/s^3
-    all else           p' = 0: a vertex, a point fixed to a rim.
+With the normal u in axes of the solid, u' = -W x u, the lowest point p is the farthest one along -u, so that
+p' = -H u' = H (W x u), with the Hessian H of the support function (`support.change_of_support`). A vertex and a
+point fixed to a rim have p' = 0.
 
 While v and w are constant, the velocity at the point, v + w x r, changes at the rate w x r', with
 r' = w x r_core + R p'.
@@ -14,29 +11,19 @@ r' = w x r_core + R p'.
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
+from carom.collision.faces import LOWEST
 from carom.collision.features import vertex_a
-from carom.collision.layout import CYLINDER, ELLIPSOID
-from carom.collision.plane import LOWEST
+from carom.collision.layout import CYLINDER
+from carom.collision.support import change_of_support
 from carom.geometry.rotation import cross, rotate, rotate_back
 
 
 @kernel
 def way_of_lowest(solid, feature, u, W):
     """Return p', in axes of the solid, for the normal u and the angular velocity W there."""
-    h = solid.half
-    d = cross(u[0], u[1], u[2], W[0], W[1], W[2])  # u' = -W x u
-    if solid.kind == CYLINDER and vertex_a(feature) >= LOWEST:
-        across = u[0] * u[0] + u[1] * u[1]
-        if across > 0.0:
-            f = h[0] * (u[0] * d[1] - u[1] * d[0]) / across**1.5
-            return f * u[1], -f * u[0], 0.0
-    if solid.kind == ELLIPSOID:
-        a, b, c = h[0] * h[0], h[1] * h[1], h[2] * h[2]
-        square = a * u[0] * u[0] + b * u[1] * u[1] + c * u[2] * u[2]
-        f = (a * u[0] * d[0] + b * u[1] * d[1] + c * u[2] * d[2]) / square
-        s = square**-0.5
-        return a * s * (f * u[0] - d[0]), b * s * (f * u[1] - d[1]), c * s * (f * u[2] - d[2])
-    return 0.0, 0.0, 0.0
+    if solid.kind == CYLINDER and vertex_a(feature) < LOWEST:
+        return 0.0, 0.0, 0.0
+    return change_of_support(solid, u, cross(W[0], W[1], W[2], u[0], u[1], u[2]))
 
 
 @kernel

@@ -31,6 +31,7 @@ def place(contact, p, state, point):
 def copy_point(p, q):
     """Copy a point."""
     q.a, q.b, q.gap, q.turns, q.length = p.a, p.b, p.gap, p.turns, p.length
+    q.owner, q.parts[0], q.parts[1] = p.owner, p.parts[0], p.parts[1]
     for k in range(3):
         q.arm_a[k], q.arm_b[k], q.core[k] = p.arm_a[k], p.arm_b[k], p.core[k]
         for i in range(3):

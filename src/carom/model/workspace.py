@@ -66,6 +66,8 @@ POINT = [
     ("core", "f8", 3),  # part of arm_a that turns with body a; 0 if `drift` describes the motion
     ("axes", "f8", (3, 3)),  # rows n, t1, t2
     ("gap", "f8"),
+    ("owner", "i8"),  # of the normal, and the parts of both solids (`carom.collision.features`)
+    ("parts", "i8", 2),
     # 0 for a usual point; rows of relative rotation: 1 rolling (t1, t2), 2 pivoting (t1), 3 a stop that ends a
     # turn (n); 4: the normal row alone, of a stop that ends a slide; 5: the same in the place of t1, of a
     # joint with friction

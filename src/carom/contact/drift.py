@@ -1,0 +1,255 @@
+"""The rate of the rows of a point of two solids, (d/dt G) v, in closed form.
+
+The cores touch in c_A and c_B, with c_A - c_B = d n and d = gap + r_A + r_B; the surfaces in p_A = c_A - r_A n
+and p_B = c_B + r_B n. While the velocities of the bodies are constant, the velocity at the point,
+u = v_A + w_A x (p_A - x_A) - v_B - w_B x (p_B - x_B), has the rate
+
+    u' = w_A x (p_A' - v_A) - w_B x (p_B' - v_B),
+
+so the rows have the rates n.u' + n'.u and t.u' (t is constant). The motion of n and of the points follows from
+the parts of the cores on which the points lie (`carom.collision.features`).
+
+*The normal is that of a face:* n' = w_B x n for a face of B, n' = w_A x n for one of A.
+
+*No face owns the normal:* with v_cA, v_cB the velocities of the material points of the cores, H the change of
+the farthest point of a core with the normal (`support.change_of_support`), e tau a motion along an edge,
+
+    c_A' = v_cA - H_A (n' - w_A x n) + e_A tau_A,    c_B' = v_cB + H_B (n' - w_B x n) + e_B tau_B.
+
+The tangential part of c_A' - c_B' = d' n + d n' is
+
+    (d + H_A + H_B) n' = v_cA - v_cB + H_A (w_A x n) + H_B (w_B x n) + e_A tau_A - e_B tau_B,
+
+and n stays perpendicular to each edge: n'.e = -n.(w x e). Two edges determine n'. One edge determines one of
+its components, and the equation across the edge the other. Without edges there are two equations.
+
+One of the two points, the leading one, is then known. The other follows from c_A' - c_B' = d' n + d n', where
+d' is such that it stays on its face, and tau such that it stays on its edge. A sharp vertex that touches a
+sharp edge or vertex has no definite n': the normal then moves with the solid of the edge, or with B.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.decorators import inlined, kernel
+from carom.collision.faces import LOWEST, along_edge, normal_of_face
+from carom.collision.features import EDGE, FACE, FIXED, OF_A, OF_B, first_of, second_of
+from carom.collision.layout import CYLINDER, ELLIPSOID
+from carom.collision.support import change_of_support
+from carom.geometry.rotation import cross, multiply, rotate, rotate_back
+
+PARALLEL = 1e-7  # sine of the angle below which two edges have no common normal
+SHARP = 1e-9  # relative to the smaller solid: shorter radii of curvature count as zero
+
+
+class Core(NamedTuple):
+    """The core of a solid at a point of contact, in the world."""
+
+    solid: np.record  # SOLID
+    q: tuple  # its attitude
+    part: int  # on which the point lies
+    side: float  # 1 for A, -1 for B: its outward normal is -side n
+    v: tuple  # velocity of its material point
+    w: tuple  # angular velocity
+
+
+@inlined
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inlined
+def _cross(a, b):
+    return cross(a[0], a[1], a[2], b[0], b[1], b[2])
+
+
+@inlined
+def _plus(a, f, b):
+    """Return a + f b."""
+    return a[0] + f * b[0], a[1] + f * b[1], a[2] + f * b[2]
+
+
+@inlined
+def _vector(a):
+    return a[0], a[1], a[2]
+
+
+@inlined
+def _kind(core):
+    return core.part >> 30
+
+
+@inlined
+def _in_world(core, a):
+    """Return a vector of the world, given in axes of the solid."""
+    q = core.q
+    return rotate(q[0], q[1], q[2], q[3], a[0], a[1], a[2])
+
+
+@inlined
+def _own(core, a):
+    """Return a vector in axes of the solid, given in the world."""
+    q = core.q
+    return rotate_back(q[0], q[1], q[2], q[3], a[0], a[1], a[2])
+
+
+@kernel
+def _bend(core, n, v):
+    """Return H v, in the world."""
+    kind, zero = core.solid.kind, (0.0, 0.0, 0.0)
+    if kind != CYLINDER and kind != ELLIPSOID:
+        return zero
+    if _kind(core) == FACE or _kind(core) == FIXED:
+        return zero
+    if _kind(core) == EDGE and first_of(core.part) < LOWEST:  # between fixed points of a rim
+        return zero
+    return _in_world(core, change_of_support(core.solid, _own(core, n), _own(core, v)))
+
+
+@kernel
+def _edge(core, hulls):
+    """Return the direction of the edge of a core, in the world."""
+    e = along_edge(core.solid, hulls, first_of(core.part), second_of(core.part))
+    return _in_world(core, e)
+
+
+@kernel
+def _across(n):
+    """Return a unit vector perpendicular to n."""
+    e = (0.0, -n[2], n[1]) if abs(n[0]) < 0.6 else (n[2], 0.0, -n[0])
+    f = 1.0 / math.sqrt(_dot(e, e))
+    return f * e[0], f * e[1], f * e[2]
+
+
+@kernel
+def _two_edges(a, b, hulls, n):
+    """Return n' of two edges, and whether they are not parallel."""
+    e, f = _edge(a, hulls), _edge(b, hulls)
+    s = _cross(n, e)
+    along, other, sine = -_dot(n, _cross(a.w, e)), -_dot(n, _cross(b.w, f)), _dot(s, f)
+    if not abs(sine) > PARALLEL:
+        return n, False
+    across = (other - along * _dot(e, f)) / sine
+    return _plus((across * s[0], across * s[1], across * s[2]), along, e), True
+
+
+@kernel
+def _bends(a, b, n, d, v):
+    """Return (d + H_A + H_B) v."""
+    x = _plus(_bend(a, n, v), 1.0, _bend(b, n, v))
+    return _plus(x, d, v)
+
+
+@kernel
+def _free_normal(a, b, hulls, n, d):
+    """Return n' of a normal that no face owns."""
+    edges = (_kind(a) == EDGE) + (_kind(b) == EDGE)
+    if edges == 2:
+        rate, done = _two_edges(a, b, hulls, n)
+        if done:
+            return rate
+    sharp = SHARP * min(a.solid.extent, b.solid.extent)
+    turn_a, turn_b = _cross(a.w, n), _cross(b.w, n)
+    rate = _plus(_plus(a.v, -1.0, b.v), 1.0, _bend(a, n, turn_a))
+    rate = _plus(rate, 1.0, _bend(b, n, turn_b))
+    if edges > 0:
+        on_a = _kind(a) == EDGE
+        e, turn = (_edge(a, hulls), turn_a) if on_a else (_edge(b, hulls), turn_b)
+    else:
+        e, turn = _across(n), turn_b
+    s = _cross(n, e)
+    bent = _bends(a, b, n, d, s)
+    along, other, stiff = _dot(e, turn), _dot(e, bent), _dot(s, bent)
+    if edges == 0:
+        bent = _bends(a, b, n, d, e)
+        first = _dot(e, bent)
+        determinant = first * stiff - other * other
+        if not (determinant > sharp * max(first, stiff) and first > 0.0):
+            return turn
+        along = (_dot(e, rate) * stiff - _dot(s, rate) * other) / determinant
+    across = (_dot(s, rate) - along * other) / stiff if stiff > sharp else _dot(s, turn)
+    return _plus((along * e[0], along * e[1], along * e[2]), across, s)
+
+
+@kernel
+def _rate_of_normal(a, b, hulls, n, d, owner):
+    """Return n'."""
+    if owner == OF_B:
+        return _cross(b.w, n)
+    if owner == OF_A:
+        return _cross(a.w, n)
+    return _free_normal(a, b, hulls, n, d)
+
+
+@kernel
+def _along_support(core, n, rate):
+    """Return the velocity of the farthest point along the normal: v_c -+ H (n' - w x n)."""
+    turn = _plus(rate, -1.0, _cross(core.w, n))
+    return _plus(core.v, -core.side, _bend(core, n, turn))
+
+
+@kernel
+def _leads(a, b, owner):
+    """Return whether the point of A is the leading one."""
+    if owner == OF_B:
+        return _kind(a) != FACE
+    if owner == OF_A:
+        return _kind(b) == FACE
+    return _kind(a) < EDGE or _kind(b) >= EDGE
+
+
+@kernel
+def _follow(lead, other, hulls, n, d, rate, owner):
+    """Return the velocities of the leading point and of the other one."""
+    k = lead.side
+    p, step = _along_support(lead, n, rate), (k * d * rate[0], k * d * rate[1], k * d * rate[2])
+    if _kind(lead) == EDGE and _kind(other) == EDGE:
+        e, s = _edge(lead, hulls), _cross(n, _edge(other, hulls))
+        miss = _plus(_plus(p, -1.0, step), -1.0, _along_support(other, n, rate))
+        sine = _dot(s, e)
+        if abs(sine) > PARALLEL:
+            p = _plus(p, -_dot(s, miss) / sine, e)
+    m = n
+    if _kind(other) == FACE and owner != (OF_B if k > 0.0 else OF_A):  # a face, perhaps tilted
+        m = _in_world(other, normal_of_face(other.solid, hulls, first_of(other.part)))
+    miss = _plus(_plus(p, -1.0, step), -1.0, other.v)
+    q = _plus(_plus(p, -1.0, step), -_dot(m, miss) / _dot(m, n), n)
+    return p, q
+
+
+@kernel
+def drift_of_solids(system, contact, point, state):
+    """Return (d/dt G) v, in contact axes, of a point of two solids that `pair_point.write_touch` wrote."""
+    one, two = system.solids[contact.solid], system.solids[contact.other_solid]
+    # the bodies
+    body = state[contact.body]
+    q, va, wa = body.Q, _vector(body.v), _vector(body.w)
+    q_a = multiply(q[0], q[1], q[2], q[3], one.Q[0], one.Q[1], one.Q[2], one.Q[3])
+    q_b, vb, wb = (two.Q[0], two.Q[1], two.Q[2], two.Q[3]), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    if contact.static == 0:
+        body = state[contact.other]
+        q, vb, wb = body.Q, _vector(body.v), _vector(body.w)
+        q_b = multiply(q[0], q[1], q[2], q[3], two.Q[0], two.Q[1], two.Q[2], two.Q[3])
+    # the material points of the cores
+    n, ra, rb = _vector(point.axes[0]), one.radius, two.radius
+    ua = _plus(va, 1.0, _cross(wa, _plus(point.arm_a, ra, n)))
+    ub = _plus(vb, 1.0, _cross(wb, _plus(point.arm_b, -rb, n)))
+    a = Core(one, q_a, point.parts[0], 1.0, ua, wa)
+    b = Core(two, q_b, point.parts[1], -1.0, ub, wb)
+    # the motion of the normal and of the points
+    d, owner = point.gap + ra + rb, point.owner
+    rate = _rate_of_normal(a, b, system.hulls, n, d, owner)
+    if _leads(a, b, owner):
+        pa, pb = _follow(a, b, system.hulls, n, d, rate, owner)
+    else:
+        pb, pa = _follow(b, a, system.hulls, n, d, rate, owner)
+    pa, pb = _plus(pa, -ra, rate), _plus(pb, rb, rate)
+    # the rates of the rows
+    du = _plus(_cross(wa, _plus(pa, -1.0, va)), -1.0, _cross(wb, _plus(pb, -1.0, vb)))
+    ua, ub = _plus(va, 1.0, _cross(wa, point.arm_a)), _plus(vb, 1.0, _cross(wb, point.arm_b))
+    u, E = _plus(ua, -1.0, ub), point.axes
+    return _dot(n, du) + _dot(rate, u), _dot(E[1], du), _dot(E[2], du)
