@@ -43,6 +43,7 @@ TOUCH_POINT = [
     ("on_a", "f8", 3),
     ("on_b", "f8", 3),
     ("feature", "i8"),
+    ("surface", "i8"),  # 1 + the number of the level surface that it lies on, 0 for none
 ]
 
 MOST_POINTS = 8  # of one pair
@@ -69,6 +70,7 @@ PAIR_STATE = [
     ("weight", "f8", 4),  # of the corners in the point nearest to the origin
     ("points", "i8"),  # corners in the simplex
     ("total", "i8"),  # number of points that a unit found
+    ("hidden", "i8"),  # 1 + the level surface that hides points of the pair, 0 for none
     ("searches", "i8"),  # number of searches for a distance, for callers that limit the work
     ("start", "f8", (15, 4)),  # directions that may separate the cores, and separations
     ("edge", "f8", (2, 3)),  # directions of the nearest edges
