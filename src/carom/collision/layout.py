@@ -45,6 +45,7 @@ TOUCH_POINT = [
     ("feature", "i8"),
     ("owner", "i8"),  # of the normal: OF_A or OF_B for that of a face, else NOBODY (`features`)
     ("parts", "i8", 2),  # parts of A and of B on which the point lies
+    ("surface", "i8"),  # 1 + the number of the level surface that it lies on, 0 for none
 ]
 
 MOST_POINTS = 8  # of one pair
@@ -72,6 +73,7 @@ PAIR_STATE = [
     ("weight", "f8", 4),  # of the corners in the point nearest to the origin
     ("points", "i8"),  # corners in the simplex
     ("total", "i8"),  # number of points that a unit found
+    ("hidden", "i8"),  # 1 + the level surface that hides points of the pair, 0 for none
     ("searches", "i8"),  # number of searches for a distance, for callers that limit the work
     ("start", "f8", (15, 4)),  # directions that may separate the cores, and separations
     ("edge", "f8", (2, 3)),  # directions of the nearest edges

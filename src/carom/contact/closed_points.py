@@ -137,7 +137,7 @@ def _add_touches(system, c, near, rim_time, state, k, group, work) -> int:
     """
     contact = system.contacts[c]
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
-    if rim_time > 0.0:
+    if rim_time > 0.0 and count > 0:
         n = work.touches[0].normal
         near = max(near, closed_rim(system, contact, n, state, rim_time))
     for i in range(count):

@@ -25,7 +25,8 @@ from carom.contact.continuous_detection import (
     reach,
 )
 from carom.contact.gap import slow
-from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
+from carom.contact.level import related
+from carom.contact.pair_point import REACH, find_touches, list_touches, smaller, touch_rate
 from carom.contact.parting import time_parted
 from carom.contact.place_of_other import centre_of_other, on_half_space
 from carom.contact.rim import OTHER_SIDE, SMOOTH, closed_rim, longest_way, same_point
@@ -185,7 +186,7 @@ def nearest_touch(work, count):
 def flat_rim_strikes(system, contact, state, time, work):
     """Return whether a point of a rim that counts as flat approaches the other body."""
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
-    near = closed_rim(system, contact, work.touches[0].normal, state, time)
+    near = closed_rim(system, contact, work.touches[0].normal, state, time) if count > 0 else 0.0
     for i in range(count):
         touch = work.touches[i]
         if touch.gap <= near and touch_rate(contact, touch, state) < -slow(contact, state):
@@ -231,11 +232,12 @@ def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, flo
     most = far_apart(system, contact, start, end, h, work)
     if most < 0.0:
         return CLEAR, h
-    touching = False
-    for j in range(active.count[0]):
-        touching = touching or active.points[j].contact == c
+    touching = touches_already(system, active, c)
     tiny = 4.0 * max(controls.gap * smaller(contact), round_off_of_both(contact, end))
     count = find_touches(system, contact, end, REACH * smaller(contact), work)
+    if count == 0:
+        hidden = touching or contact.surface > 0
+        return (CLEAR, h) if hidden else passage_hidden(system, contact, start, most, h, work)
     least, rate = lowest_open(system, contact, c, count, active, end, work)
     nearest = nearest_touch(work, count)
     if touching:
@@ -265,7 +267,7 @@ def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, flo
     feature = nearest.feature
     if last >= h:
         return CLEAR, h
-    count = find_touches(system, contact, start, 0.0, work)
+    count = list_touches(system, contact, start, 0.0, work)
     nearest = nearest_touch(work, count)
     first = time_apart(system, contact, nearest.normal, 1.0, start, most, h)
     sag = 0.125 * most * h * h
@@ -280,6 +282,38 @@ def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, flo
     if first + last < h * (1.0 - 1e-12) and bends and leaving == 0:
         return UNSURE, first
     return CLEAR, first
+
+
+@kernel
+def touches_already(system, active, c):
+    """Return whether a row has active points, or its body has some on the same level surface."""
+    contact = system.contacts[c]
+    for j in range(active.count[0]):
+        d = active.points[j].contact
+        if d == c:
+            return True
+        if contact.first_level < contact.last_level and related(system, c, d):
+            return True
+    return False
+
+
+@kernel
+def passage_hidden(system, contact, start, most, h, work):
+    """Return the verdict for a solid whose nearest points at the end belong to a level surface.
+
+    If they belonged to the same one at the start, the row of the surface decides.
+    """
+    end, hidden = work.trial, work.pair.state[0].hidden
+    if find_touches(system, contact, start, 0.0, work) == 0:
+        if work.pair.state[0].hidden == hidden:
+            return CLEAR, h
+    count = list_touches(system, contact, end, 0.0, work)
+    last = time_apart(system, contact, nearest_touch(work, count).normal, -1.0, end, most, h)
+    count = list_touches(system, contact, start, 0.0, work)
+    first = time_apart(system, contact, nearest_touch(work, count).normal, 1.0, start, most, h)
+    bends = 0.125 * most * h * h > MISSED * smaller(contact)
+    bends = bends or way_past(contact, start, end, h) > SHORT * smaller(contact)
+    return (UNSURE, first) if first + last < h * (1.0 - 1e-12) and bends else (CLEAR, first)
 
 
 @kernel

@@ -14,6 +14,7 @@ from carom.collision.layout import Placed, Plane
 from carom.collision.plane import plane_unit
 from carom.collision.touch import touch_unit
 from carom.contact.drift import drift_of_solids
+from carom.contact.level import keep_real_touches
 from carom.contact.place_of_other import on_half_space
 from carom.contact.rim import same_point
 from carom.contact.roll import roll_on_plane
@@ -27,7 +28,16 @@ ACTIVE_REACH = 0.2  # the same for active points, which stay active in the itera
 
 @kernel
 def find_touches(system, contact, state, reach, work):
-    """Write the points of a contact into work.touches; return how many."""
+    """Write the points of a contact that count into work.touches; return how many, perhaps none."""
+    count = list_touches(system, contact, state, reach, work)
+    if contact.first_level < contact.last_level:
+        return keep_real_touches(system, contact, state, work)
+    return count
+
+
+@kernel
+def list_touches(system, contact, state, reach, work):
+    """Write the points of a contact into work.touches, also those that a level surface hides; return how many."""
     solid, body, pose = system.solids[contact.solid], state[contact.body], work.solid_pose
     place(solid, body.x, body.Q, pose[0, :3], pose[0, 3:])
     a = Placed(solid, pose[0, :3], pose[0, 3:])
@@ -127,7 +137,7 @@ def which_touch(system, contact, count, feature, p, state, work):
 @unit
 def _place_pair(system, contact, feature, p, state, point, work):
     """Write the found point that has the feature, or the point that replaces it."""
-    count = find_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+    count = list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
     i = which_touch(system, contact, count, feature, p, state, work)
     write_touch(contact, work.touches[i], state, point)
 

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.collision.layout import Hulls
+from carom.collision.level_surface import Levels
 from carom.scene import joints
 
 #: kinds of joints in kernels
@@ -218,6 +219,13 @@ CONTACT = [
     ("other_last", "i8"),
     ("solid", "i8"),  # the two solids, if `touches` is 1; coordinate of a stop
     ("other_solid", "i8"),
+    # 1 + the number of the level surface that the row stands for (`carom.contact.level`), 0 for other rows
+    ("surface", "i8"),
+    (
+        "first_level",
+        "i8",
+    ),  # range of its faces; of a static solid, range of its surfaces in `Levels.own`
+    ("last_level", "i8"),
     ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
     ("multiple", "i8"),  # 1: its pair has impacts of its own, one after another
     ("ball_like", "i8"),  # 1 if one of the two is a ball or an ellipsoid
@@ -344,4 +352,5 @@ class System(NamedTuple):
     vertices: np.ndarray  # (V, 3) of all contacts, body axes
     solids: np.recarray  # SOLID of `carom.collision`, of bodies that may touch each other
     hulls: Hulls
+    levels: Levels  # faces of static solids in one plane
     solver: Solver

@@ -78,9 +78,10 @@ def compile_scene(
         touching.vertices,
         touching.solids,
         touching.hulls,
+        touching.levels,
         solver,
     )
-    return Compiled(system, start, to_principal, flipped, functions, *touching[4:])
+    return Compiled(system, start, to_principal, flipped, functions, *touching[5:])
 
 
 def with_pairs(compiled: Compiled, scene: Scene, options: Options, found: np.ndarray) -> Compiled:

@@ -9,10 +9,12 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom.collision.layout import SOLID, Hulls, no_hulls, solid_table
+from carom.collision.level_surface import Levels
 from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes
 from carom.model.arrays import CONTACT
 from carom.model.contact_rows import Rows, contact_rows, first_pairs
+from carom.model.level_surfaces import find_levels, with_level_rows
 from carom.model.cores import Cores, new_cores, singly, swollen_alike
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, meeting
@@ -39,6 +41,7 @@ class Contacts(NamedTuple):
     vertices: np.ndarray  # (V, 3)
     solids: np.recarray  # SOLID, of bodies whose points the kernels of pairs find
     hulls: Hulls
+    levels: Levels
     pairs: PairTable  # those of the rows, by number
     surfaces: Surfaces
     later: Defaults | None  # pairs of bodies that get rows when they come near each other
@@ -47,7 +50,8 @@ class Contacts(NamedTuple):
 def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool = False) -> Contacts:
     """Return the contacts of a scene.
 
-    A contact of two bodies has a row for each pair of pieces. A contact with a half-space has one row for all
+    A contact of two bodies has a row for each pair of pieces. Faces of static bodies in one plane have rows of
+    their own (`carom.model.level_surfaces`). A contact with a half-space has one row for all
     vertices of equal radius, and one for each curved piece. If bodies move `apart`, more rows may follow later.
     """
     known, later = first_pairs(scene, apart)
@@ -67,7 +71,8 @@ def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool =
     fastest = max((float(np.linalg.norm(body.velocity)) for body in scene.bodies), default=0.0)
     surfaces = Surfaces(grounded, single, len(own), place, fastest)
     rows = _rows(scene, options, pairs, which, surfaces)
-    return Contacts(rows, vertices, solids, hulls, known, surfaces, later)
+    rows, levels = with_level_rows(rows, *find_levels(scene, pairs, place))
+    return Contacts(rows, vertices, solids, hulls, levels, known, surfaces, later)
 
 
 def _with_statics(scene: Scene, pairs: PairTable) -> PairTable:

@@ -6,9 +6,10 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
-from carom.contact.closed_points import closed_within
+from carom.contact.closed_points import apart, closed_within
 from carom.contact.gap import slow
 from carom.contact.groups import label_groups
+from carom.contact.level import related
 from carom.contact.pair_point import (
     REACH,
     find_touches,
@@ -185,15 +186,26 @@ def _refresh_pairs(system, controls, active, state, work) -> bool:
         deactivate(active, i)
         active.contact_states[c].leaving = 0
         changed = True
-        near, still = closed_within(controls, contact, state), 10.0 * slow(contact, state)
-        for t in range(count):
-            touch = work.touches[t]
-            free = active.count[0] < active.points.shape[0]
-            if touch.gap > near or is_active(system, active, c, touch, state):
-                continue
-            if free and (not on_half_space(contact) or touch_rate(contact, touch, state) >= -still):
-                activate_touch(contact, c, touch, mode, state, active)
+        for d in range(system.contacts.shape[0]):
+            if related(system, c, d):
+                replace_points(system, controls, active, d, mode, state, work)
     return changed
+
+
+@kernel
+def replace_points(system, controls, active, c, mode, state, work):
+    """Activate the closed points of contact c, in place of a point that no longer exists."""
+    contact = system.contacts[c]
+    near, still = closed_within(controls, contact, state), 10.0 * slow(contact, state)
+    if apart(contact, state, near):
+        return
+    for t in range(find_touches(system, contact, state, REACH * smaller(contact), work)):
+        touch = work.touches[t]
+        free = active.count[0] < active.points.shape[0]
+        if touch.gap > near or is_active(system, active, c, touch, state):
+            continue
+        if free and (not on_half_space(contact) or touch_rate(contact, touch, state) >= -still):
+            activate_touch(contact, c, touch, mode, state, active)
 
 
 @kernel

@@ -21,6 +21,7 @@ from carom.contact.closed_points import write_closed
 from carom.contact.pair_point import (
     ACTIVE_REACH,
     find_touches,
+    list_touches,
     own_point,
     smaller,
     which_touch,
@@ -34,7 +35,7 @@ from carom.persistent.joint_rows import add_frictions
 FACE = (
     1e-3  # of the smaller body: points of a face that are no higher than that belong to its patch
 )
-WHOLE = 3  # points of a pair from which on it is a face, all of whose corners may carry
+WHOLE = 3  # points of two bodies from which on they are a face, all of whose corners may carry
 #: normals (a sine) and heights (of the size of the body) that differ by less are those of one plane
 LEVEL = 1e-6
 #: distance, of the size of the body, below which two corners are one, and one on a line between others is none
@@ -88,14 +89,16 @@ def _add_pair(system, active, i, state, k, group, work) -> int:
     """Add the points of two solids: of a face all its corners, else those of the active features."""
     c = active.points[i].contact
     contact, members = system.contacts[c], 0
-    for j in range(i, active.count[0]):
-        members += 1 if active.points[j].contact == c else 0
-    count = find_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+    for j in range(active.count[0]):
+        same = active.points[j].body == contact.body and active.points[j].other == contact.other
+        members += 1 if same else 0
     if members < WHOLE:
+        count = list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
         for j in range(i, active.count[0]):
             if active.points[j].contact == c:
                 k = add_nearest(system, active, j, count, state, k, group, work)
         return k
+    count = find_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
     least = math.inf
     for t in range(count):
         least = min(least, work.touches[t].gap)

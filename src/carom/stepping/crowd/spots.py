@@ -11,6 +11,7 @@ from carom.contact.pair_point import (
     ACTIVE_REACH,
     REACH,
     find_touches,
+    list_touches,
     own_point,
     smaller,
     which_touch,
@@ -215,7 +216,7 @@ def place_all(system, first_spot, k, state, crowd, points, work):
             i += 1
             continue
         first = i
-        count = find_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+        count = list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
         while i < k and crowd.spots[i].contact == c:
             spot = crowd.spots[i]
             t = which_touch(system, contact, count, spot.feature, spot.point, state, work)

@@ -98,6 +98,7 @@ def part_system(system, islands, i, solver):
         system.vertices,
         system.solids,
         system.hulls,
+        system.levels,
         solver,
     )
 

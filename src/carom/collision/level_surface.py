@@ -1,0 +1,155 @@
+"""Level surfaces: faces of static solids in one plane, which bound a solid without edges between them.
+
+A surface R is a union of convex faces. Near a point in the interior of R, the static solids fill the half-space
+below the plane, even where the point is on an edge between two faces. So a contact there has the normal of the
+plane, and its gap is the height above the plane. Only the rim of R, the parts of the edges beyond which no face
+continues, can obstruct.
+
+A side of a face is given by m and d, with m the unit normal in the plane that points into the face: a point q is
+at the depth m . q - d inside this side.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.decorators import kernel
+from carom._compiled.record_arrays import table
+
+ROOM = 4.0  # tolerances of a surface within which a point counts as on a face or on a rim
+ACROSS = 1e-9  # cosine above which a normal points along a face that continues beyond an edge
+
+SURFACE = [
+    ("normal", "f8", 3),
+    ("offset", "f8"),  # n . q of its points
+    ("tolerance", "f8"),  # two heights, and two edges, that differ by less are equal [m]
+    ("first", "i8"),  # range of the faces
+    ("last", "i8"),
+    ("first_rim", "i8"),  # range of the segments of the rim
+    ("last_rim", "i8"),
+]
+
+LEVEL_FACE = [
+    ("centre", "f8", 3),  # of a ball around it
+    ("reach", "f8"),
+    ("thickness", "f8"),  # of its solid below it
+    ("solid", "i8"),  # whose face it is
+    ("first", "i8"),  # range of the sides
+    ("last", "i8"),
+]
+
+LEVEL_SIDE = [
+    ("inward", "f8", 3),  # m
+    ("level", "f8"),  # d
+    ("corner", "f8", 3),  # at which it begins
+]
+
+RIM_SEGMENT = [("begin", "f8", 3), ("end", "f8", 3)]
+
+
+class Levels(NamedTuple):
+    """All level surfaces of a scene, in the world."""
+
+    surfaces: np.recarray  # (S,) SURFACE
+    faces: np.recarray  # (F,) LEVEL_FACE
+    sides: np.recarray  # (K,) LEVEL_SIDE
+    rims: np.recarray  # (E,) RIM_SEGMENT
+    own: np.ndarray  # (O,) surfaces of which a static solid has faces, solid by solid
+
+
+def no_levels() -> Levels:
+    """Return the level surfaces of a scene that has none."""
+    return Levels(
+        table(SURFACE, 0),
+        table(LEVEL_FACE, 0),
+        table(LEVEL_SIDE, 0),
+        table(RIM_SEGMENT, 0),
+        np.zeros(0, dtype=np.int64),
+    )
+
+
+@kernel
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@kernel
+def height(surface, q):
+    """Return the height of a point above the plane of a surface."""
+    return _dot(surface.normal, q) - surface.offset
+
+
+@kernel
+def depth_in_face(levels, face, q):
+    """Return the distance of a point from the nearest side of a face, negative outside."""
+    least = math.inf
+    for k in range(face.first, face.last):
+        side = levels.sides[k]
+        least = min(least, _dot(side.inward, q) - side.level)
+    return least
+
+
+@kernel
+def face_below(levels, first, last, q, tolerance):
+    """Return the first of a range of faces in whose column a point is, -1 for none."""
+    for i in range(first, last):
+        face, d2 = levels.faces[i], 0.0
+        for k in range(3):
+            d2 += (q[k] - face.centre[k]) ** 2
+        near = d2 <= (face.reach + tolerance) ** 2
+        if near and depth_in_face(levels, face, q) >= -tolerance:
+            return i
+    return -1
+
+
+@kernel
+def distance_from_rim(levels, surface, q):
+    """Return the distance of a point from the rim of a surface; infinite if there is no rim."""
+    least = math.inf
+    for i in range(surface.first_rim, surface.last_rim):
+        a, b = levels.rims[i].begin, levels.rims[i].end
+        u = (b[0] - a[0], b[1] - a[1], b[2] - a[2])
+        v = (q[0] - a[0], q[1] - a[1], q[2] - a[2])
+        t = max(0.0, min(1.0, _dot(u, v) / _dot(u, u)))
+        v = (v[0] - t * u[0], v[1] - t * u[1], v[2] - t * u[2])
+        least = min(least, _dot(v, v))
+    return math.sqrt(least)
+
+
+@kernel
+def carries(levels, surface, first, last, q, gap, rounding):
+    """Return whether the faces from `first` to `last` carry a point with this foot q and gap.
+
+    `rounding` is the radius of curvature of the body there.
+
+    A point below the plane is carried if the way out through the plane is the shortest: shorter than that through
+    the rim, and than that through the back of the solid.
+    """
+    room = ROOM * surface.tolerance
+    i = face_below(levels, first, last, q, room)
+    if i < 0:
+        return False
+    if gap >= -room:
+        return True
+    if -gap > 0.5 * levels.faces[i].thickness:
+        return False
+    return -gap - rounding <= distance_from_rim(levels, surface, q)
+
+
+@kernel
+def continues(levels, surface, q, m):
+    """Return whether a face through q continues along m, so that m is no normal of the surface at q."""
+    room = ROOM * surface.tolerance
+    for i in range(surface.first, surface.last):
+        face = levels.faces[i]
+        if face_below(levels, i, i + 1, q, room) < 0:
+            continue
+        for k in range(face.first, face.last):
+            p = levels.sides[k].corner
+            along = m[0] * (p[0] - q[0]) + m[1] * (p[1] - q[1]) + m[2] * (p[2] - q[2])
+            if along > ACROSS * face.reach + room:
+                return True
+    return False

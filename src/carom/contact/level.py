@@ -1,0 +1,148 @@
+"""Contacts with level surfaces: which of the points found count, and for which row of contacts.
+
+The row of a surface is that of a half-space whose points count only where faces of the surface are below them.
+A row of a static solid has its points on a level surface only at the rim, and only with normals that the whole
+surface has there. So each point counts once, an edge between two level faces is nothing, and a body that passes it
+moves as on one plane.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
+from carom.collision.features import VERTEX_A
+from carom.collision.level_surface import (
+    ROOM,
+    carries,
+    continues,
+    distance_from_rim,
+    face_below,
+    height,
+)
+from carom.collision.layout import CYLINDER, ELLIPSOID
+from carom.contact.parting import height as farthest
+from carom.geometry.rotation import rotate_back
+
+ON_PLANE = 1.0 - 1e-12  # cosine from which on a normal is that of the plane
+BACK = -0.5  # cosine to the normal of a surface below which a contact is with the back of a solid
+
+
+@unit
+def keep_real_touches(system, contact, state, work) -> int:
+    """Keep the touches that count, note their surfaces, and return their number."""
+    pair, kept = work.pair.state[0], 0
+    count, pair.hidden = pair.total, 0
+    for i in range(count):
+        touch = work.touches[i]
+        touch.surface = 0
+        if contact.surface > 0:
+            counts = on_surface(system, contact, touch)
+        else:
+            hidden = hiding_surface(system, contact, touch, state)
+            counts = hidden < 0
+            pair.hidden = pair.hidden if counts else 1 + hidden
+        if counts:
+            if kept < i:
+                work.touches[kept] = work.touches[i]
+            kept += 1
+    pair.total = kept
+    return kept
+
+
+@kernel
+def on_surface(system, contact, touch):
+    """Return whether a point of a half-space is above the faces of the row of a level surface."""
+    touch.surface = contact.surface
+    surface = system.levels.surfaces[contact.surface - 1]
+    first, last = contact.first_level, contact.last_level
+    rounding = rounding_of(system.solids[contact.solid])
+    return carries(system.levels, surface, first, last, touch.on_b, touch.gap, rounding)
+
+
+@kernel
+def rounding_of(solid):
+    """Return the least radius of curvature of the lowest points of a solid."""
+    round_core = solid.kind == CYLINDER or solid.kind == ELLIPSOID
+    return solid.radius + (min(solid.half[0], solid.half[1]) if round_core else 0.0)
+
+
+@kernel
+def hiding_surface(system, contact, touch, state):
+    """Return the surface that hides a point of a static solid, -1 for none."""
+    for k in range(contact.first_level, contact.last_level):
+        s = system.levels.own[k]
+        if hides(system, contact, s, touch, state):
+            return s
+    return -1
+
+
+@kernel
+def hides(system, contact, s, touch, state):
+    """Return whether surface s hides a point of a static solid, or else note that the point lies on it.
+
+    It does if the row of the surface has the point, or if the whole surface has no such normal there.
+    """
+    levels, surface, q, m = system.levels, system.levels.surfaces[s], touch.on_b, touch.normal
+    room, n = ROOM * surface.tolerance, surface.normal
+    along, above = n[0] * m[0] + n[1] * m[1] + n[2] * m[2], height(surface, q)
+    if above > room or along < BACK:
+        return False
+    sunk = max(0.0, -lowest(system, contact, surface, state))
+    if above < -(room + sunk):
+        return False
+    below = face_below(levels, surface.first, surface.last, q, room)
+    if below < 0:
+        return False
+    flat = along > ON_PLANE
+    if flat and touch.feature >> 60 in (0, VERTEX_A):
+        rounding = rounding_of(system.solids[contact.solid])
+        return carries(levels, surface, surface.first, surface.last, q, touch.gap, rounding)
+    if sunk > 0.5 * levels.faces[below].thickness:
+        return False
+    if distance_from_rim(levels, surface, q) > 2.0 * room or continues(levels, surface, q, m):
+        return True
+    if flat and levels.faces[below].solid != contact.other_solid:  # the other solid has it
+        return True
+    touch.surface = s + 1 if flat else touch.surface
+    return False
+
+
+@kernel
+def lowest(system, contact, surface, state):
+    """Return the least height of the body of a row above a surface, negative inside."""
+    body, n = state[contact.body], surface.normal
+    q, x = body.Q, body.x
+    nx, ny, nz = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
+    solid = system.solids[contact.solid]
+    return height(surface, x) - farthest(solid, system.hulls, -nx, -ny, -nz) - solid.radius
+
+
+@kernel
+def is_on(levels, contact, s):
+    """Return whether a row stands for surface s, or for a solid that has faces of it."""
+    if contact.surface > 0:
+        return contact.surface - 1 == s
+    for k in range(contact.first_level, contact.last_level):
+        if levels.own[k] == s:
+            return True
+    return False
+
+
+@kernel
+def share_surface(levels, a, b):
+    """Return whether two rows, of one body, have a level surface in common."""
+    if a.surface > 0:
+        return is_on(levels, b, a.surface - 1)
+    for k in range(a.first_level, a.last_level):
+        if is_on(levels, b, levels.own[k]):
+            return True
+    return False
+
+
+@kernel
+def related(system, c, d):
+    """Return whether two rows are the same, or of the same piece of a body on the same level surface."""
+    if c == d:
+        return True
+    a, b = system.contacts[c], system.contacts[d]
+    return a.body == b.body and a.solid == b.solid and share_surface(system.levels, a, b)
