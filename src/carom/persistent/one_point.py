@@ -24,6 +24,7 @@ from carom.kinematics.contact_point import (
 from carom.model.event_rows import begin_event, end_event
 from carom.model.records import PERSIST, SLIPS, STICKS
 from carom.persistent.active_set import activate
+from carom.persistent.bounces import bounces_end, horizon_of
 from carom.persistent.events import braked
 from carom.persistent.jam import JAMMED, note_jam, presses, yields
 
@@ -48,6 +49,7 @@ def activate_one(model, data, horizon):
     if contact.touches != 0:
         d = drift(system, contact, closed_point.feature, closed_point.point, point, state, work)
         a = (a[0] + d[0], a[1] + d[1], a[2] + d[2])
+    horizon = horizon_of(contact, model.controls, -a[0], horizon)
     if not bounces_end(contact, u[0], -a[0], still, horizon):
         return
     begin_event(system, closed_point.contact, closed_point.feature, state, clock, records)
@@ -79,21 +81,6 @@ def renew_mode_of_one(model, data, active_point):
     if begin_contact(model, data, contact, active_point, stop, (0.0, 0.0, 0.0), math.inf):
         find_mode(model, data, contact, active_point)
     end_event(system, STICKS if active_point.mode == STICK else SLIPS, state, clock, records)
-
-
-@kernel
-def bounces_end(contact, rate, g, still, horizon):
-    """Return whether the bounces of a contact with exit speed `rate` and acceleration g end by `horizon`."""
-    if not (g > 0.0 and rate >= -still):
-        return False
-    return rate <= still or time_of_bounces(contact, rate, g) < horizon
-
-
-@kernel
-def time_of_bounces(contact, rate, g):
-    """Return the time 2 u/(g (1 - e)) that bounces take."""
-    e = contact.restitution
-    return 2.0 * rate / (g * (1.0 - e)) if e < 1.0 else math.inf
 
 
 @kernel

@@ -55,7 +55,7 @@ def propose_step(model, data):
     if data.active.count[0] > 0:
         dt = until_bounces_end(data.active, until_stop(model.controls, data.active, dt, clock))
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
-    search.effort = clock.effort
+    search.effort, search.counted = clock.effort, clock.counted
     search.eager = 1 if clock.in_moment < MANY else 0
 
 
@@ -127,11 +127,14 @@ def trial_step(model, data, method):
     search.alone = friction  # of points that are the only active ones of their bodies
     clock.trials += 1
     clock.tries += 1
+    clock.counted += 1.0
     clock.effort += plain_step(system) if system.joints.shape[0] > 0 else 0.0
     charge_searches(clock, work)
     clock.since += 1.0 + now.shape[0] + active.contact_states.shape[0]
     retry = controls.retry == 1
-    if retry and (clock.tries > TRIES or clock.effort > affordable(controls, clock)):
+    if retry and controls.order == 0 and clock.tries > TRIES:
+        return TOO_MANY
+    if retry and clock.effort > affordable(controls, clock):
         return TOO_MANY
     if active.count[0] > 0 and code == 0:
         end_forces(system, active, work.trial, work)

@@ -1,0 +1,44 @@
+"""The bounces of a contact that are not resolved: their number is infinite, and their height negligible.
+
+After an impact with exit speed u_n, a contact whose free acceleration of approach is g_i bounces for the time
+
+    t_i = 2 u_n / (g_i (1 - e)),
+
+which is exact if g_i is constant. With a given step, bounces that end within the step are not resolved. With
+tolerances, those that end within the time of one bounce as high as the tolerance,
+
+    t_i < (8 tol / g_i)^1/2,   tol = atol + rtol L,   so   u_n^2 / (2 g_i) < (1 - e)^2 tol,
+
+with the acceleration of the contact at that moment and the size L of its smaller body.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.contact.pair_point import smaller
+
+
+@kernel
+def horizon_of(contact, controls, g, horizon):
+    """Return the time within which bounces must end to be left out: `horizon`, or by the tolerance."""
+    if controls.order == 0:
+        return horizon
+    tolerance = controls.atol + controls.rtol * smaller(contact)
+    return math.sqrt(8.0 * tolerance / g) if g > 0.0 else 0.0
+
+
+@kernel
+def bounces_end(contact, rate, g, still, horizon):
+    """Return whether the bounces of a contact with exit speed `rate` and acceleration g end by `horizon`."""
+    if not (g > 0.0 and rate >= -still):
+        return False
+    return rate <= still or time_of_bounces(contact, rate, g) < horizon
+
+
+@kernel
+def time_of_bounces(contact, rate, g):
+    """Return the time 2 u/(g (1 - e)) that bounces take."""
+    e = contact.restitution
+    return 2.0 * rate / (g * (1.0 - e)) if e < 1.0 else math.inf
