@@ -133,12 +133,10 @@ class Case:
         shape, lying = body(self.body, rng)
         yaw = np.array(carom.euler("z", 0.0 if rng.random() < 0.3 else rng.uniform(0.0, 360.0)))
         pose = quaternion.multiply(yaw, lying)
-        low = float(shape.support(quaternion.rotate_back(pose, np.array([0, 0, -1.0]))) @ quaternion.rotate_back(pose, np.array([0, 0, -1.0])))
-        x = np.array([0.0, 0.0, low])
-        v = np.append(rng.normal(size=2), 0.0)
-        v *= rng.uniform(0.3, 2.5) / np.linalg.norm(v)
-        w = np.zeros(3)
-        if self.up:
+        low = float(shape.support(quaternion.rotate_back(pose, np.array([0, 0, -1.0]))) @
+        quaternion.rotate_back(pose, np.array([0, 0, -1.0]))) x = np.array([0.0, 0.0, low]) v =
+        np.append(rng.normal(size=2), 0.0) v *= rng.uniform(0.3, 2.5) / np.linalg.norm(v) w = np.zeros(3) if
+        self.up:
             v, x = np.array([2.0, 0.0, 0.0]), x - (0.5, 0.0, 0.0)
         if self.motion == "slide with spin":
             w = np.array([0.0, 0.0, rng.normal() * 4.0])

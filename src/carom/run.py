@@ -77,6 +77,7 @@ class Run:
             step = time_of_bounces(system, self.tolerances, step)
         self.controls = Controls(
             step=step,
+            pull=float(np.linalg.norm(system.gravity)),
             interval=self.grid.interval,
             duration=settings.duration,
             location=LOCATIONS[settings.impact_location],

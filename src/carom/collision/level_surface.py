@@ -5,8 +5,8 @@ below the plane, even where the point is on an edge between two faces. So a cont
 plane, and its gap is the height above the plane. Only the rim of R, the parts of the edges beyond which no face
 continues, can obstruct.
 
-A side of a face is given by m and d, with m the unit normal in the plane that points into the face: a point q is
-at the depth m . q - d inside this side.
+A side of a face is given by m and d, with m the unit normal in the plane that points into the face: a point q
+is at the depth m . q - d inside this side.
 """
 
 from __future__ import annotations
@@ -125,8 +125,8 @@ def carries(levels, surface, first, last, q, gap, rounding):
 
     `rounding` is the radius of curvature of the body there.
 
-    A point below the plane is carried if the way out through the plane is the shortest: shorter than that through
-    the rim, and than that through the back of the solid.
+    A point below the plane is carried if the way out through the plane is the shortest: shorter than that
+    through the rim, and than that through the back of the solid.
     """
     room = ROOM * surface.tolerance
     i = face_below(levels, first, last, q, room)

@@ -10,7 +10,8 @@ LOCATE, PROJECT, WORK = range(3)  # treatment of an impact within a step
 class Controls(NamedTuple):
     """Settings of a run, as numbers."""
 
-    step: float  # or, with tolerances, the time in which bounces are too small to matter
+    step: float  # or, with tolerances, the time of a bounce as high as the tolerance, of an island
+    pull: float  # acceleration of gravity; with tolerances also by applied forces, of an island [m/s^2]
     interval: float  # the longest step of the run
     duration: float
     location: int  # LOCATE, PROJECT or WORK

@@ -2,12 +2,12 @@
 
 Two faces are level if each corner of one is within the tolerance LEVEL times the size of the larger solid from
 the plane of the other, and their normals agree. A surface is a set of level faces that are joined: each touches
-another one, with a crack of at most the same tolerance. So a step or a crack above 1e-9 of the size of a solid is
-an obstacle. Solids whose edges are rounded have none: there is a groove between them.
+another one, with a crack of at most the same tolerance. So a step or a crack above 1e-9 of the size of a solid
+is an obstacle. Solids whose edges are rounded have none: there is a groove between them.
 
 A body has one row for each surface, as for a half-space whose points count only above the faces
-(`carom.contact.level`). Where the laws of contact differ, each part of a surface with one law has its own row. The
-rows of the solids themselves then have only contacts at the rims, and at other faces.
+(`carom.contact.level`). Where the laws of contact differ, each part of a surface with one law has its own row.
+The rows of the solids themselves then have only contacts at the rims, and at other faces.
 """
 
 from __future__ import annotations
@@ -67,7 +67,8 @@ class Region(NamedTuple):
 def find_levels(scene: Scene, pairs: PairTable, place: np.ndarray) -> tuple[Levels, list[Region]]:
     """Return the level surfaces of a scene, and their regions.
 
-    In `pairs`, static bodies have the numbers after those of bodies that move; `place` has the first solid of each.
+    In `pairs`, static bodies have the numbers after those of bodies that move; `place` has the first solid of
+    each.
     """
     laws = _laws_of_statics(scene, pairs)
     faces = _bare([face for face in _faces(scene, place) if laws[face.static][0]])
@@ -146,7 +147,9 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _near(faces: list[Face], facing: float) -> Iterator[tuple[int, int]]:
-    """Return pairs i < j of faces in about one plane whose balls touch; `facing` is 1 or -1 for opposite normals."""
+    """Return pairs i < j of faces in about one plane whose balls touch; `facing` is 1 or -1 for opposite
+    normals.
+    """
     normals = np.array([face.normal for face in faces]).reshape(-1, 3)
     centres = np.array([face.centre for face in faces]).reshape(-1, 3)
     reaches = np.array([face.reach for face in faces])

@@ -1,10 +1,32 @@
-"""Bounces that are left out: whether they end within a time, and the name of the energy that they take."""
+"""The bounces of a contact that are not resolved: their number is infinite, and their height negligible.
+
+After an impact with exit speed u_n, a contact whose free acceleration of approach is g_i bounces for the time
+
+    t_i = 2 u_n / (g_i (1 - e)),
+
+which is exact if g_i is constant. With a given step, bounces that end within the step are not resolved. With
+tolerances, those that end within the time of one bounce as high as the tolerance,
+
+    t_i < (8 tol / g_i)^1/2,   tol = atol + rtol L,   so   u_n^2 / (2 g_i) < (1 - e)^2 tol,
+
+with the acceleration of the contact at that moment and the size L of its smaller body.
+"""
 
 from __future__ import annotations
 
 import math
 
 from carom._compiled.decorators import kernel
+from carom.contact.pair_point import smaller
+
+
+@kernel
+def horizon_of(contact, controls, g, horizon):
+    """Return the time within which bounces must end to be left out: `horizon`, or by the tolerance."""
+    if controls.order == 0:
+        return horizon
+    tolerance = controls.atol + controls.rtol * smaller(contact)
+    return math.sqrt(8.0 * tolerance / g) if g > 0.0 else 0.0
 
 
 @kernel

@@ -1,10 +1,10 @@
 """A step of bodies in persistent contact: one right-hand side, three members, for every group.
 
 "The contact is modeled as a bilateral constraint up to a point where separation of the contacting bodies
-occurs": between events a group in contact moves as Eq. (4) with more rows (`carom.persistent.rows`). The explicit
-member takes a step while modes last, the implicit one where slip is stiff, begins, ends or turns about a corner,
-and where its step falls below the length in which friction cannot move a body by its tolerance, one time-stepping
-step closes. (Mathematics page, persistent contact; `docs/development/a_step.md`.)
+occurs": between events a group in contact moves as Eq. (4) with more rows (`carom.persistent.rows`). The
+explicit member takes a step while modes last, the implicit one where slip is stiff, begins, ends or turns about
+a corner, and where its step falls below the length in which friction cannot move a body by its tolerance, one
+time- stepping step closes. (Mathematics page, persistent contact; `docs/development/a_step.md`.)
 """
 
 from __future__ import annotations

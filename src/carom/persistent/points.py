@@ -7,8 +7,8 @@ moves) in one plane are a patch; only the corners of its convex hull carry, each
     k_i = half of the two sides next to it, over the perimeter.
 
 A corner that splits into two at an edge, or two that merge, change no sum of forces. A line has weights 1/2,
-1/2, a single point 1. A point presses like a spring: its compliance is (1/m_a + 1/m_b)/k_i, in units so small that
-only the ratios matter (`carom.persistent.springs`). (Mathematics page, persistent contact.)
+1/2, a single point 1. A point presses like a spring: its compliance is (1/m_a + 1/m_b)/k_i, in units so small
+that only the ratios matter (`carom.persistent.springs`). (Mathematics page, persistent contact.)
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ from carom.kinematics.contact_point import contact_velocity
 from carom.model.event_rows import begin_event, end_event
 from carom.model.records import OPENS, PERSIST, SLIPS, STICKS
 from carom.persistent.active_set import activate, any_turning, deactivate, set_anchor
-from carom.persistent.bounces import bounces_end, name_work, spare, time_of_bounces
+from carom.persistent.bounces import bounces_end, horizon_of, name_work, spare, time_of_bounces
 from carom.persistent.forces import pose_forces, solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among, note_jam
 from carom.persistent.return_to_surfaces import onto_surfaces
@@ -93,7 +93,8 @@ def judge(model, data, k, horizon):
             contact, u = system.contacts[group.closed[i].contact], group.v[U][3 * i]
             a = group.v[OLD][3 * i]
             if group.closed[i].stays == 0:
-                if bounces_end(contact, u, -a, slow(contact, state), horizon):
+                end = horizon_of(contact, model.controls, -a, horizon)
+                if bounces_end(contact, u, -a, slow(contact, state), end):
                     group.closed[i].stays, more = 1, True
                     group.closed[i].bounces = time_without_torque(contact, u, -a, state)
             elif turn == 0 and not a <= 1e-10 * push:
@@ -147,7 +148,9 @@ def end_bounces(model, data, k, label, horizon):
         still = max(still, controls.rest * controls.step * abs(group.v[C][i]))
     still = min(still, LITTLE * speed)
     for i in range(k):
-        group.closed[i].stopped = 0 if time_to_stop(i, group) > horizon else 1
+        contact = system.contacts[group.closed[i].contact]
+        end = horizon_of(contact, controls, -group.v[C][3 * i], horizon)
+        group.closed[i].stopped = 0 if time_to_stop(i, group) > end else 1
     x = group.v[OLD]
     find_pull(k, 1, group)
     normal, tangential = work_of_pull(k, group)

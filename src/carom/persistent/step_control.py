@@ -114,7 +114,7 @@ def turns_far(system, active, start, end, dt):
 @kernel
 def unsolved(system, controls, work, part):
     """Return whether the residual of the last trial step exceeds `part` of the speed that gravity gives."""
-    gained = controls.step * norm(system.gravity)
+    gained = controls.step * controls.pull
     return gained > 0.0 and not work.result[0].residual <= part * gained
 
 

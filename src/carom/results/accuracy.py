@@ -27,6 +27,9 @@ INACCURATE = 100.0  # relative to the tolerance: a run with a larger error is no
 DEEP, TOO_DEEP = 1e-8, 1e-2
 # residual of contacts, relative to the greatest speed, that gives a warning, and that is no success
 POOR, TOO_POOR = 1e-2, 0.1
+# displacement that a time-stepping step of few bodies may misplace, relative to the size of a body: beyond it a
+# run with tolerances is no success
+TOO_FAR = 0.1
 
 _WHAT = {
     RESIDUAL: (
@@ -48,17 +51,31 @@ _WHAT = {
     ),
 }
 
+_WHY = {
+    1: "a contact problem was not solved, or lost too much energy",
+    2: "a step was cut too often",
+    3: "events follow each other without end, or need too many trial steps",
+    6: "an impact could not be solved",
+}
+_OTHER = "they could not be moved from event to event"
+
 
 def beyond(i: int, watch: np.record | np.ndarray, times: float = 1.0):
-    """Return whether the energy error of a kind exceeds `times` the tolerance; for one record, or an array."""
-    allowed = watch["tolerance"] * watch["exchanged"] * times + ROUND_OFF * watch["size"]
+    """Return whether the energy error of a kind exceeds `times` the tolerance; for one record, or an array.
+
+    The work that applied forces could do over the allowed errors of positions is allowed too: at rest no energy
+    is exchanged, and its round-off is no error.
+    """
+    allowed = (watch["tolerance"] * watch["exchanged"] + watch["able"]) * times
+    allowed = allowed + ROUND_OFF * watch["size"]
     return ~(np.abs(watch["amount"][..., i]) <= allowed)
 
 
 def inaccurate(watch: np.record | np.ndarray):
     """Return whether runs are no success by energy, gaps and contact problems; for one record, or an array."""
     solved = watch["unsolved"] <= TOO_POOR * watch["speed"]
-    return beyond(ALL, watch, INACCURATE) | ~(watch["depth"] <= TOO_DEEP) | ~solved
+    bounded = watch["whole_error"] <= TOO_FAR
+    return beyond(ALL, watch, INACCURATE) | ~(watch["depth"] <= TOO_DEEP) | ~solved | ~bounded
 
 
 def sentences(
@@ -74,7 +91,19 @@ def sentences(
         kinds = [ALL]
     deep = [_of_depth(watch, scene, pairs)] if scene is not None and watch.depth > DEEP else []
     poor = [] if watch.unsolved <= POOR * watch.speed else [_of_contacts(watch)]
-    return (*(_sentence(i, watch) for i in kinds), *deep, *poor)
+    whole = [_of_whole(watch)] if watch.whole > 0 else []
+    return (*(_sentence(i, watch) for i in kinds), *deep, *poor, *whole)
+
+
+def _of_whole(watch: np.record) -> str:
+    """Return the sentence about time-stepping steps of a few bodies."""
+    why = _WHY.get(int(watch.whole_code), _OTHER)
+    return (
+        f"{watch.whole} time-stepping (Moreau) steps of up to {watch.whole_length:.3g} s, the first at t = "
+        f"{watch.whole_at:.6g} s of {watch.whole_bodies} bodies: {why}. Their "
+        f"impacts are at the ends of these steps: a body is misplaced by up to {watch.whole_error:.2g} of its "
+        "size. Give a shorter Options.max_step, or a step."
+    )
 
 
 def _of_contacts(watch: np.record) -> str:

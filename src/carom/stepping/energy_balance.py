@@ -37,6 +37,8 @@ GAIN, SHORTEST, IN_A_ROW = 0.25, 1.0 / 1024.0, 3
 # If the shortest step exceeds the limit, the limit grows by the factor WIDER
 SHARE, OF_ACTIVE, WIDER = 1e-3, 10.0, 4.0
 
+FEW = 10  # bodies: a time-stepping step of so few is named in the warnings; of more it is that of a crowd
+
 WATCH = [
     ("tolerance", "f8"),  # `Options.energy_tolerance`
     ("total", "f8"),  # kinetic and potential energy at the start
@@ -54,6 +56,22 @@ WATCH = [
     ("speed", "f8"),  # greatest speed of a body so far, plus the gain from gravity in a step [m/s]
     ("unsolved", "f8"),  # greatest residual of active contacts so far [m/s], and its time
     ("unsolved_at", "f8"),
+    (
+        "able",
+        "f8",
+    ),  # greatest work that applied forces could do over the allowed errors of positions
+    (
+        "whole",
+        "i8",
+    ),  # number of steps that events have given up, so that they were time-stepping steps
+    ("whole_at", "f8"),  # start of the first of these
+    ("whole_length", "f8"),  # length of the longest
+    (
+        "whole_error",
+        "f8",
+    ),  # bound of the displacements that they may misplace, relative to the size of a body
+    ("whole_bodies", "i8"),  # number of bodies and code of the first
+    ("whole_code", "i8"),
     ("gains", "i8"),  # shortest steps in a row that gained
     ("share", "f8"),  # allowed error of a step, as a part of the energy exchanged
 ]
@@ -80,6 +98,26 @@ def begin_watch(system, now, t, watch):
 
 
 @kernel
+def note_whole(system, controls, clock, code, bodies, watch):
+    """Note that a step was given up event by event, and becomes a time-stepping step.
+
+    Its impacts are at its end, so a body that it stops or turns round is misplaced by at most 2 V h, with the
+    greatest speed V so far.
+    """
+    if controls.order == 0 or bodies > FEW:
+        return
+    size = math.inf
+    for b in range(system.bodies.shape[0]):
+        size = min(size, system.bodies[b].extent)
+    speed = watch.speed + controls.pull * clock.length
+    watch.whole_error = max(watch.whole_error, 2.0 * speed * clock.length / size)
+    if watch.whole == 0:
+        watch.whole_at, watch.whole_bodies, watch.whole_code = clock.begin, bodies, code
+    watch.whole += 1
+    watch.whole_length = max(watch.whole_length, clock.length)
+
+
+@kernel
 def note_energies(system, now, clock):
     """Store the present energies; return the size of their terms."""
     clock.kinetic, clock.potential, size = energies(system, now, clock.now)
@@ -97,6 +135,7 @@ def watch_step(system, now, clock, records, watch):
     exchanged = max(exchanged, max(abs(clock.loads), abs(clock.impacts)))
     exchanged = max(exchanged, max(abs(clock.friction), abs(clock.bounces)))
     watch.exchanged, watch.size = exchanged, max(watch.size, size)
+    watch.able = max(watch.able, clock.able)
     watch.named += given_by_law(system, clock, records, watch)
     total = abs(residual)
     compare(RESIDUAL, residual, clock.now, watch)

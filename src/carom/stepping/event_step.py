@@ -22,11 +22,12 @@ from carom.impact.strike import strike
 from carom.kinematics.contact_point import contact_velocity
 from carom.model import records as r
 from carom.model.actions import NOTHING, PERSIST, STRIKE
-from carom.model.allowance import affordable
+from carom.model.allowance import SMOOTH, affordable
 from carom.model.arrays import STOP
 from carom.model.controls import LOCATE
 from carom.model.workspace import FREE
 from carom.persistent.active_set import is_active
+from carom.persistent.bounces import horizon_of
 from carom.persistent.events import (
     GAP,
 )
@@ -146,7 +147,9 @@ def accept_step(model, data):
         turn_modes(model, data)
     if search.found == 0:
         if controls.order > 0 and search.dt < 0.5 * search.pace:
-            clock.tries, clock.effort = 0, search.effort  # steps for tolerances do not count
+            clock.tries = 0  # steps for tolerances hardly count
+            clock.effort = search.effort + SMOOTH * (clock.effort - search.effort)
+            clock.counted = search.counted + SMOOTH * (clock.counted - search.counted)
         return 0, NOTHING
 
     # its event
@@ -200,7 +203,7 @@ def act(model, data, method, action):
         if controls.layer_time == 1 and clock.struck > struck:
             clock.spent += data.records.impact[struck].duration  # positions do not change
         contact = system.contacts[search.contact]
-        if closed == 1 and not may_end(contact, system, data.state, search.horizon, work):
+        if closed == 1 and not may_end(contact, system, controls, data.state, search.horizon, work):
             return 0
     return persist(model, data, action) if controls.hold == 1 else 0
 
@@ -322,7 +325,7 @@ def find_due_contact(system, controls, active, now, work):
 
 
 @inlined
-def may_end(contact, system, state, horizon, work):
+def may_end(contact, system, controls, state, horizon, work):
     """Return whether the bounces of a contact that has just struck, alone, could end within the horizon.
 
     This is a first check with a bound of the acceleration, before forces are computed.
@@ -335,4 +338,5 @@ def may_end(contact, system, state, horizon, work):
         return True
     work.body[contact.body].status = FREE
     _, most = greatest_acceleration(system, contact, state, work)
+    horizon = horizon_of(contact, controls, most, horizon)
     return 2.0 * rate < most * (1.0 - contact.restitution) * horizon

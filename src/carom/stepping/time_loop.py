@@ -8,6 +8,7 @@ from carom._compiled.decorators import by_reference, entry, inlined, kernel
 from carom._compiled.units import unit
 from carom.contact.depth import watch_depth
 from carom.dynamics.known_end import forget_end
+from carom.dynamics.local_scale import local_controls, note_scale
 from carom.impact.driven import BLOCKED
 from carom.model import records as r
 from carom.model.allowance import SAVED, of_step
@@ -15,7 +16,7 @@ from carom.model.controls import LOCATE
 from carom.model.data import Data, Model
 from carom.persistent.active_set import regroup
 from carom.stepping.crowd.step import step_crowd
-from carom.stepping.energy_balance import watch_step
+from carom.stepping.energy_balance import note_whole, watch_step
 from carom.stepping.event_step import NOT_FINITE, advance, is_whole, left_ball
 from carom.stepping.grid import begin_and_length, end_of, is_saved
 from carom.stepping.islands import one_island, parts
@@ -64,11 +65,16 @@ def run(model, data, method, islands, grid, until):
 def step_single(model, data, method, start):
     """Move all bodies to the end of the step together; return 0, AGAIN, or a code."""
     clock = data.clocks[0]
+    if start.begun[0] == 0:
+        note_scale(model.system, model.controls, data.state, clock, data.work)
     one_island.begin_single(model.system, data.active, data.state, data.clocks, data.work, start)
+    controls = local_controls(model.controls, clock)
+    local = by_reference(Model(model.system, controls))
     code = 0
     while code == 0 and clock.spent < clock.length:
-        code = move_single(model, data, method, start)
+        code = move_single(local, data, method, start)
         if code == 0:
+            parts.end_count(controls, clock, data.work)
             pay(clock)
     return AGAIN if code != 0 and retry_single(model, data, start, code) else code
 
@@ -94,7 +100,6 @@ def step_apart(model, data, method, islands) -> int:
             parts.part_work(data.work, islands, i),
         )
         state = islands.state[islands.first[0, i] : islands.first[0, i + 1]]
-        part = by_reference(Model(by_reference(system), model.controls))
         own = by_reference(
             Data(
                 state, by_reference(active), by_reference(work), data.group, data.multiple, data.crowd,
@@ -102,10 +107,14 @@ def step_apart(model, data, method, islands) -> int:
             )
         )  # fmt: skip
         if plan.entered == 0:  # if the loop was left within an island, it has been entered
-            parts.enter(part.system, own.active, data.active, own.work, islands, clock.begin, clock)
+            parts.enter(system, own.active, data.active, own.work, islands, clock.begin, clock)
             clock.first_touch = clock.touched
+            note_scale(system, model.controls, state, clock, own.work)
+        controls = local_controls(model.controls, clock)
+        part = by_reference(Model(by_reference(system), controls))
         code = move_island(part, own, method)
         if code == 0:
+            parts.end_count(controls, clock, own.work)
             parts.leave(own.active, islands)
             pay(clock)
     return AGAIN if code != 0 and retry_apart(model, data, islands, code) else code
@@ -201,9 +210,10 @@ def retry_single(model, data, start, code):
     clock = data.clocks[0]
     if code >= r.GROW or model.controls.retry == 0 or not may_be_whole(code):
         return False
-    if not one_island.give_up_single(clock.step, data.work):
+    if not one_island.give_up_single(model.controls, clock, data.work):
         return False
-    spent = clock.effort
+    note_whole(model.system, model.controls, clock, code, data.state.shape[0], data.watch[0])
+    spent = clock.effort if model.controls.order == 0 else 0.0
     one_island.forget_single(model.system, data.active, data.state, data.clocks, data.work, start)
     clock.credit = max(0.0, clock.credit - spent)
     return True
@@ -222,8 +232,11 @@ def retry_apart(model, data, islands, code):
     if again:
         islands.plan[0].widen *= 2.0
     elif model.controls.hold == 1 and may_be_whole(code):
-        again = parts.give_up(islands, clock.step, data.work)
-    spent = clock.effort
+        again = parts.give_up(model.controls, islands, clock, data.work)
+        if again:
+            bodies = parts.bodies_of_present(islands)
+            note_whole(model.system, model.controls, clock, code, bodies, data.watch[0])
+    spent = clock.effort if model.controls.order == 0 else 0.0
     parts.forget_step(data.active, data.clocks, islands)
     clock.credit = max(0.0, clock.credit - spent)
     return again

@@ -56,7 +56,7 @@ def propose_step(model, data):
         dt = until_bounces_end(data.active, until_stop(model.controls, data.active, dt, clock))
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
     data.work.result[0].stiff = 0
-    search.effort = clock.effort
+    search.effort, search.counted = clock.effort, clock.counted
     search.eager = 1 if clock.in_moment < MANY else 0
 
 
@@ -128,11 +128,14 @@ def trial_step(model, data, method):
     search.applied, search.friction, search.code = applied, friction, code
     clock.trials += 1
     clock.tries += 1
+    clock.counted += 1.0
     clock.effort += plain_step(system) if system.joints.shape[0] > 0 else 0.0
     charge_searches(clock, work)
     clock.since += 1.0 + now.shape[0] + active.contact_states.shape[0]
     retry = controls.retry == 1
-    if retry and (clock.tries > TRIES or clock.effort > affordable(controls, clock)):
+    if retry and controls.order == 0 and clock.tries > TRIES:
+        return TOO_MANY
+    if retry and clock.effort > affordable(controls, clock):
         return TOO_MANY
     if active.count[0] > 0 and code == 0:
         contact_step(model, data, method, search.dt)

@@ -15,7 +15,7 @@ from carom.dynamics.rotors import add_rates, note_rates
 from carom.friction.layout import P
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
-from carom.model.allowance import affordable
+from carom.model.allowance import affordable_whole
 from carom.model.arrays import STOP
 from carom.persistent.middle_state import halfway, spin_momentum
 from carom.stepping.crowd.pose import note_drift, pose
@@ -59,7 +59,7 @@ def find_impulses(model, data, k, h, fall, patient):
     crowd, work, clock, n = data.crowd, data.work, data.clocks[0], data.state.shape[0]
     pose(system, active, k, h, fall, now, crowd, work)
     tolerance = FINE * controls.rest * fall * h
-    effort = (patient, affordable(controls, clock) - clock.effort)
+    effort = (patient, affordable_whole(controls, clock) - clock.effort)
     gamma, residual = solve(system, crowd, k, n, tolerance, effort, clock)
     answer(system, k, gamma, crowd, work)
     gain(crowd, work)

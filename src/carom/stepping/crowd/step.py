@@ -21,7 +21,7 @@ from carom.dynamics.more_forces import note_turns
 from carom.dynamics.project import project_velocity
 from carom.geometry.rotation import norm
 from carom.model import records as r
-from carom.model.allowance import affordable
+from carom.model.allowance import affordable_whole
 from carom.persistent.joint_events import review_joints
 from carom.persistent.middle_state import power_of_path
 from carom.stepping.crowd.balance import energy_gained, off, slow_down, take_out, take_over
@@ -81,7 +81,9 @@ def step_crowd(model, data, method):
         dt = min(piece(system, now, controls.interval, clock.length - clock.spent), search.pace)
         while True:
             clock.tries += 1
-            expensive = clock.effort + DEAR * data.active.count[0] > affordable(controls, clock)
+            expensive = clock.effort + DEAR * data.active.count[0] > affordable_whole(
+                controls, clock
+            )
             patient = clock.tries <= CAREFUL and not expensive
             careful = patient and dt > SHORTEST * controls.interval
             result.code = move_on(model, data, method, dt, patient, careful)

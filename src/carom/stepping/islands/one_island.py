@@ -7,7 +7,7 @@ from carom.dynamics.explicit import copy_state
 from carom.dynamics.more_forces import begin_turns, forget_turns
 from carom.persistent.active_set import regroup
 from carom.persistent.joint_events import review_joints
-from carom.stepping.islands.parts import give_up_body
+from carom.stepping.islands.parts import begin_count, give_up_body
 
 
 @kernel
@@ -17,6 +17,7 @@ def begin_single(system, active, now, clocks, work, start):
         return
     clock = clocks[0]
     clock.first_touch, clock.tries, clock.effort = 0, 0, 0.0
+    begin_count(clock, work)
     work.pair.state[0].searches = 0
     clock.before = clock.impacts
     if start.state.shape[0] == 0:  # the step is never repeated in another way
@@ -33,12 +34,12 @@ def begin_single(system, active, now, clocks, work, start):
 
 
 @kernel
-def give_up_single(step, work):
+def give_up_single(controls, clock, work):
     """Give all bodies time-stepping steps, this one and some more; return False if they have them already."""
-    if work.body[0].whole_until > step:
+    if work.body[0].whole_until > clock.step:
         return False
     for b in range(work.body.shape[0]):
-        give_up_body(work.body[b], step)
+        give_up_body(controls, clock, work.body[b])
     return True
 
 

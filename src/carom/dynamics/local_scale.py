@@ -1,0 +1,97 @@
+"""The scale of time of an island in a run with tolerances, from the forces that act on it.
+
+The time of a bounce as high as the tolerance, T = (8 tol / a)^1/2, is a negligible time: within it a body that
+starts at rest moves by less than the tolerance. It replaces the length of the step where this is a measure of
+time. Its acceleration a is the greatest of the island: of gravity, and of the applied forces at the start of a
+step. Without both it is V^2 / L with the greatest speed V of the bodies by their kinetic energies, which free
+flight does not change, and their least size L. So T does not depend on the length of a step or of the run, nor
+on other bodies.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
+from carom.dynamics.energy import kinetic_energy
+from carom.dynamics.forces import applied_wrenches
+from carom.geometry.rotation import norm
+from carom.model.controls import Controls
+
+
+@kernel
+def note_scale(system, controls, state, clock, work):
+    """Write the scale of time and the acceleration of an island to the clock, at the start of a step."""
+    clock.scale, clock.pull, clock.able = controls.step, controls.pull, 0.0
+    if controls.order == 0 or system.contacts.shape[0] == 0:
+        return
+    size = least_size(system)
+    length = 8.0 * (controls.atol + controls.rtol * size)
+    clock.scale, clock.pull = controls.interval, pull_of(system, controls, state, clock, work)
+    if clock.pull > 0.0:
+        clock.scale = math.sqrt(length / clock.pull)
+        return
+    speed = greatest_speed(system, state)
+    if speed > 0.0:
+        clock.scale = math.sqrt(length * size) / speed
+
+
+@kernel
+def local_controls(controls, clock):
+    """Return the settings with the scale of time and the acceleration of the present island."""
+    return Controls(
+        clock.scale, clock.pull, controls.interval, controls.duration, controls.location, controls.gap,
+        controls.tie, controls.hold, controls.rest, controls.layer_steps, controls.layer_time,
+        controls.max_impacts, controls.max_cuts, controls.retry, controls.order, controls.rtol, controls.atol,
+    )  # fmt: skip
+
+
+@kernel
+def least_size(system):
+    """Return the least size of the bodies with contacts [m]."""
+    size = math.inf
+    for c in range(system.contacts.shape[0]):
+        size = min(size, system.bodies[system.contacts[c].body].extent)
+        if system.contacts[c].other >= 0:
+            size = min(size, system.bodies[system.contacts[c].other].extent)
+    return size
+
+
+@kernel
+def pull_of(system, controls, state, clock, work):
+    """Return the greatest acceleration of the bodies by gravity and applied forces [m/s^2]."""
+    pull = norm(system.gravity)
+    for b in range(state.shape[0]):
+        if system.bodies[b].ballistic == 0:
+            return max(pull, greatest_pull(system, controls, state, clock, work))
+    return pull
+
+
+@unit
+def greatest_pull(system, controls, state, clock, work) -> float:
+    """Return the greatest acceleration that applied forces give to a body, also of points by their torques.
+
+    The work that these forces could do over the allowed errors of the positions is written to the clock: their
+    sizes times atol + rtol L, and torques times the angle of this length at the distance L.
+    """
+    work.result[0].time, pull = clock.begin, 0.0
+    applied_wrenches(system, state, False, work)
+    for b in range(state.shape[0]):
+        body, f = system.bodies[b], work.body[b].wrench
+        turning = (
+            norm(f[3:]) * body.extent / max(body.inertia[0], max(body.inertia[1], body.inertia[2]))
+        )
+        pull = max(pull, norm(f[:3]) / body.mass + turning)
+        error = controls.atol + controls.rtol * body.extent
+        clock.able += error * (norm(f[:3]) + norm(f[3:]) / body.extent)
+    return pull
+
+
+@kernel
+def greatest_speed(system, state):
+    """Return the speed of the bodies by their kinetic energy and the least of their masses [m/s]."""
+    least = math.inf
+    for b in range(state.shape[0]):
+        least = min(least, system.bodies[b].mass)
+    return math.sqrt(2.0 * kinetic_energy(system, state) / least)
