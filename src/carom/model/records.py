@@ -216,7 +216,6 @@ def new_work(system: System, stages: int) -> Work:
         pair=new_pair_work(),
         touches=new_points(),
         solid_pose=np.zeros((2, 7)),
-        solid_rate=np.zeros((2, 3)),
         hit=table(HIT, 1),
         result=table(RESULT, 1),
         search=table(SEARCH, 1),

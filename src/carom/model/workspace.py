@@ -233,7 +233,6 @@ class Work(NamedTuple):
     pair: PairWork
     touches: np.recarray  # (8,) TOUCH_POINT of the last pair
     solid_pose: np.ndarray  # (2, 7) of its solids
-    solid_rate: np.ndarray  # (2, 3) velocities at its point, before and after
     hit: np.recarray  # (1,) HIT
     result: np.recarray  # (1,) RESULT
     search: np.recarray  # (1,) SEARCH

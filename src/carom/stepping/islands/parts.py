@@ -130,7 +130,6 @@ def part_work(work, islands, i):
         work.pair,
         work.touches,
         work.solid_pose,
-        work.solid_rate,
         work.hit,
         work.result,
         work.search,
