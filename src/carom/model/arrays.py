@@ -219,7 +219,10 @@ CONTACT = [
     ("other_solid", "i8"),
     # 1 + the number of the level surface that the row stands for (`carom.contact.level`), 0 for other rows
     ("surface", "i8"),
-    ("first_level", "i8"),  # range of its faces; of a static solid, range of its surfaces in `Levels.own`
+    (
+        "first_level",
+        "i8",
+    ),  # range of its faces; of a static solid, range of its surfaces in `Levels.own`
     ("last_level", "i8"),
     ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
     ("multiple", "i8"),  # 1: its pair has impacts of its own, one after another

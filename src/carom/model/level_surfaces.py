@@ -117,12 +117,12 @@ def _faces(scene: Scene, place: np.ndarray) -> Iterator[Face]:
             assert local is not None
             world = static.position + quaternion.rotate(static.orientation, local)
             for ring in BOX_RINGS if piece.kind == "box" else (r for _, r in piece.faces):
-                yield _face(int(place[len(scene.bodies) + s]) + k, s, piece, world, world[list(ring)])
+                yield _face(
+                    int(place[len(scene.bodies) + s]) + k, s, piece, world, world[list(ring)]
+                )
 
 
-def _face(
-    solid: int, static: int, piece: Piece, every: np.ndarray, corners: np.ndarray
-) -> Face:
+def _face(solid: int, static: int, piece: Piece, every: np.ndarray, corners: np.ndarray) -> Face:
     """Return a face with these corners, of a solid with these vertices."""
     sides = corners[[*range(1, len(corners)), 0]] - corners
     centre = corners.mean(axis=0)
@@ -133,12 +133,16 @@ def _face(
     reach = math.sqrt(np.max(np.sum((corners - centre) ** 2, axis=1)))
     levels = np.sum(inward * corners, axis=1)
     thickness = float(np.max((centre - every) @ normal))
-    return Face(solid, static, piece.extent, thickness, normal, corners, inward, levels, centre, reach)
+    return Face(
+        solid, static, piece.extent, thickness, normal, corners, inward, levels, centre, reach
+    )
 
 
 def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Return a x b, much faster than `numpy.cross` for few vectors; components are the first axis."""
-    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+    return np.array(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    )
 
 
 def _near(faces: list[Face], facing: float) -> Iterator[tuple[int, int]]:
@@ -221,7 +225,11 @@ def _rims(faces: list[Face]) -> tuple[float, np.ndarray]:
     rims, alone = [], _edges_of_one(faces, tolerance)
     for i, face in enumerate(faces):
         for k in alone[i]:
-            p, q, inward = face.corners[k], face.corners[(k + 1) % len(face.corners)], face.inward[k]
+            p, q, inward = (
+                face.corners[k],
+                face.corners[(k + 1) % len(face.corners)],
+                face.inward[k],
+            )
             length = math.sqrt((q - p) @ (q - p))
             far = np.sum((centres - 0.5 * (p + q)) ** 2, axis=1)
             near = np.flatnonzero(far <= (reaches + 0.5 * length + 8.0 * tolerance) ** 2)
@@ -253,9 +261,7 @@ def _same_edge(a: tuple[Face, int], b: tuple[Face, int], tolerance: float) -> bo
     """Return whether two edges, each of a face, have the same ends in reverse order."""
     (one, i), (other, j) = a, b
     ends = one.corners[[i, (i + 1) % len(one.corners)]]
-    return bool(
-        np.abs(ends - other.corners[[(j + 1) % len(other.corners), j]]).max() <= tolerance
-    )
+    return bool(np.abs(ends - other.corners[[(j + 1) % len(other.corners), j]]).max() <= tolerance)
 
 
 def _part_inside(face: Face, begin: np.ndarray, end: np.ndarray, tolerance: float):
@@ -343,6 +349,8 @@ def _note_own(rows: np.recarray, levels: Levels) -> Levels:
     static = rows["static"] == 1
     for side, name in (("left", "first_level"), ("right", "last_level")):
         rows[name][static] = np.searchsorted(pairs[:, 0], rows["other_solid"][static], side)
+    for side, name in (("left", "first_own"), ("right", "last_own")):
+        levels.faces[name] = np.searchsorted(pairs[:, 0], levels.faces["solid"], side)
     return levels._replace(own=np.ascontiguousarray(pairs[:, 1]))
 
 
