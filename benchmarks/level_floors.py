@@ -1,8 +1,8 @@
 """Slides, rolls and throws over random floors of level pieces, compared with the same motion on a half-space.
 
-    python benchmarks/level_floors.py 200               200 cases
-    python benchmarks/level_floors.py 1 --first 77      one again
-    python benchmarks/level_floors.py 50 --step-up      with one piece that stands out: the body must strike it
+python benchmarks/level_floors.py 200               200 cases
+python benchmarks/level_floors.py 1 --first 77      one again
+python benchmarks/level_floors.py 50 --step-up      with one piece that stands out: the body must strike it
 """
 
 from __future__ import annotations
@@ -69,7 +69,9 @@ def add_floor(scene, kind: str, place, up: float, rng) -> None:
     if kind == "compound":
         whole = carom.Compound([(part, centre, turn) for part, centre in parts])
         shift = parts[0][1] - whole.pieces[0].position
-        scene.add_static(whole, position=place[0] + quaternion.rotate(place[1], shift), orientation=place[1])
+        scene.add_static(
+            whole, position=place[0] + quaternion.rotate(place[1], shift), orientation=place[1]
+        )
         return
     for part, centre in parts:
         scene.add_static(
@@ -133,10 +135,15 @@ class Case:
         shape, lying = body(self.body, rng)
         yaw = np.array(carom.euler("z", 0.0 if rng.random() < 0.3 else rng.uniform(0.0, 360.0)))
         pose = quaternion.multiply(yaw, lying)
-        low = float(shape.support(quaternion.rotate_back(pose, np.array([0, 0, -1.0]))) @
-        quaternion.rotate_back(pose, np.array([0, 0, -1.0]))) x = np.array([0.0, 0.0, low]) v =
-        np.append(rng.normal(size=2), 0.0) v *= rng.uniform(0.3, 2.5) / np.linalg.norm(v) w = np.zeros(3) if
-        self.up:
+        low = float(
+            shape.support(quaternion.rotate_back(pose, np.array([0, 0, -1.0])))
+            @ quaternion.rotate_back(pose, np.array([0, 0, -1.0]))
+        )
+        x = np.array([0.0, 0.0, low])
+        v = np.append(rng.normal(size=2), 0.0)
+        v *= rng.uniform(0.3, 2.5) / np.linalg.norm(v)
+        w = np.zeros(3)
+        if self.up:
             v, x = np.array([2.0, 0.0, 0.0]), x - (0.5, 0.0, 0.0)
         if self.motion == "slide with spin":
             w = np.array([0.0, 0.0, rng.normal() * 4.0])
@@ -193,7 +200,7 @@ def main() -> None:
     for seed in range(given.first, given.first + given.count):
         if time.time() - begin > given.budget:
             break
-        faulthandler.dump_traceback_later(240, exit=True)
+        faulthandler.dump_traceback_later(900, exit=True)
         case = Case(seed, 1e-3 if given.step_up else 0.0)
         r = compare(case, given.rtol)
         table[case.body, case.motion].append(r["off"])

@@ -37,6 +37,8 @@ LEVEL_FACE = [
     ("reach", "f8"),
     ("thickness", "f8"),  # of its solid below it
     ("solid", "i8"),  # whose face it is
+    ("first_own", "i8"),  # range of the surfaces of this solid in `Levels.own`
+    ("last_own", "i8"),
     ("first", "i8"),  # range of the sides
     ("last", "i8"),
 ]

@@ -2,8 +2,8 @@
 
 The row of a surface is that of a half-space whose points count only where faces of the surface are below them.
 A row of a static solid has its points on a level surface only at the rim, and only with normals that the whole
-surface has there. So each point counts once, an edge between two level faces is nothing, and a body that passes
-it moves as on one plane.
+surface has there. So each point counts once, an edge between two level faces is nothing, and a body that passes it
+moves as on one plane.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.collision.features import VERTEX_A
-from carom.collision.layout import CYLINDER, ELLIPSOID
 from carom.collision.level_surface import (
     ROOM,
     carries,
@@ -20,15 +19,16 @@ from carom.collision.level_surface import (
     face_below,
     height,
 )
-from carom.contact.parting import height as farthest
+from carom.collision.layout import BOX, CYLINDER, ELLIPSOID
 from carom.geometry.rotation import rotate_back
 
 ON_PLANE = 1.0 - 1e-12  # cosine from which on a normal is that of the plane
+INTO = 8.0  # distance at which a normal is looked along, by the tolerance of a place on a surface
 BACK = -0.5  # cosine to the normal of a surface below which a contact is with the back of a solid
 
 
 @unit
-def keep_real_touches(system, contact, state, work) -> int:
+def keep_real_touches(system, contact, work) -> int:
     """Keep the touches that count, note their surfaces, and return their number."""
     pair, kept = work.pair.state[0], 0
     count, pair.hidden = pair.total, 0
@@ -38,7 +38,7 @@ def keep_real_touches(system, contact, state, work) -> int:
         if contact.surface > 0:
             counts = on_surface(system, contact, touch)
         else:
-            hidden = hiding_surface(system, contact, touch, state)
+            hidden = hiding_surface(system, contact, touch)
             counts = hidden < 0
             pair.hidden = pair.hidden if counts else 1 + hidden
         if counts:
@@ -51,12 +51,23 @@ def keep_real_touches(system, contact, state, work) -> int:
 
 @kernel
 def on_surface(system, contact, touch):
-    """Return whether a point of a half-space is above the faces of the row of a level surface."""
+    """Return whether a point of a half-space is above the faces of the row of a level surface.
+
+    Where this surface meets another one, as a hidden side of a solid meets the top, the other one may hide it.
+    """
+    levels, own = system.levels, contact.surface - 1
+    surface, q = levels.surfaces[own], touch.on_b
     touch.surface = contact.surface
-    surface = system.levels.surfaces[contact.surface - 1]
     first, last = contact.first_level, contact.last_level
     rounding = rounding_of(system.solids[contact.solid])
-    return carries(system.levels, surface, first, last, touch.on_b, touch.gap, rounding)
+    if not carries(levels, surface, first, last, q, touch.gap, rounding):
+        return False
+    face = levels.faces[face_below(levels, first, last, q, ROOM * surface.tolerance)]
+    for k in range(face.first_own, face.last_own):
+        s = levels.own[k]
+        if s != own and hides(system, contact, s, touch):
+            return False
+    return True
 
 
 @kernel
@@ -67,17 +78,17 @@ def rounding_of(solid):
 
 
 @kernel
-def hiding_surface(system, contact, touch, state):
+def hiding_surface(system, contact, touch):
     """Return the surface that hides a point of a static solid, -1 for none."""
     for k in range(contact.first_level, contact.last_level):
         s = system.levels.own[k]
-        if hides(system, contact, s, touch, state):
+        if hides(system, contact, s, touch):
             return s
     return -1
 
 
 @kernel
-def hides(system, contact, s, touch, state):
+def hides(system, contact, s, touch):
     """Return whether surface s hides a point of a static solid, or else note that the point lies on it.
 
     It does if the row of the surface has the point, or if the whole surface has no such normal there.
@@ -87,9 +98,8 @@ def hides(system, contact, s, touch, state):
     along, above = n[0] * m[0] + n[1] * m[1] + n[2] * m[2], height(surface, q)
     if above > room or along < BACK:
         return False
-    sunk = max(0.0, -lowest(system, contact, surface, state))
-    if above < -(room + sunk):
-        return False
+    if above < -room:
+        return buried(system, surface, q, m, above)
     below = face_below(levels, surface.first, surface.last, q, room)
     if below < 0:
         return False
@@ -97,8 +107,6 @@ def hides(system, contact, s, touch, state):
     if flat and touch.feature >> 60 in (0, VERTEX_A):
         rounding = rounding_of(system.solids[contact.solid])
         return carries(levels, surface, surface.first, surface.last, q, touch.gap, rounding)
-    if sunk > 0.5 * levels.faces[below].thickness:
-        return False
     if distance_from_rim(levels, surface, q) > 2.0 * room or continues(levels, surface, q, m):
         return True
     if flat and levels.faces[below].solid != contact.other_solid:  # the other solid has it
@@ -108,13 +116,36 @@ def hides(system, contact, s, touch, state):
 
 
 @kernel
-def lowest(system, contact, surface, state):
-    """Return the least height of the body of a row above a surface, negative inside."""
-    body, n = state[contact.body], surface.normal
-    q, x = body.Q, body.x
-    nx, ny, nz = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
-    solid = system.solids[contact.solid]
-    return height(surface, x) - farthest(solid, system.hulls, -nx, -ny, -nz) - solid.radius
+def buried(system, surface, q, m, above):
+    """Return whether a normal at a point below a surface points into a solid with a face of the surface.
+
+    The point must be in the upper half of that solid: below it, a side may be bare.
+    """
+    levels, room = system.levels, ROOM * surface.tolerance
+    p = (q[0] + INTO * room * m[0], q[1] + INTO * room * m[1], q[2] + INTO * room * m[2])
+    for i in range(surface.first, surface.last):
+        face, d2 = levels.faces[i], 0.0
+        for k in range(3):
+            d2 += (q[k] - face.centre[k]) ** 2
+        near = d2 <= (face.reach + face.thickness) ** 2 and -above <= 0.5 * face.thickness
+        if near and is_inside(system.solids[face.solid], system.hulls, p, room):
+            return True
+    return False
+
+
+@kernel
+def is_inside(solid, hulls, q, room):
+    """Return whether a point in the world is in a static box or hull, or at most `room` outside."""
+    x, Q, h = solid.x, solid.Q, solid.half
+    px, py, pz = rotate_back(Q[0], Q[1], Q[2], Q[3], q[0] - x[0], q[1] - x[1], q[2] - x[2])
+    if solid.kind == BOX:
+        return max(abs(px) - h[0], max(abs(py) - h[1], abs(pz) - h[2])) <= room
+    for f in range(solid.first_face, solid.last_face):
+        n = hulls.faces[f].normal
+        p = hulls.vertices[solid.first + hulls.corners[hulls.faces[f].first]]
+        if n[0] * (px - p[0]) + n[1] * (py - p[1]) + n[2] * (pz - p[2]) > room:
+            return False
+    return True
 
 
 @kernel

@@ -31,7 +31,7 @@ def find_touches(system, contact, state, reach, work):
     """Write the points of a contact that count into work.touches; return how many, perhaps none."""
     count = list_touches(system, contact, state, reach, work)
     if contact.first_level < contact.last_level:
-        return keep_real_touches(system, contact, state, work)
+        return keep_real_touches(system, contact, work)
     return count
 
 

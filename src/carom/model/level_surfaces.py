@@ -352,6 +352,8 @@ def _note_own(rows: np.recarray, levels: Levels) -> Levels:
     static = rows["static"] == 1
     for side, name in (("left", "first_level"), ("right", "last_level")):
         rows[name][static] = np.searchsorted(pairs[:, 0], rows["other_solid"][static], side)
+    for side, name in (("left", "first_own"), ("right", "last_own")):
+        levels.faces[name] = np.searchsorted(pairs[:, 0], levels.faces["solid"], side)
     return levels._replace(own=np.ascontiguousarray(pairs[:, 1]))
 
 
