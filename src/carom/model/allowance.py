@@ -2,8 +2,8 @@
 
 With tolerances a limit must not depend on the saved times. A run may use TRIALS trial steps for each part
 1 / PARTS of its duration. Those that it has not used are saved for later, at most those of SAVED_PARTS parts.
-WORK of a contact problem or of a multiple impact counts as one trial step. An accepted step without an event, of the
-length that the tolerance permits, counts only SMOOTH.
+WORK of a contact problem or of a multiple impact counts as one trial step. An accepted step without an event,
+of the length that the tolerance permits, counts only SMOOTH.
 
 With a given step the limit is a time per step; time that is not used is saved for later steps.
 """
@@ -14,8 +14,8 @@ from carom._compiled.decorators import kernel
 
 EACH, SAVED = 1e4, 3e5  # limits of the average step, and of a step after others that took less
 STEPS = 200.0  # of a run, if it has fewer: where few states are saved a step takes more work
-# with tolerances: trial steps of a part of the run, parts of a run, parts that may be saved for later, weight of
-# a step that the tolerance ended, work [us] that counts as a trial step
+# with tolerances: trial steps of a part of the run, parts of a run, parts that may be saved for later, weight
+# of a step that the tolerance ended, work [us] that counts as a trial step
 TRIALS, PARTS, SAVED_PARTS, SMOOTH, WORK = 1e3, 1e2, 10.0, 0.1, 20.0
 
 
