@@ -19,11 +19,16 @@ from carom.dynamics.forces import applied_wrenches
 from carom.geometry.rotation import norm
 from carom.model.controls import Controls
 
+#: longest step of a body that is in contact and loaded, relative to the time in which its load would move it by
+#: its own size: without contacts it would then move by PUSHED^2 of this size, and pass through nothing
+PUSHED = 0.2
+
 
 @kernel
 def note_scale(system, controls, state, clock, work):
     """Write the scale of time and the acceleration of an island to the clock, at the start of a step."""
     clock.scale, clock.pull, clock.able = controls.step, controls.pull, 0.0
+    clock.longest = math.inf
     if controls.order == 0 or system.contacts.shape[0] == 0:
         return
     size = least_size(system)
@@ -31,6 +36,8 @@ def note_scale(system, controls, state, clock, work):
     clock.scale, clock.pull = controls.interval, pull_of(system, controls, state, clock, work)
     if clock.pull > 0.0:
         clock.scale = math.sqrt(length / clock.pull)
+        if clock.able > 0.0:
+            clock.longest = PUSHED * math.sqrt(2.0 * size / clock.pull)
         return
     speed = greatest_speed(system, state)
     if speed > 0.0:

@@ -65,6 +65,7 @@ CLOCK = [
         "f8",
     ),  # `Controls.step` and `Controls.pull` of the present island (`carom.dynamics.local_scale`)
     ("pull", "f8"),
+    ("longest", "f8"),  # step of contacts of this island, by the applied forces at that time
     (
         "able",
         "f8",

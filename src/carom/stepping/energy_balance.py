@@ -102,7 +102,7 @@ def note_whole(system, controls, clock, code, bodies, watch):
     """Note that a step was given up event by event, and becomes a time-stepping step.
 
     Its impacts are at its end, so a body that it stops or turns round is misplaced by at most 2 V h, with the
-    greatest speed V so far.
+    greatest speed V so far; these bounds add up.
     """
     if controls.order == 0 or bodies > FEW:
         return
@@ -110,7 +110,7 @@ def note_whole(system, controls, clock, code, bodies, watch):
     for b in range(system.bodies.shape[0]):
         size = min(size, system.bodies[b].extent)
     speed = watch.speed + controls.pull * clock.length
-    watch.whole_error = max(watch.whole_error, 2.0 * speed * clock.length / size)
+    watch.whole_error += 2.0 * speed * clock.length / size
     if watch.whole == 0:
         watch.whole_at, watch.whole_bodies, watch.whole_code = clock.begin, bodies, code
     watch.whole += 1
@@ -241,13 +241,14 @@ def unbalanced(system, active, start, end, named, t, h, watch):
     """Return the result of `imbalance` for joined or loaded bodies; `named` is the work of loads and friction.
 
     A step multiplies energy if its unexplained gain is as large as the energy that it exchanges, and above the
-    tolerance. Explicit methods do so with springs and dampers that are too stiff for the step.
+    tolerance. Explicit methods do so with springs and dampers that are too stiff for the step. The work that
+    the forces could do over the allowed error of positions is no error of energy.
     """
     before, low, _ = energies(system, start, t)
     after, high, size = energies(system, end, t + h)
     gain = after + high - before - low - named
     exchanged = before + after + abs(high - low) + abs(named)
-    known = ROUND_OFF * size + speeds_known(system, end, h)
+    known = ROUND_OFF * size + speeds_known(system, end, h) + watch.able
     tolerated = watch.tolerance * watch.exchanged + known
     grows = not (gain <= GAIN * exchanged + tolerated)
     share = watch.share * (OF_ACTIVE if active.count[0] > 0 else 1.0)
@@ -272,6 +273,7 @@ def off_balance(model, data):
     jams = search.active == 1 and search.kind == JAM
     if active.count[0] == 0:
         result.unnamed = 0.0
+    watch.able = max(watch.able, clock.able)
     off, grows = imbalance(system, active, data.state, work.trial, named, clock.now, dt, watch)
     result.unnamed = max(result.unnamed, off)
     cut = grows or off > (CAREFUL if careful else 1.0)

@@ -75,6 +75,7 @@ def step_single(model, data, method, start):
         code = move_single(local, data, method, start)
         if code == 0:
             parts.end_count(controls, clock, data.work)
+            note_gain(controls, clock, data.watch[0])
             pay(clock)
     return AGAIN if code != 0 and retry_single(model, data, start, code) else code
 
@@ -115,9 +116,19 @@ def step_apart(model, data, method, islands) -> int:
         code = move_island(part, own, method)
         if code == 0:
             parts.end_count(controls, clock, own.work)
+            note_gain(controls, clock, data.watch[0])
             parts.leave(own.active, islands)
             pay(clock)
     return AGAIN if code != 0 and retry_apart(model, data, islands, code) else code
+
+
+@inlined
+def note_gain(controls, clock, watch):
+    """Raise the greatest speed to that which forces could have given in the step.
+
+    Bodies that a force presses have no speed, but the residual of their contacts is a part of this one.
+    """
+    watch.speed = max(watch.speed, controls.pull * clock.length)
 
 
 @inlined

@@ -53,6 +53,7 @@ def propose_step(model, data):
     if model.controls.order > 0 and may_err(model.system, data.active):
         dt = min(dt, allowed_step(search.left, data.work))
     if data.active.count[0] > 0:
+        dt = min(dt, clock.longest)
         dt = until_bounces_end(data.active, until_stop(model.controls, data.active, dt, clock))
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
     data.work.result[0].stiff = 0

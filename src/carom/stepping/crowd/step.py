@@ -78,7 +78,7 @@ def step_crowd(model, data, method):
         if clock.since > r.LONG:
             result.code = r.PAUSE
             return
-        dt = min(piece(system, now, controls.interval, clock.length - clock.spent), search.pace)
+        dt = min(piece(system, now, controls, clock.length - clock.spent), search.pace)
         while True:
             clock.tries += 1
             expensive = clock.effort + DEAR * data.active.count[0] > affordable_whole(
@@ -103,9 +103,9 @@ def step_crowd(model, data, method):
 
 
 @kernel
-def piece(system, now, step, left):
+def piece(system, now, controls, left):
     """Return the length of the next piece: an equal part of the rest, in which no body moves too far."""
-    g, n = norm(system.gravity), now.shape[0]
+    g, step, n = controls.pull, controls.interval, now.shape[0]
     parts = math.ceil(ALONE * left / step) if n == 1 else 1.0
     for b in range(n):
         body, turn = system.bodies[b], norm(now[b].w) * left
