@@ -2,8 +2,8 @@
 
 The row of a surface is that of a half-space whose points count only where faces of the surface are below them.
 A row of a static solid has its points on a level surface only at the rim, and only with normals that the whole
-surface has there. So each point counts once, an edge between two level faces is nothing, and a body that passes it
-moves as on one plane.
+surface has there. So each point counts once, an edge between two level faces is nothing, and a body that passes
+it moves as on one plane.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.collision.features import VERTEX_A
+from carom.collision.layout import BOX, CYLINDER, ELLIPSOID
 from carom.collision.level_surface import (
     ROOM,
     carries,
@@ -19,7 +20,6 @@ from carom.collision.level_surface import (
     face_below,
     height,
 )
-from carom.collision.layout import BOX, CYLINDER, ELLIPSOID
 from carom.geometry.rotation import rotate_back
 
 ON_PLANE = 1.0 - 1e-12  # cosine from which on a normal is that of the plane
