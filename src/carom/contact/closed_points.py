@@ -194,35 +194,6 @@ def note_active(system, active, k, state, group, work):
 
 
 @kernel
-def gather_active(system, active, label, state, group, work):
-    """List the active points of a group, then entries for their rolling and pivoting; return the number."""
-    k = 0
-    for i in range(active.count[0]):
-        active_point = active.points[i]
-        if work.body[active_point.body].label == label and k < group.closed.shape[0]:
-            write_closed(
-                active_point.contact, active_point.feature, active_point.point, group.closed[k]
-            )
-            group.closed[k].active = i
-            k += 1
-    for i in range(k):
-        closed_point = group.closed[i]
-        turning = system.contacts[closed_point.contact].turning
-        if active.points[closed_point.active].bounces > 0.0:
-            continue  # impacts have no friction of this kind
-        for turns in range(1, 3):
-            if turning[turns - 1] > 0.0 and k < group.closed.shape[0]:
-                write_closed(
-                    closed_point.contact, closed_point.feature, closed_point.point, group.closed[k]
-                )
-                group.closed[k].active, group.closed[k].parent = closed_point.active, i
-                group.closed[k].turns = turns
-                k += 1
-    place_closed(system, k, state, group, group.points[0], work)
-    return k
-
-
-@kernel
 def place_closed(system, k, state, group, points, work):
     """Write the positions of all closed points in a state."""
     for i in range(k):

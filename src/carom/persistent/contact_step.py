@@ -13,25 +13,16 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.contact.gap import slow
 from carom.contact.groups import members
-from carom.dynamics.acceleration import SLIP
 from carom.dynamics.adapt import allowed_error, note_miss
-from carom.dynamics.explicit import bound_accelerations_of, copy_state, note_velocity, stages_within
-from carom.friction.layout import SLIDING
-from carom.impact.workspace import C, P, U
+from carom.dynamics.explicit import bound_accelerations_of, stages_within
 from carom.persistent.finish import (
-    gains,
     land,
     note_modes,
     review,
-    solve_cones_of,
-    within_cones,
 )
-from carom.persistent.joint_rows import JOINT, first_frictions, is_driven, radius_of
 from carom.persistent.members import closing_member, explicit_member, implicit_member
-from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
-from carom.persistent.springs import solve_springs
+from carom.persistent.start import first_modes, first_stage
 from carom.persistent.step_control import unnamed
 
 #: change of slip by friction in a step, relative to its speed, above which its direction is stiff
@@ -76,7 +67,7 @@ def step_group(model, data, method, label, h):
     count, loaded = members(work, label, group.member), False
     for m in range(count):
         loaded = loaded or system.bodies[group.member[m]].ballistic == 0
-    k, rate, push = first_stage(model, data, label, loaded, count)
+    k, rate, push, _ = first_stage(model, data, label, loaded, count)
     applied, friction = result.power, result.drag  # powers at the start
     had, rubbed = result.applied, result.friction
     clock.contact_steps += 1
@@ -133,111 +124,6 @@ def closing_size(system, controls, count, group):
         size = system.bodies[group.member[m]].extent
         least = min(least, CLOSE * allowed_error(controls.rtol, controls.atol, size, 0.0))
     return least
-
-
-@kernel
-def first_modes(system, data, label):
-    """Take the modes of the start of the step for those of its end, until the end is known."""
-    active = data.active
-    for i in range(active.count[0]):
-        if data.work.body[active.points[i].body].label == label:
-            active.points[i].next = active.points[i].mode
-    if data.work.body.shape[0] == label:
-        first_frictions(system)
-
-
-@kernel
-def first_stage(model, data, label, loaded, count):
-    """Write the accelerations of a group at the start of a step as stage 0, and the ways of its points.
-
-    Return the number of points, the greatest rate at which friction turns a slip, and the greatest acceleration
-    by friction. The powers go to `work.result`.
-    """
-    start, group, work, system = data.state, data.group, data.work, model.system
-    result, controls = work.result[0], model.controls
-    for b in range(start.shape[0]):
-        copy_state(start[b], work.stage[b])
-    for m in range(count):
-        note_velocity(work.stage[group.member[m]], work.stages[0, group.member[m]])
-    first_modes(system, data, label)
-    result.time = result.start
-    power = accelerate_freely(model, data, loaded, count, 0)
-    k = write_rows(model, data, label, 0)
-    push = 0.0
-    for row in range(3 * k):
-        push = max(push, abs(group.v[C][row]))
-    known = True
-    for i in range(k):
-        known = note_way(model, data, i, controls.rest * push * controls.step) and known
-    set_modes(system, data.active, k, group)
-    if not (known and solve_springs(k, group) and within_cones(k, group)):
-        solve_cones_of(model, data, k)
-        known = note_break_away(system, data, k, push) and known
-    driven, rubbed = push_bodies(model, data, loaded, k, count, 0)
-    result.power, result.drag = power + driven, rubbed
-    rate, friction = rates(k, group)
-    return k, rate if known else math.inf, friction
-
-
-@kernel
-def note_break_away(system, data, k, push):
-    """Let points slip that stick but accelerate along their surfaces; return whether there is none."""
-    group, none = data.group, True
-    for i in range(k):
-        closed_point = group.closed[i]
-        if group.kind[i] == SLIDING or closed_point.own == 0 or not gains(i, push, group):
-            continue
-        none = False
-        if closed_point.turns == JOINT:
-            force = group.v[P][3 * i + 1]
-            system.relations.frictions[closed_point.active].next = -1 if force > 0.0 else 1
-        elif closed_point.turns == 0 and group.v[P][3 * i] > 0.0:
-            data.active.points[closed_point.active].next = SLIP
-    return none
-
-
-@kernel
-def note_way(model, data, i, still):
-    """Store the way of the slip of a point at the start of a step; return whether it is known, if it slips."""
-    group, active = data.group, data.active
-    closed_point = group.closed[i]
-    u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
-    speed = math.hypot(u1, u2)
-    if closed_point.turns == JOINT:
-        one = model.system.relations.frictions[closed_point.active]
-        one.speed = speed
-        return one.mode == 0 or speed > still or is_driven(group, i)
-    active_point = active.points[closed_point.active]
-    contact = model.system.contacts[closed_point.contact]
-    moves = speed > max(10.0 * slow(contact, data.state), still)
-    d1, d2 = u1 / speed if moves else 0.0, u2 / speed if moves else 0.0
-    if closed_point.own == 0:
-        return moves or active_point.mode != SLIP or group.mu[i] == 0.0
-    if closed_point.turns > 0:
-        way = active_point.turning[closed_point.turns - 1]
-        way[0], way[1], way[2] = d1, d2, speed if moves else 0.0
-        return True
-    slips = active_point.mode == SLIP
-    active_point.heading[0], active_point.heading[1] = d1 if slips else 0.0, d2 if slips else 0.0
-    active_point.speed = speed
-    return moves or not slips or group.mu[i] == 0.0
-
-
-@kernel
-def rates(k, group):
-    """Return the greatest rate at which friction turns a slip, and the greatest acceleration by friction."""
-    rate, most, W = 0.0, 0.0, group.m[0]
-    for i in range(k):
-        q = 3 * i
-        force = math.hypot(group.v[P][q + 1], group.v[P][q + 2])
-        if group.kind[i] != SLIDING:
-            force = max(force, radius_of(group, i))
-        braked = force * max(W[q + 1, q + 1], W[q + 2, q + 2])
-        most = max(most, braked)
-        speed = math.hypot(group.v[U][q + 1], group.v[U][q + 2])
-        if group.kind[i] == SLIDING and group.mu[i] > 0.0 and braked > 0.0:
-            rate = max(rate, braked / speed if speed > 0.0 else math.inf)
-    return rate, most
 
 
 @kernel

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.contact.closed_points import place_closed
 from carom.contact.gap import slow
 from carom.dynamics.acceleration import OPEN, SLIP, STICK
@@ -27,8 +28,8 @@ REST = 0.1  # of the error of a step: slip that ends within so little has ended
 ON_CONE = 1.0 - 1e-9  # of the greatest friction: less is within it
 
 
-@kernel
-def land(model, data, loaded, k, count, h):
+@unit
+def land(model, data, loaded, k, count, h) -> bool:
     """Bring bodies back to joints and surfaces, velocities to the tangents; return whether the joints close."""
     system, active, group, work = model.system, data.active, data.group, data.work
     end = work.trial
@@ -94,8 +95,8 @@ def note_modes(model, data, k, still):
             way[0], way[1], way[2] = d1, d2, slip if slides else 0.0
 
 
-@kernel
-def review(model, data, label, loaded, count, s, h, given):
+@unit
+def review(model, data, label, loaded, count, s, h, given) -> bool:
     """Write forces, margins and modes at the end of a step, in `work.stage`; return whether given modes lasted.
 
     The accelerations there are those of stage s. With `given` modes, slip must not have turned back, and what
@@ -206,8 +207,8 @@ def within_cones(k, group):
     return True
 
 
-@kernel
-def solve_cones_of(model, data, k):
+@unit
+def solve_cones_of(model, data, k) -> int:
     """Solve the contact problem of accelerations: slip along the headings that are known, else within cones."""
     group = data.group
     for i in range(k):

@@ -44,15 +44,3 @@ def take_torque(active_point, i, group):
         )
     else:
         active_point.torque[0] = length * p[3 * i + 1]
-
-
-@kernel
-def first_torque(system, active_point, i, h, group):
-    """Write the last torque of closed point i, times a step h, as the first guess."""
-    closed_point, length = group.closed[i], group.points[0][i].length
-    d, p = system.contacts[active_point.contact].turning[closed_point.turns - 1], group.v[P]
-    p[3 * i] = h * d / length * active_point.force[0]
-    p[3 * i + 1] = (
-        h / length * (active_point.torque[1] if closed_point.turns == 1 else active_point.torque[0])
-    )
-    p[3 * i + 2] = h / length * active_point.torque[2] if closed_point.turns == 1 else 0.0

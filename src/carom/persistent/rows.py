@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.contact.place import drift_of
 from carom.dynamics.acceleration import SLIP, accelerate, acceleration_without_friction
 from carom.dynamics.elements import driven_power
@@ -43,8 +44,8 @@ def accelerate_freely(model, data, loaded, count, s):
     return 0.0
 
 
-@kernel
-def write_rows(model, data, label, s):
+@unit
+def write_rows(model, data, label, s) -> int:
     """Find the points of a group in `work.stage`, and write W, U and C for the accelerations of stage s.
 
     Return the number of points, with the entries of rolling and pivoting.
@@ -128,8 +129,8 @@ def way_of(system, active, closed_point):
     return active_point.next == SLIP, d[0], d[1], active_point.speed
 
 
-@kernel
-def push_bodies(model, data, loaded, k, count, s):
+@unit
+def push_bodies(model, data, loaded, k, count, s) -> tuple[float, float]:
     """Add the accelerations by the forces in P to stage s; return the powers of motors and friction."""
     system, group, work = model.system, data.group, data.work
     u, p, power, driven = group.v[U], group.v[P], 0.0, 0.0

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.contact.closed_points import gather_active
 from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.dynamics.acceleration import SLIP, STICK
@@ -26,7 +25,9 @@ from carom.persistent.active_set import activate, any_turning, deactivate, set_a
 from carom.persistent.bounces import bounces_end, horizon_of, name_work, spare, time_of_bounces
 from carom.persistent.forces import pose_forces, solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among, note_jam
+from carom.persistent.joint_rows import JOINT
 from carom.persistent.return_to_surfaces import onto_surfaces
+from carom.persistent.start import first_stage
 
 LAID = 1e-9  # of the size of a body: the gap of a point that is on its surface
 DROP = 1e-10  # of a pivot, relative to its row
@@ -301,20 +302,26 @@ def set_modes(model, data, k):
 
 @kernel
 def first_forces(model, data, label):
-    """Store the forces of all active points of the group, and the times at which their slip stops."""
-    system, controls = model.system, model.controls
-    active, state, group, work = data.active, data.state, data.group, data.work
-    k = gather_active(system, active, label, state, group, work)
+    """Store the forces of all active points of the group, and the modes that they ask for."""
+    system, active, state = model.system, data.active, data.state
+    group, work, clock, records = data.group, data.work, data.clocks[0], data.records
+    count, loaded = members(work, label, group.member), False
+    for m in range(count):
+        loaded = loaded or system.bodies[group.member[m]].ballistic == 0
+    work.result[0].start = clock.now
+    k, _, _, status = first_stage(model, data, label, loaded, count)
     for i in range(k):
-        group.closed[i].stays = 1
-    inverse_masses(system, k, group.points[0], state, work, group.m[0])
-    pose_forces(system, controls, active, k, state, group, work)
-    status = solve_forces(model, data, k)
-    for i in range(k):
-        active_point = active.points[group.closed[i].active]
+        closed_point = group.closed[i]
+        if closed_point.own == 0 or closed_point.turns == JOINT:
+            continue
+        active_point = active.points[closed_point.active]
         take_forces(active_point, i, group)
         if jams_among(active_point, i, status, group) == 1:
             note_jam(active, active_point)
+        if closed_point.turns == 0 and active_point.next != active_point.mode:
+            active_point.mode = active_point.next
+            begin_event(system, closed_point.contact, closed_point.feature, state, clock, records)
+            end_event(system, SLIPS, state, clock, records)
     lay_down(model, data, k, label)
 
 
@@ -328,9 +335,9 @@ def lay_down(model, data, k, label):
     group, work, clock = data.group, data.work, data.clocks[0]
     off = False
     for i in range(k):
-        contact, point = system.contacts[group.closed[i].contact], group.points[0][i]
-        presses = group.closed[i].turns == 0 and group.v[P][3 * i] > 0.0
-        off = off or (presses and abs(point.gap) > LAID * contact.extent)
+        if group.closed[i].turns == 0 and group.v[P][3 * i] > 0.0:
+            size = system.contacts[group.closed[i].contact].extent
+            off = off or abs(group.points[0][i].gap) > LAID * size
     if not off:
         return
     kinetic, potential, _ = energies(system, state, clock.now)

@@ -17,6 +17,7 @@ press, too.
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.friction import lu
 from carom.friction.layout import SLIDING
 from carom.impact.workspace import OLD, C, P
@@ -35,8 +36,8 @@ def bound_per_force(system, point, closed_point):
     return system.contacts[closed_point.contact].turning[closed_point.turns - 1] / point.length
 
 
-@kernel
-def solve_springs(k, group):
+@unit
+def solve_springs(k, group) -> bool:
     """Write the forces of given modes to P, accelerations of all points to OLD; return whether they exist.
 
     C has the accelerations without forces; `kind` says which points slide along `heading`, `loaded` which
