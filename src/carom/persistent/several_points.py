@@ -320,9 +320,27 @@ def first_forces(model, data, label):
             note_jam(active, active_point)
         if closed_point.turns == 0 and active_point.next != active_point.mode:
             active_point.mode = active_point.next
-            begin_event(system, closed_point.contact, closed_point.feature, state, clock, records)
-            end_event(system, SLIPS, state, clock, records)
+            if not correct_mode(system, closed_point, active_point.mode, clock, records):
+                begin_event(
+                    system, closed_point.contact, closed_point.feature, state, clock, records
+                )
+                end_event(system, SLIPS, state, clock, records)
     lay_down(model, data, k, label)
+
+
+@kernel
+def correct_mode(system, closed_point, mode, clock, records):
+    """Write the mode of a point that has just become active into its event; return whether there is one."""
+    for i in range(clock.event - 1, -1, -1):
+        event = records.event[i]
+        if event.time < clock.now:
+            break
+        number = system.contacts[closed_point.contact].number
+        same = event.contact == number and event.feature == closed_point.feature
+        if same and event.kind == PERSIST:
+            event.mode = mode
+            return True
+    return False
 
 
 @kernel
