@@ -40,7 +40,7 @@ def test_a_spin_ends_where_it_must():
     angle = 2.0 * np.arctan2(s.orientation[-1, 0, 3], s.orientation[-1, 0, 0])
     assert angle == pytest.approx(J * w * w / (2.0 * mu * G * r), abs=1e-8)
     assert np.abs(s.position[-1, 0, :2]).max() < 1e-12
-    assert s.stats["trial_steps"] < 20
+    assert s.stats["trial_steps"] < 40
 
 
 #: principal axes that are not those of the face: its weight moves as it turns

@@ -156,7 +156,8 @@ def first_forces(k, n, turn, push, group):
         for i in range(n):
             x[i] = -acceleration_of(k, rows[i], group)
             wrong = max(wrong, abs(x[i]))
-        if wrong <= FITS * push or (correction > 3 and wrong <= 1e2 * FITS * push):
+        fits = wrong <= FITS * push or (correction > 3 and wrong <= 1e2 * FITS * push)
+        if fits and correction > 0:
             break
         if correction == CORRECTIONS - 1:
             return -1
