@@ -1,4 +1,4 @@
-"""Faces of static solids in one plane are one surface: their seams are nothing, steps and cracks are obstacles."""
+"""Faces of static solids in one plane are one surface: seams are nothing, steps and cracks are obstacles."""
 
 import numpy as np
 import pytest
@@ -66,7 +66,8 @@ def test_surfaces_of_two_boxes():
     """Top, bottom and two sides; a rim of six sides each; a row for each, and two rows of the boxes."""
     system = levels_of((0, 0, -0.05), (1, 0, -0.05))
     surfaces = system.levels.surfaces
-    assert len(surfaces) == 4 and np.all(surfaces.last - surfaces.first == 2)
+    assert len(surfaces) == 4
+    assert np.all(surfaces.last - surfaces.first == 2)
     assert np.all(surfaces.last_rim - surfaces.first_rim == 6)
     assert sorted(system.contacts.surface) == [0, 0, 1, 2, 3, 4]
     assert np.all(np.diff(system.contacts.number) >= 0)
@@ -108,7 +109,7 @@ def test_a_wall_of_bricks_is_one_wall():
         for i in range(count):
             scene.add_static(carom.Box(0.1, 1, height), position=(1.05, 0, (i + 0.5) * height))
 
-    one, two = (run(lambda scene: wall(scene, n), "box", 2.4, 0.1) for n in (1, 2))
+    one, two = (run(lambda scene, n=n: wall(scene, n), "box", 2.4, 0.1) for n in (1, 2))
     assert len(one.impacts) == len(two.impacts) > 0
     assert np.allclose(one.position[-1], two.position[-1], rtol=0, atol=1e-9)
 
@@ -124,7 +125,7 @@ def test_a_body_leaves_the_rim_as_that_of_one_box(shape):
                 position=(0.25, (i + 0.5) / count - 0.47, -0.05),
             )
 
-    one, two = (run(lambda s: table(s, n), shape, 1.0, 0.2, duration=0.6) for n in (1, 2))
+    one, two = (run(lambda s, n=n: table(s, n), shape, 1.0, 0.2, duration=0.6) for n in (1, 2))
     assert two.position[-1, 0, 2] < 0.0
     assert np.allclose(one.position[-1], two.position[-1], rtol=0, atol=1e-6)
 

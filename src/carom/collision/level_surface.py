@@ -12,65 +12,11 @@ is at the depth m . q - d inside this side.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
-
-import numpy as np
 
 from carom._compiled.decorators import kernel
-from carom._compiled.record_arrays import table
 
 ROOM = 4.0  # tolerances of a surface within which a point counts as on a face or on a rim
 ACROSS = 1e-9  # cosine above which a normal points along a face that continues beyond an edge
-
-SURFACE = [
-    ("normal", "f8", 3),
-    ("offset", "f8"),  # n . q of its points
-    ("tolerance", "f8"),  # two heights, and two edges, that differ by less are equal [m]
-    ("first", "i8"),  # range of the faces
-    ("last", "i8"),
-    ("first_rim", "i8"),  # range of the segments of the rim
-    ("last_rim", "i8"),
-]
-
-LEVEL_FACE = [
-    ("centre", "f8", 3),  # of a ball around it
-    ("reach", "f8"),
-    ("thickness", "f8"),  # of its solid below it
-    ("solid", "i8"),  # whose face it is
-    ("first_own", "i8"),  # range of the surfaces of this solid in `Levels.own`
-    ("last_own", "i8"),
-    ("first", "i8"),  # range of the sides
-    ("last", "i8"),
-]
-
-LEVEL_SIDE = [
-    ("inward", "f8", 3),  # m
-    ("level", "f8"),  # d
-    ("corner", "f8", 3),  # at which it begins
-]
-
-RIM_SEGMENT = [("begin", "f8", 3), ("end", "f8", 3)]
-
-
-class Levels(NamedTuple):
-    """All level surfaces of a scene, in the world."""
-
-    surfaces: np.recarray  # (S,) SURFACE
-    faces: np.recarray  # (F,) LEVEL_FACE
-    sides: np.recarray  # (K,) LEVEL_SIDE
-    rims: np.recarray  # (E,) RIM_SEGMENT
-    own: np.ndarray  # (O,) surfaces of which a static solid has faces, solid by solid
-
-
-def no_levels() -> Levels:
-    """Return the level surfaces of a scene that has none."""
-    return Levels(
-        table(SURFACE, 0),
-        table(LEVEL_FACE, 0),
-        table(LEVEL_SIDE, 0),
-        table(RIM_SEGMENT, 0),
-        np.zeros(0, dtype=np.int64),
-    )
 
 
 @kernel

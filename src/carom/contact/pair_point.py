@@ -37,7 +37,7 @@ def find_touches(system, contact, state, reach, work):
 
 @kernel
 def list_touches(system, contact, state, reach, work):
-    """Write the points of a contact into work.touches, also those that a level surface hides; return how many."""
+    """Write the points of a contact into work.touches, also hidden ones; return how many."""
     solid, body, pose = system.solids[contact.solid], state[contact.body], work.solid_pose
     place(solid, body.x, body.Q, pose[0, :3], pose[0, 3:])
     a = Placed(solid, pose[0, :3], pose[0, 3:])

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.collision.layout import Hulls
-from carom.collision.level_surface import Levels
+from carom.collision.level_layout import Levels
 from carom.scene import joints
 
 #: kinds of joints in kernels

@@ -9,7 +9,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom.collision.layout import SOLID, Hulls, no_hulls, solid_table
-from carom.collision.level_surface import Levels
+from carom.collision.level_layout import Levels
 from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes
 from carom.model.arrays import CONTACT

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom._compiled.record_arrays import Columns, table
-from carom.collision.level_surface import (
+from carom.collision.level_layout import (
     LEVEL_FACE,
     LEVEL_SIDE,
     RIM_SEGMENT,
@@ -147,8 +147,9 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _near(faces: list[Face], facing: float) -> Iterator[tuple[int, int]]:
-    """Return pairs i < j of faces in about one plane whose balls touch; `facing` is 1 or -1 for opposite
-    normals.
+    """Return pairs i < j of faces in about one plane whose balls touch.
+
+    `facing` is 1, or -1 for opposite normals.
     """
     normals = np.array([face.normal for face in faces]).reshape(-1, 3)
     centres = np.array([face.centre for face in faces]).reshape(-1, 3)
@@ -246,7 +247,7 @@ def _rims(faces: list[Face]) -> tuple[float, np.ndarray]:
 
 
 def _edges_of_one(faces: list[Face], tolerance: float) -> list[list[int]]:
-    """Return for each face its edges that are not the same as an edge of one other face, from its other side."""
+    """Return for each face its edges that are not an edge of one other face, from its other side."""
     place: dict[tuple, list[tuple[int, int]]] = {}
     for i, face in enumerate(faces):
         middles = face.corners + face.corners[[*range(1, len(face.corners)), 0]]
@@ -254,7 +255,10 @@ def _edges_of_one(faces: list[Face], tolerance: float) -> list[list[int]]:
             place.setdefault(key, []).append((i, k))
     alone: list[list[int]] = [[] for _ in faces]
     for edges in place.values():
-        shared = len(edges) == 2 and _same_edge(*((faces[i], k) for i, k in edges), tolerance)
+        shared = False
+        if len(edges) == 2:
+            (i, k), (j, m) = edges
+            shared = _same_edge((faces[i], k), (faces[j], m), tolerance)
         for i, k in edges if not shared else ():
             alone[i].append(k)
     return alone
@@ -268,7 +272,7 @@ def _same_edge(a: tuple[Face, int], b: tuple[Face, int], tolerance: float) -> bo
 
 
 def _part_inside(face: Face, begin: np.ndarray, end: np.ndarray, tolerance: float):
-    """Return the part (a, b) of the segment from `begin` (0) to `end` (1) inside a face; None if there is none."""
+    """Return the part (a, b) of the segment from `begin` (0) to `end` (1) inside a face, or None."""
     f = face.inward @ begin - face.levels + tolerance
     slope = face.inward @ (end - begin)
     low, high = 0.0, 1.0
@@ -338,9 +342,9 @@ def with_level_rows(
     for region in regions:
         surface, first = levels.surfaces[region.surface], levels.faces[region.first]
         chosen = (rows["static"] == 1) & (rows["other_solid"] == first.solid)
-        more.append(_surface_rows(rows[chosen], surface, region))
-    rows = np.concatenate(more)
-    return rows[np.argsort(rows["number"], kind="stable")].view(Columns), levels
+        more.append(_surface_rows(rows[chosen].view(Columns), surface, region))
+    joined = np.concatenate(more)
+    return joined[np.argsort(joined["number"], kind="stable")].view(Columns), levels
 
 
 def _note_own(rows: np.recarray, levels: Levels) -> Levels:
@@ -350,10 +354,11 @@ def _note_own(rows: np.recarray, levels: Levels) -> Levels:
     )
     pairs = np.unique(np.stack([levels.faces["solid"], surface_of], axis=1), axis=0)
     static = rows["static"] == 1
-    for side, name in (("left", "first_level"), ("right", "last_level")):
-        rows[name][static] = np.searchsorted(pairs[:, 0], rows["other_solid"][static], side)
-    for side, name in (("left", "first_own"), ("right", "last_own")):
-        levels.faces[name] = np.searchsorted(pairs[:, 0], levels.faces["solid"], side)
+    solids, others, own = pairs[:, 0], rows["other_solid"][static], levels.faces["solid"]
+    rows["first_level"][static] = np.searchsorted(solids, others, "left")
+    rows["last_level"][static] = np.searchsorted(solids, others, "right")
+    levels.faces["first_own"] = np.searchsorted(solids, own, "left")
+    levels.faces["last_own"] = np.searchsorted(solids, own, "right")
     return levels._replace(own=np.ascontiguousarray(pairs[:, 1]))
 
 
