@@ -1,7 +1,7 @@
 """The start of a step of a group: which points slip and where to, forces and accelerations, new modes.
 
-New modes come from the contact problem of accelerations at that moment, and from nowhere else: after an impact, at
-an opening, or where what stuck is outside its cone.
+New modes come from the contact problem of accelerations at that moment, and from nowhere else: after an impact,
+at an opening, or where what stuck is outside its cone.
 """
 
 from __future__ import annotations
