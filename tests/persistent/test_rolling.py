@@ -139,6 +139,7 @@ def test_a_point_that_sticks_does_not_slip_in_turns(how):
     assert s.stats["held_steps"] < 4000
 
 
+@pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")  # that names its time-stepping step
 def test_a_coin_lies_down_flat():
     # A rim that is nearly flat strikes as a flat one; its points were up to 5 micrometres above the table then.
     s = spun_coin(5e-4, duration=1.5)

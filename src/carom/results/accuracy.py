@@ -29,7 +29,7 @@ DEEP, TOO_DEEP = 1e-8, 1e-2
 POOR, TOO_POOR = 1e-2, 0.1
 # displacement that a time-stepping step of few bodies may misplace, relative to the size of a body: beyond it a
 # run with tolerances is no success
-TOO_FAR = 0.1
+TOO_FAR = 1.0
 
 _WHAT = {
     RESIDUAL: (

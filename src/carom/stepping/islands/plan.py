@@ -17,6 +17,8 @@ from carom.model.workspace import FREE, RESTS
 from carom.stepping.islands.layout import ASLEEP, FLIES, IN_ISLAND
 from carom.stepping.islands.order import sort_contacts, sort_pairs
 
+# room of a body that starts from rest and has left its ball, relative to its size: doubled with each repetition
+START = 1e-3
 SLACK = 1e-6  # relative growth of balls, so that balls in contact overlap
 READY = -1  # no array must grow
 # contacts are made for bodies that may meet within AHEAD more steps, but only within a distance of WIDE times
@@ -58,6 +60,8 @@ def seek(system, active, now, length, work, islands):
         if system.bodies[b].ballistic == 0:  # it never sleeps; `bound` is of the last step
             m.awake, m.speed = 1, m.speed + memory.bound[0] * length
         memory.room = m.awake * plan.widen * (m.speed + fall * length) * length
+        if not m.speed + fall * length > 0.0:  # it starts from rest, with a force of unknown size
+            memory.room = m.awake * (plan.widen - 1.0) * START * system.bodies[b].extent
         for k in range(3):
             memory.home[k] = now[b].x[k]
             islands.centre[b, k] = now[b].x[k]
