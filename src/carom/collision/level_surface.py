@@ -5,8 +5,8 @@ below the plane, even where the point is on an edge between two faces. So a cont
 plane, and its gap is the height above the plane. Only the rim of R, the parts of the edges beyond which no face
 continues, can obstruct.
 
-A side of a face is given by m and d, with m the unit normal in the plane that points into the face: a point q is
-at the depth m . q - d inside this side.
+A side of a face is given by m and d, with m the unit normal in the plane that points into the face: a point q
+is at the depth m . q - d inside this side.
 """
 
 from __future__ import annotations
@@ -108,6 +108,17 @@ def face_below(levels, first, last, q, tolerance):
 
 
 @kernel
+def nearest_face(levels, first, last, q):
+    """Return the face of a range whose column is nearest to a point."""
+    best, chosen = -math.inf, first
+    for i in range(first, last):
+        depth = depth_in_face(levels, levels.faces[i], q)
+        if depth > best:
+            best, chosen = depth, i
+    return chosen
+
+
+@kernel
 def distance_from_rim(levels, surface, q):
     """Return the distance of a point from the rim of a surface; infinite if there is no rim."""
     least = math.inf
@@ -127,8 +138,8 @@ def carries(levels, surface, first, last, q, gap, rounding):
 
     `rounding` is the radius of curvature of the body there.
 
-    A point below the plane is carried if the way out through the plane is the shortest: shorter than that through
-    the rim, and than that through the back of the solid.
+    A point below the plane is carried if the way out through the plane is the shortest: shorter than that
+    through the rim, and than that through the back of the solid.
     """
     room = ROOM * surface.tolerance
     i = face_below(levels, first, last, q, room)

@@ -14,8 +14,8 @@ from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes
 from carom.model.arrays import CONTACT
 from carom.model.contact_rows import Rows, contact_rows, first_pairs
-from carom.model.level_surfaces import find_levels, with_level_rows
 from carom.model.cores import Cores, new_cores, singly, swollen_alike
+from carom.model.level_surfaces import find_levels, with_level_rows
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, meeting
 from carom.scene.contacts import IMPACT_LAWS

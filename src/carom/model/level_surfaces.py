@@ -2,12 +2,12 @@
 
 Two faces are level if each corner of one is within the tolerance LEVEL times the size of the larger solid from
 the plane of the other, and their normals agree. A surface is a set of level faces that are joined: each touches
-another one, with a crack of at most the same tolerance. So a step or a crack above 1e-9 of the size of a solid is
-an obstacle. Solids whose edges are rounded have none: there is a groove between them.
+another one, with a crack of at most the same tolerance. So a step or a crack above 1e-9 of the size of a solid
+is an obstacle. Solids whose edges are rounded have none: there is a groove between them.
 
 A body has one row for each surface, as for a half-space whose points count only above the faces
-(`carom.contact.level`). Where the laws of contact differ, each part of a surface with one law has its own row. The
-rows of the solids themselves then have only contacts at the rims, and at other faces.
+(`carom.contact.level`). Where the laws of contact differ, each part of a surface with one law has its own row.
+The rows of the solids themselves then have only contacts at the rims, and at other faces.
 """
 
 from __future__ import annotations
@@ -67,7 +67,8 @@ class Region(NamedTuple):
 def find_levels(scene: Scene, pairs: PairTable, place: np.ndarray) -> tuple[Levels, list[Region]]:
     """Return the level surfaces of a scene, and their regions.
 
-    In `pairs`, static bodies have the numbers after those of bodies that move; `place` has the first solid of each.
+    In `pairs`, static bodies have the numbers after those of bodies that move; `place` has the first solid of
+    each.
     """
     laws = _laws_of_statics(scene, pairs)
     faces = _bare([face for face in _faces(scene, place) if laws[face.static][0]])
@@ -146,7 +147,10 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _near(faces: list[Face], facing: float) -> Iterator[tuple[int, int]]:
-    """Return pairs i < j of faces in about one plane whose balls touch; `facing` is 1 or -1 for opposite normals."""
+    """Return pairs i < j of faces in about one plane that are near each other.
+
+    `facing` is 1 for equal normals, -1 for opposite ones.
+    """
     normals = np.array([face.normal for face in faces]).reshape(-1, 3)
     centres = np.array([face.centre for face in faces]).reshape(-1, 3)
     reaches = np.array([face.reach for face in faces])
@@ -243,7 +247,7 @@ def _rims(faces: list[Face]) -> tuple[float, np.ndarray]:
 
 
 def _edges_of_one(faces: list[Face], tolerance: float) -> list[list[int]]:
-    """Return for each face its edges that are not the same as an edge of one other face, from its other side."""
+    """Return for each face its edges that are not also an edge of one other face, on its other side."""
     place: dict[tuple, list[tuple[int, int]]] = {}
     for i, face in enumerate(faces):
         middles = face.corners + face.corners[[*range(1, len(face.corners)), 0]]
@@ -265,7 +269,7 @@ def _same_edge(a: tuple[Face, int], b: tuple[Face, int], tolerance: float) -> bo
 
 
 def _part_inside(face: Face, begin: np.ndarray, end: np.ndarray, tolerance: float):
-    """Return the part (a, b) of the segment from `begin` (0) to `end` (1) inside a face; None if there is none."""
+    """Return the part (a, b) of a segment, from 0 to 1, inside a face; None if there is none."""
     f = face.inward @ begin - face.levels + tolerance
     slope = face.inward @ (end - begin)
     low, high = 0.0, 1.0
