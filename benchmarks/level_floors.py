@@ -13,6 +13,7 @@ import itertools
 import time
 import warnings
 from collections import defaultdict
+from itertools import pairwise
 
 import numpy as np
 
@@ -39,13 +40,13 @@ def polygons(kind: str, rng) -> list[np.ndarray]:
         return [points[corners] for corners in Delaunay(points).simplices]
     out = []
     sides = np.linspace(-HALF, HALF, int(rng.integers(6, 16)))
-    for low, high in itertools.pairwise(sides):
+    for low, high in pairwise(sides):
         cuts = np.linspace(-HALF, HALF, int(rng.integers(6, 16)))
         if kind == "bricks":
             cuts[1:-1] = np.sort(rng.uniform(-HALF, HALF, len(cuts) - 2))
         elif kind != "compound":
             cuts = sides
-        for a, b in itertools.pairwise(cuts):
+        for a, b in pairwise(cuts):
             q = np.array([(low, a), (high, a), (high, b), (low, b)])
             out += [q[[0, 1, 2]], q[[0, 2, 3]]] if kind.startswith("squares") else [q]
     return out

@@ -54,6 +54,17 @@ def face_below(levels, first, last, q, tolerance):
 
 
 @kernel
+def nearest_face(levels, first, last, q):
+    """Return the face of a range whose column is nearest to a point."""
+    best, chosen = -math.inf, first
+    for i in range(first, last):
+        depth = depth_in_face(levels, levels.faces[i], q)
+        if depth > best:
+            best, chosen = depth, i
+    return chosen
+
+
+@kernel
 def distance_from_rim(levels, surface, q):
     """Return the distance of a point from the rim of a surface; infinite if there is no rim."""
     least = math.inf

@@ -2,8 +2,8 @@
 
 The row of a surface is that of a half-space whose points count only where faces of the surface are below them.
 A row of a static solid has its points on a level surface only at the rim, and only with normals that the whole
-surface has there. So each point counts once, an edge between two level faces is nothing, and a body that passes
-it moves as on one plane.
+surface has there. So each point counts once, an edge between two level faces is nothing, and a body that
+passes it moves as on one plane.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from carom.collision.level_surface import (
     distance_from_rim,
     face_below,
     height,
+    nearest_face,
 )
 from carom.geometry.rotation import rotate_back
 
@@ -68,6 +69,29 @@ def on_surface(system, contact, touch):
         if s != own and hides(system, contact, s, touch):
             return False
     return True
+
+
+@kernel
+def solid_left(system, contact, touch):
+    """Return the static solid nearest to a point of the row of a surface that is not above it, else -1."""
+    levels, surface, q = system.levels, system.levels.surfaces[contact.surface - 1], touch.on_b
+    room = ROOM * surface.tolerance
+    if face_below(levels, surface.first, surface.last, q, room) >= 0:
+        return -1
+    return levels.faces[nearest_face(levels, contact.first_level, contact.last_level, q)].solid
+
+
+@kernel
+def is_beyond(system, contact, point, state):
+    """Return whether a contact point of the row of a surface has passed its rim."""
+    if contact.surface == 0:
+        return False
+    levels, surface = system.levels, system.levels.surfaces[contact.surface - 1]
+    n, e, x, r = point.axes[0], surface.normal, state[contact.body].x, point.arm_a
+    if not n[0] * e[0] + n[1] * e[1] + n[2] * e[2] > ON_PLANE:
+        return True
+    q = (x[0] + r[0], x[1] + r[1], x[2] + r[2])
+    return face_below(levels, surface.first, surface.last, q, ROOM * surface.tolerance) < 0
 
 
 @kernel

@@ -13,8 +13,7 @@ from carom.collision.frame import place
 from carom.collision.layout import Placed, Plane
 from carom.collision.plane import plane_unit
 from carom.collision.touch import touch_unit
-from carom.contact.drift import drift_of_solids
-from carom.contact.level import keep_real_touches
+from carom.contact.level import ON_PLANE, is_beyond, keep_real_touches, solid_left
 from carom.contact.place_of_other import on_half_space
 from carom.contact.rim import same_point
 from carom.contact.roll import roll_on_plane
@@ -37,7 +36,7 @@ def find_touches(system, contact, state, reach, work):
 
 @kernel
 def list_touches(system, contact, state, reach, work):
-    """Write the points of a contact into work.touches, also hidden ones; return how many."""
+    """Write all points of a contact into work.touches, also hidden ones; return how many."""
     solid, body, pose = system.solids[contact.solid], state[contact.body], work.solid_pose
     place(solid, body.x, body.Q, pose[0, :3], pose[0, 3:])
     a = Placed(solid, pose[0, :3], pose[0, 3:])
@@ -47,13 +46,10 @@ def list_touches(system, contact, state, reach, work):
     else:
         other = system.solids[contact.other_solid]
         if contact.static == 1:
-            for k in range(4):
-                pose[1, 3 + k] = other.Q[k]
-                if k < 3:
-                    pose[1, k] = other.x[k]
-        else:
-            body = state[contact.other]
-            place(other, body.x, body.Q, pose[1, :3], pose[1, 3:])
+            list_on_solid(system, contact, contact.other_solid, reach, work)
+            return work.pair.state[0].total
+        body = state[contact.other]
+        place(other, body.x, body.Q, pose[1, :3], pose[1, 3:])
         b = Placed(other, pose[1, :3], pose[1, 3:])
         touch_unit(a, b, system.hulls, reach, work.pair, work.touches)
     return work.pair.state[0].total
@@ -88,7 +84,7 @@ def tangents(n0, n1, n2, axes):
 @kernel
 def write_touch(contact, touch, state, point):
     """Write a found point as a contact point."""
-    n = touch.normal
+    n, e = touch.normal, contact.axes[0]
     point.a, point.b, point.gap, point.turns = contact.body, contact.other, touch.gap, 0
     point.owner, point.parts[0], point.parts[1] = touch.owner, touch.parts[0], touch.parts[1]
     if contact.static == 1:
@@ -100,7 +96,8 @@ def write_touch(contact, touch, state, point):
             point.arm_b[k] = touch.on_b[k] - state[contact.other].x[k]
         elif contact.static == 1:
             point.arm_b[k] = touch.on_b[k]
-    if not on_half_space(contact):
+    beyond = contact.surface > 0 and not n[0] * e[0] + n[1] * e[1] + n[2] * e[2] > ON_PLANE
+    if beyond or not on_half_space(contact):
         tangents(n[0], n[1], n[2], point.axes)
         return
     for k in range(3):
@@ -134,11 +131,40 @@ def which_touch(system, contact, count, feature, p, state, work):
     return chosen
 
 
+@kernel
+def touch_of_active(system, contact, feature, p, state, work):
+    """Write the points of a contact, and return the one that has a feature, or that replaces it.
+
+    A point of a level surface that has passed its rim is replaced by one of the solid that it has left.
+    """
+    count = list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+    i = which_touch(system, contact, count, feature, p, state, work)
+    if contact.surface == 0:
+        return i
+    solid = solid_left(system, contact, work.touches[i])
+    if solid < 0:
+        return i
+    list_on_solid(system, contact, solid, ACTIVE_REACH * smaller(contact), work)
+    return which_touch(system, contact, work.pair.state[0].total, feature, p, state, work)
+
+
+@kernel
+def list_on_solid(system, contact, solid, reach, work):
+    """Write the points of a body, whose pose is in work.solid_pose, and a static solid into work.touches."""
+    pose, other = work.solid_pose, system.solids[solid]
+    for k in range(4):
+        pose[1, 3 + k] = other.Q[k]
+        if k < 3:
+            pose[1, k] = other.x[k]
+    a = Placed(system.solids[contact.solid], pose[0, :3], pose[0, 3:])
+    b = Placed(other, pose[1, :3], pose[1, 3:])
+    touch_unit(a, b, system.hulls, reach, work.pair, work.touches)
+
+
 @unit
 def _place_pair(system, contact, feature, p, state, point, work):
     """Write the found point that has the feature, or the point that replaces it."""
-    count = list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
-    i = which_touch(system, contact, count, feature, p, state, work)
+    i = touch_of_active(system, contact, feature, p, state, work)
     write_touch(contact, work.touches[i], state, point)
 
 
@@ -163,11 +189,43 @@ def slip_velocity(contact, touch, state):
 
 
 @unit
-def _drift(system, contact, feature, point, state) -> tuple[float, float, float]:
-    """Return (d/dt G) v, contact axes: the change of the velocity at the point for constant velocities."""
-    if on_half_space(contact):
+def _drift(system, contact, feature, p, point, state, work) -> tuple[float, float, float]:
+    """Return (d/dt G) v, contact axes: the change of the velocity at the point with constant body velocities.
+
+    It is a closed form on a half-space. For two bodies it is a central difference over a displacement of 1e-5
+    of the smaller one, which includes the motion of normals and points for shapes of any kind.
+    """
+    a, b = contact.body, contact.other
+    if on_half_space(contact) and not is_beyond(system, contact, point, state):
         return roll_on_plane(system, contact, feature, point, state)
-    return drift_of_solids(system, contact, point, state)
+    speed = 0.0
+    for side in range(2 if b >= 0 else 1):
+        body = a if side == 0 else b
+        v, w = state[body].v, state[body].w
+        spin = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+        extent = contact.extent if side == 0 else contact.other_extent
+        speed = max(speed, math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + extent * spin)
+    if not speed > 0.0:
+        return 0.0, 0.0, 0.0
+    t = 1e-5 * smaller(contact) / speed
+    E, moved, other = point.axes, work.middle, work.solid_rate
+    for side in range(2):
+        s = t if side == 1 else -t
+        advance(state[a], s, moved[a])
+        if b >= 0:
+            advance(state[b], s, moved[b])
+        touch = work.touches[touch_of_active(system, contact, feature, p, moved, work)]
+        ux, uy, uz = slip_velocity(contact, touch, moved)
+        n = touch.normal
+        other[side, 0] = n[0] * ux + n[1] * uy + n[2] * uz
+        other[side, 1] = E[1, 0] * ux + E[1, 1] * uy + E[1, 2] * uz
+        other[side, 2] = E[2, 0] * ux + E[2, 1] * uy + E[2, 2] * uz
+    f = 0.5 / t
+    return (
+        f * (other[1, 0] - other[0, 0]),
+        f * (other[1, 1] - other[0, 1]),
+        f * (other[1, 2] - other[0, 2]),
+    )
 
 
 @inlined

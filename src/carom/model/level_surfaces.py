@@ -147,9 +147,9 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _near(faces: list[Face], facing: float) -> Iterator[tuple[int, int]]:
-    """Return pairs i < j of faces in about one plane whose balls touch.
+    """Return pairs i < j of faces in about one plane that are near each other.
 
-    `facing` is 1, or -1 for opposite normals.
+    `facing` is 1 for equal normals, -1 for opposite ones.
     """
     normals = np.array([face.normal for face in faces]).reshape(-1, 3)
     centres = np.array([face.centre for face in faces]).reshape(-1, 3)
@@ -247,7 +247,7 @@ def _rims(faces: list[Face]) -> tuple[float, np.ndarray]:
 
 
 def _edges_of_one(faces: list[Face], tolerance: float) -> list[list[int]]:
-    """Return for each face its edges that are not an edge of one other face, from its other side."""
+    """Return for each face its edges that are not also an edge of one other face, on its other side."""
     place: dict[tuple, list[tuple[int, int]]] = {}
     for i, face in enumerate(faces):
         middles = face.corners + face.corners[[*range(1, len(face.corners)), 0]]
@@ -272,7 +272,7 @@ def _same_edge(a: tuple[Face, int], b: tuple[Face, int], tolerance: float) -> bo
 
 
 def _part_inside(face: Face, begin: np.ndarray, end: np.ndarray, tolerance: float):
-    """Return the part (a, b) of the segment from `begin` (0) to `end` (1) inside a face, or None."""
+    """Return the part (a, b) of a segment, from 0 to 1, inside a face; None if there is none."""
     f = face.inward @ begin - face.levels + tolerance
     slope = face.inward @ (end - begin)
     low, high = 0.0, 1.0
