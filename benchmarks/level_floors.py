@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import argparse
 import faulthandler
-import itertools
 import time
 import warnings
 from collections import defaultdict

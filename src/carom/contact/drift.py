@@ -222,15 +222,15 @@ def _follow(lead, other, hulls, n, d, rate, owner):
 
 
 @kernel
-def drift_of_solids(system, contact, point, state):
+def drift_of_solids(system, contact, other_solid, point, state):
     """Return (d/dt G) v, in contact axes, of a point of two solids that `pair_point.write_touch` wrote."""
-    one, two = system.solids[contact.solid], system.solids[contact.other_solid]
+    one, two = system.solids[contact.solid], system.solids[other_solid]
     # the bodies
     body = state[contact.body]
     q, va, wa = body.Q, _vector(body.v), _vector(body.w)
     q_a = multiply(q[0], q[1], q[2], q[3], one.Q[0], one.Q[1], one.Q[2], one.Q[3])
     q_b, vb, wb = (two.Q[0], two.Q[1], two.Q[2], two.Q[3]), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    if contact.static == 0:
+    if contact.other >= 0:
         body = state[contact.other]
         q, vb, wb = body.Q, _vector(body.v), _vector(body.w)
         q_b = multiply(q[0], q[1], q[2], q[3], two.Q[0], two.Q[1], two.Q[2], two.Q[3])

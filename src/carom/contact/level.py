@@ -82,16 +82,17 @@ def solid_left(system, contact, touch):
 
 
 @kernel
-def is_beyond(system, contact, point, state):
-    """Return whether a contact point of the row of a surface has passed its rim."""
+def solid_beyond(system, contact, point, state):
+    """Return the static solid that a contact point of the row of a surface is on, past its rim; -1 if not."""
     if contact.surface == 0:
-        return False
+        return -1
     levels, surface = system.levels, system.levels.surfaces[contact.surface - 1]
     n, e, x, r = point.axes[0], surface.normal, state[contact.body].x, point.arm_a
-    if not n[0] * e[0] + n[1] * e[1] + n[2] * e[2] > ON_PLANE:
-        return True
     q = (x[0] + r[0], x[1] + r[1], x[2] + r[2])
-    return face_below(levels, surface.first, surface.last, q, ROOM * surface.tolerance) < 0
+    if n[0] * e[0] + n[1] * e[1] + n[2] * e[2] > ON_PLANE:
+        if face_below(levels, surface.first, surface.last, q, ROOM * surface.tolerance) >= 0:
+            return -1
+    return levels.faces[nearest_face(levels, contact.first_level, contact.last_level, q)].solid
 
 
 @kernel

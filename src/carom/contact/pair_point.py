@@ -13,7 +13,8 @@ from carom.collision.frame import place
 from carom.collision.layout import Placed, Plane
 from carom.collision.plane import plane_unit
 from carom.collision.touch import touch_unit
-from carom.contact.level import ON_PLANE, is_beyond, keep_real_touches, solid_left
+from carom.contact.drift import drift_of_solids
+from carom.contact.level import ON_PLANE, keep_real_touches, solid_beyond, solid_left
 from carom.contact.place_of_other import on_half_space
 from carom.contact.rim import same_point
 from carom.contact.roll import roll_on_plane
@@ -189,43 +190,14 @@ def slip_velocity(contact, touch, state):
 
 
 @unit
-def _drift(system, contact, feature, p, point, state, work) -> tuple[float, float, float]:
-    """Return (d/dt G) v, contact axes: the change of the velocity at the point with constant body velocities.
-
-    It is a closed form on a half-space. For two bodies it is a central difference over a displacement of 1e-5
-    of the smaller one, which includes the motion of normals and points for shapes of any kind.
-    """
-    a, b = contact.body, contact.other
-    if on_half_space(contact) and not is_beyond(system, contact, point, state):
+def _drift(system, contact, feature, point, state) -> tuple[float, float, float]:
+    """Return (d/dt G) v, contact axes: the change of the velocity at the point for constant velocities."""
+    if not on_half_space(contact):
+        return drift_of_solids(system, contact, contact.other_solid, point, state)
+    solid = solid_beyond(system, contact, point, state)
+    if solid < 0:
         return roll_on_plane(system, contact, feature, point, state)
-    speed = 0.0
-    for side in range(2 if b >= 0 else 1):
-        body = a if side == 0 else b
-        v, w = state[body].v, state[body].w
-        spin = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
-        extent = contact.extent if side == 0 else contact.other_extent
-        speed = max(speed, math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + extent * spin)
-    if not speed > 0.0:
-        return 0.0, 0.0, 0.0
-    t = 1e-5 * smaller(contact) / speed
-    E, moved, other = point.axes, work.middle, work.solid_rate
-    for side in range(2):
-        s = t if side == 1 else -t
-        advance(state[a], s, moved[a])
-        if b >= 0:
-            advance(state[b], s, moved[b])
-        touch = work.touches[touch_of_active(system, contact, feature, p, moved, work)]
-        ux, uy, uz = slip_velocity(contact, touch, moved)
-        n = touch.normal
-        other[side, 0] = n[0] * ux + n[1] * uy + n[2] * uz
-        other[side, 1] = E[1, 0] * ux + E[1, 1] * uy + E[1, 2] * uz
-        other[side, 2] = E[2, 0] * ux + E[2, 1] * uy + E[2, 2] * uz
-    f = 0.5 / t
-    return (
-        f * (other[1, 0] - other[0, 0]),
-        f * (other[1, 1] - other[0, 1]),
-        f * (other[1, 2] - other[0, 2]),
-    )
+    return drift_of_solids(system, contact, solid, point, state)
 
 
 @inlined
