@@ -26,6 +26,7 @@ from carom.persistent.step_control import POORLY, rest_speed
 
 REST = 0.1  # of the error of a step: slip that ends within so little has ended
 ON_CONE = 1.0 - 1e-9  # of the greatest friction: less is within it
+NEARLY = 1.0 - 1e-9  # of the time to a stop: a step that long has gone to it
 
 
 @unit
@@ -119,7 +120,7 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
     if solved:  # the accelerations before modes change: those that the estimate of the error needs
         push_bodies(model, data, loaded, k, count, s)
     lasts = solved and within_cones(k, group)
-    if solved and stick_where_slip_ends(model, data, k, tolerance * controls.step / h):
+    if solved and stick_where_slip_ends(model, data, k, h, tolerance * controls.step / h):
         lasts = True
         onto_tangents_of(model, data, k, count)
     if not lasts:
@@ -166,8 +167,20 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
         active_point.comes_to_rest = 1 if at_rest else 0
         set_margins(active_point, i, located, group)
         active_point.jams = jams_among(active_point, i, status, group)
+    add_forces_of_corners(active, k, group)
     note_residual(k, group, work)
     return True
+
+
+@kernel
+def add_forces_of_corners(active, k, group):
+    """Add the forces of corners that are no active points to that which stands for their pair."""
+    for i in range(k):
+        closed_point = group.closed[i]
+        if closed_point.own == 0 and closed_point.turns == 0:
+            force = active.points[closed_point.active].force
+            for r in range(3):
+                force[r] += group.v[P][3 * i + r]
 
 
 @kernel
@@ -240,10 +253,10 @@ def fix_friction(k, i, group):
 
 
 @kernel
-def stick_where_slip_ends(model, data, k, still):
+def stick_where_slip_ends(model, data, k, h, still):
     """Let points stick whose slip ends within a part of the tolerance; return whether friction holds them.
 
-    The slip of a step of given length has ended where it is `still`.
+    A step of length h has gone to the stop that was predicted at its start, or the slip is `still`.
     Forces and accelerations are those of stick then.
     """
     controls, group, active, found = model.controls, data.group, data.active, False
@@ -256,6 +269,7 @@ def stick_where_slip_ends(model, data, k, still):
         allowed = REST * allowed_error(controls.rtol, controls.atol, size, 0.0)
         speed = math.hypot(group.v[U][3 * i + 1], group.v[U][3 * i + 2])
         ends = controls.order > 0 and 0.5 * speed * time_to_stop(i, group) <= allowed
+        ends = ends and h >= NEARLY * first_stop(active, closed_point)
         if ends or speed <= still:
             closed_point.stays, found = 1, True
     if not found:
@@ -282,6 +296,14 @@ def stick_where_slip_ends(model, data, k, still):
             else:
                 active_point.turning[closed_point.turns - 1, 2] = 0.0
     return True
+
+
+@kernel
+def first_stop(active, closed_point):
+    """Return the time to the stop of a slip that was predicted at the start of the step."""
+    if closed_point.turns == JOINT:
+        return 0.0
+    return active.points[closed_point.active].first_stop[closed_point.turns]
 
 
 @kernel

@@ -50,7 +50,9 @@ def set_margins(active_point, i, push, group):
     if active_point.next == OPEN:
         active_point.lift = -max(a[q] / push, 2.0 * NEAR)
         return
-    if p[q] <= 0.0 and a[q] > NONE * push:
+    if active_point.several == 0:  # its force is unique: both are continuous
+        active_point.lift = p[q] * W[q, q] / push if p[q] > 0.0 else -a[q] / push
+    elif p[q] <= 0.0 and a[q] > NONE * push:
         active_point.lift = -a[q] / push
     else:
         active_point.lift = max(p[q] * W[q, q] / push, LEAST)
@@ -62,7 +64,8 @@ def set_margins(active_point, i, push, group):
             active_point.grip = -gain
         else:
             left = group.mu[i] * p[q] - math.sqrt(p[q + 1] ** 2 + p[q + 2] ** 2)
-            active_point.grip = max(left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push, LEAST)
+            grip = left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push
+            active_point.grip = grip if active_point.several == 0 else max(grip, LEAST)
 
 
 @kernel

@@ -58,7 +58,7 @@ def first_stage(model, data, label, loaded, count):
     status = SOLVED
     if not (known and solve_springs(k, group) and within_cones(k, group)):
         status = solve_cones_of(model, data, k)
-        known = note_break_away(system, data, k, push) and known
+    known = note_break_away(system, data, k, push) and known
     driven, rubbed = push_bodies(model, data, loaded, k, count, 0)
     result.power, result.drag = power + driven, rubbed
     rate, friction = rates(k, group)
@@ -71,9 +71,12 @@ def note_break_away(system, data, k, push):
     group, none = data.group, True
     for i in range(k):
         closed_point = group.closed[i]
-        if group.kind[i] == SLIDING or closed_point.own == 0 or not gains(i, push, group):
+        smooth = group.mu[i] == 0.0
+        if (group.kind[i] == SLIDING and not smooth) or closed_point.own == 0:
             continue
-        none = False
+        if not gains(i, push, group):
+            continue
+        none = none and smooth
         if closed_point.turns == JOINT:
             force = group.v[P][3 * i + 1]
             system.relations.frictions[closed_point.active].next = -1 if force > 0.0 else 1

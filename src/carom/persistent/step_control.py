@@ -24,7 +24,7 @@ MUCH, LEAST = 1e3, 1e-4
 CAREFUL = 0.01
 SURE = 1.0 / 32.0  # of the allowed loss: with less, the next step is twice as long (order 4: 2^5)
 # Allowed loss of one body, relative to its kinetic energy plus m g times its size.
-OF_ONE = 1e-5
+OF_ONE = 2e-8
 # Tolerance of a run above which more may be lost, in proportion.
 TIGHT = 1e-8
 # Greatest rotation in a step [rad]: the methods are useful below one radian.

@@ -69,7 +69,7 @@ def event_value(system, controls, active, search, state, work):
         return lowest_pair(system, contact, search.contact, active, state, work)
     if search.kind >= STOPS:
         return joint_event_value(system, search.kind, search.contact, active, state, work), 0.0
-    if search.kind != JAM:
+    if search.kind != JAM and active.points[search.contact].several == 1:
         search.tolerance = NEAR
     return contact_event_value(system, active.points[search.contact], search.kind), 0.0
 
