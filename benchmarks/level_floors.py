@@ -52,14 +52,14 @@ def polygons(kind: str, rng) -> list[np.ndarray]:
 
 
 def add_floor(scene, kind: str, place, up: float, rng) -> None:
-    """Add a floor whose top is the plane of `place`; with `up`, the piece at x = 0.8 m stands out."""
+    """Add a floor whose top is the plane of `place`; with `up`, the piece nearest to x = 0.8 m stands out."""
     yaw = rng.uniform(0.0, 90.0) * (rng.random() < 0.5)
-    turn, parts = carom.euler("z", yaw), []
-    for polygon in polygons(kind, rng):
-        thick = rng.uniform(0.1, 0.4)
-        middle = 0.5 * (polygon.min(axis=0) + polygon.max(axis=0))
-        at = quaternion.rotate(np.array(turn), np.array([*middle, 0.0]))
-        height = up * (np.hypot(at[0] - 0.8, at[1]) < 0.5)
+    turn, parts, pieces = carom.euler("z", yaw), [], polygons(kind, rng)
+    flat = [np.append(0.5 * (p.min(axis=0) + p.max(axis=0)), 0.0) for p in pieces]
+    at = quaternion.rotate(np.array(turn), np.array(flat))
+    raised = int(np.argmin(np.hypot(at[:, 0] - 0.8, at[:, 1])))
+    for k, polygon in enumerate(pieces):
+        thick, middle, height = rng.uniform(0.1, 0.4), flat[k][:2], up * (k == raised)
         if len(polygon) == 4:
             x, y = np.ptp(polygon, axis=0)
             part, centre = carom.Box(x, y, thick), np.array([*middle, height - 0.5 * thick])
