@@ -59,7 +59,8 @@ def test_slides_below_the_critical_friction(tips, part):
     mu = part * CRITICAL
     s = slide(mu, 0.5, tips)
     # where slip stops, round-off of the nearly singular W may let two tips jump, by some 1e-8 m/s
-    assert list(s.events.kind[: tips + 1]) == tips * ["held"] + ["sticks"]
+    assert list(s.events.kind[:tips]) == tips * ["held"]
+    assert s.events.kind[tips] in (("sticks", "opens") if tips == 2 else ("sticks",))
     assert np.all(np.abs(s.impacts.relative_velocity_before[:, 0]) < 1e-6)
     N = G / (1.75 - 1.299038105677 * mu)
     np.testing.assert_allclose(s.contact_force[0, 0], (N, -mu * N, 0), rtol=1e-5, atol=1e-9)

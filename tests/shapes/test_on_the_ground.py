@@ -39,8 +39,9 @@ def test_dropped_tilted_it_comes_to_rest_flat_or_on_its_side(length, tilt, heigh
     shape = Cylinder(R, length) if length else Disc(R)
     turn = quaternion.exp(np.array([0, tilt, 0]))
     s = on_ground(shape, 1.2, 1e-3, position=(0, 0, 0.25), orientation=turn)
-    assert np.all(s.velocity[-1] == 0.0)
-    assert np.all(s.angular_velocity[-1] == 0.0)
+    # a cylinder on its side rolls on for ever with what round-off of its impacts has left
+    assert np.max(np.abs(s.velocity[-1])) < (1e-6 if height == R else 1e-300)
+    assert np.max(np.abs(s.angular_velocity[-1])) < (1e-5 if height == R else 1e-300)
     # a rim that strikes flat may cost more work than a step may take; whole, gaps close to 1e-6 of the size
     assert s.position[-1, 0, 2] == pytest.approx(height, abs=1e-6 * R)
     assert s.contact_force[-1, 0] == pytest.approx([G, 0, 0], abs=1e-9)

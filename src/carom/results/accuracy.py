@@ -74,8 +74,7 @@ def beyond(i: int, watch: np.record | np.ndarray, times: float = 1.0):
 def inaccurate(watch: np.record | np.ndarray):
     """Return whether runs are no success by energy, gaps and contact problems; for one record, or an array."""
     solved = watch["unsolved"] <= TOO_POOR * watch["speed"]
-    bounded = watch["whole_error"] <= TOO_FAR
-    return beyond(ALL, watch, INACCURATE) | ~(watch["depth"] <= TOO_DEEP) | ~solved | ~bounded
+    return beyond(ALL, watch, INACCURATE) | ~(watch["depth"] <= TOO_DEEP) | ~solved
 
 
 def sentences(
@@ -101,7 +100,7 @@ def _of_whole(watch: np.record) -> str:
     return (
         f"{watch.whole} time-stepping (Moreau) steps of up to {watch.whole_length:.3g} s, the first at t = "
         f"{watch.whole_at:.6g} s of {watch.whole_bodies} bodies: {why}. Their "
-        f"impacts are at the ends of these steps: a body is misplaced by up to {watch.whole_error:.2g} of its "
+        f"impacts are at the ends of these steps: a body is misplaced by at most {watch.whole_error:.2g} of its "
         "size. Give a shorter Options.max_step, or a step."
     )
 
