@@ -29,7 +29,6 @@ DEEP, TOO_DEEP = 1e-8, 1e-2
 POOR, TOO_POOR = 1e-2, 0.1
 # displacement that a time-stepping step of few bodies may misplace, relative to the size of a body: beyond it a
 # run with tolerances is no success
-TOO_FAR = 1.0
 
 _WHAT = {
     RESIDUAL: (
@@ -100,7 +99,7 @@ def _of_whole(watch: np.record) -> str:
     return (
         f"{watch.whole} time-stepping (Moreau) steps of up to {watch.whole_length:.3g} s, the first at t = "
         f"{watch.whole_at:.6g} s of {watch.whole_bodies} bodies: {why}. Their "
-        f"impacts are at the ends of these steps: a body is misplaced by at most {watch.whole_error:.2g} of its "
+        f"impacts are at the ends of these steps: a body is misplaced by up to {watch.whole_error:.2g} of its "
         "size. Give a shorter Options.max_step, or a step."
     )
 
