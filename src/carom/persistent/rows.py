@@ -26,6 +26,7 @@ from carom.persistent.springs import bound_per_force
 # least cosine between the directions of slip in a step; part of the slip at its start below which a direction
 # is that of the start: a slip that stops at the end of a step
 SAME_WAY, STOPS = 0.5, 1e-3
+SLOWEST = 1e-9  # of the greatest slip of a group: a corner that slips slower sticks
 
 
 @kernel
@@ -90,10 +91,17 @@ def set_modes(system, active, k, group):
 
     All springs press at first.
     """
-    same = True
+    same, fastest = True, 0.0
+    for i in range(k):
+        u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
+        fastest = max(fastest, math.sqrt(u1 * u1 + u2 * u2))
     for i in range(k):
         closed_point = group.closed[i]
         slips, d1, d2, speed = way_of(system, active, closed_point)
+        u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
+        slip = math.sqrt(u1 * u1 + u2 * u2)
+        if closed_point.own == 0 and closed_point.turns == 0:  # its own velocity decides
+            slips = slip > SLOWEST * fastest
         closed_point.loaded = 1 if closed_point.weight > 0.0 else 0
         group.kind[i] = SLIDING if slips or group.mu[i] == 0.0 else CONE
         group.heading[i, 0], group.heading[i, 1] = d1, d2
@@ -104,8 +112,6 @@ def set_modes(system, active, k, group):
             continue
         if not slips or group.mu[i] == 0.0:
             continue
-        u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
-        slip = math.sqrt(u1 * u1 + u2 * u2)
         if closed_point.own == 1 and not slip > STOPS * speed:
             continue
         if closed_point.own == 1 and not u1 * d1 + u2 * d2 > SAME_WAY * slip:

@@ -101,12 +101,14 @@ def note_way(model, data, i, still):
     moves = speed > max(10.0 * slow(contact, data.state), still)
     d1, d2 = u1 / speed if moves else 0.0, u2 / speed if moves else 0.0
     if closed_point.own == 0:
-        return moves or active_point.mode != SLIP or group.mu[i] == 0.0
+        return moves or active_point.next != SLIP or group.mu[i] == 0.0
     if closed_point.turns > 0:
         way = active_point.turning[closed_point.turns - 1]
         way[0], way[1], way[2] = d1, d2, speed if moves else 0.0
         return True
-    slips = active_point.mode == SLIP
+    if moves and active_point.mode != SLIP:  # a corner that has come since: the velocity decides
+        active_point.next = SLIP
+    slips = active_point.next == SLIP
     active_point.heading[0], active_point.heading[1] = d1 if slips else 0.0, d2 if slips else 0.0
     active_point.speed = speed
     return moves or not slips or group.mu[i] == 0.0
