@@ -22,7 +22,7 @@ OF_MOTION, OF_FALL, OF_SIZE = 1e-6, 1e-2, 1e-7
 # step plus LEAST of m g times the size, which is far above round-off.
 MUCH, LEAST = 1e3, 1e-4
 CAREFUL = 0.01
-SURE = 1.0 / 32.0  # of the allowed loss: with less, the next step is twice as long (order 4: 2^5)
+SURE = 1.0 / 8.0  # of the allowed loss: with less, the next step is twice as long
 # Allowed loss of one body, relative to its kinetic energy plus m g times its size.
 OF_ONE = 2e-8
 # Tolerance of a run above which more may be lost, in proportion.
