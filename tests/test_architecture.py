@@ -29,6 +29,14 @@ DOORS = {
     ("results.drawn", "visual.plots"),
 }
 LOOSE = 8
+#: greatest number of lines of each folder, in hundreds: these bounds only go down; a new capability states its room
+HUNDREDS = {
+    "_compiled": 18, "geometry": 13, "scene": 48, "collision": 29, "model": 32, "kinematics": 13,
+    "contact": 21, "friction": 21, "dynamics": 57, "impact": 66, "persistent": 37, "stepping": 52,
+    "results": 23, "generalized": 35, "io": 47, "control": 8, "studies": 51, "visual": 43, "baselines": 8,
+    "paper": 19, "bench": 11, "cli": 18,
+}  # fmt: skip
+MOST_LINES = 68000
 
 
 @cache
@@ -140,3 +148,13 @@ def test_only_compiled_code_knows_numba():
             else:
                 names = [node.module or ""]
             assert not {one.split(".")[0] for one in names} & {"numba", "llvmlite"}, name
+
+
+def test_rooms_do_not_grow():
+    lines = {}
+    for path in ROOT.rglob("*.py"):
+        room = path.relative_to(ROOT).parts[0]
+        lines[room] = lines.get(room, 0) + len(path.read_text().splitlines())
+    large = {room: n for room, n in lines.items() if room in HUNDREDS and n > 100 * HUNDREDS[room]}
+    assert not large
+    assert sum(lines.values()) <= MOST_LINES

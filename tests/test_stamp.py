@@ -58,8 +58,8 @@ def test_the_whole_loop_is_reached():
         pytest.skip("not compiled: there is no cache")
     names = list(cache_key._reached(contact_step.compiled.py_func, set()))
     for name in (
-        "persistent.contact_step.impose",
-        "dynamics.several_points.spread_all",
+        "persistent.members.implicit_member",
+        "dynamics.several_points.velocities",
         "friction.solve.solve_cones",
     ):
         assert f"carom.{name}" in names
