@@ -98,14 +98,35 @@ def _add_pair(system, active, i, state, k, group, work) -> int:
             if active.points[j].contact == c:
                 k = add_nearest(system, active, j, count, state, k, group, work)
         return k
+    k = add_face(system, active, c, i, state, k, group, work)
+    for d in range(system.contacts.shape[0] if contact.surface > 0 else 0):
+        other = system.contacts[d]  # another part of the level surface, with a friction of its own
+        beside = d != c and other.body == contact.body and other.surface == contact.surface
+        if beside and not has_points(active, d):
+            k = add_face(system, active, d, i, state, k, group, work)
+    return k
+
+
+@kernel
+def has_points(active, c):
+    """Return whether a contact has active points."""
+    for j in range(active.count[0]):
+        if active.points[j].contact == c:
+            return True
+    return False
+
+
+@kernel
+def add_face(system, active, c, i, state, k, group, work):
+    """Add all corners of a face; the active point i stands for those that are not active."""
+    contact, near = system.contacts[c], math.inf
     count = find_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
-    least = math.inf
     for t in range(count):
-        least = min(least, work.touches[t].gap)
-    for t in range(count):
-        if work.touches[t].gap <= least + FACE * smaller(contact):
+        near = min(near, work.touches[t].gap + FACE * smaller(contact))
+    for t in range(count if near < 2.0 * FACE * smaller(contact) else 0):
+        if work.touches[t].gap <= near:
             k = add_touch(system, contact, c, work.touches[t], i, state, k, group)
-            note_own(system, active, i, work.touches[t], state, group.closed[k - 1])
+            note_own(system, active, 0, work.touches[t], state, group.closed[k - 1])
     return k
 
 
