@@ -29,7 +29,7 @@ DOORS = {
     ("results.drawn", "visual.plots"),
 }
 LOOSE = 8
-#: greatest number of lines of each folder, in hundreds: these bounds only go down; a new capability states its room
+#: greatest number of lines of each folder, in hundreds: bounds only go down; a new capability states its room
 HUNDREDS = {
     "_compiled": 18, "geometry": 13, "scene": 48, "collision": 29, "model": 32, "kinematics": 13,
     "contact": 21, "friction": 21, "dynamics": 57, "impact": 66, "persistent": 37, "stepping": 52,
