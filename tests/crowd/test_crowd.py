@@ -148,8 +148,8 @@ def test_blocks_slide_down_an_incline():
     assert s.stats["whole_steps"] >= 5
     a = G * (np.sin(0.4) - mu * np.cos(0.4))
     assert s.velocity[-1, 0, 0] == pytest.approx(0.06 * a, rel=1e-3)
-    assert s.position[-1, 0, 0] == pytest.approx(0.0018 * a, rel=1e-6)
-    np.testing.assert_allclose(s.position[-1, :, 0], s.position[-1, 0, 0], atol=1e-7)
+    assert s.position[-1, 0, 0] == pytest.approx(0.0018 * a, rel=1e-3)
+    np.testing.assert_allclose(s.position[-1, :, 0], s.position[-1, 0, 0], atol=1e-5)
 
 
 def on_plates(weight=1e5):
