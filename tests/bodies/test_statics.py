@@ -80,22 +80,23 @@ def least_friction(count, thickness):
     return high
 
 
-def arch(count, thickness, mu, duration):
+def arch(count, thickness, mu, duration, step=0.005):
     scene = carom.Scene(gravity=(0, 0, -G))
     scene.add_half_space((0, 0, 0), (0, 0, 1))
     for corners in voussoirs(count, thickness)[1]:
         centre, _ = centre_and_volume(corners)
         scene.add_body(carom.Convex(corners - centre), density=2000.0, position=centre)
     scene.set_contact_default(restitution=0.0, friction=mu)
-    return carom.simulate(scene, duration, step=0.005)
+    return carom.simulate(scene, duration, step=step)
 
 
+@pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")  # of the first step of the fall
 @pytest.mark.parametrize("thickness", [0.25, 0.15])
 def test_arch_stands_at_the_friction_that_statics_allows(thickness):
     mu = least_friction(7, thickness)
     stands = arch(7, thickness, 1.001 * mu, 2.0)
     assert np.all(stands.position == stands.position[0])
     assert np.all(stands.velocity == 0.0)
-    falls = arch(7, thickness, 0.95 * mu, 0.005)
+    falls = arch(7, thickness, 0.95 * mu, 0.005, 1e-3)
     # it starts as a whole: a part of g, in the first step
     assert 1e-4 * G * 0.005 < np.max(np.abs(falls.velocity[-1])) < G * 0.005

@@ -182,13 +182,18 @@ def _refresh_pairs(system, controls, active, state, work) -> bool:
         if there:
             i += 1
             continue
-        mode = active_point.mode
+        mode, f = active_point.mode, active_point.force
+        force = (f[0], f[1], f[2])
         deactivate(active, i)
+        before = active.count[0]
         active.contact_states[c].leaving = 0
         changed = True
         for d in range(system.contacts.shape[0]):
             if related(system, c, d):
                 replace_points(system, controls, active, d, mode, state, work)
+        for j in range(before, active.count[0]):  # they share its force, until the next step
+            for r in range(3):
+                active.points[j].force[r] = force[r] / (active.count[0] - before)
     return changed
 
 
