@@ -4,7 +4,7 @@
 occurs": between events a group in contact moves as Eq. (4) with more rows (`carom.persistent.rows`). The
 explicit member takes a step while modes last, the implicit one where slip is stiff, begins, ends or turns about
 a corner, and where its step falls below the length in which friction cannot move a body by its tolerance, one
-time- stepping step closes. (Mathematics page, persistent contact; `docs/development/a_step.md`.)
+time-stepping step closes. (Mathematics page, persistent contact; `docs/development/a_step.md`.)
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.groups import members
 from carom.dynamics.adapt import allowed_error, note_miss
-from carom.dynamics.explicit import bound_accelerations_of, stages_within
+from carom.dynamics.explicit import CONSTRAINTS_LOST, bound_accelerations_of, stages_within
 from carom.persistent.finish import (
     land,
     note_modes,
@@ -30,7 +30,6 @@ STIFF = 1.5
 #: of the allowed error: what friction may move a body in a closing step
 CLOSE = 0.1
 STIFF_ORDER, CLOSING_ORDER = 4, 2
-EXPLICIT, IMPLICIT, CLOSING = range(3)
 
 
 @unit
@@ -82,7 +81,7 @@ def step_group(model, data, method, label, h):
         s = s - 1 if stages_within(method) < s else s
         if k > 0 and land(model, data, loaded, k, count, h):
             if review(model, data, label, loaded, count, s, h, True):
-                note_errors(model, data, method.E, loaded, count, h)
+                note_errors(model, data, method.E, count, h)
                 check(model, data, loaded, count, result.friction - rubbed)
                 return
         result.stiff = 1
@@ -93,10 +92,10 @@ def step_group(model, data, method, label, h):
         result.applied, result.friction = had + h * weight * applied, rubbed + h * weight * friction
         k = implicit_member(model, data, method, label, loaded, count, h)
         if k > 0:
-            note_modes(model, data, k, 0.0)
+            note_modes(model, data, k)
             if land(model, data, loaded, k, count, h):
                 review(model, data, label, loaded, count, method.stiff.shape[0], h, False)
-                note_errors(model, data, method.stiff_E, loaded, count, h)
+                note_errors(model, data, method.stiff_E, count, h)
                 if order > 0:
                     result.order = min(order, STIFF_ORDER)
                 check(model, data, loaded, count, result.friction - rubbed)
@@ -104,14 +103,14 @@ def step_group(model, data, method, label, h):
     first_modes(system, data, label)
     result.applied, result.friction = had, rubbed
     k = closing_member(model, data, label, loaded, count, h)
-    note_modes(model, data, k, 0.0)
+    note_modes(model, data, k)
     if not land(model, data, loaded, k, count, h):
-        result.code = 7
+        result.code = CONSTRAINTS_LOST
     review(model, data, label, loaded, count, 2, h, False)
     for m in range(count):
         miss, b = work.body[group.member[m]].miss, group.member[m]
         bound_accelerations_of(work, b, 2)
-        miss[0], miss[1], miss[2] = max(miss[0], 0.5 * h * h * push), 0.0, max(miss[2], 0.0)
+        miss[0], miss[1] = max(miss[0], 0.5 * h * h * push), 0.0
     if order > 0:
         result.order = CLOSING_ORDER
 
@@ -127,7 +126,7 @@ def closing_size(system, controls, count, group):
 
 
 @kernel
-def note_errors(model, data, E, loaded, count, h):
+def note_errors(model, data, E, count, h):
     """Write the errors of the bodies of a group by its stages, and bounds of their accelerations."""
     system, group, work = model.system, data.group, data.work
     for m in range(count):

@@ -69,7 +69,7 @@ def show(count, state, group, work):
 
 
 @kernel
-def note_modes(model, data, k, still):
+def note_modes(model, data, k):
     """Write the modes at the end of a step whose stages have none: a point sticks where its disc holds it."""
     active, group = data.active, data.group
     for i in range(k):
@@ -77,7 +77,7 @@ def note_modes(model, data, k, still):
         slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
         force = math.hypot(p[3 * i + 1], p[3 * i + 2])
         full = not force < ON_CONE * radius_of(group, i)
-        group.kind[i] = SLIDING if group.mu[i] == 0.0 or (full and slip > still) else CONE
+        group.kind[i] = SLIDING if group.mu[i] == 0.0 or (full and slip > 0.0) else CONE
         if closed_point.own == 0:
             continue
         slides = group.kind[i] == SLIDING and slip > 0.0

@@ -19,9 +19,8 @@ from carom.model.arrays import PRISMATIC
 
 JOINT = 5  # `turns` of such an entry, and of its point if the coordinate is a displacement
 PIVOT = 2  # of its point if it is an angle
-DRIVEN = (
-    1e-13  # of the effect of a force without joints: with less, joints and motors leave no freedom
-)
+# of the effect of a force without joints: with less, joints and motors leave no freedom
+DRIVEN = 1e-13
 
 
 @kernel
