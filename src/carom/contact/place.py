@@ -21,16 +21,6 @@ def place_any(system, contact, feature, p, state, point, work):
 
 
 @kernel
-def place_active(system, active_point, state, point, work):
-    """Write the point of a persistent contact that is not a stop."""
-    contact = system.contacts[active_point.contact]
-    if contact.touches == 0:
-        place(contact, active_point.point, state, point)
-    else:
-        place_pair(system, contact, active_point.feature, active_point.point, state, point, work)
-
-
-@kernel
 def drift_of(system, contact, feature, p, point, state, work):
     """Return (d/dt G) v, contact axes, of two touching bodies or of a stop.
 

@@ -16,7 +16,7 @@ from carom.impact.multiple.layout import (
     new_multiple_result,
     new_multiple_workspace,
 )
-from carom.model.arrays import STATE, System
+from carom.model.arrays import System
 from carom.model.workspace import POINT
 
 #: greatest number of points that are solved together
@@ -56,19 +56,13 @@ class Group(NamedTuple):
     """
 
     closed: np.recarray  # (K,) CLOSED_POINT
-    points: (
-        np.recarray
-    )  # (2, K) POINT: in the present state, or in the middle of a step; at its end
+    points: np.recarray  # (2, K) POINT: of the present state; of the end of a step
     v: np.ndarray  # (5, 3K) vectors
     m: np.ndarray  # (2, 3K, 3K) inverse mass W, and a factor
-    rows: (
-        np.ndarray
-    )  # (2, 3K, 6) of one body: rows of G, and the motions that forces along them give
     mu: np.ndarray  # (K,)
     kind: np.ndarray  # (K,) of `carom.friction`
     heading: np.ndarray  # (K, 2)
     member: np.ndarray  # (N,) bodies of the group
-    flight: np.recarray  # (N,) STATE at the end of the step without the contacts
     cone: ContactWork
 
 
@@ -108,12 +102,10 @@ def new_group(system: System, more: bool = False) -> Group:
         points=table(POINT, 2, k),
         v=np.zeros((5, 3 * k)),
         m=np.zeros((2, 3 * k, 3 * k)),
-        rows=np.zeros((2, 3 * k, 6)),
         mu=np.zeros(k),
         kind=np.zeros(k, dtype=np.int64),
         heading=np.zeros((k, 2)),
         member=np.zeros(n, dtype=np.int64),
-        flight=table(STATE, n),
         cone=new_contact_work(k),
     )
 

@@ -52,8 +52,7 @@ ACTIVE_POINT = [
     ("bounces", "f8"),
     ("torque", "f8", 3),  # of rolling and pivoting friction, contact axes
     ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
-    # `force`, and `stop` with both `turn_stop`, at the start of the step: all its trial steps begin with these
-    ("first_force", "f8", 3),
+    # `stop` with both `turn_stop` at the start of the step
     ("first_stop", "f8", 3),
 ]
 
@@ -147,8 +146,6 @@ RESULT = [
     ("known_power", "f8"),  # of loads, with the accelerations that are kept
     ("residual", "f8"),  # greatest of the groups in contact at several points
     ("unnamed", "f8"),  # greatest of these: unexplained loss of energy, relative to the tolerance
-    # time within the trial step at which a slide ends: the step is repeated up to there
-    ("until", "f8"),
     ("order", "i8"),  # of the estimate of its error
     ("held", "i8"),  # 1 if joined or loaded bodies are in persistent contact
     ("stiff", "i8"),  # 1 if a trial of this step was taken by the implicit member

@@ -13,7 +13,7 @@ from carom._compiled.decorators import inlined, kernel
 from carom.dynamics.acceleration import OPEN, SLIP
 from carom.persistent.jam import JAMMED, yields
 
-GAP, SEPARATE, CONE, REVERSE, JAM = range(5)
+GAP, SEPARATE, CONE, JAM = range(4)
 
 
 @kernel
@@ -34,14 +34,12 @@ def jam_margin(system, active_point):
 
 
 @inlined
-def note_first_forces(active):
-    """Keep what the active points have at the start of a step: its trial steps write those of their ends."""
+def note_first_stops(active):
+    """Keep the times to the stops at the start of a step: its trial steps write those of their ends."""
     for i in range(active.count[0]):
         active_point = active.points[i]
         first, turns = active_point.first_stop, active_point.turn_stop
         first[0], first[1], first[2] = active_point.stop, turns[0], turns[1]
-        for r in range(3):
-            active_point.first_force[r] = active_point.force[r]
 
 
 @inlined

@@ -16,7 +16,7 @@ from carom.model.actions import STRIKE
 from carom.model.allowance import affordable
 from carom.model.controls import LOCATE
 from carom.persistent.contact_step import contact_step
-from carom.persistent.events import GAP, note_first_forces
+from carom.persistent.events import GAP, note_first_stops
 from carom.persistent.joint_events import STOPS
 from carom.persistent.margins import note_due
 from carom.persistent.step_control import plain_step, too_long
@@ -46,7 +46,7 @@ def propose_step(model, data):
     if clock.paused == 1:
         clock.paused = 0
         return
-    note_first_forces(data.active)
+    note_first_stops(data.active)
     if clock.now - clock.moment > model.controls.step:
         clock.moment, clock.in_moment = clock.now, 0
     dt = min(search.left, search.pace)
@@ -124,7 +124,7 @@ def trial_step(model, data, method):
     system, controls, active, now = model.system, model.controls, data.active, data.state
     work, clock, search = data.work, data.clocks[0], data.work.search[0]
     result = work.result[0]
-    result.start, result.until, result.order = clock.now, math.inf, controls.order
+    result.start, result.order = clock.now, controls.order
     applied, friction, code = step(method, system, active, now, search.dt, work.trial, work)
     search.applied, search.friction, search.code = applied, friction, code
     clock.trials += 1
@@ -167,9 +167,6 @@ def fits(model, data):
         error = math.inf
         if code == 0:
             error = step_error(system, controls.rtol, controls.atol, work)
-        if error <= 1.0 and work.result[0].until < dt:
-            search.dt = work.result[0].until
-            return ONCE_MORE
         if error <= 1.0:
             if may_err(system, data.active):
                 plan_next(dt, error, search.again == 1, controls, work)
