@@ -166,7 +166,7 @@ class Run:
     def note_modes(self) -> None:
         """Note which joints with friction stick at the start."""
         if self.compiled.system.relations.there:
-            first_modes(self.compiled.system, self.active, self.now, self.work)
+            first_modes(self.compiled.system, self.now, self.work)
 
     @property
     def settings(self) -> dict:

@@ -16,7 +16,7 @@ from carom.contact.pair_point import (
 from carom.contact.place import place_any
 from carom.contact.place_of_other import centre_of_other, on_half_space
 from carom.contact.rim import OTHER_SIDE, closed_rim, way_round
-from carom.contact.stop import is_active_stop, place_stop
+from carom.contact.stop import is_active, place_stop
 from carom.kinematics.contact_point import place
 from carom.model.arrays import STOP
 
@@ -96,7 +96,7 @@ def gather_closed(system, controls, active, c, state, group, work, strikes):
                     more = True
             if k < 0:
                 return -1
-    note_active(system, active, k, state, group, work)
+    note_active(system, active, k, state, group)
     return k
 
 
@@ -123,7 +123,7 @@ def add_stop(system, active, c, near, state, k, group):
         return -1
     point = group.points[0][k]
     place_stop(system, system.contacts[c], state, point)
-    if point.gap > near and not is_active_stop(active, c):
+    if point.gap > near and not is_active(active, c):
         return k
     write_closed(c, 0, point.core, group.closed[k])
     return k + 1
@@ -161,7 +161,7 @@ def add_touches(system, c, near, rim_time, state, k, group, work):
 
 
 @unit
-def _is_same_point(system, active_point, point, state, work) -> bool:
+def _is_same_point(system, active_point, point, state) -> bool:
     """Return whether a closed point with the feature of an active one is the same point."""
     contact, r, n = system.contacts[active_point.contact], point.arm_a, point.axes[0]
     moved = way_round(system, contact, n, (r[0], r[1], r[2]), active_point.point, state)
@@ -169,15 +169,15 @@ def _is_same_point(system, active_point, point, state, work) -> bool:
 
 
 @inlined
-def is_same_point(system, active_point, point, state, work):
+def is_same_point(system, active_point, point, state):
     """Return whether a closed point with the feature of an active one is the same point."""
     if system.solids.shape[0] > 0:
-        return _is_same_point(system, active_point, point, state, work)
+        return _is_same_point(system, active_point, point, state)
     return True
 
 
 @kernel
-def note_active(system, active, k, state, group, work):
+def note_active(system, active, k, state, group):
     """Store the index of each closed point among the active ones."""
     for i in range(active.count[0]):
         active_point = active.points[i]
@@ -188,7 +188,7 @@ def note_active(system, active, k, state, group, work):
                 and closed_point.feature == active_point.feature
             ):
                 if active_point.touches != 1 or is_same_point(
-                    system, active_point, group.points[0][j], state, work
+                    system, active_point, group.points[0][j], state
                 ):
                     closed_point.active = i
 

@@ -208,7 +208,7 @@ def place_pair(system, contact, feature, p, state, point, work):
 
 
 @inlined
-def drift_of_found(system, contact, feature, point, state):
+def drift(system, contact, feature, point, state):
     """Return (d/dt G) v, contact axes: the change of the velocity at the point for constant velocities.
 
     The point must have been written for this state (`write_touch`). For two solids `feature` is not used.
@@ -216,9 +216,3 @@ def drift_of_found(system, contact, feature, point, state):
     if system.solids.shape[0] > 0:
         return _drift(system, contact, feature, point, state)
     return 0.0, 0.0, 0.0
-
-
-@inlined
-def drift(system, contact, feature, p, point, state, work):
-    """Return `drift_of_found`; the core point p and the workspace are not used."""
-    return drift_of_found(system, contact, feature, point, state)

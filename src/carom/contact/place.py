@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.contact.pair_point import drift, drift_of_found, place_pair
+from carom.contact.pair_point import drift, place_pair
 from carom.contact.stop import place_stop, stop_drift
 from carom.kinematics.contact_point import place
 from carom.model.arrays import STOP
@@ -21,17 +21,11 @@ def place_any(system, contact, feature, p, state, point, work):
 
 
 @kernel
-def drift_of(system, contact, feature, p, point, state, work):
+def drift_of(system, contact, feature, point, state, work):
     """Return (d/dt G) v, contact axes, of two touching bodies or of a stop.
 
     The point must have been written for this state.
     """
     if contact.touches == STOP:
         return stop_drift(system, contact, state, work), 0.0, 0.0
-    return drift(system, contact, feature, p, point, state, work)
-
-
-@kernel
-def drift_of_touch(system, contact, touch, point, state):
-    """Return (d/dt G) v, contact axes, of a point that `write_touch` wrote from a found one."""
-    return drift_of_found(system, contact, touch.feature, point, state)
+    return drift(system, contact, feature, point, state)

@@ -78,8 +78,8 @@ def stop_drift(system, contact, state, work):
 
 
 @kernel
-def is_active_stop(active, c):
-    """Return whether the stop with the number c is active."""
+def is_active(active, c):
+    """Return whether a contact has active points."""
     for i in range(active.count[0]):
         if active.points[i].contact == c:
             return True
@@ -95,14 +95,14 @@ def check_stop(system, controls, active, contact, c, now, work):
         return NOTHING
     if rate < -still:
         return STRIKE
-    return NOTHING if is_active_stop(active, c) else PERSIST
+    return NOTHING if is_active(active, c) else PERSIST
 
 
 @kernel
 def passage_stop(system, controls, active, c, start, h, work):
     """Return CLEAR, BELOW or UNSURE, and a time before any contact, from the cubic to the trial state."""
     contact, end, leaving = system.contacts[c], work.trial, active.contact_states[c].leaving
-    if is_active_stop(active, c):
+    if is_active(active, c):
         return CLEAR, h
     z0, rate0 = stop_gap(system, contact, start, work)
     z1, rate1 = stop_gap(system, contact, end, work)

@@ -28,9 +28,9 @@ def bias_joints(system, state, work):
 
 
 @unit
-def acceleration_unit(system, state, active, work, stage):
+def acceleration_unit(system, state, work, stage):
     """Write the accelerations into `rate` of `stage`, the powers of loads and of friction to work.result."""
-    accelerations(system, state, active, work, stage)
+    accelerations(system, state, work, stage)
 
 
 @unit
@@ -43,7 +43,7 @@ def acceleration_without_friction(system, state, work, stage):
 
 
 @kernel
-def accelerations(system, state, active, work, stage):
+def accelerations(system, state, work, stage):
     """Do the same as `acceleration_unit`, compiled as a part of the caller."""
     applied = applied_wrenches(system, state, True, work)
     applied += add_stiff(system, state, work)
@@ -65,9 +65,9 @@ def note_accelerations(system, state, applied, friction, work, stage):
 
 
 @inlined
-def acceleration(system, state, active, work, stage):
+def acceleration(system, state, work, stage):
     """Write the accelerations into `rate` of `stage`; return the powers of loads and of friction."""
-    acceleration_unit(system, state, active, work, stage)
+    acceleration_unit(system, state, work, stage)
     return work.result[0].power, work.result[0].drag
 
 

@@ -12,10 +12,10 @@ moves by its own size. A step is accepted if for all bodies
     miss <= LOCAL (atol + rtol max(L, h V)),
 
 a fraction of the tolerance of a run, because errors of steps add up. Order 8 has two estimates: miss = miss_5^2
-/ sqrt(miss_5^2 + miss_3^2/100) (Hairer, Norsett and Wanner 1993). Groups in contact at several points have the
-estimates of `carom.persistent.smooth_step`, or a bound; free flight has no error. The next step is 0.9 times
-the length whose error would equal the tolerance, between 0.2 and 10 times the last length. Each island has
-steps of its own: `ahead` of its bodies.
+/ sqrt(miss_5^2 + miss_3^2/100) (Hairer, Norsett and Wanner 1993). Groups in contact have the estimates of
+`carom.persistent.members`; free flight has no error. The next step is 0.9 times the length whose error would
+equal the tolerance, between 0.2 and 10 times the last length. Each island has steps of its own: `ahead` of its
+bodies.
 """
 
 from __future__ import annotations
@@ -125,7 +125,7 @@ def part_of(left, ahead):
 
 
 @kernel
-def shorter(dt, error, controls, clock, work):
+def shorter(dt, error, clock, work):
     """Return the length to try after a step whose error was too large."""
     factor = LEAST
     if math.isfinite(error):

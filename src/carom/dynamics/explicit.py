@@ -116,7 +116,7 @@ def fly(system, active, start, h, end, work):
     Those in persistent contact are left to `carom.persistent.contact_step`, with all joined and loaded bodies
     if one of these is among them.
     """
-    mark_active(system, active, work)
+    mark_active(active, work)
     pending, held = False, False
     for b in range(system.bodies.shape[0]):
         status = work.body[b].status
@@ -140,7 +140,7 @@ def copy_state(start, end):
 
 
 @inlined
-def mark_active(system, active, work):
+def mark_active(active, work):
     """Store for each body whether it is free, in persistent contact, or at rest."""
     for b in range(work.body.shape[0]):
         work.body[b].status = FREE
@@ -169,7 +169,7 @@ def constrained_step(tableau, system, active, start, care, h, end, work):
         combine(weight if s == last else A[s], s, h, start, work.stages, stage)
         work.result[0].time = t0 + h if s == last else t0 + h * node(A[s], s)
         if s == last:
-            if not return_to_joints(system, active, stage, end, work):
+            if not return_to_joints(system, stage, end, work):
                 return applied, friction, CONSTRAINTS_LOST, least, most
             if s == stages:
                 break
@@ -180,11 +180,11 @@ def constrained_step(tableau, system, active, start, care, h, end, work):
         if s == 0 and keeps and recall(stage, work.stages[0], work):
             applied += h * weight[0] * work.result[0].power
             continue
-        accelerations(system, stage, active, work, work.stages[s])
+        accelerations(system, stage, work, work.stages[s])
         dropped = dropped_rows(system, SINGULAR)
         least, most = min(least, dropped), max(most, dropped)
         if care:
-            pass_round(system, stage, active, end, work, work.stages[s])
+            pass_round(system, stage, end, work, work.stages[s])
         applied += h * weight[s] * work.result[0].power
         friction += h * weight[s] * work.result[0].drag
     if keeps:
@@ -207,7 +207,7 @@ def stages_within(method):
 
 
 @kernel
-def return_to_joints(system, active, state, end, work):
+def return_to_joints(system, state, end, work):
     """Bring the end of a step to the joints and surfaces, beside bodies that have reached theirs in `end`.
 
     Return whether the joints could be closed.

@@ -48,12 +48,12 @@ def implicit_step(method, system, active, start, h, end, work):
         return 0.0, 0.0, 0
     if any_held(active):
         return constrained(method, system, active, start, h, end, work)
-    whole_step(system, active, start, h, end, work)
+    whole_step(system, start, h, end, work)
     return work.result[0].applied, 0.0, work.result[0].code
 
 
 @unit
-def whole_step(system, active, start, h, end, work):
+def whole_step(system, start, h, end, work):
     """Make the two stages, and return to the joints."""
     result, stage = work.result[0], work.stage
     result.code = 0

@@ -53,7 +53,7 @@ def _is_singular(system, least, most):
 
 
 @unit
-def _pass_round(system, stage, active, sums, work, rates):
+def _pass_round(system, stage, sums, work, rates):
     """Write the accelerations of a stage in a singular position from those before and after it on its path.
 
     `sums` is workspace: the velocities of the bodies that step. If all positions on the path are singular, the
@@ -64,7 +64,7 @@ def _pass_round(system, stage, active, sums, work, rates):
         return
     pace, time, reach = turning_pace(system, stage), result.time, NEAR
     for _ in range(TRIES if pace > 0.0 else 0):
-        power, drag, most = _sum_rates(system, stage, active, sums, work, rates, reach, pace)
+        power, drag, most = _sum_rates(system, stage, sums, work, rates, reach, pace)
         result.time = time
         if most > usual[0]:
             reach *= FARTHER
@@ -76,7 +76,7 @@ def _pass_round(system, stage, active, sums, work, rates):
         result.power, result.drag = power, drag
         return
     usual[0] = dropped
-    accelerations(system, stage, active, work, rates)
+    accelerations(system, stage, work, rates)
 
 
 @kernel
@@ -91,7 +91,7 @@ def turning_pace(system, stage):
 
 
 @kernel
-def _sum_rates(system, stage, active, sums, work, rates, reach, pace):
+def _sum_rates(system, stage, sums, work, rates, reach, pace):
     """Write the weighted sums of the accelerations before and after, with T = reach/pace.
 
     Return the same sums of power and of friction power, and the greatest number of rows that were left out.
@@ -109,7 +109,7 @@ def _sum_rates(system, stage, active, sums, work, rates, reach, pace):
             go_on(stage[b], ahead, work.middle[b])
         work.result[0].time = time + ahead
         _return_stage(system, work.middle, work)
-        accelerations(system, work.middle, active, work, rates)
+        accelerations(system, work.middle, work, rates)
         most = max(most, dropped_rows(system, SINGULAR))
         power += share * work.result[0].power
         drag += share * work.result[0].drag
@@ -147,7 +147,7 @@ def return_stage(system, stage, work):
 
 
 @inlined
-def pass_round(system, stage, active, sums, work, rates):
+def pass_round(system, stage, sums, work, rates):
     """Write the accelerations of a stage in a singular position from those before and after it on its path."""
     if system.solver.kind == LOOPS:
-        _pass_round(system, stage, active, sums, work, rates)
+        _pass_round(system, stage, sums, work, rates)

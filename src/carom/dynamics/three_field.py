@@ -58,7 +58,7 @@ def three_field_step(method, system, active, start, h, end, work) -> tuple[float
         if not fly(system, active, start, h, end, work):
             return 0.0, 0.0, 0
         return constrained(method, system, active, start, h, end, work)
-    mark_active(system, active, work)
+    mark_active(active, work)
     first_guess(system, start, h, end, work)
     if method.ode == 1:
         start_rates(system, start, work)

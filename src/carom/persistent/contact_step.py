@@ -79,7 +79,7 @@ def step_group(model, data, method, label, h):
         )
         k, s = explicit_member(model, data, method, label, loaded, count, h), method.b.size
         s = s - 1 if stages_within(method) < s else s
-        if k > 0 and land(model, data, loaded, k, count, h):
+        if k > 0 and land(model, data, loaded, k, count):
             if review(model, data, label, loaded, count, s, h, True):
                 note_errors(model, data, method.E, count, h)
                 check(model, data, loaded, count, result.friction - rubbed)
@@ -93,7 +93,7 @@ def step_group(model, data, method, label, h):
         k = implicit_member(model, data, method, label, loaded, count, h)
         if k > 0:
             note_modes(model, data, k)
-            if land(model, data, loaded, k, count, h):
+            if land(model, data, loaded, k, count):
                 review(model, data, label, loaded, count, method.stiff.shape[0], h, False)
                 note_errors(model, data, method.stiff_E, count, h)
                 if order > 0:
@@ -104,7 +104,7 @@ def step_group(model, data, method, label, h):
     result.applied, result.friction = had, rubbed
     k = closing_member(model, data, label, loaded, count, h)
     note_modes(model, data, k)
-    if not land(model, data, loaded, k, count, h):
+    if not land(model, data, loaded, k, count):
         result.code = CONSTRAINTS_LOST
     review(model, data, label, loaded, count, 2, h, False)
     for m in range(count):

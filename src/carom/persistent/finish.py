@@ -13,7 +13,7 @@ from carom.dynamics.adapt import allowed_error
 from carom.dynamics.explicit import copy_state, note_velocity
 from carom.dynamics.project import LOST, project_position, project_velocity
 from carom.dynamics.several_points import velocities
-from carom.friction.layout import CONE, DISC, SLIDING
+from carom.friction.layout import CONE, DISC, SLIDING, SOLVED
 from carom.impact.workspace import BACK, OLD, C, P, U
 from carom.persistent.forces import solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among
@@ -30,7 +30,7 @@ NEARLY = 1.0 - 1e-9  # of the time to a stop: a step that long has gone to it
 
 
 @unit
-def land(model, data, loaded, k, count, h) -> bool:
+def land(model, data, loaded, k, count) -> bool:
     """Bring bodies back to joints and surfaces, velocities to the tangents; return whether the joints close."""
     system, active, group, work = model.system, data.active, data.group, data.work
     end = work.trial
@@ -112,23 +112,12 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
     push = 0.0
     for row in range(3 * k):
         push = max(push, abs(group.v[C][row]))
-    same = set_modes(system, active, k, group) or not given
-    status = 0
+    same = set_modes(system, active, k, group)
+    if given and not same:
+        return False
     gain = h * push
     tolerance = rest_speed(controls, gain, work.result[0].residual, k, POORLY)
-    solved = same and solve_springs(k, group)
-    if solved:  # the accelerations before modes change: those that the estimate of the error needs
-        push_bodies(model, data, loaded, k, count, s)
-    lasts = solved and within_cones(k, group)
-    if solved and stick_where_slip_ends(model, data, k, h, tolerance * controls.step / h):
-        lasts = True
-        onto_tangents_of(model, data, k, count)
-    if not lasts:
-        if given and not same:
-            return False
-        status = solve_cones_of(model, data, k)
-        if not solved:
-            push_bodies(model, data, loaded, k, count, s)
+    lasts, status = solve_end(model, data, loaded, k, count, s, tolerance * controls.step / h, h)
     located = greatest_push(k, group)
     for i in range(active.count[0]):
         if work.body[active.points[i].body].label == label:
@@ -138,10 +127,11 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
         closed_point = group.closed[i]
         if closed_point.own == 0:
             continue
+        slips = given and not lasts and gains(i, push, group)
         if closed_point.turns == JOINT:
             one = system.relations.frictions[closed_point.active]
             one.force = group.v[P][3 * i + 1]
-            if given and not lasts and one.next == 0 and gains(i, push, group):
+            if slips and one.next == 0:
                 if work.search[0].active == 0:
                     return False
                 one.next = -1 if one.force > 0.0 else 1
@@ -152,24 +142,51 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
             continue
         if not lasts and group.kind[i] == CONE and active_point.next == SLIP:
             active_point.next = STICK
-        still = max(1e-6 * gain, 10.0 * slow(system.contacts[closed_point.contact], end))
-        away = group.v[P][3 * i] <= 0.0 and group.v[U][3 * i] > still
-        slips_off = gains(i, push, group)
-        if given and not lasts and slips_off and active_point.next == STICK:
+        if slips and active_point.next == STICK:
             if not (located > 0.0 and work.search[0].eager == 1):
                 if work.search[0].active == 0:
                     return False
                 active_point.next = SLIP
-        if away:
-            active_point.next = OPEN
-        if at_rest:
-            active_point.next = STICK
-        active_point.comes_to_rest = 1 if at_rest else 0
+        still = max(1e-6 * gain, 10.0 * slow(system.contacts[closed_point.contact], end))
+        end_mode(active_point, i, still, at_rest, group)
         set_margins(active_point, i, located, group)
-        active_point.jams = jams_among(active_point, i, status, group)
+        active_point.jams = jams_among(i, status, group)
     add_forces_of_corners(active, k, group)
     note_residual(k, group, work)
     return True
+
+
+@kernel
+def solve_end(model, data, loaded, k, count, s, still, h):
+    """Write the forces at the end of a step of length h; return whether its modes last, and a status.
+
+    Slip slower than `still` ends. Stage s has the accelerations before modes change, those that the estimate
+    of the error needs.
+    """
+    group = data.group
+    solved = solve_springs(k, group)
+    if solved:
+        push_bodies(model, data, loaded, k, count, s)
+        lasts = within_cones(k, group)
+        if stick_where_slip_ends(model, data, k, h, still):
+            onto_tangents_of(model, data, k, count)
+            lasts = True
+        if lasts:
+            return True, SOLVED
+    status = solve_cones_of(model, data, k)
+    if not solved:
+        push_bodies(model, data, loaded, k, count, s)
+    return False, status
+
+
+@kernel
+def end_mode(active_point, i, still, at_rest, group):
+    """Let a point open that has no force and leaves its surface, faster than `still`, or stick at rest."""
+    if group.v[P][3 * i] <= 0.0 and group.v[U][3 * i] > still:
+        active_point.next = OPEN
+    if at_rest:
+        active_point.next = STICK
+    active_point.comes_to_rest = 1 if at_rest else 0
 
 
 @kernel

@@ -12,52 +12,33 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
-from carom.contact.place import drift_of
 from carom.dynamics.acceleration import acceleration
-from carom.dynamics.several_points import (
-    accelerations,
-    of_one_body,
-    velocities,
-)
+from carom.dynamics.several_points import of_one_body
 from carom.friction.layout import BUDGET, CONE, ENOUGH, NEAR, SLIDING
 from carom.friction.solve import solve_cones
 from carom.impact.workspace import OLD, C, P, U
 from carom.kinematics.flight import free_rates
 from carom.persistent.rolling_friction import bound_turning, take_torque
+from carom.persistent.rows import write_motion
 from carom.persistent.step_control import charge_iterations, iterations_left
 
 
 @kernel
-def pose_forces(system, controls, active, k, state, group, work):
+def pose_forces(system, controls, k, state, group, work):
     """Write u, c = du/dt without contact forces, and the direction of slip, of the k points of the group."""
     b, rates = group.points[0][0].a, work.stages[work.stages.shape[0] - 1]
     if of_one_body(system, k, group.points[0]) and system.bodies[b].ballistic == 1:
         free_rates(system.bodies[b], system.gravity, state[b], rates[b].rate)
     else:
-        acceleration(system, state, active, work, rates)
-    velocities(k, group.points[0], state, group.v[U])
-    accelerations(k, group.points[0], state, rates, group.v[C])
-    for i in range(k):
-        closed_point = group.closed[i]
-        contact = system.contacts[closed_point.contact]
-        if contact.touches != 0 and closed_point.turns == 0:
-            d = drift_of(
-                system,
-                contact,
-                closed_point.feature,
-                closed_point.point,
-                group.points[0][i],
-                state,
-                work,
-            )
-            for r in range(3):
-                group.v[C][3 * i + r] += d[r]
+        acceleration(system, state, work, rates)
+    write_motion(system, k, state, rates, group, work)
     push = 0.0
     for i in range(3 * k):
         push = max(push, abs(group.v[C][i]))
     for i in range(k):
         contact = system.contacts[group.closed[i].contact]
-        group.mu[i] = contact.friction_held if group.closed[i].turns == 0 else 1.0
+        if group.closed[i].turns > 0:
+            group.mu[i] = 1.0
         still = max(10.0 * slow(contact, state), controls.rest * push * controls.step)
         set_heading(group, i, group.v[U][3 * i + 1], group.v[U][3 * i + 2], still)
 

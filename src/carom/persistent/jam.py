@@ -45,7 +45,7 @@ def note_jam(active, active_point):
 
 
 @kernel
-def jams_among(active_point, i, status, group):
+def jams_among(i, status, group):
     """Return whether point i of several jams: it slips, k <= 0, and the contact problem has no solution."""
     if status == SOLVED or group.kind[i] != SLIDING or group.closed[i].turns > 0:
         return 0

@@ -28,10 +28,11 @@ from carom.persistent.rows import (
     set_modes,
     write_rows,
 )
-from carom.persistent.springs import solve_springs
+from carom.persistent.springs import bound_per_force, solve_springs
 
 FIXED_POINT = 25  # iterations of the pose of a stage
 SAME = 1e-14  # change of velocities by an iteration that is the last, relative to the velocities
+CLOSE = 1e-10  # the same after all iterations: a stage that changes by more has no solution
 
 
 @kernel
@@ -90,7 +91,7 @@ def implicit_stage(model, data, label, loaded, count, s, hg):
     Return the number of points, -1 if there is no solution, and the powers of loads and of friction.
     """
     group, work = data.group, data.work
-    k, driven, power, rubbed = -1, 0.0, 0.0, 0.0
+    k, change, power, rubbed = -1, 0.0, 0.0, 0.0
     for m in range(count):
         copy_state(work.first[group.member[m]], work.stage[group.member[m]])
     for turn in range(FIXED_POINT):
@@ -117,6 +118,8 @@ def implicit_stage(model, data, label, loaded, count, s, hg):
         velocities(k, group.points[0], work.stage, group.v[U])
         driven, rubbed = push_bodies(model, data, loaded, k, count, s)
         power = applied + driven
+    if not change <= CLOSE:
+        return -1, 0.0, 0.0
     return k, power, rubbed
 
 
@@ -208,3 +211,6 @@ def solve_impulses(model, data, k, h, length):
         )
         if turning and not change > 1e-14:
             break
+    for i in range(k):
+        if 0 < group.closed[i].turns < JOINT:
+            group.mu[i] = bound_per_force(model.system, group.points[0][i], group.closed[i])

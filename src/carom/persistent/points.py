@@ -29,6 +29,7 @@ from carom.contact.pair_point import (
 )
 from carom.contact.place import place_any
 from carom.contact.rim import same_point
+from carom.contact.stop import is_active
 from carom.kinematics.contact_point import copy_point
 from carom.persistent.joint_rows import add_frictions
 
@@ -102,18 +103,9 @@ def _add_pair(system, active, i, state, k, group, work) -> int:
     for d in range(system.contacts.shape[0] if contact.surface > 0 else 0):
         other = system.contacts[d]  # another part of the level surface, with a friction of its own
         beside = d != c and other.body == contact.body and other.surface == contact.surface
-        if beside and not has_points(active, d):
+        if beside and not is_active(active, d):
             k = add_face(system, active, d, i, state, k, group, work)
     return k
-
-
-@kernel
-def has_points(active, c):
-    """Return whether a contact has active points."""
-    for j in range(active.count[0]):
-        if active.points[j].contact == c:
-            return True
-    return False
 
 
 @kernel
@@ -125,7 +117,7 @@ def add_face(system, active, c, i, state, k, group, work):
         near = min(near, work.touches[t].gap + FACE * smaller(contact))
     for t in range(count if near < 2.0 * FACE * smaller(contact) else 0):
         if work.touches[t].gap <= near:
-            k = add_touch(system, contact, c, work.touches[t], i, state, k, group)
+            k = add_touch(contact, c, work.touches[t], i, state, k, group)
             note_own(system, active, 0, work.touches[t], state, group.closed[k - 1])
     return k
 
@@ -155,13 +147,13 @@ def add_nearest(system, active, j, count, state, k, group, work):
         if group.closed[i].contact == c and group.closed[i].feature == touch.feature:
             if same_point(system, contact, touch, touch.feature, group.closed[i].point, state):
                 return k
-    k = add_touch(system, contact, c, touch, j, state, k, group)
+    k = add_touch(contact, c, touch, j, state, k, group)
     group.closed[k - 1].own = 1
     return k
 
 
 @kernel
-def add_touch(system, contact, c, touch, j, state, k, group):
+def add_touch(contact, c, touch, j, state, k, group):
     """Add a found point, with the active point j to stand for it; return the new count."""
     if k == group.closed.shape[0]:
         return k

@@ -55,17 +55,16 @@ def write_rows(model, data, label, s) -> int:
     points, state = group.points[0], work.stage
     k = find_points(system, data.active, label, state, group, work)
     inverse_masses(system, k, points, state, work, group.m[0])
-    write_motion(model, data, k, s)
+    write_motion(system, k, state, work.stages[s], group, work)
     return k
 
 
 @kernel
-def write_motion(model, data, k, s):
-    """Write U, C and the friction of k points of a group in `work.stage` for the accelerations of stage s."""
-    system, group, work = model.system, data.group, data.work
-    points, state = group.points[0], work.stage
+def write_motion(system, k, state, rates, group, work):
+    """Write U, C and the friction of k points of a group in a state with given accelerations."""
+    points = group.points[0]
     velocities(k, points, state, group.v[U])
-    accelerations(k, points, state, work.stages[s], group.v[C])
+    accelerations(k, points, state, rates, group.v[C])
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.turns == JOINT:
@@ -78,9 +77,7 @@ def write_motion(model, data, k, s):
         if closed_point.turns > 0:
             group.mu[i] = bound_per_force(system, points[i], closed_point)
         elif contact.touches != 0:
-            d = drift_of(
-                system, contact, closed_point.feature, closed_point.point, points[i], state, work
-            )
+            d = drift_of(system, contact, closed_point.feature, points[i], state, work)
             for r in range(3):
                 group.v[C][3 * i + r] += d[r]
 

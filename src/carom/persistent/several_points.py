@@ -49,7 +49,7 @@ def activate_several(model, data, k, label, horizon):
         data.records,
     )
     inverse_masses(system, k, group.points[0], state, work, group.m[0])
-    pose_forces(system, controls, active, k, state, group, work)
+    pose_forces(system, controls, k, state, group, work)
     judge(model, data, k, horizon)
     new, stay = -1, False
     for i in range(k):
@@ -136,10 +136,9 @@ def end_bounces(model, data, k, label, horizon):
     """Remove the normal velocities of the points that stay, in the kinetic metric.
 
     The slip of a point without slip is removed too; otherwise the point would stick with the slip that the
-    impulse gives it. If slip lasts, friction acts with the impulse
-    (`carom.persistent.one_point.begin_contact`). Velocities of round-off size, a small fraction of the speed
-    before, become 0, however large the forces are (the point of a rim that is nearly flat moves along the rim
-    with 1e13 m/s^2).
+    impulse gives it. If slip lasts, friction acts with the impulse. Velocities of round-off
+    size, a small fraction of the speed before, become 0, however large the forces are (the point of a rim that
+    is nearly flat moves along the rim with 1e13 m/s^2).
     """
     system, controls = model.system, model.controls
     state, group, work, clock = data.state, data.group, data.work, data.clocks[0]
@@ -317,7 +316,7 @@ def first_forces(model, data, label):
             continue
         active_point = active.points[closed_point.active]
         take_forces(active_point, i, group)
-        if jams_among(active_point, i, status, group) == 1:
+        if jams_among(i, status, group) == 1:
             note_jam(active, active_point)
         if closed_point.turns == 0 and active_point.next != active_point.mode:
             active_point.mode = active_point.next

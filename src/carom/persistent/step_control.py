@@ -98,7 +98,7 @@ def unnamed(system, controls, start, end, friction, count, member):
 
 
 @kernel
-def turns_far(system, active, start, end, dt):
+def turns_far(active, start, end, dt):
     """Return whether a body with an active point turns too far in a step."""
     for i in range(active.count[0]):
         active_point = active.points[i]
@@ -112,7 +112,7 @@ def turns_far(system, active, start, end, dt):
 
 
 @kernel
-def unsolved(system, controls, work, part):
+def unsolved(controls, work, part):
     """Return whether the residual of the last trial step exceeds `part` of the speed that gravity gives."""
     gained = controls.step * controls.pull
     return gained > 0.0 and not work.result[0].residual <= part * gained
@@ -121,15 +121,15 @@ def unsolved(system, controls, work, part):
 @inlined
 def too_long(model, data):
     """Return whether a step with active points is to be cut, for want of a solution or for its loss."""
-    system, controls = model.system, model.controls
+    controls = model.controls
     active, start, work, search = data.active, data.state, data.work, data.work.search[0]
     end, dt = work.trial, search.dt
     if active.count[0] == 0:
         return False
-    if dt > RETRIED * controls.step and unsolved(system, controls, work, UNSOLVED):
+    if dt > RETRIED * controls.step and unsolved(controls, work, UNSOLVED):
         return True
     shortest = dt <= SHORTEST * controls.step
-    if controls.order == 0 and not shortest and turns_far(system, active, start, end, dt):
+    if controls.order == 0 and not shortest and turns_far(active, start, end, dt):
         return True
     result = work.result[0]
     if shortest:

@@ -56,21 +56,15 @@ WATCH = [
     ("speed", "f8"),  # greatest speed of a body so far, plus the gain from gravity in a step [m/s]
     ("unsolved", "f8"),  # greatest residual of active contacts so far [m/s], and its time
     ("unsolved_at", "f8"),
-    (
-        "able",
-        "f8",
-    ),  # greatest work that applied forces could do over the allowed errors of positions
-    (
-        "whole",
-        "i8",
-    ),  # number of steps that events have given up, so that they were time-stepping steps
-    ("whole_at", "f8"),  # start of the first of these
-    ("whole_length", "f8"),  # length of the longest
-    (
-        "whole_error",
-        "f8",
-    ),  # bound of the displacements that they may misplace, relative to the size of a body
-    ("whole_bodies", "i8"),  # number of bodies and code of the first
+    # greatest work that applied forces could do over the allowed errors of positions
+    ("able", "f8"),
+    # number of steps that were given up event by event and made as time-stepping steps; of the first its start,
+    # bodies and code, of the longest its length, of all a bound of the errors of position over a body's size
+    ("whole", "i8"),
+    ("whole_at", "f8"),
+    ("whole_length", "f8"),
+    ("whole_error", "f8"),
+    ("whole_bodies", "i8"),
     ("whole_code", "i8"),
     ("gains", "i8"),  # shortest steps in a row that gained
     ("share", "f8"),  # allowed error of a step, as a part of the energy exchanged

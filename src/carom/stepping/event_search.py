@@ -49,7 +49,7 @@ def detect_event(system, controls, active, now, dt, work):
     kind, i = find_contact_event(system, active, work)
     if i >= 0:
         return BELOW, kind, i, 0.0
-    kind, i = find_joint_event(system, active, work.trial, work)
+    kind, i = find_joint_event(system, work.trial, work)
     if i >= 0:
         return BELOW, kind, i, 0.0
     return CLEAR, GAP, -1, 0.0
@@ -68,7 +68,7 @@ def event_value(system, controls, active, search, state, work):
         search.tolerance = 4.0 * max(search.tolerance, round_off_of_both(contact, state))
         return lowest_pair(system, contact, search.contact, active, state, work)
     if search.kind >= STOPS:
-        return joint_event_value(system, search.kind, search.contact, active, state, work), 0.0
+        return joint_event_value(system, search.kind, search.contact, state, work), 0.0
     if search.kind != JAM and active.points[search.contact].several == 1:
         search.tolerance = NEAR
     return contact_event_value(system, active.points[search.contact], search.kind), 0.0

@@ -126,7 +126,7 @@ def accept_step(model, data):
 
     # if a time-stepping step is possible, it replaces this one; otherwise the run accepts larger residuals
     bearable = UNSOLVED if controls.retry == 1 else USELESS
-    if active.count[0] > 0 and unsolved(system, controls, work, bearable):
+    if active.count[0] > 0 and unsolved(controls, work, bearable):
         return NO_CONVERGENCE, NOTHING
     if active.count[0] > 0 and controls.retry == 1 and goes_wild(work):
         return NO_CONVERGENCE, NOTHING
@@ -157,7 +157,7 @@ def accept_step(model, data):
     if exact(controls):
         search.horizon = max(search.horizon - search.dt, 0.0)
     if search.kind >= STOPS:
-        turn_joint(system, search.kind, search.contact, active, now, work)
+        turn_joint(system, search.kind, search.contact, now, work)
         clock.in_step += 1
         clock.in_moment += 1
         clock.at_once += 1
@@ -199,17 +199,17 @@ def act(model, data, method, action):
         if work.hit[0].code != 0:
             search.pending = STRIKE if work.hit[0].code >= r.GROW else NOTHING
             return work.hit[0].code
-        review_joints(system, data.active, data.state, work)
+        review_joints(system, data.state, work)
         if controls.layer_time == 1 and clock.struck > struck:
             clock.spent += data.records.impact[struck].duration  # positions do not change
         contact = system.contacts[search.contact]
         if closed == 1 and not may_end(contact, system, controls, data.state, search.horizon, work):
             return 0
-    return persist(model, data, action) if controls.hold == 1 else 0
+    return persist(model, data) if controls.hold == 1 else 0
 
 
 @inlined
-def persist(model, data, action):
+def persist(model, data):
     """Make the closed points of the contact persistent, or change their modes; return a code."""
     work, clock, search = data.work, data.clocks[0], data.work.search[0]
     activate_contact(model, data, search.contact, search.horizon)

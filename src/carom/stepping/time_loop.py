@@ -72,7 +72,7 @@ def step_single(model, data, method, start):
     local = by_reference(Model(model.system, controls))
     code = 0
     while code == 0 and clock.spent < clock.length:
-        code = move_single(local, data, method, start)
+        code = move_single(local, data, method)
         if code == 0:
             parts.end_count(controls, clock, data.work)
             note_gain(controls, clock, data.watch[0])
@@ -181,7 +181,7 @@ def earn(controls, now, clock, work):
 
 
 @inlined
-def move_single(model, data, method, start):
+def move_single(model, data, method):
     """Move all bodies to the end of the step: event by event, or in one time-stepping step if that failed."""
     system, work = model.system, data.work
     step = data.clocks[0].step

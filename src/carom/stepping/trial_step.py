@@ -173,7 +173,7 @@ def fits(model, data):
             return 0
         if not dt > NOTHING_LEFT * controls.duration:
             return code if code != 0 else STEP_TOO_SMALL
-        search.dt, search.again = shorter(dt, error, controls, clock, work), 1
+        search.dt, search.again = shorter(dt, error, clock, work), 1
         return ONCE_MORE
     if code == CONSTRAINTS_LOST and dt > SHORTEST * controls.step:
         search.active = 0

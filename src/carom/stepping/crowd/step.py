@@ -99,7 +99,7 @@ def step_crowd(model, data, method):
             clock.spent = clock.length
         else:
             clock.spent += dt
-    review_joints(system, data.active, now, work)
+    review_joints(system, now, work)
 
 
 @kernel

@@ -60,7 +60,7 @@ def forget_single(system, active, now, clocks, work, start):
     forget_turns(system)
     work.search[0].pending = 0
     regroup(system, active, work)
-    review_joints(system, active, now, work)
+    review_joints(system, now, work)
 
 
 @kernel

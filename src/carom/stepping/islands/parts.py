@@ -23,7 +23,7 @@ MANY, EACH = 24, 2
 def begin_step(system, active, now, length, clocks, work, islands):
     """Find the islands of a step and fill their slots; return `READY`, or the arrays that must grow first."""
     plan, member = islands.plan[0], islands.member
-    mark_active(system, active, work)
+    mark_active(active, work)
     code = seek(system, active, now, length, work, islands)
     if code == READY:
         code = number(system, active, now, work, islands)
