@@ -19,7 +19,6 @@ from carom.model.controls import LOCATE, PROJECT, WORK, Controls
 from carom.model.data import Data, Model
 from carom.model.method import IMPLICIT, THREE_FIELD
 from carom.options import Options
-from carom.persistent.joint_events import first_modes
 from carom.results.accuracy import inaccurate
 from carom.results.solution import Solution
 from carom.scene.all_pairs import PairTable
@@ -152,21 +151,14 @@ class Run:
                     "the initial positions must be near positions that satisfy the joints, got positions from "
                     f"which Newton's method leaves an error of {error:.3g}; start nearer"
                 )
-        if system.contacts.size or later is not None:
-            self.work.body["label"] = system.bodies["component"]
+        self.work.body["label"] = np.where(flies, system.bodies["component"], system.bodies.size)
 
     def start(self) -> None:
         """Check the initial state, and save it."""
         initial = self.scene, self.compiled, self.now, self.work, self.options
         check_start(*initial)
         check_stops(*initial)
-        self.note_modes()
         self.save_now()
-
-    def note_modes(self) -> None:
-        """Note which joints with friction stick at the start."""
-        if self.compiled.system.relations.there:
-            first_modes(self.compiled.system, self.now, self.work)
 
     @property
     def settings(self) -> dict:

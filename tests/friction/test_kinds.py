@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from contact_problems import STEP, G, dense, random_singular, solve, stack
 
-from carom.friction.layout import CONE, NOT_SOLVED, SLIDING, SOLVED, STICKING
+from carom.friction.layout import CONE, DISC, NOT_SOLVED, SLIDING, SOLVED, STICKING
 
 
 def test_box_held_by_known_slip():
@@ -24,6 +24,19 @@ def test_without_heading_there_is_no_friction():
     c = c + np.tile([0.0, 1.0, 0.0], 4)
     solved = solve(W, c, 0.3, kind=SLIDING)
     np.testing.assert_allclose(solved.w[1::3], 1.0, rtol=1e-14)
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_discs_have_their_radius_in_all_units(scale):
+    # w = W p + c in one direction each: p = -c/W, but at most the radius
+    W = np.zeros((6, 6))
+    W[1, 1], W[4, 4] = scale, 2.0 * scale
+    c = np.array([0.0, -10.3, 0.0, 0.0, 3.0, 0.0])
+    kind = np.full(2, DISC)
+    heading = np.array([[2.0 / scale, 0.0], [4.0 / scale, 0.0]])
+    solved = solve(W, c, 1.0, kind=kind, heading=heading)
+    assert solved.status == SOLVED
+    np.testing.assert_allclose(solved.p[[1, 4]] * scale, [2.0, -1.5], rtol=1e-12)
 
 
 def test_sticking_holds_on_any_slope():

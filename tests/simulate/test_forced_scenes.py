@@ -44,7 +44,7 @@ def test_a_step_that_is_too_long_is_cut(family, seeds):
     for seed in seeds:
         found = run(family.case(seed))
         assert found.status == "SUCCESS", seed
-        assert found.residual < 1e-5, seed
+        assert found.residual < 3e-5, seed
         assert found.warned == 0, seed
 
 

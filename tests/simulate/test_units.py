@@ -207,7 +207,8 @@ def test_same_motion_in_other_units(make):
 
 @pytest.mark.parametrize(
     "make",
-    [bricard, four_bar, light_coupler, loaded, striking_pendulum],
+    # (the contact problem, and so dry friction in joints, is scaled by roots of 3/trace W)
+    [bricard, four_bar, light_coupler, striking_pendulum],
     ids=lambda make: make.__name__,
 )
 def test_bit_by_bit_in_powers_of_two(make):

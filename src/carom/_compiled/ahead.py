@@ -32,7 +32,7 @@ FIRST = (
     "carom.persistent.contact_step:contact_step",
     "carom.impact.strike_several:resolve_group",
     "carom.dynamics.explicit:whole_step",
-    "carom.dynamics.acceleration:acceleration_unit",
+    "carom.dynamics.acceleration:acceleration",
     "carom.impact.multiple.adaptive:pass_layer",
     "carom.friction.strategy:search",
     "carom.friction.newton:newton",

@@ -53,7 +53,10 @@ def note_misses(system, E, h, work):
 
 @kernel
 def note_miss(system, E, h, longest, b, work):
-    """Store the greatest errors [m] of body b by the rows of E, and its scale; T is at most `longest`."""
+    """Store the greatest errors [m] of body b by the rows of E, and its scale; T is at most `longest`.
+
+    Return T.
+    """
     L, bound, miss = system.bodies[b].extent, work.body[b].bound, work.body[b].miss
     speed = L * bound[2]
     for s in range(E.shape[1]):
@@ -66,6 +69,7 @@ def note_miss(system, E, h, longest, b, work):
         if not m <= miss[e]:  # NaN too
             miss[e] = m
     miss[2] = max(miss[2], max(L, abs(h) * speed))
+    return T
 
 
 @kernel

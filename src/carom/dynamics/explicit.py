@@ -13,7 +13,6 @@ from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.dynamics.acceleration import accelerations
 from carom.dynamics.adapt import forget_misses, note_misses
-from carom.dynamics.joint_friction import stay_stuck
 from carom.dynamics.known_end import keep_end, of_state_alone, recall
 from carom.dynamics.loops import dropped_rows
 from carom.dynamics.project import LOST, project_position, project_velocity
@@ -30,11 +29,11 @@ TURN, MOST_PARTS, TINY = 0.075, 100, 1e-300
 
 @inlined
 def explicit_step(method, system, active, start, h, end, work):
-    """Write the state a time h after `start` into `end`; return work of loads, of friction, a status."""
+    """Write the state a time h after `start` into `end`; return the work of loads, and a status."""
     if method.E.shape[0] > 0:
         forget_misses(work)
     if not fly(system, active, start, h, end, work):
-        return 0.0, 0.0, 0
+        return 0.0, 0
     return constrained(method, system, active, start, h, end, work)
 
 
@@ -52,7 +51,7 @@ def constrained(method, system, active, start, h, end, work):
     """Step the bodies that are joined, loaded or in contact; return the same as `explicit_step`."""
     whole_step(method, system, active, start, h, end, work)
     result = work.result[0]
-    return result.applied, result.friction, result.code
+    return result.applied, result.code
 
 
 @unit
@@ -64,7 +63,7 @@ def whole_step(method, system, active, start, h, end, work):
     result = work.result[0]
     begin, left, first = result.start, h, start
     stages, estimates = method.b.size, method.E.shape[0] > 0
-    applied, friction = 0.0, 0.0
+    applied = 0.0
     forget_bounds(work)
     for part in range(MOST_PARTS):
         dt = left
@@ -72,7 +71,7 @@ def whole_step(method, system, active, start, h, end, work):
             dt = min(left, TURN * stages / max(fastest_spin(system, first, work), TINY))
         result.begin = begin + (h - left)
         with_care(method, system, active, first, dt, end, work)
-        applied, friction = applied + result.applied, friction + result.friction
+        applied += result.applied
         left -= dt
         if not (left > 0.0 and result.code == 0):
             break
@@ -80,7 +79,7 @@ def whole_step(method, system, active, start, h, end, work):
         first = work.first
         for b in range(start.shape[0]):
             copy_state(end[b], first[b])
-    result.applied, result.friction = applied, friction
+    result.applied = applied
 
 
 @kernel
@@ -99,14 +98,14 @@ def with_care(tableau, system, active, start, h, end, work):
     """Take a step; take it again with care if a stage was near a singular position (`singular_positions`)."""
     result = work.result[0]
     for care in (False, True):
-        applied, friction, code, least, most = constrained_step(
+        applied, code, least, most = constrained_step(
             tableau, system, active, start, care, h, end, work
         )
         if not is_singular(system, least, most):
             break
         if not care:
             forget_misses(work)  # the first attempt does not count
-    result.applied, result.friction, result.code = applied, friction, code
+    result.applied, result.code = applied, code
 
 
 @inlined
@@ -114,10 +113,10 @@ def fly(system, active, start, h, end, work):
     """Move the bodies in free flight, keep those at rest; return whether joined or loaded bodies remain.
 
     Those in persistent contact are left to `carom.persistent.contact_step`, with all joined and loaded bodies
-    if one of these is among them.
+    if one of these is among them, or if joints have dry friction.
     """
     mark_active(active, work)
-    pending, held = False, False
+    pending, held = False, rubs(system)
     for b in range(system.bodies.shape[0]):
         status = work.body[b].status
         if status == RESTS:
@@ -128,6 +127,12 @@ def fly(system, active, start, h, end, work):
             free_flight(system.bodies[b], system.gravity, h, start[b], end[b], work.body[b])
     work.result[0].held = 1 if held else 0
     return pending and not held
+
+
+@inlined
+def rubs(system):
+    """Return whether joints have dry friction."""
+    return system.relations.frictions.shape[0] > 0
 
 
 @inlined
@@ -157,20 +162,19 @@ def constrained_step(tableau, system, active, start, care, h, end, work):
     """Step the bodies that are joined, loaded or in contact from `result.begin`; the others have reached `end`.
 
     With `care` the stages return to the joints first, and `pass_round` treats those in singular positions. A
-    last stage without weight is at the end of the step (`known_end`). Return the work of loads, of friction, a
-    status, and the least and the greatest number of rows that stages left out, or nearly left out.
+    last stage without weight is at the end of the step (`known_end`). Return the work of loads, a status,
+    and the least and the greatest number of rows that stages left out, or nearly left out.
     """
     A, weight, E, t0 = tableau.A, tableau.b, tableau.E, work.result[0].begin
     stages, last, stage = weight.size, stages_within(tableau), work.stage
-    applied, friction = 0.0, 0.0
-    least, most = MANY, 0
+    applied, least, most = 0.0, MANY, 0
     keeps = last < stages and not care and of_state_alone(system, active)
     for s in range(last + 1):
         combine(weight if s == last else A[s], s, h, start, work.stages, stage)
         work.result[0].time = t0 + h if s == last else t0 + h * node(A[s], s)
         if s == last:
             if not return_to_joints(system, stage, end, work):
-                return applied, friction, CONSTRAINTS_LOST, least, most
+                return applied, CONSTRAINTS_LOST, least, most
             if s == stages:
                 break
         elif care:
@@ -186,7 +190,6 @@ def constrained_step(tableau, system, active, start, care, h, end, work):
         if care:
             pass_round(system, stage, end, work, work.stages[s])
         applied += h * weight[s] * work.result[0].power
-        friction += h * weight[s] * work.result[0].drag
     if keeps:
         keep_end(stage, work.stages[last], work)
     if system.contacts.shape[0] > 0 or E.shape[0] > 0:
@@ -196,7 +199,7 @@ def constrained_step(tableau, system, active, start, care, h, end, work):
     for b in range(stage.shape[0]):
         if steps(system, b, work):
             copy_state(stage[b], end[b])
-    return applied, friction, 0, least, most
+    return applied, 0, least, most
 
 
 @kernel
@@ -218,7 +221,6 @@ def return_to_joints(system, state, end, work):
     if not (project_position(system, state, True, 1e-14, work) <= LOST):
         return False
     project_velocity(system, state, work)
-    stay_stuck(system, state, work)
     return True
 
 

@@ -40,16 +40,16 @@ CONSTRAINTS_LOST = 7
 
 @inlined
 def implicit_step(method, system, active, start, h, end, work):
-    """Write the state a time h after `start` into `end`; return work of loads, of friction, a status.
+    """Write the state a time h after `start` into `end`; return the work of loads, and a status.
 
     While contacts are active, the explicit method takes the step.
     """
     if not fly(system, active, start, h, end, work):
-        return 0.0, 0.0, 0
+        return 0.0, 0
     if any_held(active):
         return constrained(method, system, active, start, h, end, work)
     whole_step(system, start, h, end, work)
-    return work.result[0].applied, 0.0, work.result[0].code
+    return work.result[0].applied, work.result[0].code
 
 
 @unit

@@ -3,7 +3,7 @@
 A last stage without weight is at the end of the step, after the return to the joints. It serves for the
 estimate of the error, and is the first stage of the step that starts there ("first same as last"). Its
 accelerations are kept where they depend on the state alone: without active contacts, and without what
-`Relations` contains (friction in joints, functions of the user, motors, forces along coordinates). They are
+`Relations` contains (functions of the user, motors, forces along coordinates). They are
 used if all bodies are in that state, bit by bit, and are forgotten when the loop is entered, because loads may
 be set between its calls. Worked out anew they are the same numbers.
 """
@@ -58,5 +58,5 @@ def recall(state, rates, work):
     for b in range(state.shape[0]):
         for k in range(6):
             rates[b].rate[k] = work.known[b].rate[k]
-    work.result[0].power, work.result[0].drag = work.result[0].known_power, 0.0
+    work.result[0].power = work.result[0].known_power
     return True

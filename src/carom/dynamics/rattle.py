@@ -42,12 +42,12 @@ MOST = 60  # solves for Lam
 
 @inlined
 def rattle_step(method, system, active, start, h, end, work):
-    """Write the state a time h after `start` into `end`; return work of loads, of friction, a status.
+    """Write the state a time h after `start` into `end`; return the work of loads, and a status.
 
     While contacts are active, the explicit method takes the step.
     """
     if not fly(system, active, start, h, end, work):
-        return 0.0, 0.0, 0
+        return 0.0, 0
     if any_held(active):
         return constrained(method, system, active, start, h, end, work)
     result = work.result[0]
@@ -55,7 +55,7 @@ def rattle_step(method, system, active, start, h, end, work):
     if result.code == STALLED:
         result.fallen += 1
         return constrained(method, system, active, start, h, end, work)
-    return result.applied, 0.0, NO_CONVERGENCE if result.code == TOO_FAR else 0
+    return result.applied, NO_CONVERGENCE if result.code == TOO_FAR else 0
 
 
 @unit

@@ -64,7 +64,7 @@ def _pass_round(system, stage, sums, work, rates):
         return
     pace, time, reach = turning_pace(system, stage), result.time, NEAR
     for _ in range(TRIES if pace > 0.0 else 0):
-        power, drag, most = _sum_rates(system, stage, sums, work, rates, reach, pace)
+        power, most = _sum_rates(system, stage, sums, work, rates, reach, pace)
         result.time = time
         if most > usual[0]:
             reach *= FARTHER
@@ -73,7 +73,7 @@ def _pass_round(system, stage, sums, work, rates):
             if steps(system, b, work):
                 for k in range(3):
                     rates[b].rate[k], rates[b].rate[3 + k] = sums[b].v[k], sums[b].w[k]
-        result.power, result.drag = power, drag
+        result.power = power
         return
     usual[0] = dropped
     accelerations(system, stage, work, rates)
@@ -94,9 +94,9 @@ def turning_pace(system, stage):
 def _sum_rates(system, stage, sums, work, rates, reach, pace):
     """Write the weighted sums of the accelerations before and after, with T = reach/pace.
 
-    Return the same sums of power and of friction power, and the greatest number of rows that were left out.
+    Return the same sum of power, and the greatest number of rows that were left out.
     """
-    power, drag, most, time = 0.0, 0.0, 0, work.result[0].time
+    power, most, time = 0.0, 0, work.result[0].time
     for b in range(stage.shape[0]):
         if steps(system, b, work):
             for k in range(3):
@@ -112,14 +112,13 @@ def _sum_rates(system, stage, sums, work, rates, reach, pace):
         accelerations(system, work.middle, work, rates)
         most = max(most, dropped_rows(system, SINGULAR))
         power += share * work.result[0].power
-        drag += share * work.result[0].drag
         for b in range(stage.shape[0]):
             if steps(system, b, work):
                 rate = rates[b].rate
                 for j in range(3):
                     sums[b].v[j] += share * rate[j]
                     sums[b].w[j] += share * rate[3 + j]
-    return power, drag, most
+    return power, most
 
 
 @kernel

@@ -15,8 +15,7 @@ from carom.model.method import IMPLICIT, RATTLE, RUNGE_KUTTA
 def step(method, system, active, start, h, end, work):
     """Write the state a time h after `start` into `end`.
 
-    Return the work of loads without potential, the work of friction in persistent contacts, and 0 or the
-    number of a `Status`.
+    Return the work of loads without potential, and 0 or the number of a `Status`.
     """
     if method.kind == RUNGE_KUTTA:
         return explicit_step(method, system, active, start, h, end, work)
@@ -24,7 +23,7 @@ def step(method, system, active, start, h, end, work):
 
 
 @unit
-def other_step(method, system, active, start, h, end, work) -> tuple[float, float, int]:
+def other_step(method, system, active, start, h, end, work) -> tuple[float, int]:
     """Write the state at the end of a step by a method that is not explicit."""
     if method.kind == RATTLE:
         return rattle_step(method, system, active, start, h, end, work)

@@ -52,11 +52,11 @@ NO_CONVERGENCE = 1
 
 
 @unit
-def three_field_step(method, system, active, start, h, end, work) -> tuple[float, float, int]:
-    """Write the state a time h after `start` into `end`; return work of loads, of friction, a status."""
+def three_field_step(method, system, active, start, h, end, work) -> tuple[float, int]:
+    """Write the state a time h after `start` into `end`; return the work of loads, and a status."""
     if any_held(active):
         if not fly(system, active, start, h, end, work):
-            return 0.0, 0.0, 0
+            return 0.0, 0
         return constrained(method, system, active, start, h, end, work)
     mark_active(active, work)
     first_guess(system, start, h, end, work)
@@ -75,8 +75,8 @@ def three_field_step(method, system, active, start, h, end, work) -> tuple[float
             change <= 1e6 * method.tolerance and change >= 0.5 * previous
         ):
             leave_for_later(system, start, h, end, work)
-            return applied + driven_work(system, start, h, end, work), 0.0, 0
-    return applied, 0.0, NO_CONVERGENCE
+            return applied + driven_work(system, start, h, end, work), 0
+    return applied, NO_CONVERGENCE
 
 
 @kernel

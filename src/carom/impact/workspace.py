@@ -38,15 +38,13 @@ CLOSED_POINT = [
     ("weight", "f8"),  # stiffness of its spring, as a part of that of its patch
     ("spring", "f8"),  # compliance of its spring [1/kg]
     ("turns", "i8"),  # as in its POINT, 5 for all friction in joints (then `active` is its number)
-    (
-        "parent",
-        "i8",
-    ),  # of a torque of rolling or pivoting friction: the closed point whose normal force bounds it
+    # of a torque of rolling or pivoting friction: the closed point whose normal force bounds it
+    ("parent", "i8"),
 ]
 
-#: rows of `v`: velocities; velocities or accelerations without the unknown impulses; impulses or forces; those
-#: of the last round; multipliers of the return to the surfaces, from the last round
-U, C, P, OLD, BACK = range(5)
+#: rows of `v`: velocities; velocities or accelerations without the unknown impulses; impulses or forces;
+#: accelerations with them; what a search keeps
+U, C, P, OLD, KEPT = range(5)
 
 
 class Group(NamedTuple):

@@ -143,12 +143,11 @@ STIFF_SPRING = [
 FRICTION = [
     ("coordinate", "i8"),
     ("bound", "f8"),
-    ("mode", "i8"),  # 1 or -1: slips in this direction; 0 sticks
-    ("next", "i8"),  # mode after the trial step
+    ("next", "i8"),  # 1 or -1: slips in this direction; 0 sticks
     ("speed", "f8"),  # at the start of the step
     ("force", "f8"),  # of the last solve
-    ("change", "f8"),  # of q' by all other forces
-    ("driven", "i8"),  # 1 while it sticks, if joints and motors determine its coordinate
+    ("stop", "f8"),  # time until its slip stops
+    ("first_stop", "f8"),  # the same at the start of the step
 ]
 
 #: inertia along a coordinate of a joint
@@ -221,10 +220,8 @@ CONTACT = [
     ("other_solid", "i8"),
     # 1 + the number of the level surface that the row stands for (`carom.contact.level`), 0 for other rows
     ("surface", "i8"),
-    (
-        "first_level",
-        "i8",
-    ),  # range of its faces; of a static solid, range of its surfaces in `Levels.own`
+    # range of its faces; of a static solid, range of its surfaces in `Levels.own`
+    ("first_level", "i8"),
     ("last_level", "i8"),
     ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
     ("multiple", "i8"),  # 1: its pair has impacts of its own, one after another
@@ -330,8 +327,6 @@ class Relations(NamedTuple):
     forces: np.recarray  # USER_FORCE
     stiff: np.recarray  # STIFF_SPRING
     frictions: np.recarray  # (F,) FRICTION
-    friction_matrix: np.ndarray  # (F, F) workspace
-    friction_vector: np.ndarray  # (F,) workspace
     rotors: np.recarray  # ROTOR
     named: np.ndarray  # bodies of the user's functions
     read: np.ndarray  # arguments of the user's functions

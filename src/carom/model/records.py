@@ -60,16 +60,12 @@ CLOCK = [
     ("trials", "i8"),
     ("rejected", "i8"),  # trial steps with too large an error
     ("tries", "i8"),  # trial steps of the present step of an island
-    (
-        "scale",
-        "f8",
-    ),  # `Controls.step` and `Controls.pull` of the present island (`carom.dynamics.local_scale`)
+    # `Controls.step` and `Controls.pull` of the present island (`carom.dynamics.local_scale`)
+    ("scale", "f8"),
     ("pull", "f8"),
     ("longest", "f8"),  # step of contacts of this island, by the applied forces at that time
-    (
-        "able",
-        "f8",
-    ),  # work [J] that applied forces could do over the allowed error of a position, at that time
+    # work [J] that applied forces could do over the allowed error of a position, at that time
+    ("able", "f8"),
     ("counted", "f8"),  # trial steps of an island that count against its limit, with tolerances
     ("effort", "f8"),  # work for its contact problems and multiple impacts, about [us]
     ("credit", "f8"),  # work that a step may take, because earlier steps took less

@@ -214,8 +214,6 @@ class Elements:
             _joined(USER_FORCE, more.forces),
             _joined(STIFF_SPRING, self.stiff),
             _joined(FRICTION, more.frictions),
-            np.zeros((len(more.frictions), len(more.frictions))),
-            np.zeros(len(more.frictions)),
             _joined(ROTOR, self.rotors),
             np.array(more.named, dtype=np.int64),
             np.zeros(max(self.width, more.width)),

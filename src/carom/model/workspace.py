@@ -38,11 +38,8 @@ ACTIVE_POINT = [
     ("force", "f8", 3),  # of the last solve, contact axes
     ("heading", "f8", 2),  # direction of slip at the start of the step, or of starting slip
     ("speed", "f8"),  # of slip at the start of the step
-    (
-        "turning",
-        "f8",
-        (2, 3),
-    ),  # of rolling and pivoting: direction and speed at the start of the step
+    # of rolling and pivoting: direction and speed at the start of the step
+    ("turning", "f8", (2, 3)),
     ("stop", "f8"),  # for several points: time until slip stops under the last forces
     ("lift", "f8"),  # for several points: margin before opening at the end of a step, below 0: open
     ("grip", "f8"),  # the same before slip
@@ -100,10 +97,8 @@ BODY_WORK = [
     ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
     ("miss", "f8", 3),  # two estimates of the error of a step [m], and their scale
     ("ahead", "f8"),  # with tolerances: length of the next step of its island
-    (
-        "counted",
-        "f8",
-    ),  # trial steps of its island that count against the limit (`carom.model.allowance`)
+    # trial steps of its island that count against the limit (`carom.model.allowance`)
+    ("counted", "f8"),
     ("fits", "f8"),  # length of a step whose error fits the tolerance, by the last step
     ("inverse", "f8", 6),  # inverse inertia, world axes
     ("label", "i8"),  # bodies with the same label move each other, by joints or active contacts
@@ -142,7 +137,6 @@ RESULT = [
     ("friction", "f8"),
     ("code", "i8"),
     ("power", "f8"),  # of loads, and of friction, with the last accelerations
-    ("drag", "f8"),
     ("known_power", "f8"),  # of loads, with the accelerations that are kept
     ("residual", "f8"),  # greatest of the groups in contact at several points
     ("unnamed", "f8"),  # greatest of these: unexplained loss of energy, relative to the tolerance

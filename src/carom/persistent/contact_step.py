@@ -15,13 +15,14 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.groups import members
 from carom.dynamics.adapt import allowed_error, note_miss
-from carom.dynamics.explicit import CONSTRAINTS_LOST, bound_accelerations_of, stages_within
+from carom.dynamics.explicit import CONSTRAINTS_LOST, bound_accelerations_of, rubs, stages_within
 from carom.persistent.finish import (
     land,
     note_modes,
     review,
 )
 from carom.persistent.members import closing_member, explicit_member, implicit_member
+from carom.persistent.rows import beyond_stop
 from carom.persistent.start import first_modes, first_stage
 from carom.persistent.step_control import unnamed
 
@@ -39,14 +40,17 @@ def contact_step(model, data, method, h):
     The forces at the end are written to the active points; the work of friction and of loads, and a status, to
     `work.result`.
     """
-    active, work = data.active, data.work
-    result = work.result[0]
+    active, work, n = data.active, data.work, data.state.shape[0]
+    result, joined = work.result[0], rubs(model.system)
     result.applied, result.friction, result.code = 0.0, 0.0, 0
     result.residual, result.unnamed = 0.0, 0.0
     for i in range(active.count[0]):
         label = work.body[active.points[i].body].label
+        joined = joined and label != n
         if active.points[i].rest == 0 and not seen(active, i, label, work):
             step_group(model, data, method, label, h)
+    if joined:  # friction in joints alone: a group without points
+        step_group(model, data, method, n, h)
 
 
 @kernel
@@ -66,8 +70,8 @@ def step_group(model, data, method, label, h):
     count, loaded = members(work, label, group.member), False
     for m in range(count):
         loaded = loaded or system.bodies[group.member[m]].ballistic == 0
-    k, rate, push, _ = first_stage(model, data, label, loaded, count)
-    applied, friction = result.power, result.drag  # powers at the start
+    k, rate, push, friction, _ = first_stage(model, data, label, loaded, count)
+    applied = result.power  # powers at the start
     had, rubbed = result.applied, result.friction
     clock.contact_steps += 1
     clock.since += 5.0 * k * stages_within(method)
@@ -81,13 +85,13 @@ def step_group(model, data, method, label, h):
         s = s - 1 if stages_within(method) < s else s
         if k > 0 and land(model, data, loaded, k, count):
             if review(model, data, label, loaded, count, s, h, True):
-                note_errors(model, data, method.E, count, h)
+                note_errors(model, data, method.E, k, count, h)
                 check(model, data, loaded, count, result.friction - rubbed)
                 return
         result.stiff = 1
     size = closing_size(system, controls, count, group)
     if not (order > 0 and 0.5 * h * h * push <= size):
-        first_modes(system, data, label)
+        first_modes(data, label)
         weight = method.stiff[method.stiff.shape[0] - 1, 0]
         result.applied, result.friction = had + h * weight * applied, rubbed + h * weight * friction
         k = implicit_member(model, data, method, label, loaded, count, h)
@@ -95,12 +99,12 @@ def step_group(model, data, method, label, h):
             note_modes(model, data, k)
             if land(model, data, loaded, k, count):
                 review(model, data, label, loaded, count, method.stiff.shape[0], h, False)
-                note_errors(model, data, method.stiff_E, count, h)
+                note_errors(model, data, method.stiff_E, 0, count, h)
                 if order > 0:
                     result.order = min(order, STIFF_ORDER)
                 check(model, data, loaded, count, result.friction - rubbed)
                 return
-    first_modes(system, data, label)
+    first_modes(data, label)
     result.applied, result.friction = had, rubbed
     k = closing_member(model, data, label, loaded, count, h)
     note_modes(model, data, k)
@@ -126,8 +130,11 @@ def closing_size(system, controls, count, group):
 
 
 @kernel
-def note_errors(model, data, E, count, h):
-    """Write the errors of the bodies of a group by its stages, and bounds of their accelerations."""
+def note_errors(model, data, E, k, count, h):
+    """Write the errors of the bodies of a group by its stages, and bounds of their accelerations.
+
+    Slip of k points that has passed its stop, under friction of its old direction, is an error of velocity.
+    """
     system, group, work = model.system, data.group, data.work
     for m in range(count):
         b = group.member[m]
@@ -135,7 +142,11 @@ def note_errors(model, data, E, count, h):
         bound_accelerations_of(work, b, E.shape[1])
         if model.controls.order > 0:
             work.body[b].miss[:3] = 0.0
-            note_miss(system, E, h, math.inf, b, work)
+            T = note_miss(system, E, h, math.inf, b, work)
+            for i in range(k):
+                if b == group.points[0][i].a or b == group.points[0][i].b:
+                    passed = T * beyond_stop(system, data.active, i, group)
+                    work.body[b].miss[0] = max(work.body[b].miss[0], passed)
 
 
 @kernel

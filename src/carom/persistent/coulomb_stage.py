@@ -16,7 +16,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction import lu
-from carom.impact.workspace import BACK, OLD, C, P, U
+from carom.impact.workspace import KEPT, OLD, C, P, U
 from carom.persistent.joint_rows import JOINT, is_driven, radius_of
 from carom.persistent.springs import EPS, PULL, compliance_of, moves
 
@@ -111,7 +111,7 @@ def list_unknowns(k, group):
 @kernel
 def newton(k, hg, group):
     """Solve for given loads; return whether the equations hold."""
-    n, p, x, kept = list_unknowns(k, group), group.v[P], group.v[OLD], group.v[BACK]
+    n, p, x, kept = list_unknowns(k, group), group.v[P], group.v[OLD], group.v[KEPT]
     rows, L = group.cone.active, group.cone.matrix
     push, slip = largest(k, group), 0.0
     for i in range(k):

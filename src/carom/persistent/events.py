@@ -34,12 +34,15 @@ def jam_margin(system, active_point):
 
 
 @inlined
-def note_first_stops(active):
+def note_first_stops(system, active):
     """Keep the times to the stops at the start of a step: its trial steps write those of their ends."""
     for i in range(active.count[0]):
         active_point = active.points[i]
         first, turns = active_point.first_stop, active_point.turn_stop
         first[0], first[1], first[2] = active_point.stop, turns[0], turns[1]
+    frictions = system.relations.frictions
+    for i in range(frictions.shape[0]):
+        frictions[i].first_stop = frictions[i].stop
 
 
 @inlined

@@ -13,11 +13,11 @@ from carom.dynamics.adapt import allowed_error
 from carom.dynamics.explicit import copy_state, note_velocity
 from carom.dynamics.project import LOST, project_position, project_velocity
 from carom.dynamics.several_points import velocities
-from carom.friction.layout import CONE, DISC, SLIDING, SOLVED
-from carom.impact.workspace import BACK, OLD, C, P, U
+from carom.friction.layout import CONE, SLIDING, SOLVED
+from carom.impact.workspace import OLD, C, P, U
 from carom.persistent.forces import solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among
-from carom.persistent.joint_rows import JOINT, place_coordinate, radius_of
+from carom.persistent.joint_rows import JOINT, fix_friction, place_coordinate, radius_of
 from carom.persistent.margins import greatest_push, set_margins
 from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
@@ -36,8 +36,6 @@ def land(model, data, loaded, k, count) -> bool:
     end = work.trial
     if loaded and not (project_position(system, end, True, 1e-14, work) <= LOST):
         return False
-    for row in range(3 * k):
-        group.v[BACK][row] = 0.0
     show(count, end, group, work)
     onto_surfaces(system, active, k, count, end, group, work)
     if loaded:
@@ -130,7 +128,7 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
         slips = given and not lasts and gains(i, push, group)
         if closed_point.turns == JOINT:
             one = system.relations.frictions[closed_point.active]
-            one.force = group.v[P][3 * i + 1]
+            one.force, one.stop = group.v[P][3 * i + 1], time_to_stop(i, group)
             if slips and one.next == 0:
                 if work.search[0].active == 0:
                     return False
@@ -258,18 +256,6 @@ def solve_cones_of(model, data, k) -> int:
 
 
 @kernel
-def fix_friction(k, i, group):
-    """Pose friction in a joint: a disc where it sticks, a given force, in C, where it slips."""
-    if group.kind[i] == SLIDING:
-        group.closed[i].stays = 0
-        for row in range(3 * k):
-            group.v[C][row] -= group.m[0][row, 3 * i + 1] * group.mu[i] * group.heading[i, 0]
-        return
-    group.kind[i] = DISC
-    group.heading[i, 0], group.heading[i, 1] = group.mu[i], 0.0
-
-
-@kernel
 def stick_where_slip_ends(model, data, k, h, still):
     """Let points stick whose slip ends within a part of the tolerance; return whether friction holds them.
 
@@ -286,7 +272,7 @@ def stick_where_slip_ends(model, data, k, h, still):
         allowed = REST * allowed_error(controls.rtol, controls.atol, size, 0.0)
         speed = math.hypot(group.v[U][3 * i + 1], group.v[U][3 * i + 2])
         ends = controls.order > 0 and 0.5 * speed * time_to_stop(i, group) <= allowed
-        ends = ends and h >= NEARLY * first_stop(active, closed_point)
+        ends = ends and h >= NEARLY * first_stop(model.system, active, closed_point)
         if ends or speed <= still:
             closed_point.stays, found = 1, True
     if not found:
@@ -316,10 +302,10 @@ def stick_where_slip_ends(model, data, k, h, still):
 
 
 @kernel
-def first_stop(active, closed_point):
+def first_stop(system, active, closed_point):
     """Return the time to the stop of a slip that was predicted at the start of the step."""
     if closed_point.turns == JOINT:
-        return 0.0
+        return system.relations.frictions[closed_point.active].first_stop
     return active.points[closed_point.active].first_stop[closed_point.turns]
 
 

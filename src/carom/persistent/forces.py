@@ -18,6 +18,7 @@ from carom.friction.layout import BUDGET, CONE, ENOUGH, NEAR, SLIDING
 from carom.friction.solve import solve_cones
 from carom.impact.workspace import OLD, C, P, U
 from carom.kinematics.flight import free_rates
+from carom.persistent.joint_rows import JOINT, fix_friction, mode_of_joint
 from carom.persistent.rolling_friction import bound_turning, take_torque
 from carom.persistent.rows import write_motion
 from carom.persistent.step_control import charge_iterations, iterations_left
@@ -36,6 +37,13 @@ def pose_forces(system, controls, k, state, group, work):
     for i in range(3 * k):
         push = max(push, abs(group.v[C][i]))
     for i in range(k):
+        if group.closed[i].turns == JOINT:
+            u, still = group.v[U][3 * i + 1], controls.rest * push * controls.step
+            way = mode_of_joint(system, group.closed[i].active, u, still, state)
+            group.kind[i] = CONE if way == 0 else SLIDING
+            group.heading[i, 0], group.heading[i, 1] = float(way), 0.0
+            fix_friction(k, i, group)
+            continue
         contact = system.contacts[group.closed[i].contact]
         if group.closed[i].turns > 0:
             group.mu[i] = 1.0

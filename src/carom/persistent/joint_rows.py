@@ -12,8 +12,9 @@ from carom.contact.closed_points import write_closed
 from carom.contact.pair_point import tangents
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.solve import free_body
-from carom.impact.workspace import P
-from carom.kinematics.coordinate import drift, motion_along, push
+from carom.friction.layout import DISC, SLIDING
+from carom.impact.workspace import C, P
+from carom.kinematics.coordinate import drift, motion_along, push, speeds_of
 from carom.kinematics.joints import arm, axis, parent_arm
 from carom.model.arrays import PRISMATIC
 
@@ -21,6 +22,7 @@ JOINT = 5  # `turns` of such an entry, and of its point if the coordinate is a d
 PIVOT = 2  # of its point if it is an angle
 # of the effect of a force without joints: with less, joints and motors leave no freedom
 DRIVEN = 1e-13
+STILL = 1e-12  # of the speeds of both sides: a smaller rate is zero
 
 
 @kernel
@@ -105,18 +107,22 @@ def radius_of(group, i):
 
 
 @kernel
-def first_frictions(system):
-    """Take the modes of the start of a step for those of its end, until the end is known."""
-    if system.relations.there == 1:
-        frictions = system.relations.frictions
-        for i in range(frictions.shape[0]):
-            frictions[i].next = frictions[i].mode
+def mode_of_joint(system, i, u, still, state):
+    """Return the way (1 or -1) of the slip u of friction i, or 0 if it is slower than `still`, or round-off."""
+    c = system.relations.coordinates[system.relations.frictions[i].coordinate]
+    if abs(u) <= max(still, STILL * speeds_of(system, c, state)):
+        return 0
+    return 1 if u > 0.0 else -1
 
 
 @kernel
-def turn_frictions(system):
-    """Take the modes of the end of an accepted step."""
-    if system.relations.there == 1:
-        frictions = system.relations.frictions
-        for i in range(frictions.shape[0]):
-            frictions[i].mode = frictions[i].next
+def fix_friction(k, i, group):
+    """Pose friction in a joint: a disc where it sticks, a given force, in C, where it slips."""
+    slides = group.kind[i] == SLIDING
+    group.closed[i].stays = 0 if slides else 1
+    if slides:
+        for row in range(3 * k):
+            group.v[C][row] -= group.m[0][row, 3 * i + 1] * group.mu[i] * group.heading[i, 0]
+        return
+    group.kind[i] = DISC
+    group.heading[i, 0], group.heading[i, 1] = group.mu[i], 0.0

@@ -98,7 +98,8 @@ def implicit_stage(model, data, label, loaded, count, s, hg):
         change = 0.0
         for m in range(count):
             b = group.member[m]
-            change = max(change, move_stage(work.first[b], hg, work.stages[s, b], work.stage[b]))
+            length, stage = model.system.bodies[b].extent, work.stages[s, b]
+            change = max(change, move_stage(work.first[b], hg, length, stage, work.stage[b]))
         if turn > 0 and change <= SAME:
             break
         applied = accelerate_freely(model, data, loaded, count, s)
@@ -132,13 +133,16 @@ def add_velocity(base, hg, stage, out):
 
 
 @kernel
-def move_stage(base, hg, stage, out):
-    """Write the state base + h g times its own derivative; return the relative change of its velocities."""
+def move_stage(base, hg, length, stage, out):
+    """Write the state base + h g times its own derivative; return the relative change of its velocities.
+
+    `length` is the size of the body, at which rotation counts.
+    """
     size, change = 0.0, 0.0
     for r in range(3):
         v, w = base.v[r] + hg * stage.rate[r], base.w[r] + hg * stage.rate[3 + r]
-        change = max(change, max(abs(v - out.v[r]), abs(w - out.w[r])))
-        size = max(size, max(abs(v), abs(w)))
+        change = max(change, max(abs(v - out.v[r]), length * abs(w - out.w[r])))
+        size = max(size, max(abs(v), length * abs(w)))
         out.v[r], out.w[r] = v, w
     note_velocity(out, stage)
     q, Q = stage.turn, base.Q
@@ -174,7 +178,7 @@ def closing_member(model, data, label, loaded, count, h):
         driven, _ = push_bodies(model, data, loaded, k, count, 1)
         for m in range(count):
             b = group.member[m]
-            move_stage(work.first[b], h, work.stages[1, b], work.stage[b])
+            move_stage(work.first[b], h, 1.0, work.stages[1, b], work.stage[b])
         if turn == 2:
             velocities(k, group.points[0], work.stage, group.v[U])
             result.applied += h * (power + driven)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.dynamics.forces import applied_wrenches
-from carom.dynamics.joint_friction import slip_power
 from carom.geometry.rotation import exp, log, multiply, normalize, rotate, rotate_back
+from carom.kinematics.coordinate import rate
 
 
 @kernel
@@ -39,6 +39,16 @@ def spin_momentum(body, q, w0, w1, w2):
 
 
 @kernel
+def friction_power(system, state):
+    """Return the power of friction in joints, with the forces of the last contact step."""
+    relations, power = system.relations, 0.0
+    for i in range(relations.frictions.shape[0]):
+        one = relations.frictions[i]
+        power += one.force * rate(relations.coordinates[one.coordinate], state)
+    return power
+
+
+@kernel
 def power_of_path(system, h, start, end, work):
     """Return 4 P_middle + P_end of loads, and of friction in joints, on a path with linear velocities.
 
@@ -50,7 +60,7 @@ def power_of_path(system, h, start, end, work):
         halfway(start[b], end[b], work.stage[b])
     result.time = result.start + 0.5 * h
     loads = 4.0 * applied_wrenches(system, work.stage, False, work)
-    friction = 4.0 * slip_power(system, work.stage)
+    friction = 4.0 * friction_power(system, work.stage)
     result.time = result.start + h
     loads += applied_wrenches(system, end, False, work)
-    return loads, friction + slip_power(system, end)
+    return loads, friction + friction_power(system, end)

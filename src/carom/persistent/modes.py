@@ -10,7 +10,6 @@ from carom.model.event_rows import begin_event, end_event
 from carom.persistent.active_set import deactivate, refresh_pairs, regroup, set_anchor
 from carom.persistent.events import jam_margin, slides_on
 from carom.persistent.jam import JAMMED, note_jam, presses
-from carom.persistent.joint_rows import turn_frictions
 
 
 @kernel
@@ -58,8 +57,6 @@ def turn_modes(model, data):
         data.records,
     )
     changed = False
-    if work.result[0].held == 1:
-        turn_frictions(system)
     clock.residual = max(clock.residual, work.result[0].residual)
     for i in range(active.count[0] - 1, -1, -1):
         active_point = active.points[i]

@@ -3,8 +3,7 @@
     xi = -P G^T lam,   W lam = phi,    phi: the gap of each loaded point, and for a vertex that sticks also the
                                        tangential displacement from its anchor,
 
-with the rows of the middle of the step, repeated until phi is round-off. Redundant rows are left out of the
-factor. A step is solved in rounds: each begins with the final lam of the last round.
+repeated until phi is round-off. Redundant rows are left out of the factor.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from carom.contact.place import place_any
 from carom.dynamics.acceleration import STICK
 from carom.dynamics.project import project_position, shift
 from carom.dynamics.several_points import factor, spread_all, substitute, velocities, yields
-from carom.impact.workspace import BACK, OLD, P, U
+from carom.impact.workspace import OLD, P, U
 from carom.kinematics.contact_point import in_axes
 
 DROP = 1e-10  # relative to its row: a smaller pivot is round-off of a redundant row
@@ -93,19 +92,11 @@ def onto_surfaces(system, active, k, count, state, group, work):
     place_closed(system, k, state, group, group.points[1], work)
     if not mark_rows(system, active, k, group):
         return
-    n, x, total = factor_given(k, group), group.v[U], group.v[BACK]
-    known = False
-    for i in range(3 * k):
-        x[i] = total[i] if given(group, i) else 0.0
-        total[i], known = 0.0, known or x[i] != 0.0
+    n, x = factor_given(k, group), group.v[U]
     for _ in range(11):
-        if not known:
-            if errors(system, active, k, state, group, x, work):
-                break
-            solve_rows(k, n, group, x)
-        known = False
-        for i in range(3 * k):
-            total[i] += x[i]
+        if errors(system, active, k, state, group, x, work):
+            break
+        solve_rows(k, n, group, x)
         spread_all(system, k, group.points[0], x, count, group.member, work.stage, work)
         for m in range(count):
             shift(work.body[group.member[m]].motion, state[group.member[m]])

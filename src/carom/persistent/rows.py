@@ -13,13 +13,13 @@ import math
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.place import drift_of
-from carom.dynamics.acceleration import SLIP, accelerate, acceleration_without_friction
+from carom.dynamics.acceleration import SLIP, accelerate, acceleration
 from carom.dynamics.elements import driven_power
 from carom.dynamics.several_points import accelerations, inverse_masses, spread_all, velocities
 from carom.friction.layout import CONE, SLIDING
 from carom.impact.workspace import C, P, U
 from carom.kinematics.flight import free_rates
-from carom.persistent.joint_rows import JOINT, drift_of_coordinate, is_driven
+from carom.persistent.joint_rows import JOINT, PIVOT, drift_of_coordinate, is_driven
 from carom.persistent.points import find_points
 from carom.persistent.springs import bound_per_force
 
@@ -37,7 +37,7 @@ def accelerate_freely(model, data, loaded, count, s):
     """
     system, work = model.system, data.work
     if loaded:
-        acceleration_without_friction(system, work.stage, work, work.stages[s])
+        acceleration(system, work.stage, work, work.stages[s])
         return work.result[0].power
     for m in range(count):
         b = data.group.member[m]
@@ -116,6 +116,17 @@ def set_modes(system, active, k, group):
         if slip > 0.0:
             group.heading[i, 0], group.heading[i, 1] = u1 / slip, u2 / slip
     return same
+
+
+@kernel
+def beyond_stop(system, active, i, group):
+    """Return the speed [m/s] that a point has against its slip at the start of the step, 0 if none."""
+    point, u = group.points[0][i], group.v[U]
+    slips, d1, d2, _ = way_of(system, active, group.closed[i])
+    speed = -(u[3 * i + 1] * d1 + u[3 * i + 2] * d2)
+    if not (slips and speed > 0.0):
+        return 0.0
+    return speed * (system.bodies[point.a].extent if point.turns == PIVOT else 1.0)
 
 
 @kernel

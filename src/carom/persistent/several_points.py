@@ -17,7 +17,7 @@ from carom.dynamics.elements import driven_power
 from carom.dynamics.energy import energies
 from carom.dynamics.several_points import factor, inverse_masses, substitute, yields
 from carom.friction.layout import CONE, SLIDING
-from carom.impact.workspace import BACK, OLD, C, P, U
+from carom.impact.workspace import OLD, C, P, U
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.event_rows import begin_event, end_event
 from carom.model.records import OPENS, PERSIST, SLIPS, STICKS
@@ -26,7 +26,7 @@ from carom.persistent.bounces import bounces_end, horizon_of, name_work, spare, 
 from carom.persistent.finish import add_forces_of_corners
 from carom.persistent.forces import pose_forces, solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among, note_jam
-from carom.persistent.joint_rows import JOINT
+from carom.persistent.joint_rows import JOINT, add_frictions
 from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.start import first_stage
 
@@ -48,9 +48,10 @@ def activate_several(model, data, k, label, horizon):
         data.clocks[0],
         data.records,
     )
-    inverse_masses(system, k, group.points[0], state, work, group.m[0])
-    pose_forces(system, controls, k, state, group, work)
-    judge(model, data, k, horizon)
+    rows = add_frictions(system, label, state, k, group, work)
+    inverse_masses(system, rows, group.points[0], state, work, group.m[0])
+    pose_forces(system, controls, rows, state, group, work)
+    judge(model, data, k, rows, horizon)
     new, stay = -1, False
     for i in range(k):
         closed_point = group.closed[i]
@@ -74,8 +75,8 @@ def activate_several(model, data, k, label, horizon):
 
 
 @kernel
-def judge(model, data, k, horizon):
-    """Mark the points that become or stay active.
+def judge(model, data, k, rows, horizon):
+    """Mark the points that become or stay active; `rows` counts friction in joints too.
 
     First the points that do not leave and have a normal force; then the points whose bounces end within
     `horizon` under the acceleration with the first ones active; then those for which this holds with the new
@@ -89,7 +90,7 @@ def judge(model, data, k, horizon):
     for i in range(3 * k):
         push = max(push, abs(group.v[C][i]))
     for turn in range(k + 1):
-        solve_forces(model, data, k)
+        solve_forces(model, data, rows)
         more = False
         for i in range(k):
             contact, u = system.contacts[group.closed[i].contact], group.v[U][3 * i]
@@ -309,7 +310,7 @@ def first_forces(model, data, label):
     for m in range(count):
         loaded = loaded or system.bodies[group.member[m]].ballistic == 0
     work.result[0].start = clock.now
-    k, _, _, status = first_stage(model, data, label, loaded, count)
+    k, _, _, _, status = first_stage(model, data, label, loaded, count)
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.own == 0 or closed_point.turns == JOINT:
@@ -360,8 +361,6 @@ def lay_down(model, data, k, label):
     if not off:
         return
     kinetic, potential, _ = energies(system, state, clock.now)
-    for i in range(3 * k):
-        group.v[BACK][i] = 0.0
     count = members(work, label, group.member)
     onto_surfaces(system, active, k, count, state, group, work)
     after, at_end, _ = energies(system, state, clock.now)

@@ -15,20 +15,18 @@ from carom.dynamics.explicit import copy_state, note_velocity
 from carom.friction.layout import SLIDING, SOLVED
 from carom.impact.workspace import C, P, U
 from carom.persistent.finish import gains, solve_cones_of, within_cones
-from carom.persistent.joint_rows import JOINT, first_frictions, is_driven, radius_of
+from carom.persistent.joint_rows import JOINT, mode_of_joint, radius_of
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
 from carom.persistent.springs import solve_springs
 
 
 @kernel
-def first_modes(system, data, label):
+def first_modes(data, label):
     """Take the modes of the start of the step for those of its end, until the end is known."""
     active = data.active
     for i in range(active.count[0]):
         if data.work.body[active.points[i].body].label == label:
             active.points[i].next = active.points[i].mode
-    if data.work.body.shape[0] == label:
-        first_frictions(system)
 
 
 @kernel
@@ -36,7 +34,7 @@ def first_stage(model, data, label, loaded, count):
     """Write the accelerations of a group at the start of a step as stage 0, and the ways of its points.
 
     Return the number of points, the greatest rate at which friction turns a slip, the greatest acceleration by
-    friction, and the status of the contact problem. The powers go to `work.result`.
+    friction, its power, and the status of the contact problem. The power of loads goes to `work.result`.
     """
     start, group, work, system = data.state, data.group, data.work, model.system
     result, controls = work.result[0], model.controls
@@ -44,7 +42,7 @@ def first_stage(model, data, label, loaded, count):
         copy_state(start[b], work.stage[b])
     for m in range(count):
         note_velocity(work.stage[group.member[m]], work.stages[0, group.member[m]])
-    first_modes(system, data, label)
+    first_modes(data, label)
     result.time = result.start
     power = accelerate_freely(model, data, loaded, count, 0)
     k = write_rows(model, data, label, 0)
@@ -60,9 +58,9 @@ def first_stage(model, data, label, loaded, count):
         status = solve_cones_of(model, data, k)
     known = note_break_away(system, data, k, push) and known
     driven, rubbed = push_bodies(model, data, loaded, k, count, 0)
-    result.power, result.drag = power + driven, rubbed
+    result.power = power + driven
     rate, friction = rates(k, group)
-    return k, rate if known else math.inf, friction, status
+    return k, rate if known else math.inf, friction, rubbed, status
 
 
 @kernel
@@ -94,8 +92,9 @@ def note_way(model, data, i, still):
     speed = math.hypot(u1, u2)
     if closed_point.turns == JOINT:
         one = model.system.relations.frictions[closed_point.active]
+        one.next = mode_of_joint(model.system, closed_point.active, u1, still, data.state)
         one.speed = speed
-        return one.mode == 0 or speed > still or is_driven(group, i)
+        return True
     active_point = active.points[closed_point.active]
     contact = model.system.contacts[closed_point.contact]
     moves = speed > max(10.0 * slow(contact, data.state), still)

@@ -89,7 +89,6 @@ class Replay:
         if self.turns.size:
             run.compiled.system.relations.coordinates["reference"] = self.turns[i]
         run.grid = part_of_grid(self.grid, begin, until)
-        run.note_modes()
         return run.go_on(run.steps) is Status.SUCCESS
 
     def misses(self, i: int, there: np.ndarray) -> float:

@@ -20,7 +20,6 @@ from carom.contact.pair_point import smaller
 from carom.contact.stop import passage_stop, stop_gap
 from carom.model.arrays import STOP
 from carom.persistent.events import GAP, JAM, contact_event_value, find_contact_event
-from carom.persistent.joint_events import STOPS, find_joint_event, joint_event_value
 from carom.persistent.margins import LEAST, NEAR
 
 NEWTON = 6  # steps to the root of a cubic from a near start
@@ -49,9 +48,6 @@ def detect_event(system, controls, active, now, dt, work):
     kind, i = find_contact_event(system, active, work)
     if i >= 0:
         return BELOW, kind, i, 0.0
-    kind, i = find_joint_event(system, work.trial, work)
-    if i >= 0:
-        return BELOW, kind, i, 0.0
     return CLEAR, GAP, -1, 0.0
 
 
@@ -67,8 +63,6 @@ def event_value(system, controls, active, search, state, work):
             return stop_gap(system, contact, state, work)
         search.tolerance = 4.0 * max(search.tolerance, round_off_of_both(contact, state))
         return lowest_pair(system, contact, search.contact, active, state, work)
-    if search.kind >= STOPS:
-        return joint_event_value(system, search.kind, search.contact, state, work), 0.0
     if search.kind != JAM and active.points[search.contact].several == 1:
         search.tolerance = NEAR
     return contact_event_value(system, active.points[search.contact], search.kind), 0.0

@@ -31,7 +31,6 @@ from carom.persistent.bounces import horizon_of
 from carom.persistent.events import (
     GAP,
 )
-from carom.persistent.joint_events import STOPS, review_joints, turn_joint
 from carom.persistent.lifecycle import activate_contact
 from carom.persistent.margins import switch_due
 from carom.persistent.modes import jam_point, turn_modes
@@ -141,8 +140,7 @@ def accept_step(model, data):
         return r.LEFT_BALL, NOTHING
     if search.dt == search.left:
         clock.spent = clock.length
-    of_contact = search.found == 1 and search.kind != GAP and search.kind < STOPS
-    met = of_contact and switch_due(active, search)
+    met = search.found == 1 and search.kind != GAP and switch_due(active, search)
     if active.count[0] > 0:
         turn_modes(model, data)
     if search.found == 0:
@@ -156,12 +154,6 @@ def accept_step(model, data):
     clock.located += 1
     if exact(controls):
         search.horizon = max(search.horizon - search.dt, 0.0)
-    if search.kind >= STOPS:
-        turn_joint(system, search.kind, search.contact, now, work)
-        clock.in_step += 1
-        clock.in_moment += 1
-        clock.at_once += 1
-        return 0, NOTHING
     if met:
         return 0, NOTHING
     return 0, STRIKE if search.kind == GAP else jam_point(model, data, search.contact)
@@ -199,7 +191,6 @@ def act(model, data, method, action):
         if work.hit[0].code != 0:
             search.pending = STRIKE if work.hit[0].code >= r.GROW else NOTHING
             return work.hit[0].code
-        review_joints(system, data.state, work)
         if controls.layer_time == 1 and clock.struck > struck:
             clock.spent += data.records.impact[struck].duration  # positions do not change
         contact = system.contacts[search.contact]

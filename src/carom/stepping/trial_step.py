@@ -8,7 +8,7 @@ from carom._compiled.decorators import inlined, kernel
 from carom.contact.continuous_detection import CLEAR, FLAT_RIM, UNSURE
 from carom.dynamics.acceleration import SLIP
 from carom.dynamics.adapt import NOTHING_LEFT, allowed_step, plan_next, shorter, step_error
-from carom.dynamics.explicit import CONSTRAINTS_LOST
+from carom.dynamics.explicit import CONSTRAINTS_LOST, rubs
 from carom.dynamics.more_forces import turns_round
 from carom.dynamics.step import step
 from carom.model import records as r
@@ -17,7 +17,6 @@ from carom.model.allowance import affordable
 from carom.model.controls import LOCATE
 from carom.persistent.contact_step import contact_step
 from carom.persistent.events import GAP, note_first_stops
-from carom.persistent.joint_events import STOPS
 from carom.persistent.margins import note_due
 from carom.persistent.step_control import plain_step, too_long
 from carom.stepping.energy_balance import IN_A_ROW, SHORTEST, off_balance
@@ -46,15 +45,15 @@ def propose_step(model, data):
     if clock.paused == 1:
         clock.paused = 0
         return
-    note_first_stops(data.active)
+    note_first_stops(model.system, data.active)
     if clock.now - clock.moment > model.controls.step:
         clock.moment, clock.in_moment = clock.now, 0
     dt = min(search.left, search.pace)
     if model.controls.order > 0 and may_err(model.system, data.active):
         dt = min(dt, allowed_step(search.left, data.work))
     if data.active.count[0] > 0:
-        dt = min(dt, clock.longest)
-        dt = until_bounces_end(data.active, until_stop(model.controls, data.active, dt, clock))
+        dt = until_bounces_end(data.active, min(dt, clock.longest))
+    dt = until_stop(model, data.active, dt, clock)
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
     data.work.result[0].stiff = 0
     search.effort, search.counted = clock.effort, clock.counted
@@ -73,16 +72,18 @@ def may_err(system, active):
 
 
 @inlined
-def until_stop(controls, active, dt, clock):
-    """Return dt, or the time until slip of one of several active points stops."""
-    first = dt
+def until_stop(model, active, dt, clock):
+    """Return dt, or the time until slip of an active point or of a joint with friction stops."""
+    first, frictions = dt, model.system.relations.frictions
+    for i in range(frictions.shape[0]):
+        first = min(first, frictions[i].stop)
     for i in range(active.count[0]):
         active_point = active.points[i]
         if active_point.rest == 0:
             first = min(first, active_point.stop if active_point.mode == SLIP else first)
             first = min(first, min(active_point.turn_stop[0], active_point.turn_stop[1]))
     # except if stops follow each other without end, or the difference is round-off of the step
-    inside = first > controls.rest * dt and first < (1.0 - 1e-12) * dt
+    inside = first > model.controls.rest * dt and first < (1.0 - 1e-12) * dt
     return first if inside and clock.in_moment < MANY else dt
 
 
@@ -125,8 +126,8 @@ def trial_step(model, data, method):
     work, clock, search = data.work, data.clocks[0], data.work.search[0]
     result = work.result[0]
     result.start, result.order = clock.now, controls.order
-    applied, friction, code = step(method, system, active, now, search.dt, work.trial, work)
-    search.applied, search.friction, search.code = applied, friction, code
+    applied, code = step(method, system, active, now, search.dt, work.trial, work)
+    search.applied, search.friction, search.code = applied, 0.0, code
     clock.trials += 1
     clock.tries += 1
     clock.counted += 1.0
@@ -138,7 +139,7 @@ def trial_step(model, data, method):
         return TOO_MANY
     if retry and clock.effort > affordable(controls, clock):
         return TOO_MANY
-    if active.count[0] > 0 and code == 0:
+    if (active.count[0] > 0 or rubs(system)) and code == 0:
         contact_step(model, data, method, search.dt)
         if work.result[0].code != 0:
             return work.result[0].code
@@ -252,7 +253,7 @@ def halve(model, data, loses):
 def bracket(model, data):
     """Start to bracket the time of an event; if impacts are not located, they are at the end of the step."""
     system, controls, work, search = model.system, model.controls, data.work, data.work.search[0]
-    if search.kind != GAP and search.kind < STOPS:
+    if search.kind != GAP:
         note_due(data.active, search, work)
     if search.kind == GAP and controls.location != LOCATE:
         search.found = 1

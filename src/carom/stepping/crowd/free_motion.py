@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.dynamics.explicit import copy_state
+from carom.dynamics.explicit import copy_state, rubs
 from carom.dynamics.forces import difference_of_loads
 from carom.dynamics.project import shift
 from carom.dynamics.solve import solve
 from carom.dynamics.step import step
 from carom.kinematics.flight import free_flight
+from carom.persistent.contact_step import contact_step
 from carom.persistent.middle_state import halfway, power_of_path
 from carom.persistent.step_control import plain_step
 from carom.stepping.energy_balance import unbalanced
@@ -37,14 +38,18 @@ def fly(model, data, method, h, loaded, cut):
     if loaded:
         count, active.count[0] = active.count[0], 0
         work.result[0].start = clock.begin + clock.spent
-        applied, rubbed, code = step(method, system, active, now, h, work.trial, work)
-        search.applied, search.friction = applied, rubbed
+        applied, code = step(method, system, active, now, h, work.trial, work)
+        search.applied, search.friction = applied, 0.0
+        if rubs(system) and code == 0:
+            contact_step(model, data, method, h)
+            code, search.friction = work.result[0].code, work.result[0].friction
+            search.applied += work.result[0].applied
         clock.effort += plain_step(system)
         for b in range(now.shape[0]):
             copy_state(work.trial[b], crowd.flight[b])
             halfway(now[b], crowd.flight[b], work.middle[b])
         if code == 0 and cut:  # forces may be too stiff for a step of this length
-            named, watch = applied + rubbed, data.watch[0]
+            named, watch = search.applied + search.friction, data.watch[0]
             off, grows = unbalanced(
                 system, active, now, work.trial, named, work.result[0].start, h, watch
             )

@@ -22,7 +22,6 @@ from carom.dynamics.project import project_velocity
 from carom.geometry.rotation import norm
 from carom.model import records as r
 from carom.model.allowance import affordable_whole
-from carom.persistent.joint_events import review_joints
 from carom.persistent.middle_state import power_of_path
 from carom.stepping.crowd.balance import energy_gained, off, slow_down, take_out, take_over
 from carom.stepping.crowd.finish import finish
@@ -99,7 +98,6 @@ def step_crowd(model, data, method):
             clock.spent = clock.length
         else:
             clock.spent += dt
-    review_joints(system, now, work)
 
 
 @kernel

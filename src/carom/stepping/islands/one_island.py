@@ -6,7 +6,6 @@ from carom._compiled.decorators import kernel
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.more_forces import begin_turns, forget_turns
 from carom.persistent.active_set import regroup
-from carom.persistent.joint_events import review_joints
 from carom.stepping.islands.parts import begin_count, give_up_body
 
 
@@ -60,7 +59,6 @@ def forget_single(system, active, now, clocks, work, start):
     forget_turns(system)
     work.search[0].pending = 0
     regroup(system, active, work)
-    review_joints(system, now, work)
 
 
 @kernel
