@@ -122,7 +122,5 @@ class StampedCache(FunctionCache):
 
     def _file_at(self, place: str):
         return IndexDataCacheFile(
-            cache_path=place,
-            filename_base=self._impl.filename_base,
-            source_stamp=stamp(self._kept),
+            cache_path=place, filename_base=self._impl.filename_base, source_stamp=stamp(self._kept)
         )

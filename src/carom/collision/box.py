@@ -43,11 +43,8 @@ def point_box(pair):
             if abs(p[i]) - g[i] > d:
                 d, axis = abs(p[i]) - g[i], i
         sense = 1.0 if p[axis] > 0.0 else -1.0
-        nx, ny, nz = (
-            sense if axis == 0 else 0.0,
-            sense if axis == 1 else 0.0,
-            sense if axis == 2 else 0.0,
-        )
+        nx, ny = sense if axis == 0 else 0.0, sense if axis == 1 else 0.0
+        nz = sense if axis == 2 else 0.0
         qx, qy, qz = px - d * nx, py - d * ny, pz - d * nz
     gap = d - pair.a.radius - pair.b.radius
     put(pair.found[0], gap, (nx, ny, nz), (px, py, pz), (qx, qy, qz), of_vertex_a(0))

@@ -91,10 +91,8 @@ def edge_pair(pair, best, axis):
     gap = best - (pair.a.radius + pair.b.radius)
     on_b = (ax - best * n[0], ay - best * n[1], az - best * n[2])
     put(pair.found[0], gap, (n[0], n[1], n[2]), (ax, ay, az), on_b, feature)
-    part_a, part_b = (
-        edge_part(corner_a, corner_a + (4 >> j)),
-        edge_part(corner_b, corner_b + (4 >> i)),
-    )
+    part_a = edge_part(corner_a, corner_a + (4 >> j))
+    part_b = edge_part(corner_b, corner_b + (4 >> i))
     put_parts(pair.found[0], NOBODY, part_a, part_b)
     return inside
 

@@ -133,11 +133,8 @@ def _over_face(pair, side):
     count, q = s.count[side], s.on_b[4] if side == 0 else s.on_a[4]
     if solid.kind == CYLINDER:
         c = p[count // 2]  # opposite corner 0
-        x, y, z = (
-            q[0] - 0.5 * (p[0, 0] + c[0]),
-            q[1] - 0.5 * (p[0, 1] + c[1]),
-            q[2] - 0.5 * (p[0, 2] + c[2]),
-        )
+        x, y = q[0] - 0.5 * (p[0, 0] + c[0]), q[1] - 0.5 * (p[0, 1] + c[1])
+        z = q[2] - 0.5 * (p[0, 2] + c[2])
         along = x * n[0] + y * n[1] + z * n[2]
         return x * x + y * y + z * z - along * along <= solid.half[0] * solid.half[0]
     for k in range(count):

@@ -14,9 +14,8 @@ from carom.collision.frame import from_a, to_a
 from carom.collision.layout import BOX, CYLINDER, HULL, MOST_CORNERS, POINT, SEGMENT
 
 RIM = 8  # points of a rim
-LOWEST = (
-    2 * RIM
-)  # number of the point of a rim that is lowest along a normal; fixed points have smaller ones
+# number of the point of a rim that is lowest along a normal; fixed points have smaller ones
+LOWEST = 2 * RIM
 HALF_ROOT = math.sqrt(0.5)
 
 

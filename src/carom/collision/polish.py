@@ -213,11 +213,7 @@ def _keep_vertices(pair, n):
 def _points(s, edges, best, nx, ny, nz):
     """Move the farthest points, in row 4, along their edges until they differ by `best` n."""
     p, q = s.on_a[4], s.on_b[4]
-    rx, ry, rz = (
-        p[0] - q[0] - best * nx,
-        p[1] - q[1] - best * ny,
-        p[2] - q[2] - best * nz,
-    )
+    rx, ry, rz = p[0] - q[0] - best * nx, p[1] - q[1] - best * ny, p[2] - q[2] - best * nz
     e, g = s.edge[0], s.edge[1]
     f1 = f2 = 0.0
     if edges >= 1:

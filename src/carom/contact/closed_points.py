@@ -6,13 +6,7 @@ from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.contact.gap import along_normal, gap_and_rate, plane_in_body, round_off
 from carom.contact.groups import unite
-from carom.contact.pair_point import (
-    REACH,
-    find_touches,
-    own_point,
-    smaller,
-    write_touch,
-)
+from carom.contact.pair_point import REACH, find_touches, own_point, smaller, write_touch
 from carom.contact.place import place_any
 from carom.contact.place_of_other import centre_of_other, on_half_space
 from carom.contact.rim import OTHER_SIDE, closed_rim, way_round
@@ -217,12 +211,8 @@ def place_closed(system, k, state, group, points, work):
 @kernel
 def write_closed(c, feature, p, closed_point):
     """Write one closed point."""
-    closed_point.contact, closed_point.feature, closed_point.active, closed_point.stays = (
-        c,
-        feature,
-        -1,
-        0,
-    )
+    closed_point.contact, closed_point.feature, closed_point.active = c, feature, -1
+    closed_point.stays = 0
     closed_point.turns, closed_point.bounces = 0, 0.0
     for k in range(3):
         closed_point.point[k] = p[k]

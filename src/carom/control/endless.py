@@ -29,11 +29,8 @@ class Endless(Run):
         if how.step is not None:
             last = min(BLOCK * how.save_every, 2**62)
             return Grid(how.step, last, how.save_every, *none)
-        system, start, later = (
-            self.compiled.system,
-            self.compiled.start,
-            self.compiled.later is not None,
-        )
+        system, start = self.compiled.system, self.compiled.start
+        later = self.compiled.later is not None
         self.longest = longest_step(system, start, math.inf, self.options.max_step, later)
         ends, saves = np.zeros(BLOCK + 1), np.ones(BLOCK + 1, dtype=np.int64)
         return Grid(min(self.longest, 1.0), BLOCK, 0, ends, saves)

@@ -6,7 +6,16 @@ from carom._compiled.decorators import kernel
 from carom.dynamics.forces import potential_energy
 from carom.dynamics.rotors import rotor_energy
 from carom.dynamics.stiff import stiff_energy
-from carom.geometry.rotation import norm, rotate_back
+from carom.geometry.rotation import norm, rotate, rotate_back
+
+
+@kernel
+def kinetic_of(body, state):
+    """Return the kinetic energy of a body [J]."""
+    q, v, w, J = state.Q, state.v, state.w, body.inertia
+    W = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
+    total = body.mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+    return 0.5 * (total + J[0] * W[0] * W[0] + J[1] * W[1] * W[1] + J[2] * W[2] * W[2])
 
 
 @kernel
@@ -14,11 +23,16 @@ def kinetic_energy(system, state):
     """Return the kinetic energy of all bodies, and of inertia along coordinates of joints [J]."""
     total = 0.0
     for b in range(state.shape[0]):
-        body, q, v, w = system.bodies[b], state[b].Q, state[b].v, state[b].w
-        W, J = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2]), body.inertia
-        total += body.mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
-        total += J[0] * W[0] * W[0] + J[1] * W[1] * W[1] + J[2] * W[2] * W[2]
-    return 0.5 * total + rotor_energy(system, state)
+        total += kinetic_of(system.bodies[b], state[b])
+    return total + rotor_energy(system, state)
+
+
+@kernel
+def spin_momentum(body, q, w0, w1, w2):
+    """Return the angular momentum J w of a body about its centre, world axes."""
+    J = body.inertia
+    a = rotate_back(q[0], q[1], q[2], q[3], w0, w1, w2)
+    return rotate(q[0], q[1], q[2], q[3], J[0] * a[0], J[1] * a[1], J[2] * a[2])
 
 
 @kernel

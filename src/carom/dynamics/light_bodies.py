@@ -225,10 +225,8 @@ def solve_light(system, state, biased, work):
         body, f, q = system.bodies[b], work.body[b].wrench, y[b, 2]
         t = rotate_back(q[0], q[1], q[2], q[3], f[3], f[4], f[5])
         for k in range(3):
-            y[b, 0, k], y[b, 0, 3 + k] = (
-                f[k] / math.sqrt(body.mass),
-                t[k] / math.sqrt(body.inertia[k]),
-            )
+            y[b, 0, k] = f[k] / math.sqrt(body.mass)
+            y[b, 0, 3 + k] = t[k] / math.sqrt(body.inertia[k])
             y[b, 1, k], y[b, 1, 3 + k] = 0.0, 0.0
     for j in range(joints.shape[0]):
         rhs = solver.rows[j].rhs

@@ -83,11 +83,8 @@ def push_multipliers(system, work):
             work.body[b].wrench[k] = 0.0
     for i in range(system.solver.sides.shape[0]):
         side = system.solver.sides[i]
-        A, wrench, multiplier = (
-            side.A,
-            work.body[side.body].wrench,
-            system.solver.rows[side.element].rhs,
-        )
+        A, wrench = side.A, work.body[side.body].wrench
+        multiplier = system.solver.rows[side.element].rhs
         for r in range(system.joints[side.element].rows):
             for k in range(6):
                 wrench[k] -= A[r, k] * multiplier[r]

@@ -3,12 +3,7 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.dynamics.contact_impulse import (
-    add_impulse,
-    alone,
-    clear_wrenches,
-    spread,
-)
+from carom.dynamics.contact_impulse import add_impulse, alone, clear_wrenches, spread
 from carom.dynamics.solve import free_body, solve
 from carom.geometry.rotation import cross
 from carom.kinematics.contact_point import (

@@ -111,9 +111,8 @@ class ContactWork(NamedTuple):
     body: np.recarray  # (N,) ISLAND_BODY
     place: np.recarray  # (N,) PLACE
     later: np.ndarray  # (pairs,) the body of a pair that is eliminated second
-    target: (
-        np.ndarray
-    )  # (updates, 3) pair s, pair t, block from which below[s] right[t] is subtracted
+    # (updates, 3) pair s, pair t, block from which below[s] right[t] is subtracted
+    target: np.ndarray
     block: np.ndarray  # (N + 2 pairs, 6, 6)
 
 

@@ -20,10 +20,8 @@ def solve_local(contact, W, c):
 def solve_prepared(contact, link, c):
     """Solve as `solve_local` does, with the stored eigenbasis of W, as sweeps use the same W many times."""
     row, basis = link.local, link.basis
-    W, d = (
-        (row[0], row[1], row[2], row[3], row[4], row[5]),
-        (basis[0], basis[1], basis[2], basis[3]),
-    )
+    W = (row[0], row[1], row[2], row[3], row[4], row[5])
+    d = (basis[0], basis[1], basis[2], basis[3])
     if contact.kind == CONE:
         return solve_in_basis(W, d, c, contact.mu)
     if contact.kind == DISC:

@@ -1,10 +1,6 @@
 """Systems in the user's own coordinates: metric, forces, constraints and contacts."""
 
-from carom.generalized.solution import (
-    CoordinateImpact,
-    CoordinateImpactTable,
-    GeneralizedSolution,
-)
+from carom.generalized.solution import CoordinateImpact, CoordinateImpactTable, GeneralizedSolution
 from carom.generalized.stated import CoordinateContact
 from carom.generalized.system import GeneralizedSystem
 

@@ -271,10 +271,8 @@ class GeneralizedSolution(Drawn):
         events = {time: (before, after) for time, before, after in self._run_events()}
         times = np.union1d(self.t, list(events))
         place = np.searchsorted(self.t, times)
-        before, after = (
-            np.zeros((len(times), saved.shape[1])),
-            np.zeros((len(times), saved.shape[1])),
-        )
+        before = np.zeros((len(times), saved.shape[1]))
+        after = np.zeros((len(times), saved.shape[1]))
         for k, (time, j) in enumerate(zip(times, place)):
             first, second = events.get(time, (saved[min(j, len(saved) - 1)],) * 2)
             before[k], after[k] = first, second

@@ -17,15 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from carom.geometry import differential
-from carom.geometry.quaternion import (
-    between,
-    exp,
-    multiply,
-    normalize,
-    rotate,
-    rotate_back,
-    shaped,
-)
+from carom.geometry.quaternion import between, exp, multiply, normalize, rotate, rotate_back, shaped
 
 Array = NDArray[np.float64]
 State = tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike]

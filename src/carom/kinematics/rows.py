@@ -11,15 +11,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.geometry.rotation import cross, matrix, spin_tensor
 from carom.kinematics.joints import anchor_gap, axis, child_arm, parent_arm
-from carom.model.arrays import (
-    ALONG,
-    DISTANCE,
-    KNIFE_EDGE,
-    RIGID,
-    SCREW,
-    UNIVERSAL,
-    WITHIN,
-)
+from carom.model.arrays import ALONG, DISTANCE, KNIFE_EDGE, RIGID, SCREW, UNIVERSAL, WITHIN
 
 
 @kernel

@@ -202,10 +202,8 @@ def rotors_in_tree(scene, kind, flipped) -> tuple[np.ndarray, bool]:
             continue
         j, names = d.joint.index, d.joint.definition.coordinates
         turns, slides = names.count("turn"), names.count("slide")
-        which, slide = (
-            names[: d.coordinate].count(names[d.coordinate]),
-            names[d.coordinate] == "slide",
-        )
+        which = names[: d.coordinate].count(names[d.coordinate])
+        slide = names[d.coordinate] == "slide"
         if kind[j] == SCREW:
             out[j, 0] += d.inertia * (d.joint.definition.scale() ** 2 if slide else 1.0)
             continue

@@ -229,11 +229,8 @@ def _rims(faces: list[Face]) -> tuple[float, np.ndarray]:
     rims, alone = [], _edges_of_one(faces, tolerance)
     for i, face in enumerate(faces):
         for k in alone[i]:
-            p, q, inward = (
-                face.corners[k],
-                face.corners[(k + 1) % len(face.corners)],
-                face.inward[k],
-            )
+            p, q = face.corners[k], face.corners[(k + 1) % len(face.corners)]
+            inward = face.inward[k]
             length = math.sqrt((q - p) @ (q - p))
             far = np.sum((centres - 0.5 * (p + q)) ** 2, axis=1)
             near = np.flatnonzero(far <= (reaches + 0.5 * length + 8.0 * tolerance) ** 2)
@@ -370,9 +367,6 @@ def _surface_rows(rows: np.recarray, surface: np.record, region: Region) -> np.r
         out[name] = 0
     out["other"], out["touches"] = -1, 1
     out["axes"], out["offset"] = contact_axes(surface.normal), surface.offset
-    out["surface"], out["first_level"], out["last_level"] = (
-        region.surface + 1,
-        region.first,
-        region.last,
-    )
+    out["surface"], out["first_level"] = region.surface + 1, region.first
+    out["last_level"] = region.last
     return out

@@ -5,17 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.model.arrays import (
-    FIRST,
-    FOREST,
-    LINK,
-    LOOPS,
-    NO_JOINTS,
-    ROW,
-    SIDE,
-    WIDTH,
-    Solver,
-)
+from carom.model.arrays import FIRST, FOREST, LINK, LOOPS, NO_JOINTS, ROW, SIDE, WIDTH, Solver
 from carom.model.graph import elimination
 
 #: ratio of masses from which on A M^-1 A^T loses too many digits (`carom.dynamics.light_bodies`)

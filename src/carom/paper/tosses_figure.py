@@ -11,14 +11,8 @@ from carom.paper import tosses
 from carom.studies.identify.errors import angles, distances
 from carom.visual.plots import style
 
-FACES = (
-    style.BLUE,
-    style.ORANGE,
-    style.GREEN,
-    style.SKY,
-    style.RED,
-    style.PURPLE,
-)  # x y z -x -y -z
+# x y z -x -y -z
+FACES = style.BLUE, style.ORANGE, style.GREEN, style.SKY, style.RED, style.PURPLE
 ELEVATION = np.radians(20.0)  # of the camera
 LIGHT = np.array([-0.3, -0.45, 0.85])
 POSES = 6

@@ -10,13 +10,7 @@ from carom.contact.closed_points import apart, closed_within
 from carom.contact.gap import slow
 from carom.contact.groups import label_groups
 from carom.contact.level import related
-from carom.contact.pair_point import (
-    REACH,
-    find_touches,
-    own_point,
-    smaller,
-    touch_rate,
-)
+from carom.contact.pair_point import REACH, find_touches, own_point, smaller, touch_rate
 from carom.contact.place import place_any
 from carom.contact.place_of_other import on_half_space
 from carom.contact.rim import same_point
@@ -26,11 +20,8 @@ from carom.contact.rim import same_point
 def begin_point(active_point, contact, c, feature, mode):
     """Write a new active point of contact c, marked as one of several, without a force."""
     active_point.contact, active_point.feature = c, feature
-    active_point.body, active_point.other, active_point.touches = (
-        contact.body,
-        contact.other,
-        contact.touches,
-    )
+    active_point.body, active_point.other = contact.body, contact.other
+    active_point.touches = contact.touches
     active_point.mode, active_point.next, active_point.rest, active_point.several = mode, mode, 0, 1
     active_point.jams, active_point.due, active_point.lift, active_point.grip = 0, 0, 1.0, 1.0
     active_point.comes_to_rest, active_point.stop, active_point.bounces = 0, math.inf, 0.0
@@ -84,24 +75,8 @@ def deactivate(active, i):
     active.contact_states[active.points[i].contact].leaving = 1
     last = active.count[0] - 1
     for j in range(i, last):
-        copy(active.points[j + 1], active.points[j])
+        active.points[j] = active.points[j + 1]
     active.count[0] = last
-
-
-@kernel
-def copy(a, b):
-    """Copy an active point."""
-    b.contact, b.feature, b.body, b.other, b.mode = a.contact, a.feature, a.body, a.other, a.mode
-    b.next, b.several, b.rest, b.stop = a.next, a.several, a.rest, a.stop
-    b.comes_to_rest, b.jams, b.due, b.lift, b.grip = a.comes_to_rest, a.jams, a.due, a.lift, a.grip
-    b.touches, b.bounces = a.touches, a.bounces
-    for k in range(3):
-        b.point[k], b.anchor[k], b.force[k] = a.point[k], a.anchor[k], a.force[k]
-        for j in range(3):
-            b.W[k, j] = a.W[k, j]
-        b.torque[k] = a.torque[k]
-    b.turn_stop[0], b.turn_stop[1] = a.turn_stop[0], a.turn_stop[1]
-    b.heading[0], b.heading[1], b.speed = a.heading[0], a.heading[1], a.speed
 
 
 @kernel

@@ -16,11 +16,7 @@ from carom._compiled.units import unit
 from carom.contact.groups import members
 from carom.dynamics.adapt import allowed_error, note_miss
 from carom.dynamics.explicit import CONSTRAINTS_LOST, bound_accelerations_of, rubs, stages_within
-from carom.persistent.finish import (
-    land,
-    note_modes,
-    review,
-)
+from carom.persistent.finish import land, note_modes, review
 from carom.persistent.members import closing_member, explicit_member, implicit_member
 from carom.persistent.rows import beyond_stop
 from carom.persistent.start import first_modes, first_stage
@@ -77,10 +73,8 @@ def step_group(model, data, method, label, h):
     clock.since += 5.0 * k * stages_within(method)
     order = controls.order
     if h * rate <= STIFF and not (result.stiff == 1 and work.search[0].again == 1):
-        result.applied, result.friction = (
-            had + h * method.b[0] * applied,
-            rubbed + h * method.b[0] * friction,
-        )
+        result.applied = had + h * method.b[0] * applied
+        result.friction = rubbed + h * method.b[0] * friction
         k, s = explicit_member(model, data, method, label, loaded, count, h), method.b.size
         s = s - 1 if stages_within(method) < s else s
         if k > 0 and land(model, data, loaded, k, count):

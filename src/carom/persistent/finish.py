@@ -201,12 +201,8 @@ def add_forces_of_corners(active, k, group):
 @kernel
 def clear(active_point):
     """Take the force from an active point: it has one only if it is among the points found."""
-    active_point.stop, active_point.jams, active_point.lift, active_point.grip = (
-        math.inf,
-        0,
-        1.0,
-        1.0,
-    )
+    active_point.stop, active_point.jams, active_point.lift = math.inf, 0, 1.0
+    active_point.grip = 1.0
     active_point.comes_to_rest = 0
     for r in range(3):
         active_point.force[r], active_point.torque[r] = 0.0, 0.0

@@ -38,10 +38,8 @@ def presses(active_point, k):
 def note_jam(active, active_point):
     """Mark a point that jams, so that its impact is resolved first."""
     active_point.jams = 1
-    (
-        active.contact_states[active_point.contact].jams,
-        active.contact_states[active_point.contact].near,
-    ) = 1, 1
+    active.contact_states[active_point.contact].jams = 1
+    active.contact_states[active_point.contact].near = 1
 
 
 @kernel

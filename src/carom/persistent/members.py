@@ -22,12 +22,7 @@ from carom.impact.workspace import C, P, U
 from carom.persistent.coulomb_stage import solve_stage
 from carom.persistent.joint_rows import JOINT
 from carom.persistent.rolling_friction import bound_turning
-from carom.persistent.rows import (
-    accelerate_freely,
-    push_bodies,
-    set_modes,
-    write_rows,
-)
+from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
 from carom.persistent.springs import bound_per_force, solve_springs
 
 FIXED_POINT = 25  # iterations of the pose of a stage

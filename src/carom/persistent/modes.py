@@ -16,13 +16,8 @@ from carom.persistent.jam import JAMMED, note_jam, presses
 def jam_point(model, data, i):
     """Handle a jam of an active point: it presses, and an impact follows; or it opens. Return the action."""
     system = model.system
-    active, now, work, clock, records = (
-        data.active,
-        data.state,
-        data.work,
-        data.clocks[0],
-        data.records,
-    )
+    active, now, work, clock = data.active, data.state, data.work, data.clocks[0]
+    records = data.records
     active_point = active.points[i]
     k = jam_margin(system, active_point) + JAMMED * active_point.W[0, 0]
     if presses(active_point, k):
@@ -49,13 +44,8 @@ def only_free(system, body, work):
 def turn_modes(model, data):
     """Set the modes of several active points at the end of a step, and record its residual."""
     system, controls = model.system, model.controls
-    active, now, work, clock, records = (
-        data.active,
-        data.state,
-        data.work,
-        data.clocks[0],
-        data.records,
-    )
+    active, now, work, clock = data.active, data.state, data.work, data.clocks[0]
+    records = data.records
     changed = False
     clock.residual = max(clock.residual, work.result[0].residual)
     for i in range(active.count[0] - 1, -1, -1):

@@ -38,9 +38,7 @@ def take_torque(active_point, i, group):
     """Write the torque of the closed point i, of rolling or of pivoting, to its active point."""
     p, length = group.v[P], group.points[0][i].length
     if group.closed[i].turns == 1:
-        active_point.torque[1], active_point.torque[2] = (
-            length * p[3 * i + 1],
-            length * p[3 * i + 2],
-        )
+        active_point.torque[1] = length * p[3 * i + 1]
+        active_point.torque[2] = length * p[3 * i + 2]
     else:
         active_point.torque[0] = length * p[3 * i + 1]

@@ -8,11 +8,7 @@ from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.dynamics.acceleration import SLIP, STICK
-from carom.dynamics.contact_impulse import (
-    add_velocity,
-    alone,
-    spread,
-)
+from carom.dynamics.contact_impulse import add_velocity, alone, spread
 from carom.dynamics.elements import driven_power
 from carom.dynamics.energy import energies
 from carom.dynamics.several_points import factor, inverse_masses, substitute, yields
@@ -40,14 +36,8 @@ ROUNDS = 60  # of friction with what it does to the normal impulses
 def activate_several(model, data, k, label, horizon):
     """Judge all k closed points of a group; activate the new ones, deactivate those that open."""
     system, controls = model.system, model.controls
-    active, state, group, work, clock, records = (
-        data.active,
-        data.state,
-        data.group,
-        data.work,
-        data.clocks[0],
-        data.records,
-    )
+    active, state, group, work = data.active, data.state, data.group, data.work
+    clock, records = data.clocks[0], data.records
     rows = add_frictions(system, label, state, k, group, work)
     inverse_masses(system, rows, group.points[0], state, work, group.m[0])
     pose_forces(system, controls, rows, state, group, work)
@@ -263,14 +253,8 @@ def mode_of(system, i, state, group):
 def set_modes(model, data, k):
     """Activate the new points, with an event for each (the first is begun already); set modes of the others."""
     system = model.system
-    active, state, group, work, clock, records = (
-        data.active,
-        data.state,
-        data.group,
-        data.work,
-        data.clocks[0],
-        data.records,
-    )
+    active, state, group, work = data.active, data.state, data.group, data.work
+    clock, records = data.clocks[0], data.records
     begun, before = True, active.count[0]
     for i in range(k):
         closed_point = group.closed[i]
@@ -384,14 +368,8 @@ def mark_approaching(system, active, k, state, group):
 def deactivate_open(model, data, k, label):
     """Remove the active points of the group that do not stay."""
     system = model.system
-    active, state, group, work, clock, records = (
-        data.active,
-        data.state,
-        data.group,
-        data.work,
-        data.clocks[0],
-        data.records,
-    )
+    active, state, group, work = data.active, data.state, data.group, data.work
+    clock, records = data.clocks[0], data.records
     for j in range(active.count[0] - 1, -1, -1):
         active_point = active.points[j]
         if work.body[active_point.body].label != label:

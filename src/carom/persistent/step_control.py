@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
+from carom.dynamics.energy import kinetic_of
 from carom.geometry.rotation import norm
 from carom.model.allowance import affordable
 from carom.model.arrays import LOOPS
-from carom.persistent.middle_state import spin_momentum
 
 # Allowed loss in a step of several bodies: OF_MOTION of the kinetic energy at its start, plus the lesser of
 # OF_FALL of the energy that a fall of a whole step gains and OF_SIZE of m g times the size, which does not grow
@@ -47,27 +47,19 @@ ITERATION, SOME = 0.3, 100
 
 
 @kernel
-def kinetic(body, state):
-    """Return the kinetic energy of a body."""
-    q, v, w = state.Q, state.v, state.w
-    l = spin_momentum(body, q, w[0], w[1], w[2])
-    return 0.5 * (body.mass * norm(v) ** 2 + l[0] * w[0] + l[1] * w[1] + l[2] * w[2])
-
-
-@kernel
 def lost_by(system, b, start, end):
     """Return the energy that a body on which gravity acts has lost in a step."""
-    body, lost, g = system.bodies[b], kinetic(system.bodies[b], start[b]), system.gravity
+    body, lost, g = system.bodies[b], kinetic_of(system.bodies[b], start[b]), system.gravity
     for k in range(3):
         lost += body.mass * g[k] * (end[b].x[k] - start[b].x[k])
-    return lost - kinetic(body, end[b])
+    return lost - kinetic_of(body, end[b])
 
 
 @kernel
 def may_lose(system, b, start, part):
     """Return a part of the kinetic energy of a body and of its weight times its size."""
     body = system.bodies[b]
-    return part * (kinetic(body, start[b]) + body.mass * norm(system.gravity) * body.extent)
+    return part * (kinetic_of(body, start[b]) + body.mass * norm(system.gravity) * body.extent)
 
 
 @kernel
@@ -77,7 +69,7 @@ def weigh(system, b, start, end):
     for k in range(3):
         fallen += body.mass * g[k] * (end[b].x[k] - start[b].x[k])
     size = body.mass * norm(g) * body.extent
-    turned = kinetic(body, start[b]) + kinetic(body, end[b]) + abs(fallen)
+    turned = kinetic_of(body, start[b]) + kinetic_of(body, end[b]) + abs(fallen)
     return min(size, MUCH * turned + LEAST * size)
 
 
@@ -90,7 +82,7 @@ def unnamed(system, controls, start, end, friction, count, member):
         b = member[m]
         body = system.bodies[b]
         lost += lost_by(system, b, start, end)
-        may += OF_MOTION * kinetic(body, start[b])
+        may += OF_MOTION * kinetic_of(body, start[b])
         may += min(body.mass * fall, OF_SIZE * weigh(system, b, start, end))
     if count == 1:
         may = may_lose(system, member[0], start, OF_ONE)

@@ -44,10 +44,7 @@ _WHAT = {
         "Energy that was added where small bounces were dropped, which is not physical:",
         "Take a smaller step",
     ),
-    ALL: (
-        "Sum of several energy errors:",
-        "Take a smaller step, or raise the tolerance",
-    ),
+    ALL: ("Sum of several energy errors:", "Take a smaller step, or raise the tolerance"),
 }
 
 _WHY = {

@@ -220,10 +220,7 @@ class UserForce:
     potential: Callable | None
 
     def __init__(
-        self,
-        bodies: Body | Sequence[Body],
-        function: Callable,
-        potential: Callable | None = None,
+        self, bodies: Body | Sequence[Body], function: Callable, potential: Callable | None = None
     ):
         bodies = distinct_bodies(bodies)
         check_functions(function, potential=potential)

@@ -28,19 +28,11 @@ from carom.model.controls import LOCATE
 from carom.model.workspace import FREE
 from carom.persistent.active_set import is_active
 from carom.persistent.bounces import horizon_of
-from carom.persistent.events import (
-    GAP,
-)
+from carom.persistent.events import GAP
 from carom.persistent.lifecycle import activate_contact
 from carom.persistent.margins import switch_due
 from carom.persistent.modes import jam_point, turn_modes
-from carom.persistent.step_control import (
-    UNSOLVED,
-    USELESS,
-    goes_wild,
-    next_pace,
-    unsolved,
-)
+from carom.persistent.step_control import UNSOLVED, USELESS, goes_wild, next_pace, unsolved
 from carom.stepping.record import finite, grow, save_contacts
 from carom.stepping.trial_step import first_event, propose_step
 
@@ -277,11 +269,8 @@ def check_pair(system, controls, active, c, now, work):
 @inlined
 def look_at_vertices(system, controls, active, contact, now):
     """Return whether a closed vertex on a half-space is to be struck or made persistent."""
-    near, still, plane = (
-        controls.tie * contact.extent,
-        slow(contact, now),
-        plane_in_body(contact, now),
-    )
+    near, still = controls.tie * contact.extent, slow(contact, now)
+    plane = plane_in_body(contact, now)
     action = NOTHING
     for i in range(contact.first, contact.last):
         z, rate = gap_and_rate(plane, system.vertices[i])

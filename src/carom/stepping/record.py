@@ -74,11 +74,8 @@ def save_contacts(system, active, now, k, clock, work, records):
         place_any(system, contact, active_point.feature, active_point.point, now, point, work)
         E, arm, other, f = point.axes, point.arm_a, point.arm_b, active_point.force
         touch.saved, touch.contact, touch.feature = k, contact.number, active_point.feature
-        touch.mode, touch.body, touch.other = (
-            active_point.mode,
-            system.bodies[active_point.body].number,
-            -1,
-        )
+        touch.mode, touch.body = active_point.mode, system.bodies[active_point.body].number
+        touch.other = -1
         if active_point.other >= 0:
             touch.other = system.bodies[active_point.other].number
         fx = f[0] * E[0, 0] + f[1] * E[1, 0] + f[2] * E[2, 0]

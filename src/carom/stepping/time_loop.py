@@ -96,10 +96,8 @@ def step_apart(model, data, method, islands) -> int:
         i = plan.at
         solver = by_reference(parts.part_solver(islands, i))
         system = parts.part_system(model.system, islands, i, solver)
-        active, work = (
-            parts.part_active(data.active, islands, i),
-            parts.part_work(data.work, islands, i),
-        )
+        active = parts.part_active(data.active, islands, i)
+        work = parts.part_work(data.work, islands, i)
         state = islands.state[islands.first[0, i] : islands.first[0, i + 1]]
         own = by_reference(
             Data(

@@ -46,9 +46,8 @@ def surface(shape, fineness: int = 32) -> tuple[np.ndarray, np.ndarray]:
         Indices of vertices, counter-clockwise from outside.
     """
     checks.instance("shape", shape, SHAPES, "; a shape is needed")
-    n = math.ceil(
-        checks.integer("fineness", fineness, least=4) / 4
-    )  # sides of a quarter of a circle
+    # sides of a quarter of a circle
+    n = math.ceil(checks.integer("fineness", fineness, least=4) / 4)
     if isinstance(shape, Disc):
         return _disc(shape.radius, shape.inner_radius, 4 * n)
     if isinstance(shape, Mesh):

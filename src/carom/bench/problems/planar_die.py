@@ -13,10 +13,8 @@ METHODS, STEPS, PEER_STEPS = ("rk4",), (1e-2, 1e-3, 1e-4), (1e-3, 1e-4, 1e-5)
 MASS, EDGE, GRAVITY, DURATION = 0.016, 0.02, 9.81, 0.6
 END = 0.3  # s, after the first impact, before the second
 FIRST = 0.196210991904  # s
-AFTER = (
-    -0.104880400901,
-    0.599572173967,
-)  # m/s, (v_x, v_z) after it: Routh's impulse in closed form
+# m/s, (v_x, v_z) after it: Routh's impulse in closed form
+AFTER = -0.104880400901, 0.599572173967
 
 
 def scene(

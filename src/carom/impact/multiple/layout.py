@@ -52,16 +52,14 @@ class CornerContacts(NamedTuple):
     k: int
     others: int  # number of closed contacts that are not in this impact of a sequence
     W: np.ndarray  # (3K, 3K) inverse mass, symmetric, often singular
-    u: (
-        np.ndarray
-    )  # (3K,) velocity before, approach negative; u_n = 0 for contacts that touch or persist
+    # (3K,) velocity before, approach negative; u_n = 0 for contacts that touch or persist
+    u: np.ndarray
     friction: np.ndarray  # (K,)
     restitution: np.ndarray  # (K,)
     law: np.ndarray  # (K,) of `carom.impact.laws`
     stiffness: np.ndarray  # (K,), only ratios matter
-    pair: (
-        np.ndarray
-    )  # (K,) contacts with equal numbers strike together, others in an impact of their own
+    # (K,) contacts with equal numbers strike together, others in an impact of their own
+    pair: np.ndarray
 
 
 #: one contact, or a class of contacts that move alike, in scaled variables
@@ -127,9 +125,8 @@ class PassageWork(NamedTuple):
     matrix: np.ndarray  # (9, 3K, 3K) below
     vector: np.ndarray  # (39, 3K) rows below
     series: np.ndarray  # (18, ORDERS, B, 4) below; contact i is lane i % 4 of block i // 4
-    columns: (
-        np.ndarray
-    )  # (3K, 3B, 4) W of the group, scaled, in lanes: blocks of n, then of t1 and t2
+    # (3K, 3B, 4) W of the group, scaled, in lanes: blocks of n, then of t1 and t2
+    columns: np.ndarray
     stage: np.ndarray  # (2, 6, 3K) forces and rates at the stages of an implicit step
     single: np.ndarray  # result of one contact, as `carom.impact.layout` says
 

@@ -9,12 +9,7 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.impact.multiple.equal_contacts import SAME
-from carom.impact.multiple.layout import (
-    BLOW_FRICTION,
-    BLOW_RESTITUTION,
-    BLOW_STIFFNESS,
-    BLOW_U,
-)
+from carom.impact.multiple.layout import BLOW_FRICTION, BLOW_RESTITUTION, BLOW_STIFFNESS, BLOW_U
 
 
 @kernel

@@ -37,10 +37,8 @@ class Universal(JointDefinition):
     axis_child: np.ndarray
 
     def __init__(self, anchor: ArrayLike, axis_parent: ArrayLike, axis_child: ArrayLike):
-        first, second = (
-            unit_vector("axis_parent", axis_parent),
-            unit_vector("axis_child", axis_child),
-        )
+        first = unit_vector("axis_parent", axis_parent)
+        second = unit_vector("axis_child", axis_child)
         cosine = float(first @ second)
         if not abs(cosine) < ACROSS:
             raise ValueError(

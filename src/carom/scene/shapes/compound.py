@@ -52,15 +52,11 @@ class Compound(Shape):
     volume: float
     size: float
     _pieces: tuple[Piece, ...]
-    _spread: (
-        np.ndarray | None
-    )  # inertia by mass [m^2]; None where the mass is not that of the parts
+    # inertia by mass [m^2]; None where the mass is not that of the parts
+    _spread: np.ndarray | None
 
     def __init__(
-        self,
-        parts: Sequence,
-        masses: ArrayLike | None = None,
-        centroid: ArrayLike | None = None,
+        self, parts: Sequence, masses: ArrayLike | None = None, centroid: ArrayLike | None = None
     ):
         placed = tuple(_part(k, part) for k, part in enumerate(_sequence(parts)))
         shapes = [shape for shape, _, _ in placed]

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.dynamics.energy import energies
+from carom.dynamics.energy import energies, kinetic_of, spin_momentum
 from carom.dynamics.rotors import energy_of_change
 from carom.geometry.rotation import norm
 from carom.kinematics.contact_point import contact_velocity
-from carom.persistent.middle_state import spin_momentum
-from carom.persistent.step_control import kinetic, lost_by, weigh
+from carom.persistent.step_control import lost_by, weigh
 
 # greatest gain of energy of a group in a piece, and greatest difference from the work of its impulses, relative
 # to the kinetic energy plus m g times the size of its bodies
@@ -44,7 +43,7 @@ def off(model, data, k, gained):
     system, start, end, crowd = model.system, data.state, data.work.trial, data.crowd
     size, work = 0.0, 0.0
     for b in range(start.shape[0]):
-        size += kinetic(system.bodies[b], start[b]) + weigh(system, b, start, end)
+        size += kinetic_of(system.bodies[b], start[b]) + weigh(system, b, start, end)
     for i in range(k):
         u, p = crowd.spots[i].before, crowd.spots[i].impulse
         w = contact_velocity(crowd.points[0][i], end)
@@ -114,7 +113,7 @@ def slow_down(system, gained, end):
 
     A body that turns far within a piece gains this energy when it comes back to the surface.
     """
-    energy = kinetic(system.bodies[0], end)
+    energy = kinetic_of(system.bodies[0], end)
     if not gained > 0.0 or not energy > 0.0:
         return
     factor = math.sqrt(max(0.0, 1.0 - gained / energy))

@@ -24,14 +24,8 @@ ASIDE = 1e-9  # of its size: a body at rest that has moved further in a step was
 def finish(model, data, k, h, fall, residual):
     """Write the results of the step, and set still bodies to rest; return the energy in the ledger."""
     system, controls = model.system, model.controls
-    active, start, end, crowd, clock, records = (
-        data.active,
-        data.state,
-        data.work.trial,
-        data.crowd,
-        data.clocks[0],
-        data.records,
-    )
+    active, start, end, crowd = data.active, data.state, data.work.trial, data.crowd
+    clock, records = data.clocks[0], data.records
     tolerance = rest_speed(controls, fall * h, residual, k, POORLY)
     impacts, pressing, rubbing = 0.0, 0.0, 0.0
     for i in range(k):
@@ -79,11 +73,8 @@ def write_impact(model, data, i, k, w, pressure, rubbing):
     """Write the row of an impact without duration; k points share the impulses of the step."""
     end, crowd, clock, records = data.work.trial, data.crowd, data.clocks[0], data.records
     spot, point = crowd.spots[i], crowd.points[0][i]
-    row, x, contact = (
-        records.impact[clock.struck],
-        end[point.a].x,
-        model.system.contacts[spot.contact],
-    )
+    row, x = records.impact[clock.struck], end[point.a].x
+    contact = model.system.contacts[spot.contact]
     row.time, row.contact, row.together = clock.now, contact.number, max(2, k)
     block_of_point(crowd.problem, i, row.W)
     for a in range(3):
@@ -99,13 +90,8 @@ def write_impact(model, data, i, k, w, pressure, rubbing):
 def list_active(model, data, k, h, tolerance):
     """Write the loaded points that do not strike to `crowd.active`, and their events; return their number."""
     system = model.system
-    active, end, crowd, clock, records = (
-        data.active,
-        data.work.trial,
-        data.crowd,
-        data.clocks[0],
-        data.records,
-    )
+    active, end, crowd, clock = data.active, data.work.trial, data.crowd, data.clocks[0]
+    records = data.records
     count = 0
     for i in range(active.count[0]):
         crowd.follows[i] = 0  # 1 if a point stays active

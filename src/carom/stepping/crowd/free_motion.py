@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.dynamics.explicit import copy_state, rubs
-from carom.dynamics.forces import difference_of_loads
+from carom.dynamics.forces import applied_wrenches, difference_of_loads
 from carom.dynamics.project import shift
 from carom.dynamics.solve import solve
 from carom.dynamics.step import step
+from carom.geometry.rotation import exp, log, multiply, normalize
+from carom.kinematics.coordinate import rate
 from carom.kinematics.flight import free_flight
 from carom.persistent.contact_step import contact_step
-from carom.persistent.middle_state import halfway, power_of_path
 from carom.persistent.step_control import plain_step
 from carom.stepping.energy_balance import unbalanced
 
@@ -30,7 +31,7 @@ def is_loaded(system):
 def fly(model, data, method, h, loaded, cut):
     """Write the motion without contacts to `crowd.flight`, and its middle for loaded bodies.
 
-    Return a code, and the power of this path (`middle_state.power_of_path`) of loads and of friction in joints.
+    Return a code, and the power of this path (`power_of_path`) of loads and of friction in joints.
     With `cut` the code is `MISSED` if the energy error of this motion is larger than a step may have.
     """
     system, active, now, crowd, work = model.system, data.active, data.state, data.crowd, data.work
@@ -60,6 +61,49 @@ def fly(model, data, method, h, loaded, cut):
         for b in range(now.shape[0]):
             free_flight(system.bodies[b], system.gravity, h, now[b], crowd.flight[b], work.body[b])
     return code, loads, friction
+
+
+@kernel
+def halfway(start, end, out):
+    """Write the middle state of a body: mean position and velocities, half the rotation."""
+    p, q, Q = start.Q, end.Q, out.Q
+    t = multiply(q[0], q[1], q[2], q[3], p[0], -p[1], -p[2], -p[3])
+    a = log(t[0], t[1], t[2], t[3])
+    r = exp(0.5 * a[0], 0.5 * a[1], 0.5 * a[2])
+    q = multiply(r[0], r[1], r[2], r[3], p[0], p[1], p[2], p[3])
+    Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
+    for k in range(3):
+        out.x[k] = 0.5 * (start.x[k] + end.x[k])
+        out.v[k] = 0.5 * (start.v[k] + end.v[k])
+        out.w[k] = 0.5 * (start.w[k] + end.w[k])
+
+
+@kernel
+def friction_power(system, state):
+    """Return the power of friction in joints, with the forces of the last contact step."""
+    relations, power = system.relations, 0.0
+    for i in range(relations.frictions.shape[0]):
+        one = relations.frictions[i]
+        power += one.force * rate(relations.coordinates[one.coordinate], state)
+    return power
+
+
+@kernel
+def power_of_path(system, h, start, end, work):
+    """Return 4 P_middle + P_end of loads, and of friction in joints, on a path with linear velocities.
+
+    The difference of the works on two paths from the same start is h/6 times the difference of these: the power
+    of dampers is quadratic in time (Simpson's rule).
+    """
+    result = work.result[0]
+    for b in range(start.shape[0]):
+        halfway(start[b], end[b], work.stage[b])
+    result.time = result.start + 0.5 * h
+    loads = 4.0 * applied_wrenches(system, work.stage, False, work)
+    friction = 4.0 * friction_power(system, work.stage)
+    result.time = result.start + h
+    loads += applied_wrenches(system, end, False, work)
+    return loads, friction + friction_power(system, end)
 
 
 @kernel

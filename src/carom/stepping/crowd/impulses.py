@@ -9,6 +9,7 @@ from carom.contact.closed_points import apart
 from carom.contact.depth import least_gap
 from carom.contact.pair_point import smaller
 from carom.dynamics.elements import driven_power
+from carom.dynamics.energy import spin_momentum
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.project import LOST, carry_velocity, shift
 from carom.dynamics.rotors import add_rates, note_rates
@@ -17,7 +18,7 @@ from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.allowance import affordable_whole
 from carom.model.arrays import STOP
-from carom.persistent.middle_state import halfway, spin_momentum
+from carom.stepping.crowd.free_motion import halfway
 from carom.stepping.crowd.pose import note_drift, pose
 from carom.stepping.crowd.response import answer, write_responses
 from carom.stepping.crowd.solve import solve

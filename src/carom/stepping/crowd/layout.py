@@ -36,11 +36,8 @@ SPOT = [
     ("gap", "f8"),  # gap at the start
     ("left", "f8"),  # gap at the end, without contacts
     ("before", "f8", 3),  # velocity at the start, with the rows of the middle of the step
-    (
-        "drift",
-        "f8",
-        3,
-    ),  # its part from rows that turn, for an active point of several bodies; otherwise 0
+    # its part from rows that turn, for an active point of several bodies; otherwise 0
+    ("drift", "f8", 3),
     ("bound", "f8"),  # least normal velocity after the step
     ("after", "f8", 3),  # velocity with restitution
     ("impulse", "f8", 3),

@@ -22,7 +22,6 @@ from carom.dynamics.project import project_velocity
 from carom.geometry.rotation import norm
 from carom.model import records as r
 from carom.model.allowance import affordable_whole
-from carom.persistent.middle_state import power_of_path
 from carom.stepping.crowd.balance import energy_gained, off, slow_down, take_out, take_over
 from carom.stepping.crowd.finish import finish
 from carom.stepping.crowd.free_motion import (
@@ -31,6 +30,7 @@ from carom.stepping.crowd.free_motion import (
     follow_path,
     greatest_change,
     is_loaded,
+    power_of_path,
 )
 from carom.stepping.crowd.impulses import (
     deepest_of_others,

@@ -17,13 +17,7 @@ from carom.model.kept import Snapshot
 from carom.run import Run
 from carom.scene.scene import Scene
 from carom.stepping.settings import Settings
-from carom.studies.ensembles.targets import (
-    Target,
-    changed,
-    check_places,
-    may_overlap,
-    units,
-)
+from carom.studies.ensembles.targets import Target, changed, check_places, may_overlap, units
 
 STATES = {"position": "x", "orientation": "Q", "velocity": "v", "angular_velocity": "w"}
 TURNING = ("rolling_friction", "pivoting_friction")
@@ -34,9 +28,8 @@ class Again:
 
     def __init__(self, scene: Scene, settings: Settings, targets: list[Target]):
         self.scene, self.settings, self.targets = scene, settings, targets
-        projected = (
-            settings.options.project_start and len(scene.joints) > 0
-        )  # each run has its own projected start
+        # each run has its own projected start
+        projected = settings.options.project_start and len(scene.joints) > 0
         self.light = all(target.light for target in targets) and not projected
         self.values: dict[str, np.ndarray] = {}
         if self.light:

@@ -147,12 +147,8 @@ def of_flight(system, b: int, body: Moving, until: float, at_end: bool) -> list[
 
 def _miss(system, body: Moving, size: float, times, i: int, v: int, row, gaps) -> Margin:
     """Return the margin of a vertex with the least gap at sample i, within the flight or at its end."""
-    n, core, time, how = (
-        row.axes[0],
-        system.vertices[row.first + v],
-        times[i],
-        "comes near and leaves",
-    )
+    n, core, time = row.axes[0], system.vertices[row.first + v], times[i]
+    how = "comes near and leaves"
     if i == len(times) - 1:
         how = "falls as the run ends"
     else:  # minimum of the parabola through three samples; the time need not be exact

@@ -99,10 +99,8 @@ def _painted(surface, colour: str) -> Model:
 
 def placed_model(solid) -> Model:
     """Return the model of a static body, in the world."""
-    model, turn = (
-        model_of(*surface(solid.shape, 48), solid.shape),
-        quaternion.matrix(solid.orientation),
-    )
+    model = model_of(*surface(solid.shape, 48), solid.shape)
+    turn = quaternion.matrix(solid.orientation)
     return model._replace(
         corners=model.corners @ turn.T + solid.position,
         normals=model.normals @ turn.T,

@@ -55,9 +55,8 @@ def drawing(
         try:
             yield parts[0] if count == 1 else parts
         except Exception:
-            plt.close(
-                figure
-            )  # nothing half drawn is left to be shown; of the caller's axes: no figure
+            # nothing half drawn is left to be shown; of the caller's axes: no figure
+            plt.close(figure)
             raise
 
 

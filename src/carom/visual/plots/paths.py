@@ -114,10 +114,8 @@ def _times(outlines, solution) -> np.ndarray:
         return np.linspace(
             solution.t[0], solution.t[-1], checks.integer("outlines", outlines, least=1, most=MOST)
         )
-    times, (first, last) = (
-        checks.finite_array("outlines", outlines, (None,), "s"),
-        solution.t[[0, -1]],
-    )
+    times = checks.finite_array("outlines", outlines, (None,), "s")
+    (first, last) = solution.t[[0, -1]]
     if len(times) > MOST:
         raise ValueError(f"outlines must be at most {MOST} times, got {len(times)}")
     if not np.all((times >= first) & (times <= last)):

@@ -20,9 +20,8 @@ class Packer:
         """Store an array as `kind` ("f4", "f8" or "i4"); return its entry of the header."""
         array = np.ascontiguousarray(array)
         data = array.astype(f"<{kind}").tobytes()
-        data += bytes(
-            -len(data) % 8
-        )  # each array starts at a multiple of 8 bytes, as typed arrays need
+        # each array starts at a multiple of 8 bytes, as typed arrays need
+        data += bytes(-len(data) % 8)
         note = {"at": self._length, "kind": kind, "shape": list(array.shape)}
         self._bytes.append(data)
         self._length += len(data)
