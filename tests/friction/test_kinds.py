@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from contact_problems import STEP, G, dense, random_singular, solve, stack
 
-from carom.friction.layout import CONE, NOT_SOLVED, SLIDING, SOLVED, STICKING
+from carom.friction.layout import CONE, DISC, NOT_SOLVED, SLIDING, SOLVED, STICKING
 
 
 def test_box_held_by_known_slip():
@@ -17,6 +17,18 @@ def test_box_held_by_known_slip():
     np.testing.assert_array_equal(solved.p[1::3], -0.3 * solved.p[::3])
     cone = solve(W, c, 0.3, kind=CONE)
     np.testing.assert_allclose(cone.w, solved.w, atol=1e-14)
+
+
+@pytest.mark.parametrize("radius", [0.3, 2.0])
+@pytest.mark.parametrize("beside", [1.0, 20.0])
+def test_a_disc_has_a_radius_in_impulses(radius, beside):
+    # one row w = p - 1.6 with |p| <= radius, beside a contact that presses with any force: units do not matter
+    W, c = np.diag([2.0, 2.0, 2.0, 0.0, 1.0, 0.0]), np.array([-beside, 0, 0, 0, -1.6, 0])
+    heading = np.array([(0.0, 0.0), (radius, 0.0)])
+    solved = solve(W, c, 0.5, kind=np.array([CONE, DISC]), heading=heading)
+    assert solved.status == SOLVED
+    np.testing.assert_allclose(solved.p[4], min(1.6, radius), rtol=1e-12)
+    np.testing.assert_allclose(solved.p[0], beside / 2.0, rtol=1e-12)
 
 
 def test_without_heading_there_is_no_friction():

@@ -21,8 +21,8 @@ def solve_cones(k, W, c, mu, kind, heading, p, workspace):
     symmetric, `c` (3K,) the velocity without impulses, `mu` (K,) the friction, `p` (3K,) the first guess and
     then the solution, `workspace` from `layout.new_contact_work(K)`. `kind` (K,) int64: CONE, friction against
     w_t; SLIDING, p_t = -mu p_n heading, `heading` (K, 2); STICKING, w_t = 0 with any tangential impulse, even
-    if p_n = 0. Status: SOLVED; NOT_SOLVED, p is the best result found; BAD_INPUT, p is 0. The residual is
-    that of `residual.measure`.
+    if p_n = 0; DISC, friction against w_t of at most heading[0]. Status: SOLVED; NOT_SOLVED, p is the best
+    result found; BAD_INPUT, p is 0. The residual is that of `residual.measure`.
     """
     if k == 0:
         return SOLVED, 0.0, 0
@@ -67,7 +67,11 @@ def _load(work, k, W, c, mu, kind, heading, p):
             total += out[j]
     if not math.isfinite(total):
         return math.nan
-    return scale_vectors(work, k, c, p)
+    gamma = scale_vectors(work, k, c, p)
+    for i in range(k):
+        if kind[i] == o.DISC:  # its radius is an impulse
+            work.contact[i].h1 /= gamma * work.contact[i].scale
+    return gamma
 
 
 @kernel

@@ -146,6 +146,7 @@ FRICTION = [
     ("mode", "i8"),  # 1 or -1: slips in this direction; 0 sticks
     ("next", "i8"),  # mode after the trial step
     ("speed", "f8"),  # at the start of the step
+    ("stop", "f8"),  # time from its end to that of slip, in persistent contact
     ("force", "f8"),  # of the last solve
     ("change", "f8"),  # of q' by all other forces
     ("driven", "i8"),  # 1 while it sticks, if joints and motors determine its coordinate

@@ -17,7 +17,7 @@ from carom.friction.layout import CONE, DISC, SLIDING, SOLVED
 from carom.impact.workspace import BACK, OLD, C, P, U
 from carom.persistent.forces import solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among
-from carom.persistent.joint_rows import JOINT, place_coordinate, radius_of
+from carom.persistent.joint_rows import JOINT, PIVOT, place_coordinate, radius_of
 from carom.persistent.margins import greatest_push, set_margins
 from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
@@ -89,7 +89,8 @@ def note_modes(model, data, k):
         active_point = active.points[closed_point.active]
         d1, d2 = u[3 * i + 1] / slip if slides else 0.0, u[3 * i + 2] / slip if slides else 0.0
         if closed_point.turns == 0:
-            active_point.next = SLIP if group.kind[i] == SLIDING else STICK
+            if group.mu[i] > 0.0:
+                active_point.next = SLIP if group.kind[i] == SLIDING else STICK
             active_point.heading[0], active_point.heading[1], active_point.speed = d1, d2, slip
         else:
             way = active_point.turning[closed_point.turns - 1]
@@ -118,6 +119,9 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
     gain = h * push
     tolerance = rest_speed(controls, gain, work.result[0].residual, k, POORLY)
     lasts, status = solve_end(model, data, loaded, k, count, s, tolerance * controls.step / h, h)
+    for i in range(k if given else 0):
+        if passes_stop(model, i, group):
+            return False
     located = greatest_push(k, group)
     for i in range(active.count[0]):
         if work.body[active.points[i].body].label == label:
@@ -130,7 +134,7 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
         slips = given and not lasts and gains(i, push, group)
         if closed_point.turns == JOINT:
             one = system.relations.frictions[closed_point.active]
-            one.force = group.v[P][3 * i + 1]
+            one.force, one.stop = group.v[P][3 * i + 1], time_to_stop(i, group)
             if slips and one.next == 0:
                 if work.search[0].active == 0:
                     return False
@@ -313,6 +317,25 @@ def stick_where_slip_ends(model, data, k, h, still):
             else:
                 active_point.turning[closed_point.turns - 1, 2] = 0.0
     return True
+
+
+@kernel
+def passes_stop(model, i, group):
+    """Return whether slip has turned back since its stop by a speed u that matters: u (L/a)^1/2 is an error.
+
+    Friction does not hold the point there, and had the wrong direction since the stop.
+    """
+    controls, closed_point = model.controls, group.closed[i]
+    if group.kind[i] != SLIDING or group.mu[i] == 0.0 or closed_point.own == 0:
+        return False
+    point, u, a, d = group.points[0][i], group.v[U], group.v[OLD], group.heading[i]
+    size = model.system.bodies[point.a].extent
+    allowed = REST * allowed_error(controls.rtol, controls.atol, size, 0.0)
+    if closed_point.turns == JOINT and point.turns == PIVOT:  # an angle
+        allowed /= size
+    back = -(u[3 * i + 1] * d[0] + u[3 * i + 2] * d[1])
+    most = allowed * math.sqrt(math.hypot(a[3 * i + 1], a[3 * i + 2]) / size)
+    return controls.order > 0 and back > most
 
 
 @kernel

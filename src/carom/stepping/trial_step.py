@@ -54,7 +54,7 @@ def propose_step(model, data):
         dt = min(dt, allowed_step(search.left, data.work))
     if data.active.count[0] > 0:
         dt = min(dt, clock.longest)
-        dt = until_bounces_end(data.active, until_stop(model.controls, data.active, dt, clock))
+        dt = until_bounces_end(data.active, until_stop(model, data.active, dt, clock))
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
     data.work.result[0].stiff = 0
     search.effort, search.counted = clock.effort, clock.counted
@@ -73,16 +73,21 @@ def may_err(system, active):
 
 
 @inlined
-def until_stop(controls, active, dt, clock):
-    """Return dt, or the time until slip of one of several active points stops."""
-    first = dt
+def until_stop(model, active, dt, clock):
+    """Return dt, or the time until slip of one of several active points, or of a joint, stops."""
+    first, relations = dt, model.system.relations
     for i in range(active.count[0]):
         active_point = active.points[i]
         if active_point.rest == 0:
             first = min(first, active_point.stop if active_point.mode == SLIP else first)
             first = min(first, min(active_point.turn_stop[0], active_point.turn_stop[1]))
+    for i in range(relations.frictions.shape[0] if relations.there == 1 else 0):
+        one = relations.frictions[i]
+        first = min(first, one.stop if one.mode != 0 and one.stop > 0.0 else first)
     # except if stops follow each other without end, or the difference is round-off of the step
-    inside = first > controls.rest * dt and first < (1.0 - 1e-12) * dt
+    inside = (
+        first > model.controls.rest * min(dt, model.controls.step) and first < (1.0 - 1e-12) * dt
+    )
     return first if inside and clock.in_moment < MANY else dt
 
 
