@@ -40,6 +40,33 @@ def test_rolls_to_a_stop(step):
     assert s.ledger.friction[-1] == pytest.approx(-0.7 * 2 * v0**2, rel=1e-12)
 
 
+@pytest.mark.parametrize("shape", [carom.Sphere(R), carom.Capsule(R, 0.2), carom.Cylinder(R, 0.2)])
+@pytest.mark.parametrize("friction", [1e-3, 5e-3])
+def test_rolls_on_a_static_box(shape, friction):
+    # The same on the top of a box: m a (1 + J/(m r^2)) = d N/r, in as many steps as on a half-space.
+    v0, duration, steps = 3.0, 2.0, []
+    for static in (False, True):
+        scene = carom.Scene(gravity=(0, 0, -G))
+        if static:
+            floor = scene.add_static(carom.Box(60, 60, 1), position=(20, 0, -0.5))
+        else:
+            floor = scene.add_half_space((0, 0, 0), (0, 0, 1))
+        body = scene.add_body(
+            shape, mass=1, position=(0, 0, R), orientation=carom.euler("x", 90),
+            velocity=(v0, 0, 0), angular_velocity=(0, v0 / R, 0),
+        )  # fmt: skip
+        scene.add_contact(
+            body, floor, restitution=0.3, friction=0.4, rolling_friction=friction
+        )  # fmt: skip
+        inertia = np.asarray(body.inertia)[2]
+        a = friction * G / R / (1 + np.max(inertia) / R**2)
+        s = carom.simulate(scene, duration)
+        way = v0 * duration - 0.5 * a * duration**2
+        assert s.position[-1, 0, 0] == pytest.approx(way, abs=1e-11)
+        steps.append(s.stats["trial_steps"])
+    assert steps[1] <= 1.1 * steps[0]
+
+
 @pytest.mark.parametrize("step", [0.1, 0.01])
 def test_spins_to_a_stop(step):
     # 2/5 m r^2 w' = -d m g, on the spot.

@@ -69,8 +69,8 @@ def _load(work, k, W, c, mu, kind, heading, p):
         return math.nan
     gamma = scale_vectors(work, k, c, p)
     for i in range(k):
-        if kind[i] == DISC:
-            work.contact[i].h1 = heading[i, 0] / (gamma * work.contact[i].scale)
+        if kind[i] == DISC:  # its radius is an impulse
+            work.contact[i].h1 /= gamma * work.contact[i].scale
     return gamma
 
 

@@ -18,10 +18,12 @@ from carom._compiled.decorators import kernel
 from carom.friction import lu
 from carom.impact.workspace import KEPT, OLD, C, P, U
 from carom.persistent.joint_rows import JOINT, is_driven, radius_of
-from carom.persistent.springs import EPS, PULL, compliance_of, moves
+from carom.persistent.settle import settle
+from carom.persistent.springs import DEPEND, EPS, PULL, compliance_of, moves
 
 ITERATIONS, HALVES = 40, 6
 FITS = 1e-13  # of the accelerations without forces: error of the equations
+EXACT = 1e-6  # of the error: that of the linear equations
 ENOUGH = 1e-9  # the same for an error that no iteration makes less
 
 
@@ -121,13 +123,14 @@ def newton(k, hg, group):
     for _ in range(ITERATIONS):
         if size <= enough:
             return True
-        lu.factor(L, n, group.cone.pivot, 0.0)
         for i in range(n):
+            for j in range(n):
+                group.cone.W[i, j] = L[i, j]
+            L[i, i] += EPS * compliance_of(group, rows[i])
             x[i], kept[i] = -x[i], p[rows[i]]
-        lu.substitute(L, n, group.cone.pivot, x)
+        lu.factor(L, n, group.cone.pivot, 0.0)
+        rest = settle(n, 0.0, 0.01 * max(enough, EXACT * size), group.cone, group.m[1], x)
         part, best = 1.0, size
-        for i in range(n):
-            group.cone.vector[0, i] = x[i]
         for _ in range(HALVES):
             for i in range(n):
                 p[rows[i]] = kept[i] + part * group.cone.vector[0, i]
@@ -138,6 +141,8 @@ def newton(k, hg, group):
         if not size < math.inf:
             return False
         if size >= 0.9 * best and size <= ENOUGH * push + 1e3 * enough:
+            return True
+        if size <= 2.0 * rest <= DEPEND * push:  # rows that depend on others
             return True
     return size <= ENOUGH * push
 
@@ -153,7 +158,6 @@ def write_equations(k, n, hg, group):
             x[i] = group.v[C][row] + product(k, row, group)
             for j in range(n):
                 L[i, j] = W[row, rows[j]]
-            L[i, i] += EPS * compliance_of(group, row)
             most, i = max(most, abs(x[i])), i + 1
             continue
         width = 2 if i + 1 < n and rows[i + 1] // 3 == row // 3 else 1
@@ -181,7 +185,6 @@ def write_disc(k, n, i, width, hg, group):
         for r in range(width):
             for j in range(n):
                 L[i + r, j] = W[rows[i + r], rows[j]]
-            L[i + r, i + r] += EPS * compliance_of(group, rows[i + r])
         x[i], x[i + width - 1] = ga, gb if width == 2 else ga
         return
     ea, eb, part = za / z, zb / z, radius / z

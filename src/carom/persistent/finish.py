@@ -87,7 +87,8 @@ def note_modes(model, data, k):
         active_point = active.points[closed_point.active]
         d1, d2 = u[3 * i + 1] / slip if slides else 0.0, u[3 * i + 2] / slip if slides else 0.0
         if closed_point.turns == 0:
-            active_point.next = SLIP if group.kind[i] == SLIDING else STICK
+            if group.mu[i] > 0.0:
+                active_point.next = SLIP if group.kind[i] == SLIDING else STICK
             active_point.heading[0], active_point.heading[1], active_point.speed = d1, d2, slip
         else:
             way = active_point.turning[closed_point.turns - 1]

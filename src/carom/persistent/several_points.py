@@ -90,8 +90,8 @@ def judge(model, data, k, rows, horizon):
                 if bounces_end(contact, u, -a, slow(contact, state), end):
                     group.closed[i].stays, more = 1, True
                     group.closed[i].bounces = time_without_torque(contact, u, -a, state)
-            elif turn == 0 and not a <= 1e-10 * push:
-                group.closed[i].stays = 0
+            elif turn == 0 and a > max(1e-10 * push, group.v[P][3 * i] * group.m[0][3 * i, 3 * i]):
+                group.closed[i].stays = 0  # it has no force
         if not more:
             break
 

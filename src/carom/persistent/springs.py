@@ -10,8 +10,11 @@ Forces need not be unique (four corners of a face). They are those of springs of
 
 so that they are continuous in the positions. With R the rows, F the directions of forces and S the compliances
 of the points that press, (R P F^T + eps S) lam = -c for eps -> 0: corrections with one factor remove what eps
-leaves. With eps a point that does not press must not be deeper than its neighbours let it be: its spring would
-press, too.
+leaves (`settle`). With eps a point that does not press must not be deeper than its neighbours let it be: its
+spring would press, too.
+
+Rows that depend on each other (two wheels of an axle) fit each other in a position of the system, and in a
+stage to the error of the stage: what no force removes is left to the return at the end of the step.
 """
 
 from __future__ import annotations
@@ -22,9 +25,10 @@ from carom.friction import lu
 from carom.friction.layout import SLIDING
 from carom.impact.workspace import OLD, C, P
 from carom.persistent.joint_rows import JOINT, is_driven
+from carom.persistent.settle import settle
 
 EPS = 1e-5
-CORRECTIONS = 12  # of the forces
+DEPEND = 1e-3  # of the accelerations without forces: greatest error of such rows
 FITS = 1e-13  # of the accelerations without forces: error of the rows
 PULL = 1e-11  # of the greatest normal force: less is round-off of zero
 DEEPER = 1e-12  # of the accelerations without forces, of a point whose spring is unloaded
@@ -86,7 +90,7 @@ def rows_of(k, i, group):
 @kernel
 def factor_rows(k, group):
     """List the given rows, write the factor of R P F^T + eps S to `cone.matrix`; return their number."""
-    rows, L, n = group.cone.active, group.cone.matrix, 0
+    rows, L, A, n = group.cone.active, group.cone.matrix, group.cone.W, 0
     for i in range(k):
         first = 1 if group.closed[i].turns > 0 else 0
         for a in range(first, first + group.closed[i].rows):
@@ -94,7 +98,7 @@ def factor_rows(k, group):
                 rows[n], n = 3 * i + a, n + 1
     for i in range(n):
         for j in range(n):
-            L[i, j] = response(k, group, rows[i], rows[j])
+            L[i, j] = A[i, j] = response(k, group, rows[i], rows[j])
         L[i, i] += EPS * compliance_of(group, rows[i])
     lu.factor(L, n, group.cone.pivot, 0.0)
     return n
@@ -150,27 +154,24 @@ def first_forces(k, n, turn, push, group):
     for i in range(k):
         if closed[i].turns == JOINT and group.kind[i] == SLIDING:
             p[3 * i + 1] = -group.mu[i] * group.heading[i, 0]
+    for i in range(n):
+        x[i] = -acceleration_of(k, rows[i], group)
+    lu.substitute(group.cone.matrix, n, group.cone.pivot, x)
     changed = 0
-    for correction in range(CORRECTIONS):
-        wrong = 0.0
-        for i in range(n):
-            x[i] = -acceleration_of(k, rows[i], group)
-            wrong = max(wrong, abs(x[i]))
-        fits = wrong <= FITS * push or (correction > 3 and wrong <= 1e2 * FITS * push)
-        if fits and correction > 0:
-            break
-        if correction == CORRECTIONS - 1:
-            return -1
-        lu.substitute(group.cone.matrix, n, group.cone.pivot, x)
-        for i in range(n):
-            add_force(k, group, rows[i], x[i])
-        if correction == 0:  # the springs give way by eps S lam
-            for i in range(k):
-                free = closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0
-                if free and acceleration_of(k, 3 * i, group) < -DEEPER * push:
-                    closed[i].loaded, changed = 1, changed + 1
-            if changed > 0 and turn < 2 * k:
-                return changed
+    for i in range(n):
+        add_force(k, group, rows[i], x[i])
+    for i in range(k):  # the springs give way by eps S lam
+        free = closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0
+        if free and acceleration_of(k, 3 * i, group) < -DEEPER * push:
+            closed[i].loaded, changed = 1, changed + 1
+    if changed > 0 and turn < 2 * k:
+        return changed
+    for i in range(n):
+        x[i] = -acceleration_of(k, rows[i], group)
+    if not settle(n, 1.0, FITS * push, group.cone, group.m[1], x) <= DEPEND * push:
+        return -1
+    for i in range(n):
+        add_force(k, group, rows[i], group.cone.vector[0, i])
     return changed + unload(k, turn, group)
 
 

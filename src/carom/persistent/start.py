@@ -10,7 +10,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
-from carom.dynamics.acceleration import SLIP
+from carom.dynamics.acceleration import SLIP, STICK
 from carom.dynamics.explicit import copy_state, note_velocity
 from carom.friction.layout import SLIDING, SOLVED
 from carom.impact.workspace import C, P, U
@@ -53,10 +53,15 @@ def first_stage(model, data, label, loaded, count):
     for i in range(k):
         known = note_way(model, data, i, controls.rest * push * controls.step) and known
     set_modes(system, data.active, k, group)
-    status = SOLVED
-    if not (known and solve_springs(k, group) and within_cones(k, group)):
+    status, held = SOLVED, known and solve_springs(k, group)
+    shared = held and within_cones(k, group)
+    if not shared:
         status = solve_cones_of(model, data, k)
     known = note_break_away(system, data, k, push) and known
+    if known and held and not shared:  # nothing begins to slip: the springs share, as in the stages
+        k = write_rows(model, data, label, 0)
+        set_modes(system, data.active, k, group)
+        solve_springs(k, group)
     driven, rubbed = push_bodies(model, data, loaded, k, count, 0)
     result.power = power + driven
     rate, friction = rates(k, group)
@@ -108,6 +113,8 @@ def note_way(model, data, i, still):
     if moves and active_point.mode != SLIP:  # a corner that has come since: the velocity decides
         active_point.next = SLIP
     slips = active_point.next == SLIP
+    if slips and not moves and group.mu[i] > 0.0:  # it has stopped
+        active_point.next = STICK
     active_point.heading[0], active_point.heading[1] = d1 if slips else 0.0, d2 if slips else 0.0
     active_point.speed = speed
     return moves or not slips or group.mu[i] == 0.0

@@ -76,14 +76,15 @@ def until_stop(model, active, dt, clock):
     """Return dt, or the time until slip of an active point or of a joint with friction stops."""
     first, frictions = dt, model.system.relations.frictions
     for i in range(frictions.shape[0]):
-        first = min(first, frictions[i].stop)
+        first = min(first, frictions[i].stop if frictions[i].stop > 0.0 else first)
     for i in range(active.count[0]):
         active_point = active.points[i]
         if active_point.rest == 0:
             first = min(first, active_point.stop if active_point.mode == SLIP else first)
             first = min(first, min(active_point.turn_stop[0], active_point.turn_stop[1]))
     # except if stops follow each other without end, or the difference is round-off of the step
-    inside = first > model.controls.rest * dt and first < (1.0 - 1e-12) * dt
+    inside = first > model.controls.rest * min(dt, model.controls.step)
+    inside = inside and first < (1.0 - 1e-12) * dt
     return first if inside and clock.in_moment < MANY else dt
 
 

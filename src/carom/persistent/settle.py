@@ -1,0 +1,87 @@
+"""A linear system that may be singular, by corrections with the factor of a regular one near it.
+
+    A x = r,    z = (A + eps S)^-1 r,
+
+each z made of what the present error r asks for. They are taken in the combination of least error (generalised
+conjugate residuals; Eisenstat, Elman and Schultz 1983), so that slow ones, of a heavy body on a light one, do
+not add up by their number. Where rows depend on each other and do not fit, each z has the same part that
+changes nothing, and grows like 1/eps: it is removed, and the error stays.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.friction import lu
+
+CORRECTIONS = 30
+REMOVES = 1e-3  # of an error: a correction that removes less leaves it as that of rows that depend on others
+
+
+@kernel
+def settle(n, held, enough, cone, Z, r):
+    """Solve A x = r with W for A and the factor of A + eps S in `matrix`; return the greatest error left.
+
+    x is `vector[0]`, r becomes the error, Z has room for the corrections. `held` corrections of the first r are
+    in the solution already.
+    """
+    A, x = cone.W, cone.vector[0]
+    size, part, first, room = greatest(n, r), cone.vector[1], 0, Z.shape[0] // 2
+    for i in range(n):
+        x[i] = 0.0
+    for turn in range(CORRECTIONS):
+        if size <= enough and turn > 0:
+            break
+        first = turn if turn - first == room else first  # no room for more directions
+        z, q = Z[2 * (turn - first)], Z[2 * (turn - first) + 1]
+        correct(n, cone, r, z)
+        part[turn - first] = 1.0
+        for i in range(n):
+            q[i] = dot(n, A[i], z)
+        for j in range(turn - first):
+            c = dot(n, Z[2 * j + 1], q)
+            part[turn - first] -= c * part[j]
+            for i in range(n):
+                z[i], q[i] = z[i] - c * Z[2 * j, i], q[i] - c * Z[2 * j + 1, i]
+        length, whole = math.sqrt(dot(n, q, q)), dot(n, r, r)
+        along = dot(n, q, r) / length if length > 0.0 else 0.0
+        if not along * along > REMOVES * REMOVES * whole:
+            correct(n, cone, r, z)
+            for i in range(n):
+                x[i] -= held * z[i]
+            break
+        part[turn - first] /= length
+        held += along * part[turn - first]
+        for i in range(n):
+            z[i], q[i] = z[i] / length, q[i] / length
+            x[i], r[i] = x[i] + along * z[i], r[i] - along * q[i]
+        size = greatest(n, r)
+    return size
+
+
+@kernel
+def correct(n, cone, r, z):
+    """Write z = (A + eps S)^-1 r."""
+    for i in range(n):
+        z[i] = r[i]
+    lu.substitute(cone.matrix, n, cone.pivot, z)
+
+
+@kernel
+def dot(n, a, b):
+    """Return the product of two vectors."""
+    total = 0.0
+    for i in range(n):
+        total += a[i] * b[i]
+    return total
+
+
+@kernel
+def greatest(n, a):
+    """Return the greatest entry of a vector; NaN if it has one."""
+    most = 0.0
+    for i in range(n):
+        if not abs(a[i]) <= most:
+            most = abs(a[i])
+    return most
