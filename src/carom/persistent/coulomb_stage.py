@@ -117,6 +117,7 @@ def newton(k, hg, group):
     for i in range(k):
         slip = max(slip, max(abs(group.v[U][3 * i + 1]), abs(group.v[U][3 * i + 2])))
     enough = FITS * push + 1e-15 * slip / hg
+    share_normals(k, n, group)
     size = write_equations(k, n, hg, group)
     for _ in range(ITERATIONS):
         if size <= enough:
@@ -140,6 +141,31 @@ def newton(k, hg, group):
         if size >= 0.9 * best and size <= ENOUGH * push + 1e3 * enough:
             return True
     return size <= ENOUGH * push
+
+
+@kernel
+def share_normals(k, n, group):
+    """Share the normal forces of the first guess as springs do, N = R xi/S, with nearly the same accelerations.
+
+    Else forces that are not unique would depend on those of the last stage.
+    """
+    rows, x, L, W, p, m = (
+        group.cone.active, group.v[OLD], group.cone.matrix, group.m[0], group.v[P], 0,
+    )  # fmt: skip
+    for i in range(n):
+        if rows[i] % 3 == 0:
+            group.cone.vector[0, m], m = rows[i], m + 1
+    for i in range(m):
+        row, x[i] = int(group.cone.vector[0, i]), 0.0
+        for j in range(m):
+            column = int(group.cone.vector[0, j])
+            L[i, j] = W[row, column]
+            x[i] += W[row, column] * p[column]
+        L[i, i] += EPS * compliance_of(group, row)
+    lu.factor(L, m, group.cone.pivot, 0.0)
+    lu.substitute(L, m, group.cone.pivot, x)
+    for i in range(m):
+        p[int(group.cone.vector[0, i])] = x[i]
 
 
 @kernel

@@ -56,9 +56,16 @@ def first_stage(model, data, label, loaded, count):
         known = note_way(model, data, i, controls.rest * push * controls.step) and known
     set_modes(system, data.active, k, group)
     status = SOLVED
-    if not (known and solve_springs(k, group) and within_cones(k, group)):
+    springs = known and solve_springs(k, group)
+    if not (springs and within_cones(k, group)):
         status = solve_cones_of(model, data, k)
-    known = note_break_away(system, data, k, push) and known
+        known = note_break_away(system, data, k, push) and known
+        if (
+            springs and known
+        ):  # friction holds by forces shared in another way: that of springs stays
+            write_rows(model, data, label, 0)
+            set_modes(system, data.active, k, group)
+            solve_springs(k, group)
     driven, rubbed = push_bodies(model, data, loaded, k, count, 0)
     result.power, result.drag = power + driven, rubbed
     rate, friction = rates(k, group)
