@@ -35,7 +35,7 @@ def solve_stage(k, hg, group):
     for i in range(k):
         closed[i].loaded = 1 if closed[i].weight > 0.0 else 0
     for _ in range(2 * k + 2):
-        if not newton(k, hg, group):
+        if not (newton(k, hg, HALVES, group) or newton(k, hg, 1, group)):
             return False
         if not change_loads(k, group):
             return True
@@ -109,8 +109,11 @@ def list_unknowns(k, group):
 
 
 @kernel
-def newton(k, hg, group):
-    """Solve for given loads; return whether the equations hold."""
+def newton(k, hg, halves, group):
+    """Solve for given loads, by steps that are halved less than `halves` times; return whether equations hold.
+
+    Halved steps can stop where discs meet, between stick and slip; whole steps then go on.
+    """
     n, p, x, kept = list_unknowns(k, group), group.v[P], group.v[OLD], group.v[BACK]
     rows, L = group.cone.active, group.cone.matrix
     push, slip = largest(k, group), 0.0
@@ -129,7 +132,7 @@ def newton(k, hg, group):
         part, best = 1.0, size
         for i in range(n):
             group.cone.vector[0, i] = x[i]
-        for _ in range(HALVES):
+        for _ in range(halves):
             for i in range(n):
                 p[rows[i]] = kept[i] + part * group.cone.vector[0, i]
             size = write_equations(k, n, hg, group)
