@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import carom
 
@@ -87,3 +88,36 @@ def test_pivots_about_an_edge():
         assert abs(abs(2 * np.arctan2(q[2], q[0])) - 0.16203883) < min(most, 1e-4)
         assert abs(abs(s.angular_velocity[-1, 0, 1]) - 4.81399394) < 10 * min(most, 1e-4)
         assert np.max(np.abs(s.ledger.residual)) < 2e-6 * G * 0.1
+
+
+@pytest.mark.parametrize(("rtol", "allowed"), [(1e-6, 1e-6), (1e-8, 1e-8), (1e-10, 1e-10)])
+def test_a_block_that_slides_over_an_edge_tips_about_it(rtol, allowed):
+    """Sliding friction, x x z box of velocity v: s along its face from the edge, h = z/2, angle a.
+
+    s'' + h a'' - s a'^2 = g sin a - mu N/m,   I a'' = N (s + mu h),   which begins with s = -mu h, a = 0;
+    N/m = g cos a - (2 s' + h a') a' - s a''. Allowed is ten times the tolerance of a size of .1 m.
+    """
+    g, x, z, v, mu, end = 9.81, 0.17, 0.06, 1.2, 0.2, 0.12
+    scene = carom.Scene(gravity=(0, 0, -g))
+    scene.set_contact_default(restitution=0, friction=mu)
+    scene.add_static(carom.Box(2, 4, 0.2), position=(-1, 0, -0.1))
+    scene.add_body(
+        carom.Box(x, 0.15, z), mass=1, position=(-0.6 * x, 0, 0.5 * z), velocity=(v, 0, 0)
+    )
+    run = carom.simulate(scene, end, rtol=rtol, save_at=[end])
+    h, inertia, begin = 0.5 * z, (x * x + z * z) / 12, -0.5 * mu * z
+    then = np.sqrt(v * v - 2.0 * mu * g * (begin + 0.6 * x))
+
+    def rates(_, y):
+        s, a, s1, a1 = y
+        left = [[1.0, h, mu], [0.0, -s, -1.0], [0.0, inertia, -(s + mu * h)]]
+        right = [g * np.sin(a) + s * a1 * a1, -g * np.cos(a) + (2.0 * s1 + h * a1) * a1, 0.0]
+        return [s1, a1, *np.linalg.solve(left, right)[:2]]
+
+    span = (v - then) / (mu * g), end
+    s, a = solve_ivp(rates, span, (begin, 0, then, 0), rtol=1e-12, atol=1e-15, method="DOP853").y[
+        :2, -1
+    ]
+    place = s * np.cos(a) + h * np.sin(a), 0.0, h * np.cos(a) - s * np.sin(a)
+    np.testing.assert_allclose(run.position[-1, 0], place, atol=allowed)
+    assert run.stats["trial_steps"] < 150

@@ -11,30 +11,23 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
+from carom.collision import features as of
 from carom.collision.faces import corner_part
-from carom.collision.features import (
-    EDGES,
-    OF_A,
-    OF_B,
-    VERTEX_A,
-    edge_part,
-    face_part,
-    of_edges,
-    of_vertex_a,
-    of_vertex_b,
-    vertex_a,
-    vertex_b,
-)
 from carom.collision.found import known, put, put_parts
-from carom.collision.layout import MOST_CORNERS
+from carom.collision.layout import CYLINDER, MOST_CORNERS
+from carom.geometry.rotation import cross
 
-ROUNDING = 1e-12  # tolerance relative to the size of the reference face: a corner on a side is kept
+LEVEL = 4.5e-5  # angle of two faces of which each can be the reference: cosines that differ by 1e-9
+CROSSES = 1e-6  # product of two sides by that of the sizes of the solids, from which on they have a normal
+ROUNDING = (
+    1e-12  # tolerance relative to the solid of the reference face: a corner on a side is kept
+)
 
 
 @inlined
 def _vertex(side, i):
     """Return the feature of corner i of the face of A (side 0) or of B (side 1)."""
-    return of_vertex_a(i) if side == 0 else of_vertex_b(i)
+    return of.of_vertex_a(i) if side == 0 else of.of_vertex_b(i)
 
 
 @kernel
@@ -42,7 +35,7 @@ def _crossing(s, inc, k, ref, j):
     """Return the feature of side k of the incident face and side j of the reference face."""
     a1, a2 = s.number[inc, k], s.number[inc, (k + 1) % s.count[inc]]
     b1, b2 = s.number[ref, j], s.number[ref, (j + 1) % s.count[ref]]
-    return of_edges(a1, a2, b1, b2) if inc == 0 else of_edges(b1, b2, a1, a2)
+    return of.of_edges(a1, a2, b1, b2) if inc == 0 else of.of_edges(b1, b2, a1, a2)
 
 
 @kernel
@@ -89,33 +82,53 @@ def _cut(s, ref, source, count, j, tolerance):
 def _parts(pair, label):
     """Return the parts of A and of B on which a corner with this feature lies."""
     s = pair.state
-    if label >> 60 == EDGES:
-        return edge_part((label >> 45) & 0x7FFF, (label >> 30) & 0x7FFF), edge_part(
-            (label >> 15) & 0x7FFF, label & 0x7FFF
-        )
-    if label >> 60 == VERTEX_A:
-        return corner_part(pair.a, vertex_a(label)), face_part(s.face[1])
-    return face_part(s.face[0]), corner_part(pair.b, vertex_b(label))
+    if label >> 60 == of.EDGES:
+        a1, a2, b1, b2 = label >> 45, label >> 30, label >> 15, label
+        return of.edge_part(a1 & 0x7FFF, a2 & 0x7FFF), of.edge_part(b1 & 0x7FFF, b2 & 0x7FFF)
+    if label >> 60 == of.VERTEX_A:
+        return corner_part(pair.a, of.vertex_a(label)), of.face_part(s.face[1])
+    return of.face_part(s.face[0]), corner_part(pair.b, of.vertex_b(label))
+
+
+@kernel
+def _normal(pair, ref, source, k, corners, height):
+    """Return the normal of a corner of the overlap, outward of the reference, and its owner.
+
+    On level faces a corner moves over the other face, and sides that cross determine it: bodies tip over edges.
+    """
+    s, owner, kind = pair.state, of.OF_B if ref == 1 else of.OF_A, pair.state.label[source, k] >> 60
+    n, m, rims = (
+        s.normal[ref],
+        s.normal[1 - ref],
+        pair.a.kind == CYLINDER or pair.b.kind == CYLINDER,
+    )
+    one, two = s.side[source, k], s.side[source, (k + corners - 1) % corners]
+    i, j = max(one, two), -1 - min(one, two)  # sides of the incident face, of the reference
+    angle = math.sqrt(max(0.0, 2.0 + 2.0 * (n[0] * m[0] + n[1] * m[1] + n[2] * m[2])))
+    level = angle <= LEVEL and angle * abs(height) <= ROUNDING * min(pair.a.extent, pair.b.extent)
+    if level and kind != of.EDGES and (kind == of.VERTEX_A) != (ref == 1):
+        return (-m[0], -m[1], -m[2]), 3 - owner
+    if level and kind == of.EDGES and min(i, j) >= 0 and not rims:  # sides of a rim are no edges
+        a, b = s.corner[1 - ref, i], s.corner[1 - ref, (i + 1) % s.count[1 - ref]]
+        c, d = s.corner[ref, j], s.corner[ref, (j + 1) % s.count[ref]]
+        x, y, z = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+        x, y, z = cross(x, y, z, d[0] - c[0], d[1] - c[1], d[2] - c[2])
+        size = math.copysign(math.sqrt(x * x + y * y + z * z), x * n[0] + y * n[1] + z * n[2])
+        if abs(size) > CROSSES * pair.a.extent * pair.b.extent:
+            return (x / size, y / size, z / size), of.NOBODY
+    return (n[0], n[1], n[2]), owner
 
 
 @kernel
 def overlap(pair, ref, least, most, count):
-    """Add the corners of the overlap with gaps from `least` to `most`; return the new count.
-
-    `ref` is 0 if the face of A is the reference, 1 if that of B is.
-    """
-    s, found, inc = pair.state, pair.found, 1 - ref
-    corners = s.count[inc]
-    scale = 0.0
+    """Add the corners over the face `ref` (0 of A, 1 of B) with gaps in a range; return the new count."""
+    s, found, inc, corners = pair.state, pair.found, 1 - ref, pair.state.count[1 - ref]
     for k in range(corners):
         for i in range(3):
             s.ring[0, k, i] = s.corner[inc, k, i]
         s.label[0, k], s.side[0, k] = _vertex(inc, s.number[inc, k]), k
-    p = s.corner[ref, 0]
-    for k in range(s.count[ref]):
-        q = s.corner[ref, k]
-        scale = max(scale, abs(q[0] - p[0]) + abs(q[1] - p[1]) + abs(q[2] - p[2]))
-    source = 0
+    p, source = s.corner[ref, 0], 0
+    scale = pair.b.extent if ref == 1 else pair.a.extent
     for j in range(s.count[ref]):
         corners = _cut(s, ref, source, corners, j, ROUNDING * scale)
         source = 1 - source
@@ -125,13 +138,13 @@ def overlap(pair, ref, least, most, count):
         height = (x[0] - p[0]) * n[0] + (x[1] - p[1]) * n[1] + (x[2] - p[2]) * n[2]
         gap, label = height - (pair.a.radius + pair.b.radius), s.label[source, k]
         if least <= gap <= most and count < len(found) and not known(found, count, label):
-            foot = (x[0] - height * n[0], x[1] - height * n[1], x[2] - height * n[2])
-            corner = (x[0], x[1], x[2])
+            m, owner = _normal(pair, ref, source, k, corners, height)
+            foot = (x[0] - height * m[0], x[1] - height * m[1], x[2] - height * m[2])
             if ref == 1:
-                put(found[count], gap, (n[0], n[1], n[2]), corner, foot, label)
+                put(found[count], gap, m, (x[0], x[1], x[2]), foot, label)
             else:
-                put(found[count], gap, (-n[0], -n[1], -n[2]), foot, corner, label)
-            part_a, part_b = _parts(pair, label)
-            put_parts(found[count], OF_B if ref == 1 else OF_A, part_a, part_b)
+                put(found[count], gap, (-m[0], -m[1], -m[2]), foot, (x[0], x[1], x[2]), label)
+            parts = _parts(pair, label)
+            put_parts(found[count], owner, parts[0], parts[1])
             count += 1
     return count

@@ -27,6 +27,9 @@ STIFF = 1.5
 #: of the allowed error: what friction may move a body in a closing step
 CLOSE = 0.1
 STIFF_ORDER, CLOSING_ORDER = 4, 2
+#: falls of a body through its size: for longer an error of its velocity does not count. What moves slower is at
+#: rest but for round-off
+FALLS = 100.0
 
 
 @unit
@@ -129,14 +132,16 @@ def note_errors(model, data, E, k, count, h):
 
     Slip of k points that has passed its stop, under friction of its old direction, is an error of velocity.
     """
-    system, group, work = model.system, data.group, data.work
+    system, controls, group, work = model.system, model.controls, data.group, data.work
     for m in range(count):
-        b = group.member[m]
+        b, longest = group.member[m], math.inf
         work.body[b].bound[:3] = 0.0
         bound_accelerations_of(work, b, E.shape[1])
-        if model.controls.order > 0:
+        if controls.order > 0:
             work.body[b].miss[:3] = 0.0
-            T = note_miss(system, E, h, math.inf, b, work)
+            if controls.pull > 0.0:
+                longest = FALLS * math.sqrt(system.bodies[b].extent / controls.pull)
+            T = note_miss(system, E, h, longest, b, work)
             for i in range(k):
                 if b == group.points[0][i].a or b == group.points[0][i].b:
                     passed = T * beyond_stop(system, data.active, i, group)

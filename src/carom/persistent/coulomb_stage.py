@@ -37,7 +37,7 @@ def solve_stage(k, hg, group):
     for i in range(k):
         closed[i].loaded = 1 if closed[i].weight > 0.0 else 0
     for _ in range(2 * k + 2):
-        if not newton(k, hg, group):
+        if not (newton(k, hg, HALVES, group) or newton(k, hg, 1, group)):
             return False
         if not change_loads(k, group):
             return True
@@ -111,14 +111,18 @@ def list_unknowns(k, group):
 
 
 @kernel
-def newton(k, hg, group):
-    """Solve for given loads; return whether the equations hold."""
+def newton(k, hg, halves, group):
+    """Solve for given loads, by steps that are halved less than `halves` times; return whether equations hold.
+
+    Halved steps can stop where discs meet, between stick and slip; whole steps then go on.
+    """
     n, p, x, kept = list_unknowns(k, group), group.v[P], group.v[OLD], group.v[KEPT]
     rows, L = group.cone.active, group.cone.matrix
     push, slip = largest(k, group), 0.0
     for i in range(k):
         slip = max(slip, max(abs(group.v[U][3 * i + 1]), abs(group.v[U][3 * i + 2])))
     enough = FITS * push + 1e-15 * slip / hg
+    share_normals(k, n, group)
     size = write_equations(k, n, hg, group)
     for _ in range(ITERATIONS):
         if size <= enough:
@@ -131,7 +135,7 @@ def newton(k, hg, group):
         lu.factor(L, n, group.cone.pivot, 0.0)
         rest = settle(n, 0.0, 0.01 * max(enough, EXACT * size), group.cone, group.m[1], x)
         part, best = 1.0, size
-        for _ in range(HALVES):
+        for _ in range(halves):
             for i in range(n):
                 p[rows[i]] = kept[i] + part * group.cone.vector[0, i]
             size = write_equations(k, n, hg, group)
@@ -145,6 +149,30 @@ def newton(k, hg, group):
         if size <= 2.0 * rest <= DEPEND * push:  # rows that depend on others
             return True
     return size <= ENOUGH * push
+
+
+@kernel
+def share_normals(k, n, group):
+    """Share the normal forces of the first guess as springs do, N = R xi/S, with nearly the same accelerations.
+
+    Else forces that are not unique would depend on those of the last stage.
+    """
+    rows, x, p, m = group.cone.active, group.v[OLD], group.v[P], 0
+    L, W = group.cone.matrix, group.m[0]
+    for i in range(n):
+        if rows[i] % 3 == 0:
+            group.cone.vector[0, m], m = rows[i], m + 1
+    for i in range(m):
+        row, x[i] = int(group.cone.vector[0, i]), 0.0
+        for j in range(m):
+            column = int(group.cone.vector[0, j])
+            L[i, j] = W[row, column]
+            x[i] += W[row, column] * p[column]
+        L[i, i] += EPS * compliance_of(group, row)
+    lu.factor(L, m, group.cone.pivot, 0.0)
+    lu.substitute(L, m, group.cone.pivot, x)
+    for i in range(m):
+        p[int(group.cone.vector[0, i])] = x[i]
 
 
 @kernel

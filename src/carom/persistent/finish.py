@@ -68,14 +68,20 @@ def show(count, state, group, work):
 
 @kernel
 def note_modes(model, data, k):
-    """Write the modes at the end of a step whose stages have none: a point sticks where its disc holds it."""
-    active, group = data.active, data.group
+    """Write the modes at the end of a step whose stages have none: a point sticks where its disc holds it.
+
+    What is on its disc at rest sticks: whether it slips is seen at the start of the next step.
+    """
+    active, group, controls, push = data.active, data.group, model.controls, 0.0
+    for row in range(3 * k):
+        push = max(push, abs(group.v[C][row]))
+    still = controls.rest * push * controls.step
     for i in range(k):
         closed_point, u, p = group.closed[i], group.v[U], group.v[P]
         slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
         force = math.hypot(p[3 * i + 1], p[3 * i + 2])
-        full = not force < ON_CONE * radius_of(group, i)
-        group.kind[i] = SLIDING if group.mu[i] == 0.0 or (full and slip > 0.0) else CONE
+        full = slip > still and not force < ON_CONE * radius_of(group, i)
+        group.kind[i] = SLIDING if group.mu[i] == 0.0 or full else CONE
         if closed_point.own == 0:
             continue
         slides = group.kind[i] == SLIDING and slip > 0.0

@@ -90,11 +90,13 @@ def implicit_stage(model, data, label, loaded, count, s, hg):
     for m in range(count):
         copy_state(work.first[group.member[m]], work.stage[group.member[m]])
     for turn in range(FIXED_POINT):
-        change = 0.0
+        change, size = 0.0, 0.0
         for m in range(count):
             b = group.member[m]
             length, stage = model.system.bodies[b].extent, work.stages[s, b]
-            change = max(change, move_stage(work.first[b], hg, length, stage, work.stage[b]))
+            own = move_stage(work.first[b], hg, length, stage, work.stage[b])
+            change, size = max(change, own[0]), max(size, own[1])
+        change = change / size if size > 0.0 else 0.0  # a body that stops has errors of the others
         if turn > 0 and change <= SAME:
             break
         applied = accelerate_freely(model, data, loaded, count, s)
@@ -129,7 +131,7 @@ def add_velocity(base, hg, stage, out):
 
 @kernel
 def move_stage(base, hg, length, stage, out):
-    """Write the state base + h g times its own derivative; return the relative change of its velocities.
+    """Write the state base + h g times its own derivative; return change and size of its velocities.
 
     `length` is the size of the body, at which rotation counts.
     """
@@ -146,7 +148,7 @@ def move_stage(base, hg, length, stage, out):
     out.Q[0], out.Q[1], out.Q[2], out.Q[3] = normalize(
         Q[0] + hg * q[0], Q[1] + hg * q[1], Q[2] + hg * q[2], Q[3] + hg * q[3]
     )
-    return change / size if size > 0.0 else 0.0
+    return change, size
 
 
 @kernel
