@@ -31,6 +31,8 @@ EPS = 1e-5
 DEPEND = 1e-3  # of the accelerations without forces: greatest error of such rows
 FITS = 1e-13  # of the accelerations without forces: error of the rows
 PULL = 1e-11  # of the greatest normal force: less is round-off of zero
+GIVES = 1e-6  # of the displacements of springs: their error
+ROUND_OFF = 1e-15  # of the acceleration by a force
 DEEPER = 1e-12  # of the accelerations without forces, of a point whose spring is unloaded
 
 
@@ -157,22 +159,45 @@ def first_forces(k, n, turn, push, group):
     for i in range(n):
         x[i] = -acceleration_of(k, rows[i], group)
     lu.substitute(group.cone.matrix, n, group.cone.pivot, x)
-    changed = 0
     for i in range(n):
         add_force(k, group, rows[i], x[i])
-    for i in range(k):  # the springs give way by eps S lam
-        free = closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0
-        if free and acceleration_of(k, 3 * i, group) < -DEEPER * push:
-            closed[i].loaded, changed = 1, changed + 1
-    if changed > 0 and turn < 2 * k:
-        return changed
     for i in range(n):
         x[i] = -acceleration_of(k, rows[i], group)
     if not settle(n, 1.0, FITS * push, group.cone, group.m[1], x) <= DEPEND * push:
         return -1
     for i in range(n):
         add_force(k, group, rows[i], group.cone.vector[0, i])
+    changed = load(k, n, push, group)
+    if changed > 0 and turn < 2 * k:
+        return changed
     return changed + unload(k, turn, group)
+
+
+@kernel
+def load(k, n, push, group):
+    """Load the free springs of points that are deeper than the others let them be; return how many.
+
+    With eps all give way: the accelerations are less by eps R P F^T mu, R P F^T mu = S lam in the given rows.
+    """
+    closed, rows, x, p, free = group.closed, group.cone.active, group.v[OLD], group.v[P], False
+    for i in range(k):
+        free = free or (closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0)
+    if not free:
+        return 0
+    most, force, count = 0.0, 0.0, 0
+    for i in range(n):
+        x[i] = compliance_of(group, rows[i]) * p[rows[i]]
+        most, force = max(most, abs(x[i])), max(force, abs(p[rows[i]]))
+    settle(n, 0.0, GIVES * most, group.cone, group.m[1], x)
+    for i in range(k):
+        row = 3 * i
+        if closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0:
+            a = acceleration_of(k, row, group)
+            for j in range(n):
+                a -= EPS * response(k, group, row, rows[j]) * group.cone.vector[0, j]
+            if a < -max(DEEPER * push, ROUND_OFF * force * group.m[0][row, row]):
+                closed[i].loaded, count = 1, count + 1
+    return count
 
 
 @kernel
