@@ -12,6 +12,8 @@ Each returns whether it has made the step. The work of loads, and of friction, i
 
 from __future__ import annotations
 
+import math
+
 from carom._compiled.decorators import kernel
 from carom.dynamics.explicit import combine_body, copy_state, node, note_velocity, stages_within
 from carom.dynamics.several_points import velocities
@@ -96,7 +98,8 @@ def implicit_stage(model, data, label, loaded, count, s, hg):
             length, stage = model.system.bodies[b].extent, work.stages[s, b]
             own = move_stage(work.first[b], hg, length, stage, work.stage[b])
             change, size = max(change, own[0]), max(size, own[1])
-        change = change / size if size > 0.0 else 0.0  # a body that stops has errors of the others
+        if change > 0.0:  # a body that stops has errors of the others
+            change = change / size if size > 0.0 else math.inf
         if turn > 0 and change <= SAME:
             break
         applied = accelerate_freely(model, data, loaded, count, s)
