@@ -54,13 +54,14 @@ def first_stage(model, data, label, loaded, count):
         known = note_way(model, data, i, controls.rest * push * controls.step) and known
     set_modes(system, data.active, k, group)
     status, held = SOLVED, known and solve_springs(k, group)
-    if not (held and within_cones(k, group)):
+    shared = held and within_cones(k, group)
+    if not shared:
         status = solve_cones_of(model, data, k)
-        known = note_break_away(system, data, k, push) and known
-        if held and known:  # nothing begins to slip: the springs share, as in the stages
-            k = write_rows(model, data, label, 0)
-            set_modes(system, data.active, k, group)
-            solve_springs(k, group)
+    known = note_break_away(system, data, k, push) and known
+    if held and known and not shared:  # nothing begins to slip: the springs share, as in the stages
+        k = write_rows(model, data, label, 0)
+        set_modes(system, data.active, k, group)
+        solve_springs(k, group)
     driven, rubbed = push_bodies(model, data, loaded, k, count, 0)
     result.power = power + driven
     rate, friction = rates(k, group)
