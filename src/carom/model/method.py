@@ -41,6 +41,8 @@ ESDIRK_ERROR = ESDIRK[5:] - np.array(
         61727 / 225920,
     ]
 )
+#: implicit Euler minus the trapezoidal rule
+CLOSING_ERROR = np.array([[-0.5, 0.5]])
 
 
 class Method(NamedTuple):
@@ -61,6 +63,7 @@ class Method(NamedTuple):
     # a diagonally implicit method of six stages, the first explicit, the last at the end of the step
     stiff: np.ndarray = ESDIRK  # (6, 6)
     stiff_E: np.ndarray = ESDIRK_ERROR  # (1, 6) weights of its error estimate
+    closing_E: np.ndarray = CLOSING_ERROR  # (1, 2) the same of implicit Euler
 
 
 def explicit(A: np.ndarray, b: np.ndarray) -> Method:

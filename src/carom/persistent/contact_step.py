@@ -14,6 +14,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.groups import members
+from carom.dynamics.acceleration import OPEN
 from carom.dynamics.adapt import allowed_error, note_miss
 from carom.dynamics.explicit import CONSTRAINTS_LOST, bound_accelerations_of, rubs, stages_within
 from carom.persistent.finish import land, note_modes, review
@@ -108,12 +109,30 @@ def step_group(model, data, method, label, h):
     if not land(model, data, loaded, k, count):
         result.code = CONSTRAINTS_LOST
     review(model, data, label, loaded, count, 2, h, False)
+    lets_go = order > 0 and opens(data, label)
+    if lets_go:
+        note_errors(model, data, method.closing_E, 0, count, h)
     for m in range(count):
         miss, b = work.body[group.member[m]].miss, group.member[m]
         bound_accelerations_of(work, b, 2)
         miss[0], miss[1] = max(miss[0], 0.5 * h * h * push), 0.0
     if order > 0:
-        result.order = CLOSING_ORDER
+        result.order = 1 if lets_go else CLOSING_ORDER
+
+
+@kernel
+def opens(data, label):
+    """Return whether a point of a group opens at the end of the step.
+
+    Rows at the end of a closing step give the impulses of what still presses or sticks there, however friction
+    has changed in between; the impulse of what has let go is known but to h times its force.
+    """
+    for i in range(data.active.count[0]):
+        active_point = data.active.points[i]
+        if data.work.body[active_point.body].label == label:
+            if active_point.rest == 0 and active_point.next == OPEN:
+                return True
+    return False
 
 
 @kernel

@@ -24,6 +24,7 @@ from carom.persistent.springs import DEPEND, EPS, PULL, compliance_of, moves
 ITERATIONS, HALVES = 40, 6
 FITS = 1e-13  # of the accelerations without forces: error of the equations
 EXACT = 1e-6  # of the error: that of the linear equations
+ON_DISC = 1e-9  # of its radius: less is within a disc
 ENOUGH = 1e-9  # the same for an error that no iteration makes less
 
 
@@ -122,7 +123,7 @@ def newton(k, hg, halves, group):
     for i in range(k):
         slip = max(slip, max(abs(group.v[U][3 * i + 1]), abs(group.v[U][3 * i + 2])))
     enough = FITS * push + 1e-15 * slip / hg
-    share_normals(k, n, group)
+    share(n, group)
     size = write_equations(k, n, hg, group)
     for _ in range(ITERATIONS):
         if size <= enough:
@@ -152,15 +153,16 @@ def newton(k, hg, halves, group):
 
 
 @kernel
-def share_normals(k, n, group):
-    """Share the normal forces of the first guess as springs do, N = R xi/S, with nearly the same accelerations.
+def share(n, group):
+    """Share the first forces of what presses or sticks as springs do, with nearly the same accelerations.
 
-    Else forces that are not unique would depend on those of the last stage.
+    Else forces that are not unique would depend on those of the last stage, and change with each iteration of
+    its pose: normal ones, and what sticks where others already hold it (a floor, and a hand that pushes).
     """
     rows, x, p, m = group.cone.active, group.v[OLD], group.v[P], 0
     L, W = group.cone.matrix, group.m[0]
     for i in range(n):
-        if rows[i] % 3 == 0:
+        if rows[i] % 3 == 0 or sticks(group, rows[i] // 3):
             group.cone.vector[0, m], m = rows[i], m + 1
     for i in range(m):
         row, x[i] = int(group.cone.vector[0, i]), 0.0
@@ -173,6 +175,13 @@ def share_normals(k, n, group):
     lu.substitute(L, m, group.cone.pivot, x)
     for i in range(m):
         p[int(group.cone.vector[0, i])] = x[i]
+
+
+@kernel
+def sticks(group, i):
+    """Return whether the friction of the first guess of a point is within its disc."""
+    p = group.v[P]
+    return math.hypot(p[3 * i + 1], p[3 * i + 2]) < (1.0 - ON_DISC) * radius_of(group, i)
 
 
 @kernel
