@@ -26,6 +26,8 @@ NOT_ZERO = (
     ("geom", "geom_adhesion", "adhesion", "left out"),
     ("geom", "geom_surfacevel", "a surface that moves", "it does not move"),
     ("pair", "pair_margin", "a margin of contact", "surfaces touch where they are"),
+    ("pair", "pair_gap", "a gap of contact", "surfaces touch where they are"),
+    ("joint", "jnt_margin", "a margin of its limits", "they act where they are"),
     ("pair", "pair_adhesion", "adhesion", "left out"),
 )
 
