@@ -77,6 +77,16 @@ _OTHER_METHOD = {
     **dict.fromkeys(("simulate", "run", "step"),
                     "a scene is simulated by carom.simulate(scene, duration), a carom.Run by advance()"),
 }  # fmt: skip
+#: units in names such as ``angular_velocity_deg``: carom's own unit, and how to convert
+_RADIANS, _PER_SECOND = ("radians", "np.radians(...)"), ("rad/s", "... * math.pi / 30")
+_UNITS = {
+    **dict.fromkeys(("deg", "degs", "degree", "degrees", "dps"), _RADIANS), "rpm": _PER_SECOND,
+    "mm": ("m", "... * 1e-3"), "cm": ("m", "... * 1e-2"), "km": ("m", "... * 1e3"),
+    "inch": ("m", "... * 0.0254"), "kmh": ("m/s", "... / 3.6"), "mph": ("m/s", "... * 0.44704"),
+    "g": ("kg", "... * 1e-3"), "gram": ("kg", "... * 1e-3"), "grams": ("kg", "... * 1e-3"),
+    "ms": ("s", "... * 1e-3"), "us": ("s", "... * 1e-6"), "minutes": ("s", "... * 60"),
+}  # fmt: skip
+_IN_DEGREES = ("angle", "angles", "view")  # arguments of carom
 ALIKE = 0.7  # of two names, from 0 to 1, where one may be a slip for the other
 _MEANT: dict[str, list[str]] = {}
 for _ours, _others in ELSEWHERE.items():
@@ -128,9 +138,22 @@ def _unknown(shown: str, names: list[str], given, has) -> str:
     meant = [name for name in _MEANT.get(unknown, ()) if name in has]
     if not meant and unknown in _OTHER_PLACE:
         return f"{shown} has no argument {unknown}=; {_OTHER_PLACE[unknown]}"
-    meant = meant or get_close_matches(unknown, names, n=1, cutoff=ALIKE)
+    word, unit = _without_unit(unknown)
+    meant = meant or [name for name in (word, *_MEANT.get(word, ())) if name in has]
+    meant = meant or get_close_matches(word, names, n=1, cutoff=ALIKE)
     hint = f"it is called {meant[0]}=" if meant else f"it has {', '.join(names)}"
+    if meant == ["orientation"] and unit == _RADIANS:
+        hint += "; carom.euler and carom.axis_angle make one from angles in degrees"
+    elif meant and unit and not (unit == _RADIANS and meant[0] in _IN_DEGREES):
+        hint += f" and is in {unit[0]}: {meant[0]}={unit[1]}"
     return f"{shown} has no argument {unknown}=; {hint}"
+
+
+def _without_unit(name: str) -> tuple[str, tuple[str, str] | None]:
+    """Return a name without the unit at its end, as in ``omega_deg_s``, and carom's unit for that one."""
+    words = name.split("_")
+    k = next((k for k in range(1, len(words)) if words[k] in _UNITS), len(words))
+    return "_".join(words[:k]), _UNITS[words[k]] if k < len(words) else None
 
 
 def attributes(setting: str = "") -> Callable[[type[T]], type[T]]:
@@ -166,8 +189,10 @@ def attributes(setting: str = "") -> Callable[[type[T]], type[T]]:
 def _no_attribute(thing, name: str) -> str:
     has = [one for one in dir(thing) if one[:1] != "_"]
     near = [one for one in _MEANT.get(name, ()) if one in has]
-    near = near or get_close_matches(name, has, n=1, cutoff=ALIKE)
-    suggested = f"did you mean {near[0]!r}?" if near else ""
+    word, unit = _without_unit(name)
+    near = near or [one for one in (word, *_MEANT.get(word, ())) if one in has]
+    near = near or get_close_matches(word, has, n=1, cutoff=ALIKE)
+    suggested = f"did you mean {near[0]!r}{f', in {unit[0]}' if unit else ''}?" if near else ""
     hint = _OTHER_METHOD.get(name) or _OTHER_PLACE.get(name) or suggested
     return f"{type(thing).__name__} has no attribute {name!r}" + (f"; {hint}" if hint else "")
 

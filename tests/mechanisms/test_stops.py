@@ -27,6 +27,8 @@ def test_a_block_bounces_on_its_stop_as_a_ball_does(law):
     solution = carom.simulate(sliding_block(e, impact_law=law), 1.5, step=0.05)
     times = [first * (1 + 2 * sum(e**k for k in range(1, n + 1))) for n in range(2)]
     np.testing.assert_allclose(solution.impacts.time, times, rtol=1e-13)
+    assert solution.impacts[0].unit == "m/s"
+    assert "rad/s" not in repr(solution.impacts)
     speed = 9.81 * first
     np.testing.assert_allclose(
         solution.impacts.impulse[:, 0], [(1 + e) * speed, (1 + e) * e * speed], rtol=1e-12
@@ -80,6 +82,8 @@ def test_a_turn_stops_with_order_4():
         )
         errors.append(abs(impacts.relative_velocity_before[0, 0] + np.sqrt(3 * 9.81)))
         assert np.all(impacts.impulse[:, 1:] == 0.0)
+        assert impacts[0].unit == "rad/s"
+        assert " rad/s  dE" in repr(impacts)
     assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.5)
     assert np.log2(errors[1] / errors[2]) == pytest.approx(4.0, abs=0.5)
     assert errors[-1] < 1e-6

@@ -16,7 +16,9 @@ CURVED = 1 << 40  # features of curved pieces are above this number, vertices be
 class ImpactRecord(NamedTuple):
     """One contact point of an impact.
 
-    Vectors are in contact axes (normal, tangent 1, tangent 2) unless the field says otherwise.
+    Vectors are in contact axes (normal, tangent 1, tangent 2) unless the field says otherwise. For a stop of an
+    angle `unit` is ``"rad/s"``: velocities are in rad/s, impulses in N m s, W in 1/(kg m^2), the penetration in
+    rad.
 
     In a multiple impact, for example when both ends of an edge strike, each contact point has a record of its
     own, with its own velocity, effective mass and impulse. These records have the same time and `together`
@@ -53,6 +55,7 @@ class ImpactRecord(NamedTuple):
     other: (
         str  #: name of the half-space or body that it strikes; for a stop the parent of its joint
     )
+    unit: str  #: unit of the velocities: "m/s", or "rad/s" for a stop of an angle
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -98,6 +101,7 @@ class ImpactTable(Table[ImpactRecord]):
     name: np.ndarray
     body: np.ndarray
     other: np.ndarray
+    unit: np.ndarray
 
     _a_row = "impact"
 
@@ -108,7 +112,7 @@ class ImpactTable(Table[ImpactRecord]):
         head = f"<ImpactTable: {len(self)} impacts"
         rows = [
             f"  t = {r.time:.9f} s  {r.name}  u_n {r.relative_velocity_before[0]:+.6g} -> "
-            f"{r.relative_velocity_after[0]:+.6g} m/s  dE = {r.energy_change:.6g} J"
+            f"{r.relative_velocity_after[0]:+.6g} {r.unit}  dE = {r.energy_change:.6g} J"
             for r in (self[k] for k in range(min(len(self), 8)))
         ]
         more = [f"  ... {len(self) - 8} more"] if len(self) > 8 else []

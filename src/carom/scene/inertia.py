@@ -7,6 +7,7 @@ import numpy as np
 from carom import checks
 
 SLACK = 1e-12  # relative to the largest entry or moment: rounding, not physics
+GREATEST = 1e300  # [kg m^2]: sums are finite
 
 
 def inertia_matrix(value) -> np.ndarray:
@@ -29,6 +30,10 @@ def inertia_matrix(value) -> np.ndarray:
         )
     if not np.max(np.abs(matrix - matrix.T)) <= SLACK * np.max(np.abs(matrix)):
         raise ValueError(f"inertia must be symmetric, got {checks.shown(value)}")
+    if not np.max(np.abs(matrix)) <= GREATEST:
+        raise ValueError(
+            f"inertia must be at most {GREATEST:g} [kg m^2], so that sums are finite, got {checks.shown(value)}"
+        )
     matrix = 0.5 * (matrix + matrix.T)
     small, middle, large = np.linalg.eigvalsh(matrix)
     positive, possible = small > SLACK * large, large <= (small + middle) * (1 + SLACK)

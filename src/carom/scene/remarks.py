@@ -103,6 +103,7 @@ def _of_stops(scene: Scene) -> list[str]:
         and coordinate_kind(stop.joint, stop.coordinate) == "turn"
         and abs(stop.end) > 2.0 * math.pi
         and stop.end == round(stop.end)
+        and stop.name not in scene._in_radians
     ]
     if not found:
         return []

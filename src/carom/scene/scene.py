@@ -62,6 +62,7 @@ class Scene(TouchingPairs):
         self._gravity.setflags(write=False)
         self._parts = Registry()
         self._pairs = Pairs()
+        self._in_radians: set[str] = set()  # stops whose file has radians
 
     @arguments.known
     def add_half_space(

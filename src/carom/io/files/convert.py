@@ -76,7 +76,7 @@ def to_pandas(solution) -> Frames:
     ]  # fmt: skip
     for table in tables:
         table["contact"] = contacts[table["contact"]]
-    for name in ("body", "other"):
+    for name in ("body", "other", "unit"):
         tables[0][name] = getattr(solution.impacts, name).astype(object)
     forces = {"time": solution.t[tables[3].pop("saved")], **tables[3]}
     forces["body"] = bodies[forces["body"]]

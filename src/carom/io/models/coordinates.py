@@ -65,7 +65,7 @@ def _stops(build: Build, j: int, c: Coordinate, restitution: float, law: str) ->
             )
             end = 0.0
         which = "lower" if side * c.sign > 0.0 else "upper"
-        build.scene.add_stop(
+        stop = build.scene.add_stop(
             c.joint,
             **{which: c.sign * end},
             restitution=restitution,
@@ -73,6 +73,7 @@ def _stops(build: Build, j: int, c: Coordinate, restitution: float, law: str) ->
             coordinate=c.index,
             name=build.names.new(f"{name}:{word}", "stop"),
         )
+        build.scene._in_radians.add(stop.name)
 
 
 def _armature(build: Build, j: int, c: Coordinate, represent: bool) -> None:

@@ -26,19 +26,10 @@ NOT_ZERO = (
     ("geom", "geom_adhesion", "adhesion", "left out"),
     ("geom", "geom_surfacevel", "a surface that moves", "it does not move"),
     ("pair", "pair_margin", "a margin of contact", "surfaces touch where they are"),
+    ("pair", "pair_gap", "a gap of contact", "surfaces touch where they are"),
+    ("joint", "jnt_margin", "a margin of its limits", "they act where they are"),
     ("pair", "pair_adhesion", "adhesion", "left out"),
 )
-
-
-#: flags that switch off parts of a model that the scene nevertheless has
-SWITCHES = {
-    "mjDSBL_EQUALITY": "equality constraints",
-    "mjDSBL_LIMIT": "limits of joints",
-    "mjDSBL_FRICTIONLOSS": "dry friction in joints",
-    "mjDSBL_PASSIVE": "springs and dampers",
-    "mjDSBL_SPRING": "springs",
-    "mjDSBL_DAMPER": "dampers",
-}
 
 
 def report_leftovers(model, report: Report) -> None:
@@ -79,11 +70,10 @@ def _called(model, kind: str, k: int) -> str:
 
 def _report_whole(model, report: Report) -> None:
     """Add entries about the whole model."""
-    opt, bits = model.opt, need_mujoco().mjtDisableBit
-    for flag, what in SWITCHES.items():
-        bit = getattr(bits, flag, None)  # not all versions have all
-        if bit is not None and int(opt.disableflags) & int(bit):
-            report.add(f"flag {flag}", f"switches off {what}", "the scene has them")
+    opt = model.opt
+    if int(opt.enableflags) & int(need_mujoco().mjtEnableBit.mjENBL_OVERRIDE):
+        what = "gives all contacts the margin and the friction of <option>"
+        report.add("flag override", what, "those of the geoms are used")
     if model.nflex:
         report.add("deformable bodies", "are not represented", f"{model.nflex} left out")
     if opt.density != 0.0 or opt.viscosity != 0.0 or np.any(opt.wind):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 import xml.etree.ElementTree as ET
+from contextlib import suppress
 from pathlib import Path
 
 ELEMENTS = 20_000  # of XML, copies counted: MuJoCo's memory grows with the square of the freedoms
@@ -22,6 +23,14 @@ UNUSED = {
     **{f"nuser_{what}": -1 for what in ("body", "jnt", "geom", "site", "cam", "tendon", "actuator", "sensor")},
 }  # fmt: skip
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+NAMING = (
+    "name",
+    "class",
+    "childclass",
+    "key",
+    "value",
+    "file",
+)  # attributes that may be the word "nan"
 
 
 def check_model(root: ET.Element, what: str, folder: Path | None) -> None:
@@ -34,12 +43,13 @@ def check_model(root: ET.Element, what: str, folder: Path | None) -> None:
     """
     total, copies = 0, [(root, 1)]
     seen: set[Path] = set()
+    names = {element.get("name") for element in root.iter()}
     while copies:
         element, times = copies.pop()
         total += times
         if total > ELEMENTS:
             raise _too_many(what)
-        _check_element(element, what)
+        _check_element(element, what, names)
         if element.tag in COPIES:
             times *= round(math.prod(max(1.0, n) for n in _numbers(element.get("count", "1"))))
         if total + times > ELEMENTS:
@@ -83,9 +93,11 @@ def drop_sizes(spec) -> None:
             setattr(spec, name, value)
 
 
-def _check_element(element: ET.Element, what: str) -> None:
+def _check_element(element: ET.Element, what: str, names) -> None:
     where = f"{what}: <{element.tag}>"
     for name, value in element.attrib.items():
+        if _has_nan(value) and name not in NAMING and value not in names:
+            raise ValueError(f"{where} {name} must not be NaN, got {value[:60]!r}")
         if len(value) > 1_000_000 or name == "name":  # of a mesh: MuJoCo reads it quickly
             continue
         for number in _numbers(value):
@@ -97,6 +109,13 @@ def _check_element(element: ET.Element, what: str) -> None:
         cells = math.prod(max(1.0, n) for name in names for n in _numbers(element.attrib[name]))
         if cells > CELLS:
             raise ValueError(f"{where} {' x '.join(names)} must be at most {CELLS}, got {cells:g}")
+
+
+def _has_nan(text: str) -> bool:
+    """Return whether an attribute has numbers, and one of them is NaN."""
+    with suppress(ValueError):
+        return "nan" in text.lower() and any(math.isnan(float(word)) for word in text.split())
+    return False
 
 
 def _numbers(text: str) -> list[float]:

@@ -18,12 +18,12 @@ from carom.io.models.joints import join
 from carom.io.models.leftovers import report_leftovers
 from carom.io.models.links import Link, moving_links, name_of, possible_inertia
 from carom.io.models.model import Model
-from carom.io.models.needs import need_mujoco
 from carom.io.models.overlaps import lift_out, pose
 from carom.io.models.reading import compiled_model
 from carom.io.models.report import Report
 from carom.io.models.solids import Solid, add_standing, covering
 from carom.io.models.state import point_velocity, starting_data
+from carom.io.models.switches import as_it_acts, is_off
 from carom.io.models.touching import Filter
 from carom.scene import forces
 from carom.scene.materials import IMPACT_LAWS
@@ -122,11 +122,12 @@ def load_model(
     ]
     report = Report()
     model = compiled_model(source, free_root, package_dirs, report)
-    loops = bool(np.any(model.eq_active0))
-    data, light = starting_data(model, keyframe, qpos, qvel), LIGHT_IN_LOOPS if loops else LIGHT
-    build, links = _new_build(model, data, report, light)
+    acts = as_it_acts(model)
+    light = LIGHT_IN_LOOPS if np.any(acts.eq_active0) else LIGHT
+    data = starting_data(acts, keyframe, qpos, qvel)
+    build, links = _new_build(acts, data, report, light)
     restitution = _restitution(model, restitution, report)
-    rules, contacts = Filter(model), contacts and not _disabled(model, "mjDSBL_CONTACT")
+    rules, contacts = Filter(model), contacts and not is_off(model, "CONTACT", "CONSTRAINT")
     standing = add_standing(build, rules) if contacts else []
     covers = {link.body: covering(build, link, rules) for link in links}
     if overlaps == "repair":
@@ -143,24 +144,20 @@ def load_model(
         solids = [*moving, *standing]
         add_contacts(build, solids, rules, restitution, friction, impact_law, overlaps == "refuse")
     report_leftovers(model, report)
-    return _finished(build, links, covers, restitution)
+    return _finished(build, model, links, covers, restitution)
 
 
 def _new_build(model, data, report: Report, light: float) -> tuple[Build, list[Link]]:
     """Return a new `Build`, with the fixed and the moving bodies of the model."""
     links = moving_links(model)
     if not links:
-        raise ValueError("the model must have a body that moves, got no body with a joint")
-    weightless = bool(int(model.opt.disableflags) & int(need_mujoco().mjtDisableBit.mjDSBL_GRAVITY))
-    scene = Scene(gravity=np.zeros(3) if weightless else model.opt.gravity)
+        raise ValueError(
+            "the model must have a body that moves, got no body with a joint; give free_root=True if it is a "
+            "robot that walks or flies"
+        )
+    scene = Scene(gravity=np.zeros(3) if is_off(model, "GRAVITY") else model.opt.gravity)
     names = Names(link.name for link in links)
     return Build(model, data, scene, report, names, light), links
-
-
-def _disabled(model, flag: str) -> bool:
-    """Return whether a flag of the model switches something off."""
-    bit = int(getattr(need_mujoco().mjtDisableBit, flag))
-    return bool(int(model.opt.disableflags) & bit)
 
 
 def _restitution(model, given: float | None, report: Report) -> float:
@@ -209,9 +206,8 @@ def _add_gravcomp(build: Build) -> None:
         build.scene.add_force(force, build.carrier(int(b)), name=name)
 
 
-def _finished(build: Build, links, covers, restitution: float) -> Model:
+def _finished(build: Build, m, links, covers, restitution: float) -> Model:
     """Return the model, with all parts by name."""
-    m = build.model
     for link in links:
         for g in covers[link.body][1]:
             build.geoms[g] = build.moving(link.body)

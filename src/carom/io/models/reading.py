@@ -8,10 +8,15 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from carom.io.models.limits import check_model, drop_sizes, parsed
 from carom.io.models.needs import need_mujoco
 from carom.io.models.report import Report
 from carom.io.models.urdf import prepared
+
+READ = ("body_", "jnt_", "dof_", "geom_", "eq_", "pair_", "qpos", "mesh_vert", "key_q")  # arrays
+DERIVED = ("body_invweight0", "dof_invweight0", "jnt_actfrcrange", "jnt_range")
 
 
 def compiled_model(source, free_root: bool, package_dirs, report: Report) -> Any:
@@ -26,7 +31,25 @@ def compiled_model(source, free_root: bool, package_dirs, report: Report) -> Any
     ValueError
         With MuJoCo's message in one line, if it cannot read or compile the model.
     """
-    mujoco = need_mujoco()
+    mujoco, said = need_mujoco(), []
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(said.append)  # otherwise it prints, and writes a file
+    try:
+        model = _compiled(mujoco, source, free_root, package_dirs, report, said)
+    finally:
+        mujoco.set_mju_user_warning(before)
+    for warning in said:
+        report.add("MuJoCo", f"warns: {_line(warning)}", "it compiled the model with this warning")
+    for name in dir(model):
+        values = getattr(model, name) if name.startswith(READ) else None
+        if isinstance(values, np.ndarray) and name not in DERIVED and not np.isfinite(values).all():
+            raise ValueError(
+                f"the model must be finite, got {values[~np.isfinite(values)][0]} in {name}"
+            )
+    return model
+
+
+def _compiled(mujoco, source, free_root: bool, package_dirs, report: Report, said: list) -> Any:
     if isinstance(source, mujoco.MjModel):
         _no_root(free_root, "an MjModel, which is compiled")
         return source
@@ -41,16 +64,16 @@ def compiled_model(source, free_root: bool, package_dirs, report: Report) -> Any
         )
     if free_root:
         _free(mujoco, spec, what)
-    try:
-        with warnings.catch_warnings(record=True) as said:
-            warnings.simplefilter("always")
-            model = spec.compile()
-    except (ValueError, RuntimeError) as error:
-        raise ValueError(f"{what} does not compile: {_line(error)}") from None
-    for warning in said:
-        report.add(
-            "MuJoCo", f"warns: {_line(warning.message)}", "it compiled the model with this warning"
-        )
+    while True:
+        try:
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                model = spec.compile()
+            break
+        except (ValueError, RuntimeError) as error:
+            if not _drop_picture(mujoco, spec, _line(error), report):
+                raise ValueError(f"{what} does not compile: {_line(error)}") from None
+    said += [warning.message for warning in caught]
     pairs = zip(model.eq_type, model.eq_obj1id)
     coupled = {model.joint(j).name for kind, j in pairs if kind == mujoco.mjtEq.mjEQ_JOINT}
     for name in mimics:
@@ -108,6 +131,20 @@ def _other_encoding(mujoco, root: ET.Element, folder: Path | None):
     spec = mujoco.MjSpec.from_string(ET.tostring(root, encoding="unicode"))
     spec.modelfiledir = str(folder)
     return spec
+
+
+def _drop_picture(mujoco, spec, error: str, report: Report) -> bool:
+    """Replace the picture that an error is about by a plain texture; return whether it is about one."""
+    for texture in spec.textures:
+        files = [name for name in (texture.file, *texture.cubefiles) if name]
+        if any(Path(name).name in error for name in files):
+            texture.file, texture.builtin = "", mujoco.mjtBuiltin.mjBUILTIN_FLAT
+            texture.cubefiles, texture.width, texture.height = [""] * 6, 1, 1
+            report.add(
+                f"texture {texture.name!r}", f"its picture is not read ({error})", "left out"
+            )
+            return True
+    return False
 
 
 def _free(mujoco, spec, what: str) -> None:

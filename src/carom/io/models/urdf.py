@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 
 from carom.io.models.report import Report
@@ -36,6 +37,12 @@ def prepared(root: ET.Element, folder: Path | None, package_dirs: Iterable, repo
         for collision in link.findall("collision"):
             mesh = collision.find("geometry/mesh")
             if mesh is None:
+                if _is_flat(collision.find("geometry/*")):
+                    called = f"link {link.get('name')!r}"
+                    report.add(
+                        called, "a shape of it has a size of 0, and touches nothing", "left out"
+                    )
+                    link.remove(collision)
                 continue
             name = mesh.get("filename", "")
             found = located(name, folder, package_dirs)
@@ -55,6 +62,15 @@ def prepared(root: ET.Element, folder: Path | None, package_dirs: Iterable, repo
     compiler.attrib.update(strippath="false", fusestatic="false")
     compiler.attrib.pop("meshdir", None)  # meshes have their full paths now
     return ET.tostring(root, encoding="unicode")
+
+
+def _is_flat(shape: ET.Element | None) -> bool:
+    """Return whether a size of a shape is 0: other programs read such points, lines and faces."""
+    words = [] if shape is None else [shape.get(size, "") for size in ("radius", "length", "size")]
+    with suppress(ValueError):
+        sizes = [float(word) for word in " ".join(words).split()]
+        return min(sizes, default=1.0) == 0.0
+    return False  # MuJoCo says what is wrong
 
 
 def unreadable(path: Path) -> str | None:
