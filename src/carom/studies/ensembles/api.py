@@ -82,7 +82,8 @@ def ensemble(
     observe : function, optional
         Function that is called with the `Solution` of each run, which has every step, and returns a dict of
         numbers or arrays; these are collected in `Ensemble.observed`. It makes each run slower, because a
-        Solution has to be made. For processes and clusters the function must be importable.
+        Solution has to be made. For processes and clusters the function must be importable. If it fails in the
+        first run that reaches its end, its error is raised; errors in later runs are in `Ensemble.failures`.
     executor : {"threads", "processes", "serial"}, Executor or Client
         Executor of the runs: threads of this process (default), processes, or one run after another; or a
         `concurrent.futures.Executor`, or a client of dask.distributed for many machines.
@@ -246,6 +247,7 @@ def _collect(plan, inputs, parts, count) -> Ensemble:
     """Join the parts in the order of the runs."""
     from carom import __version__
     from carom.studies.ensembles.outcome import no_outcomes
+    from carom.studies.ensembles.plan import column
 
     outcomes, observed, failures = no_outcomes(count, plan.bodies), {}, {}
     for part in sorted(parts, key=lambda part: part.first):
@@ -253,9 +255,8 @@ def _collect(plan, inputs, parts, count) -> Ensemble:
         outcomes[rows] = part.outcomes
         failures.update(part.failures)
         for name, values in part.observed.items():
-            if name not in observed:
-                fill = np.nan if values.dtype.kind == "f" else 0
-                observed[name] = np.full((count, *values.shape[1:]), fill, values.dtype)
+            old = observed[name] if name in observed else column(count, values[0])
+            observed[name] = old.astype(np.result_type(old, values), copy=False)
             observed[name][rows] = values
     about = {"carom": __version__, "settings": repr(plan.settings)}
     return Ensemble(inputs, outcomes, observed, failures, about, plan)
