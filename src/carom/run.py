@@ -61,6 +61,7 @@ class Run:
     """A run that can be continued step by step; `solution` may be taken at any time."""
 
     def __init__(self, scene: Scene, settings: Settings):
+        scene = scene._as_it_is()  # the user may edit it afterwards
         self.scene, self.options, self.how = scene, settings.options, settings
         options, definition = settings.options, METHODS[settings.method]
         kind, adapts = definition.kind, settings.adapts

@@ -192,6 +192,7 @@ def _plan(scene, settings: Settings, inputs: dict[str, np.ndarray], observe):
 
     if isinstance(scene, Scene):
         check_scene(scene, settings)
+        scene = scene._as_it_is()
         return Plan(scene, settings, find_targets(scene, inputs), len(scene.bodies), observe)
     values = {name: array[0] for name, array in inputs.items()}
     plain = {name: float(v) if np.ndim(v) == 0 else v for name, v in values.items()}
