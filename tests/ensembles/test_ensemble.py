@@ -227,7 +227,11 @@ def undefined(solution):
 @pytest.mark.parametrize(
     ("observe", "kind", "words"),
     [
-        (one_number, TypeError, "observe must return a dict of numbers or arrays by name.*got .*0.1"),
+        (
+            one_number,
+            TypeError,
+            "observe must return a dict of numbers or arrays by name.*got .*0.1",
+        ),
         (undefined, AttributeError, "height"),
         (lambda solution: {"top": solution}, TypeError, "observe must return numbers or arrays"),
         (lambda solution: {1: 2.0}, TypeError, "observe must return a dict"),
@@ -261,7 +265,11 @@ def test_observe_may_fail_in_later_runs():
         e = carom.ensemble(die(), 0.05, step=2e-3, vary=vary, observe=sometimes, chunk=chunk)
         assert e.failures == {1: "observe: ValueError: too fast"}
         assert e.counts() == {"success": 4}
-        assert e.observed["n"][[0, 2, 3]].tolist() == [1.0, 1.5, 1.5]  # no number is cut to an integer
+        assert e.observed["n"][[0, 2, 3]].tolist() == [
+            1.0,
+            1.5,
+            1.5,
+        ]  # no number is cut to an integer
 
 
 def test_processes():

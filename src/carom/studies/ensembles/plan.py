@@ -13,9 +13,10 @@ import numpy as np
 from carom import checks
 from carom.run import Run
 from carom.scene.scene import Scene
+from carom.status import Status
 from carom.stepping.settings import Settings, check_scene
 from carom.studies.ensembles.again import Again
-from carom.studies.ensembles.outcome import REFUSED, end_of, no_outcomes, write
+from carom.studies.ensembles.outcome import REFUSED, End, end_of, no_outcomes, write
 from carom.studies.ensembles.targets import Target
 
 
@@ -41,41 +42,69 @@ class Part(NamedTuple):
 
 
 _here = threading.local()
+#: tokens of plans that were interrupted: their parts end early, with runs that are pending
+STOPPED: set[str] = set()
 
 
 def do(plan: Plan, first: int, values: dict[str, np.ndarray]) -> Part:
-    """Make the runs with the given values; the first of them has the number `first`."""
+    """Make the runs with the given values; the first of them has the number `first`.
+
+    After an interruption the remaining runs of the part are pending.
+    """
     runs = len(next(iter(values.values())))
     part, ends, failures = Part(first, no_outcomes(runs, plan.bodies), {}, {}), {}, {}
-    part.outcomes["status"] = REFUSED
     for k in range(runs):
         try:
-            run = begin(plan, values, k)
-            status = run.go_on(run.steps)
-            ends[k] = end_of(run, status)
+            found = one(plan, values, k, part)
+        except KeyboardInterrupt:
+            STOPPED.add(plan.token)
+            break
+        except ObserveError as error:
+            if first == 0 and not part.observed and error.end.status.ended:
+                raise error.reason from error.reason.__cause__  # the first run that ends decides
+            found, failures[k] = error.end, f"observe: {_said(error.reason)}"
         except Exception as error:  # after any error the other runs continue
-            failures[k] = f"{type(error).__name__}: {error}"
+            part.outcomes["status"][k], failures[k] = REFUSED, _said(error)
             continue
-        if plan.observe is None:
-            continue
-        solution, decides = run.solution(status), first == 0 and not part.observed
-        try:
-            see(plan.observe, solution, k, part)
-        except Exception as error:
-            if decides and solution.status.ended:
-                raise
-            failures[k] = f"observe: {type(error).__name__}: {error}"
+        ends[k] = found
     if ends:
         failures.update(write(ends, part.outcomes))
     part.failures.update({first + k: failures[k] for k in sorted(failures)})
     return part
 
 
-def see(observe: Callable, solution, k: int, part: Part) -> None:
-    """Write what is observed of run k of a part.
+class ObserveError(Exception):
+    """An error of `observe`, the reason, after a run with this end."""
 
-    The first run that reaches its end decides whether `observe` works: its error ends the ensemble.
-    """
+    def __init__(self, end: End, reason: Exception):
+        super().__init__()
+        self.end, self.reason = end, reason
+
+
+def one(plan: Plan, values: dict[str, np.ndarray], k: int, part: Part) -> End:
+    """Make run k of a part, and write what is observed of it."""
+    if plan.token in STOPPED:
+        raise KeyboardInterrupt
+    run = begin(plan, values, k)
+    run.to_stop = lambda: plan.token in STOPPED
+    status = run.go_on(run.steps)
+    if status is Status.INTERRUPTED:
+        raise KeyboardInterrupt
+    end = end_of(run, status)
+    if plan.observe is not None:
+        try:
+            see(plan.observe, run.solution(status), k, part)
+        except Exception as error:
+            raise ObserveError(end, error) from error
+    return end
+
+
+def _said(error: Exception) -> str:
+    return f"{type(error).__name__}: {error}"
+
+
+def see(observe: Callable, solution, k: int, part: Part) -> None:
+    """Write what is observed of run k of a part."""
     found = checks.call("observe", observe, solution)
     if not isinstance(found, Mapping) or not all(isinstance(name, str) for name in found):
         raise TypeError(
