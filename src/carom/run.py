@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from carom._compiled.units import Entries
@@ -60,7 +62,11 @@ def multiple_settings(options: Options) -> MultipleSettings:
 class Run:
     """A run that can be continued step by step; `solution` may be taken at any time."""
 
+    #: is asked at pauses; True interrupts the run
+    to_stop: Callable[[], bool] = staticmethod(lambda: False)
+
     def __init__(self, scene: Scene, settings: Settings):
+        scene = scene._as_it_is()  # the user may edit it afterwards
         self.scene, self.options, self.how = scene, settings.options, settings
         options, definition = settings.options, METHODS[settings.method]
         kind, adapts = definition.kind, settings.adapts
@@ -282,7 +288,8 @@ class Run:
             if code == r.GROW:
                 self.grow(self.clock[0].grow)
             elif code == r.PAUSE and self.failure is None:
-                continue  # here Ctrl-C is raised
+                if self.to_stop():  # here Ctrl-C is raised
+                    return Status.INTERRUPTED
             elif isinstance(self.failure, KeyboardInterrupt):  # while a plain function ran
                 self.compiled.functions.failed = None
                 return Status.INTERRUPTED

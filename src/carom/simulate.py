@@ -131,7 +131,8 @@ def simulate(
         Tolerances, boundary layer, and limits of the run.
     throw : bool
         True (default): a run that fails raises `SimulationError`, whose `solution` has all results up to the
-        failure. False: this solution is returned, with its `status` and `message`.
+        failure; Ctrl-C raises `KeyboardInterrupt` with the same attribute. False: this solution is returned,
+        with its `status` and `message`.
     save : str or path, optional
         File to which the run is saved, repeatedly and at its end (needs ``carom[files]``). If the process is
         killed, the file has the results up to the last saving, and `resume` continues the run from there. If a
@@ -158,6 +159,8 @@ def simulate(
         If `save` is given and a package that it needs is missing.
     SimulationError
         If the run fails part-way, or cannot be saved at its end, and `throw` is True.
+    KeyboardInterrupt
+        If the run is interrupted (Ctrl-C) and `throw` is True; its `solution` has all results up to then.
 
     Warns
     -----

@@ -216,6 +216,62 @@ def test_what_is_observed():
     assert same(e, throw(runs=6))
 
 
+def one_number(solution):
+    return solution.t[-1]
+
+
+def undefined(solution):
+    return {"top": solution.height}
+
+
+@pytest.mark.parametrize(
+    ("observe", "kind", "words"),
+    [
+        (
+            one_number,
+            TypeError,
+            "observe must return a dict of numbers or arrays by name.*got .*0.1",
+        ),
+        (undefined, AttributeError, "height"),
+        (lambda solution: {"top": solution}, TypeError, "observe must return numbers or arrays"),
+        (lambda solution: {1: 2.0}, TypeError, "observe must return a dict"),
+        (lambda solution: {}["top"], KeyError, "top"),
+    ],
+)
+def test_the_first_run_decides_whether_observe_works(observe, kind, words):
+    with pytest.raises(kind, match=words) as error:
+        carom.ensemble(die(), 0.1, step=2e-3, vary=THROWN, runs=6, chunk=3, observe=observe)
+    names = [entry.name for entry in error.traceback]
+    assert kind is TypeError or observe.__name__ in names  # the user's own line
+    assert kind is TypeError or "observe, a function" in error.value.__notes__[0]
+
+
+def test_observe_that_fails_in_processes_has_the_line_of_the_user():
+    with pytest.raises(AttributeError, match="height") as error:
+        throw(runs=2, executor="processes", workers=1, observe=undefined)
+    assert "in undefined" in str(error.value.__cause__)
+
+
+def test_observe_may_fail_in_later_runs():
+    """The run is kept, the value is missing, and a message says why."""
+
+    def sometimes(solution):
+        if solution.velocity[0, 0, 2] < -0.6:
+            raise ValueError("too fast")
+        return {"n": 1 if solution.velocity[0, 0, 2] > -0.4 else 1.5}
+
+    vary = {"die.velocity": [[0, 0, -0.3], [0, 0, -0.7], [0, 0, -0.5], [0, 0, -0.5]]}
+    for chunk in (2, 4):
+        e = carom.ensemble(die(), 0.05, step=2e-3, vary=vary, observe=sometimes, chunk=chunk)
+        assert e.failures == {1: "observe: ValueError: too fast"}
+        assert e.counts() == {"success": 4}
+        assert e.observed["n"][[0, 2, 3]].tolist() == [
+            1.0,
+            1.5,
+            1.5,
+        ]  # no number is cut to an integer
+
+
 def test_processes():
     assert same(throw(runs=4), throw(runs=4, executor="processes", workers=1, chunk=2))
 

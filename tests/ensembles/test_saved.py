@@ -43,8 +43,11 @@ def test_streamed_and_read_again(tmp_path):
 def test_interrupted_and_gone_on_with(tmp_path):
     """No run is lost, none is made twice, and the result is that of one go."""
     stop = StopAfter(8)
-    with pytest.warns(RuntimeWarning, match="interrupted after 8 of 20 runs; call again"):
-        part = throw(tmp_path / "e.zarr", progress=stop, executor="serial")
+    with pytest.raises(
+        KeyboardInterrupt, match="interrupted after 8 of 20 runs; call again"
+    ) as error:
+        throw(tmp_path / "e.zarr", progress=stop, executor="serial")
+    part = error.value.solution
     assert part.counts() == {"pending": 12, "success": 8}
     assert not part.complete
     assert np.all(np.isnan(part.position[8:]))
@@ -58,9 +61,32 @@ def test_interrupted_and_gone_on_with(tmp_path):
 
 
 def test_interrupted_in_memory():
-    with pytest.warns(RuntimeWarning, match="interrupted after 8 of 20 runs$"):
-        part = throw(progress=StopAfter(8), executor="serial")
-    assert part.done.sum() == 8
+    with pytest.raises(KeyboardInterrupt, match=r"interrupted after 8 of 20 runs$") as error:
+        throw(progress=StopAfter(8), executor="serial")
+    assert error.value.solution.done.sum() == 8
+
+
+@pytest.mark.parametrize("executor", ["serial", "threads"])
+@pytest.mark.parametrize("saved", [True, False])
+def test_interrupted_within_a_part(tmp_path, executor, saved):
+    """In the third run: what was made before is kept, and threads do not make the rest of their parts."""
+    begun = []
+
+    def look(solution):
+        begun.append(solution)
+        if len(begun) == 3:
+            raise KeyboardInterrupt
+        return {"top": solution.position[:, 0, 2].max()}
+
+    given = {"vary": THROWN, "runs": 20, "chunk": 10, "executor": executor, "workers": 1}
+    place = tmp_path / "e.zarr" if saved else None
+    with pytest.raises(KeyboardInterrupt, match="interrupted after 2 of 20 runs") as error:
+        carom.ensemble(die(), 0.1, step=2e-3, save=place, observe=look, **given)
+    part, whole = error.value.solution, carom.ensemble(die(), 0.1, step=2e-3, **given)
+    assert len(begun) == 3
+    assert part.counts() == {"pending": 18, "success": 2}
+    assert np.array_equal(part.position[:2], whole.position[:2])
+    assert np.all(np.isfinite(part.observed["top"][:2]))
 
 
 def test_a_part_without_its_status_is_done_again(tmp_path):

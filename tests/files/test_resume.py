@@ -135,7 +135,7 @@ def test_heap(fraction, tmp_path):
 def test_stopped_twice(tmp_path):
     path = tmp_path / "run.nc"
     interrupted(die(mu=0.3), 0.5, 0.3, path, step=1e-3)
-    with pytest.raises(carom.SimulationError, match="interrupted"):
+    with pytest.raises(KeyboardInterrupt, match="interrupted"):
         carom.resume(path, progress=stopped_at(0.7))
     assert 0.35 <= carom.Solution.load(path).t[-1] < 0.36  # at the next report
     whole = carom.simulate(die(mu=0.3), 0.5, step=1e-3)

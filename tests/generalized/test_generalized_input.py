@@ -171,3 +171,13 @@ def test_is_not_saved():
         ValueError, match=r"save must be left out with a system in coordinates, got 'a\.nc'"
     ):
         carom.simulate(build(), 0.1, step=0.01, save="a.nc")
+
+
+def test_a_solution_keeps_its_system_as_it_was():
+    system = build()
+    a, plain = (carom.simulate(one, 0.2, step=0.05) for one in (system, build()))
+    system.add_contact(Y + 5, restitution=0.0)
+    system.set_state([3, 3], [0, 0])
+    assert a.system.position.tolist() == [0, 1]
+    assert len(a.system.contacts) == 0
+    np.testing.assert_array_equal(a.evaluate(0.12), plain.evaluate(0.12))

@@ -218,7 +218,47 @@ def test_scene_is_not_changed_and_can_run_again():
     a, b = carom.simulate(scene, 1.0, step=0.01), carom.simulate(scene, 1.0, step=0.01)
     np.testing.assert_array_equal(scene.bodies[0].position, before)
     np.testing.assert_array_equal(a.position, b.position)
-    assert a.scene is scene
+    assert a.scene.bodies == scene.bodies
+
+
+EDITS = [
+    lambda scene: scene.add_body(carom.Box(0.1, 0.2, 0.3), mass=2.0, position=(5, 0, 5)),
+    lambda scene: scene.add_half_space((-1, 0, 0), (1, 0, 0), name="wall"),
+    lambda scene: scene.add_contact("body1", scene.add_half_space((0, -9, 0), (0, 1, 0))),
+    lambda scene: scene.add_joint(carom.joints.Distance((0, 0, 3), (0, 0, 1)), carom.GROUND, "body1"),
+    lambda scene: scene.add_force(carom.forces.Force((1, 0, 0)), "body1"),
+    lambda scene: scene.set_contact_default(restitution=1.0, friction=0.1),
+]  # fmt: skip
+
+
+def test_a_solution_keeps_its_scene_as_it_was(tmp_path):
+    """Whatever is added to the scene after the run, the solution is evaluated, drawn, and saved as before."""
+    scene, plain = ball(E), carom.simulate(ball(E), 1.0, step=0.01)
+    a, ended = carom.simulate(scene, 1.0, step=0.01), carom.Run(scene, step=0.01)
+    parts = len(scene.bodies), len(scene.fixed), len(scene.contacts)
+    for edit in EDITS:
+        edit(scene)
+    assert (len(a.scene.bodies), len(a.scene.fixed), len(a.scene.contacts)) == parts
+    assert len(a.scene.joints) == len(a.scene.forces) == len(a.scene.pairs_by_default()) == 0
+    assert len(scene.joints) == len(scene.forces) == 1
+    for one, other in zip(a.evaluate(0.333), plain.evaluate(0.333)):
+        np.testing.assert_array_equal(one, other)
+    assert str(a.impacts) == str(plain.impacts)
+    ended.advance(0.5)
+    np.testing.assert_array_equal(ended.solution.position[-1], a.position[50])
+    pytest.importorskip("matplotlib")
+    a.plot()
+    pytest.importorskip("h5netcdf")
+    a.save(tmp_path / "a.nc")
+    np.testing.assert_array_equal(carom.Solution.load(tmp_path / "a.nc").position, a.position)
+
+
+def test_an_ensemble_keeps_its_scene_as_it_was():
+    scene = ball(E)
+    e = carom.ensemble(scene, 0.2, step=0.01, vary={"body1.velocity": [[0, 0, 0], [1, 0, 0]]})
+    for edit in EDITS:
+        edit(scene)
+    np.testing.assert_array_equal(e.solution(1).position[-1], e.position[1])
 
 
 def test_contact_force_and_cone(bounce):

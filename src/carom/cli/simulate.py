@@ -193,10 +193,11 @@ def _with_its_loss(call, *given, **settings):
 
     try:
         return call(*given, **settings), None
-    except SimulationError as error:
-        if error.solution is None:
+    except (SimulationError, KeyboardInterrupt) as error:
+        solution = getattr(error, "solution", None)
+        if solution is None:
             raise
-        return error.solution, str(error) if error.solution.success else None
+        return solution, str(error) if solution.success else None
 
 
 #: settings in a result file that a new run takes over

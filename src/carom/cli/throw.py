@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from carom.cli import INTERRUPTED, show
+from carom.cli.outcome import warn
 
 
 def run(
@@ -59,10 +60,16 @@ def run(
     )  # fmt: skip
     begin = time.perf_counter()
     with show.progress("throw") as bar:
-        thrown = carom.ensemble(
-            scene(given), seconds, step=step or "auto", runs=count, seed=seed, workers=workers, save=save,
-            vary={"die.orientation": carom.UniformOrientation()}, progress=bar,
-        )  # fmt: skip
+        try:
+            thrown = carom.ensemble(
+                scene(given), seconds, step=step or "auto", runs=count, seed=seed, workers=workers, save=save,
+                vary={"die.orientation": carom.UniformOrientation()}, progress=bar,
+            )  # fmt: skip
+        except KeyboardInterrupt as error:
+            thrown = getattr(error, "solution", None)
+            if thrown is None:
+                raise
+            warn("throw", str(error))
     found = summary(thrown, time.perf_counter() - begin)
     if json:
         show.as_json(found)

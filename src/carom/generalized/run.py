@@ -63,6 +63,8 @@ class GeneralizedRun:
         self, system: GeneralizedSystem, settings: Settings, start: tuple[float, np.ndarray] | None = None
     ):  # fmt: skip
         options = settings.options
+        made = system.evaluation()
+        system = system._as_it_is()
         self.user, self.options, self.how = system, options, settings
         grid = grid_of(settings, len(system.contacts) > 0)
         order = METHODS[settings.method].order if settings.adapts else 0
@@ -71,7 +73,6 @@ class GeneralizedRun:
         self.settings = {**settings.as_dict(), "options": options.as_dict()}
         if settings.adapts:
             self.settings["atol"] = atol
-        made = system.evaluation()
         same = made.system.drop == options.drop_tolerance
         self.made: Evaluation = made if same else Evaluation(system, options.drop_tolerance)
         self.made.functions.failed = None

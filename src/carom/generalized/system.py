@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -188,6 +189,12 @@ class GeneralizedSystem:
         """Set the initial coordinates and velocities, each (n,)."""
         q = checks.finite_array("position", position, (self.coordinates,))
         self.position, self.velocity = q, _rates(velocity, self.coordinates)
+
+    def _as_it_is(self) -> GeneralizedSystem:
+        """Return a copy that does not change when this system gets a contact or another state."""
+        made = copy(self)
+        made._contacts = list(self._contacts)
+        return made
 
     @property
     def coordinates(self) -> int:

@@ -19,10 +19,13 @@ LOOKS = 4  # parts in the time between two savings, about
 
 
 def finish(run, progress, keeper: Keeper | None, throw: bool):
-    """Run to the end and return the solution; with `throw` a run that failed raises `SimulationError`."""
+    """Run to the end and return the solution; with `throw` a run that failed raises `SimulationError`.
+
+    With `throw` a run that was interrupted raises `KeyboardInterrupt`, with the same attribute `solution`.
+    """
     total = run.steps
     report = reporter(progress, total, "step")
-    status = Status.SUCCESS
+    status, stopped = Status.SUCCESS, KeyboardInterrupt()
     try:
         for until in goals(lambda: run.steps_done, total, report is not None, keeper):
             status = run.go_on(until)
@@ -32,8 +35,8 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
                 break
             if keeper is not None and run.steps_done < total:
                 keeper.look()
-    except KeyboardInterrupt:
-        status = Status.INTERRUPTED
+    except KeyboardInterrupt as error:
+        status, stopped = Status.INTERRUPTED, error
     finally:
         close = getattr(report, "close", None)
         if close is not None:
@@ -49,11 +52,19 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
         if throw and solution.success:
             raise SimulationError(what, solution) from lost
         warnings.warn(what, RuntimeWarning, stacklevel=CALLER)
+    if throw and status is Status.INTERRUPTED:
+        raise interruption(solution.message, solution, stopped)
     if throw and not solution.success:
         raise SimulationError(solution.message, solution) from run.failure
     if solution.warnings and solution.success:
         warnings.warn(" ".join(solution.warnings), AccuracyWarning, stacklevel=CALLER)
     return solution
+
+
+def interruption(message: str, solution, error: KeyboardInterrupt) -> KeyboardInterrupt:
+    """Return the error of an interruption, with what was computed until then as its `solution`."""
+    error.args, error.solution = error.args or (message,), solution  # pyright: ignore[reportAttributeAccessIssue]
+    return error
 
 
 def goals(done, total: int, reports: bool, keeper: Keeper | None):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 
 from carom import checks
@@ -31,6 +33,13 @@ class Pairs:
         self.default: ContactLaw | None = None
         self.unsaid_default = True  # whether neither restitution nor friction of it was stated
         self._unsaid: set = set()  # pairs with a contact of which neither was
+
+    def copied(self) -> Pairs:
+        """Return a copy with the same pairs."""
+        made = copy(self)
+        for name in ("_own", "_ignored", "_unsaid"):
+            setattr(made, name, set(getattr(self, name)))
+        return made
 
     def check_new(self, body: Body, other: HalfSpace | StaticBody | Body) -> None:
         """Refuse a pair of a body with itself, and a pair that already has a contact."""

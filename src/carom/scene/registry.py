@@ -18,6 +18,13 @@ class Registry:
         self._parts = {}
         self._kinds = {}
 
+    def copied(self) -> Registry:
+        """Return a copy with the same parts."""
+        made = Registry()
+        made._parts = dict(self._parts)
+        made._kinds = {kind: list(parts) for kind, parts in self._kinds.items()}
+        return made
+
     def new(self, kind: type, name: str | None, default: str) -> tuple[int, str]:
         """Return the index and the name of the next part of a `kind`.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
@@ -417,6 +418,12 @@ class Scene(TouchingPairs):
         A contact is found as ``"die-ground"`` and as ``"ground-die"``.
         """
         return self._parts[name]
+
+    def _as_it_is(self) -> Scene:
+        """Return a copy with the same parts, which does not change when parts are added to this scene."""
+        made = copy(self)
+        made._parts, made._pairs = self._parts.copied(), self._pairs.copied()
+        return made
 
     def validate(self) -> None:
         """Check that the scene can start: it has bodies, and no body penetrates another one or a half-space.

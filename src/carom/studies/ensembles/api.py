@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import closing, suppress
+from functools import partial
 
 import numpy as np
 
 from carom import arguments, checks
-from carom.io.run_to_end import reporter
+from carom.io.run_to_end import interruption, reporter
 from carom.options import Options
 from carom.scene.scene import Scene
 from carom.status import MistakeWarning
@@ -82,7 +84,8 @@ def ensemble(
     observe : function, optional
         Function that is called with the `Solution` of each run, which has every step, and returns a dict of
         numbers or arrays; these are collected in `Ensemble.observed`. It makes each run slower, because a
-        Solution has to be made. For processes and clusters the function must be importable.
+        Solution has to be made. For processes and clusters the function must be importable. If it fails in the
+        first run that reaches its end, its error is raised; errors in later runs are in `Ensemble.failures`.
     executor : {"threads", "processes", "serial"}, Executor or Client
         Executor of the runs: threads of this process (default), processes, or one run after another; or a
         `concurrent.futures.Executor`, or a client of dask.distributed for many machines.
@@ -110,11 +113,8 @@ def ensemble(
     TypeError, ValueError
         If an argument has a wrong type or is outside its range, a name is unknown, a scene cannot start, or
         `save` has another ensemble. No run has started then.
-
-    Warns
-    -----
-    RuntimeWarning
-        If the call is interrupted (Ctrl-C): the runs that were made are returned.
+    KeyboardInterrupt
+        If the call is interrupted (Ctrl-C); its `solution` is the `Ensemble` of the runs that were made.
 
     Examples
     --------
@@ -166,23 +166,25 @@ def ensemble(
         np.zeros(count, dtype=bool) if store is None else store.read().outcomes["status"] != PENDING
     )
     report = reporter(progress, count, "run")
+    stopped = None
     try:
         _go(plan, inputs, done, chunk, executor, workers, store, parts, report)
-    except KeyboardInterrupt:
-        more = "; call again with the same arguments to continue" if store is not None else ""
-        warnings.warn(
-            f"interrupted after {int(done.sum())} of {count} runs{more}",
-            RuntimeWarning,
-            stacklevel=3,
-        )
+    except KeyboardInterrupt as error:
+        stopped = error
     finally:
         close = getattr(report, "close", None)
         if close is not None:
             close()
     if store is not None:
         whole = store.read()
-        return Ensemble(inputs, whole.outcomes, whole.observed, whole.failures, store.about, plan)
-    return _collect(plan, inputs, parts, count)
+        found = Ensemble(inputs, whole.outcomes, whole.observed, whole.failures, store.about, plan)
+    else:
+        found = _collect(plan, inputs, parts, count)
+    if stopped is not None:
+        more = "; call again with the same arguments to continue" if store is not None else ""
+        message = f"interrupted after {int(found.done.sum())} of {count} runs{more}"
+        raise interruption(message, found, stopped)
+    return found
 
 
 def _plan(scene, settings: Settings, inputs: dict[str, np.ndarray], observe):
@@ -191,6 +193,7 @@ def _plan(scene, settings: Settings, inputs: dict[str, np.ndarray], observe):
 
     if isinstance(scene, Scene):
         check_scene(scene, settings)
+        scene = scene._as_it_is()
         return Plan(scene, settings, find_targets(scene, inputs), len(scene.bodies), observe)
     values = {name: array[0] for name, array in inputs.items()}
     plain = {name: float(v) if np.ndim(v) == 0 else v for name, v in values.items()}
@@ -223,29 +226,44 @@ def _store(save, plan, inputs, chunk):
 def _go(plan, inputs, done, chunk, executor, workers, store, parts, report) -> None:
     """Make the remaining runs, part by part."""
     from carom.studies.ensembles.engines import each
-    from carom.studies.ensembles.plan import do
+    from carom.studies.ensembles.plan import STOPPED, do
 
     def tasks() -> Iterator[tuple]:
         for first in range(0, len(done), chunk):
             if not np.all(done[first : first + chunk]):
                 yield plan, first, {k: a[first : first + chunk] for k, a in inputs.items()}
 
-    if report is not None:
-        report(int(done.sum()), len(done))
-    for part in each(tasks(), do, executor, workers):
+    def take(part) -> None:
         if store is not None:
             store.write(part)
         else:
             parts.append(part)
-        done[part.first : part.first + len(part.outcomes)] = True
-        if report is not None:
-            report(int(done.sum()), len(done))
+        made = part.outcomes["status"] != PENDING
+        done[part.first : part.first + len(made)] = made
+        if not np.all(made):
+            raise KeyboardInterrupt
+
+    if report is not None:
+        report(int(done.sum()), len(done))
+    late: list = []
+    stop = partial(STOPPED.add, plan.token)
+    try:
+        with closing(each(tasks(), do, executor, workers, stop, late)) as found:
+            for part in found:
+                take(part)
+                if report is not None:
+                    report(int(done.sum()), len(done))
+    finally:
+        for part in late:
+            with suppress(KeyboardInterrupt):
+                take(part)
 
 
 def _collect(plan, inputs, parts, count) -> Ensemble:
     """Join the parts in the order of the runs."""
     from carom import __version__
     from carom.studies.ensembles.outcome import no_outcomes
+    from carom.studies.ensembles.plan import column
 
     outcomes, observed, failures = no_outcomes(count, plan.bodies), {}, {}
     for part in sorted(parts, key=lambda part: part.first):
@@ -253,9 +271,8 @@ def _collect(plan, inputs, parts, count) -> Ensemble:
         outcomes[rows] = part.outcomes
         failures.update(part.failures)
         for name, values in part.observed.items():
-            if name not in observed:
-                fill = np.nan if values.dtype.kind == "f" else 0
-                observed[name] = np.full((count, *values.shape[1:]), fill, values.dtype)
+            old = observed[name] if name in observed else column(count, values[0])
+            observed[name] = old.astype(np.result_type(old, values), copy=False)
             observed[name][rows] = values
     about = {"carom": __version__, "settings": repr(plan.settings)}
     return Ensemble(inputs, outcomes, observed, failures, about, plan)

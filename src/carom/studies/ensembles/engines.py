@@ -7,7 +7,7 @@ with its worker is submitted again; its results do not depend on the worker.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent import futures
 from contextlib import contextmanager
 from itertools import islice
@@ -71,30 +71,51 @@ def _at_once(function, *arguments) -> futures.Future:
     return done
 
 
-def each(tasks: Iterator[tuple], function: Callable, executor, workers: int | None) -> Iterator:
-    """Yield `function(*task)` for all tasks, in the order in which they are completed."""
-    with engine(executor, workers) as (submit, most):
-        running: dict[futures.Future, tuple[tuple, int]] = {}
+def each(
+    tasks: Iterator[tuple],
+    function: Callable,
+    executor,
+    workers: int | None,
+    stop: Callable[[], None],
+    late: list,
+) -> Generator:
+    """Yield `function(*task)` for all tasks, in the order in which they are completed.
 
-        def start(task: tuple, tried: int) -> None:
-            running[submit(function, *task)] = task, tried
+    At an interruption `stop` tells running tasks to end soon, and the results of those of this library's own
+    executors are appended to `late`.
+    """
+    running: dict[futures.Future, tuple[tuple, int]] = {}
+    try:
+        with engine(executor, workers) as (submit, most):
 
-        for task in islice(tasks, most):
-            start(task, 1)
-        while running:
-            finished, _ = futures.wait(running, return_when=futures.FIRST_COMPLETED)
-            for future in finished:
-                task, tried = running.pop(future)
-                result, error = _outcome(future)
-                if error is None:
-                    yield result
-                elif tried < TRIES and _lost(error):
-                    start(task, tried + 1)
-                else:
-                    _cancel(running)
-                    raise error
-            for task in islice(tasks, most - len(running)):
-                start(task, 1)
+            def start(task: tuple, tried: int) -> None:
+                running[submit(function, *task)] = task, tried
+
+            try:
+                for task in islice(tasks, most):
+                    start(task, 1)
+                while running:
+                    finished, _ = futures.wait(running, return_when=futures.FIRST_COMPLETED)
+                    for future in finished:
+                        task, tried = running.pop(future)
+                        result, error = _outcome(future)
+                        if error is None:
+                            yield result
+                        elif tried < TRIES and _lost(error):
+                            start(task, tried + 1)
+                        else:
+                            raise error
+                    for task in islice(tasks, most - len(running)):
+                        start(task, 1)
+            except BaseException:
+                stop()
+                _cancel(running)
+                raise
+    except (KeyboardInterrupt, GeneratorExit):
+        mine = running if isinstance(executor, str) else ()
+        found = [_outcome(future) for future in mine if not future.cancelled()]
+        late.extend(result for result, error in found if error is None)
+        raise
 
 
 def _outcome(future: futures.Future) -> tuple[object, Exception | None]:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import threading
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 
+from carom import checks
 from carom.run import Run
 from carom.scene.scene import Scene
+from carom.status import Status
 from carom.stepping.settings import Settings, check_scene
 from carom.studies.ensembles.again import Again
 from carom.studies.ensembles.outcome import REFUSED, End, end_of, no_outcomes, write
@@ -35,45 +37,102 @@ class Part(NamedTuple):
 
     first: int
     outcomes: np.ndarray
-    failures: dict[int, str]  # message of each run that did not reach its end
+    failures: dict[int, str]  # message of each run that failed, or was not observed
     observed: dict[str, np.ndarray]
 
 
 _here = threading.local()
+#: tokens of plans that were interrupted: their parts end early, with runs that are pending
+STOPPED: set[str] = set()
 
 
 def do(plan: Plan, first: int, values: dict[str, np.ndarray]) -> Part:
-    """Make the runs with the given values; the first of them has the number `first`."""
+    """Make the runs with the given values; the first of them has the number `first`.
+
+    After an interruption the remaining runs of the part are pending.
+    """
     runs = len(next(iter(values.values())))
     part, ends, failures = Part(first, no_outcomes(runs, plan.bodies), {}, {}), {}, {}
-    part.outcomes["status"] = REFUSED
     for k in range(runs):
         try:
-            ends[k] = one(plan, values, k, part)
+            found = one(plan, values, k, part)
+        except KeyboardInterrupt:
+            STOPPED.add(plan.token)
+            break
+        except ObserveError as error:
+            if first == 0 and not part.observed and error.end.status.ended:
+                raise error.reason from error.reason.__cause__  # the first run that ends decides
+            found, failures[k] = error.end, f"observe: {_said(error.reason)}"
         except Exception as error:  # after any error the other runs continue
-            failures[k] = f"{type(error).__name__}: {error}"
+            part.outcomes["status"][k], failures[k] = REFUSED, _said(error)
+            continue
+        ends[k] = found
     if ends:
         failures.update(write(ends, part.outcomes))
     part.failures.update({first + k: failures[k] for k in sorted(failures)})
     return part
 
 
+class ObserveError(Exception):
+    """An error of `observe`, the reason, after a run with this end."""
+
+    def __init__(self, end: End, reason: Exception):
+        super().__init__()
+        self.end, self.reason = end, reason
+
+
 def one(plan: Plan, values: dict[str, np.ndarray], k: int, part: Part) -> End:
     """Make run k of a part, and write what is observed of it."""
+    if plan.token in STOPPED:
+        raise KeyboardInterrupt
     run = begin(plan, values, k)
-    if len(run.now) != plan.bodies:
-        raise ValueError(f"scene must have {plan.bodies} bodies, as in run 0, got {len(run.now)}")
+    run.to_stop = lambda: plan.token in STOPPED
     status = run.go_on(run.steps)
+    if status is Status.INTERRUPTED:
+        raise KeyboardInterrupt
     end = end_of(run, status)
-    if plan.observe is None:
-        return end
-    for name, value in plan.observe(run.solution(status)).items():
-        value = np.asarray(value)
-        if name not in part.observed:
-            empty = np.nan if value.dtype.kind == "f" else np.zeros((), value.dtype)
-            part.observed[name] = np.full((len(part.outcomes), *value.shape), empty, value.dtype)
-        part.observed[name][k] = value
+    if plan.observe is not None:
+        try:
+            see(plan.observe, run.solution(status), k, part)
+        except Exception as error:
+            raise ObserveError(end, error) from error
     return end
+
+
+def _said(error: Exception) -> str:
+    return f"{type(error).__name__}: {error}"
+
+
+def see(observe: Callable, solution, k: int, part: Part) -> None:
+    """Write what is observed of run k of a part."""
+    found = checks.call("observe", observe, solution)
+    if not isinstance(found, Mapping) or not all(isinstance(name, str) for name in found):
+        raise TypeError(
+            "observe must return a dict of numbers or arrays by name, such as "
+            f'{{"height": 0.3}}, got {checks.shown(found)}'
+        )
+    for name, value in found.items():
+        value = np.asarray(value)
+        if value.dtype.kind not in "biufc":
+            raise TypeError(
+                f"observe must return numbers or arrays, got {checks.shown(found[name])} for {name!r}"
+            )
+        old = part.observed.get(name)
+        if old is None:
+            old = column(len(part.outcomes), value)
+        elif old.shape[1:] != value.shape:
+            raise ValueError(
+                f"observe must return arrays of one shape for {name!r}: {old.shape[1:]} as in an earlier run, "
+                f"got {value.shape}"
+            )
+        part.observed[name] = old.astype(np.result_type(old, value), copy=False)
+        part.observed[name][k] = value
+
+
+def column(runs: int, value: np.ndarray) -> np.ndarray:
+    """Return an array for a value of each run: NaN, or 0 where the value has no NaN."""
+    empty = np.nan if value.dtype.kind == "f" else np.zeros((), value.dtype)
+    return np.full((runs, *value.shape), empty, value.dtype)
 
 
 def begin(plan: Plan, values: dict[str, np.ndarray], k: int) -> Run:
@@ -82,6 +141,10 @@ def begin(plan: Plan, values: dict[str, np.ndarray], k: int) -> Run:
         scene = plan.scene(**{name: _plain(rows[k]) for name, rows in values.items()})
         if not isinstance(scene, Scene):
             raise TypeError(f"scene must return a carom.Scene, got {type(scene).__name__}")
+        if len(scene.bodies) != plan.bodies:
+            raise ValueError(
+                f"scene must have {plan.bodies} bodies, as in run 0, got {len(scene.bodies)}"
+            )
         check_scene(scene, plan.settings)
         return Run(scene, plan.settings)
     if getattr(_here, "token", None) != plan.token:

@@ -28,7 +28,8 @@ class Ensemble:
     observed : dict of (R, ...)
         The results of `observe`.
     failures : dict of int to str
-        The messages of runs that stopped before their end, or could not start, by the number of the run.
+        The messages of runs that stopped before their end, could not start, or could not be observed, by the
+        number of the run.
     about : dict
         Version and settings of the runs.
 
