@@ -19,9 +19,8 @@ from carom.geometry.rotation import cross
 
 LEVEL = 4.5e-5  # angle of two faces of which each can be the reference: cosines that differ by 1e-9
 CROSSES = 1e-6  # product of two sides by that of the sizes of the solids, from which on they have a normal
-ROUNDING = (
-    1e-12  # tolerance relative to the solid of the reference face: a corner on a side is kept
-)
+# tolerance relative to the solid of the reference face: a corner on a side is kept
+ROUNDING = 1e-12
 
 
 @inlined
@@ -97,11 +96,8 @@ def _normal(pair, ref, source, k, corners, height):
     On level faces a corner moves over the other face, and sides that cross determine it: bodies tip over edges.
     """
     s, owner, kind = pair.state, of.OF_B if ref == 1 else of.OF_A, pair.state.label[source, k] >> 60
-    n, m, rims = (
-        s.normal[ref],
-        s.normal[1 - ref],
-        pair.a.kind == CYLINDER or pair.b.kind == CYLINDER,
-    )
+    n, m = s.normal[ref], s.normal[1 - ref]
+    rims = pair.a.kind == CYLINDER or pair.b.kind == CYLINDER
     one, two = s.side[source, k], s.side[source, (k + corners - 1) % corners]
     i, j = max(one, two), -1 - min(one, two)  # sides of the incident face, of the reference
     angle = math.sqrt(max(0.0, 2.0 + 2.0 * (n[0] * m[0] + n[1] * m[1] + n[2] * m[2])))

@@ -23,14 +23,8 @@ UNUSED = {
     **{f"nuser_{what}": -1 for what in ("body", "jnt", "geom", "site", "cam", "tendon", "actuator", "sensor")},
 }  # fmt: skip
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
-NAMING = (
-    "name",
-    "class",
-    "childclass",
-    "key",
-    "value",
-    "file",
-)  # attributes that may be the word "nan"
+#: attributes that may be the word "nan"
+NAMING = ("name", "class", "childclass", "key", "value", "file")
 
 
 def check_model(root: ET.Element, what: str, folder: Path | None) -> None:

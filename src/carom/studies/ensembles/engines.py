@@ -87,26 +87,8 @@ def each(
     running: dict[futures.Future, tuple[tuple, int]] = {}
     try:
         with engine(executor, workers) as (submit, most):
-
-            def start(task: tuple, tried: int) -> None:
-                running[submit(function, *task)] = task, tried
-
             try:
-                for task in islice(tasks, most):
-                    start(task, 1)
-                while running:
-                    finished, _ = futures.wait(running, return_when=futures.FIRST_COMPLETED)
-                    for future in finished:
-                        task, tried = running.pop(future)
-                        result, error = _outcome(future)
-                        if error is None:
-                            yield result
-                        elif tried < TRIES and _lost(error):
-                            start(task, tried + 1)
-                        else:
-                            raise error
-                    for task in islice(tasks, most - len(running)):
-                        start(task, 1)
+                yield from _all(tasks, function, submit, most, running)
             except BaseException:
                 stop()
                 _cancel(running)
@@ -116,6 +98,29 @@ def each(
         found = [_outcome(future) for future in mine if not future.cancelled()]
         late.extend(result for result, error in found if error is None)
         raise
+
+
+def _all(tasks, function: Callable, submit, most: int, running: dict) -> Generator:
+    """Yield the results of all tasks, `most` of them `running` at a time; a lost one is submitted again."""
+
+    def start(task: tuple, tried: int) -> None:
+        running[submit(function, *task)] = task, tried
+
+    for task in islice(tasks, most):
+        start(task, 1)
+    while running:
+        finished, _ = futures.wait(running, return_when=futures.FIRST_COMPLETED)
+        for future in finished:
+            task, tried = running.pop(future)
+            result, error = _outcome(future)
+            if error is None:
+                yield result
+            elif tried < TRIES and _lost(error):
+                start(task, tried + 1)
+            else:
+                raise error
+        for task in islice(tasks, most - len(running)):
+            start(task, 1)
 
 
 def _outcome(future: futures.Future) -> tuple[object, Exception | None]:

@@ -104,7 +104,7 @@ def _said(error: Exception) -> str:
 
 
 def see(observe: Callable, solution, k: int, part: Part) -> None:
-    """Write what is observed of run k of a part."""
+    """Store the result of `observe` for run k of a part."""
     found = checks.call("observe", observe, solution)
     if not isinstance(found, Mapping) or not all(isinstance(name, str) for name in found):
         raise TypeError(
