@@ -274,7 +274,7 @@ def stick_where_slip_ends(model, data, k, h, still):
         size = model.system.bodies[group.points[0][i].a].extent
         allowed = REST * allowed_error(controls.rtol, controls.atol, size, 0.0)
         speed = math.hypot(group.v[U][3 * i + 1], group.v[U][3 * i + 2])
-        ends = controls.order > 0 and 0.5 * speed * time_to_stop(i, group) <= allowed
+        ends = controls.order > 0 and 0.5 * speed * abs(time_to_stop(i, group)) <= allowed
         ends = ends and h >= NEARLY * first_stop(model.system, active, closed_point)
         if ends or speed <= still:
             closed_point.stays, found = 1, True
