@@ -17,7 +17,7 @@ from carom.model.arrays import System
 STATES = 200  # default number of saved states after the first
 # longest step of a run with tolerances, relative to the time of a fall through the least size of a body. With
 # several bodies it is short, because nearness is checked once a step; one body has no neighbours
-ONE_BODY, SEVERAL_BODIES = 4.0, 0.1
+ONE_BODY, SEVERAL_BODIES = 4.0, 0.03
 PART = 0.1  # of a run with contacts: its longest step
 ALIKE = 1e-12  # relative error allowed when a duration is a whole number of spacings
 FEW = 1e4  # greatest number of steps by speed in a scene without gravity
