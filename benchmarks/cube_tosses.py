@@ -1,6 +1,6 @@
 """Whole tosses of a real cube, from flight to rest: simulated against motion capture.
 
-By default the first 24 of them, with fitted parameters; ``--data FILE`` reads another file, ``--fit`` fits anew.
+By default the first 24 of them, with fitted parameters; ``--data FILE`` reads another file, ``--fit`` fits.
 
 Data: the 285 tosses with even numbers of an acrylic cube at 148 Hz (ContactNets, Pfrommer, Halm and Posa
 2020; licence beside the file). Parameters are fitted only to these; the odd tosses are kept for a test.
