@@ -16,6 +16,7 @@ from carom.visual.films.models import Model, joined, model_of, models, rgb
 from carom.visual.plots.figure import bodies as named_bodies
 from carom.visual.plots.figure import need_bodies
 from carom.visual.surfaces import surface
+from carom.visual.viewer.planes import round_length
 
 BACKGROUND = rgb("#ffffff")
 PLANE, GRID, LINK = rgb("#ededed"), rgb("#cfcfcf"), rgb("#6b6b6b")
@@ -88,7 +89,7 @@ class Stage:
         light = light / np.linalg.norm(light) + 0.8 * up
         self.light = light / np.linalg.norm(light)
         flat = places.reshape(-1, 3)
-        self.spacing = _round(0.14 * self.length)
+        self.spacing = round_length(0.2 * self.length)
         self.planes = []
         for half_space in self.solution.scene.half_spaces:
             n = half_space.normal
@@ -253,9 +254,3 @@ def _steps(apart, directions, spacing: float) -> np.ndarray:
     """Return the displacement nearest to `apart` that moves a grid onto itself."""
     steps = [spacing * np.round(apart @ e / spacing) * e for e in directions]
     return np.sum(steps, axis=0)
-
-
-def _round(length: float) -> float:
-    """Return 1, 2 or 5 times a power of ten near a length."""
-    power = 10.0 ** np.floor(np.log10(length))
-    return float(power * min((1.0, 2.0, 5.0, 10.0), key=lambda f: abs(np.log(f * power / length))))
