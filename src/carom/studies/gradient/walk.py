@@ -83,7 +83,7 @@ class Walk:
             impact_time=self.times, impact_point=point, velocity_before=before,
             velocity_after=after, impulse=impulse, impact_error=self.errors,
             notes=tuple(self.notes), margins=tuple(margins), defect=self.defect, by="saltation",
-            _motion=Flights(self.knots, self.flies, float(self.solution.t[-1])),
+            _motion=Flights(*self.solution.t[[0, -1]].tolist(), self.knots, self.flies),
         )  # fmt: skip
 
     def lose(
