@@ -13,7 +13,7 @@ from carom import impact_layer, resolve_impact
 from carom.impact.geometry import NormalMotion
 from carom.paper.layer import first_impact, hht, least_steps
 from carom.paper.references import Bounce, die_after, die_impact
-from carom.paper.runs import FRICTIONS, STEP, die_run, sphere_run
+from carom.paper.runs import FRICTIONS, STEP, after_first_impact, die_run, sphere_run
 
 METHODS = ("paper", "rk4")
 ALPHAS = (0.0, 0.05, 0.1, 0.2, 0.3)
@@ -109,11 +109,6 @@ _STATE = ("v_x", "v_y", "v_z", "w_x", "w_y", "w_z")
 _UNITS = ("m/s",) * 3 + ("rad/s",) * 3
 
 
-def _after(run):
-    _, _, v, w = run.evaluate(run.impacts.time[0])
-    return np.concatenate([v[0], w[0]])
-
-
 def _planar():
     source = "Routh, closed form"
     for mu in FRICTIONS:
@@ -121,7 +116,10 @@ def _planar():
         runs = [die_run(mu, "planar", method) for method in METHODS]
         if mu == FRICTIONS[0]:
             yield _first("planar", runs)
-        exact, found = die_after("planar", mu), [_after(run) for run in runs]
+        exact, found = (
+            die_after("planar", mu),
+            [after_first_impact(run) for run in runs],
+        )
         for k in (0, 2, 4):
             values = tuple(state[k] for state in found)
             quantity = f"{name}: {_STATE[k]} after impact 1"
@@ -149,8 +147,11 @@ def _spatial():
         fine, default = die_run(mu, "spatial", layer_steps=FINE), die_run(mu, "spatial", "rk4")
         if mu == FRICTIONS[0]:
             yield _first("spatial", (fine, default))
-        exact, two = die_after("spatial", mu), _after(die_run(mu, "spatial"))
-        found = (_after(fine), _after(default))
+        exact, two = (
+            die_after("spatial", mu),
+            after_first_impact(die_run(mu, "spatial")),
+        )
+        found = (after_first_impact(fine), after_first_impact(default))
         for k in range(6):
             values = tuple(state[k] for state in found)
             quantity = f"{name}: {_STATE[k]} after impact 1, {FINE} spline steps"
