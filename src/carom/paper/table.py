@@ -11,6 +11,7 @@ import numpy as np
 
 from carom import impact_layer, resolve_impact
 from carom.impact.geometry import NormalMotion
+from carom.paper.figure import page, table
 from carom.paper.layer import first_impact, hht, least_steps
 from carom.paper.references import Bounce, die_after, die_impact
 from carom.paper.runs import FRICTIONS, STEP, after_first_impact, die_run, sphere_run
@@ -175,24 +176,6 @@ _HEAD = (
 )  # fmt: skip
 _HHT_HEAD = ("alpha", "first completing steps", *(f"error at {n} steps" for n in COUNTS))
 
-_PAGE = """# Numbers
-
-{table}
-
-Errors are absolute. `method="paper"`: three fields, return map, boundary layer by two cubic-spline
-steps unless the row says otherwise; `rk4` is the default, with impacts solved to round-off.
-
-## HHT-alpha in the boundary layer
-
-First impact of the sphere, e = 1, delta = 0.8; greatest error of the velocity at its steps, divided
-by the speed of entry (two spline steps: exact). The count at which it first completes is computed.
-
-{hht}
-
-From alpha = 0.1 on the first count that completes does so by a jump over the whole layer in one
-step, with an error above 100 %; 6 and 7 steps fail again, and proper runs begin with 8.
-"""
-
 
 def write(folder: Path) -> list[Path]:
     """Write table.csv, hht.csv and table.md."""
@@ -211,14 +194,9 @@ def write(folder: Path) -> list[Path]:
     for path, content in ((files[0], [_HEAD, *full]), (files[1], [_HHT_HEAD, *found])):
         with path.open("w", newline="", encoding="utf-8") as file:
             csv.writer(file).writerows(content)
-    text = _PAGE.format(table=_table(_HEAD, short), hht=_table(_HHT_HEAD, hht_short))
+    text = page("table", table=table(_HEAD, short), hht=table(_HHT_HEAD, hht_short))
     files[2].write_text(text, encoding="utf-8")
     return files
-
-
-def _table(head, body) -> str:
-    lines = [head, ["---"] * len(head), *body]
-    return "\n".join("| " + " | ".join(str(cell) for cell in cells) + " |" for cells in lines)
 
 
 def _full(value) -> str:
