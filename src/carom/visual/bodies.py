@@ -6,7 +6,7 @@ ball or disc that rolls, rods to its joints, or else the ellipsoid of its inerti
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -35,7 +35,7 @@ class Part(NamedTuple):
     triangles: np.ndarray  #: (F, 3) counter-clockwise from outside
     bodies: list[int]  #: -1 for a static one
     look: str  #: "solid", "round" (with a pattern), "joint", "pip" or "static"
-    shape: object = None  #: shape of which it is the whole surface
+    shape: Any = None  #: shape of which it is the whole surface
 
 
 class Link(NamedTuple):

@@ -123,7 +123,7 @@ class Pieces:
             velocity_after=point["after"], impulse=point["impulse"],
             impact_error=np.array(self.errors, dtype=float)[order], notes=tuple(self.notes),
             margins=(), defect=self.error, by="differences",
-            _motion=Steps(*times[[0, -1]].tolist(), times, self.X),
+            _motion=Steps(float(times[0]), float(times[-1]), times, self.X),
         )  # fmt: skip
 
     def bring_to_joints(self) -> None:
