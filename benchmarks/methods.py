@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 
 import carom
-from carom.bench.measure import TOLERANCE, ends_only
+from carom.bench.measure import TOLERANCE, saving
 from common import pendulum_scene, report, seconds, spread
 
 LINKS, DURATION, ALLOWED = 3, 2.0, 1e-6
@@ -17,14 +17,14 @@ LONG, STEP = 1000.0, 0.01
 
 def error_of(method: str, known: np.ndarray, step: float) -> float:
     """Return the error of the last centres [m] with a step, or a tolerance; infinite where the run fails."""
-    how = ends_only(step, method, DURATION)
+    how = saving(step, method, DURATION)
     end = carom.simulate(pendulum_scene(LINKS), DURATION, throw=False, **how)
     return float(np.max(np.abs(end.position[-1] - known))) if end.t[-1] == DURATION else np.inf
 
 
 def cost(method: str, step: float) -> str:
     """Return the time of a run in ms."""
-    scene, how = pendulum_scene(LINKS), ends_only(step, method, DURATION)
+    scene, how = pendulum_scene(LINKS), saving(step, method, DURATION)
 
     def run():
         carom.simulate(scene, DURATION, **how)

@@ -37,7 +37,7 @@ def test_spin_tensor(q, J):
 def test_arrays_need_no_compiler():
     # Scenes and loaded results must not wait for Numba, nor for SciPy.
     code = (
-        "import sys; from carom.geometry import connection, manifold, quaternion, spline;"
+        "import sys; from carom.geometry import attitude, quaternion, spline;"
         "sys.exit('numba' in sys.modules or 'scipy' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from mechanism_scenes import orders
+from multipliers import applied_force
 
 import carom
 from carom import Scene, forces
-from carom.dynamics.multipliers import applied_force
 
 
 def mounted(**given):

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from dense_reference import solve
 from mechanism_scenes import G, chain, four_bar, matrix, orders, pendulum
+from multipliers import second_order_multipliers
 from random_forests import MORE, build, plan
 
 import carom
 from carom import GROUND, Options, Scene, forces, joints
-from carom.dynamics.multipliers import second_order_multipliers
 
 #: methods of order 2 miss the energy by 1e-4 to 1e-3 of it at these steps, and say so
 pytestmark = pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")

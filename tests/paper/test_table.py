@@ -79,14 +79,14 @@ def test_horizontal_velocity_reverses():
 def test_slip_of_the_spatial_die_stops_only_above_the_limit():
     """What the page says of Fig. 6b: 0.497453 holds the corner; outgoing direction below it."""
     import carom
-    from carom.paper.spatial import invariant_rays, stick_limit
+    from carom.impact.slip_directions import critical_friction, invariant_directions
 
     record = die_run(0.2, "spatial").impacts[0]
     W, u = record.inverse_mass, record.relative_velocity_before
-    assert stick_limit(W) == pytest.approx(0.497453, abs=1e-6)
+    assert critical_friction(W) == pytest.approx(0.497453, abs=1e-6)
     for mu, sticks in ((0.05, False), (0.2, False), (0.6, True)):
         assert ("stick" in carom.resolve_impact(W, u, mu, 0.5).phases) == sticks
     for mu in FRICTIONS:
-        rays = invariant_rays(W, mu)
-        assert sorted(grows for _, grows in rays) == [False, True]
-        assert [np.cos(2 * angle) for angle, _ in rays] == pytest.approx([0.0, 0.0], abs=1e-9)
+        rays = invariant_directions(W, mu)
+        assert sorted(rays.outgoing) == [False, True]
+        assert np.cos(2 * rays.angle) == pytest.approx([0.0, 0.0], abs=1e-9)

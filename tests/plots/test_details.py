@@ -8,8 +8,9 @@ from carom import GROUND, joints
 from carom.geometry import quaternion
 from carom.scene.colors import hex_color
 from carom.studies.ensembles.dice import face_up
-from carom.visual.details import is_die, pins, pip_colour, pips
-from carom.visual.films.models import models, rgb, split
+from carom.visual.bodies import parts_of, pins
+from carom.visual.dice import is_die, pip_colour, pips
+from carom.visual.films.models import model_of, models, rgb, split
 from carom.visual.plots.paths import _plane
 from carom.visual.viewer.page import page_text
 from carom.visual.viewer.show import show_of
@@ -71,7 +72,7 @@ def test_colours_are_kept_in_files_and_shown(tmp_path):
     solution.save(tmp_path / "run.nc")
     assert carom.Solution.load(tmp_path / "run.nc").scene["die"].color == "#dc143c"
     assert '"bodies":["#dc143c"]' in page_text(show_of(solution)).replace(" ", "")
-    (model,) = models(solution.scene, 1.0)
+    model, _ = models(solution.scene, 1.0)
     assert np.array_equal(
         np.unique(model.colours, axis=0), np.unique([rgb("#dc143c"), rgb("#ffffff")], axis=0)
     )
@@ -145,7 +146,7 @@ def test_a_view_fits_what_moves():
 def test_large_triangles_are_split():
     scene = carom.Scene()
     scene.add_body(carom.Box(4, 2, 1), mass=1.0)
-    (whole,) = models(scene, 1.0)
+    whole = model_of(parts_of(scene, 1.0)[0])
     fine = split(whole, 0.7)
     area = [
         0.5 * np.linalg.norm(np.cross(c[:, 1] - c[:, 0], c[:, 2] - c[:, 0]), axis=1)

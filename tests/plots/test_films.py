@@ -7,10 +7,10 @@ import pytest
 from PIL import Image
 
 import carom
+from carom.geometry.frames import pair_axes
 from carom.visual.films import still
 from carom.visual.films.camera import axes_of, fitted
 from carom.visual.films.film import frame_times
-from carom.visual.films.marks import pair_axes
 from carom.visual.films.models import Model
 from carom.visual.films.raster import Buffer, paint, shade
 from carom.visual.films.stage import Stage

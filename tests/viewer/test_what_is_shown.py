@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 
 import carom
 from carom.geometry import quaternion
-from carom.visual.viewer import frames, solids, strikes
-from carom.visual.viewer.grids import grid_lines, round_length
+from carom.visual import bodies
+from carom.visual.viewer import frames, planes, strikes
+from carom.visual.viewer.planes import grid_lines, round_length
 from carom.visual.viewer.show import playing_speed, show_of
 from files.scenes import pile
 from simulate.scenes import G
@@ -61,7 +62,7 @@ def test_a_body_without_a_shape_is_the_ellipsoid_of_its_inertia():
     inertia = turn @ np.diag(0.4 * np.array([13.0, 10.0, 5.0])) @ turn.T  # m = 2; a, b, c = 1, 2, 3
     scene = carom.Scene()
     scene.add_body(mass=2.0, inertia=inertia)
-    (part,) = solids.parts_of(scene, 1.0)
+    (part,) = bodies.parts_of(scene, 1.0)
     local = part.vertices @ turn / [1.0, 2.0, 3.0]
     assert np.allclose(np.linalg.norm(local, axis=1), 1.0, atol=1e-12)
     a, b, c = part.vertices[part.triangles].transpose(1, 0, 2)
@@ -77,13 +78,13 @@ def test_rods_reach_from_the_mass_centre_to_the_hinges():
     arm = scene.add_body(mass=1, inertia=(1, 1, 1), position=(1, 2, 0), orientation=turn)
     frame = ((0, 1, 0), (1, 0, 0, 0)), ((-1, 0, 0), (1, 0, 0, 0))
     scene.add_joint(hinge, rod, arm, parent_frame=frame[0], child_frame=frame[1])
-    parts = solids.parts_of(scene, 1.0)
+    parts = bodies.parts_of(scene, 1.0)
     reach = {b: np.vstack([p.vertices for p in parts if b in p.bodies]) for b in (0, 1)}
-    thick = solids.ROD
+    thick = bodies.ROD
     for b, anchor in ((0, (-1, 0, 0)), (0, (0, 1, 0)), (1, (-1, 0, 0))):
         away = np.linalg.norm(reach[b] - anchor, axis=1)
         assert np.sum(away < thick * 1.001) > 20  # the ball of the joint
-    assert solids.size_of(solids.outline_of(scene, rod)) == 1.0
+    assert bodies.outline_of(scene, rod).radius == 1.0
 
 
 def test_the_place_is_the_box_of_all_that_is_reached(swung):
@@ -101,18 +102,18 @@ def test_springs_and_rods_join_their_anchors():
     one = scene.add_body(carom.Sphere(0.1), mass=1, position=(1, 2, 3), orientation=turn)
     scene.add_force(carom.forces.Spring(5.0, (0, 0, 4), (1, 2, 3.1)), one)
     scene.add_joint(carom.joints.Distance((0, 0, 0), (1, 2.1, 3)), carom.GROUND, one)
-    spring, rod = solids.links_of(scene)
+    spring, rod = bodies.links_of(scene)
     assert (spring.kind, rod.kind) == ("spring", "rod")
     for link, end in ((spring, (1, 2, 3.1)), (rod, (1, 2.1, 3))):
         place = one.position + quaternion.rotate(turn, link.child_anchor)
         assert np.allclose(place, end, atol=1e-15)
         assert link.parent == -1
-    assert np.array_equal(solids.ends_on_ground(spring)[0], (0, 0, 4))
+    assert np.array_equal(bodies.ground_points(scene), [(0, 0, 4), (0, 0, 0)])
 
 
 def test_equal_shapes_are_one_part():
     scene = pile(4)
-    (part,) = solids.parts_of(scene, 1.0)
+    (part,) = bodies.parts_of(scene, 1.0)
     assert (part.bodies, part.look) == ([0, 1, 2, 3], "round")
 
 
@@ -121,9 +122,9 @@ def test_half_spaces_end_at_walls():
     scene = pile(3)
     position = np.array([body.position for body in scene.bodies])[None]
     place = frames.Place(position[0, 1], 1.0, np.array([0, 0, 1.0]), np.array([0.6, -0.8, 0]), 0.3)
-    planes = solids.planes_of(scene, place, position)
-    assert len(planes) == 3
-    for plane in planes:
+    drawn = planes.planes_of(scene, place, position)
+    assert len(drawn) == 3
+    for plane in drawn:
         assert np.all(plane.corners >= -1e-12)
         own = next(h for h in scene.half_spaces if h.name == plane.name)
         assert np.allclose((plane.corners - own.point) @ own.normal, 0.0, atol=1e-12)
@@ -149,7 +150,7 @@ def test_a_cut_leaves_what_is_in_front(seed):
     angles = np.sort(rng.uniform(0, 2 * np.pi, 6))
     up, corners = np.array([0, 0, 1.0]), np.stack([np.cos(angles), np.sin(angles), 0 * angles], 1)
     point, normal = rng.normal(size=3) * 0.4, rng.normal(size=3)
-    front, back = (solids._cut(corners, point, s * normal) for s in (1, -1))
+    front, back = (planes._cut(corners, point, s * normal) for s in (1, -1))
     assert np.all((front - point) @ normal >= -1e-9)
     assert abs(area(front, up) + area(back, up) - area(corners, up)) < 1e-9
 

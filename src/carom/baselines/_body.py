@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from carom import checks
+from carom.geometry.frames import contact_axes
 
 _TIE = 1e-9  # points whose heights differ by less than this part of the size strike together
 
@@ -56,15 +57,6 @@ def read_scene(scene) -> tuple[OneBody, Any]:
         gravity=np.array(scene.gravity, dtype=np.float64),
     )
     return system, body
-
-
-def contact_axes(normal) -> np.ndarray:
-    """Return rows n, t1, t2: t1 is the world axis x (or y, if n is near x) made normal to n."""
-    n = normal / np.linalg.norm(normal)
-    along = np.eye(3)[0 if abs(n[0]) < 0.9 else 1]
-    t1 = along - (along @ n) * n
-    t1 /= np.linalg.norm(t1)
-    return np.array([n, t1, np.cross(n, t1)])
 
 
 def lowest_point(system: OneBody, x, R) -> tuple[float, np.ndarray]:

@@ -21,7 +21,7 @@ import numpy as np
 
 from carom import checks
 from carom.baselines.hht import newmark_constants
-from carom.baselines.layer_exact import layer_constants, layer_motion
+from carom.baselines.layer_exact import checked_layer
 
 _MOST_INTERVALS = 3  # a run still in the layer after this multiple of the exact duration is stopped
 
@@ -93,14 +93,15 @@ def hht_alpha_layer(
     LayerRun
         The passage. If the method fails, ``completed`` is False and ``message`` has the reason.
     """
-    v0, e, b, reach, compression = layer_constants(speed, restitution, width, penetration)
+    exact = checked_layer(speed, restitution, width, penetration)
+    v0, e, b = exact.approach_speed, exact.restitution, exact.width
     m = checks.scale("mass", mass, "kg")
     steps = checks.integer("steps", steps, least=1, most=100_000)
     tolerance = checks.number("tolerance", tolerance, above=0.0, below=1.0)
     max_iterations = checks.integer("max_iterations", max_iterations, least=1, most=10_000)
     alpha, beta, gamma = newmark_constants(alpha)
-    h = compression * (1.0 + 1.0 / e) / steps
-    press = v0 * v0 / (2.0 * reach)
+    h = (exact.compression_time + exact.restitution_time) / steps
+    press = exact.acceleration
 
     x, v, k, message, iterations = b, -v0, press, "", []
     a = v * v / x + k * x / b
@@ -135,8 +136,7 @@ def hht_alpha_layer(
                 message = f"The run was still in the layer after {number} steps."
     t, gap, rate, force = np.array(saved).T
     completed = x >= b and len(saved) > 1
-    exact = layer_motion(t, v0, e, width=b, penetration=penetration)[1]
-    error = float(np.max(np.abs(rate - exact))) / v0 if completed else np.inf
+    error = float(np.max(np.abs(rate - exact.x_rate(t)))) / v0 if completed else np.inf
     return LayerRun(
         t, gap, rate, b * rate / gap, force, completed, message, np.array(iterations, int), error
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom import checks
+from carom.impact.geometry import NormalMotion
 
 
 def layer_motion(time, speed, restitution, *, width, penetration):
@@ -37,27 +38,21 @@ def layer_motion(time, speed, restitution, *, width, penetration):
         Gap coordinate [m] and its rate xdot [m/s].
     """
     t = checks.real_array("time", time, "(K,)")
-    v0, e, b, reach, compression = layer_constants(speed, restitution, width, penetration)
+    motion = checked_layer(speed, restitution, width, penetration)
     with np.errstate(over="ignore", invalid="ignore"):
-        z_c = t / compression
-        z_r = (t - compression) * e / compression
-        s = np.where(z_c < 1.0, -reach * (1.0 - (1.0 - z_c) ** 2), -reach * (1.0 - z_r**2))
-        u = np.where(z_c < 1.0, -v0 * (1.0 - z_c), e * v0 * z_r)
-        x = b * np.exp(s / b)
-        velocity = u * x / b
+        x, velocity = motion.x(t), motion.x_rate(t)
     if not np.all(np.isfinite(velocity)):
         raise ValueError(
-            f"time must be finite and near the impact, which at speed {v0:g} ends after "
-            f"{compression * (1 + 1 / e):g} s, got {checks.shown(time)}"
+            f"time must be finite and near the impact, which at speed {motion.approach_speed:g} ends after "
+            f"{motion.compression_time + motion.restitution_time:g} s, got {checks.shown(time)}"
         )
     return x, velocity
 
 
-def layer_constants(speed, restitution, width, penetration):
-    """Return checked ``v0, e, b``, the reach ``b l`` [m] and the compression time ``T_c`` [s]."""
+def checked_layer(speed, restitution, width, penetration) -> NormalMotion:
+    """Return the motion through the layer of checked numbers."""
     v0, b = checks.scale("speed", speed, "m/s"), checks.scale("width", width, "m")
     checks.number("restitution", restitution, above=0.0, most=1.0)
     checks.number("penetration", penetration, above=0.0, below=1.0)
     e, delta = checks.scale("restitution", restitution), checks.scale("penetration", penetration)
-    reach = -b * np.log1p(-delta)
-    return v0, e, b, float(reach), float(2.0 * reach / v0)
+    return NormalMotion(v0, e, b, delta)

@@ -20,6 +20,7 @@ from carom import checks
 from carom.baselines._body import OneBody, contact_jacobian, lowest_point, read_scene
 from carom.baselines.hht import MOST_STEPS
 from carom.baselines.one_contact import solve_one_contact
+from carom.geometry import quaternion
 
 
 @dataclass(frozen=True)
@@ -85,7 +86,7 @@ def moreau_jean(scene, duration, *, step, theta=0.5) -> MoreauJeanRun:
     system, body = read_scene(scene)
     x = np.array(body.position, dtype=np.float64)
     Q = np.array(body.orientation, dtype=np.float64)
-    R = _rotation(Q)
+    R = quaternion.matrix(Q)
     v = np.array([*body.velocity, *(R.T @ np.asarray(body.angular_velocity, dtype=np.float64))])
     inverse = np.zeros((6, 6))
     inverse[:3, :3] = np.eye(3) / system.mass
@@ -105,7 +106,7 @@ def _step(system: OneBody, inverse, x, Q, v, h, theta):
     """Return x, Q, v and the contact impulse after one step."""
     v1 = np.array([*(v[:3] + h * system.gravity), *_free_spin(system.inertia, v[3:], h, theta)])
     p = np.zeros(3)
-    x_mid, R_mid = x + 0.5 * h * v[:3], _rotation(_turned(Q, 0.5 * h * v[3:]))
+    x_mid, R_mid = x + 0.5 * h * v[:3], quaternion.matrix(_turned(Q, 0.5 * h * v[3:]))
     gap, arm = lowest_point(system, x_mid, R_mid)
     if gap <= 0.0:
         G = contact_jacobian(system, R_mid, arm)
@@ -134,23 +135,13 @@ def _free_spin(J, W, h, theta):
 
 def _turned(Q, angle):
     """Return the quaternion Q after a rotation by a vector in body axes."""
-    from carom.geometry import rotation
-
-    turn = rotation.exp(angle[0], angle[1], angle[2])
-    return np.array(rotation.normalize(*rotation.multiply(Q[0], Q[1], Q[2], Q[3], *turn)))
-
-
-def _rotation(Q):
-    """Return the rotation matrix (3, 3) of a unit quaternion."""
-    from carom.geometry import rotation
-
-    return np.array(rotation.matrix(Q[0], Q[1], Q[2], Q[3])).reshape(3, 3)
+    return quaternion.normalize(quaternion.multiply(Q, quaternion.exp(angle)))
 
 
 def _run(system: OneBody, saved) -> MoreauJeanRun:
     """Return the saved states in the shapes of a solution, with gap and energies."""
     t, x, Q, v, p = (np.array(column) for column in zip(*saved))
-    R = np.array([_rotation(q) for q in Q])
+    R = quaternion.matrix(Q)
     W = v[:, 3:]
     kinetic = 0.5 * system.mass * (v[:, :3] ** 2).sum(axis=1)
     kinetic = kinetic + 0.5 * np.einsum("ti,ij,tj->t", W, system.inertia, W)

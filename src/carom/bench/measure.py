@@ -93,11 +93,11 @@ def stepper(scene, step: float, **how) -> Callable[[int], Any]:
 TOLERANCE = "tolerance"  # in place of a method: the given step is `rtol`
 
 
-def ends_only(step: float, method: str, duration: float) -> dict[str, Any]:
-    """Return the settings of a run with a step or a tolerance that saves only the first and last state."""
+def saving(step: float, method: str, duration: float, saves: int = 1) -> dict[str, Any]:
+    """Return the settings of a run with a step or a tolerance that saves the start and so many states."""
     if method == TOLERANCE:
-        return {"rtol": step, "save_at": duration}
-    return {"step": step, "method": method, "save_every": 10**9}
+        return {"rtol": step, "save_at": duration / saves}
+    return {"step": step, "method": method, "save_every": max(1, round(duration / saves / step))}
 
 
 def peer(name: str) -> ModuleType | None:

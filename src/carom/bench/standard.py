@@ -57,21 +57,21 @@ class Row(NamedTuple):
         return told
 
 
-def _whole(task: Task, rounds: int) -> Side:
-    """Return the time of the whole work [ms]."""
-    return Side(spread([1e3 * t for t in seconds(task.run, rounds)]), task.error())
+def _of(module, what: str, step: float, unit: str, of: str, name: str = "", **more) -> Problem:
+    """Return a problem of one of the files in `problems`, with the same step for both tools.
 
+    Times are of its steps, if it counts them, otherwise of the whole work.
+    """
+    scale = {"ms": 1e3, "us": 1e6}[unit]
 
-def _step(task: Task, rounds: int) -> Side:
-    """Return the time of a step [us]."""
-    return Side(spread([1e6 * t / task.count for t in task.times(rounds)]), task.error())
+    def side(task: Task, rounds: int) -> Side:
+        times = [scale * t / max(1, task.count) for t in task.times(rounds)]
+        return Side(spread(times), task.error())
 
-
-def _of(module, how, step: float, what: str, unit: str, name: str = "", **more) -> Problem:
-    """Return a problem of one of the files in `problems`, with the same step for both tools."""
     return Problem(
-        name or module.NAME, what, unit, lambda rounds: how(module.ours(step, **more), rounds),
-        lambda peer, rounds: how(module.mujoco(peer, step, **more), rounds), module.ERROR,
+        name or module.NAME, what, f"{unit} a {of}",
+        lambda rounds: side(module.ours(step, **more), rounds),
+        lambda peer, rounds: side(module.mujoco(peer, step, **more), rounds), module.ERROR,
     )  # fmt: skip
 
 
@@ -122,15 +122,15 @@ def _corner() -> Problem:
 def problems() -> tuple[Problem, ...]:
     """Return the standard set."""
     chains = (
-        _of(chain, _step, 2e-3, f"chain of {n} rods, h = 2 ms", "us a step", f"chain_{n}", links=n)
+        _of(chain, f"chain of {n} rods, h = 2 ms", 2e-3, "us", "step", f"chain_{n}", links=n)
         for n in (1, 10, 100)
     )
     return (
-        _of(sphere, _whole, 1e-3, "bouncing ball, e = 1, 60 s, h = 1 ms", "ms a run"),
-        _of(planar_die, _whole, 1e-3, "planar die, 0.6 s, h = 1 ms", "ms a throw"),
+        _of(sphere, "bouncing ball, e = 1, 60 s, h = 1 ms", 1e-3, "ms", "run"),
+        _of(planar_die, "planar die, 0.6 s, h = 1 ms", 1e-3, "ms", "throw"),
         _throws(), _free_step(), _corner(), *chains,
-        _of(four_bar, _step, 2.5e-3, "four-bars (A02), 10 s, h = 2.5 ms", "us a step"),
-        _of(stack, _step, 1e-3, "stack of 20 boxes slides, h = 1 ms", "us a step"),
+        _of(four_bar, "four-bars (A02), 10 s, h = 2.5 ms", 2.5e-3, "us", "step"),
+        _of(stack, "stack of 20 boxes slides, h = 1 ms", 1e-3, "us", "step"),
     )  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -69,8 +70,9 @@ def facts(solution, file: Path) -> dict[str, Any]:
         "gravity": made.gravity,
         "bodies": [
             {
-                "name": body.name, "shape": _shape(body.shape), "mass": body.mass,
-                "position": solution.position[-1, k], "speed": _length(solution.velocity[-1, k]),
+                "name": body.name, "mass": body.mass,
+                "shape": "no shape" if body.shape is None else repr(body.shape),
+                "position": solution.position[-1, k], "speed": math.hypot(*solution.velocity[-1, k]),
             }
             for k, body in enumerate(made.bodies)
         ],
@@ -87,14 +89,6 @@ def _summary(made) -> str:
     if made._pairs.default is not None:
         there.append("all pairs may touch")
     return ", ".join(there)
-
-
-def _shape(shape) -> str:
-    return "no shape" if shape is None else repr(shape)
-
-
-def _length(vector) -> float:
-    return float(sum(x * x for x in vector) ** 0.5)
 
 
 def _impacts(solution) -> dict[str, Any]:

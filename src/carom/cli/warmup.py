@@ -135,25 +135,18 @@ def work() -> list[tuple[str, str, Callable[[], object]]]:
 
 def scenes() -> dict:
     """Return a small scene of each kind, with an impact within 0.05 s."""
-    return {"free": _free(), "tree": _linked(False), "loops": _linked(True)}
+    return {"free": _thrown(), "tree": _linked(False), "loops": _linked(True)}
 
 
 def contact_scenes() -> dict:
     """Return scenes with persistent contact, and the duration of each [s]."""
-    return {"rest": (_free(), 0.4), "stack": (_pile(2), 0.2), "heap": (_pile(9), 0.2)}
+    return {"rest": (_thrown(), 0.4), "stack": (_pile(2), 0.2), "heap": (_pile(9), 0.2)}
 
 
-def _free():
-    import carom
+def _thrown():
+    from carom.bench.problems import planar_die
 
-    scene = carom.Scene()
-    ground = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
-    die = scene.add_body(
-        shape=carom.Box(0.02, 0.02, 0.02), mass=0.016, position=(0, 0, 0.03),
-        velocity=(0.5, 0, -0.5), angular_velocity=(10, 10, 0),
-    )  # fmt: skip
-    scene.add_contact(die, ground, restitution=0.5, friction=0.2)
-    return scene
+    return planar_die.scene(0.03, spin=(10, 10, 0))
 
 
 def _pile(count: int):

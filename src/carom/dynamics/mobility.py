@@ -70,7 +70,6 @@ class Mobility:
 
 def mobility(scene) -> Mobility:
     """Return the degrees of freedom of a scene and which rows are redundant."""
-    from carom.dynamics.multipliers import mass_matrix
     from carom.dynamics.reactions import start_errors
     from carom.model.compile import compile_scene
     from carom.model.records import new_work
@@ -103,6 +102,12 @@ def mobility(scene) -> Mobility:
         },
         remarks=remarks(scene),
     )
+
+
+def mass_matrix(system) -> np.ndarray:
+    """Return the diagonal of the metric (N, 6) in the left-invariant frame."""
+    bodies = system.bodies
+    return np.concatenate([np.repeat(bodies.mass[:, None], 3, axis=1), bodies.inertia], axis=1)
 
 
 def dense_rows(system, start, work) -> tuple[np.ndarray, np.ndarray]:

@@ -1,7 +1,5 @@
-"""Pure mathematics: rotations, autoparallels, transport, connection, splines.
+"""Pure mathematics: rotations, the differential of their exponential, splines of states.
 
-Kernels for the step loop: `rotation`, `tangent` (one rotation, in scalars) and `autoparallel` (all
-bodies, writing into arrays). NumPy, free of Numba, for scenes, results and the mathematics:
-`quaternion`, `differential`, `spline`, `inertia`, `connection`; and `manifold`, an object that checks its
-arguments and calls the kernels of `autoparallel`.
+Kernels for the step loop: `rotation` (one rotation, in scalars). NumPy, free of Numba, for scenes and results:
+`quaternion`, `attitude`, `frames`, `differential`, `spline`.
 """

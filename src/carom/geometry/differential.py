@@ -59,12 +59,6 @@ def matrix(a: ArrayLike) -> Array:
     return np.swapaxes(apply(a[..., None, :], np.eye(3)), -1, -2)
 
 
-def inverse_matrix(a: ArrayLike) -> Array:
-    """Return the matrices T(a)^-1, shape (..., 3, 3), of rotation vectors a (..., 3) [rad]."""
-    a = shaped("a", a, 3)
-    return np.swapaxes(apply_inverse(a[..., None, :], np.eye(3)), -1, -2)
-
-
 def _coefficients(t2: Array) -> tuple[Array, Array]:
     """Return (1 - cos t)/t^2 and (t - sin t)/t^3: below t = 1 the series to t^16."""
     near, far = np.minimum(t2, 1.0), np.maximum(t2, 1.0)

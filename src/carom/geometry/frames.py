@@ -24,3 +24,11 @@ def triad(axis: np.ndarray) -> np.ndarray:
 def contact_axes(normal: np.ndarray) -> np.ndarray:
     """Return rows n, t1, t2: t1 is the world axis least along n (x before y), made tangent; t2 = n x t1."""
     return np.ascontiguousarray(triad(normal).T)
+
+
+def pair_axes(normal: np.ndarray) -> np.ndarray:
+    """Return rows n, t1, t2 of a contact of two bodies: t1 is world x made tangent, or y if n is near x."""
+    along = _AXES[0 if abs(normal[0]) < 0.8 else 1]
+    first = along - (along @ normal) * normal
+    first /= np.linalg.norm(first)
+    return np.stack([normal, first, np.cross(normal, first)])

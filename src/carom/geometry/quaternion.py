@@ -174,16 +174,3 @@ def interpolate(q0: ArrayLike, q1: ArrayLike, s: ArrayLike) -> Array:
     """
     s = np.asarray(s, dtype=np.float64)[..., None]
     return normalize(multiply(q0, exp(s * between(q0, q1))))
-
-
-def unwrap(q: ArrayLike, axis: int = 0) -> Array:
-    """Return q (..., 4) with signs chosen so that neighbours along `axis` are nearest.
-
-    The rotations stay the same; their components become continuous along a history (T, N, 4).
-    """
-    q = np.moveaxis(shaped("q", q, 4), axis, 0)
-    flips = np.sum(q[1:] * q[:-1], axis=-1) < 0.0
-    signs = np.cumprod(np.where(flips, -1.0, 1.0), axis=0)
-    result = q.copy()
-    result[1:] *= signs[..., None]
-    return np.moveaxis(result, 0, axis)

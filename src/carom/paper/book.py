@@ -7,21 +7,6 @@ from pathlib import Path
 
 TITLE = "A Novel Time-Stepping Method for Multibody Systems with Frictional Impacts"
 
-_HEAD = f"""# {TITLE}
-
-Reproduction by `carom paper` (carom {{version}}). The paper: doi 10.1007/978-3-030-81166-2_44.
-
-All figures come from `method="paper"`: three fields and exact constraints in free motion, return
-map, impacts through the boundary layer by cubic splines. [The table](table.md) puts the same
-numbers beside those of the production method (`method="rk4"`, impacts solved to round-off), each
-against a closed form or an independent computation. [Impacts of a real cube](real_impacts.md) are
-on a page of their own.
-
-The numbering of the figures follows the paper, and so do the data of the examples. Where its text
-is silent on which curves a figure holds, or leaves a datum open (the sphere: here it falls from a
-gap of 0.4 m), the choice is ours; each caption says what is drawn.
-"""
-
 
 _SILENT = "its text, as far as we know it, does not speak of this curve; the choice is ours."
 
@@ -91,8 +76,9 @@ def parts(wanted: Sequence[str] | None = None) -> int:
 
 def _index(known: dict) -> str:
     import carom
+    from carom.paper.figure import page
 
-    pieces = [_HEAD.format(version=carom.__version__)]
+    pieces = [page("index", title=TITLE, version=carom.__version__)]
     for figure in known.values():
         title = figure.name.replace("fig", "Fig. ").replace("_", " ")
         pieces.append(

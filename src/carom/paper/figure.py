@@ -1,8 +1,9 @@
-"""The definition of a figure of the paper: a function that draws it, and its texts."""
+"""The definition of a figure of the paper: a function that draws it, and its texts; pages and their tables."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from importlib.resources import files
 from typing import Any, NamedTuple
 
 
@@ -14,3 +15,15 @@ class FigureOfPaper(NamedTuple):
     paper: str
     draw: Callable[[], Any]
     seen: Callable[[], str]
+
+
+def page(name: str, **values: object) -> str:
+    """Return a page: its text in `pages`, with values in their places."""
+    text = (files("carom.paper") / "pages" / f"{name}.md").read_text(encoding="utf-8")
+    return text.format(**values)
+
+
+def table(head, body) -> str:
+    """Return a table in Markdown."""
+    lines = [head, ["---"] * len(head), *body]
+    return "\n".join("| " + " | ".join(str(cell) for cell in cells) + " |" for cells in lines)

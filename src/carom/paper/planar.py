@@ -6,7 +6,7 @@ import numpy as np
 
 from carom.paper.figure import FigureOfPaper
 from carom.paper.references import die_after
-from carom.paper.runs import EDGE, FRICTIONS, die_run, with_jumps
+from carom.paper.runs import EDGE, FRICTIONS, after_first_impact, die_run, with_jumps
 from carom.visual.plots import style
 
 COLOURS = dict(zip(FRICTIONS, (style.BLUE, style.RED)))
@@ -128,9 +128,7 @@ def _tangential():
 
 
 def _after(mu: float) -> np.ndarray:
-    run = die_run(mu, "planar")
-    _, _, v, w = run.evaluate(run.impacts.time[0])
-    return np.concatenate([v[0], w[0]])
+    return after_first_impact(die_run(mu, "planar"))
 
 
 def _agreement() -> float:

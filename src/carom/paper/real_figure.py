@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from carom.paper import real
-from carom.paper.figure import FigureOfPaper
+from carom.paper.figure import FigureOfPaper, page, table
 from carom.visual.plots import style
 
 _LAW_COLOURS = dict(zip(real.LAWS, (style.BLUE, style.GREEN, style.RED)))
@@ -96,48 +96,6 @@ FIGURES = (
     ),
 )
 
-_PAGE = """# Impacts of a real cube
-
-![predicted against measured](real_impacts.png)
-
-{count} clean single-corner impacts out of 285 tosses of an acrylic cube (edge 0.1048 m, 0.37 kg,
-inertia 8.1e-4 kg m^2) recorded at 148 Hz. Data: ContactNets (S. Pfrommer, M. Halm, M. Posa),
-BSD-3; the file and its licence are part of the package (`carom/paper/data`). One impact each,
-`carom.resolve_impact`; the measured state just before goes in, velocities after it come out.
-
-{table}
-
-"Simulated" runs `carom.simulate` from the impact to the time of the measurement, further impacts
-and rest included.
-
-## How measured states are used
-
-- Velocities of the recording are backward differences: they belong to half a sample before their
-  time.
-- The state before is that of the last sample above the table, the state after that of four samples
-  later. The corner reaches the table in between, at the fraction of the first interval that its
-  height and speed give; the attitude is carried on to there.
-- Gravity acts over all four samples ({span:.1f} ms, {gravity:.2f} m/s), shared between before and
-  after the impact. Leave it out, and the medians at nominal parameters seem much better
-  ({wrong_v:.3f} m/s): for a reason that is none, the missing gravity making good for a restitution
-  that is too small.
-- Fit: the mean of |dv| + r |dw| over all impacts, r = sqrt(J/m) = {radius:.4f} m, by Nelder and
-  Mead; distances are not squared, so that single bad impacts do not lead it.
-
-An independent computation on such impacts had medians of 0.26 m/s and 1.9 rad/s at nominal e =
-0.125, mu = 0.18, of 0.105 m/s and 2.2 rad/s at e = 0.3, and of 1.09 m/s and 8.2 rad/s without
-impact. Its conventions are not known in every detail; those above (the time of the impact, how
-gravity is counted) move our medians by about as much: without gravity between the samples "no
-impact" would have {still_v:.2f} m/s.
-
-## What one sees
-
-{seen} The cube of the recording rebounds more than its nominal restitution says: the same e for
-all impacts, about a third, brings the velocities to a few times the noise of the recording (about
-0.01 m/s and 0.1 rad/s). What is left in the angular velocity is the same for all three laws, and
-for the whole simulation.
-"""
-
 
 def rows() -> list[tuple]:
     """Return (case, e, mu, median |dv|, median |dw|) of all predictions."""
@@ -151,25 +109,24 @@ def rows() -> list[tuple]:
 
 def write(folder: Path) -> list[Path]:
     """Write real_impacts.md and real_impacts.csv."""
-    table = rows()
+    found = rows()
     files = [folder / "real_impacts.csv", folder / "real_impacts.md"]
     with files[0].open("w", newline="", encoding="utf-8") as file:
         csv.writer(file).writerows(
-            [("prediction", "e", "mu", "median |dv| [m/s]", "median |dw| [rad/s]"), *table]
+            [("prediction", "e", "mu", "median |dv| [m/s]", "median |dw| [rad/s]"), *found]
         )
-    lines = [
-        "| prediction | e | mu | median of dv [m/s] | median of dw [rad/s] |",
-        "|---|---|---|---|---|",
+    shown = [
+        (name, *(("-", "-") if e is None else (f"{e:.3f}", f"{mu:.3f}")), f"{dv:.3f}", f"{dw:.2f}")
+        for name, e, mu, dv, dw in found
     ]
-    for name, e, mu, dv, dw in table:
-        numbers = "- | -" if e is None else f"{e:.3f} | {mu:.3f}"
-        lines.append(f"| {name} | {numbers} | {dv:.3f} | {dw:.2f} |")
+    head = ("prediction", "e", "mu", "median of dv [m/s]", "median of dw [rad/s]")
     lifted = np.zeros(6)
     lifted[2] = real.GRAVITY * real.SAMPLES * real.DT
     nominal, nothing = (cases()[name][3] for name in ("stronge, nominal", "no impact"))
-    text = _PAGE.format(
+    text = page(
+        "real_impacts",
         count=len(real.load().toss),
-        table="\n".join(lines),
+        table=table(head, shown),
         span=1e3 * real.SAMPLES * real.DT,
         gravity=lifted[2],
         wrong_v=real.medians(nominal + lifted)[0],

@@ -75,3 +75,9 @@ def with_jumps(solution: carom.Solution, end: float | None = None):
     order = np.lexsort((np.repeat((0, 1, 2), (len(saved), len(impacts), len(impacts))), t))
     columns = (np.concatenate(parts)[order, 0] for parts in zip(smooth, before, after))
     return t[order], *columns
+
+
+def after_first_impact(run: carom.Solution) -> np.ndarray:
+    """Return (v, w) (6,) of body 0 after its first impact."""
+    _, _, v, w = run.evaluate(run.impacts.time[0])
+    return np.concatenate([v[0], w[0]])

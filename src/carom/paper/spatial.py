@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 
 from carom import impact_layer
 from carom.geometry import quaternion
+from carom.impact.slip_directions import critical_friction, invariant_directions
 from carom.paper.figure import FigureOfPaper
-from carom.paper.references import die_after, root
-from carom.paper.runs import DIE_DELTA, DIE_E, EDGE, FRICTIONS, die_run, with_jumps
+from carom.paper.references import die_after
+from carom.paper.runs import (
+    DIE_DELTA,
+    DIE_E,
+    EDGE,
+    FRICTIONS,
+    after_first_impact,
+    die_run,
+    with_jumps,
+)
 from carom.visual.plots import style
 
 COLOURS = dict(zip(FRICTIONS, (style.BLUE, style.RED)))
@@ -61,35 +68,6 @@ def _trajectory():
     return figure
 
 
-def stick_limit(W) -> float:
-    """Return mu_crit = |W_tt^-1 W_tn|: friction above it can hold the corner."""
-    return float(np.linalg.norm(np.linalg.solve(W[1:, 1:], W[1:, 0])))
-
-
-def invariant_rays(W, friction) -> list[tuple[float, bool]]:
-    """Return the directions of slip that do not turn: angle [rad], and whether slip grows along it.
-
-    The angles of e are the roots of ``e x (W_tn - mu W_tt e)``.
-    """
-
-    def rate(angle):
-        e = np.array([np.cos(angle), np.sin(angle)])
-        return W[1:, 0] - friction * W[1:, 1:] @ e, e
-
-    def turn(angle):
-        r, e = rate(angle)
-        return e[0] * r[1] - e[1] * r[0]
-
-    grid = np.linspace(0.0, 2.0 * np.pi, 721) + 1e-3
-    found = []
-    for a, b in pairwise(grid):
-        if turn(a) * turn(b) < 0.0:
-            angle = root(turn, a, b)
-            r, e = rate(angle)
-            found.append((angle, bool(r @ e > 0.0)))
-    return found
-
-
 def _hodograph():
     layout = [["slip", "x"], ["slip", "y"], ["slip", "z"]]
     figure, parts = style.mosaic(style.PAGE, 3.1, layout, (1, 1.1))
@@ -120,7 +98,8 @@ def _slip(axes):
         axes.plot(*path[-1, 1:], "o", color=colour, zorder=4)
         axes.annotate(rf"$\mu = {mu:.2f}$", path[-1, 1:], turned, textcoords="offset points",
                       color=colour)  # fmt: skip
-        for angle, grows in invariant_rays(W, mu) if mu in FRICTIONS else ():
+        rays = invariant_directions(W, mu)
+        for angle, grows in zip(rays.angle, rays.outgoing) if mu in FRICTIONS else ():
             x, y = 4.0 * np.cos(angle), 4.0 * np.sin(angle)
             axes.plot([0, x], [0, y], "--" if grows else ":", color=style.GREY, lw=0.8)
     axes.plot(*u[1:], "s", color=style.BLACK, zorder=5)
@@ -141,8 +120,7 @@ def _second() -> str:
 def velocity_error(steps: int, friction: float) -> float:
     """Return the greatest error of v and w L/2 [m/s] after the first impact with so many spline steps."""
     run = die_run(friction, "spatial", layer_steps=steps)
-    _, _, v, w = run.evaluate(run.impacts.time[0])
-    error = np.abs(np.concatenate([v[0], w[0]]) - die_after("spatial", friction))
+    error = np.abs(after_first_impact(run) - die_after("spatial", friction))
     return float(np.max(error * np.repeat((1.0, 0.5 * EDGE), 3)))
 
 
@@ -151,7 +129,7 @@ def _error(steps: int) -> float:
 
 
 def _limit() -> float:
-    return stick_limit(die_run(FRICTIONS[0], "spatial").impacts[0].inverse_mass)
+    return critical_friction(die_run(FRICTIONS[0], "spatial").impacts[0].inverse_mass)
 
 
 FIGURES = (

@@ -11,9 +11,10 @@ import numpy as np
 
 from carom import impact_layer, resolve_impact
 from carom.impact.geometry import NormalMotion
+from carom.paper.figure import page, table
 from carom.paper.layer import first_impact, hht, least_steps
 from carom.paper.references import Bounce, die_after, die_impact
-from carom.paper.runs import FRICTIONS, STEP, die_run, sphere_run
+from carom.paper.runs import FRICTIONS, STEP, after_first_impact, die_run, sphere_run
 
 METHODS = ("paper", "rk4")
 ALPHAS = (0.0, 0.05, 0.1, 0.2, 0.3)
@@ -109,11 +110,6 @@ _STATE = ("v_x", "v_y", "v_z", "w_x", "w_y", "w_z")
 _UNITS = ("m/s",) * 3 + ("rad/s",) * 3
 
 
-def _after(run):
-    _, _, v, w = run.evaluate(run.impacts.time[0])
-    return np.concatenate([v[0], w[0]])
-
-
 def _planar():
     source = "Routh, closed form"
     for mu in FRICTIONS:
@@ -121,7 +117,10 @@ def _planar():
         runs = [die_run(mu, "planar", method) for method in METHODS]
         if mu == FRICTIONS[0]:
             yield _first("planar", runs)
-        exact, found = die_after("planar", mu), [_after(run) for run in runs]
+        exact, found = (
+            die_after("planar", mu),
+            [after_first_impact(run) for run in runs],
+        )
         for k in (0, 2, 4):
             values = tuple(state[k] for state in found)
             quantity = f"{name}: {_STATE[k]} after impact 1"
@@ -149,8 +148,11 @@ def _spatial():
         fine, default = die_run(mu, "spatial", layer_steps=FINE), die_run(mu, "spatial", "rk4")
         if mu == FRICTIONS[0]:
             yield _first("spatial", (fine, default))
-        exact, two = die_after("spatial", mu), _after(die_run(mu, "spatial"))
-        found = (_after(fine), _after(default))
+        exact, two = (
+            die_after("spatial", mu),
+            after_first_impact(die_run(mu, "spatial")),
+        )
+        found = (after_first_impact(fine), after_first_impact(default))
         for k in range(6):
             values = tuple(state[k] for state in found)
             quantity = f"{name}: {_STATE[k]} after impact 1, {FINE} spline steps"
@@ -174,24 +176,6 @@ _HEAD = (
 )  # fmt: skip
 _HHT_HEAD = ("alpha", "first completing steps", *(f"error at {n} steps" for n in COUNTS))
 
-_PAGE = """# Numbers
-
-{table}
-
-Errors are absolute. `method="paper"`: three fields, return map, boundary layer by two cubic-spline
-steps unless the row says otherwise; `rk4` is the default, with impacts solved to round-off.
-
-## HHT-alpha in the boundary layer
-
-First impact of the sphere, e = 1, delta = 0.8; greatest error of the velocity at its steps, divided
-by the speed of entry (two spline steps: exact). The count at which it first completes is computed.
-
-{hht}
-
-From alpha = 0.1 on the first count that completes does so by a jump over the whole layer in one
-step, with an error above 100 %; 6 and 7 steps fail again, and proper runs begin with 8.
-"""
-
 
 def write(folder: Path) -> list[Path]:
     """Write table.csv, hht.csv and table.md."""
@@ -210,14 +194,9 @@ def write(folder: Path) -> list[Path]:
     for path, content in ((files[0], [_HEAD, *full]), (files[1], [_HHT_HEAD, *found])):
         with path.open("w", newline="", encoding="utf-8") as file:
             csv.writer(file).writerows(content)
-    text = _PAGE.format(table=_table(_HEAD, short), hht=_table(_HHT_HEAD, hht_short))
+    text = page("table", table=table(_HEAD, short), hht=table(_HHT_HEAD, hht_short))
     files[2].write_text(text, encoding="utf-8")
     return files
-
-
-def _table(head, body) -> str:
-    lines = [head, ["---"] * len(head), *body]
-    return "\n".join("| " + " | ".join(str(cell) for cell in cells) + " |" for cells in lines)
 
 
 def _full(value) -> str:

@@ -9,8 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from carom.bench.measure import TOLERANCE, stepper
-from carom.bench.problems.task import Task
+from carom.bench.problems.task import Task, carom_task
 
 NAME, TITLE = "chain", "Chain of 10 rods, 2 s"
 ERROR = "greatest error of the energy / (m g N L/2)"
@@ -40,24 +39,11 @@ def scale(links: int) -> float:
 
 def ours(step: float, method: str = "rk4", links: int = LINKS) -> Task:
     """Return the work of carom."""
-    import carom
 
-    made = scene(links)
+    def wrong(run) -> float:
+        return np.abs(run.total_energy - run.total_energy[0]).max() / scale(links)
 
-    def run():
-        if method == TOLERANCE:
-            return carom.simulate(made, WATCHED, rtol=step, save_at=WATCHED / 100)
-        each = max(1, round(WATCHED / 100 / step))
-        return carom.simulate(made, WATCHED, step=step, method=method, save_every=each)
-
-    def error() -> float:
-        energy = run().total_energy
-        return float(np.abs(energy - energy[0]).max()) / scale(links)
-
-    if method == TOLERANCE:
-        return Task("carom by tolerance", step, run, error)
-    steps = stepper(made, step, method=method)
-    return Task(f"carom {method}", step, run, error, steps, round(WATCHED / step))
+    return carom_task(scene(links), WATCHED, step, method, wrong, saves=100, by_steps=True)
 
 
 def model(module, links: int, step: float, integrator: str = "RK4"):
@@ -96,4 +82,4 @@ def mujoco(module, step: float, links: int = LINKS) -> Task:
         return float(np.abs(np.array(energies) - energies[0]).max() / scale(links))
 
     count = round(WATCHED / step)
-    return Task("MuJoCo RK4", step, lambda: run(count), error, run, count)
+    return Task(step, lambda: run(count), error, run, count)

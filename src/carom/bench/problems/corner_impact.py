@@ -8,7 +8,7 @@ import numpy as np
 
 NAME, TITLE = "corner_impact", "Impact of a cube on a corner, mu = 0.2"
 COUNT = 2000
-NEWTON, STRONGE = 0, 2
+NEWTON = 0
 
 
 def impacts(count: int = COUNT, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
@@ -52,17 +52,3 @@ def error(mu: float = 0.2, e: float = 0.5, count: int = 200) -> float:
         balance = np.abs(found.velocity_after - u[i] - W[i] @ found.impulse).max()
         worst = max(worst, balance, abs(found.velocity_after[0] + e * u[i, 0]))
     return float(worst)
-
-
-def through_layer(mu: float = 0.2, e: float = 0.5, law: int = NEWTON) -> Callable[[], None]:
-    """Return a function that passes all impacts through the paper's boundary layer, with two spline steps."""
-    from carom.bench.loops import traverse_many
-    from carom.impact.layout import SIZE
-
-    W, u = impacts()
-    history, out = np.zeros((64, 11)), np.zeros(SIZE)
-
-    def run() -> None:
-        assert traverse_many(W, u, mu, e, law, history, out) == 0
-
-    return run

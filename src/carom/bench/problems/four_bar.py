@@ -10,8 +10,7 @@ import math
 
 import numpy as np
 
-from carom.bench.measure import TOLERANCE, ends_only, stepper
-from carom.bench.problems.task import Task
+from carom.bench.problems.task import Task, carom_task
 
 NAME, TITLE = "four_bar", "Four-bars (A02), 10 s"
 ERROR = "error of the tip at the end [m]"
@@ -41,21 +40,11 @@ def scene(count: int = N):
 
 def ours(step: float, method: str = "rk4") -> Task:
     """Return the work of carom."""
-    import carom
 
-    made = scene()
+    def wrong(run) -> float:
+        return np.hypot(*(2.0 * run.position[-1, 0, :2] - TIP))
 
-    def run():
-        return carom.simulate(made, DURATION, **ends_only(step, method, DURATION))
-
-    def error() -> float:
-        tip = 2.0 * run().position[-1, 0, :2]
-        return float(np.hypot(*(tip - TIP)))
-
-    if method == TOLERANCE:
-        return Task("carom by tolerance", step, run, error)
-    steps = stepper(made, step, method=method)
-    return Task(f"carom {method}", step, run, error, steps, round(DURATION / step))
+    return carom_task(scene(), DURATION, step, method, wrong, by_steps=True)
 
 
 def mujoco(module, step: float) -> Task:
@@ -98,4 +87,4 @@ def mujoco(module, step: float) -> Task:
         lean = -steps(count)
         return math.hypot(math.sin(lean) - TIP[0], math.cos(lean) - TIP[1])
 
-    return Task("MuJoCo", step, lambda: steps(count), error, steps, count)
+    return Task(step, lambda: steps(count), error, steps, count)

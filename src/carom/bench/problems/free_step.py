@@ -41,22 +41,3 @@ def mujoco(module, integrator: str = "Euler") -> Callable[[int], object]:
         module.mj_step(model, data, nstep=steps)
 
     return run
-
-
-def pybullet(module) -> Callable[[int], object]:
-    """Return ``run(steps)`` of pybullet, far above a plane; each step is a call from Python."""
-    module.connect(module.DIRECT)
-    module.setTimeStep(STEP)
-    module.setGravity(0, 0, -9.81)
-    plane = module.createCollisionShape(module.GEOM_PLANE)
-    box = module.createCollisionShape(module.GEOM_BOX, halfExtents=[0.01] * 3)
-    module.createMultiBody(0, plane)
-    die = module.createMultiBody(0.016, box, basePosition=[0, 0, 1e7])
-
-    def run(steps: int) -> None:
-        module.resetBasePositionAndOrientation(die, [0, 0, 1e7], [0, 0, 0, 1])
-        module.resetBaseVelocity(die, [0.5, 0, -0.5], [0, 10, 0])
-        for _ in range(steps):
-            module.stepSimulation()
-
-    return run

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom.bench.measure import ends_only
-from carom.bench.problems.task import Task, solref
+from carom.bench.problems.task import Task, carom_task, solref
 
 NAME, TITLE = "planar_die", "Planar die, one impact with friction"
 ERROR = "error of its centre at 0.3 s [m]"
@@ -45,20 +44,11 @@ def wrong(x: float, z: float) -> float:
     return math.hypot(x - centre()[0], z - centre()[1])
 
 
-def ours(step: float, method: str = "rk4", duration: float = DURATION, **how) -> Task:
+def ours(step: float, method: str = "rk4") -> Task:
     """Return the work of carom."""
-    import carom
-
-    made = scene()
-
-    def run(until=duration):
-        return carom.simulate(made, until, **ends_only(step, method, until), **how)
-
-    def error() -> float:
-        x = run(END).position[-1, 0]
-        return wrong(x[0], x[2])
-
-    return Task("carom", step, run, error)
+    return carom_task(
+        scene(), DURATION, step, method, lambda run: wrong(*run.position[-1, 0, [0, 2]]), until=END
+    )
 
 
 def model(module, step: float, frequency: float):
@@ -94,4 +84,4 @@ def mujoco(module, step: float, duration: float = DURATION) -> Task:
         x = throw(module, made, data, round(END / step))
         return wrong(x[0], x[2])
 
-    return Task("MuJoCo", step, lambda: throw(module, made, data, round(duration / step)), error)
+    return Task(step, lambda: throw(module, made, data, round(duration / step)), error)

@@ -7,9 +7,8 @@ from time import perf_counter
 
 import numpy as np
 
-from carom.bench.measure import ends_only
 from carom.bench.problems import planar_die
-from carom.bench.problems.task import Task
+from carom.bench.problems.task import Task, carom_task
 
 NAME, TITLE = "spatial_die", "Spatial die, thrown to rest (2 s)"
 ERROR = "error of its centre at 0.25 s [m]"
@@ -30,19 +29,14 @@ def centre() -> np.ndarray:
     return carom.simulate(scene(), END, step=1e-4).position[-1, 0]
 
 
-def ours(step: float, method: str = "rk4", duration: float = DURATION) -> Task:
+def ours(step: float, method: str = "rk4") -> Task:
     """Return the work of carom."""
-    import carom
+    return carom_task(scene(), DURATION, step, method, wrong, until=END)
 
-    made = scene()
 
-    def run(until=duration):
-        return carom.simulate(made, until, **ends_only(step, method, until))
-
-    def error() -> float:
-        return float(np.linalg.norm(run(END).position[-1, 0] - centre()))
-
-    return Task("carom", step, run, error)
+def wrong(run) -> float:
+    """Return the distance of the centre at the end from `centre`."""
+    return float(np.linalg.norm(run.position[-1, 0] - centre()))
 
 
 def mujoco(module, step: float, duration: float = DURATION) -> Task:
@@ -52,7 +46,7 @@ def mujoco(module, step: float, duration: float = DURATION) -> Task:
     def run(until=duration):
         return planar_die.throw(module, made, data, round(until / step), SPIN)
 
-    return Task("MuJoCo", step, run, lambda: float(np.linalg.norm(run(END) - centre())))
+    return Task(step, run, lambda: float(np.linalg.norm(run(END) - centre())))
 
 
 def throws(runs: int, seed: int = 0, workers: int = 1, **how):

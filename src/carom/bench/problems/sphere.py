@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom.bench.measure import ends_only
-from carom.bench.problems.task import Task, solref
+from carom.bench.problems.task import Task, carom_task, solref
 
 NAME, TITLE = "sphere", "Bouncing ball, e = 1, 60 s"
 ERROR = "error of its height at the end [m]"
@@ -33,14 +32,9 @@ def height(t: float) -> float:
 
 def ours(step: float, method: str = "rk4", duration: float = DURATION) -> Task:
     """Return the work of carom."""
-    import carom
-
-    made = scene()
-
-    def run():
-        return carom.simulate(made, duration, **ends_only(step, method, duration))
-
-    return Task("carom", step, run, lambda: abs(run().position[-1, 0, 2] - height(duration)))
+    return carom_task(
+        scene(), duration, step, method, lambda run: abs(run.position[-1, 0, 2] - height(duration))
+    )
 
 
 def mujoco(module, step: float, duration: float = DURATION) -> Task:
@@ -58,4 +52,4 @@ def mujoco(module, step: float, duration: float = DURATION) -> Task:
         module.mj_step(model, data, nstep=round(duration / step))
         return data.qpos[2]
 
-    return Task("MuJoCo", step, run, lambda: abs(run() - height(duration)))
+    return Task(step, run, lambda: abs(run() - height(duration)))

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.bench.measure import TOLERANCE, ends_only, stepper
-from carom.bench.problems.task import Task
+from carom.bench.problems.task import Task, carom_task
 
 NAME, TITLE = "stack", "Stack of 20 boxes that slides, 0.2 s"
 ERROR = "greatest error of a box [m]"
@@ -42,20 +41,11 @@ def places(count: int = BOXES) -> np.ndarray:
 
 def ours(step: float, method: str = "rk4", boxes: int = BOXES) -> Task:
     """Return the work of carom."""
-    import carom
 
-    made = scene(boxes)
+    def wrong(run) -> float:
+        return np.abs(run.position[-1] - places(boxes)).max()
 
-    def run():
-        return carom.simulate(made, DURATION, **ends_only(step, method, DURATION))
-
-    def error() -> float:
-        return float(np.abs(run().position[-1] - places(boxes)).max())
-
-    if method == TOLERANCE:
-        return Task("carom by tolerance", step, run, error)
-    steps = stepper(made, step, method=method)
-    return Task("carom", step, run, error, steps, round(DURATION / step))
+    return carom_task(scene(boxes), DURATION, step, method, wrong, by_steps=True)
 
 
 def mujoco(module, step: float, boxes: int = BOXES) -> Task:
@@ -84,4 +74,4 @@ def mujoco(module, step: float, boxes: int = BOXES) -> Task:
     def error() -> float:
         return float(np.abs(steps(count) - places(boxes)).max())
 
-    return Task("MuJoCo", step, lambda: steps(count), error, steps, count)
+    return Task(step, lambda: steps(count), error, steps, count)

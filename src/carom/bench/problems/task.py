@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from carom.bench.measure import ROUNDS, per_step, seconds
+from carom.bench.measure import ROUNDS, TOLERANCE, per_step, saving, seconds, stepper
 
 
 class Task(NamedTuple):
@@ -15,7 +15,6 @@ class Task(NamedTuple):
     is the number of steps of the work.
     """
 
-    tool: str
     step: float
     run: Callable[[], Any]
     error: Callable[[], float]
@@ -28,6 +27,27 @@ class Task(NamedTuple):
             return seconds(self.run, rounds)
         few, many = max(1, self.count // 20), self.count
         return [self.count * t for t in per_step(self.steps, few, max(many, few + 50), rounds)]
+
+
+def carom_task(
+    scene, duration: float, step: float, method: str, wrong: Callable, *, until=None, saves=1,
+    by_steps=False,
+) -> Task:  # fmt: skip
+    """Return the work of carom: a run of a scene; `wrong` is the error of a solution at its end or `until`.
+
+    By steps, what precedes the first of them is not measured.
+    """
+    import carom
+
+    def run(end=duration):
+        return carom.simulate(scene, end, **saving(step, method, end, saves))
+
+    def error() -> float:
+        return float(wrong(run(until or duration)))
+
+    if not by_steps or method == TOLERANCE:
+        return Task(step, run, error)
+    return Task(step, run, error, stepper(scene, step, method=method), round(duration / step))
 
 
 #: contact of MuJoCo as a spring and damper of a frequency: it has no coefficient of restitution, but a damping

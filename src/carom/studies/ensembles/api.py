@@ -154,6 +154,8 @@ def ensemble(
     )
     if observe is None:  # only the end is read
         settings = settings._replace(save_every=NEVER)
+    from carom.studies.ensembles.plan import facts, join
+
     inputs = draw(vary, runs, checks.integer("seed", seed, least=0), sampling)
     plan = _plan(scene, settings, inputs, observe)
     for mistake in mistakes(scene, settings):
@@ -176,10 +178,10 @@ def ensemble(
         if close is not None:
             close()
     if store is not None:
-        whole = store.read()
-        found = Ensemble(inputs, whole.outcomes, whole.observed, whole.failures, store.about, plan)
+        whole, about = store.read(), store.about
     else:
-        found = _collect(plan, inputs, parts, count)
+        whole, about = join(parts, count, plan.bodies), facts(plan)
+    found = Ensemble(inputs, whole.outcomes, whole.observed, whole.failures, about, plan)
     if stopped is not None:
         more = "; call again with the same arguments to continue" if store is not None else ""
         message = f"interrupted after {int(found.done.sum())} of {count} runs{more}"
@@ -203,8 +205,8 @@ def _plan(scene, settings: Settings, inputs: dict[str, np.ndarray], observe):
 
 
 def _store(save, plan, inputs, chunk):
-    from carom import __version__
     from carom.studies.ensembles.mark import digest
+    from carom.studies.ensembles.plan import facts
     from carom.studies.ensembles.store import Store, is_begun
 
     mark = digest(plan, inputs)
@@ -219,8 +221,7 @@ def _store(save, plan, inputs, chunk):
                 "remove it"
             )
         return store
-    about = {"digest": mark, "carom": __version__, "settings": repr(plan.settings)}
-    return Store.make(save, inputs, plan.bodies, chunk, about)
+    return Store.make(save, inputs, plan.bodies, chunk, {"digest": mark, **facts(plan)})
 
 
 def _go(plan, inputs, done, chunk, executor, workers, store, parts, report) -> None:
@@ -257,22 +258,3 @@ def _go(plan, inputs, done, chunk, executor, workers, store, parts, report) -> N
         for part in late:
             with suppress(KeyboardInterrupt):
                 take(part)
-
-
-def _collect(plan, inputs, parts, count) -> Ensemble:
-    """Join the parts in the order of the runs."""
-    from carom import __version__
-    from carom.studies.ensembles.outcome import no_outcomes
-    from carom.studies.ensembles.plan import column
-
-    outcomes, observed, failures = no_outcomes(count, plan.bodies), {}, {}
-    for part in sorted(parts, key=lambda part: part.first):
-        rows = slice(part.first, part.first + len(part.outcomes))
-        outcomes[rows] = part.outcomes
-        failures.update(part.failures)
-        for name, values in part.observed.items():
-            old = observed[name] if name in observed else column(count, values[0])
-            observed[name] = old.astype(np.result_type(old, values), copy=False)
-            observed[name][rows] = values
-    about = {"carom": __version__, "settings": repr(plan.settings)}
-    return Ensemble(inputs, outcomes, observed, failures, about, plan)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import threading
 import uuid
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 
+import carom
 from carom import checks
 from carom.run import Run
 from carom.scene.scene import Scene
@@ -30,6 +31,11 @@ class Plan:
     bodies: int
     observe: Callable | None
     token: str = field(default_factory=lambda: uuid.uuid4().hex)
+
+
+def facts(plan: Plan) -> dict[str, str]:
+    """Return version and settings, for `Ensemble.about`."""
+    return {"carom": carom.__version__, "settings": repr(plan.settings)}
 
 
 class Part(NamedTuple):
@@ -133,6 +139,21 @@ def column(runs: int, value: np.ndarray) -> np.ndarray:
     """Return an array for a value of each run: NaN, or 0 where the value has no NaN."""
     empty = np.nan if value.dtype.kind == "f" else np.zeros((), value.dtype)
     return np.full((runs, *value.shape), empty, value.dtype)
+
+
+def join(parts: Iterable[Part], runs: int, bodies: int) -> Part:
+    """Return the parts of an ensemble as one, in the order of its runs; rows of other runs are pending."""
+    whole = Part(0, no_outcomes(runs, bodies), {}, {})
+    for part in sorted(parts, key=lambda part: part.first):
+        rows = slice(part.first, part.first + len(part.outcomes))
+        whole.outcomes[rows] = part.outcomes
+        whole.failures.update(part.failures)
+        for name, values in part.observed.items():
+            old = whole.observed.get(name)
+            old = column(runs, values[0]) if old is None else old
+            whole.observed[name] = old.astype(np.result_type(old, values), copy=False)
+            whole.observed[name][rows] = values
+    return whole
 
 
 def begin(plan: Plan, values: dict[str, np.ndarray], k: int) -> Run:

@@ -18,8 +18,8 @@ import numpy as np
 
 from carom import checks
 from carom.io.files.disk import put, sync
-from carom.studies.ensembles.outcome import PENDING, no_outcomes, outcome_type
-from carom.studies.ensembles.plan import Part
+from carom.studies.ensembles.outcome import PENDING, outcome_type
+from carom.studies.ensembles.plan import Part, join
 
 FORMAT = "carom ensemble 2"
 MAKING = ".making"  # file that exists while a store is created
@@ -175,34 +175,26 @@ class Store:
 
     def read(self) -> Part:
         """Return all completed runs as one part; rows of other runs are pending."""
-        columns = {name: self._column(f"outcomes/{name}") for name in self.group["outcomes"]}
-        observed = {name: self._column(f"observed/{name}") for name in self.group["observed"]}
-        whole = Part(0, no_outcomes(self.runs, int(self.group.attrs["bodies"])), {}, {})
-        for name, values in observed.items():
-            empty = np.nan if values.dtype.kind == "f" else np.zeros((), values.dtype)
-            whole.observed[name] = np.full(values.shape, empty, values.dtype)
-        for rows, mark in self._marks():
-            made = np.zeros(rows.stop - rows.start, dtype=whole.outcomes.dtype)
-            for name in made.dtype.names or ():
-                made[name] = columns[name][rows]
-            seen = {name: observed[name][rows] for name in mark["observed"] if name in observed}
-            if _digest(_columns(made), seen) != mark["digest"]:
-                continue
-            whole.outcomes[rows] = made
-            for name, values in seen.items():
-                whole.observed[name][rows] = values
-            whole.failures.update({int(k): message for k, message in mark["failures"].items()})
+        whole = join(self._parts(), self.runs, int(self.group.attrs["bodies"]))
         return whole._replace(failures=dict(sorted(whole.failures.items())))
 
-    def _marks(self) -> Iterator[tuple[slice, dict]]:
-        """Yield the parts that have a mark: their rows, and the contents of the mark."""
+    def _parts(self) -> Iterator[Part]:
+        """Yield the parts that have a mark and agree with it."""
+        columns = {name: self._column(f"outcomes/{name}") for name in self.group["outcomes"]}
+        observed = {name: self._column(f"observed/{name}") for name in self.group["observed"]}
+        kind = outcome_type(int(self.group.attrs["bodies"]))
         for first in range(0, self.runs, self.chunk):
             file = self.path / MARKS / f"{first}.json"
-            if file.exists():
-                yield (
-                    slice(first, min(first + self.chunk, self.runs)),
-                    json.loads(file.read_bytes()),
-                )
+            if not file.exists():
+                continue
+            mark, rows = json.loads(file.read_bytes()), slice(first, first + self.chunk)
+            made = np.zeros(len(columns["status"][rows]), dtype=kind)
+            for name in kind.names or ():
+                made[name] = columns[name][rows]
+            seen = {name: observed[name][rows] for name in mark["observed"] if name in observed}
+            if _digest(_columns(made), seen) == mark["digest"]:
+                failures = {int(k): message for k, message in mark["failures"].items()}
+                yield Part(first, made, failures, seen)
 
     def _column(self, key: str) -> np.ndarray:
         """Return an array, with zeros for chunks that cannot be read: an incomplete part has no mark."""

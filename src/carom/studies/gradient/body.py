@@ -15,12 +15,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from carom.geometry import quaternion
+from carom.geometry import differential, quaternion
 
 ACCURACY = 1e-12  # relative accuracy of the variational equation
-#: unit changes of the six components of a symmetric matrix
+#: components of a symmetric matrix: the indices of each, and its unit change
+MOMENTS = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
 UNITS = np.zeros((6, 3, 3))
-for _k, (_i, _j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
+for _k, (_i, _j) in enumerate(MOMENTS.values()):
     UNITS[_k, _i, _j] = UNITS[_k, _j, _i] = 1.0
 
 
@@ -121,16 +122,7 @@ def _turn_closed(body: Moving, h: float):
     turn = h * body.w
     step = quaternion.matrix(quaternion.exp(turn))
     d = body.X
-    return step @ body.R, body.w, step @ d[3:6] + h * _left(turn) @ d[9:], d[9:]
-
-
-def _left(a: np.ndarray) -> np.ndarray:
-    """Return the differential of exp at a: exp(a + da) = exp(T da) exp(a)."""
-    angle, A = float(np.linalg.norm(a)), hat(a)
-    if angle < 1e-4:
-        return np.eye(3) + (0.5 - angle**2 / 24) * A + (1 / 6 - angle**2 / 120) * A @ A
-    one, two = (1 - np.cos(angle)) / angle**2, (angle - np.sin(angle)) / angle**3
-    return np.eye(3) + one * A + two * A @ A
+    return step @ body.R, body.w, step @ d[3:6] + h * differential.matrix(-turn) @ d[9:], d[9:]
 
 
 def _turn(body: Moving, h: float, accuracy: float):
@@ -161,7 +153,7 @@ def _turn(body: Moving, h: float, accuracy: float):
     y = done.y[:, -1]
     Q, w = torque_free(body.inertia, y0[None, :4], body.w[None], np.array([h]))
     R, w = quaternion.matrix(Q[0]), w[0]
-    moments = np.array([body.dJ[a, b] for a, b in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))])
+    moments = np.array([body.dJ[at] for at in MOMENTS.values()])
     phi = y[4:].reshape(3, 12) @ np.concatenate([body.R.T @ body.X[3:6], dL, moments])
     l = R.T @ L
     change = i[:, None] * (R.T @ dL - cross(phi, l) - np.einsum("ijp,j->ip", body.dJ, i * l))

@@ -110,6 +110,7 @@ class Pieces:
         """Return the derivatives."""
         clock, records, P = self.base.clock[0], self.base.records, len(self.labels)
         order = np.argsort(records.impact.time[: clock.struck], kind="stable")
+        times = records.series.t[: clock.saved].copy()
         point = {
             name: np.array(self.rows[name], dtype=float).reshape(
                 (clock.struck, P) if name == "time" else (clock.struck, 3, P)
@@ -122,7 +123,7 @@ class Pieces:
             velocity_after=point["after"], impulse=point["impulse"],
             impact_error=np.array(self.errors, dtype=float)[order], notes=tuple(self.notes),
             margins=(), defect=self.error, by="differences",
-            _motion=Steps(records.series.t[: clock.saved].copy(), self.X),
+            _motion=Steps(float(times[0]), float(times[-1]), times, self.X),
         )  # fmt: skip
 
     def bring_to_joints(self) -> None:

@@ -10,11 +10,10 @@ from carom import checks
 from carom.geometry import quaternion
 from carom.scene.bodies import Body
 from carom.scene.contacts import Contact
+from carom.studies.gradient.body import MOMENTS, UNITS
 
 VECTORS = ("position", "orientation", "velocity", "angular_velocity")
 AXES = ("x", "y", "z")
-#: components of a symmetric matrix, and the indices of each
-MOMENTS = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
 OF_BODY = (*VECTORS, "mass", "inertia")
 OF_CONTACT = ("restitution", "friction")
 OF_SCENE = ("gravity", *OF_CONTACT)
@@ -78,8 +77,8 @@ def make_parameters(scene, names, contacts: int, to_principal: np.ndarray) -> Pa
         tuple(labels), columns, np.zeros((N, 12, P)), np.zeros((N, P)), np.zeros((N, 3, 3, P)),
         np.zeros((contacts, P)), np.zeros((contacts, P)), np.zeros((3, P)),
     )  # fmt: skip
-    for name, (part, field, components) in zip(names, parts):
-        _write(made, part, field, components, columns[name], to_principal)
+    for name, (part, field, _) in zip(names, parts):
+        _write(made, part, field, columns[name], to_principal)
     return made
 
 
@@ -107,7 +106,7 @@ def _parts(scene, name: str):
     )
 
 
-def _write(made: Parameters, part, field, components, columns, to_principal) -> None:
+def _write(made: Parameters, part, field, columns, to_principal) -> None:
     """Write the changes by the parameters of one name."""
     if field == "gravity":
         made.gravity[:, columns] = np.eye(3)
@@ -118,11 +117,7 @@ def _write(made: Parameters, part, field, components, columns, to_principal) -> 
         made.mass[part.index, columns] = 1.0
     elif field == "inertia":
         R = quaternion.matrix(to_principal[part.index])
-        for column, name in enumerate(components, columns.start):
-            i, j = MOMENTS[name]
-            change = np.zeros((3, 3))
-            change[i, j] = change[j, i] = 1.0
-            made.inertia[part.index, :, :, column] = R.T @ change @ R
+        made.inertia[part.index, :, :, columns] = np.moveaxis(R.T @ UNITS @ R, 0, -1)
     else:
         row = 3 * VECTORS.index(field)
         made.start[part.index, row : row + 3, columns] = np.eye(3)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.geometry import quaternion
+from carom.geometry.frames import pair_axes
 from carom.studies.gradient.body import Moving, hat
 
 STEP = 2.0**-9  # step of differences of order 4, relative to the size of the smaller body
@@ -115,16 +116,8 @@ class _Finder:
         if count < 1:
             return None
         best = self.out[int(np.argmin(self.out["gap"][:count]))]
-        axes = row.axes if len(bodies) == 1 else tangents(best.normal)
+        axes = row.axes if len(bodies) == 1 else pair_axes(best.normal)
         arms = [best.on_a - centres[0]]
         if len(bodies) == 2:
             arms.append(best.on_b - centres[1])
         return np.concatenate([[best.gap], axes.ravel(), *arms])
-
-
-def tangents(n: np.ndarray) -> np.ndarray:
-    """Return rows n, t1, t2 as in runs: t1 is world x made tangent, or y if n is near x."""
-    e = np.array([1.0, 0.0, 0.0]) if abs(n[0]) < 0.8 else np.array([0.0, 1.0, 0.0])
-    t1 = e - (e @ n) * n
-    t1 = t1 / np.linalg.norm(t1)
-    return np.stack([n, t1, np.cross(n, t1)])

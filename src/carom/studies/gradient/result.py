@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom import checks
-from carom.studies.gradient.tangents import Tangents
+from carom.studies.gradient.tangents import Flights, Steps
 
 NEAR = 0.05  # margins below this part of their scale are shown as near
 
@@ -110,7 +110,7 @@ class Sensitivities:
     defect: float
     final: Derivative = field(init=False)
     by: str
-    _motion: Tangents
+    _motion: Flights | Steps
 
     def __post_init__(self):
         object.__setattr__(self, "final", self.evaluate(self._motion.end))

@@ -3,48 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from carom.studies.gradient.body import Moving, fly
 
 
-class Tangents(Protocol):
-    """Derivatives of the motion between `begin` and `end`."""
-
-    @property
-    def begin(self) -> float:
-        """The time of the start [s]."""
-        ...
-
-    @property
-    def end(self) -> float:
-        """The end of the run [s]."""
-        ...
-
-    def at(self, times: np.ndarray) -> np.ndarray:
-        """Return the tangents (n, N, 12, P) at n times."""
-        ...
-
-
 @dataclass(frozen=True, eq=False)
 class Flights:
     """Bodies in free flight from their last knot; if a body is not in flight, it keeps the tangents there."""
 
+    begin: float  # of the run [s]
+    end: float
     knots: list[list[Moving]]
     free: list[list[bool]]
-    last: float
-
-    @property
-    def end(self) -> float:
-        """The end of the run [s]."""
-        return self.last
-
-    @property
-    def begin(self) -> float:
-        """The time of the start [s]."""
-        return self.knots[0][0].t
 
     def at(self, times: np.ndarray) -> np.ndarray:
         """Return the tangents (n, N, 12, P) at n times."""
@@ -62,18 +34,10 @@ class Flights:
 class Steps:
     """Tangents (T, N, 12, P) at the ends of the steps of a run."""
 
+    begin: float  # of the run [s]
+    end: float
     t: np.ndarray
     X: np.ndarray
-
-    @property
-    def begin(self) -> float:
-        """The time of the start [s]."""
-        return float(self.t[0])
-
-    @property
-    def end(self) -> float:
-        """The end of the run [s]."""
-        return float(self.t[-1])
 
     def at(self, times: np.ndarray) -> np.ndarray:
         """Return the tangents at n times, each of which ends a step.

@@ -78,12 +78,13 @@ class Walk:
         """Return the derivatives."""
         margins = sorted(self.margins, key=lambda m: m.relative)
         point, before, after, impulse = self.vectors
+        t = self.solution.t
         return Sensitivities(
             labels=self.parameters.labels, columns=self.parameters.columns,
             impact_time=self.times, impact_point=point, velocity_before=before,
             velocity_after=after, impulse=impulse, impact_error=self.errors,
             notes=tuple(self.notes), margins=tuple(margins), defect=self.defect, by="saltation",
-            _motion=Flights(self.knots, self.flies, float(self.solution.t[-1])),
+            _motion=Flights(float(t[0]), float(t[-1]), self.knots, self.flies),
         )  # fmt: skip
 
     def lose(

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from carom.geometry import quaternion
@@ -12,18 +10,8 @@ ITERATIONS = 50
 DIFFERENCE = 1e-5  # [rad], for difference quotients
 
 
-class Turn(NamedTuple):
-    """A fitted rotation."""
-
-    orientation: np.ndarray  # (4,) at the first time
-    angular_velocity: np.ndarray  # (3,) at the first time, world
-    error: np.ndarray  # (6,) standard errors of both
-    residual: np.ndarray  # (n, 3) rotations from fitted to recorded attitudes
-    noise: float  # standard deviation of one component
-
-
-def fit_attitude(t, q, inertia=None) -> Turn:
-    """Fit a free rotation to quaternions q (n, 4) at times t (n,), t[0] = 0."""
+def fit_attitude(t, q, inertia=None) -> dict:
+    """Return the fields of a `FreeFlight` about rotation: of quaternions q (n, 4) at times t (n,), t[0] = 0."""
     moments, axes = principal_axes(inertia)
     spin = constant_spin if moments is None else _torque_free(moments)
     to_principal = np.array([1.0, 0.0, 0.0, 0.0]) if axes is None else axes
@@ -59,9 +47,12 @@ def fit_attitude(t, q, inertia=None) -> Turn:
     here = residuals()[0].reshape(-1, 3)
     noise = float(np.sqrt(np.sum(here**2) / (here.size - 6)))
     spread = np.sqrt(np.diag(np.linalg.inv(slope.T @ slope)))
-    error = noise * spread / np.repeat((1.0, t[-1]), 3)
-    orientation = quaternion.multiply(R0, quaternion.conjugate(to_principal))
-    return Turn(orientation, turn / t[-1], error, here, noise)
+    return {
+        "orientation": quaternion.multiply(R0, quaternion.conjugate(to_principal)),
+        "angular_velocity": turn / t[-1], "orientation_error": noise * spread[:3],
+        "angular_velocity_error": noise * spread[3:] / t[-1],
+        "rotation_residual": here, "rotation_noise": noise,
+    }  # fmt: skip
 
 
 def constant_spin(t, starts, w) -> np.ndarray:

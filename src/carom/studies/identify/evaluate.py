@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -95,6 +95,3 @@ def _number(value) -> float:
         return checks.number("objective", value)
     except ValueError:
         return np.nan
-
-
-Objective = Callable[[RollOut, Recording], float]

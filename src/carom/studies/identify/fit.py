@@ -104,10 +104,6 @@ def identify(
     max_evaluations = checks.integer("max_evaluations", max_evaluations, least=1)
     resamples = checks.integer("resamples", resamples, least=0, most=100_000)
     seed = checks.integer("seed", seed, least=0)
-    if step is not None:
-        step = checks.number("step", step, above=0.0, unit="s")
-    if threads is not None:
-        threads = checks.integer("threads", threads, least=1)
     space = Space(parameters, known=isinstance(scene, Scene))
     settings = {"step": step, "options": options, "threads": threads}
     evaluate = Evaluator(scene, recordings, space, objective, progress, **settings)

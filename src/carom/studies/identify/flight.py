@@ -123,29 +123,14 @@ def fit_free_flight(
         raise ValueError(f"t must have at least {least} times ({_ROOM}), got {t.size}")
     g = None if gravity is None else checks.finite_array("gravity", gravity, (3,), "m/s^2")
     since, x, q = t - t[0], x[:, 0], unit("orientation", q)[:, 0]
-    place = _fit_positions(since, x, g)
-    turn = fit_attitude(since, q, inertia)
-    return FreeFlight(
-        time=float(t[0]),
-        position=place["state"][0],
-        orientation=turn.orientation,
-        velocity=place["state"][1],
-        angular_velocity=turn.angular_velocity,
-        acceleration=place["state"][2],
-        position_error=place["error"][0],
-        orientation_error=turn.error[:3],
-        velocity_error=place["error"][1],
-        angular_velocity_error=turn.error[3:],
-        acceleration_error=place["error"][2],
-        position_residual=place["residual"],
-        rotation_residual=turn.residual,
-        position_noise=place["noise"],
-        rotation_noise=turn.noise,
-    )
+    return FreeFlight(float(t[0]), **_fit_positions(since, x, g), **fit_attitude(since, q, inertia))
 
 
 def _fit_positions(t, x, gravity) -> dict:
-    """Fit x0 + v0 t + g t^2/2 by least squares, with times divided by their length for equal columns."""
+    """Return the fields of a `FreeFlight` about position.
+
+    Least squares of x0 + v0 t + g t^2/2, with times divided by their length for equal columns.
+    """
     length = t[-1]
     s = t / length
     powers = np.stack([np.ones_like(s), s, 0.5 * s * s], axis=1)
@@ -164,7 +149,11 @@ def _fit_positions(t, x, gravity) -> dict:
     error[:count] = noise * (spread / scale[:count])[:, None]
     if gravity is not None:
         state[2] = gravity
-    return {"state": state, "error": error, "residual": residual, "noise": noise}
+    names = ("position", "velocity", "acceleration")
+    return {
+        **dict(zip(names, state)), **{f"{name}_error": row for name, row in zip(names, error)},
+        "position_residual": residual, "position_noise": noise,
+    }  # fmt: skip
 
 
 def free_samples(

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, replace
+from copy import deepcopy
+from dataclasses import replace
 
 import numpy as np
 
 from carom import checks
-from carom.scene.materials import ContactLaw
 from carom.scene.scene import Scene
 from carom.scene.shapes import Box
+from carom.scene.values import keep
 from carom.studies.identify.recording import State, checked_state
 
 #: parameters of `varied`: lower and upper bound, and a step large enough for the start of a search
@@ -65,50 +66,24 @@ def varied(
             "start must be left out for a scene with joints or forces, which are placed for its own initial "
             f"state, got {checks.shown(scene)}; give a function that makes the scene instead"
         )
-    if not scene.bodies:
-        raise ValueError(f"scene must have at least one body, got {scene!r}")
     if start is not None:
         start = checked_state(start, len(scene.bodies))
     factor = checks.scale("inertia_factor", inertia_factor)
-    copy = Scene(gravity=scene.gravity)
-    parts: dict = {}
-    for plane in scene.half_spaces:
-        parts[plane] = copy.add_half_space(plane.point, plane.normal, name=plane.name)
-    for solid in scene.statics:
-        parts[solid] = copy.add_static(
-            solid.shape, position=solid.position, orientation=solid.orientation, name=solid.name
-        )
-    for k, body in enumerate(scene.bodies):
-        state = _state(body) if start is None else State(*(field[k] for field in start))
-        parts[body] = copy.add_body(
-            _rounded(body.shape, corner_radius), mass=body.mass, inertia=factor * body.inertia,
-            name=body.name, **state._asdict(),
-        )  # fmt: skip
+    if corner_radius is not None:
+        corner_radius = checks.length("corner_radius", corner_radius, zero=True)
+    found = deepcopy(scene)
+    for k, body in enumerate(found.bodies):
+        keep(body, inertia=factor * body.inertia)
+        if corner_radius is not None and isinstance(body.shape, Box):
+            keep(body, shape=replace(body.shape, radius=corner_radius))
+        if start is not None:
+            keep(body, **{name: values[k] for name, values in start._asdict().items()})
     given = {"restitution": restitution, "friction": friction, "friction_held": friction_held}
     given = {name: value for name, value in given.items() if value is not None}
-    for contact in scene.contacts:
-        law = {name: getattr(contact, name) for name in asdict(ContactLaw())}
+    for contact in found.contacts:
         if contact.friction_held == contact.friction and "friction" in given:
-            law["friction_held"] = None  # then it equals the new friction
-        law.update(given)
-        copy.add_contact(parts[contact.body], parts[contact.other], name=contact.name, **law)
-    for joint in scene.joints:
-        parent, child = parts.get(joint.parent, joint.parent), parts[joint.child]
-        copy.add_joint(joint.definition, parent, child, name=joint.name)
-    for force in scene.forces:
-        parent, child = parts.get(force.parent, force.parent), parts[force.child]
-        copy.add_force(force.definition, parent, child, name=force.name)
-    return copy
-
-
-def _state(body) -> State:
-    return State(body.position, body.orientation, body.velocity, body.angular_velocity)
-
-
-def _rounded(shape, radius):
-    """Return a box with another radius of its rounding; other shapes are returned unchanged."""
-    if radius is not None:
-        radius = checks.length("corner_radius", radius, zero=True)
-    if radius is None or not isinstance(shape, Box):
-        return shape
-    return replace(shape, radius=radius)
+            keep(contact, friction_held=None)  # then it equals the new friction
+        keep(contact, **given)
+        contact.__post_init__()
+    found.validate()
+    return found

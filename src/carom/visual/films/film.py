@@ -27,9 +27,10 @@ def film(
 
     Bodies are solid, each in its own colour, and cast shadows on half-spaces, which have a grid. A half-space
     is left out if the camera is behind its surface. Round bodies have patches that show their rotation. Bodies
-    without a shape are drawn as rods from the mass centre to the joints. An orange arrow shows the impulse of
-    an impact for 0.15 s of the film; its length is proportional to the square root of the impulse. Black dots
-    are persistent contacts. Between saved times the motion is that of `Solution.evaluate`.
+    without a shape are drawn as what rolls, as rods from the mass centre to the joints, or as the ellipsoid of
+    their inertia. An orange arrow shows the impulse of an impact for 0.15 s of the film; its length is
+    proportional to the square root of the impulse. Black dots are persistent contacts. Between saved times the
+    motion is that of `Solution.evaluate`.
 
     Parameters
     ----------

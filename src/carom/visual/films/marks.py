@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.geometry.frames import contact_axes
 from carom.visual.plots import style
+from carom.visual.viewer.strikes import world_impulses
 
 LINGER = 0.15  # time for which an arrow is shown [s of the film]
 #: length of the arrow of the greatest impulse, as a fraction of the height of the view
@@ -21,15 +21,8 @@ class Marks:
 
     def __init__(self, solution, length: float):
         self.solution, self.linger = solution, LINGER
-        pairs = solution.pairs
-        table = solution.impacts
-        drawn = np.flatnonzero(table.contact < len(pairs.body))  # stops have no point of contact
-        self.time, self.point = table.time[drawn], table.point[drawn]
-        push = np.zeros((len(drawn), 3))
-        for row, k in enumerate(drawn):
-            flat = 0 <= pairs.plane[table.contact[k]] < len(solution.scene.half_spaces)
-            n = table.normal[k]
-            push[row] = table.impulse[k] @ (contact_axes(n) if flat else pair_axes(n))
+        table, push = solution.impacts, world_impulses(solution)
+        self.time, self.point = table.time, table.point
         size = np.linalg.norm(push, axis=1)
         greatest = float(size.max(initial=0.0)) or 1.0
         # lengths grow with the square root: the first impulse is often ten times the later ones
@@ -59,14 +52,6 @@ def _visible(x: float, y: float, near: float, depth) -> bool:
     if not (near > 0.0 and 0.0 <= x < width and 0.0 <= y < height):
         return False
     return near >= (1.0 - GRAZE) * depth[int(y), int(x)]
-
-
-def pair_axes(normal: np.ndarray) -> np.ndarray:
-    """Return rows n, t1, t2 of a contact of two bodies, as `carom.contact.pair_point.tangents`."""
-    e = np.eye(3)[0 if abs(normal[0]) < 0.8 else 1]
-    first = e - (e @ normal) * normal
-    first /= np.linalg.norm(first)
-    return np.stack([normal, first, np.cross(normal, first)])
 
 
 def _arrow(pen, start, end, unit: float) -> None:

@@ -8,24 +8,15 @@ import numpy as np
 
 from carom import checks
 from carom.geometry import quaternion
-from carom.scene.joints import Distance
 from carom.scene.shapes.revolved import Cylinder
-from carom.visual.details import moving
+from carom.visual.bodies import Part, ground_points, links_of, moving, outline_of, turn_to
 from carom.visual.films import marks
 from carom.visual.films.camera import Camera, axes_of, fitted, vertical
-from carom.visual.films.models import (
-    Model,
-    anchors,
-    model_of,
-    models,
-    placed_model,
-    rgb,
-    split,
-    turned_to,
-)
+from carom.visual.films.models import Model, joined, model_of, models, rgb
 from carom.visual.plots.figure import bodies as named_bodies
 from carom.visual.plots.figure import need_bodies
 from carom.visual.surfaces import surface
+from carom.visual.viewer.planes import round_length
 
 BACKGROUND = rgb("#ffffff")
 PLANE, GRID, LINK = rgb("#ededed"), rgb("#cfcfcf"), rgb("#6b6b6b")
@@ -53,11 +44,8 @@ class Stage:
         begin, end = span or (float(solution.t[0]), float(solution.t[-1]))
         times = np.linspace(begin, end, SAMPLES)
         places, turns = solution._curve(times)[:2]
-        middle = places.reshape(-1, 3).mean(axis=0)
-        spread = float(np.linalg.norm(places - middle, axis=2).max())
-        self.radii = np.array(
-            [b.shape.size if b.shape is not None else 0.05 * spread for b in scene.bodies]
-        )
+        self.outlines = [outline_of(scene, body) for body in scene.bodies]
+        self.radii = np.array([outline.radius for outline in self.outlines])
         self.axes = axes_of(view, scene)
         self.camera = self._camera(places, turns)
         self.length = self.camera.distance * 0.46  # approximate height of the view
@@ -77,14 +65,11 @@ class Stage:
                 )
             else:
                 seen[:] = True
-            radii = np.tile(self.radii[seen], len(places))
-            flat = places[:, seen].reshape(-1, 3)
-            ends = [
-                at
-                for part, at in anchors(self.solution.scene.joints)
-                if part.index < 0 and at is not None
-            ]
-            flat, radii = np.vstack([flat, *ends]), np.append(radii, np.zeros(len(ends)))
+            points = [(b, p) for b in np.flatnonzero(seen) for p in self.outlines[b].points]
+            reached = [places[:, b] + quaternion.rotate(turns[:, b], p) for b, p in points]
+            sizes = np.repeat([self.outlines[b].size for b, _ in points], len(places))
+            ends = ground_points(self.solution.scene)
+            flat, radii = np.vstack([*reached, *ends]), np.append(sizes, np.zeros(len(ends)))
         else:
             k = self.followed[0].index
             flat, radii = places[:1, k], 4.0 * self.radii[k : k + 1]
@@ -92,16 +77,11 @@ class Stage:
         return camera._replace(distance=camera.distance / self.zoom)
 
     def _place_models(self) -> None:
-        made = [split(one, self.length) for one in models(self.solution.scene, self.length)]
-        counts = [len(model.corners) for model in made]
-        self.owner = np.repeat(np.arange(len(made)), counts)
-        self.all = Model(*(np.concatenate(columns) for columns in zip(*made)))
-        self.still = [placed_model(solid) for solid in self.solution.scene.statics]
         scene = self.solution.scene
-        rods = [j for j in scene.joints if isinstance(j.definition, Distance)]
-        self.links = anchors([*rods, *(f for f in scene.forces if f.kind == "Spring")])
-        rod = model_of(*surface(Cylinder(1.0, 1.0), 12), None)
-        self.rod = rod._replace(colours=rod.colours + LINK, edges=0 * rod.edges)
+        self.all, self.owner = models(scene, self.length)
+        self.links = links_of(scene)
+        rod = model_of(Part(*surface(Cylinder(1.0, 1.0), 12), [], "joint"))
+        self.rod = rod._replace(colours=rod.colours + LINK)
 
     def _place_planes(self, places) -> None:
         up, _, _ = vertical(self.solution.scene)
@@ -109,7 +89,7 @@ class Stage:
         light = light / np.linalg.norm(light) + 0.8 * up
         self.light = light / np.linalg.norm(light)
         flat = places.reshape(-1, 3)
-        self.spacing = _round(0.14 * self.length)
+        self.spacing = round_length(0.2 * self.length)
         self.planes = []
         for half_space in self.solution.scene.half_spaces:
             n = half_space.normal
@@ -168,24 +148,19 @@ class Stage:
 
     def _world(self, x, Q) -> Model:
         """Return all triangles at their present positions."""
-        turn = quaternion.matrix(Q).reshape(-1, 3, 3)[self.owner]
+        x, Q = np.vstack([x, np.zeros(3)]), np.vstack([Q, [1.0, 0.0, 0.0, 0.0]])  # the last: static
+        turn = quaternion.matrix(Q)[self.owner]
         corners = np.einsum("fij,fkj->fki", turn, self.all.corners) + x[self.owner][:, None]
         normals = np.einsum("fij,fkj->fki", turn, self.all.normals)
-        parts = [self.all._replace(corners=corners, normals=normals), *self.still]
-        ends = [
-            at if part.index < 0 else x[part.index] + quaternion.rotate(Q[part.index], at)
-            for part, at in self.links
-        ]
-        for a, b in zip(ends[::2], ends[1::2]):
-            parts.append(self._link(np.asarray(a), np.asarray(b)))
-        return Model(*(np.ascontiguousarray(np.concatenate(column)) for column in zip(*parts)))
+        links = [self._link(*link.ends(x, Q)) for link in self.links]
+        return joined([self.all._replace(corners=corners, normals=normals), *links])
 
     def _link(self, a, b) -> Model:
         """Return a thin rod from one point to another."""
         length = float(np.linalg.norm(b - a))
         if not length > 0.0:
             return Model(*(column[:0] for column in self.rod))
-        turn, radius = turned_to((b - a) / length).T, 0.004 * self.length
+        turn, radius = quaternion.matrix(turn_to((b - a) / length)).T, 0.004 * self.length
         corners = self.rod.corners * (radius, radius, length) @ turn + 0.5 * (a + b)
         return self.rod._replace(corners=corners, normals=self.rod.normals @ turn)
 
@@ -279,9 +254,3 @@ def _steps(apart, directions, spacing: float) -> np.ndarray:
     """Return the displacement nearest to `apart` that moves a grid onto itself."""
     steps = [spacing * np.round(apart @ e / spacing) * e for e in directions]
     return np.sum(steps, axis=0)
-
-
-def _round(length: float) -> float:
-    """Return 1, 2 or 5 times a power of ten near a length."""
-    power = 10.0 ** np.floor(np.log10(length))
-    return float(power * min((1.0, 2.0, 5.0, 10.0), key=lambda f: abs(np.log(f * power / length))))

@@ -4,22 +4,16 @@ Each function draws one plot of a `Solution` or a `GeneralizedSolution` into giv
 returns the axes.
 """
 
-from __future__ import annotations
-
-import importlib
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from carom.visual.plots.balance import energy
-    from carom.visual.plots.errors import constraint_errors
-    from carom.visual.plots.glance import overview
-    from carom.visual.plots.impacts_over_time import impacts
-    from carom.visual.plots.layer import impact_inside
-    from carom.visual.plots.paths import trajectory
-    from carom.visual.plots.plane import phase
-    from carom.visual.plots.precision import work_precision
-    from carom.visual.plots.slip import hodograph
-    from carom.visual.plots.timeline import contacts
+from carom.visual.plots.balance import energy
+from carom.visual.plots.errors import constraint_errors
+from carom.visual.plots.glance import overview
+from carom.visual.plots.impacts_over_time import impacts
+from carom.visual.plots.layer import impact_inside
+from carom.visual.plots.paths import trajectory
+from carom.visual.plots.plane import phase
+from carom.visual.plots.precision import work_precision
+from carom.visual.plots.slip import hodograph
+from carom.visual.plots.timeline import contacts
 
 __all__ = [
     "constraint_errors",
@@ -33,22 +27,3 @@ __all__ = [
     "trajectory",
     "work_precision",
 ]
-
-_WHERE = {
-    "constraint_errors": "errors",
-    "contacts": "timeline",
-    "energy": "balance",
-    "hodograph": "slip",
-    "impact_inside": "layer",
-    "impacts": "impacts_over_time",
-    "overview": "glance",
-    "phase": "plane",
-    "trajectory": "paths",
-    "work_precision": "precision",
-}
-
-
-def __getattr__(name: str):
-    if name in _WHERE:
-        return getattr(importlib.import_module(f"carom.visual.plots.{_WHERE[name]}"), name)
-    raise AttributeError(f"module 'carom.plots' has no attribute {name!r}")

@@ -170,25 +170,16 @@ def legend(ax, least: int = 2, most: int = 12, **where) -> None:
         ax.legend(**where)
 
 
-def seconds(span: float) -> tuple[float, str]:
-    """Return factor and unit in which a span of time [s] reads well."""
-    for factor, unit in ((1.0, "s"), (1e3, "ms"), (1e6, r"$\mu$s"), (1e9, "ns")):
-        if span * factor >= 1.0:
-            return factor, unit
-    return 1e12, "ps"
-
-
-def metres(span: float) -> tuple[float, str]:
-    """Return factor and unit in which a length [m] reads well."""
-    for factor, unit in ((1.0, "m"), (1e3, "mm"), (1e6, r"$\mu$m"), (1e9, "nm")):
-        if span * factor >= 1.0:
-            return factor, unit
-    return 1e12, "pm"
-
-
-def newtons(greatest: float) -> tuple[float, str]:
-    """Return factor and unit in which forces up to `greatest` [N] read well."""
-    for factor, unit in ((1e-6, "MN"), (1e-3, "kN"), (1.0, "N"), (1e3, "mN")):
-        if greatest * factor >= 1.0:
-            return factor, unit
-    return 1.0, "N"
+def readable(value: float, unit: str) -> tuple[float, str]:
+    """Return factor and unit in which values up to `value` [unit] read well: with SI prefixes, M to p."""
+    prefixes = (
+        (1e-6, "M"),
+        (1e-3, "k"),
+        (1.0, ""),
+        (1e3, "m"),
+        (1e6, r"$\mu$"),
+        (1e9, "n"),
+        (1e12, "p"),
+    )
+    factor, prefix = next((p for p in prefixes if value * p[0] >= 1.0), prefixes[-1])
+    return factor, prefix + unit

@@ -44,8 +44,8 @@ def impact_inside(solution, k: int = 0, *, steps: int = KNOTS, ax=None):
     history = solution if isinstance(solution, LayerHistory) else _history(solution, k, steps)
     t = np.linspace(0.0, history.duration, 600)
     x, u = history.evaluate(t)
-    time, short = figure.seconds(history.duration)
-    length, unit = figure.metres(history.width)
+    time, short = figure.readable(history.duration, "s")
+    length, unit = figure.readable(history.width, "m")
     with figure.drawing(ax, 3, (style.COLUMN, 4.2)) as axes:
         gap, speed, force = axes
         gap.plot(time * t, length * x, color=style.BLUE)
@@ -55,7 +55,7 @@ def impact_inside(solution, k: int = 0, *, steps: int = KNOTS, ax=None):
         forces = (history.normal_force, *history.friction_force.T)
         last = int(np.argmin(history.x))  # knot at the end of compression
         times = np.insert(history.t, last, history.t[last])
-        strong, newton = figure.newtons(float(np.max(np.abs(history.normal_force))))
+        strong, newton = figure.readable(float(np.max(np.abs(history.normal_force))), "N")
         slides = [0, *(i for i in (1, 2) if np.any(u[:, i]) or np.any(forces[i]))]
         for i in slides:
             speed.plot(time * t, u[:, i], color=looks[i], label=f"$u_{{{names[i]}}}$")

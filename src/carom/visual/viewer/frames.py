@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.geometry import quaternion
-from carom.visual.details import moving
+from carom.visual.bodies import Outline, moving
 
 MOST = 5000  # frames, if nothing else is asked for
 VALUES = 3_000_000  # numbers of all poses together: 12 MB before packing
@@ -32,13 +32,6 @@ class Place(NamedTuple):
     up: np.ndarray  #: (3,) unit vector against gravity
     side: np.ndarray  #: (3,) unit vector, level: from the centre to the eye
     lift: float  #: angle of the eye above the level [rad]
-
-
-class Outline(NamedTuple):
-    """The extent of a body: a ball of radius `size` [m] about each of its `points` (3,), body axes."""
-
-    points: list[np.ndarray]
-    size: float
 
 
 def frames_of(solution, most: int = MOST) -> Frames:
@@ -145,13 +138,5 @@ def poses_at(frames: Frames, t: float) -> tuple[np.ndarray, np.ndarray]:
     k = int(np.clip(np.searchsorted(time, t, side="right") - 1, 0, max(len(time) - 2, 0)))
     n = min(k + 1, len(time) - 1)
     s = float(np.clip((t - time[k]) / (time[n] - time[k]), 0.0, 1.0)) if n > k else 0.0
-    p, q = frames.orientation[k], frames.orientation[n]
-    cosine = np.sum(p * q, axis=1, keepdims=True)
-    q = np.where(cosine < 0.0, -q, q)  # the same attitude, by the smaller rotation
-    angle = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
-    sine = np.where(angle > 1e-4, np.sin(angle), 1.0)
-    first = np.where(angle > 1e-4, np.sin((1.0 - s) * angle) / sine, 1.0 - s)
-    second = np.where(angle > 1e-4, np.sin(s * angle) / sine, s)
-    turned = first * p + second * q
     x = (1.0 - s) * frames.position[k] + s * frames.position[n]
-    return x, turned / np.linalg.norm(turned, axis=1, keepdims=True)
+    return x, quaternion.interpolate(frames.orientation[k], frames.orientation[n], s)

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.geometry import quaternion
-from carom.visual.details import colour_of, pip_colour
+from carom.visual.bodies import JOINT, colours_of
 from carom.visual.viewer.frames import poses_at
-from carom.visual.viewer.grids import grid_lines, round_length
+from carom.visual.viewer.planes import grid_lines, round_length
 from carom.visual.viewer.show import COLOURS, FORCE, IMPULSE, Show
 
 PATHS = 20  # bodies whose paths are drawn
 SHADE = (236, 240, 243)
-DARK, FAINT = "#5b6873", (184, 194, 202)
-STATIC = "#c3ccd4"
+FAINT = (184, 194, 202)
 
 
 class LiveScene:
@@ -51,7 +49,7 @@ class LiveScene:
         self.links = None
         if show.links:
             self.links = stage.add_line_segments(
-                "/links", self._link_ends(x, Q), (91, 104, 115), thickness=0.012 * self.radius
+                "/links", _ends(show.links, x, Q), (91, 104, 115), thickness=0.012 * self.radius
             )
         points = show.solution.impacts.point[show.strikes.number]
         self.marks = stage.add_icosphere("/none", 1e-9) if not len(points) else self._marks(points)
@@ -67,7 +65,7 @@ class LiveScene:
             handle.batched_positions = x[part.bodies].astype(np.float32)
             handle.batched_wxyzs = Q[part.bodies].astype(np.float32)
         if self.links is not None:
-            self.links.points = self._link_ends(x, Q)
+            self.links.points = _ends(self.show.links, x, Q)
         number, time = self.show.strikes.number, self.show.solution.impacts.time
         age = t - time[number]
         seen = (age >= 0.0) & (age < fading)
@@ -92,16 +90,10 @@ class LiveScene:
         away = np.linalg.norm(points - np.outer(points @ along, along), axis=1)
         return int(np.argmin(away))
 
-    def _colour(self, b: int, look: str) -> str:
-        own = colour_of(self.show.solution.scene.bodies[b], COLOURS)
-        return DARK if look == "joint" else pip_colour(own) if look == "pip" else own
-
     def _part(self, k: int, part, x: np.ndarray, Q: np.ndarray):
         if part.look == "static":
             x, Q = np.zeros((1, 3)), np.array([[1.0, 0, 0, 0]])
-            colours = [_rgb(STATIC)]
-        else:
-            colours = [_rgb(self._colour(b, part.look)) for b in part.bodies]
+        colours = [_rgb(one) for one in colours_of(part, self.show.solution.scene, COLOURS)]
         return self.stage.add_batched_meshes_simple(
             f"/bodies/{k}", part.vertices.astype(np.float32), part.triangles.astype(np.uint32),
             Q[part.bodies], x[part.bodies], batched_colors=np.array(colours, dtype=np.uint8),
@@ -147,7 +139,7 @@ class LiveScene:
         ball = 0.009 * self.radius
         return self.stage.add_batched_meshes_simple(
             "/marks", ball * OCTAHEDRON, FACES, np.tile([1.0, 0, 0, 0], (len(points), 1)), points,
-            batched_colors=_rgb(DARK), lod="off", cast_shadow=False,
+            batched_colors=_rgb(JOINT), lod="off", cast_shadow=False,
         )  # fmt: skip
 
     def _arrows(self, name: str, colour: str):
@@ -167,17 +159,6 @@ class LiveScene:
         ends = start[seen] + scale[:, None] * vectors[seen]
         handle.points = np.stack([start[seen], ends], axis=1).astype(np.float32)
 
-    def _link_ends(self, x: np.ndarray, Q: np.ndarray) -> np.ndarray:
-        """Return both ends (L, 2, 3) of springs and rods."""
-
-        def at(body, anchor):
-            return x[body] + quaternion.rotate(Q[body], anchor) if body >= 0 else anchor
-
-        ends = [
-            (at(k.parent, k.parent_anchor), at(k.child, k.child_anchor)) for k in self.show.links
-        ]
-        return np.array(ends, dtype=np.float32)
-
 
 OCTAHEDRON = np.array(
     [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=np.float32
@@ -192,3 +173,8 @@ def _rgb(colour: str) -> tuple[int, int, int]:
     """Return red, green and blue of ``"#rrggbb"``, linear in light: so viser takes them for batches."""
     red, green, blue = (round(255 * (part / 255) ** 2.2) for part in bytes.fromhex(colour[1:]))
     return red, green, blue
+
+
+def _ends(links, x: np.ndarray, Q: np.ndarray) -> np.ndarray:
+    """Return both ends (L, 2, 3) of springs and rods."""
+    return np.array([link.ends(x, Q) for link in links], dtype=np.float32)

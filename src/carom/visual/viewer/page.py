@@ -13,7 +13,8 @@ import numpy as np
 
 import carom
 from carom import checks
-from carom.visual.details import colour_of, pip_colour
+from carom.visual.bodies import colour_of
+from carom.visual.dice import pip_colour
 from carom.visual.viewer.pack import Packer, header_text
 from carom.visual.viewer.show import COLOURS, FORCE, IMPULSE, Show, body_number, playing_speed
 from carom.visual.viewer.strikes import Inside, insides_of

@@ -11,7 +11,8 @@ import numpy as np
 from carom import checks
 from carom.generalized.solution import GeneralizedSolution
 from carom.results.solution import Solution
-from carom.visual.viewer import frames, solids, strikes
+from carom.visual import bodies
+from carom.visual.viewer import frames, planes, strikes
 
 #: Okabe and Ito's colours, told apart by colour-blind eyes; their vermilion and blue are for arrows
 COLOURS = ("#56B4E9", "#E69F00", "#009E73", "#F0E442", "#CC79A7", "#999999")
@@ -26,9 +27,9 @@ class Show(NamedTuple):
     frames: frames.Frames
     place: frames.Place
     sizes: np.ndarray  #: (N,) radii of the bodies [m]
-    parts: list[solids.Part]
-    planes: list[solids.Plane]
-    links: list[solids.Link]
+    parts: list[bodies.Part]
+    planes: list[planes.Plane]
+    links: list[bodies.Link]
     strikes: strikes.Strikes
     persistent: strikes.PersistentForces
 
@@ -61,17 +62,15 @@ def show_of(what, title: str | None = None, most: int = frames.MOST) -> Show:
     if title is None:
         title = Path(what).stem if isinstance(what, (str, os.PathLike)) else "carom"
     scene = solution.scene
-    outlines = [solids.outline_of(scene, body) for body in scene.bodies]
-    sizes = np.array([solids.size_of(outline) for outline in outlines])
+    outlines = [bodies.outline_of(scene, body) for body in scene.bodies]
+    sizes = np.array([outline.radius for outline in outlines])
     moments = frames.frames_of(solution, checks.integer("frames", most, least=2))
-    links = solids.links_of(scene)
-    ground = [a for k in links for a in solids.ends_on_ground(k)]
-    place = frames.place_of(solution, moments, outlines, ground)
+    place = frames.place_of(solution, moments, outlines, bodies.ground_points(scene))
     return Show(
         title, solution, moments, place, sizes,
-        solids.parts_of(scene, place.radius),
-        solids.planes_of(scene, place, moments.position),
-        links,
+        bodies.parts_of(scene, place.radius),
+        planes.planes_of(scene, place, moments.position),
+        bodies.links_of(scene),
         strikes.strikes_of(solution),
         strikes.persistent_forces(solution, moments.time),
     )  # fmt: skip

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.geometry.frames import contact_axes
+from carom.geometry.frames import contact_axes, pair_axes
 from carom.scene.constraints import coordinate_kind
 
 LISTED = 1000  # impacts in the list: the strongest
@@ -44,20 +44,25 @@ class Inside(NamedTuple):
     phases: tuple[str, ...]
 
 
+def world_impulses(solution) -> np.ndarray:
+    """Return the impulse of each impact on the body (K, 3), world axes [N s]; 0 at stops of joints."""
+    impacts, pairs = solution.impacts, solution.pairs
+    out = np.zeros((len(impacts), 3))
+    for k in np.flatnonzero(impacts.contact < len(pairs.body)):  # stops come after contacts
+        flat = 0 <= pairs.plane[impacts.contact[k]] < len(solution.scene.half_spaces)
+        axes = contact_axes if flat else pair_axes
+        out[k] = impacts.impulse[k] @ axes(impacts.normal[k])
+    return out
+
+
 def strikes_of(solution, listed: int = LISTED) -> Strikes:
     """Return the impacts to show."""
     impacts, scene = solution.impacts, solution.scene
     chosen = np.sort(_strongest(impacts)[:listed])
-    pairs = solution.pairs
-    stops = len(pairs.body)  # they come after contacts
-    arrow = np.zeros((len(chosen), 3))
-    for row, k in enumerate(chosen):
-        c = impacts.contact[k]
-        if c < stops:
-            axes = _axes(impacts.normal[k], bool(0 <= pairs.plane[c] < len(scene.half_spaces)))
-            arrow[row] = impacts.impulse[k] @ axes
+    stops = len(solution.pairs.body)
     names = impacts.name[chosen].tolist()
     turning = [c >= stops and _turns(scene.stops[c - stops]) for c in impacts.contact[chosen]]
+    arrow = world_impulses(solution)[chosen]
     return Strikes(chosen, arrow, names, np.array(turning, dtype=bool))
 
 
@@ -91,16 +96,6 @@ def insides_of(solution, strikes: Strikes, opened: int = OPENED) -> dict[int, In
 
 def _strongest(impacts) -> np.ndarray:
     return np.argsort(-np.linalg.norm(impacts.impulse, axis=1), kind="stable")
-
-
-def _axes(normal: np.ndarray, of_plane: bool) -> np.ndarray:
-    """Return rows n, t1, t2: of half-spaces and of two bodies the tangents are chosen differently."""
-    if of_plane:
-        return contact_axes(normal)
-    east = np.array([1.0, 0.0, 0.0]) if abs(normal[0]) < 0.8 else np.array([0.0, 1.0, 0.0])
-    first = east - (east @ normal) * normal
-    first /= np.linalg.norm(first)
-    return np.stack([normal, first, np.cross(normal, first)])
 
 
 def _turns(stop) -> bool:

@@ -1,5 +1,7 @@
 """Whole tosses of a real cube, from flight to rest: simulated against motion capture.
 
+By default the first 24 of them, with fitted parameters; ``--data FILE`` reads another file, ``--fit`` fits.
+
 Data: the 285 tosses with even numbers of an acrylic cube at 148 Hz (ContactNets, Pfrommer, Halm and Posa
 2020; licence beside the file). Parameters are fitted only to these; the odd tosses are kept for a test.
 
@@ -15,6 +17,7 @@ centres, relative to the edge, and of the angle between the attitudes. The simul
 
 from __future__ import annotations
 
+import argparse
 from importlib.resources import files
 from pathlib import Path
 from typing import NamedTuple
@@ -22,6 +25,7 @@ from typing import NamedTuple
 import numpy as np
 
 import carom
+import cube_tosses_figure
 from carom.geometry import quaternion
 from carom.studies.identify import (
     Identification,
@@ -36,6 +40,7 @@ from carom.studies.identify import (
     trajectory_error,
     varied,
 )
+from carom.visual.plots import style
 
 DT = 1.0 / 148.0  # [s]
 EDGE, MASS, INERTIA = 0.1048, 0.37, 8.1e-4  # [m], [kg], [kg m^2]
@@ -49,7 +54,7 @@ LENGTH, ANGLE = 0.135 * EDGE, np.radians(16.5)  # errors of the best published s
 CHOSEN: dict[tuple[str, int], dict[str, float]] = {
     ("A", 0): {"restitution": 0.125, "friction": 0.18},
     ("B", 0): {"restitution": 0.125, "friction": 0.18},
-    # fitted to the even tosses by others with a similar model; a fit with carom (`fit`) may differ slightly
+    # fitted to the even tosses by others with a similar model; a fit with carom (`fitted`) may differ slightly
     ("A", 2): {"restitution": 0.16, "friction": 0.179},
     ("B", 2): {"restitution": 0.27, "friction": 0.179},
     ("A", 5): {
@@ -187,7 +192,7 @@ def perturbed(tosses: list[Recording], size: float = 1e-6, seed: int = 0) -> lis
     return found
 
 
-def fit(start: str, count: int, tosses: list[Recording], **settings) -> Identification:
+def fitted(start: str, count: int, tosses: list[Recording], **settings) -> Identification:
     """Fit 2 parameters (e, mu) or 5 (also mu of persistent contacts, inertia, corner radius) to tosses."""
     begin: dict = {"restitution": (0.2, 0.1), "friction": (0.18, 0.015)}
     if count == 5:
@@ -196,3 +201,49 @@ def fit(start: str, count: int, tosses: list[Recording], **settings) -> Identifi
         begin["corner_radius"] = (0.0025, 0.0025)
     objective = mean_error(LENGTH, ANGLE)
     return identify(template(start), tosses, begin, objective, **{"step": DT, **settings})
+
+
+def checked(start, tossed, chosen):
+    half = simulate(start, tossed, chosen, STEP / 2)
+    print(f"half the step: {levels(half, tossed)}")
+    moved = simulate(start, perturbed(tossed), chosen)
+    print(f"starts moved by 1e-6: {levels(moved, tossed)}")
+
+
+def main(out="out/benchmarks", data=None, start="B", parameters=5, fit=False, most=24, halve=False):
+    tossed = recordings(start, data)[:most]
+    chosen = CHOSEN[start, parameters]
+    if fit:
+        found = fitted(start, parameters, tossed)
+        print(found)
+        chosen = found.parameters
+    print(f"start {start},", ", ".join(f"{name} {value:g}" for name, value in chosen.items()))
+    runs = simulate(start, tossed, chosen)
+    errors = levels(runs, tossed)
+    failed, residual = sum(bool(run.message) for run in runs), max(run.residual for run in runs)
+    print(f"{len(runs)} tosses: {errors}")
+    print(f"{failed} runs failed; ledger closed to {residual:.1e} J")
+    print(rest(start, tossed, chosen))
+    if halve:
+        checked(start, tossed, chosen)
+
+    far = errors.position / np.median(errors.position), errors.rotation / np.median(errors.rotation)
+    typical = int(np.argmin(np.abs(np.log(far)).sum(axis=0)))
+    print(f"picture: {tossed[typical].name}, nearest the medians")
+    with style.style():
+        figure = cube_tosses_figure.draw(tossed[typical], runs[typical], HALF[start])
+        style.write(figure, f"{out}/cube_tosses.png")
+    assert failed == 0
+    assert np.median(errors.position) < 15.0
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--data", help="npz with states, offsets, toss_id")
+    parser.add_argument("--start", choices="AB", default="B")
+    parser.add_argument("--parameters", type=int, choices=(0, 2, 5), default=5)
+    parser.add_argument("--fit", action="store_true", help="fit 2 or 5 parameters to these tosses")
+    parser.add_argument("--halve", action="store_true", help="also half the step, and moved starts")
+    parser.add_argument("--most", type=int, help="this many tosses only")
+    parser.add_argument("--out", default="out/benchmarks")
+    main(**vars(parser.parse_args()))

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from carom.geometry import quaternion
-from carom.paper import tosses
 from carom.studies.identify.errors import angles, distances
 from carom.visual.plots import style
 
@@ -16,6 +15,7 @@ FACES = style.BLUE, style.ORANGE, style.GREEN, style.SKY, style.RED, style.PURPL
 ELEVATION = np.radians(20.0)  # of the camera
 LIGHT = np.array([-0.3, -0.45, 0.85])
 POSES = 6
+EDGE = 0.1048  # [m]
 #: half width, and heights below and above the table under the real cube, of a picture [m]
 WIDE, BELOW, ABOVE = 0.125, 0.06, 0.225
 
@@ -67,7 +67,7 @@ def _picked(recording) -> np.ndarray:
     """Return the samples to draw, at about equal distances along the path of a corner."""
     x, q = recording.position[:, 0], recording.orientation[:, 0]
     turn = np.linalg.norm(quaternion.between(q[:-1], q[1:]), axis=-1)
-    step = np.linalg.norm(np.diff(x, axis=0), axis=1) + 0.5 * tosses.EDGE * turn
+    step = np.linalg.norm(np.diff(x, axis=0), axis=1) + 0.5 * EDGE * turn
     path = np.insert(np.cumsum(np.where(step > 5e-4, step, 0.0)), 0, 0.0)
     return np.searchsorted(path, np.linspace(0.0, path[-1] * (1.0 - 1e-6), POSES))
 
@@ -144,7 +144,7 @@ def _positions(axes, recording, run) -> None:
 def _errors(axes, recording, run) -> None:
     """Draw the distance and the angle between the two motions over time, and their means."""
     t = recording.t - recording.t[0]
-    distance = 100.0 * distances(run, recording)[:, 0] / tosses.EDGE
+    distance = 100.0 * distances(run, recording)[:, 0] / EDGE
     angle = np.degrees(angles(run, recording)[:, 0])
     axes.plot(
         t,

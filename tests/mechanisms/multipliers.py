@@ -27,7 +27,8 @@ from typing import Any
 
 import numpy as np
 
-from carom.dynamics.mounts import mount_wrench
+from carom.dynamics.mobility import mass_matrix
+from carom.dynamics.mounts import mounted
 from carom.geometry import quaternion
 from carom.model import arrays as kinds
 from carom.model import records as r
@@ -138,12 +139,6 @@ def integrate(t, reaction, mass, damping, stiffness, force) -> tuple[np.ndarray,
     return lam, mu
 
 
-def mass_matrix(system: System) -> np.ndarray:
-    """Return the diagonal of the metric (N, 6) in the left-invariant frame."""
-    bodies = system.bodies
-    return np.concatenate([np.repeat(bodies.mass[:, None], 3, axis=1), bodies.inertia], axis=1)
-
-
 def constraint_rows(system: System, x, Q, v, w):
     """Return a^R (T, K, N, 6), the bias (T, K) with a^R(acceleration) = bias, and the joint of each.
 
@@ -238,6 +233,24 @@ def _rolling_arm(radius, n, n_rate, a, a_rate):
     size = np.linalg.norm(g, axis=1, keepdims=True)
     e = g / size
     return -radius * e, -radius * (rate - dot(rate, e) * e) / size
+
+
+def mount_wrench(bushing, x, Q, v, w):
+    """Return the point at which a mount acts, its force and its torque on the child (T, 3), world axes."""
+    d, turn, axes, place = mounted(bushing, x, Q)
+    p, c = int(bushing.parent), int(bushing.child)
+    u, spin = v[:, c] + np.cross(w[:, c], place - x[:, c]), w[:, c]
+    if p >= 0:
+        u, spin = u - v[:, p] - np.cross(w[:, p], place - x[:, p]), spin - w[:, p]
+    u, spin = quaternion.rotate_back(axes, u), quaternion.rotate_back(axes, spin)
+    m = bushing.turn_stiffness * turn
+    t2 = np.sum(turn**2, axis=1, keepdims=True)
+    t = np.sqrt(np.maximum(t2, 1e-4))
+    b = np.where(t2 > 1e-4, 1.0 / t**2 - 0.5 / (t * np.tan(0.5 * t)), 1.0 / 12.0 + t2 / 720.0)
+    moment = m + 0.5 * np.cross(turn, m) + b * np.cross(turn, np.cross(turn, m))
+    force = bushing.stiffness * d + bushing.damping * u
+    moment = moment + bushing.turn_damping * spin
+    return place, -quaternion.rotate(axes, force), -quaternion.rotate(axes, moment)
 
 
 def applied_force(system: System, x, Q, v, w) -> np.ndarray:

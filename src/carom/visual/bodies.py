@@ -1,0 +1,255 @@
+"""The look of bodies: parts of one colour, springs and rods, and how far each body extends.
+
+A body with a shape is its surface, with pips if it is a die and pins at its joints. A body without one is a
+ball or disc that rolls, rods to its joints, or else the ellipsoid of its inertia.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from carom.geometry import quaternion
+from carom.scene.bodies import Body
+from carom.scene.forces import Spring
+from carom.scene.joints import Distance, Joint, RollingDisc, RollingSphere
+from carom.scene.more_forces import CurveSpring
+from carom.scene.shapes import Box, Sphere
+from carom.scene.shapes.revolved import Cylinder
+from carom.visual.dice import is_die, pip_colour, pips
+from carom.visual.surfaces import is_round, surface
+
+Surface = tuple[np.ndarray, np.ndarray]
+
+STILL = 0.02  # fraction of the greatest displacement, or a rotation [rad], up to which a body counts as resting
+PIN = 0.15  # of the size of a body: a pin is no thicker
+JOINT, STATIC = "#5b6873", "#c3ccd4"
+ROD = 0.012  # radius of rods of bodies without a shape, as a fraction of the size of the region
+
+
+class Part(NamedTuple):
+    """A surface and the bodies that it moves with."""
+
+    vertices: np.ndarray  #: (V, 3) body axes [m]; of a static body in the world
+    triangles: np.ndarray  #: (F, 3) counter-clockwise from outside
+    bodies: list[int]  #: -1 for a static one
+    look: str  #: "solid", "round" (with a pattern), "joint", "pip" or "static"
+    shape: Any = None  #: shape of which it is the whole surface
+
+
+class Link(NamedTuple):
+    """A spring or a rod between points of two bodies; of the ground (-1) in world axes."""
+
+    parent: int
+    child: int
+    parent_anchor: np.ndarray  #: (3,) body axes [m]
+    child_anchor: np.ndarray
+    kind: str  #: "spring" or "rod"
+
+    def ends(self, x: np.ndarray, Q: np.ndarray) -> list[np.ndarray]:
+        """Return both ends (3,) at positions x (N, 3) and orientations Q (N, 4) of the bodies."""
+        pairs = (self.parent, self.parent_anchor), (self.child, self.child_anchor)
+        return [a if b < 0 else x[b] + quaternion.rotate(Q[b], a) for b, a in pairs]
+
+
+class Outline(NamedTuple):
+    """The extent of a body: a ball of radius `size` [m] about each of its `points` (3,), body axes."""
+
+    points: list[np.ndarray]
+    size: float
+
+    @property
+    def radius(self) -> float:
+        """Radius of the body [m] about its mass centre."""
+        return max(float(np.linalg.norm(point)) for point in self.points) + self.size
+
+
+def colour_of(body: Body, palette) -> str:
+    """Return the colour of a body, ``#rrggbb``: its own, or one of a palette by its number."""
+    return body.color or palette[body.index % len(palette)]
+
+
+def colours_of(part: Part, scene, palette) -> list[str]:
+    """Return the colour of a part on each of its bodies."""
+    if part.look in ("joint", "static"):
+        return [JOINT if part.look == "joint" else STATIC] * len(part.bodies)
+    own = [colour_of(scene.bodies[b], palette) for b in part.bodies]
+    return [pip_colour(one) for one in own] if part.look == "pip" else own
+
+
+def parts_of(scene, radius: float, fineness: int | None = None) -> list[Part]:
+    """Return the surfaces of all bodies; equal ones once. `radius` is that of the region [m]."""
+    parts: dict[tuple, Part] = {}
+    known: dict = {}  # many bodies may have one shape
+    fineness = fineness or (32 if len(scene.bodies) < 100 else 16)
+    for body in scene.bodies:
+        shape = body.shape
+        if shape is None:
+            pieces = _without_shape(scene, body, ROD * radius)
+        else:
+            if shape not in known:
+                known[shape] = surface(shape, fineness)
+            pieces = [(*known[shape], "round" if is_round(shape) else "solid")]
+            pieces += [(*pin, "joint") for pin in pins(scene, body, ROD * radius)]
+            pieces += [(*pips(shape), "pip")] if is_die(body) else []
+        for vertices, triangles, look in pieces:
+            key = (vertices.tobytes(), triangles.tobytes(), look)
+            whole = shape if look in ("solid", "round") else None
+            parts.setdefault(key, Part(vertices, triangles, [], look, whole)).bodies.append(
+                body.index
+            )
+    return [*parts.values(), *(_static(solid, fineness) for solid in scene.statics)]
+
+
+def _static(solid, fineness: int) -> Part:
+    """Return the surface of a static body, in the world."""
+    vertices, triangles = surface(solid.shape, fineness)
+    placed = solid.position + quaternion.rotate(solid.orientation, vertices)
+    return Part(placed, triangles, [-1], "static", solid.shape)
+
+
+def outline_of(scene, body: Body) -> Outline:
+    """Return the extent of a body; a body without a shape extends to its joints and springs."""
+    if body.shape is not None:
+        return Outline([np.zeros(3)], body.shape.size)
+    anchors = _anchors(scene, body)
+    if not any(np.any(anchor) for anchor in anchors):
+        return Outline([np.zeros(3)], _gyration(body))
+    return Outline([np.zeros(3), *anchors], 0.0)
+
+
+def _without_shape(scene, body: Body, thick: float) -> list[tuple[np.ndarray, np.ndarray, str]]:
+    """Return rods from the mass centre to the anchors of joints and springs, and a ball at each end."""
+    for joint in scene.joints:  # rolling bodies have a radius
+        d = joint.definition
+        if joint.child is body and isinstance(d, RollingSphere):
+            return [(*surface(Sphere(d.radius)), "round")]
+        if joint.child is body and isinstance(d, RollingDisc):
+            vertices, triangles = surface(Cylinder(d.radius, 0.08 * d.radius))
+            axis = quaternion.rotate_back(body.orientation, d.axis)
+            return [(quaternion.rotate(turn_to(axis), vertices), triangles, "round")]
+    anchors = _anchors(scene, body)
+    if not anchors:  # the ellipsoid of even density with this mass and inertia
+        moments, axes = np.linalg.eigh(body.inertia)
+        squares = 5.0 / body.mass * (0.5 * np.sum(moments) - moments)
+        vertices, triangles = surface(Sphere(1.0))
+        lengths = np.sqrt(np.maximum(squares, 1e-4 * np.max(squares)))
+        axes = axes * [1.0, 1.0, np.linalg.det(axes)]
+        return [((vertices * lengths) @ axes.T, triangles, "round")]
+    out = []
+    for anchor in anchors:
+        length = float(np.linalg.norm(anchor))
+        if length > 1e-6 * thick:
+            vertices, triangles = surface(Cylinder(0.6 * thick, length), 16)
+            turned = quaternion.rotate(turn_to(anchor / length), vertices)
+            out.append((turned + 0.5 * anchor, triangles, "solid"))
+        vertices, triangles = surface(Sphere(thick), 16)
+        out.append((vertices + anchor, triangles, "joint"))
+    edge = 2.4 * thick
+    cube = surface(Box(edge, edge, edge, radius=0.5 * thick), 16)
+    return [*out, (*cube, "solid")]
+
+
+def _anchors(scene, body: Body) -> list[np.ndarray]:
+    """Return the anchors (3,) of joints and springs on a body, in its axes."""
+    joints = [_anchor(j, body) for j in scene.joints if body in (j.parent, j.child)]
+    links = [k for k in links_of(scene) if body.index in (k.parent, k.child)]
+    ends = [k.parent_anchor if k.parent == body.index else k.child_anchor for k in links]
+    return [np.array(a) for a in dict.fromkeys(tuple(a) for a in (*joints, *ends))]
+
+
+def _anchor(joint: Joint, body) -> np.ndarray:
+    """Return the anchor of a joint on one of its bodies, in its axes; on the ground in the world."""
+    if joint.frames is not None:
+        position, orientation = joint.frames[1 if joint.child is body else 0]
+        return position + quaternion.rotate(orientation, joint.anchor())
+    d = joint.definition
+    if isinstance(d, Distance):
+        return _in_body(body, d.anchor_child if joint.child is body else d.anchor_parent)
+    return _in_body(body, joint.anchor())
+
+
+def links_of(scene) -> list[Link]:
+    """Return springs and massless rods."""
+    out = []
+    for one in (*scene.forces, *scene.joints):
+        d = one.definition
+        if isinstance(d, (Spring, CurveSpring, Distance)):
+            pair = (one.parent, d.anchor_parent), (one.child, d.anchor_child)
+            start, end = (_in_body(part, a) for part, a in pair)
+            kind = "rod" if isinstance(d, Distance) else "spring"
+            out.append(Link(one.parent.index, one.child.index, start, end, kind))
+    return out
+
+
+def ground_points(scene) -> list[np.ndarray]:
+    """Return the points (3,) of the ground at which bodies are joined or hang."""
+    placed = [j for j in scene.joints if getattr(j.definition, "anchor", None) is not None]
+    joined = [_anchor(j, j.parent) for j in placed if j.parent.index < 0]
+    ends = [((k.parent, k.parent_anchor), (k.child, k.child_anchor)) for k in links_of(scene)]
+    return joined + [anchor for pair in ends for body, anchor in pair if body < 0]
+
+
+def moving(position: np.ndarray, orientation: np.ndarray) -> np.ndarray:
+    """Return which bodies (N,) move by more than a small fraction of the largest motion of a body.
+
+    `position` (T, N, 3), `orientation` (T, N, 4).
+    """
+    displacements = np.ptp(position, axis=0).max(axis=1)
+    return (displacements > STILL * displacements.max()) | (
+        np.ptp(orientation, axis=0).max(axis=1) > STILL
+    )
+
+
+def pins(scene, body: Body, thick: float) -> list[Surface]:
+    """Return what shows the joints of a body with a shape, in its axes: pins along axes, balls without one.
+
+    Each joint is shown once, on its child if that has a shape. `thick` is the radius of a ball [m].
+    """
+    out = []
+    assert body.shape is not None
+    thick = min(thick, PIN * body.shape.size)
+    for joint in scene.joints:
+        d = joint.definition
+        if d.guide not in ("point", "line") or d.turn not in ("ball", "cross", "axis"):
+            continue
+        owner = joint.child if joint.child.shape is not None else joint.parent
+        if owner is body:
+            out.append(_pin(joint, body, thick))
+    return out
+
+
+def _pin(joint: Joint, body: Body, thick: float) -> Surface:
+    assert body.shape is not None
+    place, axis = _anchor(joint, body), joint.definition.frame()[:, 0]
+    if joint.frames is not None:
+        axis = quaternion.rotate(joint.frames[1 if joint.child is body else 0][1], axis)
+    else:
+        axis = quaternion.rotate_back(body.orientation, axis)
+    if joint.definition.turn != "axis":
+        vertices, triangles = surface(Sphere(1.5 * thick), 16)
+        return vertices + place, triangles
+    along = (surface(body.shape, 16)[0] - place) @ axis
+    low, high = min(float(along.min()), 0.0) - thick, max(float(along.max()), 0.0) + thick
+    vertices, triangles = surface(Cylinder(thick, high - low), 16)
+    return place + 0.5 * (low + high) * axis + quaternion.rotate(turn_to(axis), vertices), triangles
+
+
+def turn_to(axis: np.ndarray) -> np.ndarray:
+    """Return a quaternion (4,) that takes z to the unit vector `axis`."""
+    if axis[2] < -1.0 + 1e-9:
+        return np.array([0.0, 1.0, 0.0, 0.0])
+    half = np.array([1.0 + axis[2], -axis[1], axis[0], 0.0])
+    return half / np.linalg.norm(half)
+
+
+def _in_body(body, point: np.ndarray) -> np.ndarray:
+    """Return a point of the world in the axes of a body; of the ground it stays the same."""
+    if not isinstance(body, Body):
+        return point
+    return quaternion.rotate_back(body.orientation, point - body.position)
+
+
+def _gyration(body: Body) -> float:
+    return float(np.sqrt(np.trace(body.inertia) / body.mass))
