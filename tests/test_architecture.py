@@ -12,8 +12,8 @@ import carom
 ROOT = Path(carom.__file__).parent
 #: folders and modules of carom, lowest first (`docs/development/architecture.md`)
 ORDER = (
-    "_compiled", "arguments", "checks", "options", "status", "geometry", "scene", "collision", "model",
-    "kinematics", "contact", "friction", "dynamics", "impact", "persistent", "stepping", "results",
+    "_compiled", "arguments", "checks", "fields", "options", "status", "geometry", "scene", "collision",
+    "model", "kinematics", "contact", "friction", "dynamics", "impact", "persistent", "stepping", "results",
     "generalized", "run", "io", "control", "simulate", "studies", "visual", "baselines", "paper", "bench",
     "cli",
 )  # fmt: skip

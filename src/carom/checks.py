@@ -204,10 +204,11 @@ def text(name: str, value) -> str:
     return value
 
 
-def function(name: str, value, *, optional: bool = False) -> None:
-    """Refuse, by a `TypeError`, a value that cannot be called; None is allowed if it is `optional`."""
+def function(name: str, value, *, optional: bool = False) -> Callable:
+    """Return a value that can be called; refuse others by a `TypeError`. If `optional`, None is allowed."""
     if not (callable(value) or (optional and value is None)):
         raise TypeError(f"{name} must be a function, got {shown(value)}")
+    return value
 
 
 def path(name: str, value) -> Path:

@@ -7,13 +7,21 @@ from typing import ClassVar
 
 import numpy as np
 
-from carom import checks
+from carom import checks, fields
+from carom.fields import Value, Vector, keep
 from carom.geometry.attitude import attitude
 from carom.scene.colors import hex_color
 from carom.scene.inertia import inertia_matrix
 from carom.scene.materials import Material
 from carom.scene.shapes import SHAPES, Shape
-from carom.scene.values import in_scene, keep, point
+from carom.scene.values import in_scene
+
+MaterialOrNone = Value[Material | None, Material | None]
+
+
+def _material(name: str, value) -> Material:
+    checks.instance(name, value, (Material,))
+    return value
 
 
 @in_scene
@@ -79,9 +87,9 @@ class HalfSpace:
 
     index: int
     name: str
-    point: np.ndarray
-    normal: np.ndarray
-    material: Material | None = None
+    point: Vector = fields.vector()
+    normal: Vector = fields.direction()
+    material: MaterialOrNone = Value(_material, None)
 
     def __repr__(self) -> str:
         return f"HalfSpace({self.name!r}, point={self.point}, normal={self.normal})"
@@ -109,9 +117,13 @@ class StaticBody:
     index: int
     name: str
     shape: Shape
-    position: np.ndarray
-    orientation: np.ndarray
-    material: Material | None = None
+    position: Vector = fields.vector()
+    orientation: Vector = Value(attitude)
+    material: MaterialOrNone = Value(_material, None)
+
+    def __post_init__(self):
+        checks.instance("shape", self.shape, SHAPES)
+        _ = self.shape.pieces  # refused by a shape that has nothing to touch with
 
     def __repr__(self) -> str:
         return f"StaticBody({self.name!r}, {self.shape!r}, position={self.position})"
@@ -169,39 +181,15 @@ def make_body(
         shape=shape,
         mass=mass,
         inertia=inertia_matrix(inertia),
-        position=point("position", position),
+        position=checks.finite_array("position", position, (3,)),
         orientation=attitude("orientation", orientation),
-        velocity=point("velocity", velocity),
-        angular_velocity=point("angular_velocity", angular_velocity),
-        material=_material(material),
+        velocity=checks.finite_array("velocity", velocity, (3,)),
+        angular_velocity=checks.finite_array("angular_velocity", angular_velocity, (3,)),
+        material=None if material is None else _material("material", material),
         color=None if color is None else hex_color("color", color),
     )
     keep(body, **vars(body))
     return body
-
-
-def make_half_space(index, name, on_plane, normal, material=None) -> HalfSpace:
-    """Return a checked `HalfSpace`; the arguments are those of `Scene.add_half_space`."""
-    place = point("point", on_plane), checks.unit_vector("normal", normal)
-    plane = HalfSpace(index, name, *place, _material(material))
-    keep(plane, **vars(plane))
-    return plane
-
-
-def make_static(index, name, shape, position, orientation, material=None) -> StaticBody:
-    """Return a checked `StaticBody`; the arguments are those of `Scene.add_static`."""
-    checks.instance("shape", shape, SHAPES)
-    _ = shape.pieces  # refused by a shape that has nothing to touch with
-    place = point("position", position), attitude("orientation", orientation)
-    solid = StaticBody(index, name, shape, *place, _material(material))
-    keep(solid, **vars(solid))
-    return solid
-
-
-def _material(material) -> Material | None:
-    if material is not None:
-        checks.instance("material", material, (Material,))
-    return material
 
 
 def _mass(shape: Shape | None, mass, density) -> float:

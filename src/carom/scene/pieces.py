@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import checks
+from carom.fields import keep
 from carom.geometry import quaternion
-from carom.scene.values import keep
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
 #: of the corners of a box

@@ -19,7 +19,6 @@ from carom import checks
 from carom.io.files.hull_check import check_compound, check_convex, check_mesh, check_piece
 from carom.scene import bodies, contacts, forces, joints, stops
 from carom.scene.constraints import CONSTRAINTS, Constraint, Coupling, Gear, coordinate_kind
-from carom.scene.materials import ContactLaw
 from carom.scene.pieces import Piece
 from carom.scene.scene import Scene
 from carom.scene.shapes.compound import Compound
@@ -87,46 +86,24 @@ def _made(parts, part: Any) -> Any:
             index, name, part.shape, part.mass, None, part.inertia, *motion, part.material,
             part.color,
         )  # fmt: skip
-    if isinstance(part, bodies.HalfSpace):
-        return bodies.make_half_space(index, name, part.point, part.normal, part.material)
-    if isinstance(part, bodies.StaticBody):
-        place = part.position, part.orientation
-        return bodies.make_static(index, name, part.shape, *place, part.material)
-    if isinstance(part, joints.Joint):
-        checks.instance("definition", part.definition, joints.JOINTS)
-        parent, child = parts.pair(part.parent, part.child)  # a name is no body: `_same` finds out
-        frames = (None, None) if part.frames is None else part.frames
-        return joints.make_joint(index, name, part.definition, parent, child, *frames)
+    if isinstance(part, (joints.Joint, forces.AppliedForce, Constraint)):
+        kinds = {joints.Joint: joints.JOINTS, forces.AppliedForce: forces.FORCES}
+        checks.instance("definition", part.definition, kinds.get(type(part), CONSTRAINTS))
+    if isinstance(part, (joints.Joint, forces.AppliedForce)):
+        parts.pair(part.parent, part.child)  # a name is no body: `_same` finds out
+    own = part.parts if isinstance(part, Constraint) else ()
     if isinstance(part, forces.AppliedForce):
-        checks.instance("definition", part.definition, forces.FORCES)
-        for one in forces.force_on(part.definition) or ():
-            parts.member("definition", one, (joints.Joint, bodies.Body))
-        ends = parts.pair(part.parent, part.child)
-        return forces.make_force(index, name, part.definition, *ends)
-    if isinstance(part, Constraint):
-        checks.instance("definition", part.definition, CONSTRAINTS)
-        for one in part.parts:
-            parts.member("definition", one, (joints.Joint, bodies.Body))
-        return part
+        own = forces.force_on(part.definition) or ()
+    for one in own:
+        parts.member("definition", one, (joints.Joint, bodies.Body))
     if isinstance(part, stops.Stop):
-        joint = parts.member("joint", part.joint, (joints.Joint,))
-        given = part.lower, part.upper, part.restitution, part.impact_law, part.coordinate
-        return stops.make_stop(index, name, joint, *given)
-    checks.instance("part", part, (contacts.Contact,))
-    return _made_contact(parts, part)
-
-
-def _made_contact(parts, part: contacts.Contact) -> contacts.Contact:
-    parts.member("body", part.body, (bodies.Body,))
-    parts.member("other", part.other, KINDS)
-    if part.body is part.other:
-        raise ValueError(f"body and other must be two, got {part.body!r} for both")
-    for one in (part.body, part.other):
-        if isinstance(one, bodies.Body) and one.shape is None:
-            raise ValueError(f"body must have a shape for contact, got {one!r}")
-    law = {one.name: getattr(part, one.name) for one in fields(ContactLaw)}
-    places = {"index": part.index, "name": part.name, "body": part.body, "other": part.other}
-    return contacts.Contact(**places, **law)
+        parts.member("joint", part.joint, (joints.Joint,))
+    if isinstance(part, contacts.Contact):
+        parts.member("body", part.body, (bodies.Body,))
+        parts.member("other", part.other, KINDS)
+        if part.body is part.other:
+            raise ValueError(f"body and other must be two, got {part.body!r} for both")
+    return type(part)(**{one.name: getattr(part, one.name) for one in fields(part)})
 
 
 def _check_coupling(record: Coupling) -> None:

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
+from carom.fields import keep
 from carom.scene.moments import about_centroid, of_swollen
 from carom.scene.pieces import Piece, Shape
-from carom.scene.values import keep
 
 FLAT = 1e-10  # thickness relative to the largest extent below which points count as coplanar
 SAME_FACE = 1e-8  # sine of the angle between triangles that are one face: rounding, not shape

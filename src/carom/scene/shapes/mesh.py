@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
+from carom.fields import keep
 from carom.scene.moments import about_centroid, of_triangles
 from carom.scene.pieces import Piece, Shape
 from carom.scene.shapes.convex import Convex, hull_of
-from carom.scene.values import keep
 
 THIN = 1e-12  # height of a triangle relative to the size of the mesh below which it is degenerate
 BULGE = 1e-9  # height of a vertex above a face, relative to the size, that is rounding

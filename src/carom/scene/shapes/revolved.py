@@ -9,9 +9,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from carom import arguments, checks
+from carom import arguments, checks, fields
+from carom.fields import Number
 from carom.scene.pieces import Piece, Shape
-from carom.scene.values import keep
 
 
 @arguments.known
@@ -27,12 +27,8 @@ class Capsule(Shape):
         Length of the straight part [m], above 0; the total length is ``length + 2 * radius``.
     """
 
-    radius: float
-    length: float
-
-    def __post_init__(self):
-        keep(self, radius=checks.length("radius", self.radius))
-        keep(self, length=checks.length("length", self.length))
+    radius: Number = fields.length()
+    length: Number = fields.length()
 
     @property
     def volume(self) -> float:
@@ -66,12 +62,8 @@ class Capsule(Shape):
 class Cylinder(Shape):
     """A solid cylinder of `radius` and `length` [m], each above 0, along body z."""
 
-    radius: float
-    length: float
-
-    def __post_init__(self):
-        keep(self, radius=checks.length("radius", self.radius))
-        keep(self, length=checks.length("length", self.length))
+    radius: Number = fields.length()
+    length: Number = fields.length()
 
     @property
     def volume(self) -> float:
@@ -113,19 +105,16 @@ class Disc(Shape):
         it: m (R^2 + r^2) / 2 about z, half of that about x and y.
     """
 
-    radius: float
-    inner_radius: float = 0.0
+    radius: Number = fields.length()
+    inner_radius: Number = fields.length(0.0, zero=True)
     volume: ClassVar[float] = 0.0  # [m^3]
 
     def __post_init__(self):
-        keep(self, radius=checks.length("radius", self.radius))
-        inner = checks.length("inner_radius", self.inner_radius, zero=True)
-        if not inner <= self.radius:
+        if not self.inner_radius <= self.radius:
             raise ValueError(
                 f"inner_radius must be finite and at least 0 and at most {self.radius:g} [m], the radius, "
-                f"got {checks.shown(self.inner_radius)}"
+                f"got {self.inner_radius}"
             )
-        keep(self, inner_radius=inner)
 
     @property
     def size(self) -> float:
