@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.generalized.solution import CoordinateImpact
 from carom.impact import layout as o
 from carom.impact.resolve import resolve
 from carom.status import Status
@@ -23,7 +24,7 @@ class Strike:
 
     def __init__(self, contacts: Contacts):
         self.contacts = contacts
-        self.records: list[dict[str, Any]] = []
+        self.records: list[CoordinateImpact] = []
         self.room: Any = None  # workspace for several contacts, made when it is first needed
 
     def all(self, closed: list[int], now: float, jams: int) -> int:
@@ -152,9 +153,9 @@ class Strike:
         here = self.contacts
         here.run.counts["impacts"] += 1
         here.events.append((now, "impact", c))
+        x, law = here.run.x[: here.run.n].copy(), here.run.user.contacts[c].impact_law
         self.records.append(
-            {
-                "time": now, "contact": c, "position": here.run.x[: here.run.n].copy(),
-                "law": here.run.user.contacts[c].impact_law, "friction": float(here.friction[c]), **impact,
-            }
-        )  # fmt: skip
+            CoordinateImpact(
+                time=now, contact=c, position=x, law=law, friction=float(here.friction[c]), **impact
+            )
+        )

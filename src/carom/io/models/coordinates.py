@@ -7,7 +7,7 @@ import numpy as np
 from carom.geometry import quaternion
 from carom.io.models.build import Build, Coordinate
 from carom.io.models.links import Link, name_of
-from carom.io.models.needs import need_mujoco
+from carom.io.models.report import need_mujoco
 from carom.scene import forces
 from carom.scene.bodies import GROUND
 

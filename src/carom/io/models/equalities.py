@@ -8,7 +8,7 @@ from carom.geometry import quaternion
 from carom.io.models.build import Build
 from carom.io.models.joints import in_body
 from carom.io.models.links import IDENTITY, name_of
-from carom.io.models.needs import need_mujoco
+from carom.io.models.report import need_mujoco
 from carom.scene import constraints, joints
 from carom.scene.bodies import Ground
 

@@ -15,7 +15,7 @@ import numpy as np
 from carom.geometry import quaternion
 from carom.io.models.build import Build, Coordinate
 from carom.io.models.links import Link, name_of
-from carom.io.models.needs import need_mujoco
+from carom.io.models.report import need_mujoco
 from carom.io.models.state import point_velocity
 from carom.scene import joints
 from carom.scene.bodies import Body, Ground

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom.io.models.links import name_of
-from carom.io.models.needs import need_mujoco
-from carom.io.models.report import Report
+from carom.io.models.report import Report, need_mujoco
 
 #: parts listed by name: accessor of the model, count, description, replacement in the scene
 LISTED = (

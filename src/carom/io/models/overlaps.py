@@ -6,7 +6,7 @@ import numpy as np
 
 from carom.io.models.build import Build
 from carom.io.models.links import Link
-from carom.io.models.needs import need_mujoco
+from carom.io.models.report import need_mujoco
 from carom.io.models.solids import Solid
 from carom.io.models.state import place
 from carom.io.models.touching import Filter

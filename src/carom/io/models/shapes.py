@@ -8,8 +8,7 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.io.models.links import IDENTITY, name_of, pose_on_link
-from carom.io.models.needs import need_mujoco
-from carom.io.models.report import Report
+from carom.io.models.report import Report, need_mujoco
 from carom.scene.shapes import Box, Compound, Ellipsoid, Shape, Sphere
 from carom.scene.shapes.convex import Convex
 from carom.scene.shapes.revolved import Capsule, Cylinder

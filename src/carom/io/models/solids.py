@@ -9,7 +9,7 @@ import numpy as np
 from carom.geometry import quaternion
 from carom.io.models.build import Build
 from carom.io.models.links import Link, name_of
-from carom.io.models.needs import need_mujoco
+from carom.io.models.report import need_mujoco
 from carom.io.models.shapes import Placed, body_shape, placed_shape
 from carom.io.models.touching import Filter
 from carom.scene import joints

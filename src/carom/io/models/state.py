@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from carom import checks
-from carom.io.models.needs import need_mujoco
+from carom.io.models.report import need_mujoco
 
 
 def starting_data(model, keyframe, qpos, qvel) -> Any:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from carom.io.models.needs import need_mujoco
+from carom.io.models.report import need_mujoco
 
 #: arrays of the model that are 0 where one of the flags is set (not all versions have all of them)
 SWITCHED = (

@@ -48,7 +48,8 @@ class KnifeEdge(JointDefinition):
         across = np.cross(self.normal, self.direction)
         if not np.linalg.norm(across) > PARALLEL:
             raise ValueError(
-                f"direction must not be parallel to normal, got {shown(self.direction)} and {shown(self.normal)}"
+                f"direction must not be parallel to normal, got {shown(self.direction)} and "
+                f"{shown(self.normal)}"
             )
         keep(self, lateral=unit_vector("lateral", across))
 
