@@ -8,14 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from functools import partial
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import checks
 
-Kept, Given = TypeVar("Kept"), TypeVar("Given")
+Kept = TypeVar("Kept")
+Given = TypeVar("Given")
 REQUIRED: Any = object()
 
 
@@ -48,10 +49,15 @@ def keep(record, **fields) -> None:
         vars(record)[name] = value
 
 
-Number, NumberOrNone = Value[float, float], Value[float | None, float | None]
-Vector, VectorOrNone = Value[np.ndarray, ArrayLike], Value[np.ndarray | None, ArrayLike | None]
-Function, FunctionOrNone = Value[Callable, Callable], Value[Callable | None, Callable | None]
-Integer, Flag, Word = Value[int, int], Value[bool, bool], Value[str, str]
+Number: TypeAlias = Value[float, float]
+NumberOrNone: TypeAlias = Value[float | None, float | None]
+Integer: TypeAlias = Value[int, int]
+Flag: TypeAlias = Value[bool, bool]
+Word: TypeAlias = Value[str, str]
+Vector: TypeAlias = Value[np.ndarray, ArrayLike]
+VectorOrNone: TypeAlias = Value[np.ndarray | None, ArrayLike | None]
+Function: TypeAlias = Value[Callable, Callable]
+FunctionOrNone: TypeAlias = Value[Callable | None, Callable | None]
 
 
 def number(default: Any = REQUIRED, **bounds) -> Value[Any, Any]:

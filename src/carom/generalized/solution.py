@@ -53,16 +53,12 @@ class CoordinateImpactTable(RecordTable[CoordinateImpact]):
 
 def impact_table(records: list[CoordinateImpact], n: int) -> CoordinateImpactTable:
     """Return the table of impacts of a system of n coordinates."""
-    if records:
-        return CoordinateImpactTable(**{
-            name: np.array(column) for name, column in zip(CoordinateImpact._fields, zip(*records))
-        })  # fmt: skip
-    shapes = {"position": (0, n), "inverse_mass": (0, 3, 3), "impulse": (0, 3)}
-    shapes |= {f"relative_velocity_{when}": (0, 3) for when in ("before", "after")}
-    kinds = {"law": str, "contact": int, "together": int, "wedged": int}
-    return CoordinateImpactTable(**{
-        name: np.zeros(shapes.get(name, 0), kinds.get(name, float)) for name in CoordinateImpact._fields
-    })  # fmt: skip
+    v = np.zeros(3)
+    like = CoordinateImpact(
+        0.0, 0, np.zeros(n), v, v, v, 0.0, "", np.zeros((3, 3)), 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0
+    )
+    columns = {name: np.array(column) for name, column in zip(like._fields, zip(like, *records))}
+    return CoordinateImpactTable(**{name: column[1:] for name, column in columns.items()})
 
 
 def given_by_law(t: np.ndarray, impacts: CoordinateImpactTable) -> np.ndarray:

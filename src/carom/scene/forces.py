@@ -7,7 +7,7 @@ fixed in their body. Vectors are given in world axes; they stay constant, or tur
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +16,7 @@ from carom import arguments, checks, fields
 from carom.fields import REQUIRED, Flag, Number, Value, Vector, VectorOrNone, keep
 from carom.scene.bodies import Body, Ground
 from carom.scene.more_forces import (
+    AlongJoint,
     CurveSpring,
     JointForce,
     JointFriction,
@@ -148,10 +149,7 @@ ForceDefinition = (
     | CurveSpring
     | UserForce
 )
-FORCES = (
-    Spring, Torque, Force, Bushing, JointSpring, JointForce, JointFriction, JointInertia,
-    CurveSpring, UserForce,
-)  # fmt: skip
+FORCES = get_args(ForceDefinition)
 
 
 @in_scene
@@ -194,6 +192,6 @@ class AppliedForce:
 
 def force_on(definition) -> tuple | None:
     """Return the joint or the bodies that a definition contains; None if it contains none."""
-    if isinstance(definition, (JointSpring, JointForce, JointFriction, JointInertia)):
+    if isinstance(definition, AlongJoint):
         return (definition.joint,)
     return definition.bodies if isinstance(definition, UserForce) else None

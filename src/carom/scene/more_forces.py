@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,9 +16,22 @@ from carom.scene.joints import Joint
 from carom.scene.values import apart
 
 
+@dataclass(frozen=True, eq=False)
+class AlongJoint:
+    """What acts along a `coordinate` of a joint."""
+
+    joint: Joint
+
+    if TYPE_CHECKING:
+        coordinate: int
+
+    def __post_init__(self):
+        coordinate_kind(self.joint, self.coordinate)
+
+
 @arguments.known
 @dataclass(frozen=True, eq=False)
-class JointSpring:
+class JointSpring(AlongJoint):
     """A spring and damper along a coordinate of a joint: ``-stiffness (q - rest) - damping q'``.
 
     An angle includes whole turns (a clock spring). One coordinate may have several springs.
@@ -34,14 +47,10 @@ class JointSpring:
         Index of the coordinate of the joint. Default 0.
     """
 
-    joint: Joint
     stiffness: Number = fields.number(0.0, least=0.0)
     damping: Number = fields.number(0.0, least=0.0)
     rest: Number = fields.number(0.0)
     coordinate: Integer = fields.integer(0, least=0)
-
-    def __post_init__(self):
-        coordinate_kind(self.joint, self.coordinate)
 
 
 def _number_or_function(name: str, value) -> float | Callable:
@@ -50,7 +59,7 @@ def _number_or_function(name: str, value) -> float | Callable:
 
 @arguments.known
 @dataclass(frozen=True, eq=False)
-class JointForce:
+class JointForce(AlongJoint):
     """A force or torque along a joint coordinate: it acts on the child, its opposite on the parent.
 
     Its work is in `ledger.loads`.
@@ -65,17 +74,13 @@ class JointForce:
         Index of the coordinate of the joint. Default 0.
     """
 
-    joint: Joint
     force: Value[float | Callable, float | Callable] = Value(_number_or_function)
     coordinate: Integer = fields.integer(0, least=0)
-
-    def __post_init__(self):
-        coordinate_kind(self.joint, self.coordinate)
 
 
 @arguments.known
 @dataclass(frozen=True, eq=False)
-class JointFriction:
+class JointFriction(AlongJoint):
     """Dry (Coulomb) friction along a joint coordinate: a force `bound` against the motion.
 
     A joint without motion sticks exactly while the force that keeps it at rest is at most `bound`. Changes
@@ -90,17 +95,13 @@ class JointFriction:
         Index of the coordinate of the joint. Default 0.
     """
 
-    joint: Joint
     bound: Number = fields.number(least=0.0)
     coordinate: Integer = fields.integer(0, least=0)
-
-    def __post_init__(self):
-        coordinate_kind(self.joint, self.coordinate)
 
 
 @arguments.known
 @dataclass(frozen=True, eq=False)
-class JointInertia:
+class JointInertia(AlongJoint):
     """Inertia along a joint coordinate, with the kinetic energy ``inertia q'^2/2``.
 
     It models the rotor of a motor behind a gear: the moment of inertia of the rotor times the square of the
@@ -116,12 +117,8 @@ class JointInertia:
         Index of the coordinate of the joint. Default 0.
     """
 
-    joint: Joint
     inertia: Number = fields.number(least=0.0)
     coordinate: Integer = fields.integer(0, least=0)
-
-    def __post_init__(self):
-        coordinate_kind(self.joint, self.coordinate)
 
 
 def _curve(name: str, given):

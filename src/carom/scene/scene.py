@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
-from carom.scene.bodies import GROUND, Body, Ground, HalfSpace, StaticBody, make_body
+from carom.scene.bodies import GROUND, Body, Ground, HalfSpace, StaticBody, mass_and_inertia
 from carom.scene.constraints import CONSTRAINTS, Constraint, ConstraintDefinition
 from carom.scene.contacts import check_gap
 from carom.scene.forces import FORCES, AppliedForce, ForceDefinition, force_on
@@ -146,9 +146,9 @@ class Scene(TouchingPairs):
         ValueError: mass must be finite and above 0 [kg], got -1.0
         """
         index, name = self._parts.new(Body, name, "body")
-        motion = (position, orientation, velocity, angular_velocity)
-        body = make_body(index, name, shape, mass, density, inertia, *motion, material, color)
-        return self._parts.add(body)
+        mass, inertia = mass_and_inertia(shape, mass, density, inertia)
+        motion: Any = position, orientation, velocity, angular_velocity, material, color
+        return self._parts.add(Body(index, name, shape, mass, inertia, *motion))
 
     @arguments.known
     def add_static(
@@ -238,11 +238,11 @@ class Scene(TouchingPairs):
                 "world, add_joint(definition, parent, child) two bodies; got "
                 f"{checks.shown(parent)} and {checks.shown(child)}"
             )
-        parent, child = self._parts.pair(parent, child)
+        pair: Any = self._parts.pair(parent, child)
         index, name = self._parts.new(Joint, name, "joint")
         frames: Any = parent_frame, child_frame
-        joint = Joint(index, name, definition, parent, child, frames)
-        self._pairs.ignore(parent, child)
+        joint = Joint(index, name, definition, *pair, frames=frames)
+        self._pairs.ignore(*pair)
         return self._parts.add(joint)
 
     @arguments.known
@@ -292,9 +292,9 @@ class Scene(TouchingPairs):
                 "child must be given: add_force(definition, body) for a force on a body, "
                 "add_force(definition, parent, child) for one between two"
             )
-        parent, child = self._parts.pair(parent, child)
+        pair: Any = self._parts.pair(parent, child)
         index, name = self._parts.new(AppliedForce, name, "force")
-        return self._parts.add(AppliedForce(index, name, definition, parent, child))
+        return self._parts.add(AppliedForce(index, name, definition, *pair))
 
     @arguments.known
     def add_constraint(
@@ -352,10 +352,10 @@ class Scene(TouchingPairs):
         name
             Name in the scene. Default ``"stop1"``, ``"stop2"``, ...
         """
-        joint = self._parts.member("joint", joint, (Joint,))
+        part = self._parts.member("joint", joint, (Joint,))
         index, name = self._parts.new(Stop, name, "stop")
         return self._parts.add(
-            Stop(index, name, joint, coordinate, lower, upper, restitution, impact_law)
+            Stop(index, name, part, coordinate, lower, upper, restitution, impact_law)
         )
 
     @property

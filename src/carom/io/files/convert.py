@@ -12,7 +12,7 @@ from carom import checks
 from carom.io.files.disk import put
 from carom.io.files.layout import EVENT, HELD, IMPACT, INTERVAL, LEDGER
 from carom.io.files.variables import attributes, labelled
-from carom.results.contact_names import contact_names
+from carom.results.names import contact_names
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -79,13 +79,6 @@ def check_pair(pair: frozenset) -> frozenset:
 
 def _made(parts, part: Any) -> Any:
     """Return a part made again from its fields."""
-    index, name = part.index, part.name
-    if isinstance(part, bodies.Body):
-        motion = part.position, part.orientation, part.velocity, part.angular_velocity
-        return bodies.make_body(
-            index, name, part.shape, part.mass, None, part.inertia, *motion, part.material,
-            part.color,
-        )  # fmt: skip
     if isinstance(part, (joints.Joint, forces.AppliedForce, Constraint)):
         kinds = {joints.Joint: joints.JOINTS, forces.AppliedForce: forces.FORCES}
         checks.instance("definition", part.definition, kinds.get(type(part), CONSTRAINTS))

@@ -24,7 +24,7 @@ from carom.io.files.layout import (
 )
 from carom.io.files.scene_parts import scene_to_text
 from carom.io.files.user_events import user_events
-from carom.results.contact_names import contact_names
+from carom.results.names import contact_names
 from carom.scene.joints import Distance, Spherical
 
 

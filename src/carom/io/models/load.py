@@ -22,8 +22,7 @@ from carom.io.models.overlaps import lift_out, pose
 from carom.io.models.reading import compiled_model
 from carom.io.models.report import Report
 from carom.io.models.solids import Solid, add_standing, covering
-from carom.io.models.state import point_velocity, starting_data
-from carom.io.models.switches import as_it_acts, is_off
+from carom.io.models.state import as_it_acts, is_off, point_velocity, starting_data
 from carom.io.models.touching import Filter
 from carom.scene import forces
 from carom.scene.materials import IMPACT_LAWS

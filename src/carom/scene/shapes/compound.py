@@ -91,20 +91,13 @@ class Compound(Shape):
         """Radius of the ball that rounds all parts, if it is the same for all [m]."""
         return self.pieces[0].radius
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg].
-
-        Raises
-        ------
-        ValueError
-            If `centroid` was given, because then the mass distribution is unknown.
-        """
+    def _inertia(self, mass: float) -> np.ndarray:
         if self._spread is None:
             raise ValueError(
                 f"inertia must be given with {self!r}, whose centroid was given: its mass distribution is "
                 "unknown"
             )
-        return checks.mass("mass", mass, zero=True) * self._spread
+        return mass * self._spread
 
 
 def _spread_of(placed, arms, weights) -> np.ndarray:

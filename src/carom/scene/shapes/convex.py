@@ -96,9 +96,7 @@ class Convex(Shape):
         touching = {"vertices": self.vertices, "faces": self.faces}
         return (Piece("hull", half, self.radius, extent=self.size, **touching),)
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the centroid, for a `mass` [kg]."""
-        mass = checks.mass("mass", mass, zero=True)
+    def _inertia(self, mass: float) -> np.ndarray:
         return mass * (np.trace(self._spread) * np.eye(3) - self._spread)
 
 

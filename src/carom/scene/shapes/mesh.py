@@ -108,9 +108,7 @@ class Mesh(Shape):
             )
         return self._pieces
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the centroid, for a `mass` [kg]."""
-        mass = checks.mass("mass", mass, zero=True)
+    def _inertia(self, mass: float) -> np.ndarray:
         return mass * (np.trace(self._spread) * np.eye(3) - self._spread)
 
 

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from carom import arguments, checks
+from carom import arguments
 from carom.fields import Number, length
 from carom.scene.pieces import Piece, Shape
 
@@ -35,9 +35,7 @@ class Sphere(Shape):
         """One piece: a point, rounded by a ball."""
         return (Piece("point", radius=self.radius, extent=self.size),)
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = checks.mass("mass", mass, zero=True)
+    def _inertia(self, mass: float) -> np.ndarray:
         return np.eye(3) * (0.4 * mass * self.radius**2)
 
 
@@ -99,9 +97,7 @@ class Box(Shape):
         kind = "box" if np.any(half > 0) else "point"
         return (Piece(kind, half, self.radius, extent=self.size),)
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = checks.mass("mass", mass, zero=True)
+    def _inertia(self, mass: float) -> np.ndarray:
         if not self.radius:
             x, y, z = self.lx**2 / 12, self.ly**2 / 12, self.lz**2 / 12
         else:
@@ -137,9 +133,7 @@ class Ellipsoid(Shape):
         inner = min(axes) ** 2 / max(axes)
         return (Piece("ellipsoid", np.array(axes), inner=inner, extent=self.size),)
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = checks.mass("mass", mass, zero=True)
+    def _inertia(self, mass: float) -> np.ndarray:
         x, y, z = self.a**2, self.b**2, self.c**2
         return np.diag([y + z, x + z, x + y]) * (mass / 5)
 

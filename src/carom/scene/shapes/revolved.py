@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from carom import arguments, checks, fields
+from carom import arguments, fields
 from carom.fields import Number
 from carom.scene.pieces import Piece, Shape
 
@@ -46,9 +46,7 @@ class Capsule(Shape):
         half = np.array([0.0, 0.0, 0.5 * self.length])
         return (Piece("segment", half, self.radius, extent=self.size),)
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = checks.mass("mass", mass, zero=True)
+    def _inertia(self, mass: float) -> np.ndarray:
         r, l = self.radius, self.length
         straight = mass * l / (l + 4 / 3 * r)
         ends = mass - straight
@@ -81,9 +79,7 @@ class Cylinder(Shape):
         half = np.array([self.radius, self.radius, 0.5 * self.length])
         return (Piece("cylinder", half, extent=self.size),)
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = checks.mass("mass", mass, zero=True)
+    def _inertia(self, mass: float) -> np.ndarray:
         r, l = self.radius, self.length
         across = l**2 / 12 + r**2 / 4
         return mass * np.diag([across, across, r**2 / 2])
@@ -126,8 +122,6 @@ class Disc(Shape):
         """One piece: a cylinder of length 0."""
         return (Piece("cylinder", np.array([self.radius, self.radius, 0.0]), extent=self.size),)
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = checks.mass("mass", mass, zero=True)
+    def _inertia(self, mass: float) -> np.ndarray:
         across = mass * (self.radius**2 + self.inner_radius**2) / 4
         return np.diag([across, across, 2 * across])
