@@ -31,12 +31,12 @@ DOORS = {
 LOOSE = 8
 #: greatest number of lines of each folder, in hundreds: bounds only go down; a new capability states its room
 HUNDREDS = {
-    "_compiled": 18, "geometry": 13, "scene": 48, "collision": 29, "model": 31, "kinematics": 13,
+    "_compiled": 18, "geometry": 13, "scene": 45, "collision": 29, "model": 31, "kinematics": 13,
     "contact": 20, "friction": 21, "dynamics": 55, "impact": 65, "persistent": 36, "stepping": 51,
-    "results": 23, "generalized": 35, "io": 47, "control": 8, "studies": 51, "visual": 43, "baselines": 8,
+    "results": 22, "generalized": 34, "io": 46, "control": 8, "studies": 51, "visual": 43, "baselines": 8,
     "paper": 19, "bench": 11, "cli": 18,
 }  # fmt: skip
-MOST_LINES = 67500
+MOST_LINES = 66600
 
 
 @cache

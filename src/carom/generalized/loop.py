@@ -20,8 +20,8 @@ from carom.generalized.events import locate, note_start, turned
 from carom.generalized.layout import DONE, EVENT, LOADS, NOTHING, PAUSE, TOUCHES, N
 from carom.generalized.motion import copy_row, find_metric
 from carom.generalized.step import take
+from carom.status import STEP_TOO_SMALL
 from carom.stepping.grid import end_of, is_saved
-from carom.stepping.trial_step import STEP_TOO_SMALL
 
 CUTS = 12  # greatest number of halvings of a step in which slip turns
 LONG = 20_000  # trial steps, times the square of the number of coordinates, after which the loop pauses

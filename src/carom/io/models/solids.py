@@ -8,7 +8,7 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.io.models.build import Build
-from carom.io.models.links import IDENTITY, Link, name_of, pose_on_link
+from carom.io.models.links import IDENTITY, Link, called, name_of, pose_on_link
 from carom.io.models.report import Report, need_mujoco
 from carom.io.models.touching import Filter
 from carom.scene import joints
@@ -56,7 +56,7 @@ def placed_shape(model, geom: int, report: Report) -> Placed | None:
                 int(kinds.mjGEOM_SDF): "a distance field",
             }
             report.add(
-                _called(model, geom),
+                called(model, "geom", geom),
                 what.get(int(kind), "of a kind without equivalent"),
                 "left out",
             )
@@ -76,12 +76,8 @@ def _hull(model, geom: int, report: Report) -> Convex | None:
     try:
         return Convex(np.array(model.mesh_vert[first : first + count], dtype=float))
     except ValueError as error:
-        report.add(_called(model, geom), f"its mesh has no volume ({error})", "left out")
+        report.add(called(model, "geom", geom), f"its mesh has no volume ({error})", "left out")
         return None
-
-
-def _called(model, geom: int) -> str:
-    return f"geom {name_of(model.geom(geom), 'geom')!r}"
 
 
 def body_shape(parts: list[Placed], centre: np.ndarray) -> Shape | None:
@@ -138,7 +134,7 @@ def add_standing(build: Build, rules: Filter) -> list[Solid]:
 
 
 def _half_space(build: Build, g: int) -> HalfSpace:
-    name = build.names.new(name_of(build.model.geom(g), "geom"), "geom")
+    name = build.names.new(name_of(build.model, "geom", g), "geom")
     normal = build.data.geom_xmat[g].reshape(3, 3)[:, 2]
     return build.scene.add_half_space(build.data.geom_xpos[g], normal, name=name)
 
@@ -147,7 +143,7 @@ def _fixed(build: Build, g: int) -> Body | None:
     part = placed_shape(build.model, g, build.report)
     if part is None:
         return None
-    name = build.names.new(name_of(build.model.geom(g), "geom"), "geom")
+    name = build.names.new(name_of(build.model, "geom", g), "geom")
     axes, place = build.data.geom_xmat[g].reshape(3, 3), build.data.geom_xpos[g]
     offset = getattr(part.shape, "centroid", np.zeros(3))
     wall = build.scene.add_body(
