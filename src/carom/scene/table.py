@@ -73,6 +73,9 @@ class RecordTable(Table[Row]):
 
     _record: type
 
+    def __init_subclass__(cls):
+        cls.__annotations__ = dict.fromkeys(cls._record._fields, np.ndarray)
+
     def __init__(self, **columns: np.ndarray):
         assert columns.keys() == set(self._record._fields)
         vars(self).update({name: columns[name] for name in self._record._fields})
