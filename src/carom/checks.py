@@ -206,7 +206,7 @@ def text(name: str, value) -> str:
     return value
 
 
-def function(name: str, value, *, optional: bool = False) -> Callable:
+def function(name: str, value, *, optional: bool = False) -> Any:
     """Return a value that can be called; refuse others by a `TypeError`. If `optional`, None is allowed."""
     if not (callable(value) or (optional and value is None)):
         raise TypeError(f"{name} must be a function, got {shown(value)}")

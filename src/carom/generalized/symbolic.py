@@ -120,7 +120,8 @@ class SymbolicModel:
 
     def expression(self, name: str, given) -> Any:
         """Return an expression; raise an error for texts, which SymPy would evaluate, and other objects."""
-        sp, result = self.sp, None
+        sp = self.sp
+        result: Any = None
         with suppress(Exception):  # of any kind, in the conversion of a foreign object
             result = sp.sympify(given, strict=True)
         infinite = (sp.nan, sp.zoo, sp.oo, -sp.oo)

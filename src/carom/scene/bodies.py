@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -60,7 +60,7 @@ class Body:
     mass: Number = Value(checks.mass)
     inertia: Vector = Value(lambda _, value: inertia_matrix(value))
     position: Vector = fields.vector()
-    orientation: Vector = Value(attitude)
+    orientation: Value[np.ndarray, Any] = Value(attitude)
     velocity: Vector = fields.vector()
     angular_velocity: Vector = fields.vector()
     material: MaterialOrNone = Value(_material, None)
@@ -125,7 +125,7 @@ class StaticBody:
     name: str
     shape: Shape
     position: Vector = fields.vector()
-    orientation: Vector = Value(attitude)
+    orientation: Value[np.ndarray, Any] = Value(attitude)
     material: MaterialOrNone = Value(_material, None)
 
     def __post_init__(self):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -22,11 +22,8 @@ class AlongJoint:
 
     joint: Joint
 
-    if TYPE_CHECKING:
-        coordinate: int
-
     def __post_init__(self):
-        coordinate_kind(self.joint, self.coordinate)
+        coordinate_kind(self.joint, self.coordinate)  # pyright: ignore[reportAttributeAccessIssue]
 
 
 @arguments.known

@@ -200,7 +200,7 @@ def _add_gravcomp(build: Build) -> None:
         lift = -model.body_gravcomp[b] * model.body_mass[b] * build.scene.gravity
         if model.body_weldid[b] == 0 or not np.any(lift):
             continue
-        name = build.names.new(f"{name_of(model, 'body', b)}:gravcomp", "force")
+        name = build.names.new(f"{name_of(model, 'body', int(b))}:gravcomp", "force")
         force = forces.Force(lift, anchor=build.data.xipos[b])
         build.scene.add_force(force, build.carrier(int(b)), name=name)
 
