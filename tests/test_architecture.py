@@ -12,8 +12,8 @@ import carom
 ROOT = Path(carom.__file__).parent
 #: folders and modules of carom, lowest first (`docs/development/architecture.md`)
 ORDER = (
-    "_compiled", "arguments", "checks", "options", "status", "geometry", "scene", "collision", "model",
-    "kinematics", "contact", "friction", "dynamics", "impact", "persistent", "stepping", "results",
+    "_compiled", "arguments", "checks", "fields", "options", "status", "geometry", "scene", "collision",
+    "model", "kinematics", "contact", "friction", "dynamics", "impact", "persistent", "stepping", "results",
     "generalized", "run", "io", "control", "simulate", "studies", "visual", "baselines", "paper", "bench",
     "cli",
 )  # fmt: skip
@@ -31,12 +31,12 @@ DOORS = {
 LOOSE = 8
 #: greatest number of lines of each folder, in hundreds: bounds only go down; a new capability states its room
 HUNDREDS = {
-    "_compiled": 18, "geometry": 8, "scene": 48, "collision": 29, "model": 31, "kinematics": 13,
+    "_compiled": 18, "geometry": 8, "scene": 45, "collision": 29, "model": 31, "kinematics": 13,
     "contact": 20, "friction": 21, "dynamics": 51, "impact": 65, "persistent": 36, "stepping": 51,
-    "results": 23, "generalized": 35, "io": 47, "control": 8, "studies": 50, "visual": 40, "baselines": 8,
+    "results": 23, "generalized": 34, "io": 46, "control": 8, "studies": 50, "visual": 40, "baselines": 8,
     "paper": 15, "bench": 10, "cli": 18,
 }  # fmt: skip
-MOST_LINES = 65400
+MOST_LINES = 65000
 
 
 @cache

@@ -7,10 +7,12 @@ expected, other objects raise a `TypeError`.
 
 from __future__ import annotations
 
+import importlib
 import os
 from collections.abc import Callable, Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -204,10 +206,11 @@ def text(name: str, value) -> str:
     return value
 
 
-def function(name: str, value, *, optional: bool = False) -> None:
-    """Refuse, by a `TypeError`, a value that cannot be called; None is allowed if it is `optional`."""
+def function(name: str, value, *, optional: bool = False) -> Any:
+    """Return a value that can be called; refuse others by a `TypeError`. If `optional`, None is allowed."""
     if not (callable(value) or (optional and value is None)):
         raise TypeError(f"{name} must be a function, got {shown(value)}")
+    return value
 
 
 def path(name: str, value) -> Path:
@@ -318,6 +321,22 @@ def missing_package(what: str, package: str, extra: str) -> ModuleNotFoundError:
         f'{what} needs the package {package}; install it with\n\n    pip install "carom[{extra}]"\n'
     )
     return ModuleNotFoundError(message, name=package.split(".")[0])
+
+
+def need(package: str, what: str, extra: str) -> Any:
+    """Return an optional package of an `extra` of carom, which `what` needs.
+
+    Raises
+    ------
+    ImportError
+        If it is not installed; the message has the command that installs it.
+    """
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        if error.name is not None and error.name.split(".")[0] != package:
+            raise  # it is there, and lacks something itself
+        raise missing_package(what, package, extra) from None
 
 
 def _shape(shape) -> str:

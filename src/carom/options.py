@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
-from carom import arguments, checks
+from carom import arguments
+from carom.fields import Flag, Integer, Number, NumberOrNone, Word, flag, integer, number, word
 
 
 @arguments.known
@@ -94,56 +95,29 @@ class Options:
         the tolerances.
     """
 
-    layer_width: float | None = None
-    penetration: float = 0.2
-    layer_steps: int = 2
-    add_layer_time: bool = False
-    gap_tolerance: float = 1e-15
-    tie_tolerance: float = 1e-9
-    multiple: str = "simultaneous"
-    corner_tolerance: float = 1e-8
-    corner_exponent: float | None = None
-    hold: bool = True
-    rest_tolerance: float = 1e-9
-    energy_tolerance: float = 1e-4
-    constraint_tolerance: float = 1e-8
-    project_start: bool = False
-    drop_tolerance: float = 1e-8
-    augmentation: float = 1e-3
-    natural_frequency: float = 1.0
-    damping_ratio: float = 1.0
-    residual_tolerance: float = 1e-15
-    max_iterations: int = 100
-    max_impacts_per_step: int = 1000
-    max_cuts: int = 40
-    max_step: float | None = None
-
-    def __post_init__(self):
-        if self.layer_width is not None:
-            checks.number("layer_width", self.layer_width, above=0.0, unit="m")
-        if self.max_step is not None:
-            checks.number("max_step", self.max_step, above=0.0, unit="s")
-        checks.number("penetration", self.penetration, above=0.0, below=1.0)
-        for name in ("gap_tolerance", "tie_tolerance", "constraint_tolerance", "drop_tolerance"):
-            checks.number(name, getattr(self, name), above=0.0, below=1.0)
-        for name in ("rest_tolerance", "augmentation", "residual_tolerance"):
-            checks.number(name, getattr(self, name), above=0.0, below=1.0)
-        checks.number("energy_tolerance", self.energy_tolerance, above=0.0)
-        for name in ("natural_frequency", "damping_ratio"):
-            checks.number(name, getattr(self, name), least=0.0)
-        checks.integer("layer_steps", self.layer_steps, least=1)
-        for name in ("max_iterations", "max_impacts_per_step", "max_cuts"):
-            checks.integer(name, getattr(self, name), least=1)
-        checks.choice("multiple", self.multiple, ("simultaneous", "sequential", "newton"))
-        checks.number("corner_tolerance", self.corner_tolerance, above=0.0, below=1.0)
-        if self.corner_exponent is not None:
-            checks.number("corner_exponent", self.corner_exponent, least=1.0, most=3.0)
-        for name in ("add_layer_time", "hold", "project_start"):
-            checks.flag(name, getattr(self, name))
-        for f in fields(self):  # as Python's own numbers: of their types the loop is compiled
-            value, kind = getattr(self, f.name), float if f.default is None else type(f.default)
-            if value is not None:
-                object.__setattr__(self, f.name, kind(value))
+    layer_width: NumberOrNone = number(None, above=0.0, unit="m")
+    penetration: Number = number(0.2, above=0.0, below=1.0)
+    layer_steps: Integer = integer(2, least=1)
+    add_layer_time: Flag = flag(False)
+    gap_tolerance: Number = number(1e-15, above=0.0, below=1.0)
+    tie_tolerance: Number = number(1e-9, above=0.0, below=1.0)
+    multiple: Word = word(("simultaneous", "sequential", "newton"), "simultaneous")
+    corner_tolerance: Number = number(1e-8, above=0.0, below=1.0)
+    corner_exponent: NumberOrNone = number(None, least=1.0, most=3.0)
+    hold: Flag = flag(True)
+    rest_tolerance: Number = number(1e-9, above=0.0, below=1.0)
+    energy_tolerance: Number = number(1e-4, above=0.0)
+    constraint_tolerance: Number = number(1e-8, above=0.0, below=1.0)
+    project_start: Flag = flag(False)
+    drop_tolerance: Number = number(1e-8, above=0.0, below=1.0)
+    augmentation: Number = number(1e-3, above=0.0, below=1.0)
+    natural_frequency: Number = number(1.0, least=0.0)
+    damping_ratio: Number = number(1.0, least=0.0)
+    residual_tolerance: Number = number(1e-15, above=0.0, below=1.0)
+    max_iterations: Integer = integer(100, least=1)
+    max_impacts_per_step: Integer = integer(1000, least=1)
+    max_cuts: Integer = integer(40, least=1)
+    max_step: NumberOrNone = number(None, above=0.0, unit="s")
 
     def as_dict(self) -> dict:
         """Return all settings by name."""

@@ -335,7 +335,7 @@ class Run:
             further = clock.now > self.records.series.t[clock.saved - 1]
             whole = all(np.all(np.isfinite(self.now[name])) for name in ("x", "Q", "v", "w"))
             if further and whole:
-                self.records = r.room_for_one(self.records, clock.saved)
+                self.records = r.with_room(self.records, clock.saved)
                 self.save_now()
         return Solution._from_run(self, status)
 

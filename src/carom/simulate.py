@@ -16,7 +16,6 @@ from carom.generalized.solution import GeneralizedSolution
 from carom.generalized.system import GeneralizedSystem
 from carom.io.run_to_end import finish
 from carom.options import Options
-from carom.results.coarse import too_long
 from carom.results.solution import Solution
 from carom.scene.scene import Scene
 from carom.status import MistakeWarning
@@ -244,4 +243,6 @@ def after(solution, settings: Settings) -> tuple[str, ...]:
         return ()  # not each step is saved
     if settings.method == "implicit" or not isinstance(solution, Solution) or not solution.success:
         return ()
+    from carom.results.accuracy import too_long
+
     return too_long(solution, solution._run.bodies, settings.step, settings.method)

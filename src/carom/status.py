@@ -37,6 +37,13 @@ class Status(IntEnum):
         return _MESSAGES[self]
 
 
+#: the same as plain integers, which kernels return
+(
+    SUCCESS, NO_CONVERGENCE, STEP_CUT_TO_NOTHING, TOO_MANY_IMPACTS, NOT_FINITE, RETURN_MAP_FAILED,
+    IMPACT_FAILED, CONSTRAINTS_LOST, FUNCTION_FAILED, INTERRUPTED, TOO_MANY_POINTS, SINGULAR_METRIC,
+    STEP_TOO_SMALL, INACCURATE, UNSTABLE, BLOCKED, STOPPED,
+) = map(int, Status)  # fmt: skip
+
 _MESSAGES = {
     Status.SUCCESS: "The run reached its end.",
     Status.NO_CONVERGENCE: (

@@ -21,7 +21,7 @@ def same_bits(a, b):
 
 def columns(table):
     """Names and arrays of a table."""
-    names = [f.name for f in fields(table)] if is_dataclass(table) else table._fields
+    names = [f.name for f in fields(table)] if is_dataclass(table) else table._record._fields
     return {name: getattr(table, name) for name in names}
 
 

@@ -84,7 +84,7 @@ def test_reactions_know_whole_turns():
     ids=lambda given: type(given).__name__,
 )
 def test_units_of_joints(definition, units):
-    from carom.results.constraint_rows import row_units
+    from carom.results.names import row_units
 
     assert row_units(definition) == units
 
@@ -97,6 +97,6 @@ def test_units_of_constraints():
     scene.add_constraint(constraints.Gear(turn, slide, ratio=0.1), name="rack and pinion")
     scene.add_constraint(constraints.Coupling({turn: 1.0, slide: 2.0}), name="any")
     scene.add_constraint(constraints.Driver(slide, rate=0.0), name="piston")
-    from carom.results.constraint_rows import constraint_rows
+    from carom.results.names import constraint_rows
 
     assert constraint_rows(scene).unit.tolist()[-3:] == ["m", "", "m"]

@@ -152,7 +152,7 @@ def _step(given: str | None) -> float | str | None:
 
 def _start(scene, out, given: dict[str, Any], model, save_seconds: float, force: bool):
     import carom
-    from carom.io.files.tables import is_table
+    from carom.io.files.convert import is_table
 
     if scene is None:
         raise Refused(
@@ -230,7 +230,7 @@ def _go_on(path: Path, scene, duration: float | None, given: dict[str, Any], sav
 
 def _end(solution, out: Path | None, scene: Path | None, seconds: float, json: bool) -> int:
     """Print the outcome of the run; return the exit code."""
-    from carom.io.files.tables import TABLES
+    from carom.io.files.convert import TABLES
     from carom.status import Status
 
     facts = {

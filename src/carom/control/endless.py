@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from carom import checks
-from carom._compiled.record_arrays import Columns
 from carom.dynamics.adapt import FIRST, time_of_bounces
+from carom.model import records as r
 from carom.run import Run
 from carom.status import Status
 from carom.stepping.grid import ALIKE, Grid, count, longest_step
@@ -40,7 +40,8 @@ class Endless(Run):
         status, part = Status.SUCCESS, PART * max(1, self.grid.save_every)
         while status is Status.SUCCESS and self.steps_done < until:
             goal = min(until, self.steps_done + part)
-            self.make_room(1 + (goal - self.steps_done) // max(1, self.grid.save_every))
+            rows = 2 + (goal - self.steps_done) // max(1, self.grid.save_every)
+            self.records = r.with_room(self.records, int(self.clock["saved"][0]), rows)
             status = super().go_on(goal)
         return status
 
@@ -112,17 +113,3 @@ class Endless(Run):
         ends = np.concatenate([self.grid.ends, np.zeros(more)])
         saves = np.concatenate([self.grid.saves, np.zeros(more, dtype=np.int64)])
         self.grid = self.grid._replace(ends=ends, saves=saves, last=len(ends) - 1)
-
-    def make_room(self, rows: int) -> None:
-        """Make the records of saved states longer where they have no room for so many more."""
-        saved = int(self.clock["saved"][0])
-        known = len(self.records.series)
-        if saved + rows < known:
-            return
-        longer = {}
-        for name in ("series", "state"):
-            old = getattr(self.records, name)
-            new = np.zeros((max(2 * known, saved + rows + 1), *old.shape[1:]), old.dtype)
-            new[:saved] = old[:saved]
-            longer[name] = new.view(Columns)
-        self.records = self.records._replace(**longer)

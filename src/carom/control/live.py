@@ -1,16 +1,19 @@
-"""A run that users take on themselves, step by step."""
+"""A run that users take on themselves, step by step, and its solution at any time: copies of its records."""
 
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
+from typing import Any
 
 from numpy.typing import ArrayLike
 
 from carom import arguments
-from carom.control.applied import Applied
+from carom.control.applied import Applied, rows_of_forces
 from carom.control.endless import BLOCK, Endless
-from carom.control.frozen import solution_of
 from carom.dynamics.methods import METHODS
+from carom.io.files.kept import KeptRun
+from carom.model import records as r
 from carom.model.method import IMPLICIT
 from carom.options import Options
 from carom.results.solution import Solution
@@ -159,3 +162,30 @@ class Run:
 
     def __repr__(self) -> str:
         return f"<Run: {len(self._run.bodies)} bodies at t = {self.time:.9g} s>"
+
+
+class Frozen(KeptRun):
+    """The records of a run up to some time, and the forces that were set until then."""
+
+    def __init__(self, run: Endless, settings: dict, history: list[tuple[int, Any, Any]]):
+        records, past = r.trimmed(run.records, run.clock), {"status": Status.SUCCESS.name}
+        super().__init__(run.scene, settings, run.options, records, None, [], past, run.found)
+        self.history = history
+
+    def rows_of_forces(self, system, saved: int):
+        """Go through ranges of saved rows in which forces stay as they are; write them into the system."""
+        return rows_of_forces(self.history, system, saved)
+
+
+def solution_of(run: Endless, status: Status, history: list[tuple[int, Any, Any]]) -> Solution:
+    """Return the solution of a run up to now; the run may go on, and knows nothing of it."""
+    clock = run.clock.copy()
+    if run.reached > run.records.series["t"][int(clock["saved"][0]) - 1] and status.ended:
+        run.records = r.with_room(run.records, int(clock["saved"][0]))
+        run.save_now()
+    made = run.solution(status)
+    longest = run.how.step or run.controls.interval
+    settings = {**made.settings, "duration": max(run.reached, longest)}
+    made = replace(made, settings=settings, _run=Frozen(run, settings, list(history)))
+    run.clock[:] = clock
+    return made

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from carom.control.conditions import Condition, Look
 from carom.model.kept import Snapshot
-from carom.model.records import room_for_one
+from carom.model.records import with_room
 from carom.results.solution import Solution
 from carom.results.state import SystemState
 from carom.run import Run
@@ -55,24 +55,9 @@ class Watched:
         look = self.look()
         self.values = [1.0 if c.rest else c.value(look) for c in conditions]  # it is yet to rest
 
-    @property
-    def steps(self) -> int:
-        """Number of steps to the end."""
-        return self.run.steps
-
-    @property
-    def steps_done(self) -> int:
-        """Number of finished steps."""
-        return self.run.steps_done
-
-    @property
-    def failure(self) -> BaseException | None:
-        """What a function of the user's has raised."""
-        return self.run.failure
-
-    def go_back(self) -> None:
-        """Go back to the start of a step in the middle of which the run was interrupted."""
-        self.run.go_back()
+    def __getattr__(self, name: str) -> Any:
+        # what the watch does not change: `steps`, `failure`, `go_back`, ...
+        return getattr(self.run, name)
 
     def go_on(self, until: int) -> Status:
         """Go on to step number `until`, to an event that ends the run, or to a failure."""
@@ -176,7 +161,7 @@ class Watched:
         self.put_back()
         status = run.go_on(step)
         if status is Status.SUCCESS:
-            run.records = room_for_one(run.records, int(run.clock["saved"][0]))
+            run.records = with_room(run.records, int(run.clock["saved"][0]))
             self.go_to(step + 1, end + run.grid.interval)
             return self.run.clock["still"][0] <= end
         raise _Failed(status)

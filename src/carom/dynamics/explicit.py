@@ -20,8 +20,8 @@ from carom.dynamics.singular_positions import SINGULAR, is_singular, pass_round,
 from carom.geometry.rotation import multiply, normalize
 from carom.kinematics.flight import free_flight
 from carom.model.workspace import FREE, HELD, RESTS
+from carom.status import CONSTRAINTS_LOST
 
-CONSTRAINTS_LOST = 7
 MANY = 1 << 30  # more rows than any system has
 #: rotation of a body [rad] for each stage of a part of a step (0.3 for `rk4`), and greatest number of parts
 TURN, MOST_PARTS, TINY = 0.075, 100, 1e-300

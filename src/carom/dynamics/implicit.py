@@ -33,9 +33,9 @@ from carom.dynamics.solve import solve
 from carom.dynamics.stiff import along_row, stretch
 from carom.geometry.rotation import exp, multiply, normalize
 from carom.model.arrays import STIFF
+from carom.status import CONSTRAINTS_LOST
 
 GAMMA = 1.0 - math.sqrt(0.5)
-CONSTRAINTS_LOST = 7
 
 
 @inlined

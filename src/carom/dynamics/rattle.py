@@ -34,8 +34,8 @@ from carom.dynamics.loops import dropped_rows, solve_factored
 from carom.dynamics.move_error import error_of_move
 from carom.dynamics.solve import joint_wrench, solve, solve_near
 from carom.model.arrays import LOOPS, RELATION
+from carom.status import NO_CONVERGENCE
 
-NO_CONVERGENCE = 1
 DONE, STALLED, TOO_FAR = range(3)  # how a part of a step ended
 MOST = 60  # solves for Lam
 

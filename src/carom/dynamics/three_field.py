@@ -47,8 +47,7 @@ from carom.kinematics.rows import direction
 from carom.kinematics.wrench import add_force
 from carom.model.arrays import LOOPS, RELATION
 from carom.model.workspace import RESTS
-
-NO_CONVERGENCE = 1
+from carom.status import NO_CONVERGENCE
 
 
 @unit

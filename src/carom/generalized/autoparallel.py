@@ -55,8 +55,11 @@ def bend_carried(system, t, x, w, work, out, carried):
 
 
 @kernel
-def carry(system, t, x, w, parts, work):
-    """Move x = (q, v) to the end of the autoparallel of v, in `parts` RK4 steps; transport w (n,) with it."""
+def follow(system, t, x, w, transport, parts, work):
+    """Move x = (q, v) to the end of the autoparallel of v, in `parts` RK4 steps; return a status.
+
+    If `transport` is set, w (n,) is transported with it.
+    """
     n, h = system.size[N], 1.0 / parts
     y, k, total = work.arc[0], work.arc[1], work.arc[2]
     wy, wk, wt = work.arc[3], work.arc[4], work.arc[5]
@@ -64,9 +67,12 @@ def carry(system, t, x, w, parts, work):
         for j in range(2 * n):
             y[j], total[j] = x[j], 0.0
         for j in range(n):
-            wy[j], wt[j] = w[j], 0.0
+            wy[j], wt[j], wk[j] = w[j], 0.0, 0.0
         for s in range(4):
-            code = bend_carried(system, t, y, wy[:n], work, k, wk[:n])
+            if transport:
+                code = bend_carried(system, t, y, wy[:n], work, k, wk[:n])
+            else:
+                code = bend(system, t, y, work, k)
             if code != 0:
                 return code
             ahead = 0.5 * h if s < 2 else h
@@ -84,32 +90,10 @@ def carry(system, t, x, w, parts, work):
     return 0
 
 
-@kernel
-def follow(system, t, x, parts, work):
-    """Move x = (q, v) to the end of the autoparallel of v, in `parts` RK4 steps; return a status."""
-    n, h = system.size[N], 1.0 / parts
-    y, k, total = work.arc[0], work.arc[1], work.arc[2]
-    for _ in range(parts):
-        for j in range(2 * n):
-            y[j], total[j] = x[j], 0.0
-        for s in range(4):
-            code = bend(system, t, y, work, k)
-            if code != 0:
-                return code
-            ahead = 0.5 * h if s < 2 else h
-            share = h / 6.0 if s == 0 or s == 3 else h / 3.0
-            for j in range(2 * n):
-                total[j] += share * k[j]
-                y[j] = x[j] + ahead * k[j]
-        for j in range(2 * n):
-            x[j] += total[j]
-    return 0
-
-
 @entry
 def run_along(system, t, x, parts, work):
     """Do the same as `follow`, for Python."""
-    return follow(system, t, x, parts, work)
+    return follow(system, t, x, work.a, False, parts, work)
 
 
 @kernel
@@ -128,7 +112,7 @@ def correct(system, t, x, xi, work):
         for j in range(n):
             x[j] += xi[j] + 0.5 * k[n + j]
         return 0
-    code = follow(system, t, y, _PARTS, work)
+    code = follow(system, t, y, xi, False, _PARTS, work)
     for j in range(n):
         x[j] = y[j]
     return code
@@ -189,7 +173,7 @@ def return_map(system, active, t, x, c, tolerance, work):
             nu[j] *= kappa
             e[n + j] = -e[n + j]  # back along the same arc
         if iteration > 0:
-            code = carry(system, t, e, nu[:n], parts, work)
+            code = follow(system, t, e, nu, True, parts, work)
         change, size = 0.0, 0.0
         for j in range(n):
             change, size = max(change, abs(nu[j] - xi[j])), max(size, abs(nu[j]))
@@ -200,7 +184,7 @@ def return_map(system, active, t, x, c, tolerance, work):
         for j in range(n):
             xi[j] = nu[j]
             e[j], e[n + j] = q[j], xi[j]
-        code = max(code, follow(system, t, e, parts, work))
+        code = max(code, follow(system, t, e, nu, False, parts, work))
         if code != 0:
             return -1, code
         copy_row(e, work.arc[6], n)

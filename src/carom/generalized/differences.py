@@ -12,6 +12,7 @@ seconds to compile array expressions.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -31,46 +32,37 @@ def as_array(function) -> Any:
     return lambda *arguments: np.asarray(function(*arguments), dtype=float)
 
 
-def derivative(f, n, shape):
-    """Return the derivatives (n, *shape) of f, a number or an array of one or two axes."""
-    a, b = (*shape, 1, 1)[:2]
+def flat(f, shape):
+    """Return a function with the results of f, of `shape`, in one axis."""
 
     def of_number(q):
-        out = np.zeros(n)
-        for k in range(n):
-            h, at = STEP * max(1.0, abs(q[k])), q[k]
-            for s in (-2, -1, 1, 2):
-                q[k] = at + s * h
-                out[k] += _FIRST[s + 2] / h * f(q)
-            q[k] = at
+        out = np.empty(1)
+        out[0] = f(q)
         return out
 
-    def of_vector(q):
-        out = np.zeros((n, a))
+    def of_array(q):
+        return np.ascontiguousarray(f(q)).reshape(-1)
+
+    return joined(of_array if shape else of_number, f)
+
+
+def derivative(f, n, shape):
+    """Return the derivatives (n, *shape) of f, a number or an array."""
+    g, m, whole = flat(f, shape), math.prod(shape), (n, *shape)
+
+    def slope(q):
+        out = np.zeros((n, m))
         for k in range(n):
             h, at = STEP * max(1.0, abs(q[k])), q[k]
             for s in (-2, -1, 1, 2):
                 q[k] = at + s * h
-                y = f(q)
-                for i in range(a):
+                y = g(q)
+                for i in range(m):
                     out[k, i] += _FIRST[s + 2] / h * y[i]
             q[k] = at
-        return out
+        return out.reshape(whole)
 
-    def of_matrix(q):
-        out = np.zeros((n, a, b))
-        for k in range(n):
-            h, at = STEP * max(1.0, abs(q[k])), q[k]
-            for s in (-2, -1, 1, 2):
-                q[k] = at + s * h
-                y = f(q)
-                for i in range(a):
-                    for j in range(b):
-                        out[k, i, j] += _FIRST[s + 2] / h * y[i, j]
-            q[k] = at
-        return out
-
-    return joined((of_number, of_vector, of_matrix)[len(shape)], f)
+    return joined(slope, f, g)
 
 
 def swapped(f, n, m):
@@ -127,36 +119,32 @@ def along(rows, n, m):
 
 def along_one(row, n):
     """Return (d row/dt) v of one row (n,)."""
-    each = along(as_rows(row, n), n, 1)
+    return first_of(along(as_rows(row, n), n, 1))
 
-    def rate(q, v):
-        return each(q, v)[0]
 
-    return joined(rate, each)
+def first_of(f):
+    """Return the first number of the result of a function of q and v."""
+
+    def first(q, v):
+        return f(q, v)[0]
+
+    return joined(first, f)
 
 
 def second(f, n, shape):
     """Return the second derivative of f along v; f is a number or has one axis."""
-    reach, m = joined(_reach, f), (*shape, 1)[0]
+    g, reach, m = flat(f, shape), joined(_reach, f), math.prod(shape)
 
-    def of_number(q, v):
-        out, h, y = 0.0, STEP_TWICE * reach(q, v), np.zeros(n)
-        if h > 0.0:
-            for s in range(-2, 3):
-                for j in range(n):
-                    y[j] = q[j] + s * h * v[j]
-                out += _SECOND[s + 2] / (h * h) * f(y)
-        return out
-
-    def of_vector(q, v):
+    def bend(q, v):
         out, h, y = np.zeros(m), STEP_TWICE * reach(q, v), np.zeros(n)
         if h > 0.0:
             for s in range(-2, 3):
                 for j in range(n):
                     y[j] = q[j] + s * h * v[j]
-                z = f(y)
+                z = g(y)
                 for i in range(m):
                     out[i] += _SECOND[s + 2] / (h * h) * z[i]
         return out
 
-    return joined((of_number, of_vector)[len(shape)], f, reach)
+    made = joined(bend, g, reach)
+    return made if shape else first_of(made)

@@ -62,10 +62,8 @@ class Evaluation:
         code = look(self.system, self.none_active if active is None else active, t, x, self.work)
         self.failed()
         w = self.work
-        return Look(
-            w.M.copy(), w.c.copy(), w.loads[1:-1].copy(), w.phi.copy(), w.A.copy(), w.A_rate.copy(),
-            w.gap.copy(), w.G.copy(), w.G_rate.copy(), w.a.copy(), code,
-        )  # fmt: skip
+        seen = (w.M, w.c, w.loads[1:-1], w.phi, w.A, w.A_rate, w.gap, w.G, w.G_rate, w.a)
+        return Look(*(array.copy() for array in seen), status=code)
 
     def failed(self) -> None:
         """Raise the error that a function of the user's has raised."""
@@ -73,10 +71,6 @@ class Evaluation:
         if error is not None:
             self.raised = error
             raise error
-
-    def metric(self, q) -> np.ndarray:
-        """Return M (n, n)."""
-        return self.look(q).M
 
     def christoffel(self, q) -> np.ndarray:
         """Return Gamma^k_ij, from Gamma(v, v) of all pairs of directions."""
@@ -92,7 +86,7 @@ class Evaluation:
                 if i != j:
                     one = 0.5 * (one - quadratic[i, i] - quadratic[j, j])
                 first[:, i, j] = first[:, j, i] = one
-        return np.linalg.solve(self.metric(q), first.reshape(n, -1)).reshape(n, n, n)
+        return np.linalg.solve(self.look(q).M, first.reshape(n, -1)).reshape(n, n, n)
 
     def autoparallel(self, q, v, parts):
         """Return the end (q, v) of an autoparallel."""

@@ -26,8 +26,9 @@ from carom.generalized.layout import (
     TOUCHES,
     N,
 )
-from carom.generalized.motion import NOT_FINITE, acceleration, find_contacts, slip_of
+from carom.generalized.motion import acceleration, find_contacts, slip_of
 from carom.generalized.step import take
+from carom.status import NOT_FINITE
 
 ROUND_OFF = 1e-15  # of the gap's own terms
 

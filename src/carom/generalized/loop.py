@@ -1,4 +1,13 @@
-"""The compiled loop: it takes steps until an event, which Python code handles."""
+"""The compiled loop: it takes steps until an event, which Python code handles.
+
+With tolerances the estimate of the error of a step is that for bodies (`carom.dynamics.adapt`), where each
+coordinate has the size 1 in its own unit. With e_q, e_v = h times the sum of E_s times the derivatives of the
+stages, the error of coordinate i is
+
+    miss_i = max(|e_q|, T |e_v|),     T = 1 / max(|v_i|, sqrt |a_i|),
+
+and a step is accepted if miss_i <= LOCAL (atol + rtol max(1, h |v_i|)) for all of them.
+"""
 
 from __future__ import annotations
 
@@ -6,14 +15,13 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.user_functions import call_function
-from carom.dynamics.adapt import LEAST, MOST, NOTHING_LEFT, SAFETY, part_of
-from carom.generalized.error_estimate import step_error
+from carom.dynamics.adapt import LEAST, MOST, NOTHING_LEFT, SAFETY, allowed_error, part_of
 from carom.generalized.events import locate, note_start, turned
 from carom.generalized.layout import DONE, EVENT, LOADS, NOTHING, PAUSE, TOUCHES, N
 from carom.generalized.motion import copy_row, find_metric
 from carom.generalized.step import take
+from carom.status import STEP_TOO_SMALL
 from carom.stepping.grid import end_of, is_saved
-from carom.stepping.trial_step import STEP_TOO_SMALL
 
 CUTS = 12  # greatest number of halvings of a step in which slip turns
 LONG = 20_000  # trial steps, times the square of the number of coordinates, after which the loop pauses
@@ -103,6 +111,34 @@ def exact_part(motion, x, left, plan, c):
         again = True
         c.rejected += 1
         part *= max(LEAST, SAFETY * error ** (-1.0 / plan.order)) if math.isfinite(error) else LEAST
+
+
+@kernel
+def step_error(motion, h, plan):
+    """Return the greatest error of the step h whose stages are in the workspace; up to 1 it is accepted."""
+    E, stages, n = motion.method.E, motion.work.stages, motion.system.size[N]
+    first, second = 0.0, 0.0
+    for i in range(n):
+        pace, speed = 0.0, 0.0
+        for s in range(E.shape[1]):
+            speed = max(speed, abs(stages[s, i]))
+            pace = max(pace, math.sqrt(abs(stages[s, n + i])))
+        pace = max(pace, speed)
+        T = 1.0 / pace if pace > 0.0 else 0.0
+        allowed = allowed_error(plan.rtol, plan.atol, 1.0, h * speed)
+        for e in range(E.shape[0]):
+            q, v = 0.0, 0.0
+            for s in range(E.shape[1]):
+                q += E[e, s] * stages[s, i]
+                v += E[e, s] * stages[s, n + i]
+            miss = h * max(abs(q), T * abs(v)) / allowed
+            if e == 0 and not miss <= first:
+                first = miss
+            if e == 1:
+                second = max(second, miss)
+    if second > 0.0:
+        return first * first / math.sqrt(first * first + 0.01 * second * second)
+    return first
 
 
 @kernel

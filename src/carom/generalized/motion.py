@@ -23,8 +23,7 @@ from carom.generalized.layout import (
     N,
 )
 from carom.generalized.linear import cholesky, factor, solve_metric, substitute
-
-SINGULAR_METRIC, NOT_FINITE = 11, 4  # as in `carom.status.Status`
+from carom.status import NOT_FINITE, SINGULAR_METRIC
 
 
 @kernel

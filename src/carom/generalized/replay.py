@@ -6,12 +6,12 @@ import numpy as np
 
 from carom.generalized.run import GeneralizedRun
 from carom.results.dense_output import NEAR
-from carom.results.replay import BETTER, FACTOR, RTOL
+from carom.results.replay import FACTOR, RTOL, Replays
 from carom.status import Status
 from carom.stepping.grid import part_of_grid
 
 
-class Replay:
+class Replay(Replays):
     """Runs of the system of a solution that start at its saved states."""
 
     def __init__(self, solution):
@@ -31,38 +31,27 @@ class Replay:
             if min(time - around[0], around[1] - time) <= margin:
                 continue
             i = min(int(np.searchsorted(self.solution.t, time, side="right")) - 1, last)
-            state = self.go(i, float(time)) if self.is_good(i) else None
-            if state is not None:
-                q[k], v[k] = state[:n], state[n:]
+            if self.is_good(i) and self.go(i, float(time)):
+                q[k], v[k] = self.state[:n], self.state[n:]
 
-    def is_good(self, i: int) -> bool:
-        """Return whether the replay from saved state i ends at the next one, or is better than the cubic."""
-        if i not in self.arrives:
-            self.arrives[i] = self.arrives_from(i)
-        return self.arrives[i]
+    def go(self, i: int, until: float) -> bool:
+        """Continue from saved state i to a time; return whether it was reached."""
+        begin = float(self.solution.t[i])
+        run = GeneralizedRun(self.solution.system, self.how, (begin, self.saved(i)))
+        run.plan = run.plan._replace(grid=part_of_grid(self.grid, begin, float(until)))
+        self.state = run.x
+        return run.go_on(run.steps) is Status.SUCCESS
 
-    def arrives_from(self, i: int) -> bool:
-        """Compute the result of `is_good`."""
-        s = self.solution
-        miss = self.distance(i, self.go(i, float(s.t[i + 1])), (s.q[i + 1], s.v[i + 1]))
-        if miss <= self.allowed:
-            return True
-        middle = 0.5 * float(s.t[i] + s.t[i + 1])
-        q, v = s._cubic(np.array([middle]), "right")
-        return miss <= BETTER * self.distance(i, self.go(i, middle), (q[0], v[0])) < np.inf
+    def misses(self, i: int, there: np.ndarray) -> float:
+        """Return the distance of two states in interval i, velocities times its length, by the allowed one."""
+        n, step = len(there) // 2, self.solution.t[i + 1] - self.solution.t[i]
+        off = np.abs(self.state - there)
+        return float(np.max(off[:n] + step * off[n:])) / self.allowed
 
-    def distance(self, i: int, state: np.ndarray | None, there: tuple) -> float:
-        """Return the distance of two states in interval i, with velocities times its length."""
-        if state is None:
-            return np.inf
-        n, step = len(there[0]), self.solution.t[i + 1] - self.solution.t[i]
-        return float(np.max(np.abs(state[:n] - there[0]) + step * np.abs(state[n:] - there[1])))
+    def saved(self, i: int) -> np.ndarray:
+        """Return saved state i."""
+        return np.concatenate([self.solution.q[i], self.solution.v[i]])
 
-    def go(self, i: int, until: float) -> np.ndarray | None:
-        """Return the state at a time after saved state i; None if it is not reached."""
-        s = self.solution
-        begin = float(s.t[i])
-        run = GeneralizedRun(s.system, self.how, (begin, np.concatenate([s.q[i], s.v[i]])))
-        grid = part_of_grid(self.grid, begin, until)
-        run.plan = run.plan._replace(grid=grid)
-        return run.x if run.go_on(run.steps) is Status.SUCCESS else None
+    def cubic(self, i: int, t: float) -> np.ndarray:
+        """Return the state of the cubic at a time."""
+        return np.concatenate(self.solution._cubic(np.array([t]), "right"), axis=1)[0]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -14,6 +13,7 @@ from carom.results.drawn import Drawn
 from carom.results.event_tables import EventTable
 from carom.results.ledger import Ledger
 from carom.scene.materials import IMPACT_LAWS
+from carom.scene.table import RecordTable
 from carom.status import Status
 
 if TYPE_CHECKING:
@@ -42,45 +42,23 @@ class CoordinateImpact(NamedTuple):
     wedged: int  #: 1 if friction wedges the pair, so that the law of restitution cannot hold; otherwise 0
 
 
-class CoordinateImpactTable:
+class CoordinateImpactTable(RecordTable[CoordinateImpact]):
     """All K impacts of a run in the order of time; columns (K, ...) are the fields of `CoordinateImpact`."""
 
-    def __init__(self, records: list[dict], n: int):
-        shapes = {"position": (n,), "inverse_mass": (3, 3)}
-        for name in CoordinateImpact._fields:
-            kind = (
-                object
-                if name == "law"
-                else int
-                if name in ("contact", "together", "wedged")
-                else float
-            )
-            vector = name.startswith("relative") or name == "impulse"
-            shape = (len(records), *shapes.get(name, (3,) if vector else ()))
-            column = np.array(
-                [one[name] for one in records], dtype=None if kind is object else kind
-            )
-            setattr(self, name, column.reshape(shape))
-
-    def __getattr__(self, name: str) -> Any:  # for type checkers: columns are set above
-        raise AttributeError(name)
-
-    def __len__(self) -> int:
-        return len(self.time)
-
-    def __getitem__(self, k: int) -> CoordinateImpact:
-        if not -len(self) <= k < len(self):
-            raise IndexError(f"there is no impact {k}: the table has {len(self)}, numbered from 0")
-        row = (getattr(self, name)[k] for name in CoordinateImpact._fields)
-        return CoordinateImpact(
-            *(one.item() if isinstance(one, np.generic) else one for one in row)
-        )
-
-    def __iter__(self) -> Iterator[CoordinateImpact]:
-        return (self[k] for k in range(len(self)))
+    _record, _a_row = CoordinateImpact, "impact"
 
     def __repr__(self) -> str:
         return f"<CoordinateImpactTable: {len(self)} impacts>"
+
+
+def impact_table(records: list[CoordinateImpact], n: int) -> CoordinateImpactTable:
+    """Return the table of impacts of a system of n coordinates."""
+    v = np.zeros(3)
+    like = CoordinateImpact(
+        0.0, 0, np.zeros(n), v, v, v, 0.0, "", np.zeros((3, 3)), 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0
+    )
+    columns = {name: np.array(column) for name, column in zip(like._fields, zip(like, *records))}
+    return CoordinateImpactTable(**{name: column[1:] for name, column in columns.items()})
 
 
 def given_by_law(t: np.ndarray, impacts: CoordinateImpactTable) -> np.ndarray:
@@ -164,7 +142,7 @@ class GeneralizedSolution(Drawn):
         run.made.functions.failed = failed
         names = ("loads", "impacts", "friction", "bounces")
         ledger = Ledger(kinetic, potential, *(np.array(series[one]) for one in names))
-        impacts, warnings = CoordinateImpactTable(run.contacts.strike.records, n), ()
+        impacts, warnings = impact_table(run.contacts.strike.records, n), ()
         if steady:  # energies that depend on time are not conserved
             watch = watched(t, ledger, given_by_law(t, impacts), run.options.energy_tolerance)
             warnings = sentences(watch)
@@ -268,7 +246,11 @@ class GeneralizedSolution(Drawn):
     def _nodes(self):
         """Times (K,), states before and after (K, 2n), of saved steps and events in order."""
         saved = np.concatenate([self.q, self.v], axis=1)
-        events = {time: (before, after) for time, before, after in self._run_events()}
+        events: dict[
+            float, list
+        ] = {}  # state before the first event of a time, state after the last
+        for time, before, after in self._run.nodes:
+            events.setdefault(time, [before, after])[1] = after
         times = np.union1d(self.t, list(events))
         place = np.searchsorted(self.t, times)
         before = np.zeros((len(times), saved.shape[1]))
@@ -277,13 +259,6 @@ class GeneralizedSolution(Drawn):
             first, second = events.get(time, (saved[min(j, len(saved) - 1)],) * 2)
             before[k], after[k] = first, second
         return times, before, after
-
-    def _run_events(self):
-        """Yield (time, state before the first event of a time, state after the last)."""
-        merged: dict[float, list] = {}
-        for time, before, after in self._run.nodes:
-            merged.setdefault(time, [before, after])[1] = after
-        return [(time, one[0], one[1]) for time, one in merged.items()]
 
     def __repr__(self) -> str:
         return (

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from carom import checks
+from carom.fields import Number, Word, number, word
 from carom.scene.materials import IMPACT_LAWS
 
 
@@ -26,27 +27,25 @@ class CoordinateContact:
     """
 
     name: str
-    restitution: float
-    friction: float
-    impact_law: str
-    index: int
+    restitution: Number = number(least=0.0, most=1.0)
+    friction: Number = number(least=0.0)
+    impact_law: Word = word(IMPACT_LAWS)
+    index: int = 0
 
 
 def checked_contact(
     others: Sequence[CoordinateContact], tangent, restitution, friction, impact_law, name
 ) -> CoordinateContact:
     """Return a contact; raise an error for numbers out of range, and for the name of one of `others`."""
-    e = checks.number("restitution", restitution, least=0.0, most=1.0)
-    mu = checks.number("friction", friction, least=0.0)
-    checks.choice("impact_law", impact_law, IMPACT_LAWS)
-    if mu > 0.0 and tangent is None:
+    name = f"contact {len(others)}" if name is None else checks.text("name", name)
+    contact = CoordinateContact(name, restitution, friction, impact_law, len(others))
+    if contact.friction > 0.0 and tangent is None:
         raise ValueError(
             f"friction needs a tangent, got friction {checks.shown(friction)} without one"
         )
-    name = f"contact {len(others)}" if name is None else checks.text("name", name)
     if any(name == other.name for other in others):
         raise ValueError(f"name must be unique, got {checks.shown(name)} twice")
-    return CoordinateContact(name, e, mu, impact_law, len(others))
+    return contact
 
 
 def checked_functions(q: np.ndarray, gap, gradient, tangent) -> int:

@@ -17,8 +17,8 @@ from carom.generalized.motion import (
     react,
     slip_of,
 )
+from carom.status import CONSTRAINTS_LOST, NOT_FINITE
 
-CONSTRAINTS_LOST = 7
 _NONE = 4e-16  # relative to the terms of a row: its error cannot be smaller
 
 
@@ -43,7 +43,7 @@ def take(motion, t, x, h):
     for j in range(2 * n):
         total += end[j]
     if not math.isfinite(total):
-        return 4
+        return NOT_FINITE
     if system.size[ALL_ROWS] > 0 or active.count[0] > 0:
         return project(system, active, t + h, end, work)
     return 0

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.generalized.solution import CoordinateImpact
 from carom.impact import layout as o
 from carom.impact.resolve import resolve
 from carom.status import Status
@@ -23,7 +24,7 @@ class Strike:
 
     def __init__(self, contacts: Contacts):
         self.contacts = contacts
-        self.records: list[dict[str, Any]] = []
+        self.records: list[CoordinateImpact] = []
         self.room: Any = None  # workspace for several contacts, made when it is first needed
 
     def all(self, closed: list[int], now: float, jams: int) -> int:
@@ -75,13 +76,9 @@ class Strike:
             return Status.IMPACT_FAILED
         impulse = out[o.IMPULSE : o.IMPULSE + 3].copy()
         self.apply(G, impulse)
-        self.write(c, now, {
-            "relative_velocity_before": u, "relative_velocity_after": out[o.VELOCITY : o.VELOCITY + 3],
-            "impulse": impulse, "energy_change": float(out[o.ENERGY_CHANGE]),
-            "inverse_mass": W, "restitution": e, "compression_work": float(out[o.WORK_C]),
-            "restitution_work": float(out[o.WORK_R]), "friction_loss": float(out[o.FRICTION_LOSS]),
-            "together": 1, "wedged": int(int(out[o.PHASES]) & o.WEDGED != 0),
-        })  # fmt: skip
+        after, works = out[o.VELOCITY : o.VELOCITY + 3], out[[o.WORK_C, o.WORK_R, o.FRICTION_LOSS]]
+        wedged = int(out[o.PHASES]) & o.WEDGED != 0
+        self.write(c, now, u, after, impulse, W, e, float(out[o.ENERGY_CHANGE]), works, 1, wedged)
         return 0
 
     def several(self, closed: list[int], now: float, jams: int) -> int:
@@ -125,18 +122,17 @@ class Strike:
         p = out.impulse.reshape(k, 3)
         after = out.velocity.reshape(k, 3)
         self.apply(G, out.impulse)
-        works = out.compression + out.restitution - out.friction
+        changes = out.compression + out.restitution - out.friction
         for i, c in enumerate(closed):
             if np.any(p[i] != 0.0):
-                self.write(c, now, {
-                    "relative_velocity_before": u[i], "relative_velocity_after": after[i],
-                    "impulse": p[i], "energy_change": float(works[i]),
-                    "inverse_mass": W[3 * i : 3 * i + 3, 3 * i : 3 * i + 3],
-                    "restitution": float(e[i]), "compression_work": float(out.compression[i]),
-                    "restitution_work": float(out.restitution[i]),
-                    "friction_loss": float(out.friction[i]), "together": k,
-                    "wedged": int(out.wedged[i] != 0),
-                })  # fmt: skip
+                own, works = (
+                    slice(3 * i, 3 * i + 3),
+                    (out.compression[i], out.restitution[i], out.friction[i]),
+                )
+                self.write(
+                    c, now, u[i], after[i], p[i], W[own, own], float(e[i]), float(changes[i]), works, k,
+                    out.wedged[i] != 0,
+                )  # fmt: skip
         return 0
 
     def apply(self, G: np.ndarray, impulse: np.ndarray) -> None:
@@ -147,14 +143,14 @@ class Strike:
         run.x[n:] += self.contacts.P @ (G.T @ impulse)
         run.clock[0].impacts += 0.5 * (run.x[n:] - v) @ M @ (run.x[n:] + v)
 
-    def write(self, c: int, now: float, impact: dict[str, Any]) -> None:
-        """Store the record of an impact."""
+    def write(self, c, now, before, after, impulse, W, e, change, works, together, wedged) -> None:
+        """Store the record of an impact; `works`: of compression, of restitution, lost by friction."""
         here = self.contacts
         here.run.counts["impacts"] += 1
         here.events.append((now, "impact", c))
-        self.records.append(
-            {
-                "time": now, "contact": c, "position": here.run.x[: here.run.n].copy(),
-                "law": here.run.user.contacts[c].impact_law, "friction": float(here.friction[c]), **impact,
-            }
-        )  # fmt: skip
+        x, law = here.run.x[: here.run.n].copy(), here.run.user.contacts[c].impact_law
+        mu, works = float(here.friction[c]), map(float, works)
+        self.records.append(CoordinateImpact(
+            now, c, x, before, after, impulse, change, law, W, e, mu, *works,
+            together=together, wedged=int(wedged),
+        ))  # fmt: skip

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -117,19 +118,15 @@ class SymbolicModel:
             )
         return result
 
-    def _is_finite(self, result: Any) -> bool:
-        """Return whether `result` is an expression without infinities."""
-        sp = self.sp
-        return isinstance(result, sp.Expr) and not result.has(sp.nan, sp.zoo, sp.oo, -sp.oo)
-
     def expression(self, name: str, given) -> Any:
         """Return an expression; raise an error for texts, which SymPy would evaluate, and other objects."""
         sp = self.sp
-        try:
+        result: Any = None
+        with suppress(Exception):  # of any kind, in the conversion of a foreign object
             result = sp.sympify(given, strict=True)
-        except Exception:  # any error in the conversion of a foreign object
-            result = None
-        if isinstance(given, np.ndarray) or not self._is_finite(result):
+        infinite = (sp.nan, sp.zoo, sp.oo, -sp.oo)
+        good = isinstance(result, sp.Expr) and not result.has(*infinite)
+        if isinstance(given, np.ndarray) or not good:
             raise ValueError(f"{name} must be a SymPy expression, got {checks.shown(given)}")
         return result
 
@@ -196,8 +193,8 @@ class SymbolicModel:
 
     def inertia(self) -> list:
         """Return M and Gamma_kij v_i v_j = (dM/dt v)_k - d_k (v M v) / 2."""
-        sp, v = self.sp, sp_column(self.sp, self.v)
-        momentum = list(self.M * v)
+        sp = self.sp
+        momentum = list(self.M * sp.Matrix(list(self.v)))
         twice = sum(p * w for p, w in zip(momentum, self.v))
         bend = [self.rate(p) - sp.diff(twice, q) / 2 for p, q in zip(momentum, self.q)]
         return [*self.M, *bend]
@@ -263,8 +260,3 @@ class SymbolicModel:
         space: dict[str, Any] = {"math": math, **{k: getattr(math, k) for k in dir(math)}}
         exec(code, space)
         return space[name]
-
-
-def sp_column(sp, symbols):
-    """Return a column of symbols."""
-    return sp.Matrix(list(symbols))

@@ -266,7 +266,7 @@ class GeneralizedSystem:
 
     def metric(self, position) -> np.ndarray:
         """Return M (n, n) at coordinates (n,)."""
-        return self.evaluation().metric(self._at(position))
+        return self.evaluation().look(self._at(position)).M
 
     def christoffel(self, position) -> np.ndarray:
         r"""Return the affinities :math:`\Gamma^k_{ij}` (n, n, n), k first, at `position` (n,)."""

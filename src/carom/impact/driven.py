@@ -13,7 +13,6 @@ from carom.dynamics.rotors import work_of_change
 from carom.geometry.rotation import rotate_back
 from carom.model.arrays import LOOPS
 
-BLOCKED = 15  # Status
 ROUND_OFF = 1e-13
 
 

@@ -13,7 +13,7 @@ from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.dynamics.forces import potential_energy
 from carom.dynamics.project import project_velocity
 from carom.impact import layout
-from carom.impact.driven import BLOCKED, blocked, driven_work
+from carom.impact.driven import blocked, driven_work
 from carom.impact.effective_restitution import count_blow, effective_restitution
 from carom.impact.equal_contacts import as_one
 from carom.impact.layer import traverse
@@ -27,8 +27,8 @@ from carom.model.controls import LOCATE, WORK
 from carom.model.event_rows import begin_event, end_event
 from carom.model.method import THREE_FIELD
 from carom.model.records import FULL_MULTIPLE, GROW, IMPACT, JAMS
+from carom.status import BLOCKED, IMPACT_FAILED, RETURN_MAP_FAILED, TOO_MANY_POINTS
 
-RETURN_MAP_FAILED, IMPACT_FAILED, TOO_MANY_POINTS = 5, 6, 10
 SEED = 1e-10  # speed of approach given to a point that jams, as a part of its slip; it changes no result
 
 

@@ -9,15 +9,15 @@ from carom._compiled.units import unit
 from carom.contact.gap import slow, speed_of
 from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.dynamics.several_points import inverse_masses, velocities
-from carom.impact.driven import BLOCKED, blocked
+from carom.impact.driven import blocked
 from carom.impact.effective_restitution import count_blow, effective_restitution
 from carom.impact.layout import WEDGED
 from carom.impact.multiple.layout import OK, SEQUENTIAL, CornerContacts, MultipleSettings
 from carom.impact.multiple.resolve import resolve_contacts
 from carom.impact.workspace import U
 from carom.model.allowance import affordable
+from carom.status import BLOCKED, IMPACT_FAILED
 
-IMPACT_FAILED = 6
 SEED = 1e-7  # speed of approach given to a point that jams, relative to its slip
 ROUND_OFF = 1e-14  # relative to the greatest speed in a multiple impact
 #: exponents of the normal force: if all points are on round bodies, and otherwise

@@ -10,24 +10,32 @@ import numpy as np
 from carom.model.arrays import LOOSE, ONE_WAY
 
 
+class Sets:
+    """Disjoint sets of numbers below `count`, each a set of its own at first."""
+
+    def __init__(self, count: int):
+        self.root = list(range(count))
+
+    def find(self, i: int) -> int:
+        """Return the number that stands for the set of i."""
+        while self.root[i] != i:
+            self.root[i] = self.root[self.root[i]]
+            i = self.root[i]
+        return i
+
+    def join(self, i: int, j: int) -> bool:
+        """Join the sets of i and j; return whether they were two. That of i stands for both."""
+        a, b = self.find(i), self.find(j)
+        self.root[b] = a
+        return a != b
+
+
 def is_forest(count: int, kind, parent, child) -> bool:
     """Return whether no joint closes a loop (the ground is one node) and each can carry its child."""
     if any(k in LOOSE for k in kind):
         return False
-    root = list(range(count + 1))
-
-    def find(i):
-        while root[i] != i:
-            root[i] = root[root[i]]
-            i = root[i]
-        return i
-
-    for p, c in zip(parent, child):
-        a, b = find(p if p >= 0 else count), find(c)
-        if a == b:
-            return False
-        root[a] = b
-    return True
+    trees = Sets(count + 1)
+    return all(trees.join(c, p if p >= 0 else count) for p, c in zip(parent, child))
 
 
 def cannot_flip(kind) -> np.ndarray:

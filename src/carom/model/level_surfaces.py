@@ -30,6 +30,7 @@ from carom.collision.level_layout import (
 from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes
 from carom.model.arrays import CONTACT
+from carom.model.graph import Sets
 from carom.scene.all_pairs import PairTable
 from carom.scene.pieces import Piece
 from carom.scene.scene import Scene
@@ -185,22 +186,15 @@ def _bare(faces: list[Face]) -> list[Face]:
 
 def _joined(faces: list[Face], laws: list) -> list[list[int]]:
     """Return the groups of joined level faces, of solids that the same bodies may touch."""
-    owner = list(range(len(faces)))
-
-    def root(i: int) -> int:
-        while owner[i] != i:
-            owner[i] = owner[owner[i]]
-            i = owner[i]
-        return i
-
+    sets = Sets(len(faces))
     for i, j in _near(faces, 1.0):
         a, b = faces[i], faces[j]
-        same = root(i) == root(j) or laws[a.static][0] != laws[b.static][0]
+        same = sets.find(i) == sets.find(j) or laws[a.static][0] != laws[b.static][0]
         if not same and _level(a, b) and _touch(a, b):
-            owner[root(j)] = root(i)
+            sets.join(i, j)
     groups: dict[int, list[int]] = {}
     for i in range(len(faces)):
-        groups.setdefault(root(i), []).append(i)
+        groups.setdefault(sets.find(i), []).append(i)
     return list(groups.values())
 
 

@@ -248,17 +248,18 @@ def longer(records: Records, clock: np.recarray) -> Records:
     return records._replace(**out)
 
 
-def room_for_one(records: Records, saved: int) -> Records:
-    """Return the records with room for one more saved step."""
-    if saved < len(records.series):
+def with_room(records: Records, saved: int, rows: int = 1) -> Records:
+    """Return the records with room for more saved steps after the first `saved` ones."""
+    known, need = len(records.series), saved + rows
+    if need <= known:
         return records
-    return records._replace(
-        **{
-            name: np.concatenate([a, np.zeros_like(a[:1])]).view(Columns)
-            for name in ("series", "state")
-            for a in [getattr(records, name)]
-        }
-    )
+    more = {}
+    for name in ("series", "state"):
+        old = getattr(records, name)
+        new = np.zeros((need if rows == 1 else max(2 * known, need), *old.shape[1:]), old.dtype)
+        new[:saved] = old[:saved]
+        more[name] = new.view(Columns)
+    return records._replace(**more)
 
 
 def trimmed(records: Records, clock: np.recarray) -> Records:

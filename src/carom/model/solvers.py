@@ -6,7 +6,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom.model.arrays import FIRST, FOREST, LINK, LOOPS, NO_JOINTS, ROW, SIDE, WIDTH, Solver
-from carom.model.graph import elimination
+from carom.model.graph import Sets, elimination
 
 #: ratio of masses from which on A M^-1 A^T loses too many digits (`carom.dynamics.light_bodies`)
 SPREAD = 1e5
@@ -70,21 +70,15 @@ def spread(touching: list[list[int]], mass, moments, extent) -> tuple[float, int
     `touching` is that of `loop_solver`; mass (N,), principal moments (N, 3) and size (N,) are those of all
     bodies. The two bodies are the lightest and the heaviest of that mechanism.
     """
-    root = list(range(len(mass)))
-
-    def find(b):
-        while root[b] != b:
-            b = root[b]
-        return b
-
+    mechanisms = Sets(len(mass))
     for first, *others in touching:
         for b in others:
-            root[find(b)] = find(first)
+            mechanisms.join(first, b)
     inertia = np.column_stack([mass, moments / extent[:, None] ** 2])
     least, most = inertia.min(axis=1), inertia.max(axis=1)
     own: dict[int, list[int]] = {}
     for b in {b for bodies in touching for b in bodies}:
-        own.setdefault(find(b), []).append(b)
+        own.setdefault(mechanisms.find(b), []).append(b)
     ends = [
         (min(group, key=least.__getitem__), max(group, key=most.__getitem__))
         for group in own.values()

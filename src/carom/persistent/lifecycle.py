@@ -16,8 +16,7 @@ from carom._compiled.units import unit
 from carom.contact.closed_points import gather_closed
 from carom.persistent.active_set import regroup
 from carom.persistent.several_points import activate_several
-
-TOO_MANY_POINTS = 10
+from carom.status import TOO_MANY_POINTS
 
 
 @unit

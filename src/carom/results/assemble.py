@@ -13,10 +13,8 @@ from carom.impact.layout import AT_END, WEDGED
 from carom.model import records as r
 from carom.model.arrays import STOP
 from carom.results.accuracy import sentences
-from carom.results.constraint_rows import constrained, row_units
-from carom.results.contact_names import contact_names
 from carom.results.event_tables import ContactTable, EventTable, ImpactTable, contact_table
-from carom.results.ledger import Ledger
+from carom.results.names import constrained, contact_names, row_units
 from carom.scene.forces import AppliedForce
 from carom.scene.materials import IMPACT_LAWS
 from carom.status import Status
@@ -78,18 +76,6 @@ def _in_time(rows: np.recarray) -> np.recarray:
 def orientation(solution) -> np.ndarray:
     """Return the attitudes (T, N, 4) of the scene's body axes."""
     return to_scene_axes(solution._written.attitude, solution._run.compiled.to_principal)
-
-
-def energy(solution, name: str) -> np.ndarray:
-    """Return the kinetic or the potential energy (T,) of the system."""
-    return np.array(solution._written.series[name])
-
-
-def ledger(solution) -> Ledger:
-    """Return the energy balance."""
-    series = solution._written.series
-    entries = (np.array(series[name]) for name, _ in r.LEDGER)
-    return Ledger(solution.kinetic_energy, solution.potential_energy, *entries)
 
 
 def event_table(solution) -> EventTable:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom._compiled.record_arrays import Columns
-from carom.scene.table import Table, plain
+from carom.scene.table import RecordTable, Table
 
 CURVED = 1 << 40  # features of curved pieces are above this number, vertices below
 
@@ -58,8 +58,7 @@ class ImpactRecord(NamedTuple):
     unit: str  #: unit of the velocities: "m/s", or "rad/s" for a stop of an angle
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class ImpactTable(Table[ImpactRecord]):
+class ImpactTable(RecordTable[ImpactRecord]):
     """All K impacts of a run in the order of time; the columns (K, ...) are the fields of `ImpactRecord`.
 
     Examples
@@ -78,35 +77,7 @@ class ImpactTable(Table[ImpactRecord]):
     body1 on half_space1
     """
 
-    time: np.ndarray
-    contact: np.ndarray
-    point: np.ndarray
-    normal: np.ndarray
-    relative_velocity_before: np.ndarray
-    relative_velocity_after: np.ndarray
-    impulse: np.ndarray
-    energy_change: np.ndarray
-    penetration: np.ndarray
-    duration: np.ndarray
-    law: np.ndarray
-    inverse_mass: np.ndarray
-    restitution: np.ndarray
-    friction: np.ndarray
-    compression_work: np.ndarray
-    restitution_work: np.ndarray
-    friction_loss: np.ndarray
-    together: np.ndarray
-    wedged: np.ndarray
-    located: np.ndarray
-    name: np.ndarray
-    body: np.ndarray
-    other: np.ndarray
-    unit: np.ndarray
-
-    _a_row = "impact"
-
-    def _row(self, k: int) -> ImpactRecord:
-        return ImpactRecord(*(plain(getattr(self, name)[k]) for name in ImpactRecord._fields))
+    _record, _a_row = ImpactRecord, "impact"
 
     def __repr__(self) -> str:
         head = f"<ImpactTable: {len(self)} impacts"

@@ -8,7 +8,8 @@ misses it by far less than the replay and a cubic through both states differ.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,7 +28,46 @@ RTOL = 1e-8  # tolerance for a run with a given step
 BETTER = 0.1  # allowed greater miss, relative to the difference from the cubic at the middle
 
 
-class Replay:
+class Replays(ABC):
+    """The motion between the saved states of a solution, and which intervals a replay fits."""
+
+    solution: Any
+    arrives: dict[int, bool]  # by interval: whether its replay is used
+
+    @abstractmethod
+    def go(self, i: int, until: float) -> bool:
+        """Continue from saved state i to a time; return whether it was reached."""
+
+    @abstractmethod
+    def misses(self, i: int, there) -> float:
+        """Return the distance of the replay from a state within interval i, relative to the allowed one."""
+
+    @abstractmethod
+    def saved(self, i: int) -> Any:
+        """Return saved state i."""
+
+    @abstractmethod
+    def cubic(self, i: int, t: float) -> Any:
+        """Return the state of the cubic at a time in interval i."""
+
+    def is_good(self, i: int) -> bool:
+        """Return whether the replay from saved state i ends at the next one, or is better than the cubic."""
+        if i not in self.arrives:
+            self.arrives[i] = self.arrives_from(i)
+        return self.arrives[i]
+
+    def arrives_from(self, i: int) -> bool:
+        """Compute `is_good`."""
+        if not self.go(i, self.solution.t[i + 1]):
+            return False
+        miss = self.misses(i, self.saved(i + 1))
+        if miss <= 1.0:
+            return True
+        middle = 0.5 * float(sum(self.solution.t[i : i + 2]))
+        return self.go(i, middle) and miss <= BETTER * self.misses(i, self.cubic(i, middle))
+
+
+class Replay(Replays):
     """A run of the scene of a solution that can start at any saved state."""
 
     def __init__(self, solution: Solution):
@@ -60,25 +100,17 @@ class Replay:
                     now.x[own], now.Q[own], now.v[own], now.w[own],
                 )  # fmt: skip
 
-    def is_good(self, i: int) -> bool:
-        """Return whether the replay from saved state i ends at the next one, or is better than the cubic."""
-        if i not in self.arrives:
-            self.arrives[i] = self.arrives_from(i)
-        return self.arrives[i]
+    def saved(self, i: int) -> np.recarray:
+        """Return saved state i."""
+        return self.states[i]
 
-    def arrives_from(self, i: int) -> bool:
-        """Compute `is_good`."""
-        if not self.go(i, self.solution.t[i + 1]):
-            return False
-        miss = self.misses(i, self.states[i + 1])
-        if miss <= 1.0:
-            return True
-        middle = 0.5 * float(sum(self.solution.t[i : i + 2]))
+    def cubic(self, i: int, t: float) -> np.recarray:
+        """Return the state of the cubic at a time in interval i."""
         cubic = self.states[i].copy()
         cubic["x"], cubic["Q"], cubic["v"], cubic["w"], _ = (
-            part[0] for part in curves(self.solution, np.array([middle]), "right")
+            part[0] for part in curves(self.solution, np.array([t]), "right")
         )
-        return self.go(i, middle) and miss <= BETTER * self.misses(i, cubic)
+        return cubic
 
     def go(self, i: int, until: float) -> bool:
         """Continue from saved state i to a time; return whether it was reached."""

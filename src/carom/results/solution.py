@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from carom import arguments, checks
 from carom.geometry import quaternion
-from carom.results.constraint_rows import ConstraintRows, constraint_rows
 from carom.results.dense_output import curves, flights
 from carom.results.drawn import Drawn
 from carom.results.event_tables import (
@@ -21,6 +20,7 @@ from carom.results.event_tables import (
     force_table,
 )
 from carom.results.ledger import Ledger
+from carom.results.names import ConstraintRows, constraint_rows
 from carom.results.portable import Portable
 from carom.status import Status
 
@@ -140,54 +140,53 @@ class Solution(Portable, Drawn):
 
         return cls(**assemble(run, status))
 
+    @property
+    def _assemble(self):
+        """The functions that make results from the records of the run; they load compiled code."""
+        from carom.results import assemble
+
+        return assemble
+
+    @property
+    def _series(self) -> np.recarray:
+        assert self._written is not None
+        return self._written.series
+
     @cached_property
     def orientation(self) -> np.ndarray:
         """Unit quaternions (T, N, 4), body to world."""
-        from carom.results.assemble import orientation
-
-        return orientation(self)
+        return self._assemble.orientation(self)
 
     @cached_property
     def kinetic_energy(self) -> np.ndarray:
         """Kinetic energy of all bodies (T,) [J]."""
-        from carom.results.assemble import energy
-
-        return energy(self, "kinetic")
+        return np.array(self._series["kinetic"])
 
     @cached_property
     def potential_energy(self) -> np.ndarray:
         """Potential energy of gravity, springs and user-defined forces with a potential (T,) [J]."""
-        from carom.results.assemble import energy
-
-        return energy(self, "potential")
+        return np.array(self._series["potential"])
 
     @cached_property
     def impacts(self) -> ImpactTable:
         """One record for each impact."""
-        from carom.results.assemble import impact_table
-
-        return impact_table(self)
+        return self._assemble.impact_table(self)
 
     @cached_property
     def events(self) -> EventTable:
         """Impacts and changes of persistent contacts, in the order of time."""
-        from carom.results.assemble import event_table
-
-        return event_table(self)
+        return self._assemble.event_table(self)
 
     @cached_property
     def contacts(self) -> ContactTable:
         """Intervals of persistent contact."""
-        from carom.results.assemble import intervals
-
-        return intervals(self)
+        return self._assemble.intervals(self)
 
     @cached_property
     def ledger(self) -> Ledger:
         """Energy balance of the run."""
-        from carom.results.assemble import ledger
-
-        return ledger(self)
+        sums = (np.array(self._series[one.name]) for one in fields(Ledger)[2:])
+        return Ledger(self.kinetic_energy, self.potential_energy, *sums)
 
     def __getitem__(self, name: str) -> BodyState:
         """Return the motion of a body by its name: arrays (T, 3) and (T, 4) in a `BodyState`."""
@@ -222,9 +221,7 @@ class Solution(Portable, Drawn):
 
     @cached_property
     def _reactions(self) -> np.ndarray:
-        from carom.results.assemble import element_reactions
-
-        return element_reactions(self)
+        return self._assemble.element_reactions(self)
 
     @cached_property
     def joint_reactions(self) -> np.ndarray:
@@ -233,9 +230,7 @@ class Solution(Portable, Drawn):
         In the order of `Scene.joints`. If joints are redundant, reactions are not unique: these are the
         reactions of least norm, where each row is weighted by its diagonal entry of A M^-1 A^T.
         """
-        from carom.results.assemble import joint_reactions
-
-        return joint_reactions(self)
+        return self._assemble.joint_reactions(self)
 
     @cached_property
     def constraint_forces(self) -> np.ndarray:
@@ -245,9 +240,7 @@ class Solution(Portable, Drawn):
         force or torque on each joint divided by the factor of the joint. For `Rows`, the factor of each row in
         the constraint force.
         """
-        from carom.results.assemble import constraint_forces
-
-        return constraint_forces(self)
+        return self._assemble.constraint_forces(self)
 
     def joint_coordinates(self, joint) -> tuple[np.ndarray, np.ndarray]:
         """Return (coordinates, rates), each (T, n), of a joint at saved times, computed from the states.
@@ -301,9 +294,7 @@ class Solution(Portable, Drawn):
         They are absolute errors of the R rows in `constraint_rows`, which has the names and units of the rows
         (units of velocity errors: the same per second). Errors of angles do not include whole turns.
         """
-        from carom.results.assemble import constraint_errors
-
-        return constraint_errors(self)
+        return self._assemble.constraint_errors(self)
 
     @cached_property
     def constraint_rows(self) -> ConstraintRows:
@@ -386,16 +377,12 @@ class Solution(Portable, Drawn):
 
     @cached_property
     def _contact_sums(self) -> tuple[np.ndarray, np.ndarray]:
-        from carom.results.assemble import contact_sums
-
         count = len(self.pairs.body) + len(self.scene.stops)
-        return contact_sums(self._touch, len(self.t), count)
+        return self._assemble.contact_sums(self._touch, len(self.t), count)
 
     @cached_property
     def _nodes(self):
-        from carom.results.assemble import nodes
-
-        return nodes(self._run)
+        return self._assemble.nodes(self._run)
 
     @cached_property
     def _flights(self):

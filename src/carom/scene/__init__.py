@@ -1,50 +1,27 @@
 """The description of a system: shapes, bodies, contacts, joints, forces. NumPy only, no motion."""
 
-from carom.scene import constraints, forces, joints, shapes
-from carom.scene.bodies import GROUND, Body, Ground, HalfSpace
-from carom.scene.constraints import Constraint
-from carom.scene.contacts import Contact
-from carom.scene.forces import AppliedForce
-from carom.scene.joints import Joint
-from carom.scene.materials import ContactLaw, Material
-from carom.scene.scene import Scene
-from carom.scene.shapes import (
-    Box,
-    Capsule,
-    Compound,
-    Convex,
-    Cylinder,
-    Disc,
-    Ellipsoid,
-    Mesh,
-    Shape,
-    Sphere,
-)
-
-__all__ = [
-    "GROUND",
-    "AppliedForce",
-    "Body",
-    "Box",
-    "Capsule",
-    "Compound",
-    "Constraint",
-    "Contact",
-    "ContactLaw",
-    "Convex",
-    "Cylinder",
-    "Disc",
-    "Ellipsoid",
-    "Ground",
-    "HalfSpace",
-    "Joint",
-    "Material",
-    "Mesh",
-    "Scene",
-    "Shape",
-    "Sphere",
-    "constraints",
-    "forces",
-    "joints",
-    "shapes",
-]
+from carom.scene import constraints as constraints
+from carom.scene import forces as forces
+from carom.scene import joints as joints
+from carom.scene import shapes as shapes
+from carom.scene.bodies import GROUND as GROUND
+from carom.scene.bodies import Body as Body
+from carom.scene.bodies import Ground as Ground
+from carom.scene.bodies import HalfSpace as HalfSpace
+from carom.scene.constraints import Constraint as Constraint
+from carom.scene.contacts import Contact as Contact
+from carom.scene.forces import AppliedForce as AppliedForce
+from carom.scene.joints import Joint as Joint
+from carom.scene.materials import ContactLaw as ContactLaw
+from carom.scene.materials import Material as Material
+from carom.scene.scene import Scene as Scene
+from carom.scene.shapes import Box as Box
+from carom.scene.shapes import Capsule as Capsule
+from carom.scene.shapes import Compound as Compound
+from carom.scene.shapes import Convex as Convex
+from carom.scene.shapes import Cylinder as Cylinder
+from carom.scene.shapes import Disc as Disc
+from carom.scene.shapes import Ellipsoid as Ellipsoid
+from carom.scene.shapes import Mesh as Mesh
+from carom.scene.shapes import Shape as Shape
+from carom.scene.shapes import Sphere as Sphere

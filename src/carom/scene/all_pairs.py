@@ -72,7 +72,6 @@ def defaults(
     `law` is asked once for each pair of materials, with the first pair that has them: first those of bodies and
     half-spaces, body by body, then those of two bodies.
     """
-    count = len(bodies)
     solid = np.array([body.shape is not None for body in bodies], dtype=bool)
     meets, out = _open(solid, fixed, left_out)
     numbers: dict = {}
@@ -94,12 +93,7 @@ def defaults(
             laws.append(law(bodies[i], bodies[j]))
     none = np.full(len(b), -1)
     grounded = PairTable(b, none, h, place[kinds[0][b], kinds[1][h]], laws)
-    return Defaults(grounded, solid, out, kinds[0], place) if count else _nothing()
-
-
-def _nothing() -> Defaults:
-    none = np.zeros(0, dtype=np.int64)
-    return Defaults(no_pairs(), np.zeros(0, dtype=bool), none, none, np.zeros((0, 0), np.int64))
+    return Defaults(grounded, solid, out, kinds[0], place)
 
 
 def _open(solid: np.ndarray, fixed, left_out) -> tuple[np.ndarray, np.ndarray]:

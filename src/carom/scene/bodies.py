@@ -3,17 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from carom import checks
+from carom import checks, fields
+from carom.fields import Number, Value, Vector
 from carom.geometry.attitude import attitude
 from carom.scene.colors import hex_color
-from carom.scene.inertia import inertia_matrix
 from carom.scene.materials import Material
 from carom.scene.shapes import SHAPES, Shape
-from carom.scene.values import in_scene, keep, point
+from carom.scene.values import in_scene
+
+SLACK = 1e-12  # relative to the largest entry or moment: rounding, not physics
+GREATEST = 1e300  # [kg m^2]: sums are finite
+
+MaterialOrNone = Value[Material | None, Material | None]
+
+
+def _material(name: str, value) -> Material:
+    checks.instance(name, value, (Material,))
+    return value
 
 
 @in_scene
@@ -46,14 +57,18 @@ class Body:
     index: int
     name: str
     shape: Shape | None
-    mass: float
-    inertia: np.ndarray
-    position: np.ndarray
-    orientation: np.ndarray
-    velocity: np.ndarray
-    angular_velocity: np.ndarray
-    material: Material | None = None
-    color: str | None = None
+    mass: Number = Value(checks.mass)
+    inertia: Vector = Value(lambda _, value: inertia_matrix(value))
+    position: Vector = fields.vector()
+    orientation: Value[np.ndarray, Any] = Value(attitude)
+    velocity: Vector = fields.vector()
+    angular_velocity: Vector = fields.vector()
+    material: MaterialOrNone = Value(_material, None)
+    color: Value[str | None, str | ArrayLike | None] = Value(hex_color, None)
+
+    def __post_init__(self):
+        if self.shape is not None:
+            checks.instance("shape", self.shape, SHAPES)
 
     def __repr__(self) -> str:
         return f"Body({self.name!r}, {self.shape!r}, mass={self.mass:g})"
@@ -79,9 +94,9 @@ class HalfSpace:
 
     index: int
     name: str
-    point: np.ndarray
-    normal: np.ndarray
-    material: Material | None = None
+    point: Vector = fields.vector()
+    normal: Vector = fields.direction()
+    material: MaterialOrNone = Value(_material, None)
 
     def __repr__(self) -> str:
         return f"HalfSpace({self.name!r}, point={self.point}, normal={self.normal})"
@@ -109,9 +124,13 @@ class StaticBody:
     index: int
     name: str
     shape: Shape
-    position: np.ndarray
-    orientation: np.ndarray
-    material: Material | None = None
+    position: Vector = fields.vector()
+    orientation: Value[np.ndarray, Any] = Value(attitude)
+    material: MaterialOrNone = Value(_material, None)
+
+    def __post_init__(self):
+        checks.instance("shape", self.shape, SHAPES)
+        _ = self.shape.pieces  # refused by a shape that has nothing to touch with
 
     def __repr__(self) -> str:
         return f"StaticBody({self.name!r}, {self.shape!r}, position={self.position})"
@@ -141,21 +160,8 @@ class Ground:
 GROUND = Ground()
 
 
-def make_body(
-    index,
-    name,
-    shape,
-    mass,
-    density,
-    inertia,
-    position,
-    orientation,
-    velocity,
-    angular_velocity,
-    material=None,
-    color=None,
-) -> Body:
-    """Return a checked `Body`; the arguments are those of `Scene.add_body`."""
+def mass_and_inertia(shape: Shape | None, mass, density, inertia) -> tuple[float, ArrayLike]:
+    """Return mass [kg] and inertia [kg m^2] of a body; the arguments are those of `Scene.add_body`."""
     if shape is not None:
         checks.instance("shape", shape, SHAPES)
     mass = _mass(shape, mass, density)
@@ -163,45 +169,7 @@ def make_body(
         if shape is None:
             raise ValueError("inertia must be given for a body without a shape, got None")
         inertia = shape.inertia(mass)
-    body = Body(
-        index=index,
-        name=name,
-        shape=shape,
-        mass=mass,
-        inertia=inertia_matrix(inertia),
-        position=point("position", position),
-        orientation=attitude("orientation", orientation),
-        velocity=point("velocity", velocity),
-        angular_velocity=point("angular_velocity", angular_velocity),
-        material=_material(material),
-        color=None if color is None else hex_color("color", color),
-    )
-    keep(body, **vars(body))
-    return body
-
-
-def make_half_space(index, name, on_plane, normal, material=None) -> HalfSpace:
-    """Return a checked `HalfSpace`; the arguments are those of `Scene.add_half_space`."""
-    place = point("point", on_plane), checks.unit_vector("normal", normal)
-    plane = HalfSpace(index, name, *place, _material(material))
-    keep(plane, **vars(plane))
-    return plane
-
-
-def make_static(index, name, shape, position, orientation, material=None) -> StaticBody:
-    """Return a checked `StaticBody`; the arguments are those of `Scene.add_static`."""
-    checks.instance("shape", shape, SHAPES)
-    _ = shape.pieces  # refused by a shape that has nothing to touch with
-    place = point("position", position), attitude("orientation", orientation)
-    solid = StaticBody(index, name, shape, *place, _material(material))
-    keep(solid, **vars(solid))
-    return solid
-
-
-def _material(material) -> Material | None:
-    if material is not None:
-        checks.instance("material", material, (Material,))
-    return material
+    return mass, inertia
 
 
 def _mass(shape: Shape | None, mass, density) -> float:
@@ -226,3 +194,43 @@ def _mass(shape: Shape | None, mass, density) -> float:
             f"density needs a shape with a volume, got {checks.shown(shape)}; give mass"
         )
     return checks.mass("density times the volume", density * shape.volume)
+
+
+def inertia_matrix(value) -> np.ndarray:
+    """Return the inertia (3,3) [kg m^2] given by principal moments (3,) or a symmetric (3,3).
+
+    Raises
+    ------
+    ValueError
+        If the inertia is not symmetric, not positive definite, or one principal moment exceeds the sum of
+        the other two: no mass distribution has such an inertia.
+    """
+    shape = checks.real_array("inertia", value, "(3,) or (3, 3)").shape
+    if len(shape) == 2:
+        matrix = checks.finite_array("inertia", value, (3, 3), unit="kg m^2")
+    elif len(shape) == 1:
+        matrix = np.diag(checks.finite_array("inertia", value, (3,), unit="kg m^2"))
+    else:
+        raise ValueError(
+            f"inertia must have shape (3,) or (3, 3) [kg m^2], got {checks.shown(value)}"
+        )
+    if not np.max(np.abs(matrix - matrix.T)) <= SLACK * np.max(np.abs(matrix)):
+        raise ValueError(f"inertia must be symmetric, got {checks.shown(value)}")
+    if not np.max(np.abs(matrix)) <= GREATEST:
+        raise ValueError(
+            f"inertia must be at most {GREATEST:g} [kg m^2], so that sums are finite, got {checks.shown(value)}"
+        )
+    matrix = 0.5 * (matrix + matrix.T)
+    small, middle, large = np.linalg.eigvalsh(matrix)
+    positive, possible = small > SLACK * large, large <= (small + middle) * (1 + SLACK)
+    if positive and possible:
+        return matrix
+    moments = f"got {value!r} with principal moments {small:.6g}, {middle:.6g}, {large:.6g}"
+    if not positive:
+        raise ValueError(
+            f"inertia must have principal moments above 0 [kg m^2], {moments}; "
+            "for a thin rod give a small positive moment about its axis"
+        )
+    raise ValueError(
+        f"inertia must have no principal moment above the sum of the other two, {moments}"
+    )

@@ -5,13 +5,14 @@ Pass a definition to `Scene.add_constraint`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from carom import arguments, checks
+from carom import arguments, checks, fields
+from carom.fields import Function, FunctionOrNone, Integer, NumberOrNone, Value, keep
 from carom.scene.bodies import Body
 from carom.scene.joints import Joint, JointDefinition
-from carom.scene.values import in_scene, keep
+from carom.scene.values import in_scene
 
 
 def coordinate_kind(joint: Joint, coordinate: int, name: str = "joint") -> str:
@@ -32,23 +33,14 @@ def coordinate_kind(joint: Joint, coordinate: int, name: str = "joint") -> str:
     return own[coordinate]
 
 
-def distinct_bodies(bodies: Body | Sequence[Body]) -> tuple[Body, ...]:
+def distinct_bodies(name: str, bodies: Body | Sequence[Body]) -> tuple[Body, ...]:
     """Return the bodies as a tuple; refuse an empty sequence and a body that is in it twice."""
-    listed = tuple(
-        [bodies] if isinstance(bodies, Body) else checks.listed("bodies", bodies, "Body")
-    )
+    listed = tuple([bodies] if isinstance(bodies, Body) else checks.listed(name, bodies, "Body"))
     if not listed or len(set(map(id, listed))) != len(listed):
-        raise ValueError(f"bodies must be at least one body, each once, got {checks.shown(bodies)}")
+        raise ValueError(f"{name} must be at least one body, each once, got {checks.shown(bodies)}")
     for body in listed:
-        checks.instance("bodies", body, (Body,))
+        checks.instance(name, body, (Body,))
     return listed
-
-
-def check_functions(function, **optional) -> None:
-    """Refuse values that cannot be called; None is allowed for those that are `optional`."""
-    checks.function("function", function)
-    for name, given in optional.items():
-        checks.function(name, given, optional=True)
 
 
 @arguments.known
@@ -109,7 +101,7 @@ class Gear(Coupling):
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class Driver:
     """A motor that prescribes a joint coordinate as a function of time (a rheonomic constraint).
 
@@ -131,32 +123,20 @@ class Driver:
     """
 
     joint: Joint
-    coordinate: int
-    rate: float | None
-    motion: Callable | None
+    rate: NumberOrNone = fields.number(None)
+    motion: FunctionOrNone = fields.function(None)
+    coordinate: Integer = fields.integer(0, least=0)
 
-    def __init__(
-        self,
-        joint: Joint,
-        rate: float | None = None,
-        motion: Callable | None = None,
-        coordinate: int = 0,
-    ):
-        coordinate_kind(joint, coordinate)
-        if (rate is None) == (motion is None):
+    def __post_init__(self):
+        coordinate_kind(self.joint, self.coordinate)
+        if (self.rate is None) == (self.motion is None):
             raise ValueError(
-                f"rate or motion must be given, and not both, got {checks.shown(rate)} and "
-                f"{checks.shown(motion)}"
+                f"rate or motion must be given, and not both, got {self.rate} and {self.motion}"
             )
-        if rate is not None:
-            rate = checks.number("rate", rate)
-        elif not callable(motion):
-            raise TypeError(f"motion must be a function or a PPoly, got {checks.shown(motion)}")
-        keep(self, joint=joint, coordinate=int(coordinate), rate=rate, motion=motion)
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class Rows:
     """User-defined constraint rows ``a(q, t) v = b(q, t)``, up to 6, nonholonomic or holonomic.
 
@@ -177,22 +157,10 @@ class Rows:
         derivative. If it is given, the rows are holonomic, and positions are projected back onto it.
     """
 
-    bodies: tuple[Body, ...]
-    function: Callable
-    rows: int
-    position: Callable | None
-
-    def __init__(
-        self,
-        bodies: Sequence[Body],
-        function: Callable,
-        rows: int,
-        position: Callable | None = None,
-    ):
-        bodies = distinct_bodies(bodies)
-        checks.integer("rows", rows, least=1, most=6)
-        check_functions(function, position=position)
-        keep(self, bodies=bodies, function=function, rows=int(rows), position=position)
+    bodies: Value[tuple[Body, ...], Body | Sequence[Body]] = Value(distinct_bodies)
+    function: Function = fields.function()
+    rows: Integer = fields.integer(least=1, most=6)
+    position: FunctionOrNone = fields.function(None)
 
 
 ConstraintDefinition = Coupling | Driver | Rows

@@ -11,7 +11,7 @@ from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.materials import IMPACT_LAWS, ContactLaw
 from carom.scene.values import in_scene
 
-__all__ = ["IMPACT_LAWS", "Contact", "check_gap", "check_overlap", "initial_gap", "make_contact"]
+__all__ = ["IMPACT_LAWS", "Contact", "check_gap", "check_overlap", "initial_gap"]
 
 TOUCH = 1e-12  # relative to the lengths at hand: rounding of a body placed on another
 
@@ -36,6 +36,14 @@ class Contact(ContactLaw):
     body: Body
     other: HalfSpace | StaticBody | Body
 
+    def __post_init__(self):
+        super().__post_init__()
+        for part in (self.body, self.other):
+            if isinstance(part, Body):
+                if part.shape is None:
+                    raise ValueError(f"body must have a shape for contact, got {part!r}")
+                _ = part.shape.pieces  # refused by a shape that has nothing to touch with
+
     @property
     def half_space(self) -> HalfSpace | None:
         """The half-space, or None if `other` is a body or a static body."""
@@ -51,20 +59,6 @@ class Contact(ContactLaw):
             if name in shown or value != getattr(plain, name)
         )
         return f"Contact({self.name!r}, {values})"
-
-
-def make_contact(
-    index: int, name: str, body: Body, other: HalfSpace | StaticBody | Body, law: ContactLaw
-) -> Contact:
-    """Return a checked `Contact` with the values of `law`."""
-    for part in (body, other):
-        if isinstance(part, Body):
-            if part.shape is None:
-                raise ValueError(f"body must have a shape for contact, got {part!r}")
-            _ = part.shape.pieces  # refused by a shape that has nothing to touch with
-    contact = Contact(index=index, name=name, body=body, other=other, **asdict(law))
-    check_gap(contact)
-    return contact
 
 
 def initial_gap(contact: Contact) -> float:

@@ -7,13 +7,16 @@ fixed in their body. Vectors are given in world axes; they stay constant, or tur
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import arguments, checks
+from carom import arguments, checks, fields
+from carom.fields import REQUIRED, Flag, Number, Value, Vector, VectorOrNone, keep
 from carom.scene.bodies import Body, Ground
 from carom.scene.more_forces import (
+    AlongJoint,
     CurveSpring,
     JointForce,
     JointFriction,
@@ -21,11 +24,11 @@ from carom.scene.more_forces import (
     JointSpring,
     UserForce,
 )
-from carom.scene.values import apart, in_scene, keep, optional_point
+from carom.scene.values import apart, in_scene
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class Spring:
     """A spring and damper between a point of the parent and a point of the child.
 
@@ -45,38 +48,20 @@ class Spring:
         Damping coefficient [N s/m], at least 0. Default 0.
     """
 
-    stiffness: float
-    anchor_parent: np.ndarray
-    anchor_child: np.ndarray
-    rest_length: float
-    damping: float
+    stiffness: Number = fields.number(least=0, unit="N/m")
+    anchor_parent: Vector = fields.vector()
+    anchor_child: Vector = fields.vector()
+    rest_length: Value[float, float | None] = fields.number(None, least=0, unit="m")
+    damping: Number = fields.number(0.0, least=0, unit="N s/m")
 
-    def __init__(
-        self,
-        stiffness: float,
-        anchor_parent: ArrayLike,
-        anchor_child: ArrayLike,
-        rest_length: float | None = None,
-        damping: float = 0.0,
-    ):
-        start, end, distance = apart(anchor_parent, anchor_child)
-        if not distance > 0.0:
-            raise ValueError(
-                f"anchor_child must differ from anchor_parent, got {checks.shown(anchor_child)} for both"
-            )
-        rest = distance if rest_length is None else rest_length
-        keep(
-            self,
-            stiffness=checks.number("stiffness", stiffness, least=0, unit="N/m"),
-            anchor_parent=start,
-            anchor_child=end,
-            rest_length=checks.number("rest_length", rest, least=0, unit="m"),
-            damping=checks.number("damping", damping, least=0, unit="N s/m"),
-        )
+    def __post_init__(self):
+        distance = apart(self)
+        if self.rest_length is None:
+            keep(self, rest_length=distance)
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class Torque:
     """A constant torque `vector` (3,) [N m] on the child, in world axes.
 
@@ -84,16 +69,12 @@ class Torque:
     at the start and turns with the child.
     """
 
-    vector: np.ndarray
-    follow: bool
-
-    def __init__(self, vector: ArrayLike, follow: bool = False):
-        vector = checks.finite_array("vector", vector, (3,), unit="N m")
-        keep(self, vector=vector, follow=checks.flag("follow", follow))
+    vector: Vector = fields.vector(unit="N m")
+    follow: Flag = fields.flag(False)
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class Force:
     """A constant force `vector` (3,) [N], world axes, on a point of the child.
 
@@ -101,18 +82,27 @@ class Force:
     the vector is given at the start and turns with the child (a thruster).
     """
 
-    vector: np.ndarray
-    anchor: np.ndarray | None
-    follow: bool
+    vector: Vector = fields.vector(unit="N")
+    anchor: VectorOrNone = fields.vector(None)
+    follow: Flag = fields.flag(False)
 
-    def __init__(self, vector: ArrayLike, anchor: ArrayLike | None = None, follow: bool = False):
-        vector = checks.finite_array("vector", vector, (3,), unit="N")
-        anchor = optional_point("anchor", anchor)
-        keep(self, vector=vector, anchor=anchor, follow=checks.flag("follow", follow))
+
+def _along_across(unit: str, default: Any = REQUIRED) -> Vector:
+    """Return a field for (along, across, across), given as one number or a pair, at least 0."""
+
+    def check(name: str, value: ArrayLike) -> np.ndarray:
+        given = checks.real_array(name, value, "() or (2,)")
+        both = np.full(2, given) if given.ndim == 0 else given
+        pair = checks.finite_array(name, both, (2,), unit=unit)
+        if np.any(pair < 0.0):
+            raise ValueError(f"{name} must be at least 0, got {checks.shown(value)} [{unit}]")
+        return pair[[0, 1, 1]]
+
+    return Value(check, default)
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class Bushing:
     """An elastic mount between the child and the parent, without force or torque at the start.
 
@@ -139,42 +129,12 @@ class Bushing:
         Values along, or about, the axis and two directions perpendicular to it.
     """
 
-    stiffness: np.ndarray
-    turn_stiffness: np.ndarray
-    damping: np.ndarray
-    turn_damping: np.ndarray
-    axis: np.ndarray
-    anchor: np.ndarray | None
-
-    def __init__(
-        self,
-        stiffness: ArrayLike,
-        turn_stiffness: ArrayLike = 0.0,
-        damping: ArrayLike = 0.0,
-        turn_damping: ArrayLike = 0.0,
-        axis: ArrayLike = (0, 0, 1),
-        anchor: ArrayLike | None = None,
-    ):
-        keep(
-            self,
-            stiffness=_along_across("stiffness", stiffness, "N/m"),
-            turn_stiffness=_along_across("turn_stiffness", turn_stiffness, "N m/rad"),
-            damping=_along_across("damping", damping, "N s/m"),
-            turn_damping=_along_across("turn_damping", turn_damping, "N m s/rad"),
-            axis=checks.unit_vector("axis", axis),
-            anchor=optional_point("anchor", anchor),
-        )
-
-
-def _along_across(name: str, value: ArrayLike, unit: str) -> np.ndarray:
-    """Return (along, across, across) from one number or a pair, at least 0."""
-    given = checks.real_array(name, value, "() or (2,)")
-    pair = checks.finite_array(
-        name, np.full(2, given) if given.ndim == 0 else given, (2,), unit=unit
-    )
-    if np.any(pair < 0.0):
-        raise ValueError(f"{name} must be at least 0, got {checks.shown(value)} [{unit}]")
-    return np.array([pair[0], pair[1], pair[1]])
+    stiffness: Vector = _along_across("N/m")
+    turn_stiffness: Vector = _along_across("N m/rad", 0.0)
+    damping: Vector = _along_across("N s/m", 0.0)
+    turn_damping: Vector = _along_across("N m s/rad", 0.0)
+    axis: Vector = fields.direction((0, 0, 1))
+    anchor: VectorOrNone = fields.vector(None)
 
 
 ForceDefinition = (
@@ -189,10 +149,7 @@ ForceDefinition = (
     | CurveSpring
     | UserForce
 )
-FORCES = (
-    Spring, Torque, Force, Bushing, JointSpring, JointForce, JointFriction, JointInertia,
-    CurveSpring, UserForce,
-)  # fmt: skip
+FORCES = get_args(ForceDefinition)
 
 
 @in_scene
@@ -216,6 +173,13 @@ class AppliedForce:
     parent: Body | Ground
     child: Body
 
+    def __post_init__(self):
+        if isinstance(self.definition, Force) and not isinstance(self.parent, Ground):
+            raise ValueError(
+                f"parent of a Force must be carom.GROUND, got {checks.shown(self.parent)}; "
+                "for a force between two bodies use Spring, or two Forces"
+            )
+
     @property
     def kind(self) -> str:
         """The class name of the definition, such as ``"Spring"``."""
@@ -228,16 +192,6 @@ class AppliedForce:
 
 def force_on(definition) -> tuple | None:
     """Return the joint or the bodies that a definition contains; None if it contains none."""
-    if isinstance(definition, (JointSpring, JointForce, JointFriction, JointInertia)):
+    if isinstance(definition, AlongJoint):
         return (definition.joint,)
     return definition.bodies if isinstance(definition, UserForce) else None
-
-
-def make_force(index, name, definition, parent, child) -> AppliedForce:
-    """Return a checked `AppliedForce`; the arguments are those of `Scene.add_force`."""
-    if isinstance(definition, Force) and not isinstance(parent, Ground):
-        raise ValueError(
-            f"parent of a Force must be carom.GROUND, got {checks.shown(parent)}; "
-            "for a force between two bodies use Spring, or two Forces"
-        )
-    return AppliedForce(index, name, definition, parent, child)

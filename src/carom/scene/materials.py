@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 
 from carom import arguments, checks
-from carom.scene.values import keep
+from carom.fields import Number, NumberOrNone, Value, Word, keep, number, word
 
 IMPACT_LAWS = ("newton", "poisson", "stronge")
 MULTIPLE = ("simultaneous", "sequential")  # in the order of `carom.impact.multiple.layout`
@@ -53,21 +53,18 @@ class ContactLaw:
         its own, one after another.
     """
 
-    restitution: float = 0.5
-    friction: float = 0.0
-    friction_held: float | None = None
-    impact_law: str = "newton"
-    stiffness: float = 1.0
-    rolling_friction: float = 0.0
-    pivoting_friction: float = 0.0
-    multiple: str = "simultaneous"
+    restitution: Number = number(0.5, least=0, most=1)
+    friction: Number = number(0.0, least=0)
+    friction_held: Value[float, float | None] = number(None, least=0)
+    impact_law: Word = word(IMPACT_LAWS, "newton")
+    stiffness: Number = number(1.0, above=0)
+    rolling_friction: Number = number(0.0, least=0)
+    pivoting_friction: Number = number(0.0, least=0)
+    multiple: Word = word(MULTIPLE, "simultaneous")
 
     def __post_init__(self):
-        check_surface(self)
         if self.friction_held is None:
             keep(self, friction_held=self.friction)
-        checks.choice("impact_law", self.impact_law, IMPACT_LAWS)
-        checks.choice("multiple", self.multiple, MULTIPLE)
 
 
 @arguments.known
@@ -87,25 +84,12 @@ class Material:
         Greatest moment divided by the normal force [m], at least 0. Default 0.
     """
 
-    restitution: float
-    friction: float
-    friction_held: float | None = None
-    stiffness: float = 1.0
-    rolling_friction: float = 0.0
-    pivoting_friction: float = 0.0
-
-    def __post_init__(self):
-        check_surface(self)
-
-
-def check_surface(record) -> None:
-    """Check the numbers that a law and a material have in common, and store them as floats."""
-    keep(record, restitution=checks.number("restitution", record.restitution, least=0, most=1))
-    for name in ("friction", "rolling_friction", "pivoting_friction"):
-        keep(record, **{name: checks.number(name, getattr(record, name), least=0)})
-    if record.friction_held is not None:
-        keep(record, friction_held=checks.number("friction_held", record.friction_held, least=0))
-    keep(record, stiffness=checks.number("stiffness", record.stiffness, above=0))
+    restitution: Number = number(least=0, most=1)
+    friction: Number = number(least=0)
+    friction_held: NumberOrNone = number(None, least=0)
+    stiffness: Number = number(1.0, above=0)
+    rolling_friction: Number = number(0.0, least=0)
+    pivoting_friction: Number = number(0.0, least=0)
 
 
 Rule = str | Mapping[str, str] | None

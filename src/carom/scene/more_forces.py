@@ -4,20 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from carom import arguments, checks
+from carom import arguments, checks, fields
+from carom.fields import Function, FunctionOrNone, Integer, Number, Value, Vector
 from carom.scene.bodies import Body
-from carom.scene.constraints import check_functions, coordinate_kind, distinct_bodies
+from carom.scene.constraints import coordinate_kind, distinct_bodies
 from carom.scene.joints import Joint
-from carom.scene.values import apart, keep
+from carom.scene.values import apart
+
+
+@dataclass(frozen=True, eq=False)
+class AlongJoint:
+    """What acts along a `coordinate` of a joint."""
+
+    joint: Joint
+
+    def __post_init__(self):
+        coordinate_kind(self.joint, self.coordinate)  # pyright: ignore[reportAttributeAccessIssue]
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
-class JointSpring:
+@dataclass(frozen=True, eq=False)
+class JointSpring(AlongJoint):
     """A spring and damper along a coordinate of a joint: ``-stiffness (q - rest) - damping q'``.
 
     An angle includes whole turns (a clock spring). One coordinate may have several springs.
@@ -33,34 +44,19 @@ class JointSpring:
         Index of the coordinate of the joint. Default 0.
     """
 
-    joint: Joint
-    stiffness: float
-    damping: float
-    rest: float
-    coordinate: int
+    stiffness: Number = fields.number(0.0, least=0.0)
+    damping: Number = fields.number(0.0, least=0.0)
+    rest: Number = fields.number(0.0)
+    coordinate: Integer = fields.integer(0, least=0)
 
-    def __init__(
-        self,
-        joint: Joint,
-        stiffness: float = 0.0,
-        damping: float = 0.0,
-        rest: float = 0.0,
-        coordinate: int = 0,
-    ):
-        coordinate_kind(joint, coordinate)
-        keep(
-            self,
-            joint=joint,
-            stiffness=checks.number("stiffness", stiffness, least=0.0),
-            damping=checks.number("damping", damping, least=0.0),
-            rest=checks.number("rest", rest),
-            coordinate=int(coordinate),
-        )
+
+def _number_or_function(name: str, value) -> float | Callable:
+    return value if callable(value) else checks.number(name, value)
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
-class JointForce:
+@dataclass(frozen=True, eq=False)
+class JointForce(AlongJoint):
     """A force or torque along a joint coordinate: it acts on the child, its opposite on the parent.
 
     Its work is in `ledger.loads`.
@@ -75,19 +71,13 @@ class JointForce:
         Index of the coordinate of the joint. Default 0.
     """
 
-    joint: Joint
-    force: float | Callable
-    coordinate: int
-
-    def __init__(self, joint: Joint, force: float | Callable, coordinate: int = 0):
-        coordinate_kind(joint, coordinate)
-        given = force if callable(force) else checks.number("force", force)
-        keep(self, joint=joint, force=given, coordinate=int(coordinate))
+    force: Value[float | Callable, float | Callable] = Value(_number_or_function)
+    coordinate: Integer = fields.integer(0, least=0)
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
-class JointFriction:
+@dataclass(frozen=True, eq=False)
+class JointFriction(AlongJoint):
     """Dry (Coulomb) friction along a joint coordinate: a force `bound` against the motion.
 
     A joint without motion sticks exactly while the force that keeps it at rest is at most `bound`. Changes
@@ -102,19 +92,13 @@ class JointFriction:
         Index of the coordinate of the joint. Default 0.
     """
 
-    joint: Joint
-    bound: float
-    coordinate: int
-
-    def __init__(self, joint: Joint, bound: float, coordinate: int = 0):
-        coordinate_kind(joint, coordinate)
-        bound = checks.number("bound", bound, least=0.0)
-        keep(self, joint=joint, bound=bound, coordinate=int(coordinate))
+    bound: Number = fields.number(least=0.0)
+    coordinate: Integer = fields.integer(0, least=0)
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
-class JointInertia:
+@dataclass(frozen=True, eq=False)
+class JointInertia(AlongJoint):
     """Inertia along a joint coordinate, with the kinetic energy ``inertia q'^2/2``.
 
     It models the rotor of a motor behind a gear: the moment of inertia of the rotor times the square of the
@@ -130,18 +114,26 @@ class JointInertia:
         Index of the coordinate of the joint. Default 0.
     """
 
-    joint: Joint
-    inertia: float
-    coordinate: int
+    inertia: Number = fields.number(least=0.0)
+    coordinate: Integer = fields.integer(0, least=0)
 
-    def __init__(self, joint: Joint, inertia: float, coordinate: int = 0):
-        coordinate_kind(joint, coordinate)
-        inertia = checks.number("inertia", inertia, least=0.0)
-        keep(self, joint=joint, inertia=inertia, coordinate=int(coordinate))
+
+def _curve(name: str, given):
+    """Return a piecewise polynomial: the given one, or that through the points of a table."""
+    if hasattr(given, "c") and hasattr(given, "x") and not isinstance(given, type):
+        return given
+    table = checks.finite_array(name, given, (2, None))
+    if table.shape[1] < 2 or not np.all(np.diff(table[0]) > 0.0):
+        raise ValueError(
+            f"{name} must have two distances or more, each above the one before, got {checks.shown(given)}"
+        )
+    from scipy.interpolate import PchipInterpolator
+
+    return PchipInterpolator(table[0], table[1])
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class CurveSpring:
     """A spring between a point of the parent and a point of the child, with a given characteristic curve.
 
@@ -157,47 +149,17 @@ class CurveSpring:
         Damping coefficient [N s/m], at least 0. Default 0.
     """
 
-    anchor_parent: np.ndarray
-    anchor_child: np.ndarray
-    tension: object
-    damping: float
+    anchor_parent: Vector = fields.vector()
+    anchor_child: Vector = fields.vector()
+    tension: Value[Any, Any] = Value(_curve)
+    damping: Number = fields.number(0.0, least=0.0, unit="N s/m")
 
-    def __init__(
-        self,
-        anchor_parent: ArrayLike,
-        anchor_child: ArrayLike,
-        tension: ArrayLike,
-        damping: float = 0.0,
-    ):
-        start, end, distance = apart(anchor_parent, anchor_child)
-        if not distance > 0.0:
-            raise ValueError(
-                f"anchor_child must differ from anchor_parent, got {checks.shown(anchor_child)} for both"
-            )
-        keep(
-            self,
-            anchor_parent=start,
-            anchor_child=end,
-            tension=_curve(tension),
-            damping=checks.number("damping", damping, least=0.0, unit="N s/m"),
-        )
-
-
-def _curve(given):
-    if hasattr(given, "c") and hasattr(given, "x") and not isinstance(given, type):
-        return given
-    table = checks.finite_array("tension", given, (2, None))
-    if table.shape[1] < 2 or not np.all(np.diff(table[0]) > 0.0):
-        raise ValueError(
-            f"tension must have two distances or more, each above the one before, got {checks.shown(given)}"
-        )
-    from scipy.interpolate import PchipInterpolator
-
-    return PchipInterpolator(table[0], table[1])
+    def __post_init__(self):
+        apart(self)
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class UserForce:
     """User-defined forces and torques on any bodies.
 
@@ -215,13 +177,6 @@ class UserForce:
         of the forces is part of `potential_energy`; otherwise their work is in `ledger.loads`.
     """
 
-    bodies: tuple[Body, ...]
-    function: Callable
-    potential: Callable | None
-
-    def __init__(
-        self, bodies: Body | Sequence[Body], function: Callable, potential: Callable | None = None
-    ):
-        bodies = distinct_bodies(bodies)
-        check_functions(function, potential=potential)
-        keep(self, bodies=bodies, function=function, potential=potential)
+    bodies: Value[tuple[Body, ...], Body | Sequence[Body]] = Value(distinct_bodies)
+    function: Function = fields.function()
+    potential: FunctionOrNone = fields.function(None)

@@ -64,12 +64,8 @@ class Pairs:
         return _key(body, other) in self._unsaid
 
     def ignore(self, body, other) -> None:
-        """Let a pair pass through each other."""
+        """Let a pair pass through each other, for example two bodies of a joint."""
         self._ignored.add(_key(body, other))
-
-    def join(self, parent, child) -> None:
-        """Note that a joint joins two bodies: they do not touch by default."""
-        self._ignored.add(_key(parent, child))
 
     def set_default(self, law: ContactLaw, combine, all_pairs: bool, stated: bool) -> None:
         """Store the default values of pairs; `stated`: restitution or friction was given."""

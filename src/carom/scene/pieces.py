@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import checks
+from carom.fields import keep
 from carom.geometry import quaternion
-from carom.scene.values import keep
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
 #: of the corners of a box
@@ -113,9 +113,19 @@ class Shape(ABC):
     def pieces(self) -> tuple[Piece, ...]:
         """The convex pieces of the shape."""
 
-    @abstractmethod
     def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
+        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg].
+
+        Raises
+        ------
+        ValueError
+            For a `Compound` with a given `centroid`, because then the mass distribution is unknown.
+        """
+        return self._inertia(checks.mass("mass", mass, zero=True))
+
+    @abstractmethod
+    def _inertia(self, mass: float) -> np.ndarray:
+        """Return the inertia for a checked mass."""
 
     def support(self, direction: ArrayLike) -> np.ndarray:
         """Return the point (3,) of the shape [m] farthest along `direction` (3,), in body axes."""

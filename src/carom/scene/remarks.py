@@ -1,4 +1,4 @@
-"""Sentences about input of a scene that is nearly always a mistake."""
+"""Input of a scene that is refused for an `impact_location`, or is nearly always a mistake."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.scene.all_pairs import meeting
-from carom.scene.bodies import Body
+from carom.scene.bodies import Body, HalfSpace
 from carom.scene.constraints import coordinate_kind
 from carom.scene.forces import Force, Torque
 
@@ -122,3 +122,26 @@ def _all_of_materials(scene: Scene) -> bool:
 def _names(parts: Sequence) -> str:
     shown = ", ".join(repr(part.name) for part in parts[:MOST])
     return shown + (f" and {len(parts) - MOST} more" if len(parts) > MOST else "")
+
+
+def check_location(scene, impact_location: str) -> None:
+    """Refuse stops, contacts between bodies and curved shapes if impacts are not located."""
+    if impact_location == "locate":
+        return
+    if scene.stops:
+        raise ValueError(
+            f'impact_location must be "locate" if joints have stops, got {impact_location!r}'
+        )
+    between = any(not isinstance(c.other, HalfSpace) for c in scene.contacts)
+    touching = [c.body for c in scene.contacts]
+    if scene.contact_default is not None:
+        between = between or len(scene.bodies) > 1 or bool(scene.statics)
+        touching += [body for body in scene.bodies if body.shape is not None]
+    curved = [body for body in touching if any(p.corners is None for p in body.shape.pieces)]
+    if between or curved:
+        why = (
+            f"shapes are curved, as that of {curved[0].name!r}"
+            if curved
+            else "bodies may touch each other"
+        )
+        raise ValueError(f'impact_location must be "locate" if {why}, got {impact_location!r}')

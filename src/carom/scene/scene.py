@@ -3,30 +3,21 @@
 from __future__ import annotations
 
 from copy import copy
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
-from carom.scene.bodies import (
-    GROUND,
-    Body,
-    Ground,
-    HalfSpace,
-    StaticBody,
-    make_body,
-    make_half_space,
-    make_static,
-)
+from carom.scene.bodies import GROUND, Body, Ground, HalfSpace, StaticBody, mass_and_inertia
 from carom.scene.constraints import CONSTRAINTS, Constraint, ConstraintDefinition
 from carom.scene.contacts import check_gap
-from carom.scene.forces import FORCES, AppliedForce, ForceDefinition, force_on, make_force
-from carom.scene.joints import JOINTS, Joint, JointDefinition, make_joint
+from carom.scene.forces import FORCES, AppliedForce, ForceDefinition, force_on
+from carom.scene.joints import JOINTS, Joint, JointDefinition
 from carom.scene.materials import Material
 from carom.scene.pairs import Pairs
 from carom.scene.registry import Registry
 from carom.scene.shapes import Shape
-from carom.scene.stops import Stop, make_stop
+from carom.scene.stops import Stop
 from carom.scene.summary import counts, summary
 from carom.scene.touching import TouchingPairs
 from carom.scene.values import in_scene
@@ -88,7 +79,7 @@ class Scene(TouchingPairs):
             Name in the scene. Default ``"half_space1"``, ``"half_space2"``, ...
         """
         index, name = self._parts.new(HalfSpace, name, "half_space")
-        return self._parts.add(make_half_space(index, name, point, normal, material))
+        return self._parts.add(HalfSpace(index, name, point, normal, material))
 
     @arguments.known
     def add_body(
@@ -155,9 +146,9 @@ class Scene(TouchingPairs):
         ValueError: mass must be finite and above 0 [kg], got -1.0
         """
         index, name = self._parts.new(Body, name, "body")
-        motion = (position, orientation, velocity, angular_velocity)
-        body = make_body(index, name, shape, mass, density, inertia, *motion, material, color)
-        return self._parts.add(body)
+        mass, inertia = mass_and_inertia(shape, mass, density, inertia)
+        motion: Any = position, orientation, velocity, angular_velocity, material, color
+        return self._parts.add(Body(index, name, shape, mass, inertia, *motion))
 
     @arguments.known
     def add_static(
@@ -198,7 +189,7 @@ class Scene(TouchingPairs):
         Contact('ball-step', restitution=0.5, friction=0.3, impact_law='newton')
         """
         index, name = self._parts.new(StaticBody, name, "static")
-        return self._parts.add(make_static(index, name, shape, position, orientation, material))
+        return self._parts.add(StaticBody(index, name, shape, position, orientation, material))
 
     @arguments.known
     def add_joint(
@@ -247,12 +238,12 @@ class Scene(TouchingPairs):
                 "world, add_joint(definition, parent, child) two bodies; got "
                 f"{checks.shown(parent)} and {checks.shown(child)}"
             )
-        parent, child = self._parts.pair(parent, child)
+        pair: Any = self._parts.pair(parent, child)
         index, name = self._parts.new(Joint, name, "joint")
-        self._pairs.join(parent, child)
-        return self._parts.add(
-            make_joint(index, name, definition, parent, child, parent_frame, child_frame)
-        )
+        frames: Any = parent_frame, child_frame
+        joint = Joint(index, name, definition, *pair, frames=frames)
+        self._pairs.ignore(*pair)
+        return self._parts.add(joint)
 
     @arguments.known
     def add_force(
@@ -301,9 +292,9 @@ class Scene(TouchingPairs):
                 "child must be given: add_force(definition, body) for a force on a body, "
                 "add_force(definition, parent, child) for one between two"
             )
-        parent, child = self._parts.pair(parent, child)
+        pair: Any = self._parts.pair(parent, child)
         index, name = self._parts.new(AppliedForce, name, "force")
-        return self._parts.add(make_force(index, name, definition, parent, child))
+        return self._parts.add(AppliedForce(index, name, definition, *pair))
 
     @arguments.known
     def add_constraint(
@@ -361,10 +352,10 @@ class Scene(TouchingPairs):
         name
             Name in the scene. Default ``"stop1"``, ``"stop2"``, ...
         """
-        joint = self._parts.member("joint", joint, (Joint,))
+        part = self._parts.member("joint", joint, (Joint,))
         index, name = self._parts.new(Stop, name, "stop")
         return self._parts.add(
-            make_stop(index, name, joint, lower, upper, restitution, impact_law, coordinate)
+            Stop(index, name, part, coordinate, lower, upper, restitution, impact_law)
         )
 
     @property

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from carom import checks
+from carom import fields
+from carom.fields import Integer, Number, NumberOrNone, Word
 from carom.scene.constraints import coordinate_kind
 from carom.scene.joints import Joint
 from carom.scene.materials import IMPACT_LAWS
@@ -33,11 +34,19 @@ class Stop:
     index: int
     name: str
     joint: Joint
-    coordinate: int
-    lower: float | None
-    upper: float | None
-    restitution: float
-    impact_law: str
+    coordinate: Integer = fields.integer(least=0)
+    lower: NumberOrNone = fields.number(None)
+    upper: NumberOrNone = fields.number(None)
+    restitution: Number = fields.number(0.0, least=0.0, most=1.0)
+    impact_law: Word = fields.word(IMPACT_LAWS, "newton")
+
+    def __post_init__(self):
+        coordinate_kind(self.joint, self.coordinate)
+        if (self.lower is None) == (self.upper is None):
+            raise ValueError(
+                "lower or upper must be given, and not both (add two stops for two ends), got "
+                f"{self.lower} and {self.upper}"
+            )
 
     @property
     def side(self) -> float:
@@ -53,18 +62,3 @@ class Stop:
         which = "upper" if self.lower is None else "lower"
         where = f"{which}={self.end:g}, restitution={self.restitution:g}"
         return f"Stop({self.name!r}, {self.joint.name!r}, {where})"
-
-
-def make_stop(index, name, joint, lower, upper, restitution, impact_law, coordinate) -> Stop:
-    """Return a checked `Stop`; the arguments are those of `Scene.add_stop`."""
-    coordinate_kind(joint, coordinate)
-    if (lower is None) == (upper is None):
-        raise ValueError(
-            "lower or upper must be given, and not both (add two stops for two ends), got "
-            f"{checks.shown(lower)} and {checks.shown(upper)}"
-        )
-    lower = None if lower is None else checks.number("lower", lower)
-    upper = None if upper is None else checks.number("upper", upper)
-    restitution = checks.number("restitution", restitution, least=0.0, most=1.0)
-    law = checks.choice("impact_law", impact_law, IMPACT_LAWS)
-    return Stop(index, name, joint, int(coordinate), lower, upper, restitution, law)

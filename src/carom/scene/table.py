@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import operator
 from collections.abc import Iterator
-from typing import Any, Generic, Self, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar, overload
 
 import numpy as np
 
@@ -66,6 +66,29 @@ class Table(Generic[Row]):
 
     def _columns(self) -> dict[str, np.ndarray]:
         return {name: one for name, one in vars(self).items() if isinstance(one, np.ndarray)}
+
+
+class RecordTable(Table[Row]):
+    """Base class of tables whose columns have the names of the fields of `_record`, of which a row is one."""
+
+    _record: type
+
+    def __init_subclass__(cls):
+        cls.__annotations__ = dict.fromkeys(cls._record._fields, np.ndarray)
+
+    def __init__(self, **columns: np.ndarray):
+        assert columns.keys() == set(self._record._fields)
+        vars(self).update({name: columns[name] for name in self._record._fields})
+
+    def __setattr__(self, name: str, value) -> None:
+        raise AttributeError(f"cannot assign to column {name!r}")
+
+    def _row(self, k: int) -> Row:
+        return self._record(**super()._row(k))
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> np.ndarray: ...
 
 
 def plain(value):

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from itertools import combinations
 
 from carom import arguments, checks
 from carom.scene.all_pairs import PairTable
 from carom.scene.bodies import FIXED, Body, Ground, HalfSpace, StaticBody
-from carom.scene.contacts import Contact, make_contact
+from carom.scene.contacts import Contact, check_gap
 from carom.scene.materials import ContactLaw, Rule
 from carom.scene.pairs import Pairs
 from carom.scene.registry import Registry
@@ -102,7 +103,9 @@ class TouchingPairs:
             "multiple": multiple,
         }
         law = self._pairs.law(body, other, given)
-        contact = self._parts.add(make_contact(index, name, body, other, law))
+        contact = Contact(index=index, name=name, body=body, other=other, **asdict(law))
+        check_gap(contact)
+        self._parts.add(contact)
         self._pairs.add(body, other, given)
         return contact
 

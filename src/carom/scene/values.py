@@ -1,11 +1,9 @@
-"""Values of frozen records, with read-only arrays."""
+"""What the records of a scene have in common."""
 
 from __future__ import annotations
 
 import math
 from typing import TypeVar
-
-import numpy as np
 
 from carom import arguments, checks
 
@@ -18,29 +16,18 @@ in_scene = arguments.attributes(
 )
 
 
-def keep(record, **fields) -> None:
-    """Set `fields` of a frozen `record` while it is made; arrays become read-only."""
-    for name, value in fields.items():
-        if isinstance(value, np.ndarray):
-            value.setflags(write=False)
-        object.__setattr__(record, name, value)
+def shown(vector) -> str:
+    """Return a vector in a message."""
+    return f"({', '.join(f'{x:g}' for x in vector)})"
 
 
-def point(name: str, value) -> np.ndarray:
-    """Return `value` as a point or vector (3,)."""
-    return checks.finite_array(name, value, (3,))
-
-
-def apart(anchor_parent, anchor_child) -> tuple[np.ndarray, np.ndarray, float]:
-    """Return two points (3,) and their distance [m], 0 if they are equal."""
-    start, end = point("anchor_parent", anchor_parent), point("anchor_child", anchor_child)
-    distance = math.dist(start, end)
-    return start, end, checks.number("the distance of anchor_parent and anchor_child", distance)
-
-
-def optional_point(name: str, value) -> np.ndarray | None:
-    """Return `value` as a point (3,), or None."""
-    return None if value is None else point(name, value)
+def apart(record, hint: str = "") -> float:
+    """Return the distance [m] of both anchors of a definition; refuse equal ones, between which is no line."""
+    distance = math.dist(record.anchor_parent, record.anchor_child)
+    if not distance > 0.0:
+        same = shown(record.anchor_child)
+        raise ValueError(f"anchor_child must differ from anchor_parent, got {same} for both{hint}")
+    return checks.number("the distance of anchor_parent and anchor_child", distance)
 
 
 def subclasses_in(names: dict, base: type[T]) -> tuple[type[T], ...]:

@@ -33,10 +33,10 @@ from carom.persistent.lifecycle import activate_contact
 from carom.persistent.margins import switch_due
 from carom.persistent.modes import jam_point, turn_modes
 from carom.persistent.step_control import UNSOLVED, USELESS, goes_wild, next_pace, unsolved
+from carom.status import NO_CONVERGENCE, NOT_FINITE
+from carom.status import TOO_MANY_IMPACTS as TOO_MANY
 from carom.stepping.record import finite, grow, save_contacts
 from carom.stepping.trial_step import first_event, propose_step
-
-NO_CONVERGENCE, TOO_MANY, NOT_FINITE = 1, 3, 4
 
 
 @unit

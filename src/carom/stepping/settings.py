@@ -9,9 +9,8 @@ import numpy as np
 from carom import checks
 from carom.dynamics.methods import ADAPTIVE, CARRIES, EXPLICIT, METHODS
 from carom.options import Options
-from carom.scene.limits import check_location
 from carom.scene.more_forces import JointFriction, JointInertia
-from carom.scene.remarks import remarks
+from carom.scene.remarks import check_location, remarks
 from carom.scene.scene import Scene
 
 LOCATIONS = ("locate", "project", "work")

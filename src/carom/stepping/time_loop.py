@@ -9,12 +9,12 @@ from carom._compiled.units import unit
 from carom.contact.depth import watch_depth
 from carom.dynamics.known_end import forget_end
 from carom.dynamics.local_scale import local_controls, note_scale
-from carom.impact.driven import BLOCKED
 from carom.model import records as r
 from carom.model.allowance import SAVED, of_step
 from carom.model.controls import LOCATE
 from carom.model.data import Data, Model
 from carom.persistent.active_set import regroup
+from carom.status import BLOCKED, STEP_TOO_SMALL
 from carom.stepping.crowd.step import step_crowd
 from carom.stepping.energy_balance import note_whole, watch_step
 from carom.stepping.event_step import NOT_FINITE, advance, is_whole, left_ball
@@ -22,7 +22,6 @@ from carom.stepping.grid import begin_and_length, end_of, is_saved
 from carom.stepping.islands import one_island, parts
 from carom.stepping.islands.plan import READY
 from carom.stepping.record import finite, grow, save, still
-from carom.stepping.trial_step import STEP_TOO_SMALL
 
 AGAIN = -1  # the step is to be repeated
 

@@ -19,6 +19,9 @@ from carom.persistent.contact_step import contact_step
 from carom.persistent.events import GAP, note_first_stops
 from carom.persistent.margins import note_due
 from carom.persistent.step_control import plain_step, too_long
+from carom.status import NOT_FINITE, STEP_TOO_SMALL, UNSTABLE
+from carom.status import STEP_CUT_TO_NOTHING as STEP_CUT
+from carom.status import TOO_MANY_IMPACTS as TOO_MANY
 from carom.stepping.energy_balance import IN_A_ROW, SHORTEST, off_balance
 from carom.stepping.event_search import (
     begin_search,
@@ -30,8 +33,6 @@ from carom.stepping.event_search import (
 )
 from carom.stepping.record import finite
 
-STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
-STEP_TOO_SMALL, UNSTABLE = 12, 14
 TRIES = 3000  # trial steps after which a step is given up
 SEARCH = 4.0  # approximate time for the distance of two solids of any kind [us]
 ONCE_MORE = -1  # another trial step is needed

@@ -1,15 +1,18 @@
-"""A solution as an xarray Dataset, and as pandas tables."""
+"""A solution as an xarray Dataset, as pandas tables, and as files of these: one for each table."""
 
 from __future__ import annotations
 
+import io
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from carom import checks
+from carom.io.files.disk import put
 from carom.io.files.layout import EVENT, HELD, IMPACT, INTERVAL, LEDGER
-from carom.io.files.needs import need
 from carom.io.files.variables import attributes, labelled
-from carom.results.contact_names import contact_names
+from carom.results.names import contact_names
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,7 +25,7 @@ BODY = {
     "velocity": ("vx", "vy", "vz"),
     "angular_velocity": ("wx", "wy", "wz"),
 }
-ENDS = {3: {"axis": ("x", "y", "z"), "contact_axis": ("n", "t1", "t2")}}
+ENDS = {"axis": ("x", "y", "z"), "contact_axis": ("n", "t1", "t2")}
 
 
 class Frames(NamedTuple):
@@ -47,7 +50,7 @@ class Frames(NamedTuple):
 
 def to_xarray(solution) -> xr.Dataset:
     """Return the whole solution as a Dataset."""
-    xarray = need("xarray", "to_xarray")
+    xarray = checks.need("xarray", "to_xarray", "files")
     variables = {
         one.name: xarray.Variable(one.dims, one.data, one.attrs) for one in labelled(solution)
     }
@@ -56,7 +59,7 @@ def to_xarray(solution) -> xr.Dataset:
 
 def to_pandas(solution) -> Frames:
     """Return the tables of a solution."""
-    pandas = need("pandas", "to_pandas")
+    pandas = checks.need("pandas", "to_pandas", "files")
     scene = solution.scene
     contacts = contact_names(scene, solution.pairs).name.astype(object)
     bodies = np.array([body.name for body in scene.bodies], dtype=object)
@@ -98,13 +101,51 @@ def _expanded(columns: dict, table) -> dict[str, np.ndarray]:
         if not dims:
             out[name] = data
         elif len(dims) == 1:
-            for k, end in enumerate(ENDS[3][dims[0]]):
+            for k, end in enumerate(ENDS[dims[0]]):
                 out[f"{name}_{end}"] = data[:, k]
         else:
-            ends = ENDS[3]["contact_axis"]
+            ends = ENDS["contact_axis"]
             out |= {
                 f"{name}_{a}_{b}": data[:, i, j]
                 for i, a in enumerate(ends)
                 for j, b in enumerate(ends)
             }
     return out
+
+
+#: suffixes of files that hold all of a run, and of those that hold a table of it
+RUN, TABLES = (".nc", ".h5", ".hdf5"), (".csv", ".parquet")
+
+
+def is_table(path: Path) -> bool:
+    """Return whether a file name is that of a table; refuse a name without a known suffix."""
+    if path.suffix.lower() in TABLES:
+        return True
+    if path.suffix.lower() in RUN:
+        return False
+    raise ValueError(
+        f"path must end in {', '.join(RUN)} (the whole run) or in {' or '.join(TABLES)} (its tables), got "
+        f"{str(path)!r}"
+    )
+
+
+def write_tables(path: Path, solution) -> None:
+    """Write the motion of the bodies to `path`, and the other tables beside it: ``run.impacts.csv``, ..."""
+    kind = path.suffix.lower()
+    if kind == ".parquet":
+        checks.need("pyarrow", "saving as .parquet", "parquet")
+    for name, frame in to_pandas(solution)._asdict().items():
+        if name in ("bodies", "energy"):  # the time is a column as others are
+            frame = frame.reset_index()
+        if name == "bodies":
+            frame.columns = [".".join(filter(None, pair)) for pair in frame.columns]
+        where = path if name == "bodies" else path.with_suffix(f".{name}{path.suffix}")
+        put(where, [_bytes(frame, kind)])
+
+
+def _bytes(frame, kind: str) -> bytes:
+    if kind == ".csv":
+        return frame.to_csv(index=False).encode()
+    out = io.BytesIO()
+    frame.to_parquet(out, engine="pyarrow", index=False)
+    return out.getvalue()

@@ -9,9 +9,8 @@ from time import perf_counter
 
 from carom import checks
 from carom.io.files.checkpoint import Checkpoint, capture
-from carom.io.files.needs import need
+from carom.io.files.convert import RUN, TABLES
 from carom.io.files.scene_parts import scene_to_text
-from carom.io.files.tables import RUN, TABLES
 from carom.io.files.writing import write
 from carom.results.solution import Solution
 from carom.status import Status
@@ -68,7 +67,7 @@ class Keeper:
 
 def checked_path(path: str | os.PathLike) -> Path:
     """Return the path of the file of a run; refuse an invalid one before the run starts."""
-    need("h5netcdf", "saving a run")
+    checks.need("h5netcdf", "saving a run", "files")
     where = checks.file_to_write("save", path)
     if where.suffix.lower() not in RUN:
         tables = f"; tables are written at the end: Solution.save({str(where)!r})"

@@ -58,6 +58,12 @@ class KeptRun:
             restore(run, self.checkpoint, self.records)
         return run
 
+    def need_functions(self, where: str) -> None:
+        """Refuse what cannot be done without the functions that a file cannot contain."""
+        if self.missing:
+            names = ", ".join(map(repr, self.missing))
+            raise ValueError(f"functions must be given for {names}, {where}, got none")
+
     @cached_property
     def _run(self):
         # of one that has ended what is compiled is enough, by any version of carom
@@ -91,11 +97,7 @@ class KeptRun:
     @property
     def method(self):
         """Settings of the method, for which the run is made again."""
-        if self.missing:
-            names = ", ".join(map(repr, self.missing))
-            raise ValueError(
-                f"functions must be given to Solution.load to compute this, got none for {names}"
-            )
+        self.need_functions("by Solution.load to compute this")
         return self._run.method
 
     @cached_property

@@ -61,16 +61,27 @@ EVENT = {
     "contact": ((), "1", "place of the contact among all contacts, from 0"),
 }
 
-#: events that `simulate` was given: a row for each time at which one happened
-USER_EVENT = {
-    "index": ((), "1", "place of the event among those that simulate was given, from 0"),
-    "time": ((), "s", "time of the event"),
-    "kinetic_energy": ((), "J", "of all bodies"),
-    "potential_energy": ((), "J", "gravity and springs"),
+#: the state of all bodies at one time: for each saved time, and for each event of the user's
+BODIES = {
     "position": (("body", "axis"), "m", "mass centre, world axes"),
     "orientation": (("body", "quaternion"), "1", "unit quaternion, body to world"),
     "velocity": (("body", "axis"), "m s-1", "of the mass centre, world axes"),
     "angular_velocity": (("body", "axis"), "rad s-1", "world axes"),
+}
+ENERGIES = {
+    "kinetic_energy": ((), "J", "of all bodies"),
+    "potential_energy": ((), "J", "gravity and springs"),
+}
+RESIDUAL = (
+    "largest residual of the contact law in persistent contacts since the previous saved time"
+)
+MOTION = {**BODIES, **ENERGIES, "held_residual": ((), "m s-1", RESIDUAL)}
+
+#: events that `simulate` was given: a row for each time at which one happened
+USER_EVENT = {
+    "index": ((), "1", "place of the event among those that simulate was given, from 0"),
+    "time": ((), "s", "time of the event"),
+    **ENERGIES, **BODIES,
 }  # fmt: skip
 
 #: intervals of persistent contact
@@ -120,8 +131,8 @@ class Variable(NamedTuple):
 
 
 def table_variables(prefix: str, dim: str, columns: dict, table) -> list[Variable]:
-    """Return the columns of a table as variables named ``prefix_column``."""
+    """Return the columns of a table as variables named ``prefix_column``, or ``column`` without a prefix."""
     return [
-        Variable(f"{prefix}_{name}", (dim, *dims), getattr(table, name), units, meaning)
+        Variable(f"{prefix}_{name}".strip("_"), (dim, *dims), getattr(table, name), units, meaning)
         for name, (dims, units, meaning) in columns.items()
     ]

@@ -18,7 +18,7 @@ from carom import checks
 from carom.io.files import raw
 from carom.io.files.checkpoint import from_index
 from carom.io.files.kept import KeptRun
-from carom.io.files.layout import EVENT, IMPACT, INTERVAL, LEDGER
+from carom.io.files.layout import ENERGIES, EVENT, IMPACT, INTERVAL, LEDGER, MOTION
 from carom.io.files.scene_parts import scene_from_text
 from carom.io.files.sealed import Sealed, refusal, unsealed
 from carom.io.files.user_events import from_file
@@ -30,16 +30,8 @@ from carom.results.ledger import Ledger
 from carom.status import Status
 from carom.stepping.settings import checked_settings
 
-SPATIAL = ("time", "body", "axis")
-#: dimensions of the variables that a solution is made of
-MOTION = {
-    "position": SPATIAL, "velocity": SPATIAL, "angular_velocity": SPATIAL,
-    "held_residual": ("time",),
-}  # fmt: skip
-DERIVED = {
-    "orientation": ("time", "body", "quaternion"),
-    "kinetic_energy": ("time",), "potential_energy": ("time",),
-}  # fmt: skip
+#: results of the motion that a solution computes when it is asked for them
+DERIVED = ("orientation", *ENERGIES)
 LENGTHS = {"axis": 3, "quaternion": 4, "contact_axis": 3, "contact_axis_2": 3}
 TYPES = ("<f8", "<i8", ">f8", ">i8")
 #: columns of tables that count something
@@ -83,11 +75,12 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
     found = _found(arrays, index["found"], len(scene.stops))
     run = KeptRun(scene, settings, options, records, checkpoint, missing, attributes, found)
     check_numbers(records, len(run.pairs.body) + len(scene.stops))
-    derived = {name: arrays.array(name, dims) for name, dims in DERIVED.items()}
+    motion = {name: arrays.array(name, ("time", *dims)) for name, (dims, _, _) in MOTION.items()}
+    derived = {name: motion.pop(name) for name in DERIVED}
     entries = [arrays.array(f"ledger_{name}", ("time",)) for name in LEDGER if name != "residual"]
     return {
         "t": arrays.array("time", ("time",)),
-        **{name: arrays.array(name, dims) for name, dims in MOTION.items()},
+        **motion,
         "status": Status[attributes["status"]],
         "warnings": tuple(str(one) for one in json.loads(attributes["warnings"])),
         "stats": {

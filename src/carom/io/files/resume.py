@@ -79,11 +79,7 @@ def resume(
         raise ValueError(
             f"path must be a file of a run that can continue, got {str(path)!r}: {why}"
         )
-    if kept.missing:
-        names = ", ".join(map(repr, kept.missing))
-        raise ValueError(
-            f"functions must be given for {names}, because the file does not have them"
-        )
+    kept.need_functions("which the file does not have")
     try:
         run = kept.revived(duration)
     except ValueError as error:
@@ -112,19 +108,7 @@ def go_on(solution, duration: float, progress, throw: bool):
             f"{solution.message}"
         )
     if not isinstance(kept, KeptRun):
-        kept = KeptRun(
-            kept.scene,
-            solution.settings,
-            kept.options,
-            kept.records,
-            checkpoint,
-            [],
-            {},
-            kept.found,
-        )
-    if kept.missing:
-        names = ", ".join(map(repr, kept.missing))
-        raise ValueError(
-            f"functions must be given to Solution.load to continue, got none for {names}"
-        )
+        given = kept.scene, solution.settings, kept.options, kept.records, checkpoint
+        kept = KeptRun(*given, missing=[], attributes={}, found=kept.found)
+    kept.need_functions("by Solution.load to continue")
     return finish(kept.revived(solution.settings["duration"] + duration), progress, None, throw)

@@ -16,17 +16,16 @@ from typing import Any
 import numpy as np
 
 from carom import checks
-from carom.io.files.hull_check import check_compound, check_convex, check_mesh, check_piece
 from carom.scene import bodies, contacts, forces, joints, stops
 from carom.scene.constraints import CONSTRAINTS, Constraint, Coupling, Gear, coordinate_kind
-from carom.scene.materials import ContactLaw
-from carom.scene.pieces import Piece
+from carom.scene.pieces import Piece, Shape
 from carom.scene.scene import Scene
 from carom.scene.shapes.compound import Compound
 from carom.scene.shapes.convex import Convex
 from carom.scene.shapes.mesh import Mesh
 
 ROUNDING = 1e-9  # of what is worked out once more: of unit vectors, lengths, inertias
+CORES = ("point", "segment", "box", "hull", "cylinder", "ellipsoid")
 KINDS = (bodies.Body, *bodies.FIXED)
 
 
@@ -80,53 +79,24 @@ def check_pair(pair: frozenset) -> frozenset:
 
 def _made(parts, part: Any) -> Any:
     """Return a part made again from its fields."""
-    index, name = part.index, part.name
-    if isinstance(part, bodies.Body):
-        motion = part.position, part.orientation, part.velocity, part.angular_velocity
-        return bodies.make_body(
-            index, name, part.shape, part.mass, None, part.inertia, *motion, part.material,
-            part.color,
-        )  # fmt: skip
-    if isinstance(part, bodies.HalfSpace):
-        return bodies.make_half_space(index, name, part.point, part.normal, part.material)
-    if isinstance(part, bodies.StaticBody):
-        place = part.position, part.orientation
-        return bodies.make_static(index, name, part.shape, *place, part.material)
-    if isinstance(part, joints.Joint):
-        checks.instance("definition", part.definition, joints.JOINTS)
-        parent, child = parts.pair(part.parent, part.child)  # a name is no body: `_same` finds out
-        frames = (None, None) if part.frames is None else part.frames
-        return joints.make_joint(index, name, part.definition, parent, child, *frames)
+    if isinstance(part, (joints.Joint, forces.AppliedForce, Constraint)):
+        kinds = {joints.Joint: joints.JOINTS, forces.AppliedForce: forces.FORCES}
+        checks.instance("definition", part.definition, kinds.get(type(part), CONSTRAINTS))
+    if isinstance(part, (joints.Joint, forces.AppliedForce)):
+        parts.pair(part.parent, part.child)  # a name is no body: `_same` finds out
+    own = part.parts if isinstance(part, Constraint) else ()
     if isinstance(part, forces.AppliedForce):
-        checks.instance("definition", part.definition, forces.FORCES)
-        for one in forces.force_on(part.definition) or ():
-            parts.member("definition", one, (joints.Joint, bodies.Body))
-        ends = parts.pair(part.parent, part.child)
-        return forces.make_force(index, name, part.definition, *ends)
-    if isinstance(part, Constraint):
-        checks.instance("definition", part.definition, CONSTRAINTS)
-        for one in part.parts:
-            parts.member("definition", one, (joints.Joint, bodies.Body))
-        return part
+        own = forces.force_on(part.definition) or ()
+    for one in own:
+        parts.member("definition", one, (joints.Joint, bodies.Body))
     if isinstance(part, stops.Stop):
-        joint = parts.member("joint", part.joint, (joints.Joint,))
-        given = part.lower, part.upper, part.restitution, part.impact_law, part.coordinate
-        return stops.make_stop(index, name, joint, *given)
-    checks.instance("part", part, (contacts.Contact,))
-    return _made_contact(parts, part)
-
-
-def _made_contact(parts, part: contacts.Contact) -> contacts.Contact:
-    parts.member("body", part.body, (bodies.Body,))
-    parts.member("other", part.other, KINDS)
-    if part.body is part.other:
-        raise ValueError(f"body and other must be two, got {part.body!r} for both")
-    for one in (part.body, part.other):
-        if isinstance(one, bodies.Body) and one.shape is None:
-            raise ValueError(f"body must have a shape for contact, got {one!r}")
-    law = {one.name: getattr(part, one.name) for one in fields(ContactLaw)}
-    places = {"index": part.index, "name": part.name, "body": part.body, "other": part.other}
-    return contacts.Contact(**places, **law)
+        parts.member("joint", part.joint, (joints.Joint,))
+    if isinstance(part, contacts.Contact):
+        parts.member("body", part.body, (bodies.Body,))
+        parts.member("other", part.other, KINDS)
+        if part.body is part.other:
+            raise ValueError(f"body and other must be two, got {part.body!r} for both")
+    return type(part)(**{one.name: getattr(part, one.name) for one in fields(part)})
 
 
 def _check_coupling(record: Coupling) -> None:
@@ -136,12 +106,6 @@ def _check_coupling(record: Coupling) -> None:
         coordinate_kind(joint, coordinate)
         if checks.number("factor", factor) == 0.0:
             raise ValueError("factor must not be 0, got 0")
-
-
-_LOOKS = {
-    Convex: check_convex, Mesh: check_mesh, Compound: check_compound, Piece: check_piece,
-    Coupling: _check_coupling, Gear: _check_coupling,
-}  # fmt: skip
 
 
 @cache
@@ -170,3 +134,97 @@ def _near(a: Any, b: Any) -> bool:
     if is_dataclass(b) or type(a) is not type(b):
         return False
     return a == b
+
+
+def _check_convex(shape: Convex) -> None:
+    """Raise for a hull whose fields do not fit each other."""
+    points = _rows("points", shape.points)
+    vertices = _rows("_vertices", shape._vertices)
+    checks.number("radius", shape.radius, least=0.0)
+    _solid(shape)
+    if vertices.shape != points.shape:
+        raise ValueError(f"_vertices must be as many as points, got {len(vertices)}")
+    _check_faces(shape.faces, len(vertices))
+
+
+def _check_mesh(shape: Mesh) -> None:
+    """Raise for a mesh whose fields do not fit each other."""
+    points, faces = _rows("points", shape.points), shape.faces
+    if not (isinstance(faces, np.ndarray) and faces.dtype == np.int64 and faces.shape[1:] == (3,)):
+        raise ValueError("faces must be whole numbers of shape (k, 3)")
+    if not (faces.size and faces.min() >= 0 and faces.max() < len(points)):
+        raise ValueError(f"faces must be numbers of vertices from 0 to {len(points) - 1}")
+    checks.flag("convex", shape.convex)
+    _solid(shape)
+    _check_pieces(shape._pieces)
+
+
+def _check_compound(shape: Compound) -> None:
+    """Raise for a compound whose fields do not fit each other."""
+    if not isinstance(shape.parts, tuple) or not shape.parts:
+        raise ValueError("parts must be a tuple of at least one")
+    for part, position, orientation in shape.parts:
+        checks.instance("a part", part, (Shape,))
+        checks.finite_array("position of a part", position, (3,))
+        checks.unit_quaternion("orientation of a part", orientation)
+    _solid(shape, flat=True)
+    if not shape._pieces:
+        raise ValueError("_pieces must be at least one")
+    _check_pieces(shape._pieces)
+
+
+def _check_piece(piece: Piece) -> None:
+    """Raise for a piece whose fields do not fit each other."""
+    checks.choice("kind", piece.kind, CORES)
+    if not np.all(checks.finite_array("half", piece.half, (3,)) >= 0.0):
+        raise ValueError(f"half must be at least 0, got {piece.half!r}")
+    for name in ("radius", "inner", "extent"):
+        checks.number(name, getattr(piece, name), least=0.0)
+    checks.finite_array("position", piece.position, (3,))
+    checks.unit_quaternion("orientation", piece.orientation)
+    vertices = _rows("vertices", piece.vertices, 4 if piece.kind == "hull" else 0)
+    if piece.kind == "hull":
+        _check_faces(piece.faces, len(vertices))
+    elif len(vertices) or piece.faces != ():
+        raise ValueError(f"vertices and faces must be none of a {piece.kind}")
+
+
+def _solid(shape, flat: bool = False) -> None:
+    """Refuse a shape without centroid, size and spread; one that is `flat` may have no volume or spread."""
+    checks.finite_array("centroid", shape.centroid, (3,))
+    checks.number("size", shape.size, above=0.0)
+    if not (checks.number("volume", shape.volume, least=0.0) > 0.0 or flat):
+        raise ValueError("volume must be above 0, got 0")
+    if not (flat and shape._spread is None):
+        checks.finite_array("_spread", shape._spread, (3, 3))
+
+
+def _rows(name: str, value, least: int = 4) -> np.ndarray:
+    array = checks.finite_array(name, value, (None, 3))
+    if len(array) < least:
+        raise ValueError(f"{name} must be at least {least}, got {len(array)}")
+    return array
+
+
+def _check_pieces(pieces) -> None:
+    if not isinstance(pieces, tuple) or not all(isinstance(one, Piece) for one in pieces):
+        raise ValueError("_pieces must be a tuple of Piece")
+
+
+def _check_faces(faces, vertices: int) -> None:
+    """Refuse faces that are not normals with rings of vertices."""
+    if not isinstance(faces, tuple) or len(faces) < 4:
+        raise ValueError("faces must be a tuple of four or more")
+    for normal, ring in faces:
+        checks.unit_vector("normal of a face", normal)
+        if not isinstance(ring, tuple) or len(ring) < 3:
+            raise ValueError(f"a face must have three vertices or more, got {ring!r}")
+        for one in ring:
+            checks.integer("vertex of a face", one, least=0, most=vertices - 1)
+
+
+#: records that are not made again: their checks
+_LOOKS = {
+    Convex: _check_convex, Mesh: _check_mesh, Compound: _check_compound, Piece: _check_piece,
+    Coupling: _check_coupling, Gear: _check_coupling,
+}  # fmt: skip

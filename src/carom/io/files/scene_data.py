@@ -28,6 +28,7 @@ from typing import Any
 import numpy as np
 
 from carom import checks
+from carom.fields import keep
 from carom.io.files.scene_check import check_record
 from carom.scene.bodies import FIXED, GROUND, Body, Ground
 from carom.scene.constraints import CONSTRAINTS, Constraint, Gear
@@ -38,7 +39,6 @@ from carom.scene.materials import ContactLaw, Material
 from carom.scene.pieces import Piece
 from carom.scene.shapes import SHAPES
 from carom.scene.stops import Stop
-from carom.scene.values import keep
 
 #: parts that have a name in the scene
 PARTS = (*FIXED, Body, Joint, AppliedForce, Constraint, Stop, Contact)

@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 
 from carom import checks
-from carom.io.files.layout import LABELS, USER_EVENT, Variable
+from carom.io.files.layout import BODIES, ENERGIES, LABELS, USER_EVENT, Variable
 from carom.results.state import SystemState
 
 DIM = "user_event"
-MOTION = ("position", "orientation", "velocity", "angular_velocity")
 
 
 def user_events(solution) -> list[Variable]:
@@ -67,8 +66,8 @@ def from_file(arrays, index: dict[str, Any] | None, scene) -> dict[str, Any]:
     which = columns["index"]
     if which.size and not (which.min() >= 0 and which.max() < count):
         raise ValueError(f"{DIM}_index has numbers outside 0 to {count - 1}")
-    numbers = (columns[name].tolist() for name in ("time", "kinetic_energy", "potential_energy"))
-    motion = zip(*(columns[name] for name in MOTION))
+    numbers = (columns[name].tolist() for name in ("time", *ENERGIES))
+    motion = zip(*(columns[name] for name in BODIES))
     states = [
         SystemState._of_file(scene, t, kinetic, potential, one)
         for t, kinetic, potential, one in zip(*numbers, motion)

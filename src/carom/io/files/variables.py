@@ -18,12 +18,13 @@ from carom.io.files.layout import (
     INTERVAL,
     LABELS,
     LEDGER,
+    MOTION,
     Variable,
     table_variables,
 )
 from carom.io.files.scene_parts import scene_to_text
 from carom.io.files.user_events import user_events
-from carom.results.contact_names import contact_names
+from carom.results.names import contact_names
 from carom.scene.joints import Distance, Spherical
 
 
@@ -77,31 +78,16 @@ def attributes(solution) -> dict[str, Any]:
 
 
 def _motion(solution) -> list[Variable]:
-    spatial, series = ("time", "body", "axis"), ("time",)
     ledger = [
-        Variable(f"ledger_{name}", series, getattr(solution.ledger, name), "J", meaning)
+        Variable(f"ledger_{name}", ("time",), getattr(solution.ledger, name), "J", meaning)
         for name, meaning in LEDGER.items()
     ]
     mass = np.array([body.mass for body in solution.scene.bodies])
     return [
-        Variable("position", spatial, solution.position, "m", "mass centre, world axes"),
-        Variable(
-            "orientation", ("time", "body", "quaternion"), solution.orientation, "1",
-            "unit quaternion, body to world",
-        ),
-        Variable("velocity", spatial, solution.velocity, "m s-1", "of the mass centre, world axes"),
-        Variable(
-            "angular_velocity", spatial, solution.angular_velocity, "rad s-1", "world axes",
-        ),
+        *table_variables("", "time", MOTION, solution),
         Variable("mass", ("body",), mass, "kg", "mass of the body"),
-        Variable("kinetic_energy", series, solution.kinetic_energy, "J", "of all bodies"),
-        Variable("potential_energy", series, solution.potential_energy, "J", "gravity and springs"),
         *ledger,
-        Variable(
-            "held_residual", series, solution.held_residual, "m s-1",
-            "largest residual of the contact law in persistent contacts since the previous saved time",
-        ),
-    ]  # fmt: skip
+    ]
 
 
 def _contacts(solution) -> list[Variable]:

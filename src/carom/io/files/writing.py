@@ -15,11 +15,10 @@ import numpy as np
 from carom import checks
 from carom.io.files import raw
 from carom.io.files.checkpoint import Checkpoint, packed, state_at_end
+from carom.io.files.convert import is_table, write_tables
 from carom.io.files.disk import put
 from carom.io.files.layout import Variable
-from carom.io.files.needs import need
 from carom.io.files.sealed import seal
-from carom.io.files.tables import is_table, write_tables
 from carom.io.files.user_events import index_of
 from carom.io.files.variables import attributes, labelled
 from carom.model import records as r
@@ -31,7 +30,7 @@ def save(path: str | os.PathLike, solution) -> None:
     if is_table(where):
         write_tables(where, solution)
         return
-    need("h5netcdf", "saving a run")
+    checks.need("h5netcdf", "saving a run", "files")
     write(where, solution, state_at_end(solution))
 
 
@@ -94,7 +93,7 @@ def hdf5(variables: list[Variable], attrs: dict) -> tuple[memoryview, dict[str, 
     OSError
         If the HDF5 library fails, or has written wrong data.
     """
-    h5netcdf = need("h5netcdf", "saving a run")
+    h5netcdf = checks.need("h5netcdf", "saving a run", "files")
     import h5py
 
     made, arrays = io.BytesIO(), {}

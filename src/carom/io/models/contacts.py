@@ -7,11 +7,10 @@ from itertools import combinations
 from typing import Any
 
 from carom.io.models.build import Build
-from carom.io.models.overlaps import near
 from carom.io.models.solids import Solid
 from carom.io.models.touching import Filter, Friction
 from carom.scene.bodies import Body, HalfSpace
-from carom.scene.contacts import overlap
+from carom.scene.contacts import far, overlap, place
 
 Pair = tuple[Body, "Body | HalfSpace"]
 
@@ -87,7 +86,7 @@ def without_overlaps(build: Build, pairs: dict[Pair, Friction], strict: bool) ->
     """Return the pairs that do not start inside each other; `strict` refuses a model with such ones."""
     kept = {}
     for (body, other), friction in pairs.items():
-        depth = overlap(body, other)[0] if near(body, other) else 0.0
+        depth = 0.0 if far(body, other, body.position, place(other)) else overlap(body, other)[0]
         if depth <= 0.0:
             kept[body, other] = friction
             continue

@@ -6,8 +6,8 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.io.models.build import Build, Coordinate
-from carom.io.models.links import Link, name_of
-from carom.io.models.needs import need_mujoco
+from carom.io.models.links import Link, called, name_of
+from carom.io.models.report import need_mujoco
 from carom.scene import forces
 from carom.scene.bodies import GROUND
 
@@ -23,12 +23,6 @@ def add_coordinate_parts(build: Build, restitution: float, impact_law: str, arma
         _armature(build, j, coordinate, armature)
 
 
-def _called(build: Build, j: int) -> tuple[str, str]:
-    """Return the name of a joint, and its name in the report."""
-    name = name_of(build.model.joint(j), "joint")
-    return name, f"joint {name!r}"
-
-
 def _spring(build: Build, j: int, c: Coordinate) -> None:
     model, dof = build.model, build.model.jnt_dofadr[j]
     stiffness, damping = float(model.jnt_stiffness[j]), float(model.dof_damping[dof])
@@ -39,14 +33,17 @@ def _spring(build: Build, j: int, c: Coordinate) -> None:
         c.joint, max(stiffness, 0.0), damping, rest if stiffness else 0.0, c.index
     )
     if stiffness < 0.0:
-        build.report.add(_called(build, j)[1], f"stiffness {stiffness:g} is below 0", "left out")
-    build.scene.add_force(spring, name=build.names.new(f"{_called(build, j)[0]}:spring", "force"))
+        build.report.add(
+            called(model, "joint", j), f"stiffness {stiffness:g} is below 0", "left out"
+        )
+    name = name_of(model, "joint", j)
+    build.scene.add_force(spring, name=build.names.new(f"{name}:spring", "force"))
 
 
 def _friction(build: Build, j: int, c: Coordinate) -> None:
     bound = float(build.model.dof_frictionloss[build.model.jnt_dofadr[j]])
     if bound > 0.0:
-        name = build.names.new(f"{_called(build, j)[0]}:friction", "force")
+        name = build.names.new(f"{name_of(build.model, 'joint', j)}:friction", "force")
         build.scene.add_force(forces.JointFriction(c.joint, bound, c.index), name=name)
 
 
@@ -54,12 +51,12 @@ def _stops(build: Build, j: int, c: Coordinate, restitution: float, law: str) ->
     """Add both limits; a limit that the start exceeds is moved to the start."""
     if not build.model.jnt_limited[j]:
         return
-    name, called = _called(build, j)
+    name, what = name_of(build.model, "joint", j), called(build.model, "joint", j)
     ends = build.model.jnt_range[j] - c.start
     for end, side, word in ((float(ends[0]), 1.0, "lower"), (float(ends[1]), -1.0, "upper")):
         if side * end > 0.0:
             build.report.add(
-                called,
+                what,
                 f"starts beyond its {word} limit, by {side * end:.3g}",
                 "the limit is moved to the start",
             )
@@ -81,9 +78,9 @@ def _armature(build: Build, j: int, c: Coordinate, represent: bool) -> None:
     inertia = float(build.model.dof_armature[build.model.jnt_dofadr[j]])
     if inertia == 0.0:
         return
-    name, called = _called(build, j)
+    name, what = name_of(build.model, "joint", j), called(build.model, "joint", j)
     if not represent:
-        build.report.add(called, f"armature {inertia:g}", "left out because of armature=False")
+        build.report.add(what, f"armature {inertia:g}", "left out because of armature=False")
         return
     rotor = forces.JointInertia(c.joint, inertia, c.index)
     build.scene.add_force(rotor, name=build.names.new(f"{name}:armature", "force"))
@@ -103,7 +100,7 @@ def add_mounts(build: Build, links: list[Link]) -> None:
 
 def _mount(build: Build, j: int, link: Link, parent, child, moves: bool) -> None:
     model, data = build.model, build.data
-    name, called = _called(build, j)
+    name, what = name_of(build.model, "joint", j), called(build.model, "joint", j)
     dof, first = int(model.jnt_dofadr[j]), int(model.jnt_qposadr[j])
     stiffness, damping = float(model.jnt_stiffness[j]), float(model.dof_damping[dof])
     turn = first + 3 if moves else first
@@ -114,7 +111,7 @@ def _mount(build: Build, j: int, link: Link, parent, child, moves: bool) -> None
         shift = model.qpos_spring[first : first + 3] - data.qpos[first : first + 3]
         apart = max(apart, np.linalg.norm(shift) / model.stat.extent)
     if stiffness > 0.0 and apart > RELAXED:
-        build.report.add(called, "its spring is not relaxed at the start", "without this spring")
+        build.report.add(what, "its spring is not relaxed at the start", "without this spring")
         stiffness = 0.0
     if stiffness > 0.0 or damping > 0.0:
         k, d = (stiffness, stiffness), (damping, damping)
@@ -124,8 +121,8 @@ def _mount(build: Build, j: int, link: Link, parent, child, moves: bool) -> None
         build.scene.add_force(mount, parent, child, name=build.names.new(f"{name}:spring", "force"))
     dofs = slice(dof, dof + (6 if moves else 3))
     if np.any(model.dof_armature[dofs]):
-        build.report.add(called, "armature of a joint with several freedoms", "left out")
+        build.report.add(what, "armature of a joint with several freedoms", "left out")
     if np.any(model.dof_frictionloss[dofs]):
-        build.report.add(called, "dry friction of a joint with several freedoms", "left out")
+        build.report.add(what, "dry friction of a joint with several freedoms", "left out")
     if model.jnt_limited[j]:
-        build.report.add(called, f"limit {model.jnt_range[j][1]:g} rad of a ball joint", "left out")
+        build.report.add(what, f"limit {model.jnt_range[j][1]:g} rad of a ball joint", "left out")

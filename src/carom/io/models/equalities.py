@@ -7,8 +7,8 @@ import numpy as np
 from carom.geometry import quaternion
 from carom.io.models.build import Build
 from carom.io.models.joints import in_body
-from carom.io.models.links import IDENTITY, name_of
-from carom.io.models.needs import need_mujoco
+from carom.io.models.links import IDENTITY, called, name_of
+from carom.io.models.report import need_mujoco
 from carom.scene import constraints, joints
 from carom.scene.bodies import Ground
 
@@ -21,18 +21,18 @@ def add_equalities(build: Build) -> None:
     """Add all that is active."""
     model, kinds = build.model, need_mujoco().mjtEq
     for e in range(model.neq):
-        called = f"equality {name_of(model.equality(e), 'equality')!r}"
+        what = called(model, "equality", e)
         kind = model.eq_type[e]
         if not model.eq_active0[e]:
-            build.report.add(called, "is not active at the start", "left out")
+            build.report.add(what, "is not active at the start", "left out")
         elif kind == kinds.mjEQ_CONNECT:
-            _tie(build, e, called, joints.Spherical((0.0, 0.0, 0.0)), *_connected(build, e))
+            _tie(build, e, what, joints.Spherical((0.0, 0.0, 0.0)), *_connected(build, e))
         elif kind == kinds.mjEQ_WELD:
-            _tie(build, e, called, joints.Fixed((0.0, 0.0, 0.0)), *_welded(build, e))
+            _tie(build, e, what, joints.Fixed((0.0, 0.0, 0.0)), *_welded(build, e))
         elif kind == kinds.mjEQ_JOINT:
-            _couple(build, e, called)
+            _couple(build, e, what)
         else:
-            build.report.add(called, "is between tendons or deformable bodies", "left out")
+            build.report.add(what, "is between tendons or deformable bodies", "left out")
 
 
 def _sides(build: Build, e: int) -> tuple[int, int, list[Frame] | None]:
@@ -77,39 +77,39 @@ def _point(build: Build, body: int, point) -> np.ndarray:
     return build.data.xpos[body] + quaternion.rotate(build.data.xquat[body], point)
 
 
-def _tie(build: Build, e: int, called: str, definition, first: int, second: int, one, two) -> None:
+def _tie(build: Build, e: int, what: str, definition, first: int, second: int, one, two) -> None:
     """Add a joint between two bodies, with a frame in each."""
     parent, child = build.carrier(first), build.carrier(second)
     if parent is child:
-        build.report.add(called, "joins two parts of the same body", "left out")
+        build.report.add(what, "joins two parts of the same body", "left out")
         return
     away = float(np.linalg.norm(two[0] - one[0])) / build.model.stat.extent
     turned = float(np.linalg.norm(quaternion.between(one[1], two[1])))
     if max(away, turned) > FITS:
         build.report.add(
-            called,
+            what,
             f"does not hold at the start: {away * build.model.stat.extent:.3g} m, {turned:.3g} rad",
             "use Options(project_start=True), which moves the parts together",
         )
     if isinstance(child, Ground):
         parent, child, one, two = child, build.moving(int(build.model.body_weldid[first])), two, one
-    name = build.names.new(name_of(build.model.equality(e), "equality"), "equality")
+    name = build.names.new(name_of(build.model, "equality", e), "equality")
     build.scene.add_joint(
         definition, parent, child,
         parent_frame=in_body(parent, *one), child_frame=in_body(child, *two), name=name,
     )  # fmt: skip
 
 
-def _couple(build: Build, e: int, called: str) -> None:
+def _couple(build: Build, e: int, what: str) -> None:
     """Add q1 - q1_0 = a0 + a1 (q2 - q2_0); a polynomial of higher degree has no equivalent."""
     model, data = build.model, build.data
     first, second = int(model.eq_obj1id[e]), int(model.eq_obj2id[e])
     a = model.eq_data[e][:5]
     if second >= 0 and np.any(a[2:]):
-        build.report.add(called, "is a polynomial of degree 2 or more", "left out")
+        build.report.add(what, "is a polynomial of degree 2 or more", "left out")
         return
     if not {first, second} - {-1} <= build.coordinates.keys():
-        build.report.add(called, "is for a joint that is not a hinge or slide", "left out")
+        build.report.add(what, "is for a joint that is not a hinge or slide", "left out")
         return
     missing, factors = -a[0], {}
     for j, factor in ((first, 1.0), (second, -a[1])):
@@ -119,7 +119,7 @@ def _couple(build: Build, e: int, called: str) -> None:
             factors[c.joint, c.index] = factor * c.sign
     if abs(missing) > FITS:
         build.report.add(
-            called, f"does not hold at the start, by {missing:.3g}", "keeps its value at the start"
+            what, f"does not hold at the start, by {missing:.3g}", "keeps its value at the start"
         )
-    name = build.names.new(name_of(model.equality(e), "equality"), "equality")
+    name = build.names.new(name_of(model, "equality", e), "equality")
     build.scene.add_constraint(constraints.Coupling(factors), name=name)

@@ -15,7 +15,7 @@ import numpy as np
 from carom.geometry import quaternion
 from carom.io.models.build import Build, Coordinate
 from carom.io.models.links import Link, name_of
-from carom.io.models.needs import need_mujoco
+from carom.io.models.report import need_mujoco
 from carom.io.models.state import point_velocity
 from carom.scene import joints
 from carom.scene.bodies import Body, Ground
@@ -111,7 +111,7 @@ def _planar(build: Build, numbers: list[int]) -> Group | None:
 def _light_link(build: Build, link: Link, last: int, later: list[int]) -> Body:
     """Add a link between two joints of a body, with the position and motion after the joint `last`."""
     model, data = build.model, build.data
-    joint = name_of(model.joint(last), "joint")
+    joint = name_of(model, "joint", last)
     first, count = int(model.body_dofadr[link.body]), int(model.body_dofnum[link.body])
     armature = float(np.max(model.dof_armature[first : first + count]))
     body = build.moving(link.body).position
@@ -140,7 +140,7 @@ def _light_link(build: Build, link: Link, last: int, later: list[int]) -> Body:
 
 def _add(build: Build, group: Group, parent: Body | Ground, child) -> None:
     """Add the joint of a group, and keep its coordinates."""
-    names = [name_of(build.model.joint(j), "joint") for j, _, _ in group.members]
+    names = [name_of(build.model, "joint", j) for j, _, _ in group.members]
     frames = {}
     if group.frame is not None:
         frames = {

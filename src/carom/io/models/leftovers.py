@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.io.models.links import name_of
-from carom.io.models.needs import need_mujoco
-from carom.io.models.report import Report
+from carom.io.models.links import called
+from carom.io.models.report import Report, need_mujoco
 
 #: parts listed by name: accessor of the model, count, description, replacement in the scene
 LISTED = (
@@ -36,17 +35,18 @@ def report_leftovers(model, report: Report) -> None:
     """Add an entry for each part of a model that no part of the scene represents."""
     for kind, count, what, instead in LISTED:
         for k in range(getattr(model, count)):
-            report.add(f"{kind} {name_of(getattr(model, kind)(k), kind)!r}", what, instead)
+            report.add(called(model, kind, k), what, instead)
     for kind, array, what, instead in NOT_ZERO:
         values = getattr(model, array, None)
         if values is None or not np.any(values):
             continue
         for k in np.flatnonzero(np.any(values.reshape(len(values), -1) != 0, axis=1)):
-            report.add(_called(model, kind, int(k)), what, instead)
+            of = ("joint", int(model.dof_jntid[k])) if kind == "dof" else (kind, int(k))
+            report.add(called(model, *of), what, instead)
     for b in range(model.nbody):
         if model.body_mocapid[b] >= 0:
             report.add(
-                f"body {name_of(model.body(b), 'body')!r}",
+                called(model, "body", b),
                 "is moved from outside (mocap)",
                 "it does not move",
             )
@@ -55,17 +55,11 @@ def report_leftovers(model, report: Report) -> None:
         if five[0] != five[1] or five[3] != five[4]:
             what = "friction that depends on direction"
             report.add(
-                f"pair {name_of(model.pair(p), 'pair')!r}",
+                called(model, "pair", p),
                 what,
                 "the first value is used for all directions",
             )
     _report_whole(model, report)
-
-
-def _called(model, kind: str, k: int) -> str:
-    if kind == "dof":
-        kind, k = "joint", int(model.dof_jntid[k])
-    return f"{kind} {name_of(getattr(model, kind)(k), kind)!r}"
 
 
 def _report_whole(model, report: Report) -> None:

@@ -23,9 +23,14 @@ class Link(NamedTuple):
     inertia: np.ndarray  # (3, 3) of all about it, in the axes of the body
 
 
-def name_of(element, kind: str) -> str:
-    """Return the name of an element of a model, or its kind and number where it has none."""
-    return element.name or f"{kind}{element.id}"
+def name_of(model, kind: str, k: int) -> str:
+    """Return the name of element k of a kind of a model, or its kind and number where it has none."""
+    return getattr(model, kind)(k).name or f"{kind}{k}"
+
+
+def called(model, kind: str, k: int) -> str:
+    """Return what an element is called in the report."""
+    return f"{kind} {name_of(model, kind, k)!r}"
 
 
 def moving_links(model) -> list[Link]:
@@ -50,7 +55,7 @@ def pose_on_link(model, body: int) -> tuple[np.ndarray, np.ndarray]:
 
 def _link(model, body: int, members: list[int]) -> Link:
     """Return a link: masses added, inertias moved to the common centre (Steiner)."""
-    name = name_of(model.body(body), "body")
+    name = name_of(model, "body", body)
     mass = np.array([model.body_mass[b] for b in members])
     poses = [pose_on_link(model, b) for b in members]
     centres = np.array(

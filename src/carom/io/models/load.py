@@ -22,8 +22,7 @@ from carom.io.models.overlaps import lift_out, pose
 from carom.io.models.reading import compiled_model
 from carom.io.models.report import Report
 from carom.io.models.solids import Solid, add_standing, covering
-from carom.io.models.state import point_velocity, starting_data
-from carom.io.models.switches import as_it_acts, is_off
+from carom.io.models.state import as_it_acts, is_off, point_velocity, starting_data
 from carom.io.models.touching import Filter
 from carom.scene import forces
 from carom.scene.materials import IMPACT_LAWS
@@ -201,7 +200,7 @@ def _add_gravcomp(build: Build) -> None:
         lift = -model.body_gravcomp[b] * model.body_mass[b] * build.scene.gravity
         if model.body_weldid[b] == 0 or not np.any(lift):
             continue
-        name = build.names.new(f"{name_of(model.body(b), 'body')}:gravcomp", "force")
+        name = build.names.new(f"{name_of(model, 'body', int(b))}:gravcomp", "force")
         force = forces.Force(lift, anchor=build.data.xipos[b])
         build.scene.add_force(force, build.carrier(int(b)), name=name)
 
@@ -214,9 +213,9 @@ def _finished(build: Build, m, links, covers, restitution: float) -> Model:
     return Model(
         scene=build.scene,
         report=build.report,
-        bodies={name_of(m.body(b), "body"): build.carrier(b) for b in range(m.nbody)},
-        joints={name_of(m.joint(j), "joint"): c for j, c in build.coordinates.items()},
-        geoms={name_of(m.geom(g), "geom"): part for g, part in sorted(build.geoms.items())},
+        bodies={name_of(m, "body", b): build.carrier(b) for b in range(m.nbody)},
+        joints={name_of(m, "joint", j): c for j, c in build.coordinates.items()},
+        geoms={name_of(m, "geom", g): part for g, part in sorted(build.geoms.items())},
         restitution=restitution,
         mujoco=m,
         _start=build.data.qpos.copy(),

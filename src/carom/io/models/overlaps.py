@@ -6,12 +6,13 @@ import numpy as np
 
 from carom.io.models.build import Build
 from carom.io.models.links import Link
-from carom.io.models.needs import need_mujoco
+from carom.io.models.report import need_mujoco
 from carom.io.models.solids import Solid
 from carom.io.models.state import place
 from carom.io.models.touching import Filter
-from carom.scene.bodies import Body, make_body
-from carom.scene.contacts import overlap
+from carom.scene.bodies import Body
+from carom.scene.contacts import far, overlap
+from carom.scene.contacts import place as place_of
 from carom.scene.shapes import Shape
 
 ROUNDS = 20
@@ -49,11 +50,10 @@ def _deepest(build: Build, tree, covers: Covers, standing, rules: Filter):
         shape, geoms = covers[link.body]
         if not geoms:
             continue
-        body = make_body(
-            0, link.name, shape, 1.0, None, (1, 1, 1), *pose(build, link), still, still
-        )
+        body = Body(0, link.name, shape, 1.0, np.ones(3), *pose(build, link), still, still)
         for solid in standing:
-            if rules.between(geoms, solid.geoms).friction is None or not near(body, solid.part):
+            apart = far(body, solid.part, body.position, place_of(solid.part))
+            if apart or rules.between(geoms, solid.geoms).friction is None:
                 continue
             depth, normal = overlap(body, solid.part)
             if depth > deepest:
@@ -65,13 +65,3 @@ def pose(build: Build, link: Link) -> tuple[np.ndarray, np.ndarray]:
     """Return position of the mass centre and orientation of a link in the world."""
     axes = build.data.xmat[link.body].reshape(3, 3)
     return build.data.xpos[link.body] + axes @ link.centre, build.data.xquat[link.body]
-
-
-def near(body: Body, other) -> bool:
-    """Return whether the bounding spheres of the two overlap."""
-    assert body.shape is not None
-    if not isinstance(other, Body):
-        return float((body.position - other.point) @ other.normal) <= body.shape.size
-    assert other.shape is not None
-    reach = body.shape.size + other.shape.size
-    return float(np.linalg.norm(body.position - other.position)) <= reach

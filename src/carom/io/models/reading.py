@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from carom.io.models.limits import check_model, drop_sizes, parsed
-from carom.io.models.needs import need_mujoco
-from carom.io.models.report import Report
+from carom.io.models.report import Report, need_mujoco
 from carom.io.models.urdf import prepared
 
 READ = ("body_", "jnt_", "dof_", "geom_", "eq_", "pair_", "qpos", "mesh_vert", "key_q")  # arrays

@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from carom import checks
+
+
+def need_mujoco() -> Any:
+    """Return the module ``mujoco``, or say how to install it."""
+    return checks.need("mujoco", "load_model", "models")
+
 
 SHOWN = 4  # names of elements that are printed before "and 17 more"
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.io.models.needs import need_mujoco
+from carom.io.models.report import need_mujoco
 
 
 class Friction(NamedTuple):

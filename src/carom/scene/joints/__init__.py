@@ -16,21 +16,20 @@ from carom.scene.joints.pairs import Spherical as Spherical
 from carom.scene.joints.pairs import Revolute as Revolute
 from carom.scene.joints.pairs import Fixed as Fixed
 from carom.scene.joints.pairs import Prismatic as Prismatic
-from carom.scene.joints.distance import Distance as Distance
+from carom.scene.joints.special import Distance as Distance
 from carom.scene.joints.rolling import KnifeEdge as KnifeEdge
 from carom.scene.joints.pairs import Cylindrical as Cylindrical
-from carom.scene.joints.universal import Universal as Universal
+from carom.scene.joints.special import Universal as Universal
 from carom.scene.joints.pairs import Planar as Planar
 from carom.scene.joints.pairs import PointOnLine as PointOnLine
 from carom.scene.joints.pairs import PointOnPlane as PointOnPlane
-from carom.scene.joints.screw import Screw as Screw
+from carom.scene.joints.special import Screw as Screw
 from carom.scene.joints.rolling import RollingSphere as RollingSphere
 from carom.scene.joints.rolling import RollingDisc as RollingDisc
 # isort: on
 
 from carom.scene.joints.definition import JointDefinition as JointDefinition
 from carom.scene.joints.joint import Joint as Joint
-from carom.scene.joints.joint import make_joint as make_joint
 
 JOINTS = subclasses_in(globals(), JointDefinition)
 

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from carom.checks import listed, shown
+from carom.checks import finite_array, listed, shown
+from carom.fields import keep
 from carom.geometry.attitude import attitude
 from carom.scene.bodies import Body, Ground
 from carom.scene.joints.definition import JointDefinition
 from carom.scene.joints.rolling import KnifeEdge, RollingDisc, RollingSphere
-from carom.scene.values import in_scene, point
+from carom.scene.values import in_scene
 
 
 @in_scene
@@ -39,6 +40,26 @@ class Joint:
     child: Body
     frames: tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]] | None = None
 
+    def __post_init__(self):
+        if isinstance(self.definition, KnifeEdge) and not isinstance(self.parent, Ground):
+            raise ValueError(
+                f"parent of a KnifeEdge must be carom.GROUND, got {shown(self.parent)}"
+            )
+        parent, child = self.frames or (None, None)
+        if (parent is None) != (child is None):
+            raise ValueError(
+                f"parent_frame and child_frame must be given together, got {shown(parent)} and {shown(child)}"
+            )
+        if parent is None:
+            keep(self, frames=None)
+            return
+        if isinstance(self.definition, (RollingSphere, RollingDisc)):
+            raise ValueError(
+                f"parent_frame must be left out of a {self.kind}, which is placed in the world, "
+                f"got {shown(parent)}"
+            )
+        keep(self, frames=(frame("parent_frame", parent), frame("child_frame", child)))
+
     def anchor(self) -> np.ndarray:
         """Return the anchor (3,): of the definition, or the child's mass centre, or the origin of the frame."""
         own = getattr(self.definition, "anchor", None)
@@ -55,26 +76,6 @@ class Joint:
         return f"Joint({self.name!r}, {self.kind}, {self.parent.name!r} -> {self.child.name!r})"
 
 
-def make_joint(index, name, definition, parent, child, parent_frame, child_frame) -> Joint:
-    """Return a checked `Joint`; the arguments are those of `Scene.add_joint`."""
-    if isinstance(definition, KnifeEdge) and not isinstance(parent, Ground):
-        raise ValueError(f"parent of a KnifeEdge must be carom.GROUND, got {shown(parent)}")
-    if (parent_frame is None) != (child_frame is None):
-        raise ValueError(
-            f"parent_frame and child_frame must be given together, got {shown(parent_frame)} and "
-            f"{shown(child_frame)}"
-        )
-    if parent_frame is None:
-        return Joint(index, name, definition, parent, child)
-    if isinstance(definition, (RollingSphere, RollingDisc)):
-        raise ValueError(
-            f"parent_frame must be left out of a {type(definition).__name__}, which is placed in the world, "
-            f"got {shown(parent_frame)}"
-        )
-    frames = (frame("parent_frame", parent_frame), frame("child_frame", child_frame))
-    return Joint(index, name, definition, parent, child, frames)
-
-
 def frame(name: str, value) -> tuple[np.ndarray, np.ndarray]:
     """Return a frame of a body: position (3,) and unit quaternion (4,)."""
     pair = listed(name, value, "two, (position (3,), orientation (4,))")
@@ -83,7 +84,7 @@ def frame(name: str, value) -> tuple[np.ndarray, np.ndarray]:
             f"{name} must be a pair (position (3,), orientation (4,)), got {shown(value)}"
         )
     position, orientation = pair
-    position = point(f"{name} position", position)
+    position = finite_array(f"{name} position", position, (3,))
     orientation = attitude(f"{name} orientation", orientation)
     for array in (position, orientation):
         array.setflags(write=False)

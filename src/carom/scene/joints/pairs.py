@@ -4,88 +4,69 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import ArrayLike
-
-from carom import arguments
-from carom.checks import unit_vector
+from carom import arguments, fields
+from carom.fields import Vector, VectorOrNone
 from carom.scene.joints.definition import JointDefinition
-from carom.scene.values import keep, optional_point, point
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class Revolute(JointDefinition):
     """A hinge: the bodies have the point `anchor` (3,) in common and rotate only about `axis` (3,)."""
 
     guide, turn = "point", "axis"
     coordinates = ("turn",)
 
-    anchor: np.ndarray
-    axis: np.ndarray
-
-    def __init__(self, anchor: ArrayLike, axis: ArrayLike):
-        keep(self, anchor=point("anchor", anchor), axis=unit_vector("axis", axis))
+    anchor: Vector = fields.vector()
+    axis: Vector = fields.direction()
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class Spherical(JointDefinition):
     """A ball joint: the bodies have the point `anchor` (3,) in common and rotate freely about it."""
 
     guide, turn = "point", "ball"
 
-    anchor: np.ndarray
-
-    def __init__(self, anchor: ArrayLike):
-        keep(self, anchor=point("anchor", anchor))
+    anchor: Vector = fields.vector()
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class Fixed(JointDefinition):
     """A weld: no relative motion. Reactions are reported at `anchor` (3,)."""
 
     guide, turn = "point", "rigid"
 
-    anchor: np.ndarray | None
-
-    def __init__(self, anchor: ArrayLike | None = None):
-        keep(self, anchor=optional_point("anchor", anchor))
+    anchor: VectorOrNone = fields.vector(None)
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class Prismatic(JointDefinition):
     """A slider: the child moves along `axis` (3,), which is fixed in the parent, without rotation."""
 
     guide, turn = "line", "rigid"
     coordinates = ("slide",)
 
-    axis: np.ndarray
-    anchor: np.ndarray | None
-
-    def __init__(self, axis: ArrayLike, anchor: ArrayLike | None = None):
-        keep(self, axis=unit_vector("axis", axis), anchor=optional_point("anchor", anchor))
+    axis: Vector = fields.direction()
+    anchor: VectorOrNone = fields.vector(None)
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class Cylindrical(JointDefinition):
     """A sleeve: the child rotates about, and slides along, the line through `anchor` (3,) along `axis` (3,)."""
 
     guide, turn = "line", "axis"
     coordinates = ("turn", "slide")
 
-    anchor: np.ndarray
-    axis: np.ndarray
-
-    def __init__(self, anchor: ArrayLike, axis: ArrayLike):
-        keep(self, anchor=point("anchor", anchor), axis=unit_vector("axis", axis))
+    anchor: Vector = fields.vector()
+    axis: Vector = fields.direction()
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class Planar(JointDefinition):
     """A plate on a table: the child slides perpendicular to `normal` (3,) and rotates about it.
 
@@ -95,15 +76,12 @@ class Planar(JointDefinition):
     guide, turn = "plane", "axis"
     coordinates = ("slide", "slide", "turn")
 
-    normal: np.ndarray
-    anchor: np.ndarray | None
-
-    def __init__(self, normal: ArrayLike, anchor: ArrayLike | None = None):
-        keep(self, normal=unit_vector("normal", normal), anchor=optional_point("anchor", anchor))
+    normal: Vector = fields.direction()
+    anchor: VectorOrNone = fields.vector(None)
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class PointOnLine(JointDefinition):
     """A bead on a wire: the point `anchor` (3,) of the child stays on a line of the parent.
 
@@ -113,15 +91,12 @@ class PointOnLine(JointDefinition):
     guide, turn = "line", "ball"
     coordinates = ("slide",)
 
-    anchor: np.ndarray
-    direction: np.ndarray
-
-    def __init__(self, anchor: ArrayLike, direction: ArrayLike):
-        keep(self, anchor=point("anchor", anchor), direction=unit_vector("direction", direction))
+    anchor: Vector = fields.vector()
+    direction: Vector = fields.direction()
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class PointOnPlane(JointDefinition):
     """A pin in a slot between two plates: the point `anchor` (3,) of the child stays in a plane of the parent.
 
@@ -132,8 +107,5 @@ class PointOnPlane(JointDefinition):
     guide, turn = "plane", "ball"
     coordinates = ("slide", "slide")
 
-    anchor: np.ndarray
-    normal: np.ndarray
-
-    def __init__(self, anchor: ArrayLike, normal: ArrayLike):
-        keep(self, anchor=point("anchor", anchor), normal=unit_vector("normal", normal))
+    anchor: Vector = fields.vector()
+    normal: Vector = fields.direction()

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import arguments
-from carom.checks import number, shown, unit_vector
+from carom import arguments, fields
+from carom.checks import finite_array, unit_vector
+from carom.fields import Number, Vector, keep
 from carom.scene.joints.definition import JointDefinition
-from carom.scene.values import keep, point
+from carom.scene.values import shown
 
 PARALLEL = 1e-9  # sine of the angle between two directions below which they count as parallel
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class KnifeEdge(JointDefinition):
     """A blade (nonholonomic): a point of the child cannot move sideways over the ground.
 
@@ -38,19 +39,18 @@ class KnifeEdge(JointDefinition):
     guide, turn = "own", "own"
     rows, nonholonomic, in_trees = 1, 1, False
 
-    anchor: np.ndarray
-    direction: np.ndarray
-    normal: np.ndarray
-    lateral: np.ndarray
+    anchor: Vector = fields.vector()
+    direction: Vector = fields.direction()
+    normal: Vector = fields.direction((0, 0, 1))
+    lateral: np.ndarray = field(init=False)
 
-    def __init__(self, anchor: ArrayLike, direction: ArrayLike, normal: ArrayLike = (0, 0, 1)):
-        along, up = unit_vector("direction", direction), unit_vector("normal", normal)
-        across = np.cross(up, along)
+    def __post_init__(self):
+        across = np.cross(self.normal, self.direction)
         if not np.linalg.norm(across) > PARALLEL:
             raise ValueError(
-                f"direction must not be parallel to normal, got {shown(direction)} and {shown(normal)}"
+                f"direction must not be parallel to normal, got {shown(self.direction)} and "
+                f"{shown(self.normal)}"
             )
-        keep(self, anchor=point("anchor", anchor), direction=along, normal=up)
         keep(self, lateral=unit_vector("lateral", across))
 
     def frame(self, flipped: bool = False) -> np.ndarray:
@@ -60,7 +60,7 @@ class KnifeEdge(JointDefinition):
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class RollingSphere(JointDefinition):
     """A ball that rolls without slip on a plane of the parent and cannot leave it (nonholonomic).
 
@@ -76,16 +76,12 @@ class RollingSphere(JointDefinition):
     guide, turn = "own", "ball"
     rows, nonholonomic = 3, 2
 
-    radius: float
-    normal: np.ndarray
-
-    def __init__(self, radius: float, normal: ArrayLike = (0, 0, 1)):
-        radius = number("radius", radius, above=0.0, unit="m")
-        keep(self, radius=radius, normal=unit_vector("normal", normal))
+    radius: Number = fields.number(above=0.0, unit="m")
+    normal: Vector = fields.direction((0, 0, 1))
 
     def contact(self, centre: ArrayLike) -> np.ndarray:
         """Return the contact point (3,) for a centre at `centre`."""
-        return point("centre", centre) - self.radius * self.normal
+        return finite_array("centre", centre, (3,)) - self.radius * self.normal
 
     def anchors(self, anchor, child) -> tuple[np.ndarray, np.ndarray]:
         """Return the contact point on the plane, and the centre."""
@@ -97,7 +93,7 @@ class RollingSphere(JointDefinition):
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class RollingDisc(JointDefinition):
     """A thin disc or wheel that rolls on a plane of the parent without slip (nonholonomic).
 
@@ -118,24 +114,21 @@ class RollingDisc(JointDefinition):
     guide, turn = "own", "ball"
     rows, nonholonomic = 3, 2
 
-    radius: float
-    axis: np.ndarray
-    normal: np.ndarray
+    radius: Number = fields.number(above=0.0, unit="m")
+    axis: Vector = fields.direction()
+    normal: Vector = fields.direction((0, 0, 1))
 
-    def __init__(self, radius: float, axis: ArrayLike, normal: ArrayLike = (0, 0, 1)):
-        radius = number("radius", radius, above=0.0, unit="m")
-        along, up = unit_vector("axis", axis), unit_vector("normal", normal)
-        if not np.linalg.norm(np.cross(along, up)) > PARALLEL:
+    def __post_init__(self):
+        if not np.linalg.norm(np.cross(self.axis, self.normal)) > PARALLEL:
             raise ValueError(
-                f"axis must not be parallel to normal (a disc that lies flat has no lowest point), got "
-                f"{shown(axis)} and {shown(normal)}"
+                "axis must not be parallel to normal (a disc that lies flat has no lowest point), got "
+                f"{shown(self.axis)} and {shown(self.normal)}"
             )
-        keep(self, radius=radius, axis=along, normal=up)
 
     def contact(self, centre: ArrayLike) -> np.ndarray:
         """Return the contact point (3,) for a centre at `centre`."""
         down = self.normal - (self.normal @ self.axis) * self.axis
-        return point("centre", centre) - self.radius * down / np.linalg.norm(down)
+        return finite_array("centre", centre, (3,)) - self.radius * down / np.linalg.norm(down)
 
     def frame(self, flipped: bool = False) -> np.ndarray:
         """Return axes as columns: the normal of the plane, the axis of the disc, and their cross product."""

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
+from carom.fields import keep
 from carom.geometry import quaternion
 from carom.geometry.attitude import attitude
 from carom.scene.pieces import IDENTITY, Piece, Shape
-from carom.scene.values import keep, point
 
 
 @arguments.known
@@ -71,7 +71,7 @@ class Compound(Shape):
                 raise ValueError(
                     f"masses must be left out if centroid is given, got {checks.shown(masses)}"
                 )
-            middle, spread = point("centroid", centroid), None
+            middle, spread = checks.finite_array("centroid", centroid, (3,)), None
         arms = positions - middle
         size = max(float(np.linalg.norm(a)) + s.size for a, s in zip(arms, shapes))
         pieces = [p.placed(a, q) for a, (s, _, q) in zip(arms, placed) for p in s.pieces]
@@ -91,20 +91,13 @@ class Compound(Shape):
         """Radius of the ball that rounds all parts, if it is the same for all [m]."""
         return self.pieces[0].radius
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg].
-
-        Raises
-        ------
-        ValueError
-            If `centroid` was given, because then the mass distribution is unknown.
-        """
+    def _inertia(self, mass: float) -> np.ndarray:
         if self._spread is None:
             raise ValueError(
                 f"inertia must be given with {self!r}, whose centroid was given: its mass distribution is "
                 "unknown"
             )
-        return checks.mass("mass", mass, zero=True) * self._spread
+        return mass * self._spread
 
 
 def _spread_of(placed, arms, weights) -> np.ndarray:
@@ -136,7 +129,7 @@ def _part(number: int, part) -> tuple:
         )
     shape, position, *turn = part
     checks.instance(f"{name}[0]", shape, (Shape,), "; a shape is needed")
-    position = point(f"{name}[1]", position)
+    position = checks.finite_array(f"{name}[1]", position, (3,))
     orientation = attitude(f"{name}[2]", turn[0] if turn else IDENTITY)
     for array in (position, orientation):
         array.setflags(write=False)

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
+from carom.fields import keep
 from carom.scene.moments import about_centroid, of_swollen
 from carom.scene.pieces import Piece, Shape
-from carom.scene.values import keep
 
 FLAT = 1e-10  # thickness relative to the largest extent below which points count as coplanar
 SAME_FACE = 1e-8  # sine of the angle between triangles that are one face: rounding, not shape
@@ -96,9 +96,7 @@ class Convex(Shape):
         touching = {"vertices": self.vertices, "faces": self.faces}
         return (Piece("hull", half, self.radius, extent=self.size, **touching),)
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the centroid, for a `mass` [kg]."""
-        mass = checks.mass("mass", mass, zero=True)
+    def _inertia(self, mass: float) -> np.ndarray:
         return mass * (np.trace(self._spread) * np.eye(3) - self._spread)
 
 

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
+from carom.fields import keep
 from carom.scene.moments import about_centroid, of_triangles
 from carom.scene.pieces import Piece, Shape
 from carom.scene.shapes.convex import Convex, hull_of
-from carom.scene.values import keep
 
 THIN = 1e-12  # height of a triangle relative to the size of the mesh below which it is degenerate
 BULGE = 1e-9  # height of a vertex above a face, relative to the size, that is rounding
@@ -108,9 +108,7 @@ class Mesh(Shape):
             )
         return self._pieces
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the centroid, for a `mass` [kg]."""
-        mass = checks.mass("mass", mass, zero=True)
+    def _inertia(self, mass: float) -> np.ndarray:
         return mass * (np.trace(self._spread) * np.eye(3) - self._spread)
 
 

@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from carom import arguments, checks
+from carom import arguments
+from carom.fields import Number, length
 from carom.scene.pieces import Piece, Shape
-from carom.scene.values import keep
 
 
 @arguments.known
@@ -18,10 +18,7 @@ from carom.scene.values import keep
 class Sphere(Shape):
     """A solid ball of `radius` [m], above 0."""
 
-    radius: float
-
-    def __post_init__(self):
-        keep(self, radius=checks.length("radius", self.radius))
+    radius: Number = length()
 
     @property
     def volume(self) -> float:
@@ -38,9 +35,7 @@ class Sphere(Shape):
         """One piece: a point, rounded by a ball."""
         return (Piece("point", radius=self.radius, extent=self.size),)
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = checks.mass("mass", mass, zero=True)
+    def _inertia(self, mass: float) -> np.ndarray:
         return np.eye(3) * (0.4 * mass * self.radius**2)
 
 
@@ -58,22 +53,19 @@ class Box(Shape):
         inertia are those of the rounded solid.
     """
 
-    lx: float
-    ly: float
-    lz: float
-    radius: float = 0.0
+    lx: Number = length()
+    ly: Number = length()
+    lz: Number = length()
+    radius: Number = length(0.0, zero=True)
 
     def __post_init__(self):
-        edges = {"lx": self.lx, "ly": self.ly, "lz": self.lz}
-        keep(self, **{k: checks.length(k, edge) for k, edge in edges.items()})
         least = min(("lx", "ly", "lz"), key=lambda k: getattr(self, k))
-        radius, most = checks.length("radius", self.radius, zero=True), getattr(self, least) / 2
-        if not radius <= most:
+        most = getattr(self, least) / 2
+        if not self.radius <= most:
             raise ValueError(
                 f"radius must be finite and at least 0 and at most {most:g} [m], half of {least}, "
-                f"got {checks.shown(self.radius)}"
+                f"got {self.radius}"
             )
-        keep(self, radius=radius)
 
     def __repr__(self) -> str:
         radius = f", radius={self.radius!r}" if self.radius else ""
@@ -105,9 +97,7 @@ class Box(Shape):
         kind = "box" if np.any(half > 0) else "point"
         return (Piece(kind, half, self.radius, extent=self.size),)
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = checks.mass("mass", mass, zero=True)
+    def _inertia(self, mass: float) -> np.ndarray:
         if not self.radius:
             x, y, z = self.lx**2 / 12, self.ly**2 / 12, self.lz**2 / 12
         else:
@@ -122,13 +112,9 @@ class Box(Shape):
 class Ellipsoid(Shape):
     """A solid ellipsoid with semi-axes `a`, `b`, `c` [m] along body x, y, z, each above 0."""
 
-    a: float
-    b: float
-    c: float
-
-    def __post_init__(self):
-        axes = {"a": self.a, "b": self.b, "c": self.c}
-        keep(self, **{k: checks.length(k, axis) for k, axis in axes.items()})
+    a: Number = length()
+    b: Number = length()
+    c: Number = length()
 
     @property
     def volume(self) -> float:
@@ -147,9 +133,7 @@ class Ellipsoid(Shape):
         inner = min(axes) ** 2 / max(axes)
         return (Piece("ellipsoid", np.array(axes), inner=inner, extent=self.size),)
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = checks.mass("mass", mass, zero=True)
+    def _inertia(self, mass: float) -> np.ndarray:
         x, y, z = self.a**2, self.b**2, self.c**2
         return np.diag([y + z, x + z, x + y]) * (mass / 5)
 

@@ -9,9 +9,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from carom import arguments, checks
+from carom import arguments, fields
+from carom.fields import Number
 from carom.scene.pieces import Piece, Shape
-from carom.scene.values import keep
 
 
 @arguments.known
@@ -27,12 +27,8 @@ class Capsule(Shape):
         Length of the straight part [m], above 0; the total length is ``length + 2 * radius``.
     """
 
-    radius: float
-    length: float
-
-    def __post_init__(self):
-        keep(self, radius=checks.length("radius", self.radius))
-        keep(self, length=checks.length("length", self.length))
+    radius: Number = fields.length()
+    length: Number = fields.length()
 
     @property
     def volume(self) -> float:
@@ -50,9 +46,7 @@ class Capsule(Shape):
         half = np.array([0.0, 0.0, 0.5 * self.length])
         return (Piece("segment", half, self.radius, extent=self.size),)
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = checks.mass("mass", mass, zero=True)
+    def _inertia(self, mass: float) -> np.ndarray:
         r, l = self.radius, self.length
         straight = mass * l / (l + 4 / 3 * r)
         ends = mass - straight
@@ -66,12 +60,8 @@ class Capsule(Shape):
 class Cylinder(Shape):
     """A solid cylinder of `radius` and `length` [m], each above 0, along body z."""
 
-    radius: float
-    length: float
-
-    def __post_init__(self):
-        keep(self, radius=checks.length("radius", self.radius))
-        keep(self, length=checks.length("length", self.length))
+    radius: Number = fields.length()
+    length: Number = fields.length()
 
     @property
     def volume(self) -> float:
@@ -89,9 +79,7 @@ class Cylinder(Shape):
         half = np.array([self.radius, self.radius, 0.5 * self.length])
         return (Piece("cylinder", half, extent=self.size),)
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = checks.mass("mass", mass, zero=True)
+    def _inertia(self, mass: float) -> np.ndarray:
         r, l = self.radius, self.length
         across = l**2 / 12 + r**2 / 4
         return mass * np.diag([across, across, r**2 / 2])
@@ -113,19 +101,16 @@ class Disc(Shape):
         it: m (R^2 + r^2) / 2 about z, half of that about x and y.
     """
 
-    radius: float
-    inner_radius: float = 0.0
+    radius: Number = fields.length()
+    inner_radius: Number = fields.length(0.0, zero=True)
     volume: ClassVar[float] = 0.0  # [m^3]
 
     def __post_init__(self):
-        keep(self, radius=checks.length("radius", self.radius))
-        inner = checks.length("inner_radius", self.inner_radius, zero=True)
-        if not inner <= self.radius:
+        if not self.inner_radius <= self.radius:
             raise ValueError(
                 f"inner_radius must be finite and at least 0 and at most {self.radius:g} [m], the radius, "
-                f"got {checks.shown(self.inner_radius)}"
+                f"got {self.inner_radius}"
             )
-        keep(self, inner_radius=inner)
 
     @property
     def size(self) -> float:
@@ -137,8 +122,6 @@ class Disc(Shape):
         """One piece: a cylinder of length 0."""
         return (Piece("cylinder", np.array([self.radius, self.radius, 0.0]), extent=self.size),)
 
-    def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = checks.mass("mass", mass, zero=True)
+    def _inertia(self, mass: float) -> np.ndarray:
         across = mass * (self.radius**2 + self.inner_radius**2) / 4
         return np.diag([across, across, 2 * across])

@@ -9,11 +9,11 @@ from itertools import product
 
 import numpy as np
 
+from carom.fields import keep
 from carom.geometry.attitude import ROUNDED
 from carom.scene.bodies import Body
 from carom.scene.contacts import Contact, check_overlap, far, place
 from carom.scene.scene import Scene
-from carom.scene.values import keep
 
 STATE_FIELDS = {"position": 3, "orientation": 4, "velocity": 3, "angular_velocity": 3}
 POSES = ("position", "orientation")

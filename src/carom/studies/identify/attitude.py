@@ -73,7 +73,7 @@ def principal_axes(inertia):
     """Return principal moments (3,) and quaternion principal to body axes; (None, None) if w is constant."""
     if inertia is None:
         return None, None
-    from carom.scene.inertia import inertia_matrix
+    from carom.scene.bodies import inertia_matrix
 
     matrix = inertia_matrix(inertia)
     moments, axes = np.linalg.eigh(matrix)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from carom import checks
-from carom.scene.values import keep
+from carom.fields import keep
 from carom.studies.identify.varied import KNOWN
 
 

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import checks
+from carom.fields import keep
 from carom.geometry import quaternion
 from carom.geometry.attitude import ROUNDED, quaternions
-from carom.scene.values import keep
 
 
 class State(NamedTuple):

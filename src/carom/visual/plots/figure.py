@@ -132,7 +132,7 @@ def contact_names(solution) -> list[str]:
     """Return the names of all contacts, in their order."""
     if not is_bodies(solution):
         return [contact.name for contact in solution.system.contacts]
-    from carom.results.contact_names import contact_names as names
+    from carom.results.names import contact_names as names
 
     return names(solution.scene, solution.pairs).name.tolist()
 
