@@ -16,6 +16,7 @@ from carom.results.accuracy import sentences
 from carom.results.constraint_rows import constrained, row_units
 from carom.results.contact_names import contact_names
 from carom.results.event_tables import ContactTable, EventTable, ImpactTable, contact_table
+from carom.results.impact_remarks import remarks
 from carom.results.ledger import Ledger
 from carom.scene.forces import AppliedForce
 from carom.scene.materials import IMPACT_LAWS
@@ -49,7 +50,10 @@ def assemble(run, status: Status) -> dict:
         "angular_velocity": np.array(state["w"]),
         "held_residual": np.array(series["residual"]),
         "status": status,
-        "warnings": sentences(run.watch[0], run.scene, run.pairs),
+        "warnings": (
+            *sentences(run.watch[0], run.scene, run.pairs),
+            *remarks(_in_time(rec.impact), _in_time(rec.event), run),
+        ),
         "stats": {
             "steps": clock["step"], "trial_steps": clock["trials"], "rejected": clock["rejected"],
             "cuts": clock["cuts"], "located": clock["located"], "impacts": clock["struck"],

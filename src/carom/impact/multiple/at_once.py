@@ -127,11 +127,7 @@ def _once(k, work, cones, turn):
     cones.mismatch[ENOUGH] = 0.0
     allow(cones, k)
     status, _, _ = solve_cones(k, work.matrix[MASS], u, mu, kind, heading, impulse, cones)
-    change = _take(k, work, 1.0)
-    if status != SOLVED and change > 0.0:  # take the part of the impulse with the least energy
-        part = _best_part(k, work, before, impulse)
-        _take(k, work, part - 1.0)
-        change = _change(k, work, before, impulse, part)
+    change = _take(k, work, status == SOLVED)
     for i in range(k):
         c = work.contact[i]
         a = 3 * i
@@ -147,28 +143,27 @@ def _once(k, work, cones, turn):
 
 
 @kernel
-def _take(k, work, part):
-    """Add a part of the impulse; return the change of energy, which is correct for the whole impulse."""
-    impulse = work.vector[TRY]
-    for i in range(3 * k):
-        work.vector[P, i] += part * impulse[i]
-    set_velocity(k, work)
-    return _change(k, work, work.vector[SCRATCH], impulse, 1.0)
+def _take(k, work, solved):
+    """Add the impulse P, or if it is no solution and adds energy its part with the least; return the change.
 
-
-@kernel
-def _change(k, work, before, impulse, part):
-    total, u = 0.0, work.vector[U]
-    for i in range(3 * k):
-        total += part * impulse[i] * 0.5 * (before[i] + u[i])
-    return total
-
-
-@kernel
-def _best_part(k, work, before, impulse):
-    """Return the s in [0, 1] that minimizes the energy s P.u + s^2 P.W P / 2."""
-    slope, curve, u = 0.0, 0.0, work.vector[U]
+    The energy of a part s is s P.u + s^2 P.W P/2, with u before.
+    """
+    before, impulse, slope, curve, part = work.vector[SCRATCH], work.vector[TRY], 0.0, 0.0, 1.0
+    _add(k, work, 1.0)
     for i in range(3 * k):
         slope += impulse[i] * before[i]
-        curve += impulse[i] * (u[i] - before[i])
-    return min(1.0, max(0.0, -slope / curve)) if curve > 0.0 else 0.0
+        curve += impulse[i] * (work.vector[U, i] - before[i])
+    if not solved and slope + 0.5 * curve > 0.0:
+        part = min(1.0, max(0.0, -slope / curve)) if curve > 0.0 else 0.0
+        _add(k, work, part - 1.0)
+        for i in range(3 * k):
+            impulse[i] *= part
+    return part * (slope + 0.5 * part * curve)
+
+
+@kernel
+def _add(k, work, part):
+    """Add a part of the impulse."""
+    for i in range(3 * k):
+        work.vector[P, i] += part * work.vector[TRY, i]
+    set_velocity(k, work)

@@ -94,13 +94,13 @@ def resolve_contacts(contacts, settings, workspace, out):
 @kernel
 def _together(contacts, scale, settings, workspace, out):
     """Resolve an impact of contacts that strike together; `scale` is the greatest velocity of all contacts."""
-    k, u, still, result = contacts.k, contacts.u, _TOUCHES * scale, out.summary[0]
+    k, still, result = contacts.k, _TOUCHES * scale, out.summary[0]
     _clear(contacts, out)
     work = workspace.work
     index, clean = work.index, work.matrix[CLEAN]
     acting = by_reference(
         CornerContacts(
-            k, contacts.others, clean, u, work.vector[FRICTION], contacts.restitution, contacts.law,
+            k, contacts.others, clean, contacts.u, work.vector[FRICTION], contacts.restitution, contacts.law,
             contacts.stiffness, contacts.pair,
         )
     )  # fmt: skip
