@@ -1,15 +1,15 @@
-"""Impacts of masses far apart, kind by kind, at random: ratios from 1 to 1e12, light on heavy and heavy on light.
+"""Impacts of masses far apart, at random: ratios from 1 to 1e12, light on heavy and heavy on light.
 
     python benchmarks/mass_ratios.py all 50                 50 seeds of each kind
     python benchmarks/mass_ratios.py balls 1000 --most 1e8  one kind, ratios up to 1e8
     python benchmarks/mass_ratios.py rod 1 --first 17       one again
 
-What must be without a word in `warnings`: the run ends; after an impact no contact approaches faster than 1e-9 of
-the greatest speed in it, and the round-off of its own impulse, 1e-15 W_nn P (a light body between heavy ones gets the
-difference of two great impulses); an impact adds no energy, and takes none if e = 1 and mu = 0, at 1e-9 of the largest
-energy exchanged; e = 1 without friction keeps the total energy (1e-9 for free bodies, 1e-6 with joints); momentum
-is kept where nothing holds the bodies (1e-12). A line names a run that breaks one of these: "said" if it has a
-warning or is no success, otherwise "silent".
+What must be without a word in `warnings`: the run ends; after an impact no contact approaches faster than 1e-9
+of the greatest speed in it, and the round-off of its own impulse, 1e-15 W_nn P (a light body between heavy ones
+gets the difference of two great impulses); an impact adds no energy, and takes none if e = 1 and mu = 0, at
+1e-9 of the largest energy exchanged; e = 1 without friction keeps the total energy (1e-9 for free bodies, 1e-6
+with joints); momentum is kept where nothing holds the bodies (1e-12). A line names a run that breaks one of
+these: "said" if it has a warning or is no success, otherwise "silent".
 """
 
 from __future__ import annotations
@@ -83,7 +83,12 @@ def row(rng, most):
     for i, mass in enumerate(masses(rng, int(rng.integers(2, 5)), most)):
         start = (-0.05, 0, 0) if i == 0 else (0, 0, 0)
         speed = (1.0 if i == 0 else 0.0, 0, 0)
-        scene.add_body(carom.Sphere(SIZE), mass=mass, position=np.add(start, (2 * i * SIZE, 0, 0)), velocity=speed)
+        scene.add_body(
+            carom.Sphere(SIZE),
+            mass=mass,
+            position=np.add(start, (2 * i * SIZE, 0, 0)),
+            velocity=speed,
+        )
     return scene, e, mu
 
 
@@ -101,7 +106,7 @@ def pendulum(rng, most):
 
 def rod(rng, most):
     """Let a rod on a hinge, with another one on it, fall into its stop."""
-    scene, e, mu = scene_with(rng, floor=False)
+    scene, e, _ = scene_with(rng, floor=False)
     first, second = masses(rng, 2, most)
     arm = scene.add_body(carom.Box(0.4, 0.02, 0.02), mass=first, position=(0.2, 0, 0))
     end = scene.add_body(carom.Box(0.4, 0.02, 0.02), mass=second, position=(0.6, 0, 0))
@@ -160,7 +165,9 @@ def main() -> int:
         make, duration = KINDS[kind]
         count = Counter()
         for seed in range(given.first, given.first + given.count):
-            scene, e, mu = make(np.random.default_rng([43, list(KINDS).index(kind), seed]), given.most)
+            scene, e, mu = make(
+                np.random.default_rng([43, list(KINDS).index(kind), seed]), given.most
+            )
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 s = carom.simulate(scene, duration, throw=False)
@@ -169,7 +176,11 @@ def main() -> int:
             count[said if found else "right"] += 1
             if found:
                 m = [body.mass for body in scene.bodies]
-                print(f"{kind} {seed}: {said}: m = {np.array(m)} e = {e:.2g} mu = {mu:.2g}", Counter(f.rsplit(" ", 1)[0] for f in found), max(found, key=len))
+                print(
+                    f"{kind} {seed}: {said}: m = {np.array(m)} e = {e:.2g} mu = {mu:.2g}",
+                    Counter(f.rsplit(" ", 1)[0] for f in found),
+                    max(found, key=len),
+                )
         silent += count["silent"]
         print(f"## {kind}: {given.count} runs, {dict(count)}", flush=True)
     return int(silent > 0)

@@ -31,7 +31,9 @@ def slide(mu, e, tips, *, held=None, method="rk4"):
 
 def jammed(*arguments, **options):
     """The same, where the run has to say that it jams at once."""
-    with pytest.warns(carom.AccuracyWarning, match="1 persistent contacts and . impacts jam") as said:
+    with pytest.warns(
+        carom.AccuracyWarning, match="1 persistent contacts and . impacts jam"
+    ) as said:
         s = slide(*arguments, **options)
     assert "the first at t = 0 s of contact 'body1-half_space1'" in str(said[0].message)
     assert any("jam" in sentence for sentence in s.warnings)
