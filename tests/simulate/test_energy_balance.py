@@ -170,7 +170,7 @@ def test_what_newtons_law_gives_is_named():
         scene.add_contact(rod, floor, restitution=0.9, friction=0.8, impact_law=law)
         return carom.simulate(scene, 0.3, step=1e-3)
 
-    with pytest.warns(carom.AccuracyWarning, match="Newton's law of restitution"):
+    with pytest.warns(carom.AccuracyWarning, match="Newton's law with friction added"):
         newton = run("newton")
     assert newton.ledger.impacts[-1] > 0.05
     (said,) = newton.warnings  # the energy is 81/64 of that before

@@ -19,10 +19,7 @@ _ACTED = {
 
 
 def remarks(rows, events, run) -> tuple[str, ...]:
-    """Return a sentence for each kind of remarkable impact: how many there are, and the first of them.
-
-    `rows` are the records of impacts and `events` those of events of a run, both in the order of time.
-    """
+    """Return a sentence for each kind: how many impacts (`rows`) or `events` of a run, and the first."""
     names, jams = contact_names(run.scene, run.pairs).name, events[events["kind"] == r.JAMS]
     slides = rows[(rows["phases"] & JAM != 0) & ~np.isin(rows["time"], jams["time"])]
     said = _gains(rows, names, run)
@@ -50,22 +47,23 @@ def _place(row, names) -> str:
 def _gains(rows, names, run) -> list[str]:
     """Return a sentence about the energy that Newton's law with friction has added, if beyond the tolerance.
 
-    The records of one instant are one impact, whose energy is that of the relative velocities, u.W^-1 u/2.
+    Only an impact of a single point adds energy: several points return at most what they have absorbed. The
+    energy of an impact is that of its relative velocity, u.W^-1 u/2.
     """
     watch, contacts = run.watch[0], run.compiled.system.contacts
-    first = np.unique(rows["time"], return_index=True)[1]
-    gain = np.add.reduceat(rows["energy_change"], first)
-    number, where = np.unique(contacts["number"], return_index=True)
-    c = where[np.searchsorted(number, rows["contact"])]
-    may = np.isin(contacts["law"][c], laws.GAINING) & (contacts["friction"][c] > 0.0)
-    gained = np.flatnonzero((gain > 0.0) & np.logical_or.reduceat(may, first))
-    if not gain[gained].sum() > watch.tolerance * watch.exchanged:
+    gains = contacts[np.isin(contacts["law"], laws.GAINING) & (contacts["friction"] > 0.0)][
+        "number"
+    ]
+    own = rows[(rows["together"] == 1) & (rows["energy_change"] > 0.0)]
+    own = own[np.isin(own["contact"], gains)]
+    u, gain = own["before"][:, :, None], own["energy_change"]
+    part = 2.0 * gain / (u.transpose(0, 2, 1) @ np.linalg.pinv(own["W"]) @ u)[:, 0, 0]
+    own, gain, part = (column[part > watch.tolerance] for column in (own, gain, part))
+    if not gain.sum() > watch.tolerance * watch.exchanged:
         return []
-    k = gained[np.argmax(gain[gained])]
-    own = rows[first[k] : (*first, len(rows))[k + 1]]
-    energy = sum(0.5 * u @ np.linalg.pinv(W) @ u for u, W in zip(own["before"], own["W"]))
+    k = int(np.argmax(gain))
     return [
-        f"Newton's law of restitution with friction added energy in {len(gained)} impacts, at most "
-        f"{gain[k]:.3g} J {_place(own[np.argmax(own['energy_change'])], names)}, {gain[k] / energy:.2%} of the "
-        'energy of this impact. impact_law="stronge" cannot add any, nor can "poisson" at a single contact.'
+        f"Newton's law with friction added energy in {len(own)} impacts, at most {gain[k]:.3g} J "
+        f"{_place(own[k], names)}, {part[k]:.2%} of the energy of this impact. impact_law="
+        '"stronge" cannot add any, nor can "poisson" at a single contact.'
     ]
