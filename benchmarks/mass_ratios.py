@@ -113,7 +113,8 @@ def rod(rng, most):
     shoulder = scene.add_joint(joints.Revolute((0, 0, 0), axis=(0, 1, 0)), GROUND, arm)
     elbow = scene.add_joint(joints.Revolute((0.4, 0, 0), axis=(0, 1, 0)), arm, end)
     scene.add_stop(shoulder, upper=rng.uniform(0.2, 1.0), restitution=e)
-    scene.add_stop(elbow, lower=-0.3, upper=0.3, restitution=e)
+    scene.add_stop(elbow, lower=-0.3, restitution=e)
+    scene.add_stop(elbow, upper=0.3, restitution=e)
     return scene, e, 0.0
 
 
