@@ -128,7 +128,7 @@ def faults(kind: str, s: carom.Solution, e: float, mu: float) -> list[str]:
     """Return what the run breaks, with the amount."""
     found = [] if s.success else [s.status.name]
     impacts, m = s.impacts, np.array([body.mass for body in s.scene.bodies])
-    exchanged = max(np.ptp(s.potential_energy), s.kinetic_energy.max())
+    exchanged = max(np.ptp(s.potential_energy), s.kinetic_energy.max(), 1e-300)  # at rest: nothing
     elastic = e == 1.0 and mu == 0.0
     for time in np.unique(impacts.time):
         own = impacts.time == time
