@@ -156,9 +156,8 @@ def test_a_pile_in_a_box_of_static_walls():
     scene.set_contact_default(restitution=0.2, friction=0.4)
     run = carom.simulate(scene, 1.0, step=5e-3)
     assert run.success
-    assert (
-        len(run.warnings) <= 1
-    )  # pieces of steps may leave bodies in each other, by .0035 of a size here
+    # pieces of steps may leave bodies in each other, by .0035 of a size here
+    assert all("penetrates" in said or "as one contact problem" in said for said in run.warnings)
     inside = run.position[-1]
     assert np.all(np.abs(inside[:, :2]) < 0.45)
     assert np.all((inside[:, 2] > 0.049) & (inside[:, 2] < 0.6))

@@ -14,6 +14,9 @@ from carom.friction.operators import magnitude, sweep
 from carom.friction.residual import RELATIVE, ROUND_OFF
 
 _EPS = 1e-8  # weight of the proximal term
+# its weight where W has an eigenvalue below _EPS in a direction of the solution: each round removes the part
+# lambda/(lambda + eps) of the bias in that direction
+_LEAST_EPS = 1e-14
 _POLISH = 8  # greatest number of rounds, each with a new proximal centre
 _STARTS = 20  # greatest number of starting points
 _EXTRA = 2  # further starting points if the tolerance is satisfied, but not round-off; or a hundred times that
@@ -158,14 +161,18 @@ def polished(work, k, least_norm, patient):
     work.count[o.ROWS] = -1
     for i in range(3 * k):
         kept[i] = p[i]
-    goal, tolerance = 0.0, 0.0
+    goal, tolerance, eps = 0.0, 0.0, _EPS
     for _ in range(_POLISH):
-        newton(work, k, _EPS, patient)
+        newton(work, k, eps, patient)
         for i in range(k):
             n = 3 * i
             p[n], p[n + 1], p[n + 2] = project(work.contact[i], p[n], p[n + 1], p[n + 2])
         r, goal, tolerance = residual(work, k)
-        enough = r <= goal or not r < 0.5 * least or spent(work)
+        slow = not r < 0.5 * least
+        enough = r <= goal or (slow and (r <= tolerance or eps < _EPS)) or spent(work)
+        if slow and not enough:  # a soft direction of W: a light body between heavy ones
+            eps = _LEAST_EPS
+            work.count[o.ROWS] = -1
         if r < least:
             least = r
             for i in range(3 * k):

@@ -31,6 +31,10 @@ WEDGED = (
     16  #: friction blocked the pair in restitution, however large the impulse: W is singular there
 )
 AT_END = 32  #: its time was not located: an impact in a crowd, at the end of a step
+AT_ONCE = 64  #: several points as one contact problem, because the passage of their layers failed
+PLASTIC = (
+    128  #: several points without restitution although e > 0: no velocity satisfies their laws
+)
 
 OK = 0
 BAD_INPUT = 1  #: a number is not finite, or W_nn is not positive

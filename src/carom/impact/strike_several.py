@@ -11,7 +11,7 @@ from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.dynamics.several_points import inverse_masses, velocities
 from carom.impact.driven import blocked
 from carom.impact.effective_restitution import count_blow, effective_restitution
-from carom.impact.layout import WEDGED
+from carom.impact.layout import AT_ONCE, PLASTIC, WEDGED
 from carom.impact.multiple.layout import OK, SEQUENTIAL, CornerContacts, MultipleSettings
 from carom.impact.multiple.resolve import resolve_contacts
 from carom.impact.workspace import U
@@ -164,7 +164,10 @@ def count_blows(model, data, k):
 
 @kernel
 def write_share(system, i, k, state, group, multiple, clock, records):
-    """Write the share of point i in an impact of k points."""
+    """Write the share of point i in an impact of k points.
+
+    A loss that its law does not allow, at e = 1 without friction, is no entry of the ledger.
+    """
     row, point, result = records.impact[clock.struck], group.points[0][i], multiple.result
     x, u = state[point.a].x, group.v[U]
     row.time, row.together = clock.now, k
@@ -179,5 +182,8 @@ def write_share(system, i, k, state, group, multiple, clock, records):
     row.friction_loss = result.friction[i]
     row.energy_change = result.compression[i] + result.restitution[i] - result.friction[i]
     row.phases, row.duration = WEDGED if result.wedged[i] != 0 else 0, 0.0
-    clock.impacts += row.energy_change
+    if multiple.e[i] > 0.0:
+        row.phases |= result.summary[0].marks & (AT_ONCE | PLASTIC)
+    if not (row.phases & PLASTIC != 0 and multiple.e[i] == 1.0 and group.mu[i] == 0.0):
+        clock.impacts += row.energy_change
     clock.struck += 1

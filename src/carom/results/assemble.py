@@ -14,6 +14,7 @@ from carom.model import records as r
 from carom.model.arrays import STOP
 from carom.results.accuracy import sentences
 from carom.results.event_tables import ContactTable, EventTable, ImpactTable, contact_table
+from carom.results.impact_remarks import remarks
 from carom.results.names import constrained, contact_names, row_units
 from carom.scene.forces import AppliedForce
 from carom.scene.materials import IMPACT_LAWS
@@ -47,7 +48,10 @@ def assemble(run, status: Status) -> dict:
         "angular_velocity": np.array(state["w"]),
         "held_residual": np.array(series["residual"]),
         "status": status,
-        "warnings": sentences(run.watch[0], run.scene, run.pairs),
+        "warnings": (
+            *sentences(run.watch[0], run.scene, run.pairs),
+            *remarks(_in_time(rec.impact), _in_time(rec.event), run),
+        ),
         "stats": {
             "steps": clock["step"], "trial_steps": clock["trials"], "rejected": clock["rejected"],
             "cuts": clock["cuts"], "located": clock["located"], "impacts": clock["struck"],

@@ -76,8 +76,9 @@ class Solution(Portable, Drawn):
     status : Status
         How the run ended; see also `success` and `message`.
     warnings : tuple of str
-        Sentences about energy errors above `Options.energy_tolerance`, penetrations, and contact problems that
-        were not solved, with the time, the amount and a remedy. Empty if there are none.
+        Sentences about energy errors above `Options.energy_tolerance`, penetrations, contact problems that were
+        not solved, energy that Newton's law of restitution added, jams, and laws of restitution that could not
+        hold, with the time, the amount and a remedy. Empty if there are none.
     stats : dict
         Counts: steps, trial steps, steps rejected by their error, cuts, located events, impacts, contacts that
         became persistent; steps with active contacts and their iterations; `explicit_steps`: steps in singular

@@ -1,8 +1,11 @@
-"""The whole impact as one contact problem, used if the passage of the boundary layer fails.
+"""A group as one contact problem: Coulomb's cones at the velocity after (mathematics page, §2.6).
 
-Newton's law holds at each contact, 0 <= p_n _|_ u_n+ + e u_n- >= 0, with Coulomb's cones at the velocity after
-(Moreau 1988). There is no path, so the order in which contacts load and slip is lost. If the result would raise
-the energy, the problem is solved again with e = 0, which never raises it.
+If all e are 0 this is the plastic event. If the passage of the layer fails or does not end, each contact obeys
+Newton's law, 0 <= p_n _|_ u_n+ + e u_n- >= 0 (Moreau 1988). There is no path, so the order in which contacts
+load and slip is lost. It is the limit of the passage if masses are far apart, because light bodies then stay in
+equilibrium between the slow contacts of heavy ones. If there is no such velocity (a body trapped between two
+walls), or if the energy would rise, the least e is used for all contacts, and then e = 0, which always has a
+solution and never raises the energy.
 """
 
 from __future__ import annotations
@@ -11,64 +14,156 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.friction.layout import CONE, ENOUGH
+from carom.friction.layout import CONE, ENOUGH, SOLVED
 from carom.friction.solve import solve_cones
 from carom.friction.strategy import allow
-from carom.impact.multiple.layout import CLEAN, FACTOR, SCRATCH, STACK, TRY
+from carom.impact.multiple.adaptive import start
+from carom.impact.multiple.layout import (
+    AT_ONCE,
+    FACTOR,
+    MASS,
+    MISSED,
+    PLASTIC,
+    SCRATCH,
+    STACK,
+    TRY,
+    U0,
+    WEIGHT,
+    P,
+    U,
+)
+from carom.impact.multiple.motion import set_velocity
 
-_GROWTH = 1e-9  # greatest growth of energy that is round-off, relative to sum |p u|
+_ROUNDS = 4
+# greatest approach that Newton's law may leave, in units of the speed before, and growth of energy by sum |p u|
+_LEFT, _GROWTH = 1e-6, 1e-9
 _MOST = 1e3  # greatest sound velocity after, relative to the greatest velocity before
-
-
-@kernel
-def unsound(k, u, scale, out):
-    """Return whether a result is impossible: huge speeds, growing energy, or bodies that still approach."""
-    top, gain, bound = 0.0, 0.0, 0.0
-    for a in range(3 * k):
-        top = max(top, abs(out.velocity[a]))
-        gain += 0.5 * out.impulse[a] * (u[a] + out.velocity[a])
-        bound += abs(out.impulse[a]) * scale
-    least = 0.0
-    for i in range(k):
-        least = min(least, out.velocity[3 * i])
-    sound = math.isfinite(gain) and top <= _MOST * scale and least >= -1e-3 * scale
-    return not (sound and gain <= 1e-6 * bound)
+_ROUND_OFF = 1e-14
 
 
 @unit
-def solve_at_once(contacts, workspace, out):
-    """Write impulses and works of all contacts."""
-    k, u, mu, e = contacts.k, contacts.u, contacts.friction, contacts.restitution
-    work = workspace.work
-    W, c, p = work.matrix[CLEAN], work.vector[SCRATCH], work.vector[TRY]
-    heading, kind = work.matrix[FACTOR], work.index[STACK]
-    for turn in range(2):
-        for i in range(k):
-            kind[i] = CONE
-            heading[i, 0], heading[i, 1] = 0.0, 0.0
-            for r in range(3):
-                c[3 * i + r], p[3 * i + r] = u[3 * i + r], 0.0
-            if turn == 0:
-                c[3 * i] += e[i] * min(0.0, u[3 * i])
-        workspace.cones.mismatch[ENOUGH] = 0.0
-        allow(workspace.cones, k)
-        solve_cones(k, W, c, mu, kind, heading, p, workspace.cones)
-        energy, size = 0.0, 0.0
-        for a in range(3 * k):
-            after = u[a]
-            for b in range(3 * k):
-                after += W[a, b] * p[b]
-            out.velocity[a] = after
-            energy += 0.5 * p[a] * (u[a] + after)
-            size += abs(p[a] * u[a])
-        if energy <= _GROWTH * size:
-            break
+def solve_group(k, work, cones):
+    """Resolve the group; the clock gets its marks and the change of energy in a plastic event."""
+    clock, least, most = work.clock[0], 1.0, 0.0
     for i in range(k):
+        least = min(least, work.contact[i].restitution)
+        most = max(most, work.contact[i].restitution)
+    clock.change = 0.0
+    for turn in range(2 if most > 0.0 else 0):
+        start(k, work)
+        for i in range(k):
+            work.contact[i].e = work.contact[i].restitution if turn == 0 else least
+        if _sound(k, work, _once(k, work, cones, 0)):
+            clock.code = AT_ONCE if turn == 0 else AT_ONCE | MISSED
+            return
+    start(k, work)
+    for i in range(k):
+        work.contact[i].e = 0.0
+    clock.code = PLASTIC
+    for turn in range(_ROUNDS):
+        clock.change += _once(k, work, cones, turn)
+        least = 0.0
+        for i in range(k):
+            least = min(least, work.vector[U, 3 * i])
+        if least >= -1e-10:
+            break
+
+
+@kernel
+def unsound(contacts, scale, out):
+    """Return whether a result is impossible: huge speeds, growing energy, or bodies that still approach."""
+    k, u, P = contacts.k, contacts.u, out.impulse
+    top, gain, bound, left = 0.0, 0.0, 0.0, 0.0
+    for a in range(3 * k):
+        own = round_off(3 * k, contacts.W[a], P)
+        top = max(top, abs(out.velocity[a]))
+        gain += 0.5 * P[a] * (u[a] + out.velocity[a])
+        bound += abs(P[a]) * (1e-6 * scale + own)
+        if a % 3 == 0:
+            left = max(left, -out.velocity[a] - own)
+    sound = math.isfinite(gain) and top <= _MOST * scale and left <= 1e-3 * scale
+    return not (sound and gain <= bound)
+
+
+@kernel
+def round_off(n, row, impulse):
+    """Return the round-off of the product of a row of W with n impulses.
+
+    It is visible if a light body is between heavy ones, whose great impulses nearly cancel on it.
+    """
+    total = 0.0
+    for b in range(n):
+        total += abs(row[b] * impulse[b])
+    return _ROUND_OFF * total
+
+
+@kernel
+def _sound(k, work, change):
+    """Return whether no contact approaches, and the `change` of energy is no rise, both beyond round-off."""
+    u, p, allowed, left = work.vector[U], work.vector[P], 0.0, 0.0
+    for a in range(3 * k):
+        own = round_off(3 * k, work.matrix[MASS, a], p)
+        allowed += abs(p[a]) * (_GROWTH * abs(work.vector[U0, a]) + own)
+        if a % 3 == 0:
+            left = max(left, -u[a] - own)
+    return change <= allowed and left <= _LEFT
+
+
+@kernel
+def _once(k, work, cones, turn):
+    """Solve the contact problem once; from the third turn on without friction. Return the change of energy."""
+    n, u, before, impulse = 3 * k, work.vector[U], work.vector[SCRATCH], work.vector[TRY]
+    for i in range(n):
+        before[i] = u[i]
+        impulse[i] = 0.0
+    mu, kind = work.vector[WEIGHT], work.index[STACK]
+    for i in range(k):
+        u[3 * i] += work.contact[i].e * min(0.0, u[3 * i])
+        mu[i] = work.contact[i].mu if turn < 2 else 0.0
+        kind[i] = CONE
+    heading = work.matrix[FACTOR]  # cones do not use it, but it must be finite
+    for i in range(k):
+        heading[i, 0], heading[i, 1] = 0.0, 0.0
+    cones.mismatch[ENOUGH] = 0.0
+    allow(cones, k)
+    status, _, _ = solve_cones(k, work.matrix[MASS], u, mu, kind, heading, impulse, cones)
+    change = _take(k, work, status == SOLVED)
+    for i in range(k):
+        c = work.contact[i]
         a = 3 * i
-        for r in range(3):
-            out.impulse[a + r] = p[a + r]
-        part = 0.5 * p[a] * (u[a] + out.velocity[a])
-        slip = p[a + 1] * (u[a + 1] + out.velocity[a + 1])
-        slip += p[a + 2] * (u[a + 2] + out.velocity[a + 2])
-        out.compression[i], out.restitution[i] = min(0.0, part), max(0.0, part)
-        out.friction[i] = max(0.0, -0.5 * slip)
+        part_n = 0.5 * impulse[a] * (before[a] + u[a])
+        if part_n < 0.0:
+            c.absorbed -= part_n
+        else:
+            c.returned += part_n
+        loss = impulse[a + 1] * (before[a + 1] + u[a + 1])
+        loss += impulse[a + 2] * (before[a + 2] + u[a + 2])
+        c.loss += max(0.0, -0.5 * loss)
+    return change
+
+
+@kernel
+def _take(k, work, solved):
+    """Add the impulse P, or if it is no solution and adds energy its part with the least; return the change.
+
+    The energy of a part s is s P.u + s^2 P.W P/2, with u before.
+    """
+    before, impulse, slope, curve, part = work.vector[SCRATCH], work.vector[TRY], 0.0, 0.0, 1.0
+    _add(k, work, 1.0)
+    for i in range(3 * k):
+        slope += impulse[i] * before[i]
+        curve += impulse[i] * (work.vector[U, i] - before[i])
+    if not solved and slope + 0.5 * curve > 0.0:
+        part = min(1.0, max(0.0, -slope / curve)) if curve > 0.0 else 0.0
+        _add(k, work, part - 1.0)
+        for i in range(3 * k):
+            impulse[i] *= part
+    return part * (slope + 0.5 * part * curve)
+
+
+@kernel
+def _add(k, work, part):
+    """Add a part of the impulse."""
+    for i in range(3 * k):
+        work.vector[P, i] += part * work.vector[TRY, i]
+    set_velocity(k, work)

@@ -31,24 +31,23 @@ def reduce(given, acting, scale, index):
     if nothing_slips(given, scale):
         for i in range(given.k):
             acting.friction[i] = 0.0
-        largest = clean(given, acting)
-        count = find_classes(acting, largest, scale, index)
-        if friction_sleeps(given, count, largest, index):
+        clean(given, acting)
+        count = find_classes(acting, scale, index)
+        if friction_sleeps(given, count, index):
             return count
     for i in range(given.k):
         acting.friction[i] = given.friction[i]
-    largest = clean(given, acting)
-    return find_classes(acting, largest, scale, index)
+    clean(given, acting)
+    return find_classes(acting, scale, index)
 
 
 @kernel
 def clean(given, acting):
-    """Copy W without round-off, and without tangents of contacts that have no friction; return its scale."""
-    k, W, mu, largest = given.k, given.W, acting.friction, 0.0
+    """Copy W without round-off, and without tangents of contacts that have no friction."""
+    k, W, mu = given.k, given.W, acting.friction
     for a in range(3 * k):
         row, new = W[a], acting.W[a]
         rough = a % 3 == 0 or mu[a // 3] > 0.0
-        largest = max(largest, abs(row[a]))
         for b in range(3 * k):
             value = 0.5 * (row[b] + W[b, a])
             if not (rough and (b % 3 == 0 or mu[b // 3] > 0.0)) or (
@@ -56,11 +55,10 @@ def clean(given, acting):
             ):
                 value = 0.0
             new[b] = value
-    return largest
 
 
 @kernel
-def find_classes(contacts, scale_W, scale_u, index):
+def find_classes(contacts, scale_u, index):
     """Write the class of each contact, and the first member and size of each class; return their number."""
     k, cls, first, count = contacts.k, index[CLASS], index[FIRST], 0
     for i in range(k):
@@ -75,7 +73,7 @@ def find_classes(contacts, scale_W, scale_u, index):
             count += 1
     q = 0
     while q < count < k:
-        if _split(contacts, q, count, SAME * scale_W, index):
+        if _split(contacts, q, count, index):
             count += 1
             q = 0  # members of other classes may be coupled to the two parts in different ways
         else:
@@ -88,11 +86,11 @@ def find_classes(contacts, scale_W, scale_u, index):
 
 
 @kernel
-def _split(contacts, q, count, tolerance, index):
+def _split(contacts, q, count, index):
     """Move the members of class `q` with another coupling than its first to a class `count`; return if any."""
     cls, first, found = index[CLASS], index[FIRST], False
     for i in range(first[q] + 1, contacts.k):
-        if cls[i] == q and not _same_coupling(contacts, count, i, first[q], tolerance, cls):
+        if cls[i] == q and not _same_coupling(contacts, count, i, first[q], index):
             if not found:
                 found = True
                 first[count] = i
@@ -104,7 +102,7 @@ def _split(contacts, q, count, tolerance, index):
 
 
 @kernel
-def friction_sleeps(contacts, count, scale_W, index):
+def friction_sleeps(contacts, count, index):
     """Return whether friction never acts, because no normal force makes a contact slip; no contact slips now.
 
     `index` has the classes of contacts without friction, whose normal forces are equal.
@@ -113,9 +111,18 @@ def friction_sleeps(contacts, count, scale_W, index):
         for r in range(1, 3 if contacts.friction[i] > 0.0 else 1):
             row = contacts.W[3 * i + r]
             for q in range(count):
-                if not abs(_of_class(contacts.k, row, q, index[CLASS])) <= SAME * scale_W:
+                tolerance = SAME * _coupling_scale(contacts.W, i, index[FIRST, q])
+                if not abs(_of_class(contacts.k, row, q, index[CLASS])) <= tolerance:
                     return False
     return True
+
+
+@kernel
+def _coupling_scale(W, i, j):
+    """Return (W_ii W_jj)^1/2 of the greatest diagonal entries of two contacts: the bound of their coupling."""
+    own = max(W[3 * i, 3 * i], W[3 * i + 1, 3 * i + 1], W[3 * i + 2, 3 * i + 2])
+    other = max(W[3 * j, 3 * j], W[3 * j + 1, 3 * j + 1], W[3 * j + 2, 3 * j + 2])
+    return math.sqrt(own * other)
 
 
 @kernel
@@ -151,10 +158,11 @@ def _same_kind(contacts, i, j, tolerance):
 
 
 @kernel
-def _same_coupling(contacts, count, i, j, tolerance, cls):
+def _same_coupling(contacts, count, i, j, index):
     """Return whether contacts i and j are coupled to each class in the same way."""
-    k, W = contacts.k, contacts.W
+    k, W, cls = contacts.k, contacts.W, index[CLASS]
     for q in range(count):
+        tolerance = SAME * _coupling_scale(W, j, index[FIRST, q])
         for r in range(3):
             for s in range(3):
                 difference = _difference(k, W[3 * i + r], W[3 * j + r], s, q, cls[j] == q, cls)

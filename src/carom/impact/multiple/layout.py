@@ -24,12 +24,12 @@ MESSAGES = {
 }
 
 # Bits of `marks`.
-PLASTIC = 1  #: ended by the plastic event, because a body is trapped or all e are 0
+PLASTIC = one.PLASTIC  #: the plastic event, because a body is trapped or all e are 0
 MISSED = 2  #: the law of Newton or Poisson was not satisfied; the nearest result or Stronge's law was used
 CAPPED = 4  #: the law of a contact requires e_* > 1, and is not satisfied: energy cannot grow
 FIXED = 8  #: the layer was passed with fixed steps
 EXACT = 16  #: contacts that move alike, resolved exactly as one
-AT_ONCE = 64  #: the passage of the layer failed; one contact problem was solved instead
+AT_ONCE = one.AT_ONCE  #: the passage of the layer failed; one contact problem was solved instead
 REPELLED = 32  #: the impulse was changed by round-off, so that energy does not grow
 
 

@@ -8,9 +8,8 @@ from carom._compiled.decorators import by_reference, entry, kernel
 from carom.impact import laws
 from carom.impact import layout as one
 from carom.impact.multiple import equal_contacts
-from carom.impact.multiple.at_once import solve_at_once, unsound
+from carom.impact.multiple.at_once import unsound
 from carom.impact.multiple.layout import (
-    AT_ONCE,
     BAD_INPUT,
     BLOW_FRICTION,
     BLOW_RESTITUTION,
@@ -39,10 +38,10 @@ from carom.impact.multiple.layout import (
     P,
 )
 from carom.impact.multiple.one import resolve_single
-from carom.impact.multiple.passage import pass_group
+from carom.impact.multiple.passage import at_once, pass_group
 from carom.impact.multiple.sequential import choose, strikes_at_once, take
 
-_NOTHING = 1e-15  # impulses below this part of the greatest count as zero
+_NOTHING = 1e-15  # changes of velocity below this part of the greatest velocity are round-off
 _TOUCHES = 1e-13  # speeds of approach below this part of the greatest velocity count as zero
 
 
@@ -95,31 +94,31 @@ def resolve_contacts(contacts, settings, workspace, out):
 @kernel
 def _together(contacts, scale, settings, workspace, out):
     """Resolve an impact of contacts that strike together; `scale` is the greatest velocity of all contacts."""
-    k, u, still, result = contacts.k, contacts.u, _TOUCHES * scale, out.summary[0]
+    k, still, result = contacts.k, _TOUCHES * scale, out.summary[0]
     _clear(contacts, out)
     work = workspace.work
     index, clean = work.index, work.matrix[CLEAN]
     acting = by_reference(
         CornerContacts(
-            k, contacts.others, clean, u, work.vector[FRICTION], contacts.restitution, contacts.law,
+            k, contacts.others, clean, contacts.u, work.vector[FRICTION], contacts.restitution, contacts.law,
             contacts.stiffness, contacts.pair,
         )
     )  # fmt: skip
     result.classes = equal_contacts.reduce(contacts, acting, scale, index)
     equal_contacts.find_pressed(acting, still, index)
     groups = equal_contacts.find_groups(k, result.classes, clean, index)
-    code = NOT_RESOLVED if settings.multiple == BY_NEWTON else OK
-    for g in range(groups if code == OK else 0):
-        code = max(code, _group(g, acting, still, settings, workspace, out))
-        if work.clock[0].left < 0:
-            return  # it was stopped: there is no result
-    if code == OK:
+    by_newton = settings.multiple == BY_NEWTON
+    while True:
+        for g in range(groups):
+            _group(g, acting, still, by_newton, settings, workspace, out)
+            if work.clock[0].left < 0:
+                return  # it was stopped: there is no result
         _finish(contacts, out)
-    exact = (result.marks & EXACT) != 0  # a single contact may gain energy with Newton's law
-    if code != OK or (not exact and unsound(k, u, scale, out)):
-        result.marks, result.miss, result.plastic_change = AT_ONCE, 0.0, 0.0
-        solve_at_once(contacts, workspace, out)
-        _finish(contacts, out)
+        exact = (result.marks & EXACT) != 0  # a single contact may gain energy with Newton's law
+        if by_newton or exact or not unsound(contacts, scale, out):
+            break
+        by_newton = True
+        result.marks, result.miss, result.plastic_change = 0, 0.0, 0.0
 
 
 @kernel
@@ -157,18 +156,24 @@ def _clear(contacts, out):
 
 
 @kernel
-def _group(g, contacts, still, settings, workspace, out):
-    """Resolve the classes of group `g`; write impulses and works of their contacts."""
+def _group(g, contacts, still, by_newton, settings, workspace, out):
+    """Resolve the classes of group `g`; write impulses and works of their contacts.
+
+    `by_newton` says that they are one contact problem, without the passage of the layer.
+    """
     work, summary = workspace.work, out.summary[0]
     n = _gather(g, contacts, still, summary.classes, work)
-    if n == 0 or (n == 1 and _exactly(contacts, still, work, out) == OK):
-        return OK
+    if n == 0 or (n == 1 and not by_newton and _exactly(contacts, still, work, out) == OK):
+        return
     mass, speed, rate = _fill(n, contacts, still, settings.exponent, work)
     if not (mass > 0.0 and rate > 0.0):
-        return NOT_RESOLVED
+        return
     plastic, error = summary.plastic_change, summary.error
     summary.plastic_change, summary.error = 0.0, 0.0
-    pass_group(n, work, workspace.cones, settings, summary)
+    if by_newton:
+        at_once(n, work, workspace.cones, summary)
+    else:
+        pass_group(n, work, workspace.cones, settings, summary)
     energy, index = speed * speed / mass, work.index
     for i in range(contacts.k):
         for a in range(n):
@@ -182,7 +187,6 @@ def _group(g, contacts, still, settings, workspace, out):
                 out.wedged[i] = c.wedged
     summary.plastic_change = plastic + energy * summary.plastic_change
     summary.error = max(error, speed * summary.error)
-    return OK
 
 
 @kernel
@@ -293,10 +297,10 @@ def _finish(contacts, out):
     n, result = 3 * k, out.summary[0]
     P_, after = out.impulse, out.velocity
     most = 0.0
+    for a in range(n):
+        most = max(most, abs(u[a]))
     for i in range(k):
-        most = max(most, P_[3 * i])
-    for i in range(k):
-        if not P_[3 * i] > _NOTHING * most:
+        if not P_[3 * i] * W[3 * i, 3 * i] > _NOTHING * most:
             P_[3 * i], P_[3 * i + 1], P_[3 * i + 2] = 0.0, 0.0, 0.0
     capped, elastic = (result.marks & EXACT) == 0, _keeps_energy(contacts, out)
     for turn in range(2):
@@ -321,7 +325,7 @@ def _finish(contacts, out):
 @kernel
 def _keeps_energy(contacts, out):
     """Return whether all contacts with an impulse are elastic and without friction, and no body was trapped."""
-    if (out.summary[0].marks & (PLASTIC | MISSED | AT_ONCE)) != 0:
+    if (out.summary[0].marks & (PLASTIC | MISSED)) != 0:
         return False
     for i in range(contacts.k):
         acts = out.impulse[3 * i] > 0.0

@@ -1,0 +1,69 @@
+"""Sentences about impacts: energy that Newton's law adds, jams, and laws of restitution that did not hold."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.impact import laws
+from carom.impact.layout import AT_ONCE, JAM, PLASTIC
+from carom.model import records as r
+from carom.results.names import contact_names
+
+_ACTED = {
+    AT_ONCE: (
+        "were solved as one contact problem with Newton's law at each contact, because the passage of their "
+        "layers did not end (masses far apart, or many redundant points)"
+    ),
+    PLASTIC: "had no restitution although e > 0, because no velocity satisfies their laws",
+}
+
+
+def remarks(rows, events, run) -> tuple[str, ...]:
+    """Return a sentence for each kind: how many impacts (`rows`) or `events` of a run, and the first."""
+    names, jams = contact_names(run.scene, run.pairs).name, events[events["kind"] == r.JAMS]
+    slides = rows[(rows["phases"] & JAM != 0) & ~np.isin(rows["time"], jams["time"])]
+    said = _gains(rows, names, run)
+    if len(jams) + len(slides) > 0:
+        first = min((*jams[:1], *slides[:1]), key=lambda row: row["time"])
+        said.append(
+            f"{len(jams)} persistent contacts and {len(slides)} impacts jam (Painleve's paradox: with its "
+            f"friction the normal force drives the bodies together), the first {_place(first, names)}. What "
+            "follows depends on the compliance that rigid bodies do not have: check the friction."
+        )
+    for bit, acted in _ACTED.items():
+        marked = rows[rows["phases"] & bit != 0]
+        if len(marked) > 0:
+            said.append(
+                f"{len(np.unique(marked['time']))} impacts of several contacts {acted}, the first "
+                f'{_place(marked[0], names)}. Compare with multiple="sequential".'
+            )
+    return tuple(said)
+
+
+def _place(row, names) -> str:
+    return f"at t = {row['time']:.6g} s of contact {str(names[row['contact']])!r}"
+
+
+def _gains(rows, names, run) -> list[str]:
+    """Return a sentence about the energy that Newton's law with friction has added, if beyond the tolerance.
+
+    Only an impact of a single point adds energy: several points return at most what they have absorbed. The
+    energy of an impact is that of its relative velocity, u.W^-1 u/2.
+    """
+    watch, contacts = run.watch[0], run.compiled.system.contacts
+    gains = contacts[np.isin(contacts["law"], laws.GAINING) & (contacts["friction"] > 0.0)][
+        "number"
+    ]
+    own = rows[(rows["together"] == 1) & (rows["energy_change"] > 0.0)]
+    own = own[np.isin(own["contact"], gains)]
+    u, gain = own["before"][:, :, None], own["energy_change"]
+    part = 2.0 * gain / (u.transpose(0, 2, 1) @ np.linalg.pinv(own["W"]) @ u)[:, 0, 0]
+    own, gain, part = (column[part > watch.tolerance] for column in (own, gain, part))
+    if not gain.sum() > watch.tolerance * watch.exchanged:
+        return []
+    k = int(np.argmax(gain))
+    return [
+        f"Newton's law with friction added energy in {len(own)} impacts, at most {gain[k]:.3g} J "
+        f"{_place(own[k], names)}, {part[k]:.2%} of the energy of this impact. impact_law="
+        '"stronge" cannot add any, nor can "poisson" at a single contact.'
+    ]
