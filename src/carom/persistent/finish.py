@@ -15,11 +15,12 @@ from carom.dynamics.project import LOST, project_position, project_velocity
 from carom.dynamics.several_points import velocities
 from carom.friction.layout import CONE, SLIDING, SOLVED
 from carom.impact.workspace import OLD, C, P, U
+from carom.kinematics.passed_edges import note_passed
 from carom.persistent.forces import solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among
 from carom.persistent.joint_rows import JOINT, fix_friction, place_coordinate, radius_of
 from carom.persistent.margins import greatest_push, set_margins
-from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
+from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents, presses
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
 from carom.persistent.springs import note_accelerations, solve_springs
 from carom.persistent.step_control import POORLY, rest_speed
@@ -37,6 +38,8 @@ def land(model, data, loaded, k, count) -> bool:
     if loaded and not (project_position(system, end, True, 1e-14, work) <= LOST):
         return False
     show(count, end, group, work)
+    place_closed(system, k, end, group, group.points[0], work)
+    note_passed(active, k, group, data.state, end)
     onto_surfaces(system, active, k, count, end, group, work)
     if loaded:
         project_velocity(system, end, work)
@@ -52,7 +55,7 @@ def land(model, data, loaded, k, count) -> bool:
             closed_point.rows = 0
             if closed_point.turns == JOINT:
                 closed_point.rows = 1 if sticks else 0
-            elif closed_point.turns == 0 and group.v[P][3 * i] > 0.0:
+            elif closed_point.turns == 0 and presses(active, i, group):
                 closed_point.rows = 3 if sticks else 1
         onto_tangents(system, k, count, end, group, work)
     show(count, end, group, work)
@@ -80,7 +83,8 @@ def note_modes(model, data, k):
         closed_point, u, p = group.closed[i], group.v[U], group.v[P]
         slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
         force = math.hypot(p[3 * i + 1], p[3 * i + 2])
-        full = slip > still and not force < ON_CONE * radius_of(group, i)
+        bare = closed_point.turns == 0 and closed_point.loaded == 0  # round-off is no friction left
+        full = slip > still and (bare or not force < ON_CONE * radius_of(group, i))
         group.kind[i] = SLIDING if group.mu[i] == 0.0 or full else CONE
         if closed_point.own == 0:
             continue
@@ -157,7 +161,7 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
         set_margins(active_point, i, located, group)
         active_point.jams = jams_among(i, status, group)
     add_forces_of_corners(active, k, group)
-    note_residual(k, group, work)
+    note_residual(active, k, group, work)
     return True
 
 
@@ -187,7 +191,8 @@ def solve_end(model, data, loaded, k, count, s, still, h):
 @kernel
 def end_mode(active_point, i, still, at_rest, group):
     """Let a point open that has no force and leaves its surface, faster than `still`, or stick at rest."""
-    if group.v[P][3 * i] <= 0.0 and group.v[U][3 * i] > still:
+    leaves = group.v[P][3 * i] <= 0.0 and group.v[U][3 * i] > still
+    if leaves or active_point.passes == 1:
         active_point.next = OPEN
     if at_rest:
         active_point.next = STICK
@@ -330,11 +335,11 @@ def onto_tangents_of(model, data, k, count):
 
 
 @kernel
-def note_residual(k, group, work):
+def note_residual(active, k, group, work):
     """Raise the residual of the step to the greatest forbidden velocity."""
     worst = 0.0
     for i in range(k):
-        if group.closed[i].turns > 0 or not group.v[P][3 * i] > 0.0:
+        if group.closed[i].turns > 0 or not presses(active, i, group):
             continue
         worst = max(worst, abs(group.v[U][3 * i]))
         if group.kind[i] == CONE:

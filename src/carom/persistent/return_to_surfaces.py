@@ -24,6 +24,14 @@ DROP = 1e-10  # relative to its row: a smaller pivot is round-off of a redundant
 
 
 @kernel
+def presses(active, i, group):
+    """Return whether a point has a normal force and has not passed an edge."""
+    closed_point = group.closed[i]
+    passed = closed_point.own == 1 and active.points[closed_point.active].passes == 1
+    return group.v[P][3 * i] > 0.0 and not passed
+
+
+@kernel
 def mark_rows(system, active, k, group):
     """Write how many `rows` each point gives: 0, 1 (its gap), 3 (gap and position); return whether any.
 
@@ -38,7 +46,7 @@ def mark_rows(system, active, k, group):
         if group.points[1][i].gap < -1e-12 * system.contacts[active_point.contact].extent:
             some = True
             group.closed[i].rows = 1
-        if p[q] > 0.0:
+        if presses(active, i, group):
             some = True
             friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
             contact = system.contacts[active_point.contact]

@@ -14,6 +14,7 @@ from carom.dynamics.acceleration import SLIP, STICK
 from carom.dynamics.explicit import copy_state, note_velocity
 from carom.friction.layout import SLIDING, SOLVED
 from carom.impact.workspace import C, P, U
+from carom.kinematics.passed_edges import note_normal
 from carom.persistent.finish import gains, solve_cones_of, within_cones
 from carom.persistent.joint_rows import JOINT, mode_of_joint, radius_of
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
@@ -115,6 +116,7 @@ def note_way(model, data, i, still):
     slips = active_point.next == SLIP
     if slips and not moves and group.mu[i] > 0.0:  # it has stopped
         active_point.next = STICK
+    note_normal(group.points[0][i], active_point)
     active_point.heading[0], active_point.heading[1] = d1 if slips else 0.0, d2 if slips else 0.0
     active_point.speed = speed
     return moves or not slips or group.mu[i] == 0.0
