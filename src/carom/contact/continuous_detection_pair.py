@@ -1,9 +1,9 @@
 """Continuous detection for a pair: may two solids have touched between two states? Separating planes decide.
 
 Along the normal n of a plane that rests, or moves with one of them, the gap of any two core points is
-z(t) >= z0 + z0' t - a t^2/2, where a bounds their relative acceleration in the frame of the plane (`parting`). One
-time results from the plane of the nearest points at the start, another one backwards from the end. The path is
-clear if the sum of both is at least the step.
+z(t) >= z0 + z0' t - a t^2/2, where a bounds their relative acceleration in the frame of the plane (`parting`).
+One time results from the plane of the nearest points at the start, another one backwards from the end. The path
+is clear if the sum of both is at least the step.
 """
 
 from __future__ import annotations
@@ -27,32 +27,15 @@ from carom.contact.continuous_detection import (
 from carom.contact.gap import slow
 from carom.contact.level import related
 from carom.contact.pair_point import REACH, find_touches, list_touches, smaller, touch_rate
-from carom.contact.parting import core_extent, spin_bound, time_apart
+from carom.contact.parting import time_apart
 from carom.contact.place_of_other import centre_of_other, on_half_space
 from carom.contact.rim import OTHER_SIDE, SMOOTH, closed_rim, longest_way, same_point
 from carom.geometry.rotation import rotate
+from carom.kinematics.flight import relative_bound
 from carom.kinematics.wrench import point_velocity
 from carom.model.workspace import FREE, RESTS
 
 SHORT = 0.25  # displacement relative to the smaller body within which none passes through the other
-
-
-@kernel
-def relative_bound(system, contact, state, work):
-    """Return bounds of the relative acceleration of the two centres, and of any two points."""
-    a, b, g = contact.body, contact.other, system.gravity
-    free_a = system.bodies[a].ballistic == 1 and work.body[a].status == FREE
-    free_b = b >= 0 and system.bodies[b].ballistic == 1 and work.body[b].status == FREE
-    fall = math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])
-    centres = 0.0
-    if not (free_a and free_b):  # two bodies in free flight have the same acceleration
-        for body, free in ((a, free_a), (b, free_b)):
-            if body >= 0 and work.body[body].status != RESTS:
-                centres += fall if free else 2.0 * work.body[body].bound[0]
-    spin = spin_bound(system, a, core_extent(system.solids[contact.solid]), state, work)
-    if b >= 0:
-        spin += spin_bound(system, b, core_extent(system.solids[contact.other_solid]), state, work)
-    return centres, centres + spin
 
 
 @kernel
@@ -65,45 +48,33 @@ def balls_apart(s, u, radii, sign, a):
 
 
 @kernel
-def balls_clear(contact, start, end, h, centres):
-    """Return whether the balls around both bodies stay apart during the step."""
-    a, radii = contact.body, contact.extent + contact.other_extent
-    time = 0.0
-    for side in range(2):
-        state, sign = (start, 1.0) if side == 0 else (end, -1.0)
-        x, v, y = state[a].x, state[a].v, centre_of_other(contact, state)
-        s, u = (x[0] - y[0], x[1] - y[1], x[2] - y[2]), (v[0] - y[3], v[1] - y[4], v[2] - y[5])
-        time += balls_apart(s, u, radii, sign, centres)
-    return time >= h
+def centre_of_ball(b, solid, pieces, state):
+    """Return position and velocity of the centre of a body, or of one of its pieces."""
+    x, v = state[b].x, state[b].v
+    if not pieces:
+        return x[0], x[1], x[2], v[0], v[1], v[2]
+    q, p = state[b].Q, solid.x
+    r0, r1, r2 = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    v0, v1, v2 = point_velocity(state, b, r0, r1, r2)
+    return x[0] + r0, x[1] + r1, x[2] + r2, v0, v1, v2
 
 
 @kernel
-def solids_clear(system, contact, start, end, h, most):
-    """Return whether the balls around two pieces of bodies stay apart during the step."""
-    a, b = contact.body, contact.other
-    p, q = system.solids[contact.solid], system.solids[contact.other_solid]
-    time = 0.0
+def balls_clear(system, contact, start, end, h, a, pieces):
+    """Return whether the balls around both bodies, or two `pieces` of them, stay apart during the step."""
+    p, q, time = system.solids[contact.solid], system.solids[contact.other_solid], 0.0
+    radii = p.extent + q.extent if pieces else contact.extent + contact.other_extent
     for side in range(2):
         state, sign = (start, 1.0) if side == 0 else (end, -1.0)
-        x = state[a].x
-        r = rotate_by(state[a], p.x)
-        v = point_velocity(state, a, r[0], r[1], r[2])
-        y, t, w = (0.0, 0.0, 0.0), (q.x[0], q.x[1], q.x[2]), (0.0, 0.0, 0.0)
-        if b >= 0:
-            y = (state[b].x[0], state[b].x[1], state[b].x[2])
-            t = rotate_by(state[b], q.x)
-            w = point_velocity(state, b, t[0], t[1], t[2])
-        s = (x[0] - y[0] + (r[0] - t[0]), x[1] - y[1] + (r[1] - t[1]), x[2] - y[2] + (r[2] - t[2]))
-        u = (v[0] - w[0], v[1] - w[1], v[2] - w[2])
-        time += balls_apart(s, u, p.extent + q.extent, sign, most)
+        x = centre_of_ball(contact.body, p, pieces, state)
+        y = centre_of_other(contact, state)
+        if pieces and contact.static == 1:
+            y = (q.x[0], q.x[1], q.x[2], 0.0, 0.0, 0.0)
+        elif pieces:
+            y = centre_of_ball(contact.other, q, pieces, state)
+        s, u = (x[0] - y[0], x[1] - y[1], x[2] - y[2]), (x[3] - y[3], x[4] - y[4], x[5] - y[5])
+        time += balls_apart(s, u, radii, sign, a)
     return time >= h
-
-
-@kernel
-def rotate_by(body, p):
-    """Rotate a vector from body axes to world axes."""
-    q = body.Q
-    return rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
 
 
 @kernel
@@ -167,8 +138,8 @@ def far_apart(system, contact, start, end, h, work):
     if work.body[a].status == RESTS and (b < 0 or work.body[b].status == RESTS):
         return 0.0, 0.0, True
     centres, most = relative_bound(system, contact, start, work)
-    clear = balls_clear(contact, start, end, h, centres)
-    clear = clear or (contact.part == 1 and solids_clear(system, contact, start, end, h, most))
+    clear = balls_clear(system, contact, start, end, h, centres, False)
+    clear = clear or (contact.part == 1 and balls_clear(system, contact, start, end, h, most, True))
     return centres, most, clear
 
 

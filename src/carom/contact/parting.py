@@ -15,8 +15,8 @@ F is concave, because it is a minimum of concave functions. So chords lie below 
 a point above zero to one below comes before the root of F. All points of the two cores are apart as long as
 F > 0.
 
-A plane at rest is good for bodies at a distance, since a is small. Faces that nearly touch and turn need one that
-turns with a face, whose far corners pass through a plane at rest at once.
+A plane at rest is good at a distance, since a is small. Faces that nearly touch and turn need one that turns
+with a face, whose far corners pass through a plane at rest at once.
 """
 
 from __future__ import annotations
@@ -28,8 +28,7 @@ from carom.collision.features import NOBODY, OF_A
 from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, SEGMENT
 from carom.contact.place_of_other import centre_of_other, on_half_space
 from carom.geometry.rotation import cross, rotate_back
-from carom.kinematics.flight import point_bound
-from carom.model.workspace import FREE, RESTS
+from carom.kinematics.flight import core_extent, greatest_spin, spin_bound
 
 HALVES = 30  # largest number of halvings of the step, until the bound is above zero
 CHORDS = 4  # each comes nearer to the root
@@ -124,35 +123,6 @@ def time_parted(system, contact, n, frame, sign, state, a, h):
             return t
         end, g = t, f
     return 0.0
-
-
-@kernel
-def spin_bound(system, b, extent, state, work):
-    """Return a bound of the acceleration of a point of a body, `extent` from its centre, relative to that."""
-    if b < 0 or work.body[b].status == RESTS:
-        return 0.0
-    body, memory = system.bodies[b], work.body[b]
-    if body.ballistic == 1 and memory.status == FREE:
-        return extent * point_bound(body, state[b].Q, state[b].w, memory)
-    return 2.0 * extent * (memory.bound[1] + memory.bound[2] * memory.bound[2])
-
-
-@kernel
-def greatest_spin(system, b, state, work):
-    """Return a bound of the angular speed of a body in the step."""
-    if b < 0 or work.body[b].status == RESTS:
-        return 0.0
-    body, memory = system.bodies[b], work.body[b]
-    if body.ballistic == 1 and memory.status == FREE:
-        return math.sqrt(point_bound(body, state[b].Q, state[b].w, memory))
-    return memory.bound[2]
-
-
-@kernel
-def core_extent(solid):
-    """Return the greatest distance of a core point from the mass centre; the ball around it does not turn."""
-    x = solid.x
-    return math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) + solid.extent - solid.radius
 
 
 @kernel

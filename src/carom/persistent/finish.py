@@ -11,16 +11,16 @@ from carom.contact.gap import slow
 from carom.dynamics.acceleration import OPEN, SLIP, STICK
 from carom.dynamics.adapt import allowed_error
 from carom.dynamics.explicit import copy_state, note_velocity
+from carom.dynamics.passed_edges import has_passed, note_passed
 from carom.dynamics.project import LOST, project_position, project_velocity
 from carom.dynamics.several_points import velocities
 from carom.friction.layout import CONE, SLIDING, SOLVED
 from carom.impact.workspace import OLD, C, P, U
-from carom.kinematics.passed_edges import note_passed
 from carom.persistent.forces import solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among
 from carom.persistent.joint_rows import JOINT, fix_friction, place_coordinate, radius_of
 from carom.persistent.margins import greatest_push, set_margins
-from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents, presses
+from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
 from carom.persistent.springs import note_accelerations, solve_springs
 from carom.persistent.step_control import POORLY, rest_speed
@@ -55,8 +55,8 @@ def land(model, data, loaded, k, count) -> bool:
             closed_point.rows = 0
             if closed_point.turns == JOINT:
                 closed_point.rows = 1 if sticks else 0
-            elif closed_point.turns == 0 and presses(active, i, group):
-                closed_point.rows = 3 if sticks else 1
+            elif closed_point.turns == 0 and group.v[P][3 * i] > 0.0:
+                closed_point.rows = 0 if has_passed(active, i, group) else 3 if sticks else 1
         onto_tangents(system, k, count, end, group, work)
     show(count, end, group, work)
     return True
@@ -339,7 +339,7 @@ def note_residual(active, k, group, work):
     """Raise the residual of the step to the greatest forbidden velocity."""
     worst = 0.0
     for i in range(k):
-        if group.closed[i].turns > 0 or not presses(active, i, group):
+        if group.closed[i].turns > 0 or not group.v[P][3 * i] > 0.0 or has_passed(active, i, group):
             continue
         worst = max(worst, abs(group.v[U][3 * i]))
         if group.kind[i] == CONE:

@@ -110,8 +110,7 @@ def _add_pair(system, active, i, state, k, group, work) -> int:
 def on_face(contact, active, i, n, state):
     """Return whether active points of two bodies span a part of the plane through point i with the normal n.
 
-    All corners of such a face may carry. Points on a line, or of other pieces in other planes, do not tell
-    whether a corner at some distance is closed: the gap there may still be closing.
+    Points on a line, or in other planes, do not tell whether a corner at some distance is closed.
     """
     q, p, level = state[contact.body].Q, active.points[i].point, LEVEL * smaller(contact)
     m, x, y, z, far = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2]), 0.0, 0.0, 0.0, level

@@ -12,9 +12,9 @@ from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.dynamics.acceleration import SLIP, STICK
 from carom.dynamics.explicit import copy_state, note_velocity
+from carom.dynamics.passed_edges import note_normal
 from carom.friction.layout import SLIDING, SOLVED
 from carom.impact.workspace import C, P, U
-from carom.kinematics.passed_edges import note_normal
 from carom.persistent.finish import gains, solve_cones_of, within_cones
 from carom.persistent.joint_rows import JOINT, mode_of_joint, radius_of
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows

@@ -1,8 +1,7 @@
 """Points that have passed an edge within a step: their normal jumps from that of one face to that of the next.
 
-A normal that a face owns turns with its body. Where it does not, the point has gone from this face to another. Beyond
-an edge of a convex piece the next face recedes, so that the point leaves it with the velocity that it has: to keep it
-on the next face would take a pull.
+A normal that a face owns turns with its body. Where it does not, the point has gone from this face to another.
+Beyond an edge of a convex piece the next face recedes: to keep the point on it would take a pull.
 """
 
 from __future__ import annotations
@@ -48,3 +47,10 @@ def normal_jumps(active_point, point, start, end):
         x, y, z = rotate_back(q[0], q[1], q[2], q[3], x, y, z)
         x, y, z = rotate(Q[0], Q[1], Q[2], Q[3], x, y, z)
     return max(abs(x - m[0]), max(abs(y - m[1]), abs(z - m[2]))) > JUMP
+
+
+@kernel
+def has_passed(active, i, group):
+    """Return whether closed point i has passed an edge."""
+    closed_point = group.closed[i]
+    return closed_point.own == 1 and active.points[closed_point.active].passes == 1
