@@ -55,9 +55,9 @@ def test_no_tooth_is_skipped(speed):
     assert s.stats["trial_steps"] < 5000  # 500 to 1700; 10 times that with planes at rest
 
 
-@pytest.mark.parametrize("seed", [5, 8, 11, 13, 38])
+@pytest.mark.parametrize("seed", [5, 8, 13, 38])
 def test_cases_of_the_campaign(seed):
-    """Ratchets, a cam, and gears that touch at flanks of several faces, with their edges between."""
+    """A ratchet, a cam, and gears that touch at flanks of several faces, with their edges between."""
     case = teeth.case(seed)
     outcome = vars(run(case, True))
     assert wrong(outcome) == []
