@@ -4,10 +4,21 @@ A module here is a family of scenes: it has a function ``case(seed) -> Case``. `
 them by the thousand; the tests run a few of each.
 """
 
-from campaigns import crowds, forced, mechanisms, piles, robots, rolls, slides, strikes, throws
+from campaigns import (
+    crowds,
+    forced,
+    mechanisms,
+    piles,
+    robots,
+    rolls,
+    slides,
+    strikes,
+    teeth,
+    throws,
+)
 
 FAMILIES = {
     "throws": throws.case, "strikes": strikes.case, "mechanisms": mechanisms.case, "forced": forced.case,
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
-    "slides": slides.case,
+    "slides": slides.case, "teeth": teeth.case,
 }  # fmt: skip

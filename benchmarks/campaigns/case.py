@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 
 import numpy as np
@@ -28,6 +29,8 @@ class Case:
     duration: float
     step: float
     label: dict = field(default_factory=dict)
+    #: how far a solution is from what bodies that cannot pass through each other may do: at most 1
+    off: Callable[[carom.Solution], float] | None = None
 
 
 @dataclass
@@ -46,12 +49,15 @@ class Outcome:
     wedged: int  # impacts that ended so
     whole: int  # steps taken whole
     warned: int  # sentences in `solution.warnings`
+    off: float  # `Case.off`
+    trials: int
 
 
 def wrong(row: dict) -> list[str]:
     """Return what is wrong with an outcome, in words."""
     found = [] if row["status"] == "SUCCESS" else [row["status"]]
     found += [] if row["depth"] <= DEPTH else ["penetrates"]
+    found += [] if row["off"] <= 1.0 else ["passes through"]
     if not row["gained"] <= GAIN:
         found.append("gains, said" if row["warned"] else "gains, silent")
     found += [] if row["impulse"] <= IMPULSE else ["absurd impulse"]
@@ -94,6 +100,8 @@ def run(case: Case, tolerances: bool = False) -> Outcome:
         wedged=int(np.sum(s.impacts.wedged)),
         whole=int(s.stats.get("whole_steps", 0)),
         warned=len(s.warnings),
+        off=0.0 if case.off is None else case.off(s),
+        trials=int(s.stats["trial_steps"]),
     )
 
 

@@ -1,9 +1,9 @@
 """Continuous detection for a pair: may two solids have touched between two states? Separating planes decide.
 
-Along a fixed normal n the gap of any two core points is z(t) >= z0 + z0' t - a t^2/2, where a bounds their
-relative acceleration; the bodies are apart as long as all pairs of vertices are. One time results from the
-normal n of the nearest points at the start, another one backwards from the end. The path is clear if the sum of
-both is at least the step. `parting` treats cores without vertices.
+Along the normal n of a plane that rests, or moves with one of them, the gap of any two core points is
+z(t) >= z0 + z0' t - a t^2/2, where a bounds their relative acceleration in the frame of the plane (`parting`).
+One time results from the plane of the nearest points at the start, another one backwards from the end. The path
+is clear if the sum of both is at least the step.
 """
 
 from __future__ import annotations
@@ -27,52 +27,15 @@ from carom.contact.continuous_detection import (
 from carom.contact.gap import slow
 from carom.contact.level import related
 from carom.contact.pair_point import REACH, find_touches, list_touches, smaller, touch_rate
-from carom.contact.parting import time_parted
+from carom.contact.parting import time_apart
 from carom.contact.place_of_other import centre_of_other, on_half_space
 from carom.contact.rim import OTHER_SIDE, SMOOTH, closed_rim, longest_way, same_point
-from carom.geometry.rotation import cross, rotate, rotate_back
-from carom.kinematics.flight import point_bound
+from carom.geometry.rotation import rotate
+from carom.kinematics.flight import relative_bound
 from carom.kinematics.wrench import point_velocity
 from carom.model.workspace import FREE, RESTS
 
 SHORT = 0.25  # displacement relative to the smaller body within which none passes through the other
-
-
-@kernel
-def spin_bound(body, extent, state, memory):
-    """Return a bound of the acceleration of a point of a body relative to its centre."""
-    if memory.status == RESTS:
-        return 0.0
-    if body.ballistic == 1 and memory.status == FREE:
-        return extent * point_bound(body, state.Q, state.w, memory)
-    return 2.0 * extent * (memory.bound[1] + memory.bound[2] * memory.bound[2])
-
-
-@kernel
-def core_extent(solid):
-    """Return the greatest distance of a core point from the mass centre; the ball around it does not turn."""
-    x = solid.x
-    return math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) + solid.extent - solid.radius
-
-
-@kernel
-def relative_bound(system, contact, state, work):
-    """Return bounds of the relative acceleration of the two centres, and of any two points."""
-    a, b, g = contact.body, contact.other, system.gravity
-    free_a = system.bodies[a].ballistic == 1 and work.body[a].status == FREE
-    free_b = b >= 0 and system.bodies[b].ballistic == 1 and work.body[b].status == FREE
-    fall = math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])
-    centres = 0.0
-    if not (free_a and free_b):  # two bodies in free flight have the same acceleration
-        for body, free in ((a, free_a), (b, free_b)):
-            if body >= 0 and work.body[body].status != RESTS:
-                centres += fall if free else 2.0 * work.body[body].bound[0]
-    r = core_extent(system.solids[contact.solid])
-    spin = spin_bound(system.bodies[a], r, state[a], work.body[a])
-    if b >= 0:
-        r = core_extent(system.solids[contact.other_solid])
-        spin += spin_bound(system.bodies[b], r, state[b], work.body[b])
-    return centres, centres + spin
 
 
 @kernel
@@ -85,74 +48,33 @@ def balls_apart(s, u, radii, sign, a):
 
 
 @kernel
-def balls_clear(contact, start, end, h, centres):
-    """Return whether the balls around both bodies stay apart during the step."""
-    a, radii = contact.body, contact.extent + contact.other_extent
-    time = 0.0
+def centre_of_ball(b, solid, pieces, state):
+    """Return position and velocity of the centre of a body, or of one of its pieces."""
+    x, v = state[b].x, state[b].v
+    if not pieces:
+        return x[0], x[1], x[2], v[0], v[1], v[2]
+    q, p = state[b].Q, solid.x
+    r0, r1, r2 = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    v0, v1, v2 = point_velocity(state, b, r0, r1, r2)
+    return x[0] + r0, x[1] + r1, x[2] + r2, v0, v1, v2
+
+
+@kernel
+def balls_clear(system, contact, start, end, h, a, pieces):
+    """Return whether the balls around both bodies, or two `pieces` of them, stay apart during the step."""
+    p, q, time = system.solids[contact.solid], system.solids[contact.other_solid], 0.0
+    radii = p.extent + q.extent if pieces else contact.extent + contact.other_extent
     for side in range(2):
         state, sign = (start, 1.0) if side == 0 else (end, -1.0)
-        x, v, y = state[a].x, state[a].v, centre_of_other(contact, state)
-        s, u = (x[0] - y[0], x[1] - y[1], x[2] - y[2]), (v[0] - y[3], v[1] - y[4], v[2] - y[5])
-        time += balls_apart(s, u, radii, sign, centres)
+        x = centre_of_ball(contact.body, p, pieces, state)
+        y = centre_of_other(contact, state)
+        if pieces and contact.static == 1:
+            y = (q.x[0], q.x[1], q.x[2], 0.0, 0.0, 0.0)
+        elif pieces:
+            y = centre_of_ball(contact.other, q, pieces, state)
+        s, u = (x[0] - y[0], x[1] - y[1], x[2] - y[2]), (x[3] - y[3], x[4] - y[4], x[5] - y[5])
+        time += balls_apart(s, u, radii, sign, a)
     return time >= h
-
-
-@kernel
-def solids_clear(system, contact, start, end, h, most):
-    """Return whether the balls around two pieces of bodies stay apart during the step."""
-    a, b = contact.body, contact.other
-    p, q = system.solids[contact.solid], system.solids[contact.other_solid]
-    time = 0.0
-    for side in range(2):
-        state, sign = (start, 1.0) if side == 0 else (end, -1.0)
-        x = state[a].x
-        r = rotate_by(state[a], p.x)
-        v = point_velocity(state, a, r[0], r[1], r[2])
-        y, t, w = (0.0, 0.0, 0.0), (q.x[0], q.x[1], q.x[2]), (0.0, 0.0, 0.0)
-        if b >= 0:
-            y = (state[b].x[0], state[b].x[1], state[b].x[2])
-            t = rotate_by(state[b], q.x)
-            w = point_velocity(state, b, t[0], t[1], t[2])
-        s = (x[0] - y[0] + (r[0] - t[0]), x[1] - y[1] + (r[1] - t[1]), x[2] - y[2] + (r[2] - t[2]))
-        u = (v[0] - w[0], v[1] - w[1], v[2] - w[2])
-        time += balls_apart(s, u, p.extent + q.extent, sign, most)
-    return time >= h
-
-
-@kernel
-def rotate_by(body, p):
-    """Rotate a vector from body axes to world axes."""
-    q = body.Q
-    return rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
-
-
-@kernel
-def seen_along(n, b, state, p):
-    """Return height along n, and its rate, of the point p (body axes) of body b."""
-    q, w, x, v = state[b].Q, state[b].w, state[b].x, state[b].v
-    nx, ny, nz = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
-    wx, wy, wz = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
-    cx, cy, cz = cross(nx, ny, nz, wx, wy, wz)
-    z = n[0] * x[0] + n[1] * x[1] + n[2] * x[2] + nx * p[0] + ny * p[1] + nz * p[2]
-    rate = n[0] * v[0] + n[1] * v[1] + n[2] * v[2] + cx * p[0] + cy * p[1] + cz * p[2]
-    return z, rate
-
-
-@kernel
-def time_apart(system, contact, n, sign, state, a, h):
-    """Return how long all pairs of core points stay apart along n; backwards in time for sign -1."""
-    if contact.first == contact.last or contact.other_first == contact.other_last:
-        return time_parted(system, contact, n, sign, state, a, h)
-    least = math.inf
-    for i in range(contact.first, contact.last):
-        z, rate = seen_along(n, contact.body, state, system.vertices[i])
-        for j in range(contact.other_first, contact.other_last):
-            p = system.vertices[j]
-            y, other = n[0] * p[0] + n[1] * p[1] + n[2] * p[2], 0.0
-            if contact.static == 0:
-                y, other = seen_along(n, contact.other, state, p)
-            least = min(least, reach(z - y - contact.radius, sign * (rate - other), a))
-    return least
 
 
 @kernel
@@ -203,21 +125,22 @@ def _lowest_pair(system, contact, c, active, state, work) -> tuple[float, float]
 
 @kernel
 def far_apart(system, contact, start, end, h, work):
-    """Return a bound of the relative acceleration of any two points; -1 if they surely stay apart."""
+    """Return bounds of the relative acceleration of the centres and of any two points, and whether it is clear.
+
+    It is if balls around the two stay apart.
+    """
     a, b = contact.body, contact.other
     if on_half_space(contact):
         if work.body[a].status == RESTS:
-            return -1.0
+            return 0.0, 0.0, True
         centre, most = greatest_acceleration(system, contact, start, work)
-        return -1.0 if ball_clears(system, contact, start, end, h, centre, work) else most
+        return centre, most, ball_clears(system, contact, start, end, h, centre, work)
     if work.body[a].status == RESTS and (b < 0 or work.body[b].status == RESTS):
-        return -1.0
+        return 0.0, 0.0, True
     centres, most = relative_bound(system, contact, start, work)
-    if balls_clear(contact, start, end, h, centres):
-        return -1.0
-    if contact.part == 1 and solids_clear(system, contact, start, end, h, most):
-        return -1.0
-    return most
+    clear = balls_clear(system, contact, start, end, h, centres, False)
+    clear = clear or (contact.part == 1 and balls_clear(system, contact, start, end, h, most, True))
+    return centres, most, clear
 
 
 @unit
@@ -229,15 +152,16 @@ def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, flo
     """
     contact, end, leaving = system.contacts[c], work.trial, active.contact_states[c].leaving
     longest = RIM_TIME * controls.step
-    most = far_apart(system, contact, start, end, h, work)
-    if most < 0.0:
+    centres, most, clear = far_apart(system, contact, start, end, h, work)
+    if clear:
         return CLEAR, h
+    bounds = (centres, most)
     touching = touches_already(system, active, c)
     tiny = 4.0 * max(controls.gap * smaller(contact), round_off_of_both(contact, end))
     count = find_touches(system, contact, end, REACH * smaller(contact), work)
     if count == 0:
         hidden = touching or contact.surface > 0
-        return (CLEAR, h) if hidden else passage_hidden(system, contact, start, most, h, work)
+        return (CLEAR, h) if hidden else passage_hidden(system, contact, start, bounds, h, work)
     least, rate = lowest_open(system, contact, c, count, active, end, work)
     nearest = nearest_touch(work, count)
     if touching:
@@ -263,13 +187,13 @@ def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, flo
         return BELOW, 0.0
     if touching:
         return CLEAR, h
-    last = time_apart(system, contact, nearest.normal, -1.0, end, most, h)
+    last = time_apart(system, contact, nearest, -1.0, end, bounds, h, work)
     feature = nearest.feature
     if last >= h:
         return CLEAR, h
     count = list_touches(system, contact, start, 0.0, work)
     nearest = nearest_touch(work, count)
-    first = time_apart(system, contact, nearest.normal, 1.0, start, most, h)
+    first = time_apart(system, contact, nearest, 1.0, start, bounds, h, work)
     sag = 0.125 * most * h * h
     rate0 = touch_rate(contact, nearest, start)
     alike = feature == nearest.feature  # the same points are nearest at both ends
@@ -298,7 +222,7 @@ def touches_already(system, active, c):
 
 
 @kernel
-def passage_hidden(system, contact, start, most, h, work):
+def passage_hidden(system, contact, start, bounds, h, work):
     """Return the verdict for a solid whose nearest points at the end belong to a level surface.
 
     If they belonged to the same one at the start, the row of the surface decides.
@@ -308,10 +232,10 @@ def passage_hidden(system, contact, start, most, h, work):
         if work.pair.state[0].hidden == hidden:
             return CLEAR, h
     count = list_touches(system, contact, end, 0.0, work)
-    last = time_apart(system, contact, nearest_touch(work, count).normal, -1.0, end, most, h)
+    last = time_apart(system, contact, nearest_touch(work, count), -1.0, end, bounds, h, work)
     count = list_touches(system, contact, start, 0.0, work)
-    first = time_apart(system, contact, nearest_touch(work, count).normal, 1.0, start, most, h)
-    bends = 0.125 * most * h * h > MISSED * smaller(contact)
+    first = time_apart(system, contact, nearest_touch(work, count), 1.0, start, bounds, h, work)
+    bends = 0.125 * bounds[1] * h * h > MISSED * smaller(contact)
     bends = bends or way_past(contact, start, end, h) > SHORT * smaller(contact)
     return (UNSURE, first) if first + last < h * (1.0 - 1e-12) and bends else (CLEAR, first)
 

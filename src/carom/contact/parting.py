@@ -1,16 +1,22 @@
-"""Bound of the time during which two convex cores stay separated along a fixed direction.
+"""Bound of the time during which two convex cores stay separated by a plane that moves with one of them.
 
-After a time t, the height of a core point p of a moving body along the fixed n is at least
+Let the plane move with a body O (or rest: x, v, w of O are then 0), and n be its normal now. With k = n x w_O,
+a point p = x + R b of a body goes away from it along n, in the frame of O, at the rate
 
-    n.x + n.v t + (m + t c).p - a t^2/2,   m, c: n and n x w in body axes.
+    n.(v - v_O) - (x - x_O).k + (c - R^T k).b,       m, c: n and n x w in axes of its body.
 
-The least value over a core is a support function, h(d) = max d.p, so that the gap is at least
+After a time t its height is at least n.x + m.b plus t times this rate minus a t^2/2, where a bounds its
+acceleration in the frame of O. The least value over a core is a support function, h(d) = max d.b, so that the
+gap is at least
 
-    F(t) = n.(x_a - x_b) + n.(v_a - v_b) t - h_A(-(m_a + t c_a)) - h_B(m_b + t c_b) - radii - a t^2/2.
+    F(t) = n.(x_a - x_b) + t (rate_a - rate_b) - h_A(-(m_a + t c_a)) - h_B(m_b + t c_b) - radii - a t^2/2.
 
 F is concave, because it is a minimum of concave functions. So chords lie below it, and the root of a chord from
 a point above zero to one below comes before the root of F. All points of the two cores are apart as long as
-F > 0. For cores with vertices, the bound of `continuous_detection_pair.time_apart` is the same.
+F > 0.
+
+A plane at rest is good at a distance, since a is small. Faces that nearly touch and turn need one that turns
+with a face, whose far corners pass through a plane at rest at once.
 """
 
 from __future__ import annotations
@@ -18,9 +24,11 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
+from carom.collision.features import NOBODY, OF_A
 from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, SEGMENT
-from carom.contact.place_of_other import on_half_space
+from carom.contact.place_of_other import centre_of_other, on_half_space
 from carom.geometry.rotation import cross, rotate_back
+from carom.kinematics.flight import core_extent, greatest_spin, spin_bound
 
 HALVES = 30  # largest number of halvings of the step, until the bound is above zero
 CHORDS = 4  # each comes nearer to the root
@@ -50,53 +58,107 @@ def height(solid, hulls, x, y, z):
 
 
 @kernel
-def seen(n, body):
-    """Return n and n x w in body axes, and height and speed along n of the mass centre."""
-    q, w, x, v = body.Q, body.w, body.x, body.v
-    mx, my, mz = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
-    wx, wy, wz = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
-    cx, cy, cz = cross(mx, my, mz, wx, wy, wz)
-    z = n[0] * x[0] + n[1] * x[1] + n[2] * x[2]
-    return mx, my, mz, cx, cy, cz, z, n[0] * v[0] + n[1] * v[1] + n[2] * v[2]
+def frame_of(contact, side, n, state):
+    """Return k = n x w and n.v - x.k of the body (side 0) or the other one (1); zero of a plane at rest (2)."""
+    b = contact.body if side == 0 else contact.other
+    if side == 2 or b < 0:
+        return 0.0, 0.0, 0.0, 0.0
+    x, v, w = state[b].x, state[b].v, state[b].w
+    k = cross(n[0], n[1], n[2], w[0], w[1], w[2])
+    rate = n[0] * v[0] + n[1] * v[1] + n[2] * v[2]
+    return k[0], k[1], k[2], rate - x[0] * k[0] - x[1] * k[1] - x[2] * k[2]
 
 
 @kernel
-def least_gap(system, contact, n, state, t, a):
+def seen(n, frame, body):
+    """Return n and n x w - k in body axes, and height and rate along n of the mass centre in a frame."""
+    q, w, x, v = body.Q, body.w, body.x, body.v
+    mx, my, mz = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
+    cx, cy, cz = cross(n[0], n[1], n[2], w[0], w[1], w[2])
+    kx, ky, kz, rate = frame
+    cx, cy, cz = rotate_back(q[0], q[1], q[2], q[3], cx - kx, cy - ky, cz - kz)
+    z = n[0] * x[0] + n[1] * x[1] + n[2] * x[2]
+    rate = n[0] * v[0] + n[1] * v[1] + n[2] * v[2] - rate - x[0] * kx - x[1] * ky - x[2] * kz
+    return mx, my, mz, cx, cy, cz, z, rate
+
+
+@kernel
+def least_gap(system, contact, n, frame, state, t, a):
     """Return F(t), negative t for the past; a bounds the relative acceleration of any two points."""
-    m = seen(n, state[contact.body])
+    m = seen(n, frame, state[contact.body])
     hulls, solid = system.hulls, system.solids[contact.solid]
     gap = m[6] + t * m[7] - contact.radius - 0.5 * a * t * t
     gap -= height(solid, hulls, -m[0] - t * m[3], -m[1] - t * m[4], -m[2] - t * m[5])
     if on_half_space(contact):
         return gap - contact.offset
-    solid = system.solids[contact.other_solid]
+    solid, k = system.solids[contact.other_solid], frame
     if contact.static == 1:
-        return gap - height(solid, hulls, n[0], n[1], n[2])
-    m = seen(n, state[contact.other])
+        d = height(solid, hulls, n[0] - t * k[0], n[1] - t * k[1], n[2] - t * k[2])
+        return gap + t * k[3] - d
+    m = seen(n, frame, state[contact.other])
     gap -= m[6] + t * m[7]
     return gap - height(solid, hulls, m[0] + t * m[3], m[1] + t * m[4], m[2] + t * m[5])
 
 
 @kernel
-def time_parted(system, contact, n, sign, state, a, h):
+def time_parted(system, contact, n, frame, sign, state, a, h):
     """Return for how long, up to h, all points of two cores stay apart along n; sign -1: in the past.
 
     They may touch at the beginning, for instance after an impact: because F is concave, F > 0 at a time t is
     enough for all earlier times.
     """
-    g = least_gap(system, contact, n, state, sign * h, a)
+    g = least_gap(system, contact, n, frame, state, sign * h, a)
     if g >= 0.0:
         return h
     t, end = h, h
     for _ in range(HALVES):
         t *= 0.5
-        f = least_gap(system, contact, n, state, sign * t, a)
+        f = least_gap(system, contact, n, frame, state, sign * t, a)
         if f > 0.0:
             for _ in range(CHORDS):
                 t += (end - t) * f / (f - g)
-                f = least_gap(system, contact, n, state, sign * t, a)
+                f = least_gap(system, contact, n, frame, state, sign * t, a)
                 if not f > 0.0:  # the root itself, to round-off
                     break
             return t
         end, g = t, f
     return 0.0
+
+
+@kernel
+def bound_in_frame(system, contact, side, centres, state, h, work):
+    """Return a bound of the acceleration of any point of one body in the frame of the other (side 0 or 1).
+
+    At a distance d from the centre of that body O, with a relative speed V + w_O d + w r, it is that of the
+    centres, that about its own centre, (|w_O'| + w_O^2) d, and 2 w_O times this speed; twice the last, because
+    spins grow in the step. `centres` bounds the first.
+    """
+    own, other = contact.body, contact.other
+    x, v, y = state[own].x, state[own].v, centre_of_other(contact, state)
+    speed = math.sqrt((v[0] - y[3]) ** 2 + (v[1] - y[4]) ** 2 + (v[2] - y[5]) ** 2)
+    r = core_extent(system.solids[contact.other_solid if side == 0 else contact.solid])
+    if contact.static == 1:  # the table has its place in the world
+        r = contact.other_extent
+    d = math.sqrt((x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2) + speed * h + r
+    o, p = (own, other) if side == 0 else (other, own)
+    turn, spin = greatest_spin(system, o, state, work), greatest_spin(system, p, state, work)
+    most = centres + spin_bound(system, p, r, state, work) + spin_bound(system, o, d, state, work)
+    return most + 4.0 * turn * (speed + turn * d + spin * r)
+
+
+@kernel
+def time_apart(system, contact, touch, sign, state, bounds, h, work):
+    """Return how long, up to h, two solids stay apart beside the plane of a point; sign -1: in the past.
+
+    The plane rests, or moves with the body that owns its normal, whichever lasts longer. `bounds` are those of
+    the relative acceleration of the centres and of any two points.
+    """
+    n, owner = (touch.normal[0], touch.normal[1], touch.normal[2]), touch.owner
+    rests = frame_of(contact, 2, n, state)
+    time = time_parted(system, contact, n, rests, sign, state, bounds[1], h)
+    for side in range(0 if on_half_space(contact) else 2 - contact.static):
+        if time < h and (owner == NOBODY or owner == OF_A + side):
+            frame = frame_of(contact, side, n, state)
+            a = bound_in_frame(system, contact, side, bounds[0], state, h, work)
+            time = max(time, time_parted(system, contact, n, frame, sign, state, a, h))
+    return time

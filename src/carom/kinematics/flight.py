@@ -8,9 +8,12 @@ any other state, for instance after an impact, begins another flight.
 
 from __future__ import annotations
 
+import math
+
 from carom._compiled.decorators import inlined, kernel
 from carom.geometry.rotation import exp, multiply, renormalize, rotate, rotate_back
 from carom.kinematics.torque_free_top import attitude, begin_top
+from carom.model.workspace import FREE, RESTS
 
 
 @inlined
@@ -102,3 +105,49 @@ def free_rates(body, g, state, rate):
     )  # fmt: skip
     for k in range(3):
         rate[k], rate[3 + k] = g[k], a[k]
+
+
+@kernel
+def spin_bound(system, b, extent, state, work):
+    """Return a bound of the acceleration of a point of a body, `extent` from its centre, relative to that."""
+    if b < 0 or work.body[b].status == RESTS:
+        return 0.0
+    body, memory = system.bodies[b], work.body[b]
+    if body.ballistic == 1 and memory.status == FREE:
+        return extent * point_bound(body, state[b].Q, state[b].w, memory)
+    return 2.0 * extent * (memory.bound[1] + memory.bound[2] * memory.bound[2])
+
+
+@kernel
+def greatest_spin(system, b, state, work):
+    """Return a bound of the angular speed of a body in the step."""
+    if b < 0 or work.body[b].status == RESTS:
+        return 0.0
+    body, memory = system.bodies[b], work.body[b]
+    if body.ballistic == 1 and memory.status == FREE:
+        return math.sqrt(point_bound(body, state[b].Q, state[b].w, memory))
+    return memory.bound[2]
+
+
+@kernel
+def core_extent(solid):
+    """Return the greatest distance of a core point from the mass centre; the ball around it does not turn."""
+    x = solid.x
+    return math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) + solid.extent - solid.radius
+
+
+@kernel
+def relative_bound(system, contact, state, work):
+    """Return bounds of the relative acceleration of the two centres, and of any two points."""
+    a, b, g = contact.body, contact.other, system.gravity
+    free_a = system.bodies[a].ballistic == 1 and work.body[a].status == FREE
+    free_b = b >= 0 and system.bodies[b].ballistic == 1 and work.body[b].status == FREE
+    fall = math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])
+    centres = 0.0
+    if not (free_a and free_b):  # two bodies in free flight have the same acceleration
+        for body, free in ((a, free_a), (b, free_b)):
+            if body >= 0 and work.body[body].status != RESTS:
+                centres += fall if free else 2.0 * work.body[body].bound[0]
+    spin = spin_bound(system, a, core_extent(system.solids[contact.solid]), state, work)
+    spin += spin_bound(system, b, core_extent(system.solids[contact.other_solid]), state, work)
+    return centres, centres + spin

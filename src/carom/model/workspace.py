@@ -51,6 +51,10 @@ ACTIVE_POINT = [
     ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
     # `stop` with both `turn_stop` at the start of the step
     ("first_stop", "f8", 3),
+    # normal at the start of the step and its owner; 1 if the point passes an edge in the step
+    ("normal", "f8", 3),
+    ("owner", "i8"),
+    ("passes", "i8"),
 ]
 
 #: a contact point in one state

@@ -11,6 +11,7 @@ from carom.contact.gap import slow
 from carom.dynamics.acceleration import OPEN, SLIP, STICK
 from carom.dynamics.adapt import allowed_error
 from carom.dynamics.explicit import copy_state, note_velocity
+from carom.dynamics.passed_edges import has_passed, note_passed
 from carom.dynamics.project import LOST, project_position, project_velocity
 from carom.dynamics.several_points import velocities
 from carom.friction.layout import CONE, SLIDING, SOLVED
@@ -37,6 +38,8 @@ def land(model, data, loaded, k, count) -> bool:
     if loaded and not (project_position(system, end, True, 1e-14, work) <= LOST):
         return False
     show(count, end, group, work)
+    place_closed(system, k, end, group, group.points[0], work)
+    note_passed(active, k, group, data.state, end)
     onto_surfaces(system, active, k, count, end, group, work)
     if loaded:
         project_velocity(system, end, work)
@@ -53,7 +56,7 @@ def land(model, data, loaded, k, count) -> bool:
             if closed_point.turns == JOINT:
                 closed_point.rows = 1 if sticks else 0
             elif closed_point.turns == 0 and group.v[P][3 * i] > 0.0:
-                closed_point.rows = 3 if sticks else 1
+                closed_point.rows = 0 if has_passed(active, i, group) else 3 if sticks else 1
         onto_tangents(system, k, count, end, group, work)
     show(count, end, group, work)
     return True
@@ -80,7 +83,8 @@ def note_modes(model, data, k):
         closed_point, u, p = group.closed[i], group.v[U], group.v[P]
         slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
         force = math.hypot(p[3 * i + 1], p[3 * i + 2])
-        full = slip > still and not force < ON_CONE * radius_of(group, i)
+        bare = closed_point.turns == 0 and closed_point.loaded == 0  # round-off is no friction left
+        full = slip > still and (bare or not force < ON_CONE * radius_of(group, i))
         group.kind[i] = SLIDING if group.mu[i] == 0.0 or full else CONE
         if closed_point.own == 0:
             continue
@@ -157,7 +161,7 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
         set_margins(active_point, i, located, group)
         active_point.jams = jams_among(i, status, group)
     add_forces_of_corners(active, k, group)
-    note_residual(k, group, work)
+    note_residual(active, k, group, work)
     return True
 
 
@@ -187,7 +191,8 @@ def solve_end(model, data, loaded, k, count, s, still, h):
 @kernel
 def end_mode(active_point, i, still, at_rest, group):
     """Let a point open that has no force and leaves its surface, faster than `still`, or stick at rest."""
-    if group.v[P][3 * i] <= 0.0 and group.v[U][3 * i] > still:
+    leaves = group.v[P][3 * i] <= 0.0 and group.v[U][3 * i] > still
+    if leaves or active_point.passes == 1:
         active_point.next = OPEN
     if at_rest:
         active_point.next = STICK
@@ -330,11 +335,11 @@ def onto_tangents_of(model, data, k, count):
 
 
 @kernel
-def note_residual(k, group, work):
+def note_residual(active, k, group, work):
     """Raise the residual of the step to the greatest forbidden velocity."""
     worst = 0.0
     for i in range(k):
-        if group.closed[i].turns > 0 or not group.v[P][3 * i] > 0.0:
+        if group.closed[i].turns > 0 or not group.v[P][3 * i] > 0.0 or has_passed(active, i, group):
             continue
         worst = max(worst, abs(group.v[U][3 * i]))
         if group.kind[i] == CONE:

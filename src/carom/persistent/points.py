@@ -18,6 +18,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.closed_points import write_closed
+from carom.contact.continuous_detection_pair import nearest_touch
 from carom.contact.pair_point import (
     ACTIVE_REACH,
     find_touches,
@@ -30,13 +31,13 @@ from carom.contact.pair_point import (
 from carom.contact.place import place_any
 from carom.contact.rim import same_point
 from carom.contact.stop import is_active
+from carom.geometry.rotation import cross, rotate_back
 from carom.kinematics.contact_point import copy_point
 from carom.persistent.joint_rows import add_frictions
 
 FACE = (
     1e-3  # of the smaller body: points of a face that are no higher than that belong to its patch
 )
-WHOLE = 3  # points of two bodies from which on they are a face, all of whose corners may carry
 #: normals (a sine) and heights (of the size of the body) that differ by less are those of one plane
 LEVEL = 1e-6
 #: distance, of the size of the body, below which two corners are one, and one on a line between others is none
@@ -89,12 +90,9 @@ def add_known(system, active, i, state, k, group, work):
 def _add_pair(system, active, i, state, k, group, work) -> int:
     """Add the points of two solids: of a face all its corners, else those of the active features."""
     c = active.points[i].contact
-    contact, members = system.contacts[c], 0
-    for j in range(active.count[0]):
-        same = active.points[j].body == contact.body and active.points[j].other == contact.other
-        members += 1 if same else 0
-    if members < WHOLE:
-        count = list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+    contact = system.contacts[c]
+    count = list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+    if not on_face(contact, active, i, nearest_touch(work, count).normal, state):
         for j in range(i, active.count[0]):
             if active.points[j].contact == c:
                 k = add_nearest(system, active, j, count, state, k, group, work)
@@ -106,6 +104,32 @@ def _add_pair(system, active, i, state, k, group, work) -> int:
         if beside and not is_active(active, d):
             k = add_face(system, active, d, i, state, k, group, work)
     return k
+
+
+@kernel
+def on_face(contact, active, i, n, state):
+    """Return whether active points of two bodies span a part of the plane through point i with the normal n.
+
+    Points on a line, or in other planes, do not tell whether a corner at some distance is closed.
+    """
+    q, p, level = state[contact.body].Q, active.points[i].point, LEVEL * smaller(contact)
+    m, x, y, z, far = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2]), 0.0, 0.0, 0.0, level
+    for find_end in (True, False):
+        for j in range(active.count[0]):
+            other = active.points[j]
+            if other.body != contact.body or other.other != contact.other:
+                continue
+            a, b, c = other.point[0] - p[0], other.point[1] - p[1], other.point[2] - p[2]
+            if abs(a * m[0] + b * m[1] + c * m[2]) > level:
+                continue
+            if not find_end:
+                a, b, c = cross(a, b, c, x, y, z)
+            distance = math.sqrt(a * a + b * b + c * c)
+            if not find_end and distance > level * far:
+                return True
+            if find_end and distance > far:
+                x, y, z, far = a, b, c, distance
+    return False
 
 
 @kernel

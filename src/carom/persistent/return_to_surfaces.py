@@ -15,6 +15,7 @@ from carom.contact.closed_points import place_closed, round_off_of_both
 from carom.contact.gap import round_off
 from carom.contact.place import place_any
 from carom.dynamics.acceleration import STICK
+from carom.dynamics.passed_edges import has_passed
 from carom.dynamics.project import project_position, shift
 from carom.dynamics.several_points import factor, spread_all, substitute, velocities, yields
 from carom.impact.workspace import OLD, P, U
@@ -38,7 +39,7 @@ def mark_rows(system, active, k, group):
         if group.points[1][i].gap < -1e-12 * system.contacts[active_point.contact].extent:
             some = True
             group.closed[i].rows = 1
-        if p[q] > 0.0:
+        if p[q] > 0.0 and not has_passed(active, i, group):
             some = True
             friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
             contact = system.contacts[active_point.contact]

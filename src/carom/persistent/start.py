@@ -12,6 +12,7 @@ from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.dynamics.acceleration import SLIP, STICK
 from carom.dynamics.explicit import copy_state, note_velocity
+from carom.dynamics.passed_edges import note_normal
 from carom.friction.layout import SLIDING, SOLVED
 from carom.impact.workspace import C, P, U
 from carom.persistent.finish import gains, solve_cones_of, within_cones
@@ -115,6 +116,7 @@ def note_way(model, data, i, still):
     slips = active_point.next == SLIP
     if slips and not moves and group.mu[i] > 0.0:  # it has stopped
         active_point.next = STICK
+    note_normal(group.points[0][i], active_point)
     active_point.heading[0], active_point.heading[1] = d1 if slips else 0.0, d2 if slips else 0.0
     active_point.speed = speed
     return moves or not slips or group.mu[i] == 0.0

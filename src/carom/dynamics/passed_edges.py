@@ -1,0 +1,56 @@
+"""Points that have passed an edge within a step: their normal jumps from that of one face to that of the next.
+
+A normal that a face owns turns with its body. Where it does not, the point has gone from this face to another.
+Beyond an edge of a convex piece the next face recedes: to keep the point on it would take a pull.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.collision.features import NOBODY, OF_A
+from carom.geometry.rotation import rotate, rotate_back
+from carom.kinematics.contact_point import contact_velocity
+
+JUMP = 1e-6  # of a component: those of a normal that has turned with its face differ by round-off
+
+
+@kernel
+def note_normal(point, active_point):
+    """Keep the normal of a point at the start of a step."""
+    active_point.owner, active_point.passes = point.owner, 0
+    for r in range(3):
+        active_point.normal[r] = point.axes[0, r]
+
+
+@kernel
+def note_passed(active, k, group, start, end):
+    """Mark the points of two bodies that have passed an edge, from their places at the end of a step."""
+    for i in range(k):
+        closed_point, point = group.closed[i], group.points[0][i]
+        if closed_point.turns > 0 or closed_point.own == 0:
+            continue
+        active_point = active.points[closed_point.active]
+        faces = active_point.owner != NOBODY and point.owner != NOBODY
+        jumps = (
+            active_point.touches == 1 and faces and normal_jumps(active_point, point, start, end)
+        )
+        active_point.passes = 1 if jumps and contact_velocity(point, end)[0] > 0.0 else 0
+
+
+@kernel
+def normal_jumps(active_point, point, start, end):
+    """Return whether a normal is not that of the start, turned with the body that owns it now."""
+    b, n, m = point.a if point.owner == OF_A else point.b, active_point.normal, point.axes[0]
+    x, y, z = n[0], n[1], n[2]
+    if b >= 0:
+        q, Q = start[b].Q, end[b].Q
+        x, y, z = rotate_back(q[0], q[1], q[2], q[3], x, y, z)
+        x, y, z = rotate(Q[0], Q[1], Q[2], Q[3], x, y, z)
+    return max(abs(x - m[0]), max(abs(y - m[1]), abs(z - m[2]))) > JUMP
+
+
+@kernel
+def has_passed(active, i, group):
+    """Return whether closed point i has passed an edge."""
+    closed_point = group.closed[i]
+    return closed_point.own == 1 and active.points[closed_point.active].passes == 1
