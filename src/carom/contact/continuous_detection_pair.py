@@ -125,22 +125,21 @@ def _lowest_pair(system, contact, c, active, state, work) -> tuple[float, float]
 
 @kernel
 def far_apart(system, contact, start, end, h, work):
-    """Return bounds of the relative acceleration of the centres and of any two points, and whether it is clear.
-
-    It is if balls around the two stay apart.
-    """
-    a, b = contact.body, contact.other
+    """Return the bounds of `relative_bound`, and whether balls around the two stay apart."""
+    a, b, none = contact.body, contact.other, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     if on_half_space(contact):
         if work.body[a].status == RESTS:
-            return 0.0, 0.0, True
+            return none, True
         centre, most = greatest_acceleration(system, contact, start, work)
-        return centre, most, ball_clears(system, contact, start, end, h, centre, work)
+        bounds = (centre, most, 0.0, 0.0, 0.0, 0.0)
+        return bounds, ball_clears(system, contact, start, end, h, centre, work)
     if work.body[a].status == RESTS and (b < 0 or work.body[b].status == RESTS):
-        return 0.0, 0.0, True
-    centres, most = relative_bound(system, contact, start, work)
-    clear = balls_clear(system, contact, start, end, h, centres, False)
-    clear = clear or (contact.part == 1 and balls_clear(system, contact, start, end, h, most, True))
-    return centres, most, clear
+        return none, True
+    bounds = relative_bound(system, contact, start, work)
+    clear = balls_clear(system, contact, start, end, h, bounds[0], False)
+    if contact.part == 1 and not clear:
+        clear = balls_clear(system, contact, start, end, h, bounds[1], True)
+    return bounds, clear
 
 
 @unit
@@ -152,10 +151,9 @@ def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, flo
     """
     contact, end, leaving = system.contacts[c], work.trial, active.contact_states[c].leaving
     longest = RIM_TIME * controls.step
-    centres, most, clear = far_apart(system, contact, start, end, h, work)
+    bounds, clear = far_apart(system, contact, start, end, h, work)
     if clear:
         return CLEAR, h
-    bounds = (centres, most)
     touching = touches_already(system, active, c)
     tiny = 4.0 * max(controls.gap * smaller(contact), round_off_of_both(contact, end))
     count = find_touches(system, contact, end, REACH * smaller(contact), work)
@@ -187,14 +185,14 @@ def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, flo
         return BELOW, 0.0
     if touching:
         return CLEAR, h
-    last = time_apart(system, contact, nearest, -1.0, end, bounds, h, work)
+    last = time_apart(system, contact, nearest, -1.0, end, bounds, h)
     feature = nearest.feature
     if last >= h:
         return CLEAR, h
     count = list_touches(system, contact, start, 0.0, work)
     nearest = nearest_touch(work, count)
-    first = time_apart(system, contact, nearest, 1.0, start, bounds, h, work)
-    sag = 0.125 * most * h * h
+    first = time_apart(system, contact, nearest, 1.0, start, bounds, h)
+    sag = 0.125 * bounds[1] * h * h
     rate0 = touch_rate(contact, nearest, start)
     alike = feature == nearest.feature  # the same points are nearest at both ends
     short = way_past(contact, start, end, h) <= SHORT * smaller(contact)
@@ -232,9 +230,9 @@ def passage_hidden(system, contact, start, bounds, h, work):
         if work.pair.state[0].hidden == hidden:
             return CLEAR, h
     count = list_touches(system, contact, end, 0.0, work)
-    last = time_apart(system, contact, nearest_touch(work, count), -1.0, end, bounds, h, work)
+    last = time_apart(system, contact, nearest_touch(work, count), -1.0, end, bounds, h)
     count = list_touches(system, contact, start, 0.0, work)
-    first = time_apart(system, contact, nearest_touch(work, count), 1.0, start, bounds, h, work)
+    first = time_apart(system, contact, nearest_touch(work, count), 1.0, start, bounds, h)
     bends = 0.125 * bounds[1] * h * h > MISSED * smaller(contact)
     bends = bends or way_past(contact, start, end, h) > SHORT * smaller(contact)
     return (UNSURE, first) if first + last < h * (1.0 - 1e-12) and bends else (CLEAR, first)

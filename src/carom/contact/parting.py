@@ -28,7 +28,7 @@ from carom.collision.features import NOBODY, OF_A
 from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, SEGMENT
 from carom.contact.place_of_other import centre_of_other, on_half_space
 from carom.geometry.rotation import cross, rotate_back
-from carom.kinematics.flight import core_extent, greatest_spin, spin_bound
+from carom.kinematics.flight import core_extent
 
 HALVES = 30  # largest number of halvings of the step, until the bound is above zero
 CHORDS = 4  # each comes nearer to the root
@@ -126,32 +126,32 @@ def time_parted(system, contact, n, frame, sign, state, a, h):
 
 
 @kernel
-def bound_in_frame(system, contact, side, centres, state, h, work):
+def bound_in_frame(system, contact, side, bounds, state, h):
     """Return a bound of the acceleration of any point of one body in the frame of the other (side 0 or 1).
 
     At a distance d from the centre of that body O, with a relative speed V + w_O d + w r, it is that of the
     centres, that about its own centre, (|w_O'| + w_O^2) d, and 2 w_O times this speed; twice the last, because
-    spins grow in the step. `centres` bounds the first.
+    spins grow in the step. `bounds` are those of the start of the step (`relative_bound`).
     """
-    own, other = contact.body, contact.other
-    x, v, y = state[own].x, state[own].v, centre_of_other(contact, state)
+    a = contact.body
+    x, v, y = state[a].x, state[a].v, centre_of_other(contact, state)
     speed = math.sqrt((v[0] - y[3]) ** 2 + (v[1] - y[4]) ** 2 + (v[2] - y[5]) ** 2)
     r = core_extent(system.solids[contact.other_solid if side == 0 else contact.solid])
     if contact.static == 1:  # the table has its place in the world
         r = contact.other_extent
     d = math.sqrt((x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2) + speed * h + r
-    o, p = (own, other) if side == 0 else (other, own)
-    turn, spin = greatest_spin(system, o, state, work), greatest_spin(system, p, state, work)
-    most = centres + spin_bound(system, p, r, state, work) + spin_bound(system, o, d, state, work)
-    return most + 4.0 * turn * (speed + turn * d + spin * r)
+    centres, _, turn, spin, other_turn, other_spin = bounds
+    if side == 1:
+        turn, spin, other_turn, other_spin = other_turn, other_spin, turn, spin
+    return centres + other_turn * r + turn * d + 4.0 * spin * (speed + spin * d + other_spin * r)
 
 
 @kernel
-def time_apart(system, contact, touch, sign, state, bounds, h, work):
+def time_apart(system, contact, touch, sign, state, bounds, h):
     """Return how long, up to h, two solids stay apart beside the plane of a point; sign -1: in the past.
 
     The plane rests, or moves with the body that owns its normal, whichever lasts longer. `bounds` are those of
-    the relative acceleration of the centres and of any two points.
+    `relative_bound`.
     """
     n, owner = (touch.normal[0], touch.normal[1], touch.normal[2]), touch.owner
     rests = frame_of(contact, 2, n, state)
@@ -159,6 +159,6 @@ def time_apart(system, contact, touch, sign, state, bounds, h, work):
     for side in range(0 if on_half_space(contact) else 2 - contact.static):
         if time < h and (owner == NOBODY or owner == OF_A + side):
             frame = frame_of(contact, side, n, state)
-            a = bound_in_frame(system, contact, side, bounds[0], state, h, work)
+            a = bound_in_frame(system, contact, side, bounds, state, h)
             time = max(time, time_parted(system, contact, n, frame, sign, state, a, h))
     return time

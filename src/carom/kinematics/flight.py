@@ -108,25 +108,18 @@ def free_rates(body, g, state, rate):
 
 
 @kernel
-def spin_bound(system, b, extent, state, work):
-    """Return a bound of the acceleration of a point of a body, `extent` from its centre, relative to that."""
+def turning_bound(system, b, state, work):
+    """Return bounds of the acceleration of points of a body about its centre, per distance, and of its spin.
+
+    They hold along the whole flight. To ask again in another state of it would begin another flight.
+    """
     if b < 0 or work.body[b].status == RESTS:
-        return 0.0
+        return 0.0, 0.0
     body, memory = system.bodies[b], work.body[b]
     if body.ballistic == 1 and memory.status == FREE:
-        return extent * point_bound(body, state[b].Q, state[b].w, memory)
-    return 2.0 * extent * (memory.bound[1] + memory.bound[2] * memory.bound[2])
-
-
-@kernel
-def greatest_spin(system, b, state, work):
-    """Return a bound of the angular speed of a body in the step."""
-    if b < 0 or work.body[b].status == RESTS:
-        return 0.0
-    body, memory = system.bodies[b], work.body[b]
-    if body.ballistic == 1 and memory.status == FREE:
-        return math.sqrt(point_bound(body, state[b].Q, state[b].w, memory))
-    return memory.bound[2]
+        most = point_bound(body, state[b].Q, state[b].w, memory)
+        return most, math.sqrt(most)
+    return 2.0 * (memory.bound[1] + memory.bound[2] * memory.bound[2]), memory.bound[2]
 
 
 @kernel
@@ -138,7 +131,7 @@ def core_extent(solid):
 
 @kernel
 def relative_bound(system, contact, state, work):
-    """Return bounds of the relative acceleration of the two centres, and of any two points."""
+    """Return bounds of the relative acceleration of the two centres, of any two points, and of both spins."""
     a, b, g = contact.body, contact.other, system.gravity
     free_a = system.bodies[a].ballistic == 1 and work.body[a].status == FREE
     free_b = b >= 0 and system.bodies[b].ballistic == 1 and work.body[b].status == FREE
@@ -148,6 +141,8 @@ def relative_bound(system, contact, state, work):
         for body, free in ((a, free_a), (b, free_b)):
             if body >= 0 and work.body[body].status != RESTS:
                 centres += fall if free else 2.0 * work.body[body].bound[0]
-    spin = spin_bound(system, a, core_extent(system.solids[contact.solid]), state, work)
-    spin += spin_bound(system, b, core_extent(system.solids[contact.other_solid]), state, work)
-    return centres, centres + spin
+    turn, spin = turning_bound(system, a, state, work)
+    other_turn, other_spin = turning_bound(system, b, state, work)
+    most = centres + turn * core_extent(system.solids[contact.solid])
+    most += other_turn * core_extent(system.solids[contact.other_solid])
+    return centres, most, turn, spin, other_turn, other_spin
