@@ -9,6 +9,9 @@ from carom.impact.layout import AT_ONCE, JAM, PLASTIC
 from carom.model import records as r
 from carom.results.names import contact_names
 
+#: energy of a jam, of what the run exchanges, below which slip of round-off has jammed (a wheel that rolls)
+_ROUND_OFF = 1e-9
+
 _ACTED = {
     AT_ONCE: (
         "were solved as one contact problem with Newton's law at each contact, because the passage of their "
@@ -21,7 +24,9 @@ _ACTED = {
 def remarks(rows, events, run) -> tuple[str, ...]:
     """Return a sentence for each kind: how many impacts (`rows`) or `events` of a run, and the first."""
     names, jams = contact_names(run.scene, run.pairs).name, events[events["kind"] == r.JAMS]
-    slides = rows[(rows["phases"] & JAM != 0) & ~np.isin(rows["time"], jams["time"])]
+    counts = np.abs(rows["energy_change"]) > _ROUND_OFF * run.watch[0].exchanged
+    jams = jams[np.isin(jams["time"], rows["time"][counts])]
+    slides = rows[counts & (rows["phases"] & JAM != 0) & ~np.isin(rows["time"], jams["time"])]
     said = _gains(rows, names, run)
     if len(jams) + len(slides) > 0:
         first = min((*jams[:1], *slides[:1]), key=lambda row: row["time"])
