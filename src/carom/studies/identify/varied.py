@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from carom import checks
+from carom.fields import keep
 from carom.scene.scene import Scene
 from carom.scene.shapes import Box
-from carom.scene.values import keep
 from carom.studies.identify.recording import State, checked_state
 
 #: parameters of `varied`: lower and upper bound, and a step large enough for the start of a search
