@@ -23,6 +23,12 @@ class TrajectoryError(NamedTuple):
     rotation: float  #: angle from one attitude to the other [rad], 0 to pi
 
 
+def offsets(simulated, recorded) -> tuple[np.ndarray, np.ndarray]:
+    """Return displacements [m] and rotation vectors [rad] (n, N, 3) from recorded to simulated poses."""
+    turn = quaternion.between(recorded.orientation, simulated.orientation)
+    return simulated.position - recorded.position, turn
+
+
 def distances(simulated, recorded) -> np.ndarray:
     """Return the distances (n, N) of the mass centres [m]; the arguments have a `position` (n, N, 3)."""
     return np.linalg.norm(simulated.position - recorded.position, axis=-1)
@@ -30,8 +36,7 @@ def distances(simulated, recorded) -> np.ndarray:
 
 def angles(simulated, recorded) -> np.ndarray:
     """Return the angles (n, N) of the rotations between the attitudes [rad], 0 to pi."""
-    turn = quaternion.between(recorded.orientation, simulated.orientation)
-    return np.linalg.norm(turn, axis=-1)
+    return np.linalg.norm(offsets(simulated, recorded)[1], axis=-1)
 
 
 def trajectory_error(simulated, recorded, length: float = 1.0) -> TrajectoryError:
