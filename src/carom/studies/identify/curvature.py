@@ -2,7 +2,7 @@
 
 Residuals r are poses, simulated less recorded, in units of their noise. With J = dr/dp the covariance of the
 parameters is (J^T J)^-1, and eigenvalues of J^T J that are too small belong to changes that the data do not
-show (Gauss and Newton; Seber and Wild 1989, Nonlinear Regression, sections 2.1 and 3.3).
+show (Gauss and Newton; Seber and Wild 1989, Nonlinear Regression, section 2.1 and chapter 3).
 """
 
 from __future__ import annotations
@@ -30,16 +30,10 @@ class Curvature(NamedTuple):
     excluded (the sum of squares changes by less than 4) although by the curvature it would be (by 16).
     """
 
-    centre: (
-        np.ndarray
-    )  #: (p,) minimum of the sum of squares, over the directions that are determined
+    centre: np.ndarray  #: (p,) minimum of the sum of squares over determined directions
     error: np.ndarray  #: (p,) standard errors; infinite for a parameter that is not determined
-    allowed: (
-        np.ndarray
-    )  #: (p, 2) interval of the values that the data do not exclude, with 95 % certainty
-    combinations: (
-        np.ndarray
-    )  #: (k, p) changes of several parameters together that the data do not show
+    allowed: np.ndarray  #: (p, 2) intervals of the values that are not excluded (95 %)
+    combinations: np.ndarray  #: (k, p) changes of several parameters that the data do not show
 
 
 class Residuals:
@@ -65,10 +59,13 @@ class Residuals:
         return np.concatenate([r / noise for r, noise in zip(self._poses(point), self.noise)])
 
     def moved(self, i: int, value: float) -> np.ndarray:
-        """Return the residuals with another value of parameter i."""
+        """Return the residuals with another value of parameter i; infinite if it gives no scene."""
         point = self.best.copy()
         point[i] = value
-        return self(point)
+        try:
+            return self(point)
+        except ValueError:
+            return np.full_like(self.here, np.inf if value > self.best[i] else -np.inf)
 
     def slope(self, i: int, step: float, lower: float, upper: float) -> np.ndarray:
         """Return the derivative by parameter i, from a difference of at most four times the noise."""
@@ -78,15 +75,12 @@ class Residuals:
             size = np.linalg.norm(change)
             if size <= 4.0:
                 break
-            step *= 2.0 / size
+            step *= max(0.01, 2.0 / size)
         return change / (high - low)
 
     def exclude(self, i: int, value: float) -> bool:
         """Return whether a value of parameter i, with the others unchanged, is excluded or gives no scene."""
-        try:
-            there = self.moved(i, value)
-        except ValueError:
-            return True
+        there = self.moved(i, value)
         return bool(there @ there - self.here @ self.here >= EXCLUDED)
 
     def last_allowed(self, i: int, end: float) -> float:
@@ -130,6 +124,7 @@ def curvature(evaluate: Evaluator) -> Curvature:
     for i in np.flatnonzero(alone):
         last = [residuals.last_allowed(i, end) for end in ends[i]]
         allowed[i] = np.where(last == ends[i], bounds[i], last)
-    hidden = np.zeros((np.count_nonzero(~known), p))
-    hidden[:, rest] = (np.where(np.abs(V) > PART, V, 0.0) * scale[rest, None]).T[~known]
-    return Curvature(centre, error, allowed, hidden)
+    hidden = np.any(w < V**2, axis=0)
+    combinations = np.zeros((np.count_nonzero(hidden), p))
+    combinations[:, rest] = (np.where(np.abs(V) > PART, V, 0.0) * scale[rest, None]).T[hidden]
+    return Curvature(centre, error, allowed, combinations)

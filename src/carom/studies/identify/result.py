@@ -23,8 +23,9 @@ class Identification:
         Parameters with the smallest objective of all evaluations.
     error : dict of float
         Standard error of each parameter: that of the curvature of the sum of squares, or, if it is greater, the
-        standard deviation over bootstrap samples of six or more recordings. Infinite for a parameter that the
-        recordings do not determine; NaN with ``resamples=0``.
+        standard deviation over bootstrap samples of six or more recordings; with fewer recordings also the
+        difference from `smooth`. Infinite for a parameter that the recordings do not determine; NaN with
+        ``resamples=0``.
     interval : dict of (float, float)
         Interval in which each parameter is with a probability of 95 %. Of a parameter that is not determined:
         the values that are not excluded, such as all friction above that with which an impact sticks.
@@ -79,12 +80,13 @@ class Identification:
         """Standard error of each parameter; infinite if the recordings do not determine it."""
         if self.curvature is None:
             return dict.fromkeys(self.parameters, float("nan"))
-        return dict(zip(self.parameters, np.maximum(self.curvature.error, self._spread).tolist()))
-
-    @property
-    def _spread(self) -> np.ndarray | float:
-        """Standard deviations over the bootstrap samples; 0 without them."""
-        return 0.0 if self.uncertainty is None else np.std(self.uncertainty.samples, axis=0)
+        if self.uncertainty is None:
+            # an objective with other weights than the noise is minimal elsewhere than the sum of squares
+            off = np.array(list(self.parameters.values())) - self.curvature.centre
+            errors = np.hypot(self.curvature.error, off)
+        else:
+            errors = np.maximum(self.curvature.error, np.std(self.uncertainty.samples, axis=0))
+        return dict(zip(self.parameters, errors.tolist()))
 
     @property
     def undetermined(self) -> tuple[str, ...]:
@@ -110,8 +112,10 @@ class Identification:
             return dict.fromkeys(self.parameters, (float("nan"), float("nan")))
         allowed = self.curvature.allowed
         if self.uncertainty is not None:
-            inner = np.percentile(self.uncertainty.samples, [2.5, 97.5], axis=0).T
-            allowed = np.where((self._spread > self.curvature.error)[:, None], inner, allowed)
+            samples = self.uncertainty.samples
+            greater = np.std(samples, axis=0) > self.curvature.error
+            inner = np.percentile(samples, [2.5, 97.5], axis=0).T
+            allowed = np.where(greater[:, None], inner, allowed)
         return dict(zip(self.parameters, map(tuple, allowed.tolist())))
 
     @property
@@ -129,12 +133,11 @@ class Identification:
         for name, value in self.parameters.items():
             low, high = self.interval[name]
             if name in self.undetermined:
-                lines.append(f"{name:16} not determined by these data{_between(low, high)}")
-                continue
-            lines.append(
-                f"{name:16} {value:.6g} +- {self.error[name]:.2g}, smoothed {self.smooth[name]:.6g}, "
-                f"95 % in [{low:.6g}, {high:.6g}]"
-            )
+                text = f"not determined by these data: from {low:.3g} to {high:.3g}"
+            else:
+                text = f"{value:.6g} +- {self.error[name]:.2g}, smoothed {self.smooth[name]:.6g}, "
+                text += f"95 % in [{low:.6g}, {high:.6g}]"
+            lines.append(f"{name:16} {text}")
         for change in [] if self.curvature is None else self.curvature.combinations:
             change = change / change[np.argmax(np.abs(change))]
             parts = {name: part for name, part in zip(self.parameters, change) if part}
@@ -153,12 +156,3 @@ class Identification:
 
     def _name(self, k: int) -> str:
         return self.recordings[k].name or f"recording {k}"
-
-
-def _between(low: float, high: float) -> str:
-    """Return the values of an interval in words; nothing if it has no end."""
-    if np.isinf(low) and np.isinf(high):
-        return ""
-    if np.isinf(high):
-        return f": at least {low:.3g}"
-    return f": at most {high:.3g}" if np.isinf(low) else f": from {low:.3g} to {high:.3g}"
