@@ -14,8 +14,10 @@ import numpy as np
 from carom.studies.identify.errors import offsets
 from carom.studies.identify.evaluate import Evaluator
 
-EXACT = 1e-6  # least noise: relative to the largest displacement [1], and of rotations [rad]
-HALVINGS = 12  # of a difference until residuals change by their noise; of an interval until its end is found
+#: least noise: of positions relative to the largest displacement, of rotations [rad]; and least difference of a
+#: parameter, relative to its step in the search
+EXACT = 1e-6
+HALVINGS = 12  # of an interval in which a value that is not excluded becomes one that is
 EXCLUDED = 4.0  # change of the sum of squares by a value that is two standard errors off
 CURVED = 16.0  # change that the curvature predicts where a change below `EXCLUDED` contradicts it
 FAR = 10.0  # number of scales to which parameters without a bound are varied
@@ -69,14 +71,14 @@ class Residuals:
 
     def slope(self, i: int, step: float, lower: float, upper: float) -> np.ndarray:
         """Return the derivative by parameter i, from a difference of at most four times the noise."""
-        for _ in range(HALVINGS):
+        least = EXACT * step
+        while True:
             low, high = np.clip([self.best[i] - step, self.best[i] + step], lower, upper)
             change = self.moved(i, high) - self.moved(i, low)
-            size = np.linalg.norm(change)
-            if size <= 4.0:
-                break
+            size = float(np.linalg.norm(change))
+            if size <= 4.0 or step <= least:
+                return change / (high - low)
             step *= max(0.01, 2.0 / size)
-        return change / (high - low)
 
     def exclude(self, i: int, value: float) -> bool:
         """Return whether a value of parameter i, with the others unchanged, is excluded or gives no scene."""
@@ -108,8 +110,8 @@ def curvature(evaluate: Evaluator) -> Curvature:
     # flat for all greater friction, but by noise the best value may be just below, where it is curved
     alone = np.diag(F) < 1.0
     predicted = np.diag(F)[:, None] * ((ends - best[:, None]) / scale[:, None]) ** 2
-    for i, k in np.argwhere((predicted >= CURVED) & ~alone[:, None]):
-        alone[i] |= not residuals.exclude(i, ends[i, k])
+    for i, k in np.argwhere((predicted >= CURVED) & ~alone[:, None]).tolist():
+        alone[i] |= not residuals.exclude(i, float(ends[i, k]))
     rest = np.flatnonzero(~alone)
     w, V = np.linalg.eigh(F[np.ix_(rest, rest)])
     w = np.maximum(w, 1e-15 * np.max(w, initial=1.0))  # round-off
@@ -121,7 +123,7 @@ def curvature(evaluate: Evaluator) -> Curvature:
     centre[rest] -= scale[rest] * change
     centre = space.clip(centre)
     allowed = np.clip(centre[:, None] + np.outer(1.96 * error, [-1.0, 1.0]), *bounds.T[:, :, None])
-    for i in np.flatnonzero(alone):
+    for i in np.flatnonzero(alone).tolist():
         last = [residuals.last_allowed(i, end) for end in ends[i]]
         allowed[i] = np.where(last == ends[i], bounds[i], last)
     hidden = np.any(w < V**2, axis=0)
