@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from carom.geometry import quaternion
-from carom.studies.identify.errors import angles, distances
+from carom.studies.identify.errors import distances
 from carom.visual.plots import style
 
 # x y z -x -y -z
@@ -144,8 +144,8 @@ def _positions(axes, recording, run) -> None:
 def _errors(axes, recording, run) -> None:
     """Draw the distance and the angle between the two motions over time, and their means."""
     t = recording.t - recording.t[0]
-    distance = 100.0 * distances(run, recording)[:, 0] / EDGE
-    angle = np.degrees(angles(run, recording)[:, 0])
+    distance, angle = (part[:, 0] for part in distances(run, recording))
+    distance, angle = 100.0 * distance / EDGE, np.degrees(angle)
     axes.plot(
         t,
         distance,

@@ -33,10 +33,12 @@ LOOSE = 8
 HUNDREDS = {
     "_compiled": 18, "geometry": 8, "scene": 45, "collision": 29, "model": 31, "kinematics": 13,
     "contact": 20, "friction": 21, "dynamics": 51, "impact": 65, "persistent": 36, "stepping": 51,
-    "results": 23, "generalized": 34, "io": 46, "control": 8, "studies": 50, "visual": 40, "baselines": 8,
+    "_compiled": 18, "geometry": 8, "scene": 45, "collision": 29, "model": 31, "kinematics": 13,
+    "contact": 20, "friction": 21, "dynamics": 52, "impact": 65, "persistent": 36, "stepping": 51,
+    "results": 23, "generalized": 34, "io": 46, "control": 8, "studies": 52, "visual": 40, "baselines": 8,
     "paper": 15, "bench": 10, "cli": 18,
 }  # fmt: skip
-MOST_LINES = 65000
+MOST_LINES = 65200
 
 
 @cache

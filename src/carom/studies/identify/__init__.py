@@ -4,6 +4,7 @@ Make a `Recording`, fit its initial state to its free flight (`fit_free_flight`)
 and other parameters to the motion after that (`identify`).
 """
 
+from carom.studies.identify.curvature import Curvature
 from carom.studies.identify.errors import (
     TrajectoryError,
     face_up,
@@ -21,6 +22,7 @@ from carom.studies.identify.uncertainty import Uncertainty
 from carom.studies.identify.varied import varied
 
 __all__ = [
+    "Curvature",
     "FreeFlight",
     "Identification",
     "Parameter",

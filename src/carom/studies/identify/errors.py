@@ -23,15 +23,19 @@ class TrajectoryError(NamedTuple):
     rotation: float  #: angle from one attitude to the other [rad], 0 to pi
 
 
-def distances(simulated, recorded) -> np.ndarray:
-    """Return the distances (n, N) of the mass centres [m]; the arguments have a `position` (n, N, 3)."""
-    return np.linalg.norm(simulated.position - recorded.position, axis=-1)
+def offsets(simulated, recorded) -> tuple[np.ndarray, np.ndarray]:
+    """Return displacements [m] and rotation vectors [rad] (n, N, 3) from recorded to simulated poses.
 
-
-def angles(simulated, recorded) -> np.ndarray:
-    """Return the angles (n, N) of the rotations between the attitudes [rad], 0 to pi."""
+    The arguments have a `position` (n, N, 3) and an `orientation` (n, N, 4).
+    """
     turn = quaternion.between(recorded.orientation, simulated.orientation)
-    return np.linalg.norm(turn, axis=-1)
+    return simulated.position - recorded.position, turn
+
+
+def distances(simulated, recorded) -> tuple[np.ndarray, np.ndarray]:
+    """Return the distances of the mass centres [m] and the angles between the attitudes [rad], (n, N)."""
+    away, turn = offsets(simulated, recorded)
+    return np.linalg.norm(away, axis=-1), np.linalg.norm(turn, axis=-1)
 
 
 def trajectory_error(simulated, recorded, length: float = 1.0) -> TrajectoryError:
@@ -59,7 +63,7 @@ def trajectory_error(simulated, recorded, length: float = 1.0) -> TrajectoryErro
             f"simulated and recorded must have the same shape, got {np.shape(simulated.position)} and "
             f"{np.shape(recorded.position)}"
         )
-    distance, angle = distances(simulated, recorded), angles(simulated, recorded)
+    distance, angle = distances(simulated, recorded)
     return TrajectoryError(float(np.mean(distance)) / length, float(np.mean(angle)))
 
 
@@ -97,7 +101,7 @@ def squared_error(length: float, angle: float) -> Callable:
     angle = checks.number("angle", angle, above=0.0, unit="rad")
 
     def objective(simulated, recorded) -> float:
-        distance, turn = distances(simulated, recorded), angles(simulated, recorded)
+        distance, turn = distances(simulated, recorded)
         return float(np.mean((distance / length) ** 2) + np.mean((turn / angle) ** 2)) / 6.0
 
     return objective

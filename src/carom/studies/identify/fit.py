@@ -9,12 +9,13 @@ import numpy as np
 from carom import checks
 from carom.options import Options
 from carom.scene.scene import Scene
+from carom.studies.identify.curvature import curvature
 from carom.studies.identify.evaluate import Evaluator
 from carom.studies.identify.parameters import Space
 from carom.studies.identify.recording import Recording, checked_recordings
 from carom.studies.identify.result import Identification
 from carom.studies.identify.search import search
-from carom.studies.identify.uncertainty import bootstrap
+from carom.studies.identify.uncertainty import FEWEST, bootstrap
 
 SEARCHES = 4
 LEAST_GAIN = 0.02
@@ -70,9 +71,10 @@ def identify(
         Maximum number of evaluations before the search stops; each evaluation simulates all recordings. Default
         400.
     resamples : int
-        Number of bootstrap samples of the recordings for the uncertainty, at most 100 000; 0 for none. Default
-        200. They need 2 p^2 + 1 more evaluations, at most six times. If one of these is better than the best
-        point by 2 %, the search continues from there.
+        Number of bootstrap samples of the recordings for the uncertainty, at most 100 000; 0 for no
+        uncertainty. Default 200. They need 2 p^2 + 1 more evaluations, at most six times. If one of these is
+        better than the best point by 2 %, the search continues from there. Fewer than six recordings are not
+        resampled: their uncertainty is that of the curvature of the sum of squares.
     seed : int
         Seed of the bootstrap samples. Default 0.
     step, options, threads
@@ -107,13 +109,14 @@ def identify(
     space = Space(parameters, known=isinstance(scene, Scene))
     settings = {"step": step, "options": options, "threads": threads}
     evaluate = Evaluator(scene, recordings, space, objective, progress, **settings)
-    uncertainty = None
+    uncertainty = curved = None
     for _ in range(SEARCHES):
         converged, message = search(evaluate, method, restarts, tolerance, max_evaluations)
         before = evaluate.mean(evaluate.best)
         if resamples > 0:
-            uncertainty = bootstrap(evaluate, resamples, seed)
-            evaluate.number(uncertainty.centre)
+            curved = curvature(evaluate)
+            uncertainty = None if len(recordings) < FEWEST else bootstrap(evaluate, resamples, seed)
+            evaluate.number((uncertainty or curved).centre)
         best = evaluate.best
         # if points around the best one are better, the search had stopped on a plateau or a rough surface
         if not converged or before - evaluate.mean(best) <= LEAST_GAIN * before:
@@ -131,4 +134,5 @@ def identify(
         converged=converged,
         message=message,
         uncertainty=uncertainty,
+        curvature=curved,
     )

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from carom.geometry import quaternion
+from carom.studies.identify.curvature import Curvature
 from carom.studies.identify.recording import Recording
 from carom.studies.identify.rollout import RollOut
 from carom.studies.identify.uncertainty import Uncertainty
@@ -21,9 +22,16 @@ class Identification:
     parameters : dict of float
         Parameters with the smallest objective of all evaluations.
     error : dict of float
-        Standard deviation of each parameter over bootstrap samples of the recordings; NaN without them.
+        Standard error of each parameter: that of the curvature of the sum of squares, or, if it is greater, the
+        standard deviation over bootstrap samples of six or more recordings; with fewer recordings also the
+        difference from `smooth`. Infinite for a parameter that the recordings do not determine; NaN with
+        ``resamples=0``.
     interval : dict of (float, float)
-        Interval with 95 % of the values of each parameter over the bootstrap samples.
+        Interval in which each parameter is with a probability of 95 %. Of a parameter that is not determined:
+        the values that are not excluded, such as all friction above that with which an impact sticks.
+    undetermined : tuple of str
+        The parameters that the recordings do not determine. Their value in `parameters` is that of a best run,
+        of many runs that are as good.
     objective, objective_at_start : float
         Mean objective over the recordings, for the best parameters and for the initial ones.
     objectives : (K,)
@@ -43,7 +51,9 @@ class Identification:
     message : str
         How the search ended.
     uncertainty : Uncertainty or None
-        Bootstrap samples for `error` and `interval`.
+        Bootstrap samples of six or more recordings.
+    curvature : Curvature or None
+        Curvature of the sum of squares; None with ``resamples=0``.
     """
 
     parameters: dict[str, float]
@@ -58,6 +68,7 @@ class Identification:
     converged: bool
     message: str
     uncertainty: Uncertainty | None = field(repr=False)
+    curvature: Curvature | None = field(repr=False)
 
     @property
     def evaluations(self) -> int:
@@ -66,29 +77,46 @@ class Identification:
 
     @property
     def error(self) -> dict[str, float]:
-        """Standard deviation of each parameter over bootstrap samples of the recordings."""
-        if self.uncertainty is None:
+        """Standard error of each parameter; infinite if the recordings do not determine it."""
+        if self.curvature is None:
             return dict.fromkeys(self.parameters, float("nan"))
-        return dict(zip(self.parameters, np.std(self.uncertainty.samples, axis=0).tolist()))
+        if self.uncertainty is None:
+            # an objective with other weights than the noise is minimal elsewhere than the sum of squares
+            off = np.array(list(self.parameters.values())) - self.curvature.centre
+            errors = np.hypot(self.curvature.error, off)
+        else:
+            errors = np.maximum(self.curvature.error, np.std(self.uncertainty.samples, axis=0))
+        return dict(zip(self.parameters, errors.tolist()))
+
+    @property
+    def undetermined(self) -> tuple[str, ...]:
+        """The parameters that the recordings do not determine."""
+        return tuple(name for name, error in self.error.items() if np.isinf(error))
 
     @property
     def smooth(self) -> dict[str, float]:
-        """Minimum of the quadratic surface through evaluations around the best point; NaN without bootstrap.
+        """Minimum of the quadratic surface around the best point; NaN with ``resamples=0``.
 
         If the objective is rough, the best evaluation is partly a matter of chance; the difference between
         `smooth` and `parameters` shows how much.
         """
-        if self.uncertainty is None:
+        surface = self.uncertainty or self.curvature
+        if surface is None:
             return dict.fromkeys(self.parameters, float("nan"))
-        return dict(zip(self.parameters, self.uncertainty.centre.tolist()))
+        return dict(zip(self.parameters, surface.centre.tolist()))
 
     @property
     def interval(self) -> dict[str, tuple[float, float]]:
-        """Interval with 95 % of the values of each parameter over the bootstrap samples."""
-        if self.uncertainty is None:
+        """Interval in which each parameter is with a probability of 95 %."""
+        if self.curvature is None:
             return dict.fromkeys(self.parameters, (float("nan"), float("nan")))
-        low, high = np.percentile(self.uncertainty.samples, [2.5, 97.5], axis=0).tolist()
-        return dict(zip(self.parameters, zip(low, high)))
+        allowed = self.curvature.allowed
+        if self.uncertainty is not None:
+            samples = self.uncertainty.samples
+            greater = np.std(samples, axis=0) > self.curvature.error
+            inner = np.percentile(samples, [2.5, 97.5], axis=0).T
+            allowed = np.where(greater[:, None], inner, allowed)
+        return dict(zip(self.parameters, map(tuple, allowed.tolist())))
 
     @property
     def final_turn(self) -> np.ndarray:
@@ -104,9 +132,18 @@ class Identification:
         ]
         for name, value in self.parameters.items():
             low, high = self.interval[name]
+            if name in self.undetermined:
+                text = f"not determined by these data: from {low:.3g} to {high:.3g}"
+            else:
+                text = f"{value:.6g} +- {self.error[name]:.2g}, smoothed {self.smooth[name]:.6g}, "
+                text += f"95 % in [{low:.6g}, {high:.6g}]"
+            lines.append(f"{name:16} {text}")
+        for change in [] if self.curvature is None else self.curvature.combinations:
+            change = change / change[np.argmax(np.abs(change))]
+            parts = {name: part for name, part in zip(self.parameters, change) if part}
             lines.append(
-                f"{name:16} {value:.6g} +- {self.error[name]:.2g}, smoothed {self.smooth[name]:.6g}, "
-                f"95 % in [{low:.6g}, {high:.6g}]"
+                f"{' and '.join(parts)} only in combination: the data do not show changes in the ratio "
+                + " : ".join(f"{part:.2g}" for part in parts.values())
             )
         stopped = [run.message for run in self.runs if run.message]
         if stopped:

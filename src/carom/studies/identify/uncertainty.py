@@ -8,6 +8,9 @@ import numpy as np
 
 from carom.studies.identify.evaluate import Evaluator
 
+#: fewest recordings that are resampled: the spread over K of them has a relative standard error of
+#: 1/sqrt(2 (K - 1)), 0.32 for six
+FEWEST = 6
 ROUNDS = 6
 ROUGH = 1e-9  # least curvature, relative to the largest, of a surface with a minimum
 

@@ -1,0 +1,136 @@
+"""What becomes of the models of others: each is loaded and dropped on a floor.
+
+python benchmarks/corpus.py FOLDER [FOLDER ...] [--seconds 60]
+
+Every MJCF and URDF file below the folders (of the packages gymnasium, dm_control, pybullet_data) is loaded
+and simulated for 1 s in a child process with a limit of time. A model without a plane gets a floor
+2 cm below it,
+and a URDF with one root a free one. Files that MuJoCo itself does not compile are counted, but not listed. The
+table has the wall time of a second run of the scene in its own process, over the time that it covers.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+import time
+import warnings
+from collections import Counter
+from pathlib import Path
+
+DURATION = 1.0  # [s]
+BELOW = 0.02  # of the floor below the model [m]
+
+
+def read(path: Path):
+    """Return MuJoCo's specification of a model, with a floor; None for a file that is no model of MuJoCo's."""
+    import mujoco
+    import numpy as np
+
+    try:
+        spec = mujoco.MjSpec.from_file(str(path))
+        m = spec.compile()
+    except ValueError:
+        return None
+    if m.nv == 0 and path.suffix != ".urdf":
+        return None
+    if not np.any(m.geom_type == mujoco.mjtGeom.mjGEOM_PLANE):
+        d = mujoco.MjData(m)
+        mujoco.mj_forward(m, d)
+        low = np.min(d.geom_xpos[:, 2] - m.geom_rbound, initial=0.0)
+        floor = spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1])
+        floor.pos = [0, 0, low - BELOW]
+    return spec
+
+
+def one(path: Path) -> None:
+    """Print a line of JSON for each stage that a model reaches."""
+    import carom
+
+    warnings.simplefilter("ignore")
+    spec = read(path)
+    if spec is None:
+        say(stage="no model")
+        return
+    say(stage="reads")
+    try:
+        try:
+            model = carom.load_model(spec, restitution=0.2, free_root=path.suffix == ".urdf")
+        except ValueError as error:
+            if "free_root" not in str(error):
+                raise
+            model = carom.load_model(spec, restitution=0.2)
+    except Exception as error:
+        say(stage="refused", message=f"{type(error).__name__}: {error}")
+        return
+    say(stage="loads", bodies=len(model.scene.bodies))
+    carom.simulate(model.scene, 1e-3, throw=False)  # compiles
+    begin = time.perf_counter()
+    solution = carom.simulate(model.scene, DURATION, throw=False)
+    wall, reached = time.perf_counter() - begin, float(solution.t[-1])
+    ratio = wall / reached if reached > 0.0 else float("inf")
+    say(stage="runs", status=solution.status.name, reached=reached, ratio=ratio,
+        message=solution.message)  # fmt: skip
+
+
+def say(**row) -> None:
+    """Print a line that the parent process reads."""
+    print(json.dumps(row), flush=True)
+
+
+def outcome(path: Path, seconds: float) -> dict:
+    """Return what a child process printed, and how it ended."""
+    child = [sys.executable, __file__, "--one", str(path)]
+    row: dict = {"stage": "hangs", "ratio": float("inf")}
+    try:
+        done = subprocess.run(child, capture_output=True, text=True, timeout=seconds)
+        text, row["stage"] = done.stdout, f"died ({done.returncode})"
+        row["message"] = done.stderr.strip().rpartition("\n")[2]
+    except subprocess.TimeoutExpired as error:
+        text = error.stdout.decode() if isinstance(error.stdout, bytes) else error.stdout or ""
+    for line in text.splitlines():
+        if line.startswith("{"):
+            found = json.loads(line)
+            ended = found["stage"] in ("no model", "refused", "runs")
+            row |= found if ended else {k: v for k, v in found.items() if k != "stage"}
+    return row
+
+
+def main() -> None:
+    """Run all models and print the table, the slowest first."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folders", nargs="+", type=Path)
+    parser.add_argument("--seconds", type=float, default=60.0, help="limit of each model")
+    parser.add_argument("--one", action="store_true", help="a single file, in this process")
+    given = parser.parse_args()
+    if given.one:
+        one(given.folders[0])
+        return
+    rows, counts = [], Counter()
+    for folder in given.folders:
+        for path in sorted({*folder.rglob("*.xml"), *folder.rglob("*.urdf")}):
+            row = {"model": str(path.relative_to(folder.parent)), **outcome(path, given.seconds)}
+            counts[row.get("status", row["stage"])] += 1
+            if row["stage"] != "no model":
+                rows.append(row)
+                print(line_of(row), file=sys.stderr, flush=True)
+    rows.sort(key=lambda row: -row.get("ratio", -1.0))
+    print(f"| {'model':50} | bodies | outcome | reached [s] | wall/real |  |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    print("\n".join(map(line_of, rows)))
+    print(dict(counts))
+
+
+def line_of(row: dict) -> str:
+    """Return a line of the table."""
+    ratio = f"{row['ratio']:.3g}" if "ratio" in row else ""
+    result, message = row.get("status", row["stage"]), str(row.get("message", ""))[:110]
+    message = message if result != "SUCCESS" else ""
+    reached = f"{row['reached']:.3g}" if "reached" in row else ""
+    return f"| {row['model']:50} | {row.get('bodies', '')} | {result} | {reached} | {ratio} | {message} |"
+
+
+if __name__ == "__main__":
+    main()
