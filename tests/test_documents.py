@@ -41,15 +41,14 @@ def same(shown: str, printed: str) -> bool:
     return abs(a - b) <= 1e-6 * max(abs(a), abs(b)) or max(abs(a), abs(b)) < 1e-12
 
 
-#: a heap is stepped with order 1, and the run says how deep bodies get into each other; bricks of a wall strike
-#: at so many points that the passage of their layers may not end, which the run says too
-HEAPS = pytest.mark.filterwarnings("ignore:Body|.*impacts of several:carom.AccuracyWarning")
+#: a heap is stepped with order 1, and the run says how deep bodies get into each other
+HEAPS = pytest.mark.filterwarnings("ignore:Body:carom.AccuracyWarning")
 
 
 @pytest.mark.parametrize(
     "page",
     [
-        pytest.param(p, marks=[HEAPS] if "heaps" in p or "wall" in p else [])
+        pytest.param(p, marks=[HEAPS] if "heaps" in p else [])
         for p in PAGES
         if any(k == "python" for k, _ in blocks(p))
     ],

@@ -6,7 +6,6 @@ which it could keep sliding: it jams, and its tip stops at once, in an impact wi
 happens, and the energy that it costs, are compared with their closed form.
 """
 
-import warnings
 from itertools import product
 
 import numpy as np
@@ -19,9 +18,7 @@ LOOK = dict(color="C0", marker="."), dict(color="C1", marker="x")
 
 # %%
 # The rod starts at the angle :math:`\theta` to the table, with the velocity v of its tip along the table. One
-# short step shows what happens. carom warns of each jam, which is the subject here.
-
-warnings.simplefilter("ignore", carom.AccuracyWarning)
+# short step shows what happens. `solution.warnings` says that it jams.
 
 
 def slide(theta, mu):

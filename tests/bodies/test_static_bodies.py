@@ -228,7 +228,8 @@ def test_they_are_drawn(tmp_path):
     plt.close("all")
     grey = [int("#c3ccd4"[k : k + 2], 16) / 255 for k in (1, 3, 5)]
     assert films.still(run, 0.1, size=(64, 64)).shape == (64, 64, 3)
-    assert np.any(films.stage.Stage(run, (64, 64)).still[0].colours == grey)
+    stage = films.stage.Stage(run, (64, 64))
+    assert np.any(stage.all.colours[stage.owner == -1] == grey)
 
 
 def test_runs_of_an_ensemble_with_a_static_body():

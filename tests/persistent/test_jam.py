@@ -1,5 +1,7 @@
 """Painleve's rod, pushed ahead of itself on a rough plane: above a critical friction it jams."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -31,12 +33,10 @@ def slide(mu, e, tips, *, held=None, method="rk4"):
 
 def jammed(*arguments, **options):
     """The same, where the run has to say that it jams at once."""
-    with pytest.warns(
-        carom.AccuracyWarning, match="1 persistent contacts and . impacts jam"
-    ) as said:
-        s = slide(*arguments, **options)
-    assert "the first at t = 0 s of contact 'body1-half_space1'" in str(said[0].message)
-    assert any("jam" in sentence for sentence in s.warnings)
+    s = slide(*arguments, **options)
+    (said,) = (sentence for sentence in s.warnings if "jam" in sentence)
+    assert re.match("1 persistent contacts and . impacts jam", said)
+    assert "the first at t = 0 s of contact 'body1-half_space1'" in said
     return s
 
 

@@ -170,10 +170,10 @@ def test_what_newtons_law_gives_is_named():
         scene.add_contact(rod, floor, restitution=0.9, friction=0.8, impact_law=law)
         return carom.simulate(scene, 0.3, step=1e-3)
 
-    with pytest.warns(carom.AccuracyWarning, match="Newton's law with friction added"):
-        newton = run("newton")
+    newton = run("newton")
     assert newton.ledger.impacts[-1] > 0.05
     (said,) = newton.warnings  # the energy is 81/64 of that before
+    assert said.startswith("Newton's law with friction added")
     gain, first = newton.impacts.energy_change.max(), newton.impacts[0]
     assert f"in 1 impacts, at most {gain:.3g} J at t = {first.time:.6g} s" in said
     assert "26.56% of the energy of this impact" in said

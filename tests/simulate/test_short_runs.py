@@ -88,7 +88,7 @@ def test_scratch_is_of_the_same_types_in_every_run():
     grown = runs[0].records
     for more in (
         lambda r: records.longer(r, runs[0].clock),
-        lambda r: records.room_for_one(r, len(r.series)),
+        lambda r: records.with_room(r, len(r.series)),
     ):
         assert in_c_order(kind(more(grown))) == in_c_order(kind(grown))
 

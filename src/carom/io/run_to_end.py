@@ -8,6 +8,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from carom import checks
+from carom.results.impact_remarks import Remark
 from carom.status import AccuracyWarning, SimulationError, Status
 
 if TYPE_CHECKING:
@@ -56,8 +57,9 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
         raise interruption(solution.message, solution, stopped)
     if throw and not solution.success:
         raise SimulationError(solution.message, solution) from run.failure
-    if solution.warnings and solution.success:
-        warnings.warn(" ".join(solution.warnings), AccuracyWarning, stacklevel=CALLER)
+    said = [sentence for sentence in solution.warnings if not isinstance(sentence, Remark)]
+    if said and solution.success:
+        warnings.warn(" ".join(said), AccuracyWarning, stacklevel=CALLER)
     return solution
 
 

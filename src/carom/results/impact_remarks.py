@@ -5,20 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from carom.impact import laws
-from carom.impact.layout import AT_ONCE, JAM, PLASTIC
+from carom.impact.layout import JAM, PLASTIC
 from carom.model import records as r
 from carom.results.names import contact_names
 
 #: energy of a jam, of what the run exchanges, below which slip of round-off has jammed (a wheel that rolls)
 _ROUND_OFF = 1e-9
 
-_ACTED = {
-    AT_ONCE: (
-        "were solved as one contact problem with Newton's law at each contact, because the passage of their "
-        "layers did not end (masses far apart, or many redundant points)"
-    ),
-    PLASTIC: "had no restitution although e > 0, because no velocity satisfies their laws",
-}
+
+class Remark(str):
+    """A sentence about the laws that a scene states, not about the accuracy of a run: no Python warning."""
+
+    __slots__ = ()
 
 
 def remarks(rows, events, run) -> tuple[str, ...]:
@@ -35,14 +33,14 @@ def remarks(rows, events, run) -> tuple[str, ...]:
             f"friction the normal force drives the bodies together), the first {_place(first, names)}. What "
             "follows depends on the compliance that rigid bodies do not have: check the friction."
         )
-    for bit, acted in _ACTED.items():
-        marked = rows[rows["phases"] & bit != 0]
-        if len(marked) > 0:
-            said.append(
-                f"{len(np.unique(marked['time']))} impacts of several contacts {acted}, the first "
-                f'{_place(marked[0], names)}. Compare with multiple="sequential".'
-            )
-    return tuple(said)
+    plastic = rows[rows["phases"] & PLASTIC != 0]
+    if len(plastic) > 0:
+        said.append(
+            f"{len(np.unique(plastic['time']))} impacts of several contacts had no restitution although e > 0, "
+            f"because no velocity satisfies their laws, the first {_place(plastic[0], names)}. Compare with "
+            'multiple="sequential".'
+        )
+    return tuple(map(Remark, said))
 
 
 def _place(row, names) -> str:

@@ -109,14 +109,6 @@ def test_dropped_balls_keep_their_energy(masses):
         assert height == pytest.approx(rise, abs=3.0 * min(masses) / max(masses))
 
 
-def test_a_run_says_where_the_passage_did_not_end():
-    with pytest.warns(carom.AccuracyWarning, match="1 impacts of several contacts were solved"):
-        s = drop(1e8, LIGHT)
-    (said,) = s.warnings
-    assert f"the first at t = {np.sqrt(1 / G):.6g} s of contact 'body1-floor'" in said
-    assert s.success
-
-
 def test_a_loss_that_no_law_explains_is_no_success():
     # A ball between two rigid walls, which move on each other: e = 1 has no velocity after.
     scene = carom.Scene(gravity=(0, 0, 0))

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from carom import checks
-from carom.fields import keep
 from carom.scene.scene import Scene
 from carom.scene.shapes import Box
 from carom.studies.identify.recording import State, checked_state
@@ -73,17 +72,23 @@ def varied(
         corner_radius = checks.length("corner_radius", corner_radius, zero=True)
     found = deepcopy(scene)
     for k, body in enumerate(found.bodies):
-        keep(body, inertia=factor * body.inertia)
+        change(body, inertia=factor * body.inertia)
         if corner_radius is not None and isinstance(body.shape, Box):
-            keep(body, shape=replace(body.shape, radius=corner_radius))
+            change(body, shape=replace(body.shape, radius=corner_radius))
         if start is not None:
-            keep(body, **{name: values[k] for name, values in start._asdict().items()})
+            change(body, **{name: values[k] for name, values in start._asdict().items()})
     given = {"restitution": restitution, "friction": friction, "friction_held": friction_held}
     given = {name: value for name, value in given.items() if value is not None}
     for contact in found.contacts:
         if contact.friction_held == contact.friction and "friction" in given:
-            keep(contact, friction_held=None)  # then it equals the new friction
-        keep(contact, **given)
+            change(contact, friction_held=None)  # then it equals the new friction
+        change(contact, **given)
         contact.__post_init__()
     found.validate()
     return found
+
+
+def change(part, **values) -> None:
+    """Set fields of a frozen part of a copied scene, each checked."""
+    for name, value in values.items():
+        object.__setattr__(part, name, value)
