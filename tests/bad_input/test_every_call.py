@@ -58,7 +58,7 @@ HANDED_BACK = {
     "models.Report", "models.Entry", "impact.InvariantDirections",
     "impact.NormalMotion", "gradient.Sensitivities", "gradient.Derivative", "gradient.Margin",
     "gradient.ImpactKind", "gradient.ImpactDerivative", "gradient.ByInputs", "identify.Identification",
-    "identify.State", "identify.FreeFlight", "identify.RollOut", "identify.TrajectoryError",
+    "identify.Curvature", "identify.State", "identify.FreeFlight", "identify.RollOut", "identify.TrajectoryError",
     "identify.Uncertainty", "baselines.HHTRun", "baselines.LayerRun", "baselines.MoreauJeanRun",
     "joints.Joint", "joints.Joint.anchor", "forces.AppliedForce", "constraints.Constraint",
     "Options.as_dict",
