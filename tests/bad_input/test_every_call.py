@@ -59,9 +59,9 @@ HANDED_BACK = {
     "impact.NormalMotion", "gradient.Sensitivities", "gradient.Derivative", "gradient.Margin",
     "gradient.ImpactKind", "gradient.ImpactDerivative", "gradient.ByInputs", "identify.Identification",
     "identify.State", "identify.FreeFlight", "identify.RollOut", "identify.TrajectoryError",
-    "identify.Uncertainty", "identify.Curvature", "baselines.HHTRun", "baselines.LayerRun", "baselines.MoreauJeanRun",
+    "identify.Uncertainty", "baselines.HHTRun", "baselines.LayerRun", "baselines.MoreauJeanRun",
     "joints.Joint", "joints.Joint.anchor", "forces.AppliedForce", "constraints.Constraint",
-    "Options.as_dict",
+    "Options.as_dict", "identify.Curvature",
     "Body", "HalfSpace", "Ground", "Contact", "Constraint", "AppliedForce", "stops.Stop",
     "joints.JointDefinition",
 }  # fmt: skip
