@@ -130,3 +130,9 @@ class SimulationError(RuntimeError):
     def __init__(self, message: str, solution=None):
         super().__init__(message)
         self.solution = solution
+
+
+class Remark(str):
+    """A sentence about the laws that a scene states, not about the accuracy of a run: no Python warning."""
+
+    __slots__ = ()

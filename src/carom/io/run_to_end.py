@@ -8,8 +8,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from carom import checks
-from carom.results.impact_remarks import Remark
-from carom.status import AccuracyWarning, SimulationError, Status
+from carom.status import AccuracyWarning, Remark, SimulationError, Status
 
 if TYPE_CHECKING:
     from carom.io.files.keeper import Keeper

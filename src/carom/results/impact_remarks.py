@@ -8,15 +8,10 @@ from carom.impact import laws
 from carom.impact.layout import JAM, PLASTIC
 from carom.model import records as r
 from carom.results.names import contact_names
+from carom.status import Remark
 
 #: energy of a jam, of what the run exchanges, below which slip of round-off has jammed (a wheel that rolls)
 _ROUND_OFF = 1e-9
-
-
-class Remark(str):
-    """A sentence about the laws that a scene states, not about the accuracy of a run: no Python warning."""
-
-    __slots__ = ()
 
 
 def remarks(rows, events, run) -> tuple[str, ...]:
