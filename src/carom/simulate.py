@@ -18,7 +18,7 @@ from carom.io.run_to_end import finish
 from carom.options import Options
 from carom.results.solution import Solution
 from carom.scene.scene import Scene
-from carom.status import MistakeWarning
+from carom.status import Advice, MistakeWarning
 from carom.stepping.settings import (
     LOCATIONS,
     Settings,
@@ -164,7 +164,8 @@ def simulate(
     Warns
     -----
     MistakeWarning
-        For an input that is nearly always a mistake: a free body that cannot touch anything although other
+        If the stiffness of a force, not the motion, has limited the steps; and
+        for an input that is nearly always a mistake: a free body that cannot touch anything although other
         bodies can, a contact without a stated restitution and friction, gravity that points away from the only
         half-space, a stop at an angle that is probably in degrees, a step that is longer than the run or far
         too long for the motion.
@@ -238,7 +239,10 @@ def simulate(
 
 
 def after(solution, settings: Settings) -> tuple[str, ...]:
-    """Return a sentence about a step that was far too long for the motion, if it was."""
+    """Return sentences about stiff forces, and about a step that was far too long for the motion, if it was."""
+    stiff = tuple(said for said in getattr(solution, "warnings", ()) if isinstance(said, Advice))
+    if stiff:  # with tolerances only
+        return stiff
     if settings.step is None or settings.save_every != 1 or settings.save_at is not None:
         return ()  # not each step is saved
     if settings.method == "implicit" or not isinstance(solution, Solution) or not solution.success:

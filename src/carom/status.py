@@ -136,3 +136,9 @@ class Remark(str):
     """A sentence about the laws that a scene states, not about the accuracy of a run: no Python warning."""
 
     __slots__ = ()
+
+
+class Advice(Remark):
+    """A remark on settings that make a run slow: `simulate` says it as a `MistakeWarning`."""
+
+    __slots__ = ()

@@ -12,6 +12,7 @@ from carom.geometry import quaternion
 from carom.impact.layout import AT_END, WEDGED
 from carom.model import records as r
 from carom.model.arrays import STOP
+from carom.results import stiff_forces
 from carom.results.accuracy import sentences
 from carom.results.event_tables import ContactTable, EventTable, ImpactTable, contact_table
 from carom.results.impact_remarks import remarks
@@ -51,6 +52,7 @@ def assemble(run, status: Status) -> dict:
         "warnings": (
             *sentences(run.watch[0], run.scene, run.pairs),
             *remarks(_in_time(rec.impact), _in_time(rec.event), run),
+            *stiff_forces.remarks(run, series, state),
         ),
         "stats": {
             "steps": clock["step"], "trial_steps": clock["trials"], "rejected": clock["rejected"],
