@@ -30,7 +30,13 @@ def unit_force(system, state, kind, number, axis, work):
     q = attitude(state, one.parent, one.parent_frame)
     k = axis % 3
     ex, ey, ez = rotate(
-        q[0], q[1], q[2], q[3], 1.0 if k == 0 else 0.0, 1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0
+        q[0],
+        q[1],
+        q[2],
+        q[3],
+        1.0 if k == 0 else 0.0,
+        1.0 if k == 1 else 0.0,
+        1.0 if k == 2 else 0.0,
     )
     ax, ay, az, px, py, pz = point(state, one.parent, one.parent_anchor)
     bx, by, bz, qx, qy, qz = point(state, one.child, one.child_anchor)

@@ -19,7 +19,7 @@ from carom.scene.more_forces import CurveSpring, JointForce, JointSpring
 from carom.status import Advice
 
 SOME = 1000  # trial steps below which nothing is said
-MUCH = 0.3  # of the trial steps: what stability alone requires
+MUCH = 0.5  # of the trial steps: what stability alone requires (0.8 to 0.93 where nothing else limits them)
 DECAYS = 0.02  # least decay of a mode, relative to |lambda|
 STATES = 5  # saved states at which modes are computed
 MOST = 60  # forces with the fastest modes of their own that are taken together
@@ -37,13 +37,18 @@ class Force(NamedTuple):
 
 def remarks(run, series, states) -> tuple[str, ...]:
     """Return a sentence about the force whose stiffness has limited the steps of a run, if one has."""
-    trials, end = int(run.clock["trials"][0]), float(min(run.clock["now"][0], run.clock["still"][0]))
+    trials, end = (
+        int(run.clock["trials"][0]),
+        float(min(run.clock["now"][0], run.clock["still"][0])),
+    )
     if run.tolerances is None or trials < SOME:  # methods with tolerances are explicit
         return ()
     forces = stiff_forces(run)
     if not forces:
         return ()
-    rows = np.unique(np.linspace(0, np.searchsorted(series["t"], end, "right") - 1, STATES).astype(int))
+    rows = np.unique(
+        np.linspace(0, np.searchsorted(series["t"], end, "right") - 1, STATES).astype(int)
+    )
     found = [fastest(run, forces, states[k], float(series["t"][k])) for k in rows]
     steps = end * float(np.mean([pace for pace, _ in found])) / trials
     if not steps >= MUCH:
@@ -65,7 +70,9 @@ def _sentence(force, part: float, trials: int, end: float, run) -> str:
         said += "Lower its damping; or replace it by forces.Spring or forces.JointSpring, and use "
     else:
         said += "Use "
-    said += f'method="implicit" with a step that resolves the motion, such as step={end / 2000:.1g}.'
+    said += (
+        f'method="implicit" with a step that resolves the motion, such as step={end / 2000:.1g}.'
+    )
     if len(run.compiled.system.contacts):
         said += " While contacts persist all forces stay explicit: there only lower damping helps."
     return said
