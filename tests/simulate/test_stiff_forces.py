@@ -34,14 +34,16 @@ def test_a_stiff_damper_is_named(force, said):
         solution = carom.simulate(*rod(force, 0.1))
     assert solution.stats["trial_steps"] > 1000
     (sentence,) = solution.warnings
-    assert "'brake'" in sentence and 'method="implicit"' in sentence and said in sentence
+    assert "'brake'" in sentence
+    assert 'method="implicit"' in sentence
+    assert said in sentence
 
 
 def test_a_soft_damper_and_a_motion_that_is_resolved_are_not():
     # a spring without damper swings for ever: its period limits the steps by accuracy
     for force, duration in (
         (lambda hinge: forces.JointSpring(hinge, 0.0, 1.0), 1.0),
-        (lambda hinge: forces.JointSpring(hinge, 1e4, 0.0), 2.0),
+        (lambda hinge: forces.JointSpring(hinge, 10.0, 0.0), 2.0),
     ):
         assert carom.simulate(*rod(force, duration)).warnings == ()
 
