@@ -19,7 +19,7 @@ def rod(force, duration):
 
 
 @pytest.mark.parametrize(
-    "force, said",
+    ("force", "said"),
     [
         (lambda hinge: forces.JointSpring(hinge, 0.0, 100.0), "Use method"),
         (
