@@ -19,7 +19,7 @@ from carom.scene.more_forces import CurveSpring, JointForce, JointSpring
 from carom.status import Advice
 
 SOME = 1000  # trial steps below which nothing is said
-MUCH = 0.5  # of the trial steps: what stability alone requires (0.8 to 0.93 where nothing else limits them)
+MUCH = 0.3  # of the trial steps: what stability alone requires (0.45 to 0.99 where stiffness limits them)
 DECAYS = 0.02  # least decay of a mode, relative to |lambda|
 STATES = 5  # saved states at which modes are computed
 MOST = 60  # forces with the fastest modes of their own that are taken together
