@@ -91,10 +91,8 @@ _MESSAGES = {
         "are below round-off. Raise rtol and atol, or give a step."
     ),
     Status.INACCURATE: (
-        "The run reached its end, but it is inaccurate: its energy error is more than a hundred times "
-        "Options.energy_tolerance, or a body penetrates another one or a half-space by more than 1e-2 of its "
-        "size, or a contact problem was solved with an error of more than a tenth of the greatest speed. The "
-        "solution is complete; do not trust it before you have compared it with a smaller step."
+        "The run reached its end, but it is inaccurate. The solution is complete; do not trust it before the "
+        "reason is removed."
     ),
     Status.UNSTABLE: (
         "The steps gained as much energy as they exchanged, even after they were shortened: springs, dampers "

@@ -150,6 +150,20 @@ def test_progress_is_plain_text_without_tqdm(capsys, monkeypatch):
     assert capsys.readouterr().err == "\rstep 1 of 2\rstep 2 of 2\n"
 
 
+def test_a_bar_appears_by_itself_on_a_terminal(capsys, monkeypatch):
+    from carom.io import run_to_end
+
+    monkeypatch.setitem(sys.modules, "tqdm", None)
+    monkeypatch.setattr(run_to_end, "PATIENCE", 0.0)
+    assert carom.simulate(ball(0.8), 0.2, step=0.1).success
+    assert capsys.readouterr().err == ""  # no terminal
+    monkeypatch.setattr(run_to_end, "is_watched", lambda: True)
+    assert carom.simulate(ball(0.8), 0.2, step=0.1, progress=False).success
+    assert capsys.readouterr().err == ""
+    assert carom.simulate(ball(0.8), 0.2, step=0.1).success
+    assert capsys.readouterr().err == "\rstep 1 of 2\rstep 2 of 2\n"
+
+
 def test_progress_bar(capsys):
     pytest.importorskip("tqdm")
     assert carom.simulate(ball(0.8), 0.2, step=0.001, progress=True).success

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 CHUNKS = 100  # reports of a run
 CALLER = 4  # frames up: `finish`, `simulate` or `resume`, its guard, and who called it
+PATIENCE = 2.0  # seconds until a bar appears by itself
 LOOKS = 4  # parts in the time between two savings, about
 
 
@@ -113,15 +114,45 @@ class _Bar:
         self.bar.close()
 
 
+def _shown(total: float, unit: str):
+    try:
+        return _Bar(total, unit)
+    except ImportError:  # tqdm belongs to extras
+        return _Text(unit)
+
+
+class _Late:
+    """A bar that appears when a run has taken longer than `PATIENCE`."""
+
+    def __init__(self, total: float, unit: str):
+        self.what, self.begin, self.bar = (total, unit), perf_counter(), None
+
+    def __call__(self, done: float, total: float) -> None:
+        if self.bar is None and perf_counter() - self.begin > PATIENCE and done < total:
+            self.bar = _shown(*self.what)
+        if self.bar is not None:
+            self.bar(done, total)
+
+    def close(self) -> None:
+        if self.bar is not None:
+            self.bar.close()
+
+
+def is_watched() -> bool:
+    """Return whether somebody reads stderr as it is written: a terminal, or a notebook."""
+    if getattr(sys.stderr, "closed", True):
+        return False
+    return sys.stderr.isatty() or type(sys.stderr).__module__.startswith("ipykernel")
+
+
 def reporter(progress, total: float, unit: str):
     """Return a function of (done, total) that shows progress, or None."""
+    if progress is None and is_watched():
+        return _Late(total, unit)
     if progress is None or progress is False:
         return None
     if progress is True:
-        try:
-            return _Bar(total, unit)
-        except ImportError:  # tqdm belongs to extras
-            return _Text(unit)
+        return _shown(total, unit)
     if callable(progress):
         return lambda done, total: checks.call("progress", progress, done, total)
     raise TypeError(f"progress must be True, False or a function, got {checks.shown(progress)}")
