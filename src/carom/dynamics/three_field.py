@@ -13,11 +13,14 @@ solves velocities and multipliers with the position frozen, then the position:
     [ M(q^j)   -Abar^T ] [v1 ]   [p0 + h f]
     [ A(q^j)   eps     ] [Lam] = [r       ],     Lam = h hbar,
 
-the second row by the augmented Lagrangian: the rows at the end give the impulse A^T mu that satisfies it, and the
-multipliers at the middle take it over, Lam += (Abar M^-1 Abar^T + eps)^-1 Abar M^-1 A^T mu, with one pass in each
-block iteration. So redundant rows do no harm, and their reactions have the least norm. Where bars are in line, rows
-at the middle of the step cannot correct those at its end; what they do not take over in ten passes stays with
-the rows at the end (order 1, in the steps through such a position only). "paper" takes r = 0
+the second row by the augmented Lagrangian: the rows at the end give the impulse A^T mu that satisfies it, and
+the multipliers at the middle take it over once in each block iteration,
+
+    Lam += (Abar M^-1 Abar^T + eps)^-1 Abar M^-1 A^T mu.
+
+So redundant rows do no harm, and their reactions have the least norm. Where bars are in line, rows at the
+middle cannot correct those at the end; what they do not take over in ten passes stays with the rows at the
+end (of order 1, in the steps through such a position only). "paper" takes r = 0
 and returns the position to the constraints; "paper-ode" keeps the second-order equation of each constraint,
 
     (m_RR phi')' + c_s phi' + k_s phi = 0:   r = (phi'_0 - (beta^2/h) phi(q^j)) / (1 + 2 zeta beta),
@@ -42,7 +45,7 @@ from carom.dynamics.elements import (
 from carom.dynamics.explicit import any_held, constrained, copy_state, fly, mark_active
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.loops import add_reactions, factor, substitute, subtract_rows
-from carom.dynamics.project import project_position
+from carom.dynamics.project import project_position, project_velocity
 from carom.dynamics.solve import free_body
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
 from carom.kinematics.joints import child_arm, parent_arm
@@ -72,14 +75,17 @@ def three_field_step(method, system, active, start, h, end, work) -> tuple[float
         work.result[0].time = work.result[0].start + 0.5 * h
         applied = h * applied_wrenches(system, work.middle, False, work)
         momenta(system, start, h, work)
-        # rows in line amplify round-off by the inverse of their angle; the hand-over has ended by then
-        fine = (1e6 if i < 2 * PASSES else 1e9) * method.tolerance
         previous, work.result[0].time = change, work.result[0].start + h
         change = velocity_block(system, method, h, end, work)
         if i < PASSES and system.solver.kind == LOOPS:
             hand_over(system, method, h, work)
         change = max(change, position_block(system, method, start, h, end, work))
-        if change <= method.tolerance or (change <= fine and change >= 0.5 * previous):
+        # rows nearly in line amplify round-off by the inverse of their angle: the last iteration takes that
+        fine = change <= 1e6 * method.tolerance and change >= 0.5 * previous
+        fine = fine or (i + 1 == method.most and change <= 1e9 * method.tolerance)
+        if fine or change <= method.tolerance:
+            if method.ode == 0 and change > method.tolerance:
+                project_velocity(system, end, work)
             leave_for_later(system, start, h, end, work)
             return applied + driven_work(system, start, h, end, work), 0
     return applied, NO_CONVERGENCE
@@ -214,10 +220,10 @@ def set_velocities(system, end, work):
 
 @kernel
 def velocity_block_loops(system, method, h, end, work):
-    """Write the velocities that the rows at the end allow, and the impulse of these rows, at the frozen position."""
+    """Write the velocities that the rows at the end allow, with the impulse of these rows."""
     factor(system, end, 0.0, work)
     for j in range(system.joints.shape[0]):
-        joint, rhs = system.joints[j], system.solver.rows[j].rhs
+        rhs = system.solver.rows[j].rhs
         prescribed_speeds(system, j, end, work, rhs)
         if method.ode == 1:
             wanted_rate(system, j, method, h, end, work, rhs)
@@ -231,7 +237,7 @@ def velocity_block_loops(system, method, h, end, work):
 def hand_over(system, method, h, work):
     """Hand the impulse of rows at the end, A^T mu, over to those at the middle: Lam += Abar^+ (A^T mu).
 
-    The least squares of |A^T mu - Abar^T dLam| in the metric of M^-1, with the penalty of the augmented Lagrangian.
+    Least squares of A^T mu - Abar^T dLam in the metric M^-1, with the penalty of the augmented Lagrangian.
     """
     for b in range(system.bodies.shape[0]):
         for k in range(6):
