@@ -36,7 +36,7 @@ HUNDREDS = {
     "results": 25, "generalized": 34, "io": 46, "control": 8, "studies": 52, "visual": 40, "baselines": 8,
     "paper": 15, "bench": 10, "cli": 18,
 }  # fmt: skip
-MOST_LINES = 65500
+MOST_LINES = 65480
 
 
 @cache

@@ -26,9 +26,15 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
     """
     total = run.steps
     report = reporter(progress, total, "step")
+    late, wish = isinstance(report, _Late), None
+    if keeper is not None:
+        wish = keeper.interval / LOOKS
+    elif late:
+        wish = PATIENCE / LOOKS
+    most = max(1, -(-total // CHUNKS)) if report is not None and not late else total
     status, stopped = Status.SUCCESS, KeyboardInterrupt()
     try:
-        for until in goals(lambda: run.steps_done, total, report is not None, keeper):
+        for until in goals(lambda: run.steps_done, total, most, wish):
             status = run.go_on(until)
             if report is not None:
                 report(run.steps_done, total)
@@ -69,19 +75,18 @@ def interruption(message: str, solution, error: KeyboardInterrupt) -> KeyboardIn
     return error
 
 
-def goals(done, total: int, reports: bool, keeper: Keeper | None):
-    """Yield the numbers of steps at which a run pauses, up to `total`.
+def goals(done, total: int, most: int, wish: float | None):
+    """Yield the numbers of steps at which a run pauses, up to `total`, after parts of at most `most` steps.
 
-    Without progress and saving there is only one part. With progress there are `CHUNKS` parts. With saving, the
-    length of parts is doubled and halved so that each takes a small fraction of the time between two savings.
+    With `wish` [s] the length of parts is doubled and halved so that each takes about this time: a short run
+    that is saved, or that may come to show a bar, pauses a few times only.
     """
-    most = max(1, -(-total // CHUNKS)) if reports else total
-    part = 1 if keeper is not None else most
+    part = 1 if wish is not None else most
     while done() < total:
         begin = perf_counter()
         yield min(total, done() + part)
-        if keeper is not None:
-            took, wish = perf_counter() - begin, keeper.interval / LOOKS
+        if wish is not None:
+            took = perf_counter() - begin
             part = min(most, 2 * part) if took < 0.5 * wish else part
             part = max(1, part // 2) if took > wish else part
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.dynamics.force_rows import BUSHINGS, PUSHES, SPRINGS, write_force_rows
 from carom.model import records as r
 from carom.scene.forces import Bushing, Spring
 from carom.scene.more_forces import CurveSpring, JointForce, JointSpring
@@ -86,14 +87,14 @@ def stiff_forces(run) -> list[Force]:
         d = force.definition
         if isinstance(d, (Spring, CurveSpring)):
             one, springs = system.springs[springs], springs + 1
-            out.append(Force(force.index, (0, springs - 1, 0), one.stiffness, one.damping))
+            out.append(Force(force.index, (SPRINGS, springs - 1, 0), one.stiffness, one.damping))
         elif isinstance(d, (JointForce, JointSpring)):
             one, pushes = system.relations.pushes[pushes], pushes + 1
-            out.append(Force(force.index, (1, pushes - 1, 0), one.stiffness, one.damping))
+            out.append(Force(force.index, (PUSHES, pushes - 1, 0), one.stiffness, one.damping))
         elif isinstance(d, Bushing):
             one, bushings = system.bushings[bushings], bushings + 1
             k, c = (np.concatenate([one[a], one["turn_" + a]]) for a in ("stiffness", "damping"))
-            out += [Force(force.index, (2, bushings - 1, a), k[a], c[a]) for a in range(6)]
+            out += [Force(force.index, (BUSHINGS, bushings - 1, a), k[a], c[a]) for a in range(6)]
     depends = [callable(getattr(run.scene.forces[f.index].definition, "force", None)) for f in out]
     return [f for f, gains in zip(out, depends) if gains or f.stiffness + f.damping > 0.0]
 
@@ -127,8 +128,6 @@ def fastest(run, forces: list[Force], state, t: float) -> tuple[float, int]:
 
 def force_rows(system, state, forces: list[Force], t: float):
     """Return J and M^-1 J^T of the forces beside the joints, (n, N, 6) each, and their coordinates (n, 2)."""
-    from carom.dynamics.force_rows import write_force_rows
-
     work, n = r.new_work(system, 1), len(forces)
     work.result[0].time = t
     J, motions = np.zeros((2, n, len(system.bodies), 6))
