@@ -57,13 +57,7 @@ def closest(pair):
     s, a, b = pair.state, pair.a, pair.b
     size = min(a.extent, b.extent)
     curved = a.kind >= CYLINDER or b.kind >= CYLINDER
-    # the normal by a search, and by Newton's method
-    best, nx, ny, nz = _search(pair, size, ROUGH if curved else EXACT)
-    feature, part_a, part_b = _feature(s), _part(s, 0), _part(s, 1)
-    value, x, y, z, polished = polish(pair, nx, ny, nz)
-    bx, by, bz = s.on_b[4, 0], s.on_b[4, 1], s.on_b[4, 2]
-    if polished == 1:
-        best, nx, ny, nz = value, x, y, z
+    best, (nx, ny, nz), (bx, by, bz), polished = _normal(pair, size, ROUGH if curved else EXACT)
     # the normal of a face; of two faces, that of the one on which a vertex of the other solid lies
     owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, curved)
     over = curved and owner != NOBODY
@@ -71,11 +65,10 @@ def closest(pair):
         # parallel edges, or a face with the farthest point of the other solid beyond its sides
         owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, False)
         if owner != NOBODY or polished == 0:
-            best, nx, ny, nz = _search(pair, size, EXACT)
-            feature, part_a, part_b = _feature(s), _part(s, 0), _part(s, 1)
-            bx, by, bz = point_on_b(s)
+            best, (nx, ny, nz), (bx, by, bz), polished = _normal(pair, size, EXACT)
             owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, False)
-    elif not curved and (owner != NOBODY or polished == 0):
+    feature, part_a, part_b = _feature(s), _part(s, 0), _part(s, 1)
+    if not curved and (owner != NOBODY or polished == 0):
         bx, by, bz = point_on_b(s)
         over = owner != NOBODY and feature == _farthest_vertex(s, owner)
     if owner != NOBODY:
@@ -94,6 +87,17 @@ def closest(pair):
     gap = core - a.radius - b.radius
     put(pair.found[0], gap, (nx, ny, nz), on_a, (bx, by, bz), feature)
     put_parts(pair.found[0], owner, part_a, part_b)
+
+
+@kernel
+def _normal(pair, size, accuracy):
+    """Return separation, normal, point of B by a search and Newton's method; 1 if the latter gave them."""
+    best, nx, ny, nz = _search(pair, size, accuracy)
+    value, x, y, z, polished = polish(pair, nx, ny, nz)
+    if polished == 1:
+        b = pair.state.on_b[4]
+        return value, (x, y, z), (b[0], b[1], b[2]), 1
+    return best, (nx, ny, nz), point_on_b(pair.state), 0
 
 
 @inlined

@@ -3,7 +3,8 @@
 With v = a - b of the two farthest points and d = v.n, the separation over the unit sphere has the gradient
 T^T v and the Hessian -(d + T^T H T): T spans the directions in which n may turn, H is the sum of the
 Hessians of the two support functions. If a farthest point lies on an edge, n stays perpendicular to the edge,
-and T excludes its direction. Two edges determine n.
+and T excludes its direction. Two edges determine n. A farthest point that is then beyond an end of its edge
+belongs to that end, a corner or a rim: a rough search does not tell the two apart near it.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ STEPS = 8
 NEAR = 0.99  # cosine of the largest angle by which the method may turn the normal
 ROUNDING = 1e-15  # relative to the smaller solid
 TIE = 1e-12  # relative to the smaller solid: two vertices are as far if they differ by less
+TOWARDS = 1e-9  # angle by which a normal is turned so that the farthest point is the chosen end of an edge
 STRAIGHT = 1e-6  # sine below which two edges count as parallel
 
 
@@ -159,25 +161,90 @@ def polish(pair, nx, ny, nz):
     best = separation(pair, nx, ny, nz)
     if edges < 0:
         return best, nx, ny, nz, 0
-    x, y, z = nx, ny, nz
+    start = (nx, ny, nz)
+    for _ in range(3):
+        value, x, y, z = _refine(pair, edges, best, start)
+        if x == 0.0 and y == 0.0 and z == 0.0:
+            break
+        if not x * nx + y * ny + z * nz > NEAR:
+            break
+        k, end, sense = _passed_end(pair, edges)
+        if k < 0:
+            return value, x, y, z, 1
+        edges, start = _end_of_edge(s, edges, k, end, sense, (x, y, z))
+    return separation(pair, nx, ny, nz), nx, ny, nz, 0
+
+
+@kernel
+def _refine(pair, edges, best, n):
+    """Return the greatest separation near n and its direction, zero if there is none, with its points."""
+    s, (x, y, z) = pair.state, n
     if edges == 2:
         x, y, z = _cross(_along(s, 0), _along(s, 1))
-        if x * nx + y * ny + z * nz < 0.0:
+        if x * n[0] + y * n[1] + z * n[2] < 0.0:
             x, y, z = -x, -y, -z
     elif edges == 1:
         e = s.edge[0]
-        along = e[0] * nx + e[1] * ny + e[2] * nz
-        x, y, z = _normalized(nx - along * e[0], ny - along * e[1], nz - along * e[2])
+        along = e[0] * x + e[1] * y + e[2] * z
+        x, y, z = _normalized(x - along * e[0], y - along * e[1], z - along * e[2])
     if edges < 2:
         x, y, z = _iterate(pair, edges, (x, y, z))
-    if not x * nx + y * ny + z * nz > NEAR:
-        return best, nx, ny, nz, 0
     value = separation(pair, x, y, z)
     _keep_vertices(pair, (x, y, z))
     if not value >= best - ROUNDING * min(pair.a.extent, pair.b.extent):
-        return best, nx, ny, nz, 0
+        return best, 0.0, 0.0, 0.0
     _points(s, edges, value, x, y, z)
-    return value, x, y, z, 1
+    return value, x, y, z
+
+
+@kernel
+def _passed_end(pair, edges):
+    """Return an edge whose point is beyond an end, the corner of the end and the sense to it; -1 if none is."""
+    s = pair.state
+    tie = TIE * min(pair.a.extent, pair.b.extent)
+    for k in range(edges):
+        side, e = s.owner[k], s.edge[k]
+        p = s.on_a[4] if side == 0 else s.on_b[4]
+        i = j = s.ids[0, side]
+        for m in range(1, s.points):
+            j = s.ids[m, side] if s.ids[m, side] != i else j
+        low, high = _place_along(pair, side, i, e), _place_along(pair, side, j, e)
+        if low > high:
+            low, high, i, j = high, low, j, i
+        at = p[0] * e[0] + p[1] * e[1] + p[2] * e[2]
+        if at < low - tie:
+            return k, i, -1.0
+        if at > high + tie:
+            return k, j, 1.0
+    return -1, 0, 0.0
+
+
+@kernel
+def _place_along(pair, side, number, e):
+    """Return the place along e, axes of B, of a corner of a solid, or of a rim of a cylinder."""
+    s, solid = pair.state, pair.a if side == 0 else pair.b
+    if solid.kind == CYLINDER:
+        x, y, z = 0.0, 0.0, solid.half[2] if number > LOWEST else -solid.half[2]
+    else:
+        x, y, z = vertex(solid, pair.hulls, number)
+    if side == 0:
+        x, y, z = from_a(s, x, y, z)
+        x, y, z = x + s.p[0], y + s.p[1], z + s.p[2]
+    return x * e[0] + y * e[1] + z * e[2]
+
+
+@kernel
+def _end_of_edge(s, edges, k, end, sense, n):
+    """Let an end of edge k be the corner of its solid; return the count of other edges, and a normal near n."""
+    side, e = s.owner[k], s.edge[k]
+    f = -sense * TOWARDS if side == 0 else sense * TOWARDS
+    start = (n[0] + f * e[0], n[1] + f * e[1], n[2] + f * e[2])
+    for m in range(s.points):
+        s.ids[m, side] = end
+    if k == 0 and edges == 2:
+        s.edge[0, 0], s.edge[0, 1], s.edge[0, 2] = s.edge[1, 0], s.edge[1, 1], s.edge[1, 2]
+        s.owner[0] = s.owner[1]
+    return edges - 1, start
 
 
 @kernel

@@ -22,6 +22,7 @@ from carom.collision.layout import CYLINDER
 
 PARALLEL = 1e-14  # square of the sine below which two segments count as parallel
 TOUCHING = 1e-9  # relative to the lengths: a shorter distance has no reliable direction
+TILT = 1e-5  # greatest angle of a normal to the cross-section of a cylinder for which it touches along a line
 BESIDE = 0.99  # least cosine between the normal of an end and that of the nearest points
 
 
@@ -132,6 +133,10 @@ def ends_of_line(pair, ends_a, ends_b, least, most, count):
     edge_b = edge_part(s.number[1, ends_b[0]], s.number[1, ends_b[1]])
     d, c = _minus(p, q), _dot(u, w)
     du, dw = _dot(d, u), _dot(d, w)
+    # at s from where axes cross with the sine e the normal is tilted by s e^2/(sum of the radii): there the end
+    # of a line of a mantle, found from its axis, is no point of the cylinder
+    if round_a + round_b > 0.0 and (1.0 - c * c) * max(g, h) > TILT * radii:
+        return count
     first = found[0].normal
     for end in range(4):
         if end < 2:

@@ -147,7 +147,7 @@ def _bends(a, b, n, d, v):
 @kernel
 def _free_normal(a, b, hulls, n, d):
     """Return n' of a normal that no face owns."""
-    edges = (_kind(a) == EDGE) + (_kind(b) == EDGE)
+    edges = int(_kind(a) == EDGE) + int(_kind(b) == EDGE)  # NumPy adds bools to a bool
     if edges == 2:
         rate, done = _two_edges(a, b, hulls, n)
         if done:
