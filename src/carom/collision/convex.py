@@ -31,6 +31,7 @@ from carom.collision.gjk import EXACT, distance, point_on_b
 from carom.collision.layout import CYLINDER
 from carom.collision.polish import polish
 from carom.collision.support import separation
+from carom.geometry.vectors import cross, dot, minus, plus
 
 CLEAR = 1e-3  # relative to the smaller solid: such a distance has a direction exact to round-off
 DIRECTED = 1e-9  # relative to the smaller solid: a shorter distance has no reliable direction
@@ -136,17 +137,11 @@ def _over_face(pair, side):
     solid, p, n = pair.a if side == 0 else pair.b, s.corner[side], s.normal[side]
     count, q = s.count[side], s.on_b[4] if side == 0 else s.on_a[4]
     if solid.kind == CYLINDER:
-        c = p[count // 2]  # opposite corner 0
-        x, y = q[0] - 0.5 * (p[0, 0] + c[0]), q[1] - 0.5 * (p[0, 1] + c[1])
-        z = q[2] - 0.5 * (p[0, 2] + c[2])
-        along = x * n[0] + y * n[1] + z * n[2]
-        return x * x + y * y + z * z - along * along <= solid.half[0] * solid.half[0]
+        r = plus(plus(q, -0.5, p[0]), -0.5, p[count // 2])  # opposite corner 0
+        return dot(r, r) - dot(r, n) ** 2 <= solid.half[0] * solid.half[0]
     for k in range(count):
-        o, v = p[k], p[(k + 1) % count]
-        ex, ey, ez = v[0] - o[0], v[1] - o[1], v[2] - o[2]
-        x, y, z = q[0] - o[0], q[1] - o[1], q[2] - o[2]
-        across = n[0] * (ey * z - ez * y) + n[1] * (ez * x - ex * z) + n[2] * (ex * y - ey * x)
-        if not across >= 0.0:
+        across = cross(minus(p[(k + 1) % count], p[k]), minus(q, p[k]))
+        if not dot(n, across) >= 0.0:
             return False
     return True
 
@@ -161,7 +156,7 @@ def _farthest_vertex(s, owner):
 def _foot_on_b(s, owner, best, n):
     """Return the point of B that belongs to the farthest point of the solid that does not own the normal."""
     p, f = (s.on_a[4], best) if owner == OF_B else (s.on_b[4], 0.0)
-    return p[0] - f * n[0], p[1] - f * n[1], p[2] - f * n[2]
+    return plus(p, -f, n)
 
 
 @kernel
