@@ -205,4 +205,5 @@ def _hull(piece, before: Count) -> Hulls:
         starts.append(count + cells.starts[:-1])
         candidates.append(rows)
         count += len(rows)
-    return Hulls(piece.vertices, faces, corners, np.concatenate(starts), np.concatenate(candidates))
+    every = np.concatenate(candidates).view(Columns)
+    return Hulls(piece.vertices, faces, corners, np.concatenate(starts), every)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-FEW = 12  # points that are compared without cells
+FEW = 24  # points that are compared without cells
 ROUNDING = 1e-12  # relative to the greatest coordinate: a smaller excess does not count
 #: weights of the corners of a cell in the directions whose farthest points are compared with the others
 SEEN = np.array(

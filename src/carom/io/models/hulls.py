@@ -75,7 +75,7 @@ def _four(points: np.ndarray) -> list[int]:
 
 
 def _greatest_distance(points: np.ndarray, hull) -> float:
-    """Return the greatest distance of points from a hull; the nearest point is on a face that is seen from it."""
+    """Return the greatest distance of points from a hull; the nearest point is on a face that is seen."""
     height = points @ hull.equations[:, :3].T + hull.equations[:, 3]
     one, face = np.nonzero(height > OUTSIDE)
     p, corners, normal = points[one], hull.points[hull.simplices[face]], hull.equations[face, :3]

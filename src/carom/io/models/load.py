@@ -89,8 +89,8 @@ def load_model(
         joint are moved out of fixed parts, and other such pairs get no contact. ``"refuse"``: raise an error.
     max_hull_vertices : int or None
         Most corners of the convex hull of a mesh, at least 4. Default 64. A hull of more is replaced by that of
-        some of its corners, and the report says how far it reaches beyond that. Masses and inertias stay those of
-        the model. None: keep all corners.
+        some of its corners, and the report says how far it reaches beyond that. Masses and inertias stay those
+        of the model. None: keep all corners.
     package_dirs : sequence of path
         Folders in which ``package://`` paths of a URDF are searched, besides the folders above the file.
 

@@ -150,7 +150,7 @@ def _faces(vertices: np.ndarray, simplices: np.ndarray) -> tuple:
 
 
 def _planes(simplices: np.ndarray, cross: np.ndarray) -> np.ndarray:
-    """Return a number (k,) for each triangle, equal for those of one face: chains of neighbours in one plane."""
+    """Return a number (k,) for each triangle, equal for those of one face: neighbours in one plane."""
     edges = np.stack([simplices, np.roll(simplices, -1, axis=1)], axis=-1).reshape(-1, 2)
     i, j = edges.T
     n = simplices.max() + 1
