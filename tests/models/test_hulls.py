@@ -90,7 +90,9 @@ def test_report_and_shape():
     (entry,) = model.report.of("mesh 'stone'")
     assert entry.what == "its hull has 400 corners"
     said = float(entry.instead.split()[-2])
-    assert said == pytest.approx(distance(full.points, shape.points).max(), rel=5e-3)  # three digits
+    assert said == pytest.approx(
+        distance(full.points, shape.points).max(), rel=5e-3
+    )  # three digits
     assert not whole.report.of("mesh")
     given = carom.Convex(whole.mujoco.mesh_vert.astype(float))
     np.testing.assert_array_equal(full.points, given.points)
