@@ -55,6 +55,7 @@ def one(path: Path) -> None:
         say(stage="no model")
         return
     say(stage="reads")
+    begin = time.process_time()
     try:
         try:
             model = carom.load_model(spec, restitution=0.2, free_root=path.suffix == ".urdf")
@@ -65,7 +66,7 @@ def one(path: Path) -> None:
     except Exception as error:
         say(stage="refused", message=f"{type(error).__name__}: {error}")
         return
-    say(stage="loads", bodies=len(model.scene.bodies))
+    say(stage="loads", bodies=len(model.scene.bodies), load=time.process_time() - begin)
     carom.simulate(model.scene, 1e-3, throw=False)  # compiles
     begin = time.perf_counter()
     solution = carom.simulate(model.scene, DURATION, throw=False)
@@ -117,8 +118,8 @@ def main() -> None:
                 rows.append(row)
                 print(line_of(row), file=sys.stderr, flush=True)
     rows.sort(key=lambda row: -row.get("ratio", -1.0))
-    print(f"| {'model':50} | bodies | outcome | reached [s] | wall/real |  |")
-    print("| --- | --- | --- | --- | --- | --- |")
+    print(f"| {'model':50} | bodies | load [s] | outcome | reached [s] | wall/real |  |")
+    print("| --- | --- | --- | --- | --- | --- | --- |")
     print("\n".join(map(line_of, rows)))
     print(dict(counts))
 
@@ -129,7 +130,9 @@ def line_of(row: dict) -> str:
     result, message = row.get("status", row["stage"]), str(row.get("message", ""))[:110]
     message = message if result != "SUCCESS" else ""
     reached = f"{row['reached']:.3g}" if "reached" in row else ""
-    return f"| {row['model']:50} | {row.get('bodies', '')} | {result} | {reached} | {ratio} | {message} |"
+    load = f"{row['load']:.2g}" if "load" in row else ""
+    first = f"| {row['model']:50} | {row.get('bodies', '')} | {load} "
+    return f"{first}| {result} | {reached} | {ratio} | {message} |"
 
 
 if __name__ == "__main__":
