@@ -221,25 +221,27 @@ def beside_face(system, contact, state, near):
 
 
 @kernel
-def stays_beside_face(system, contact, start, end, smooth, bounds, h):
+def stays_beside_face(system, contact, start, end, smooth, tiny, bounds, h):
     """Return whether faces of boxes show that two solids stay apart in a step.
 
-    At both ends the plane must separate them already, for the bounds to hold on the way from there. If the
-    motion is `smooth` and the face the same, the cubic with the gap and rate of both ends decides: its control
-    points are F(h/3), of the start and back from the end, with a = 0.
+    If the motion is `smooth` and the face the same, the cubic with the gap and rate of both ends decides, to
+    `tiny`: its control points are F(h/3), of the start and back from the end, with a = 0. Else the plane must
+    separate them at both ends, for the bounds to hold on the way from there.
     """
     if on_half_space(contact) or contact.surface > 0:
         return False
     n, owner, face, room = widest_face(system, contact, start)
     m, other, last, left = widest_face(system, contact, end)
-    if not min(room, left) > 0.0:
+    if not min(room, left) >= -tiny:
         return False
     if smooth and owner == other and face == last:
         side, third = owner - OF_A, h / 3.0
-        first = frame_of(contact, side, n, start)
-        if least_gap(system, contact, n, first, start, third, 0.0) > 0.0:
-            first = frame_of(contact, side, m, end)
-            if least_gap(system, contact, m, first, end, -third, 0.0) > 0.0:
+        moving = frame_of(contact, side, n, start)
+        if least_gap(system, contact, n, moving, start, third, 0.0) >= -tiny:
+            moving = frame_of(contact, side, m, end)
+            if least_gap(system, contact, m, moving, end, -third, 0.0) >= -tiny:
                 return True
+    if not min(room, left) > 0.0:
+        return False
     time = time_beside(system, contact, n, owner, 1.0, start, bounds, h)
     return time >= h or time + time_beside(system, contact, m, other, -1.0, end, bounds, h) >= h
