@@ -5,7 +5,7 @@ import pytest
 
 import carom
 from campaigns import rests
-from campaigns.case import run, wrong
+from campaigns.case import exchanged, run, wrong
 from carom import GROUND, forces, joints
 
 G, TORQUE = 9.81, 2.0
@@ -62,3 +62,15 @@ def test_a_chain_lies_on_many_boxes(how):
     assert s.stats["whole_steps"] > 50
     np.testing.assert_array_equal(s.position, np.broadcast_to(s.position[0], s.position.shape))
     assert np.abs(s.ledger.loads).max() < 1e-14  # round-off of 3 N m times 1e-16 rad in 200 steps
+
+
+@pytest.mark.parametrize("seed", [8, 22, 45])
+def test_slip_that_friction_cannot_stop_goes_on(seed):
+    """Joints that swing beside a tree that sticks and breaks away: the instant is located to 1e-17 s.
+
+    In a step so short the friction of the swing is round-off; judged by it alone the swing stuck, and 2 to 20 %
+    of the energy had no name. Of order 4 in 1 ms: 1e-6 of the energy for links of 10 to 50 rad/s.
+    """
+    scene = rests.case(seed).scene
+    s = carom.simulate(scene, 2.0, step=1e-3)
+    assert np.abs(s.ledger.residual).max() < 1e-5 * exchanged(s, 1e-3)
