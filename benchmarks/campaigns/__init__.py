@@ -5,10 +5,12 @@ them by the thousand; the tests run a few of each.
 """
 
 from campaigns import (
+    bearings,
     crowds,
     forced,
     mechanisms,
     piles,
+    rests,
     robots,
     rolls,
     slides,
@@ -20,5 +22,5 @@ from campaigns import (
 FAMILIES = {
     "throws": throws.case, "strikes": strikes.case, "mechanisms": mechanisms.case, "forced": forced.case,
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
-    "slides": slides.case, "teeth": teeth.case,
+    "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
 }  # fmt: skip

@@ -146,7 +146,8 @@ def depth(scene: carom.Scene, s: carom.Solution) -> float:
     """Return how far bodies get into the half-spaces that they touch, by their size, by their support alone."""
     worst = 0.0
     pairs = touching_pairs(scene)
-    for b, plane in {(b, p) for b, p in zip(pairs.body, pairs.plane) if p >= 0}:
+    planes = len(scene.half_spaces)  # static bodies follow them
+    for b, plane in {(b, p) for b, p in zip(pairs.body, pairs.plane) if 0 <= p < planes}:
         shape, ground = scene.bodies[b].shape, scene.half_spaces[plane]
         if shape is None:
             continue

@@ -7,9 +7,10 @@ from carom._compiled.units import unit
 from carom.contact.gap import along_normal, gap_and_rate, plane_in_body, round_off
 from carom.contact.groups import unite
 from carom.contact.pair_point import REACH, find_touches, own_point, smaller, write_touch
+from carom.contact.parting import beside_face
 from carom.contact.place import place_any
 from carom.contact.place_of_other import centre_of_other, on_half_space
-from carom.contact.rim import OTHER_SIDE, closed_rim, way_round
+from carom.contact.rim import OTHER_SIDE, closed_rim, most_of_rim, way_round
 from carom.contact.stop import is_active, place_stop
 from carom.kinematics.contact_point import place
 from carom.model.arrays import STOP
@@ -130,6 +131,8 @@ def _add_touches(system, c, near, rim_time, state, k, group, work) -> int:
     A rim that is flat within `rim_time` counts as flat.
     """
     contact = system.contacts[c]
+    if beside_face(system, contact, state, max(near, most_of_rim(contact, state, rim_time))):
+        return k
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
     if rim_time > 0.0 and count > 0:
         n = work.touches[0].normal

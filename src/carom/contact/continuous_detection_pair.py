@@ -27,7 +27,7 @@ from carom.contact.continuous_detection import (
 from carom.contact.gap import slow
 from carom.contact.level import related
 from carom.contact.pair_point import REACH, find_touches, list_touches, smaller, touch_rate
-from carom.contact.parting import time_apart
+from carom.contact.parting import stays_beside_face, time_apart
 from carom.contact.place_of_other import centre_of_other, on_half_space
 from carom.contact.rim import OTHER_SIDE, SMOOTH, closed_rim, longest_way, same_point
 from carom.geometry.rotation import rotate
@@ -36,6 +36,7 @@ from carom.kinematics.wrench import point_velocity
 from carom.model.workspace import FREE, RESTS
 
 SHORT = 0.25  # displacement relative to the smaller body within which none passes through the other
+TURN = 0.5  # rotation in a step [rad] up to which points that are nearest at both ends are so in between
 
 
 @kernel
@@ -155,7 +156,17 @@ def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, flo
     if clear:
         return CLEAR, h
     touching = touches_already(system, active, c)
+    flies = work.body[contact.body].status == FREE
+    if contact.other >= 0:
+        flies = flies and work.body[contact.other].status == FREE
+    sag = 0.125 * bounds[1] * h * h
+    short = way_past(contact, start, end, h) <= SHORT * smaller(contact)
+    little = short and h * (bounds[3] + bounds[5]) <= TURN
+    smooth = short and (not flies or sag <= MISSED * smaller(contact))
+    smooth = smooth or (little and controls.order > 0 and is_integrated(system, contact))
     tiny = 4.0 * max(controls.gap * smaller(contact), round_off_of_both(contact, end))
+    if not touching and stays_beside_face(system, contact, start, end, smooth, tiny, bounds, h):
+        return CLEAR, h
     count = find_touches(system, contact, end, REACH * smaller(contact), work)
     if count == 0:
         hidden = touching or contact.surface > 0
@@ -172,9 +183,6 @@ def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, flo
             if moved > OTHER_SIDE and h > 0.1 * longest:
                 return UNSURE, 0.0
             find_touches(system, contact, end, REACH * smaller(contact), work)
-    flies = work.body[contact.body].status == FREE
-    if contact.other >= 0:
-        flies = flies and work.body[contact.other].status == FREE
     if not least >= -(tiny if not touching else MISSED * smaller(contact)):
         before, _ = _lowest_pair(system, contact, c, active, start, work)
         if before <= tiny:  # they touch already: they separate, or others push them
@@ -192,18 +200,32 @@ def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, flo
     count = list_touches(system, contact, start, 0.0, work)
     nearest = nearest_touch(work, count)
     first = time_apart(system, contact, nearest, 1.0, start, bounds, h)
-    sag = 0.125 * bounds[1] * h * h
     rate0 = touch_rate(contact, nearest, start)
     alike = feature == nearest.feature  # the same points are nearest at both ends
-    short = way_past(contact, start, end, h) <= SHORT * smaller(contact)
-    smooth = short and (not flies or sag <= MISSED * smaller(contact))
     follows = alike and smooth  # the cubic between both ends describes the gap
     if follows and cubic_clears(nearest.gap, rate0, least, rate, h, tiny):
         return CLEAR, first
     bends = sag > tiny or follows or not short
+    if little and max(abs(nearest.gap), abs(least)) <= tiny:
+        if max(abs(rate0), abs(rate)) <= slow(
+            contact, end
+        ):  # it slides or rolls along, without a force
+            return CLEAR, first
     if first + last < h * (1.0 - 1e-12) and bends and leaving == 0:
         return UNSURE, first
     return CLEAR, first
+
+
+@kernel
+def is_integrated(system, contact):
+    """Return whether the motion of a body is integrated: joined and loaded bodies are not in closed form.
+
+    With tolerances the cubic of a gap is within the error of their step, which is of the same order; bounds
+    from the accelerations of its stages are no stricter.
+    """
+    other = contact.other
+    joined = other >= 0 and system.bodies[other].ballistic == 0
+    return joined or system.bodies[contact.body].ballistic == 0
 
 
 @kernel

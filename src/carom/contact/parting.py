@@ -28,7 +28,7 @@ from carom.collision.farthest import VERTICES, farthest
 from carom.collision.features import NOBODY, OF_A
 from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, SEGMENT
 from carom.contact.place_of_other import centre_of_other, on_half_space
-from carom.geometry.rotation import cross, rotate_back
+from carom.geometry.rotation import cross, multiply, rotate, rotate_back
 from carom.kinematics.flight import core_extent
 
 HALVES = 30  # largest number of halvings of the step, until the bound is above zero
@@ -151,7 +151,13 @@ def time_apart(system, contact, touch, sign, state, bounds, h):
     The plane rests, or moves with the body that owns its normal, whichever lasts longer. `bounds` are those of
     `relative_bound`.
     """
-    n, owner = (touch.normal[0], touch.normal[1], touch.normal[2]), touch.owner
+    n = (touch.normal[0], touch.normal[1], touch.normal[2])
+    return time_beside(system, contact, n, touch.owner, sign, state, bounds, h)
+
+
+@kernel
+def time_beside(system, contact, n, owner, sign, state, bounds, h):
+    """Return the same for a plane with the normal n of an owner."""
     rests = frame_of(contact, 2, n, state)
     time = time_parted(system, contact, n, rests, sign, state, bounds[1], h)
     for side in range(0 if on_half_space(contact) else 2 - contact.static):
@@ -160,3 +166,80 @@ def time_apart(system, contact, touch, sign, state, bounds, h):
             a = bound_in_frame(system, contact, side, bounds, state, h)
             time = max(time, time_parted(system, contact, n, frame, sign, state, a, h))
     return time
+
+
+@kernel
+def pose_of(solid, b, state):
+    """Return the world position and attitude of a solid; those of a static one, b < 0, are in the table."""
+    p, o = solid.x, solid.Q
+    if b < 0:
+        return (p[0], p[1], p[2]), (o[0], o[1], o[2], o[3])
+    x, q = state[b].x, state[b].Q
+    r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    turned = multiply(q[0], q[1], q[2], q[3], o[0], o[1], o[2], o[3])
+    return (x[0] + r[0], x[1] + r[1], x[2] + r[2]), turned
+
+
+@kernel
+def widest_face(system, contact, state):
+    """Return the normal, out of the other solid, of the face of a box beside which two solids have most room.
+
+    And its owner, its number and the room, below 0 if no face separates them. Such a plane is known without a
+    search for nearest points: a body in a ring of boxes is near all of them, and touches one or two.
+    """
+    room, owner, face, n, rests = -math.inf, NOBODY, 0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
+    own = pose_of(system.solids[contact.solid], contact.body, state)
+    beside = pose_of(system.solids[contact.other_solid], contact.other, state)
+    for side in range(2):
+        solid = system.solids[contact.solid if side == 0 else contact.other_solid]
+        if solid.kind != BOX:
+            continue
+        (x, q), (y, _) = (own, beside) if side == 0 else (beside, own)
+        d = rotate_back(q[0], q[1], q[2], q[3], y[0] - x[0], y[1] - x[1], y[2] - x[2])
+        for k in range(3):
+            if abs(d[k]) <= max(room, 0.0) + solid.half[k]:  # not even its centre has more
+                continue
+            f = 1.0 if (d[k] > 0.0) == (side == 1) else -1.0
+            e = (f if k == 0 else 0.0, f if k == 1 else 0.0, f if k == 2 else 0.0)
+            m = rotate(q[0], q[1], q[2], q[3], e[0], e[1], e[2])
+            gap = least_gap(system, contact, m, rests, state, 0.0, 0.0)
+            if gap > room:
+                room, owner, n = gap, OF_A + side, m
+                face = k if f > 0.0 else 3 + k
+    return n, owner, face, room
+
+
+@kernel
+def beside_face(system, contact, state, near):
+    """Return whether a face of a box shows that the gap of two solids is above `near`."""
+    if on_half_space(contact) or contact.surface > 0:
+        return False
+    _, _, _, room = widest_face(system, contact, state)
+    return room > near
+
+
+@kernel
+def stays_beside_face(system, contact, start, end, smooth, tiny, bounds, h):
+    """Return whether faces of boxes show that two solids stay apart in a step.
+
+    If the motion is `smooth` and the face the same, the cubic with the gap and rate of both ends decides, to
+    `tiny`: its control points are F(h/3), of the start and back from the end, with a = 0. Else the plane must
+    separate them at both ends, for the bounds to hold on the way from there.
+    """
+    if on_half_space(contact) or contact.surface > 0:
+        return False
+    n, owner, face, room = widest_face(system, contact, start)
+    m, other, last, left = widest_face(system, contact, end)
+    if not min(room, left) >= -tiny:
+        return False
+    if smooth and owner == other and face == last:
+        side, third = owner - OF_A, h / 3.0
+        moving = frame_of(contact, side, n, start)
+        if least_gap(system, contact, n, moving, start, third, 0.0) >= -tiny:
+            moving = frame_of(contact, side, m, end)
+            if least_gap(system, contact, m, moving, end, -third, 0.0) >= -tiny:
+                return True
+    if not min(room, left) > 0.0:
+        return False
+    time = time_beside(system, contact, n, owner, 1.0, start, bounds, h)
+    return time >= h or time + time_beside(system, contact, m, other, -1.0, end, bounds, h) >= h

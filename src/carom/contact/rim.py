@@ -100,3 +100,14 @@ def closed_rim(system, contact, n, state, time):
             w -= state[contact.other].w[k]
         spin += w * w
     return 2.0 * radius * tilt if tilt < time * math.sqrt(spin) else 0.0
+
+
+@kernel
+def most_of_rim(contact, state, time):
+    """Return an upper bound of `closed_rim`, with the size of the body in the place of its radius."""
+    w = state[contact.body].w
+    spin = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    if contact.other >= 0:
+        w = state[contact.other].w
+        spin += math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    return 2.0 * max(contact.extent, contact.other_extent) * time * spin

@@ -70,10 +70,11 @@ def show(count, state, group, work):
 
 
 @kernel
-def note_modes(model, data, k):
-    """Write the modes at the end of a step whose stages have none: a point sticks where its disc holds it.
+def note_modes(model, data, k, h):
+    """Write the modes at the end of a step of length h whose stages have none: what its disc holds sticks.
 
-    What is on its disc at rest sticks: whether it slips is seen at the start of the next step.
+    What is on its disc at rest sticks: whether it slips is seen at the start of the next step. A slip that no
+    friction could have stopped in the step goes on, whatever round-off has left of its force in a short step.
     """
     active, group, controls, push = data.active, data.group, model.controls, 0.0
     for row in range(3 * k):
@@ -84,7 +85,8 @@ def note_modes(model, data, k):
         slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
         force = math.hypot(p[3 * i + 1], p[3 * i + 2])
         bare = closed_point.turns == 0 and closed_point.loaded == 0  # round-off is no friction left
-        full = slip > still and (bare or not force < ON_CONE * radius_of(group, i))
+        free = bare or not force < ON_CONE * radius_of(group, i)
+        full = slip > still and (free or slip > stoppable(i, h, group))
         group.kind[i] = SLIDING if group.mu[i] == 0.0 or full else CONE
         if closed_point.own == 0:
             continue
@@ -103,6 +105,13 @@ def note_modes(model, data, k):
         else:
             way = active_point.turning[closed_point.turns - 1]
             way[0], way[1], way[2] = d1, d2, slip if slides else 0.0
+
+
+@kernel
+def stoppable(i, h, group):
+    """Return the change of slip by friction in a step of length h, from one side of its disc to the other."""
+    W, q = group.m[0], 3 * i
+    return 2.0 * h * radius_of(group, i) * max(W[q + 1, q + 1], W[q + 2, q + 2])
 
 
 @unit

@@ -14,6 +14,7 @@ from carom.contact.closed_points import apart, closed_within
 from carom.contact.continuous_detection import greatest_acceleration
 from carom.contact.gap import gap_and_rate, plane_in_body, slow
 from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
+from carom.contact.parting import beside_face
 from carom.contact.stop import check_stop
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.more_forces import note_turns
@@ -245,7 +246,7 @@ def _check_pair(system, controls, active, c, now, work) -> int:
     """Return whether a closed point of two bodies is to be struck or made persistent."""
     contact, action = system.contacts[c], NOTHING
     near, still = closed_within(controls, contact, now), slow(contact, now)
-    if apart(contact, now, near):
+    if apart(contact, now, near) or beside_face(system, contact, now, near):
         return NOTHING
     for i in range(find_touches(system, contact, now, REACH * smaller(contact), work)):
         touch = work.touches[i]

@@ -90,20 +90,33 @@ def friction_power(system, state):
 
 @kernel
 def power_of_path(system, h, start, end, work):
-    """Return 4 P_middle + P_end of loads, and of friction in joints, on a path with linear velocities.
+    """Return P_start + 4 P_middle + P_end of loads, and of friction in joints, on a path of linear velocities.
 
-    The difference of the works on two paths from the same start is h/6 times the difference of these: the power
-    of dampers is quadratic in time (Simpson's rule).
+    Times h/6 this is the work, by Simpson's rule: the power of dampers is quadratic in time.
     """
-    result = work.result[0]
+    result, begin = work.result[0], work.result[0].start
     for b in range(start.shape[0]):
         halfway(start[b], end[b], work.stage[b])
-    result.time = result.start + 0.5 * h
-    loads = 4.0 * applied_wrenches(system, work.stage, False, work)
-    friction = 4.0 * friction_power(system, work.stage)
-    result.time = result.start + h
+    result.time = begin
+    loads, friction = applied_wrenches(system, start, False, work), friction_power(system, start)
+    result.time = begin + 0.5 * h
+    loads += 4.0 * applied_wrenches(system, work.stage, False, work)
+    friction += 4.0 * friction_power(system, work.stage)
+    result.time = begin + h
     loads += applied_wrenches(system, end, False, work)
     return loads, friction + friction_power(system, end)
+
+
+@kernel
+def work_on_path(done, h, free, taken):
+    """Return the work on the actual path, of which `done` was done on the path without contacts.
+
+    `free` and `taken` are the powers of both paths (`power_of_path`). What the rule misses of the free path is
+    added in proportion: all of it where the paths are the same, and nothing at rest, where no force does work.
+    """
+    simple, own = h / 6.0 * free, h / 6.0 * taken
+    part = min(1.0, own / simple) if own * simple > 0.0 else 0.0
+    return own + part * (done - simple)
 
 
 @kernel

@@ -31,6 +31,7 @@ from carom.stepping.crowd.free_motion import (
     greatest_change,
     is_loaded,
     power_of_path,
+    work_on_path,
 )
 from carom.stepping.crowd.impulses import (
     deepest_of_others,
@@ -152,8 +153,8 @@ def move_on(model, data, method, h, patient, careful):
     if loaded:
         search = work.search[0]
         taken, rubbed = power_of_path(system, h, now, end, work)
-        applied = search.applied + driven + h / 6.0 * (taken - loads)
-        rubbed = search.friction + h / 6.0 * (rubbed - rubbing)
+        applied = driven + work_on_path(search.applied, h, loads, taken)
+        rubbed = work_on_path(search.friction, h, rubbing, rubbed)
     gained = energy_gained(model, data, h, loaded) - applied - rubbed
     if careful and n > 1 and off(model, data, k, gained):
         return MISSED
