@@ -22,6 +22,7 @@ from carom.persistent.joint_rows import JOINT, fix_friction, place_coordinate, r
 from carom.persistent.margins import greatest_push, set_margins
 from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
+from carom.persistent.settle import greatest
 from carom.persistent.springs import note_accelerations, solve_springs
 from carom.persistent.step_control import POORLY, rest_speed
 
@@ -76,10 +77,8 @@ def note_modes(model, data, k, h):
     What is on its disc at rest sticks: whether it slips is seen at the start of the next step. A slip that no
     friction could have stopped in the step goes on, whatever round-off has left of its force in a short step.
     """
-    active, group, controls, push = data.active, data.group, model.controls, 0.0
-    for row in range(3 * k):
-        push = max(push, abs(group.v[C][row]))
-    still = controls.rest * push * controls.step
+    active, group, controls = data.active, data.group, model.controls
+    still = controls.rest * greatest(3 * k, group.v[C]) * controls.step
     for i in range(k):
         closed_point, u, p = group.closed[i], group.v[U], group.v[P]
         slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
@@ -127,9 +126,7 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
         note_velocity(work.stage[group.member[m]], work.stages[s, group.member[m]])
     accelerate_freely(model, data, loaded, count, s)
     k = write_rows(model, data, label, s)
-    push = 0.0
-    for row in range(3 * k):
-        push = max(push, abs(group.v[C][row]))
+    push = greatest(3 * k, group.v[C])
     same = set_modes(system, active, k, group)
     if given and not same:
         return False

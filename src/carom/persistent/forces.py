@@ -21,6 +21,7 @@ from carom.kinematics.flight import free_rates
 from carom.persistent.joint_rows import JOINT, fix_friction, mode_of_joint
 from carom.persistent.rolling_friction import bound_turning, take_torque
 from carom.persistent.rows import write_motion
+from carom.persistent.settle import greatest
 from carom.persistent.step_control import charge_iterations, iterations_left
 
 
@@ -33,9 +34,7 @@ def pose_forces(system, controls, k, state, group, work):
     else:
         acceleration(system, state, work, rates)
     write_motion(system, k, state, rates, group, work)
-    push = 0.0
-    for i in range(3 * k):
-        push = max(push, abs(group.v[C][i]))
+    push = greatest(3 * k, group.v[C])
     for i in range(k):
         if group.closed[i].turns == JOINT:
             u, still = group.v[U][3 * i + 1], controls.rest * push * controls.step

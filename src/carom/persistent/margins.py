@@ -16,6 +16,7 @@ from carom._compiled.decorators import kernel
 from carom.dynamics.acceleration import OPEN, SLIP, STICK
 from carom.impact.workspace import OLD, C, P
 from carom.persistent.events import JAM, SEPARATE
+from carom.persistent.settle import greatest
 
 LEAST = 1e-5  # least margin before an event
 NONE = 1e-7  # accelerations below this part count as zero: those of two bodies have errors of 1e-9
@@ -29,15 +30,12 @@ def greatest_push(k, group):
     The result is 0 if two bodies touch at several points: the corners of their overlap appear and vanish, most
     of them without a force, so their events are handled at the end of the step.
     """
-    push = 0.0
     for i in range(k):
         a = group.closed[i]
         for j in range(i if a.turns == 0 and group.points[0][i].b != -1 else 0):
             if group.closed[j].contact == a.contact and group.closed[j].turns == 0:
                 return 0.0
-    for i in range(3 * k):
-        push = max(push, abs(group.v[C][i]))
-    return push
+    return greatest(3 * k, group.v[C])
 
 
 @kernel

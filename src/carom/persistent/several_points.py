@@ -24,6 +24,7 @@ from carom.persistent.forces import pose_forces, solve_forces, take_forces, time
 from carom.persistent.jam import jams_among, note_jam
 from carom.persistent.joint_rows import JOINT, add_frictions
 from carom.persistent.return_to_surfaces import onto_surfaces
+from carom.persistent.settle import greatest
 from carom.persistent.start import first_stage
 
 LAID = 1e-9  # of the size of a body: the gap of a point that is on its surface
@@ -76,9 +77,7 @@ def judge(model, data, k, rows, horizon):
     for i in range(k):
         contact, u = system.contacts[group.closed[i].contact], group.v[U][3 * i]
         group.closed[i].stays = 1 if abs(u) <= slow(contact, state) else 0
-    push = 0.0
-    for i in range(3 * k):
-        push = max(push, abs(group.v[C][i]))
+    push = greatest(3 * k, group.v[C])
     for turn in range(k + 1):
         solve_forces(model, data, rows)
         more = False

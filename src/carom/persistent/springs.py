@@ -25,7 +25,7 @@ from carom.friction import lu
 from carom.friction.layout import SLIDING
 from carom.impact.workspace import OLD, C, P
 from carom.persistent.joint_rows import JOINT, is_driven
-from carom.persistent.settle import settle
+from carom.persistent.settle import greatest, settle
 
 EPS = 1e-5
 DEPEND = 1e-3  # of the accelerations without forces: greatest error of such rows
@@ -49,9 +49,7 @@ def solve_springs(k, group) -> bool:
     C has the accelerations without forces; `kind` says which points slide along `heading`, `loaded` which
     press at first.
     """
-    closed, push = group.closed, 0.0
-    for row in range(3 * k):
-        push = max(push, abs(group.v[C][row]))
+    closed, push = group.closed, greatest(3 * k, group.v[C])
     for i in range(k):
         closed[i].rows = rows_of(k, i, group)
     for turn in range(3 * k + 4):

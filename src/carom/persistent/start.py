@@ -18,6 +18,7 @@ from carom.impact.workspace import C, P, U
 from carom.persistent.finish import gains, solve_cones_of, within_cones
 from carom.persistent.joint_rows import JOINT, mode_of_joint, radius_of
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
+from carom.persistent.settle import greatest
 from carom.persistent.springs import solve_springs
 
 
@@ -47,9 +48,7 @@ def first_stage(model, data, label, loaded, count):
     result.time = result.start
     power = accelerate_freely(model, data, loaded, count, 0)
     k = write_rows(model, data, label, 0)
-    push = 0.0
-    for row in range(3 * k):
-        push = max(push, abs(group.v[C][row]))
+    push = greatest(3 * k, group.v[C])
     known = True
     for i in range(k):
         known = note_way(model, data, i, controls.rest * push * controls.step) and known
