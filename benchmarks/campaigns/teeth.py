@@ -200,7 +200,7 @@ def geneva(rng) -> Case:
     )  # fmt: skip
     drive = scene.add_joint(joints.Revolute((0, 0, 0), Z), GROUND, crank)
     scene.add_constraint(constraints.Driver(drive, rate=speed))
-    hub = (carom.Cylinder(0.5 * inner, 0.3 * THICK), (0, 0, -THICK))  # below the pin
+    hub = (carom.Cylinder(0.5 * inner, 0.3 * THICK), (0, 0, 0))  # smaller than what the pin reaches
     first = np.pi + half  # a slot, when the pin enters
     pieces = [hub, *(prism(turned(sector, first + 2.0 * half * k)) for k in range(slots))]
     body, driven, inertia = wheel(scene, pieces, radius, (far, 0, 0))

@@ -1,6 +1,7 @@
 """Penetrating points return to the surfaces: 0 <= lam _|_ phi + W_nn lam >= 0, xi = P G_n^T lam.
 
-phi are the gaps. It is solved by sweeps over the normal rows, and repeated because gaps are not linear.
+phi are the gaps. It is solved by sweeps over the normal rows, and repeated because gaps are not linear. A point
+that joints hold along its normal is left where it is.
 """
 
 from __future__ import annotations
@@ -17,6 +18,11 @@ TINY = 1e-11  # allowed depth, relative to the smaller body
 PASSES, SWEEPS, WORK = 8, (100, 1000), 20000
 BETTER = 0.01  # part of the depth that a pass leaves: gaps are not linear, so less is no gain
 
+# least W_nn, as a part of the mean of the diagonal, of a point that returns: with the normal through the axis of
+# a hinge W_nn is round-off, and a depth of 1e-7 m would turn the body by many teeth of a gear. Others are moved
+# by at most 1/IMMOBILE^(1/2) times their depth
+IMMOBILE = 1e-6
+
 
 @kernel
 def onto_surfaces(system, k, count, end, crowd, work):
@@ -31,7 +37,7 @@ def onto_surfaces(system, k, count, end, crowd, work):
         for i in range(k):
             gap = crowd.points[1][i].gap
             size = smaller(system.contacts[crowd.spots[i].contact])
-            if crowd.spots[i].turns == 0 and gap < -TINY * size:
+            if returns(crowd, i) and gap < -TINY * size:
                 deepest, tiny = max(deepest, -gap), min(tiny, 0.1 * TINY * size)
         if deepest == 0.0:
             break
@@ -40,6 +46,12 @@ def onto_surfaces(system, k, count, end, crowd, work):
             shift(work.body[b].motion, end[b])
         missed = project_position(system, end, True, 1e-14, work)
     return missed
+
+
+@kernel
+def returns(crowd, i):
+    """Return whether a point has a gap that an impulse along its normal can change. Rows are scaled."""
+    return crowd.spots[i].turns == 0 and crowd.problem.link[i].local[0] > IMMOBILE
 
 
 @kernel
@@ -55,7 +67,7 @@ def lift(system, k, tolerance, crowd, work):
         change = 0.0
         for place in range(k):
             i = place if turn % 2 == 0 else k - 1 - place
-            if crowd.spots[i].turns == 0:
+            if returns(crowd, i):
                 gap = crowd.points[1][i].gap
                 change = max(change, lift_one(problem, i, gap, lam))
         if change <= tolerance:
