@@ -33,10 +33,10 @@ LOOSE = 8
 HUNDREDS = {
     "_compiled": 18, "geometry": 8, "scene": 45, "collision": 29, "model": 31, "kinematics": 13,
     "contact": 20, "friction": 21, "dynamics": 53, "impact": 65, "persistent": 36, "stepping": 51,
-    "results": 25, "generalized": 34, "io": 46, "control": 8, "studies": 52, "visual": 40, "baselines": 8,
+    "results": 25, "generalized": 34, "io": 47, "control": 8, "studies": 52, "visual": 40, "baselines": 8,
     "paper": 15, "bench": 10, "cli": 18,
 }  # fmt: skip
-MOST_LINES = 65480
+MOST_LINES = 65600
 
 
 @cache
