@@ -3,10 +3,10 @@
 python benchmarks/corpus.py FOLDER [FOLDER ...] [--seconds 60]
 
 Every MJCF and URDF file below the folders (of the packages gymnasium, dm_control, gymnasium_robotics,
-example-robot-data, pybullet) is loaded and simulated for 1 s in a child process with a limit of time. A model
-without a plane gets a floor 2 cm below it, and a URDF with one root a free one. A MJCF file that MuJoCo itself
+example-robot-data, pybullet) is loaded and simulated for 1 s in a child process with a limit of processor time. A
+model without a plane gets a floor 2 cm below it, and a URDF with one root a free one. A MJCF file that MuJoCo itself
 does not compile is counted, but not listed (a part of another file). The table has the time to load, and the
-wall time of a second run of the scene in its own process over the time that it covers. `differs` is the first
+processor time of a second run of the scene over the time that it covers. `differs` is the first
 time at which a body of the model without contacts is off by 1e-6 of its extent from MuJoCo (Runge-Kutta, .1 ms,
 without contacts, actuators and limits) within .2 s; soft constraints, tendons and what the report names differ.
 """
@@ -15,6 +15,8 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
+import signal
 import subprocess
 import sys
 import time
@@ -24,6 +26,7 @@ from pathlib import Path
 
 DURATION = 1.0  # [s]
 BELOW = 0.02  # of the floor below the model [m]
+WAITS = 20  # wall time that a model may take, by its processor time
 BESIDE, STEP, NEAR = (
     0.2,
     1e-4,
@@ -52,17 +55,20 @@ def read(path: Path):
     return spec
 
 
-def one(path: Path) -> None:
-    """Print a line of JSON for each stage that a model reaches."""
+def one(path: Path, seconds: float, runs: bool) -> None:
+    """Print a line of JSON for each stage that a model reaches within some seconds of processor time."""
+    import resource
+
     import carom
 
+    resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(seconds), math.ceil(seconds) + 1))
     warnings.simplefilter("ignore")
     spec = read(path)
     if spec is None:
         say(stage="no model")
         return
     say(stage="reads")
-    begin, how = time.perf_counter(), {"restitution": 0.2, "free_root": path.suffix == ".urdf"}
+    begin, how = time.process_time(), {"restitution": 0.2, "free_root": path.suffix == ".urdf"}
     try:
         try:
             model = carom.load_model(spec, **how)
@@ -73,14 +79,16 @@ def one(path: Path) -> None:
     except Exception as error:
         say(stage="refused", message=f"{type(error).__name__}: {error}")
         return
-    say(stage="loads", bodies=len(model.scene.bodies), load=time.perf_counter() - begin)
+    say(stage="loads", bodies=len(model.scene.bodies), load=time.process_time() - begin)
     if spec is path and not model.scene.half_spaces:
         low = min(b.position[2] - b.shape.size for b in model.scene.bodies if b.shape is not None)
         model.scene.add_half_space((0, 0, low - BELOW), (0, 0, 1))
+    if not runs:
+        return
     carom.simulate(model.scene, 1e-3, throw=False)  # compiles
-    begin = time.perf_counter()
+    begin = time.process_time()
     solution = carom.simulate(model.scene, DURATION, throw=False)
-    wall, reached = time.perf_counter() - begin, float(solution.t[-1])
+    wall, reached = time.process_time() - begin, float(solution.t[-1])
     ratio = wall / reached if reached > 0.0 else float("inf")
     say(stage="runs", status=solution.status.name, reached=reached, ratio=ratio,
         message=solution.message)  # fmt: skip
@@ -121,13 +129,17 @@ def say(**row) -> None:
     print(json.dumps(row), flush=True)
 
 
-def outcome(path: Path, seconds: float) -> dict:
+def outcome(path: Path, seconds: float, runs: bool) -> dict:
     """Return what a child process printed, and how it ended."""
-    child = [sys.executable, __file__, "--one", str(path)]
+    child = [sys.executable, __file__, "--one", str(path), "--seconds", str(seconds)]
+    child += [] if runs else ["--loads"]
     row: dict = {"stage": "hangs", "ratio": float("inf")}
     try:
-        done = subprocess.run(child, capture_output=True, text=True, timeout=seconds)
-        text, row["stage"] = done.stdout, f"died ({done.returncode})"
+        done = subprocess.run(child, capture_output=True, text=True, timeout=WAITS * seconds)
+        text = done.stdout
+        row["stage"] = (
+            "hangs" if done.returncode == -signal.SIGXCPU else f"died ({done.returncode})"
+        )
         row["message"] = done.stderr.strip().rpartition("\n")[2]
     except subprocess.TimeoutExpired as error:
         text = error.stdout.decode() if isinstance(error.stdout, bytes) else error.stdout or ""
@@ -135,6 +147,7 @@ def outcome(path: Path, seconds: float) -> dict:
         if line.startswith("{"):
             found = json.loads(line)
             ended = found.get("stage") in ("no model", "refused", "runs")
+            ended = ended or (not runs and found.get("stage") == "loads")
             row |= found if ended else {k: v for k, v in found.items() if k != "stage"}
     return row
 
@@ -146,16 +159,20 @@ def main() -> None:
     parser.add_argument(
         "--rows", type=Path, help="file to which the rows are added as lines of JSON"
     )
-    parser.add_argument("--seconds", type=float, default=60.0, help="limit of each model")
+    parser.add_argument("--seconds", type=float, default=60.0, help="processor time of each model")
+    parser.add_argument("--loads", action="store_true", help="load the models only")
     parser.add_argument("--one", action="store_true", help="a single file, in this process")
     given = parser.parse_args()
     if given.one:
-        one(given.folders[0])
+        one(given.folders[0], given.seconds, not given.loads)
         return
     rows, counts = [], Counter()
     for folder in given.folders:
         for path in sorted({*folder.rglob("*.xml"), *folder.rglob("*.urdf")}):
-            row = {"model": str(path.relative_to(folder.parent)), **outcome(path, given.seconds)}
+            row = {
+                "model": str(path.relative_to(folder.parent)),
+                **outcome(path, given.seconds, not given.loads),
+            }
             counts[row.get("status", row["stage"])] += 1
             if row["stage"] != "no model":
                 rows.append(row)
