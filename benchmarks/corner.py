@@ -1,4 +1,4 @@
-"""Time of one impact at a corner: adaptive steps at three tolerances, fixed steps, laws, blow by blow."""
+"""Time of one impact at a corner: steps at three tolerances, laws, blow by blow."""
 
 from __future__ import annotations
 
@@ -149,23 +149,5 @@ def table() -> None:
     )  # fmt: skip
 
 
-def against_fixed() -> None:
-    """A box striking a stack: adaptive against fixed steps."""
-    loop, lines = compiled_loop(), []
-    for n in (1, 2, 3, 5):
-        case = Case(stack(n), 0.3, repeat=max(1, 50 // n**3))
-        exact = case.run(loop, 1e-9)[3]
-        cells = [f"n={n}, k={4 * n}"]
-        for more in ({"rtol": 1e-4}, {"rtol": 1e-6}, {"adaptive_up_to": 0, "rtol": 1e-6}):
-            us, steps, _, after = case.run(loop, **more)
-            cells.append(f"{steps} / {us:.3g} / {np.abs(after - exact).max():.0e}")
-        lines.append(cells)
-    report(
-        "corner_stack", "A box strikes a stack: steps / microseconds / error",
-        ["", "adaptive, rtol 1e-4", "adaptive, 1e-6", "fixed steps, n=40 and 80"], lines,
-    )  # fmt: skip
-
-
 if __name__ == "__main__":
     table()
-    against_fixed()

@@ -16,12 +16,20 @@ from common import report, seconds
 POSES = 400
 GAPS = (0.1, 1e-3, -1e-4, -1e-2)
 rng = np.random.default_rng(1)
+
+
+def rounded(points, half):
+    """Return points on an ellipsoid."""
+    return points / np.linalg.norm(points, axis=1)[:, None] * half
+
+
 SHAPES = {
     "sphere": Sphere(0.3),
     "capsule": Capsule(0.2, 0.7),
     "box": Box(0.4, 0.5, 0.9),
     "rounded box": Box(0.4, 0.5, 0.9, radius=0.1),
     "hull of 8": Convex(rng.normal(size=(12, 3)) * 0.3),
+    "hull of 800": Convex(rounded(rng.normal(size=(800, 3)), (0.4, 0.3, 0.2))),
     "cylinder": Cylinder(0.3, 0.6),
     "disc": Disc(0.4),
     "ellipsoid": Ellipsoid(0.2, 0.3, 0.5),

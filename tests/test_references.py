@@ -6,16 +6,15 @@ import pytest
 
 from carom._compiled.by_reference import Reference, type_of
 from carom._compiled.decorators import by_reference, entry, kernel
-from carom._compiled.record_arrays import table
 from carom._compiled.units import unit
-from carom.collision.layout import FACE, Hulls
+from carom.collision.layout import Hulls, no_hulls
 
 
 def hulls(n):
     """`n` vertices, numbered in their x and in `corners`."""
     vertices = np.zeros((n, 3))
     vertices[:, 0] = np.arange(n)
-    return Hulls(vertices, table(FACE, 0), np.arange(n))
+    return no_hulls()._replace(vertices=vertices, corners=np.arange(n))
 
 
 @kernel
@@ -35,9 +34,10 @@ def total_unit(h, out):
 def of_parts(h, out, each):
     """Write twice the sum of each vertex alone, found directly and through a unit; return that of all."""
     for i in range(each.shape[0]):
-        part = by_reference(Hulls(h.vertices[i : i + 1], h.faces, h.corners[i : i + 1]))
+        p, k = h.vertices[i : i + 1], h.corners[i : i + 1]
+        part = by_reference(Hulls(p, h.faces, k, h.starts, h.candidates))
         each[i] = total(part)
-        total_unit(Hulls(h.vertices[i : i + 1], h.faces, h.corners[i : i + 1]), out)
+        total_unit(Hulls(p, h.faces, k, h.starts, h.candidates), out)
         each[i] += out[0]
     return total(h)
 
@@ -57,7 +57,7 @@ def test_a_change_of_arrays_is_seen():
     assert of_parts(h, out, each) == 6.0
     h.vertices[:, 0] += 1.0
     assert of_parts(h, out, each) == 9.0
-    other = Hulls(h.vertices[:2], h.faces, h.corners)
+    other = h._replace(vertices=h.vertices[:2])
     assert of_parts(other, out, each[:2]) == 1.0 + 3.0
 
 

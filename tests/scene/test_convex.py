@@ -98,3 +98,32 @@ def test_frozen():
 def test_bad_points_are_refused(points, message):
     with pytest.raises(ValueError, match=f"(?s){message}"):
         Convex(points)
+
+
+def many_corners():
+    """Hulls of triangles alone, and of faces with more corners."""
+    rng = np.random.default_rng(11)
+    turn = 2.0 * np.pi * np.arange(40) / 40
+    rings = [np.stack([r * np.cos(turn), r * np.sin(turn), np.full(40, z)], -1)
+             for r, z in ((0.5, -1.0), (1.0, -0.3), (1.0, 0.3), (0.5, 1.0))]  # fmt: skip
+    ball = rng.normal(size=(300, 3))
+    return {"triangles": ball / np.linalg.norm(ball, axis=1)[:, None], "quads": np.vstack(rings)}
+
+
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize(("kind", "faces"), [("triangles", 596), ("quads", 122)])
+def test_faces_of_many_corners(kind, faces, turned):
+    """Euler: V - E + F = 2, each edge once in each sense; rings turn about their normals."""
+    points = many_corners()[kind]
+    hull = Convex(points @ rotation(3).T if turned else points)
+    assert len(hull.faces) == faces
+    edges = [(i, j) for _, ring in hull.faces for i, j in zip(ring, (*ring[1:], ring[0]))]
+    assert len(set(edges)) == len(edges)
+    assert {(j, i) for i, j in edges} == set(edges)
+    assert len(hull.vertices) - len(edges) // 2 + faces == 2
+    for normal, ring in hull.faces:
+        corners = hull.vertices[list(ring)]
+        across = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)  # twice the area
+        np.testing.assert_allclose(across, np.linalg.norm(across) * normal, atol=1e-12)
+        assert np.ptp(corners @ normal) < 1e-12
+        assert (hull.vertices @ normal).max() < (corners @ normal).max() + 1e-12

@@ -127,11 +127,12 @@ def two_cylinders(seed, far=False):
     return scene
 
 
-# cylinders that roll on each other are stepped to order 2 with a bound: ten times the default tolerance
-ALIKE = 1e-6
+# ten times the default tolerance: a contact that slides over a rim opens with its whole force, so that all
+# runs must find the rim at the same place to 1e-8 m
+ALIKE = 2e-8
 
 
-@pytest.mark.parametrize("seed", [0, 2, 6, 8])
+@pytest.mark.parametrize("seed", [0, 1, 2, 5, 6, 8, 10])
 def test_the_end_does_not_depend_on_the_times_saved(seed):
     """Before, the scale of time without gravity was the longest step: up to 2e-3 m, with SUCCESS."""
     ends = [

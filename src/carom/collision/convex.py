@@ -31,6 +31,7 @@ from carom.collision.gjk import EXACT, distance, point_on_b
 from carom.collision.layout import CYLINDER
 from carom.collision.polish import polish
 from carom.collision.support import separation
+from carom.geometry.vectors import cross, dot, minus, plus
 
 CLEAR = 1e-3  # relative to the smaller solid: such a distance has a direction exact to round-off
 DIRECTED = 1e-9  # relative to the smaller solid: a shorter distance has no reliable direction
@@ -57,13 +58,7 @@ def closest(pair):
     s, a, b = pair.state, pair.a, pair.b
     size = min(a.extent, b.extent)
     curved = a.kind >= CYLINDER or b.kind >= CYLINDER
-    # the normal by a search, and by Newton's method
-    best, nx, ny, nz = _search(pair, size, ROUGH if curved else EXACT)
-    feature, part_a, part_b = _feature(s), _part(s, 0), _part(s, 1)
-    value, x, y, z, polished = polish(pair, nx, ny, nz)
-    bx, by, bz = s.on_b[4, 0], s.on_b[4, 1], s.on_b[4, 2]
-    if polished == 1:
-        best, nx, ny, nz = value, x, y, z
+    best, (nx, ny, nz), (bx, by, bz), polished = _normal(pair, size, ROUGH if curved else EXACT)
     # the normal of a face; of two faces, that of the one on which a vertex of the other solid lies
     owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, curved)
     over = curved and owner != NOBODY
@@ -71,11 +66,10 @@ def closest(pair):
         # parallel edges, or a face with the farthest point of the other solid beyond its sides
         owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, False)
         if owner != NOBODY or polished == 0:
-            best, nx, ny, nz = _search(pair, size, EXACT)
-            feature, part_a, part_b = _feature(s), _part(s, 0), _part(s, 1)
-            bx, by, bz = point_on_b(s)
+            best, (nx, ny, nz), (bx, by, bz), polished = _normal(pair, size, EXACT)
             owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, False)
-    elif not curved and (owner != NOBODY or polished == 0):
+    feature, part_a, part_b = _feature(s), _part(s, 0), _part(s, 1)
+    if not curved and (owner != NOBODY or polished == 0):
         bx, by, bz = point_on_b(s)
         over = owner != NOBODY and feature == _farthest_vertex(s, owner)
     if owner != NOBODY:
@@ -94,6 +88,17 @@ def closest(pair):
     gap = core - a.radius - b.radius
     put(pair.found[0], gap, (nx, ny, nz), on_a, (bx, by, bz), feature)
     put_parts(pair.found[0], owner, part_a, part_b)
+
+
+@kernel
+def _normal(pair, size, accuracy):
+    """Return separation, normal, point of B by a search and Newton's method; 1 if the latter gave them."""
+    best, nx, ny, nz = _search(pair, size, accuracy)
+    value, x, y, z, polished = polish(pair, nx, ny, nz)
+    if polished == 1:
+        b = pair.state.on_b[4]
+        return value, (x, y, z), (b[0], b[1], b[2]), 1
+    return best, (nx, ny, nz), point_on_b(pair.state), 0
 
 
 @inlined
@@ -132,17 +137,11 @@ def _over_face(pair, side):
     solid, p, n = pair.a if side == 0 else pair.b, s.corner[side], s.normal[side]
     count, q = s.count[side], s.on_b[4] if side == 0 else s.on_a[4]
     if solid.kind == CYLINDER:
-        c = p[count // 2]  # opposite corner 0
-        x, y = q[0] - 0.5 * (p[0, 0] + c[0]), q[1] - 0.5 * (p[0, 1] + c[1])
-        z = q[2] - 0.5 * (p[0, 2] + c[2])
-        along = x * n[0] + y * n[1] + z * n[2]
-        return x * x + y * y + z * z - along * along <= solid.half[0] * solid.half[0]
+        r = plus(plus(q, -0.5, p[0]), -0.5, p[count // 2])  # opposite corner 0
+        return dot(r, r) - dot(r, n) ** 2 <= solid.half[0] * solid.half[0]
     for k in range(count):
-        o, v = p[k], p[(k + 1) % count]
-        ex, ey, ez = v[0] - o[0], v[1] - o[1], v[2] - o[2]
-        x, y, z = q[0] - o[0], q[1] - o[1], q[2] - o[2]
-        across = n[0] * (ey * z - ez * y) + n[1] * (ez * x - ex * z) + n[2] * (ex * y - ey * x)
-        if not across >= 0.0:
+        across = cross(minus(p[(k + 1) % count], p[k]), minus(q, p[k]))
+        if not dot(n, across) >= 0.0:
             return False
     return True
 
@@ -157,7 +156,7 @@ def _farthest_vertex(s, owner):
 def _foot_on_b(s, owner, best, n):
     """Return the point of B that belongs to the farthest point of the solid that does not own the normal."""
     p, f = (s.on_a[4], best) if owner == OF_B else (s.on_b[4], 0.0)
-    return p[0] - f * n[0], p[1] - f * n[1], p[2] - f * n[2]
+    return plus(p, -f, n)
 
 
 @kernel

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
+from carom.collision.farthest import NORMALS, farthest
 from carom.collision.features import OF_FIXED, OF_SUPPORT
 from carom.collision.frame import from_a, to_a
 from carom.collision.layout import BOX, CYLINDER, HULL, MOST_CORNERS, POINT, SEGMENT
@@ -81,13 +82,9 @@ def _box_face(s, side, half, axis, sense):
 def _hull_face(pair, side, x, y, z):
     """Write the face of a hull whose normal is nearest to (x, y, z); return the cosine."""
     s, solid, hulls = pair.state, pair.a if side == 0 else pair.b, pair.hulls
-    best, chosen = -2.0, solid.first_face
-    for f in range(solid.first_face, solid.last_face):
-        n = hulls.faces[f].normal
-        c = n[0] * x + n[1] * y + n[2] * z
-        if c > best:
-            best, chosen = c, f
-    face = hulls.faces[chosen]
+    cosine, chosen = farthest(solid, hulls, NORMALS, x, y, z)
+    number = hulls.candidates[chosen].number
+    face = hulls.faces[solid.first_face + number]
     total = face.last - face.first
     count = min(total, MOST_CORNERS)
     for k in range(count):
@@ -95,8 +92,8 @@ def _hull_face(pair, side, x, y, z):
         p = hulls.vertices[solid.first + i]
         _corner(s, side, k, i, p[0], p[1], p[2])
     _set_normal(s, side, face.normal[0], face.normal[1], face.normal[2])
-    s.count[side], s.face[side] = count, chosen - solid.first_face
-    return best
+    s.count[side], s.face[side] = count, number
+    return cosine
 
 
 @kernel

@@ -6,11 +6,12 @@ poses of the solids: the pose of the body, combined with the pose of the solid i
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
 
-from carom._compiled.record_arrays import table
+from carom._compiled.record_arrays import Columns, table
 from carom.geometry import quaternion
 
 #: kinds of cores; a pair is handled with the smaller kind first
@@ -28,6 +29,9 @@ SOLID = [
     ("last", "i8"),
     ("first_face", "i8"),
     ("last_face", "i8"),
+    # of directions, for the vertices of a hull and for the normals of its faces (`carom.geometry.cells`)
+    ("across", "i8", 2),  # cells along an edge of the cube
+    ("cell", "i8", 2),  # the first cell
     ("body", "i8"),  # number of its shape
     ("x", "f8", 3),  # pose in its body
     ("Q", "f8", 4),
@@ -35,6 +39,12 @@ SOLID = [
 
 #: a face of a hull: outward normal and the range of its corners, counter-clockwise as seen from outside
 FACE = [("normal", "f8", 3), ("first", "i8"), ("last", "i8")]
+
+#: one of the points that may be farthest in a cell of directions: a vertex of a hull, or the normal of a face
+CANDIDATE = [
+    ("point", "f8", 3),
+    ("number", "i8"),
+]  # counted from the first vertex or face of the hull
 
 #: one point of a contact; normal from B to A, points on the two surfaces, all in the world
 TOUCH_POINT = [
@@ -82,11 +92,13 @@ PAIR_STATE = [
 
 
 class Hulls(NamedTuple):
-    """Vertices and faces of all hulls, in the axes of their solids."""
+    """Vertices and faces of all hulls, in the axes of their solids, and which of them may be farthest."""
 
     vertices: np.ndarray  # (V, 3)
     faces: np.recarray  # (F,) FACE
     corners: np.ndarray  # (K,) vertices of the faces, counted from the first of the hull
+    starts: np.ndarray  # (C + 1,) the first candidate of each cell
+    candidates: np.recarray  # (M,) CANDIDATE, cell by cell
 
 
 class PairWork(NamedTuple):
@@ -123,7 +135,8 @@ class Pair(NamedTuple):
 
 def no_hulls() -> Hulls:
     """Return the hulls of a scene in which no two bodies may touch."""
-    return Hulls(np.zeros((0, 3)), table(FACE, 0), np.zeros(0, dtype=np.int64))
+    none = np.zeros(0, dtype=np.int64)
+    return Hulls(np.zeros((0, 3)), table(FACE, 0), none, none, table(CANDIDATE, 0))
 
 
 def new_pair_work() -> PairWork:
@@ -148,25 +161,49 @@ def solid_table(shapes, turns=None) -> tuple[np.recarray, Hulls]:
         own body axes. Default: none.
     """
     pieces = [(k, piece) for k, shape in enumerate(shapes) for piece in shape.pieces]
-    solid = table(SOLID, len(pieces))
-    vertices, faces, corners = [np.zeros((0, 3))], [], [np.zeros(0, dtype=np.int64)]
-    count = turned = 0
+    solid, hulls = table(SOLID, len(pieces)), [no_hulls()]
+    end = Count(0, 0, 0, 0, 0)
     for row, (k, piece) in zip(solid, pieces):
         row.kind, row.radius, row.body = KINDS.index(piece.kind), piece.radius, k
         row.half[:], row.inner, row.extent = piece.half, piece.inner, piece.extent
         turn = np.array([1.0, 0, 0, 0]) if turns is None else quaternion.conjugate(turns[k])
         row.x[:] = quaternion.rotate(turn, piece.position)
         row.Q[:] = quaternion.multiply(turn, piece.orientation)
-        row.first, row.first_face = count, len(faces)
+        row.first, row.first_face, row.cell[0] = end.vertices, end.faces, end.cells
         if piece.kind == "hull":
-            vertices.append(piece.vertices)
-            count += len(piece.vertices)
-            for normal, ring in piece.faces:
-                faces.append((normal, turned, turned + len(ring)))
-                corners.append(np.asarray(ring, dtype=np.int64))
-                turned += len(ring)
-        row.last, row.last_face = count, len(faces)
-    face = table(FACE, len(faces))
-    for row, (normal, first, last) in zip(face, faces):
-        row.normal[:], row.first, row.last = normal, first, last
-    return solid, Hulls(np.concatenate(vertices), face, np.concatenate(corners))
+            row.across[:] = [cells.across for cells in piece.cells]
+            row.cell[1] = row.cell[0] + len(piece.cells[0].starts) - 1
+            hulls.append(_hull(piece, end))
+            end = Count(*(a + len(part) for a, part in zip(end, hulls[-1])))
+        row.last, row.last_face = end.vertices, end.faces
+    vertices, faces, corners, starts, candidates = map(np.concatenate, zip(*hulls))
+    starts = np.append(starts, end.candidates)
+    return solid, Hulls(vertices, faces.view(Columns), corners, starts, candidates.view(Columns))
+
+
+class Count(NamedTuple):
+    """Lengths of the tables of hulls."""
+
+    vertices: int
+    faces: int
+    corners: int
+    cells: int
+    candidates: int
+
+
+def _hull(piece, before: Count) -> Hulls:
+    """Return the tables of a hull, which follow others; those of its faces come after those of its vertices."""
+    faces, lengths = table(FACE, len(piece.faces)), [len(ring) for _, ring in piece.faces]
+    faces.normal[:] = piece.normals
+    faces.last[:] = before.corners + np.cumsum(lengths)
+    faces.first[:] = faces.last - lengths
+    corners = np.fromiter(chain.from_iterable(ring for _, ring in piece.faces), np.int64)
+    starts, candidates, count = [], [], before.candidates
+    for cells, points in zip(piece.cells, (piece.vertices, piece.normals)):
+        rows = table(CANDIDATE, len(cells.members))
+        rows.number[:], rows.point[:] = cells.members, points[cells.members]
+        starts.append(count + cells.starts[:-1])
+        candidates.append(rows)
+        count += len(rows)
+    every = np.concatenate(candidates).view(Columns)
+    return Hulls(piece.vertices, faces, corners, np.concatenate(starts), every)

@@ -14,20 +14,16 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
+from carom.geometry.vectors import dot
 
 ROOM = 4.0  # tolerances of a surface within which a point counts as on a face or on a rim
 ACROSS = 1e-9  # cosine above which a normal points along a face that continues beyond an edge
 
 
 @kernel
-def _dot(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-@kernel
 def height(surface, q):
     """Return the height of a point above the plane of a surface."""
-    return _dot(surface.normal, q) - surface.offset
+    return dot(surface.normal, q) - surface.offset
 
 
 @kernel
@@ -36,7 +32,7 @@ def depth_in_face(levels, face, q):
     least = math.inf
     for k in range(face.first, face.last):
         side = levels.sides[k]
-        least = min(least, _dot(side.inward, q) - side.level)
+        least = min(least, dot(side.inward, q) - side.level)
     return least
 
 
@@ -72,9 +68,9 @@ def distance_from_rim(levels, surface, q):
         a, b = levels.rims[i].begin, levels.rims[i].end
         u = (b[0] - a[0], b[1] - a[1], b[2] - a[2])
         v = (q[0] - a[0], q[1] - a[1], q[2] - a[2])
-        t = max(0.0, min(1.0, _dot(u, v) / _dot(u, u)))
+        t = max(0.0, min(1.0, dot(u, v) / dot(u, u)))
         v = (v[0] - t * u[0], v[1] - t * u[1], v[2] - t * u[2])
-        least = min(least, _dot(v, v))
+        least = min(least, dot(v, v))
     return math.sqrt(least)
 
 

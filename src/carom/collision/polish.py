@@ -3,7 +3,8 @@
 With v = a - b of the two farthest points and d = v.n, the separation over the unit sphere has the gradient
 T^T v and the Hessian -(d + T^T H T): T spans the directions in which n may turn, H is the sum of the
 Hessians of the two support functions. If a farthest point lies on an edge, n stays perpendicular to the edge,
-and T excludes its direction. Two edges determine n.
+and T excludes its direction. Two edges determine n. A farthest point that is then beyond an end of its edge
+belongs to that end, a corner or a rim: a rough search does not tell the two apart near it.
 """
 
 from __future__ import annotations
@@ -15,11 +16,13 @@ from carom.collision.faces import LOWEST, vertex
 from carom.collision.frame import from_a, to_a
 from carom.collision.layout import CYLINDER
 from carom.collision.support import change_of_support, propose, separation
+from carom.geometry.vectors import cross, dot, minus, plus
 
 STEPS = 8
 NEAR = 0.99  # cosine of the largest angle by which the method may turn the normal
 ROUNDING = 1e-15  # relative to the smaller solid
 TIE = 1e-12  # relative to the smaller solid: two vertices are as far if they differ by less
+TOWARDS = 1e-9  # angle by which a normal is turned so that the farthest point is the chosen end of an edge
 STRAIGHT = 1e-6  # sine below which two edges count as parallel
 
 
@@ -32,8 +35,7 @@ def _normalized(x, y, z):
 
 @kernel
 def _cross(a, b):
-    (ax, ay, az), (bx, by, bz) = a, b
-    return _normalized(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
+    return _normalized(*cross(a, b))
 
 
 @inlined
@@ -57,7 +59,7 @@ def _parallel(s, count, side, e):
     """Return 1 if e is parallel to a listed edge of its solid, -1 if to one of the other solid, else 0."""
     found = 0
     for i in range(count):
-        c = s.edge[i, 0] * e[0] + s.edge[i, 1] * e[1] + s.edge[i, 2] * e[2]
+        c = dot(s.edge[i], e)
         if 1.0 - c * c < STRAIGHT * STRAIGHT:
             if s.owner[i] != side:
                 return -1
@@ -92,9 +94,7 @@ def _edges(pair):
 @kernel
 def _bend(solid, n, u, v):
     """Return u^T H v, with the Hessian H of the support function of the core at n, in the solid's axes."""
-    x, y, z = change_of_support(solid, n, v)
-    straight = u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
-    return u[0] * x + u[1] * y + u[2] * z - solid.inner * straight
+    return dot(u, change_of_support(solid, n, v)) - solid.inner * dot(u, v)
 
 
 @kernel
@@ -112,29 +112,25 @@ def _step(pair, edges, n):
     nx, ny, nz = n
     s = pair.state
     propose(pair, nx, ny, nz)
-    vx, vy, vz = s.w[4, 0], s.w[4, 1], s.w[4, 2]
-    d = vx * nx + vy * ny + vz * nz
+    v = s.w[4]
+    d = dot(v, n)
     if edges == 1:  # n is perpendicular to the edge, t to both
         t = _cross(_along(s, 0), n)
         k = d + _curvature(pair, n, t, t)
         if not k > 0.0:
             return 0.0, 0.0, 0.0
-        f = (t[0] * vx + t[1] * vy + t[2] * vz) / k
-        return _normalized(nx + f * t[0], ny + f * t[1], nz + f * t[2])
-    if abs(nx) < 0.6:
-        tx, ty, tz = t = _normalized(0.0, -nz, ny)
-    else:
-        tx, ty, tz = t = _normalized(nz, 0.0, -nx)
-    ux, uy, uz = u = (ny * tz - nz * ty, nz * tx - nx * tz, nx * ty - ny * tx)
+        return _normalized(*plus(n, dot(t, v) / k, t))
+    t = _normalized(0.0, -nz, ny) if abs(nx) < 0.6 else _normalized(nz, 0.0, -nx)
+    u = cross(n, t)
     k11 = d + _curvature(pair, n, t, t)
     k12 = _curvature(pair, n, t, u)
     k22 = d + _curvature(pair, n, u, u)
-    r1, r2 = tx * vx + ty * vy + tz * vz, ux * vx + uy * vy + uz * vz
+    r1, r2 = dot(t, v), dot(u, v)
     determinant = k11 * k22 - k12 * k12
     if not (determinant > 1e-12 * k11 * k22 and k11 > 0.0):
         return 0.0, 0.0, 0.0
     f, g = (k22 * r1 - k12 * r2) / determinant, (k11 * r2 - k12 * r1) / determinant
-    return _normalized(nx + f * tx + g * ux, ny + f * ty + g * uy, nz + f * tz + g * uz)
+    return _normalized(*plus(plus(n, f, t), g, u))
 
 
 @kernel
@@ -159,25 +155,86 @@ def polish(pair, nx, ny, nz):
     best = separation(pair, nx, ny, nz)
     if edges < 0:
         return best, nx, ny, nz, 0
-    x, y, z = nx, ny, nz
+    start = (nx, ny, nz)
+    for _ in range(3):
+        value, x, y, z = _refine(pair, edges, best, start)
+        if not dot((x, y, z), (nx, ny, nz)) > NEAR:  # or there is none
+            break
+        k, end, sense = _passed_end(pair, edges)
+        if k < 0:
+            return value, x, y, z, 1
+        edges, start = _end_of_edge(s, edges, k, end, sense, (x, y, z))
+    return separation(pair, nx, ny, nz), nx, ny, nz, 0
+
+
+@kernel
+def _refine(pair, edges, best, n):
+    """Return the greatest separation near n and its direction, zero if there is none, with its points."""
+    s, (x, y, z) = pair.state, n
     if edges == 2:
         x, y, z = _cross(_along(s, 0), _along(s, 1))
-        if x * nx + y * ny + z * nz < 0.0:
+        if dot((x, y, z), n) < 0.0:
             x, y, z = -x, -y, -z
     elif edges == 1:
-        e = s.edge[0]
-        along = e[0] * nx + e[1] * ny + e[2] * nz
-        x, y, z = _normalized(nx - along * e[0], ny - along * e[1], nz - along * e[2])
+        x, y, z = _normalized(*plus(n, -dot(s.edge[0], n), s.edge[0]))
     if edges < 2:
         x, y, z = _iterate(pair, edges, (x, y, z))
-    if not x * nx + y * ny + z * nz > NEAR:
-        return best, nx, ny, nz, 0
     value = separation(pair, x, y, z)
     _keep_vertices(pair, (x, y, z))
     if not value >= best - ROUNDING * min(pair.a.extent, pair.b.extent):
-        return best, nx, ny, nz, 0
+        return best, 0.0, 0.0, 0.0
     _points(s, edges, value, x, y, z)
-    return value, x, y, z, 1
+    return value, x, y, z
+
+
+@kernel
+def _passed_end(pair, edges):
+    """Return an edge whose point is beyond an end, the corner of the end and the sense to it; -1 if none is."""
+    s = pair.state
+    tie = TIE * min(pair.a.extent, pair.b.extent)
+    for k in range(edges):
+        side, e = s.owner[k], s.edge[k]
+        p = s.on_a[4] if side == 0 else s.on_b[4]
+        i = j = s.ids[0, side]
+        for m in range(1, s.points):
+            j = s.ids[m, side] if s.ids[m, side] != i else j
+        a, b = _corner(pair, side, i), _corner(pair, side, j)
+        low, high = dot(a, e), dot(b, e)
+        if low > high:
+            low, high, i, j = high, low, j, i
+        at = dot(p, e)
+        if at < low - tie:
+            return k, i, -1.0
+        if at > high + tie:
+            return k, j, 1.0
+    return -1, 0, 0.0
+
+
+@kernel
+def _corner(pair, side, number):
+    """Return a corner of a solid, or the centre of a rim of a cylinder, in axes of B."""
+    s, solid = pair.state, pair.a if side == 0 else pair.b
+    if solid.kind == CYLINDER:
+        x, y, z = 0.0, 0.0, solid.half[2] if number > LOWEST else -solid.half[2]
+    else:
+        x, y, z = vertex(solid, pair.hulls, number)
+    if side == 0:
+        x, y, z = from_a(s, x, y, z)
+        x, y, z = x + s.p[0], y + s.p[1], z + s.p[2]
+    return x, y, z
+
+
+@kernel
+def _end_of_edge(s, edges, k, end, sense, n):
+    """Let an end of edge k be the corner of its solid; return the count of other edges, and a normal near n."""
+    side, e = s.owner[k], s.edge[k]
+    start = plus(n, -sense * TOWARDS if side == 0 else sense * TOWARDS, e)
+    for m in range(s.points):
+        s.ids[m, side] = end
+    if k == 0 and edges == 2:
+        s.edge[0, 0], s.edge[0, 1], s.edge[0, 2] = _along(s, 1)
+        s.owner[0] = s.owner[1]
+    return edges - 1, start
 
 
 @kernel
@@ -194,18 +251,10 @@ def _keep_vertices(pair, n):
             there = there or s.ids[k, side] == s.ids[4, side]
         if there:
             continue
-        solid, p = (pair.a, s.on_a[4]) if side == 0 else (pair.b, s.on_b[4])
-        if solid.kind == CYLINDER:  # to the other rim
-            f = 2.0 * solid.half[2] * (1.0 if i > LOWEST else -1.0)
-            x, y, z = (0.0, 0.0, f) if side == 1 else from_a(s, 0.0, 0.0, f)
-        else:
-            x, y, z = vertex(solid, pair.hulls, i)
-            if side == 0:
-                x, y, z = from_a(s, x, y, z)
-                x, y, z = x + s.p[0], y + s.p[1], z + s.p[2]
-            x, y, z = x - p[0], y - p[1], z - p[2]
-        if abs(x * n[0] + y * n[1] + z * n[2]) <= tie:
-            p[0], p[1], p[2] = p[0] + x, p[1] + y, p[2] + z
+        p = s.on_a[4] if side == 0 else s.on_b[4]
+        other = minus(_corner(pair, side, i), _corner(pair, side, s.ids[4, side]))
+        if abs(dot(other, n)) <= tie:
+            p[0], p[1], p[2] = plus(p, 1.0, other)
             s.ids[4, side] = i
 
 
@@ -213,14 +262,11 @@ def _keep_vertices(pair, n):
 def _points(s, edges, best, nx, ny, nz):
     """Move the farthest points, in row 4, along their edges until they differ by `best` n."""
     p, q = s.on_a[4], s.on_b[4]
-    rx, ry, rz = p[0] - q[0] - best * nx, p[1] - q[1] - best * ny, p[2] - q[2] - best * nz
+    r = plus(minus(p, q), -best, (nx, ny, nz))
     e, g = s.edge[0], s.edge[1]
-    f1 = f2 = 0.0
-    if edges >= 1:
-        f1 = rx * e[0] + ry * e[1] + rz * e[2]
+    f1, f2 = dot(r, e) if edges >= 1 else 0.0, 0.0
     if edges == 2:
-        f2 = rx * g[0] + ry * g[1] + rz * g[2]
-        c = e[0] * g[0] + e[1] * g[1] + e[2] * g[2]
+        f2, c = dot(r, g), dot(e, g)
         across = 1.0 - c * c
         f1, f2 = (f1 - c * f2) / across, (f2 - c * f1) / across
     for k in range(edges):

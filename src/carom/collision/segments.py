@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom.collision.faces import corner_part
 from carom.collision.features import (
     NOBODY,
@@ -19,9 +19,11 @@ from carom.collision.features import (
 )
 from carom.collision.found import known, put, put_parts
 from carom.collision.layout import CYLINDER
+from carom.geometry.vectors import cross, dot, minus, plus
 
 PARALLEL = 1e-14  # square of the sine below which two segments count as parallel
 TOUCHING = 1e-9  # relative to the lengths: a shorter distance has no reliable direction
+TILT = 1e-5  # greatest angle of a normal to the cross-section of a cylinder for which it touches along a line
 BESIDE = 0.99  # least cosine between the normal of an end and that of the nearest points
 
 
@@ -45,28 +47,7 @@ def _axis_below(pair, side, p, u):
     if solid.kind != CYLINDER:
         return p, 0.0
     c = (s.p[0], s.p[1], s.p[2]) if side == 0 else (0.0, 0.0, 0.0)
-    return _at(c, _dot(_minus(p, c), u), u), solid.half[0]
-
-
-@inlined
-def _minus(a, b):
-    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
-
-
-@inlined
-def _dot(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-@inlined
-def _cross(a, b):
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-
-
-@inlined
-def _at(p, t, u):
-    """Return p + t u."""
-    return p[0] + t * u[0], p[1] + t * u[1], p[2] + t * u[2]
+    return plus(c, dot(minus(p, c), u), u), solid.half[0]
 
 
 @kernel
@@ -77,8 +58,8 @@ def nearest(d, u, g, w, h):
     in turn (Ericson, *Real-Time Collision Detection*, 2005, 5.1.9). Parallel segments have the same distance
     along their whole overlap; the result is one end of it.
     """
-    c, n = _dot(u, w), _cross(u, w)
-    across, du, dw = _dot(n, n), _dot(d, u), _dot(d, w)
+    c, n = dot(u, w), cross(u, w)
+    across, du, dw = dot(n, n), dot(d, u), dot(d, w)
     if across > PARALLEL:
         t = (c * dw - du) / across
     else:
@@ -95,14 +76,14 @@ def edge_on_edge(pair, ends_a, ends_b):
     s, (i, j), (k, l) = pair.state, ends_a, ends_b
     p, u, g = _line(s, 0, ends_a)
     q, w, h = _line(s, 1, ends_b)
-    t, z = nearest(_minus(p, q), u, g, w, h)
-    on_a, on_b = _at(p, t, u), _at(q, z, w)
-    n = _minus(on_a, on_b)
-    d = math.sqrt(_dot(n, n))
+    t, z = nearest(minus(p, q), u, g, w, h)
+    on_a, on_b = plus(p, t, u), plus(q, z, w)
+    n = minus(on_a, on_b)
+    d = math.sqrt(dot(n, n))
     size = d
     if not d > 0.0:  # they cross: the common normal is used, with either sign
-        n = _cross(u, w)
-        size = math.sqrt(_dot(n, n))
+        n = cross(u, w)
+        size = math.sqrt(dot(n, n))
     n = (n[0] / size, n[1] / size, n[2] / size) if size > 0.0 else (0.0, 0.0, 1.0)
     feature = of_edges(s.number[0, i], s.number[0, j], s.number[1, k], s.number[1, l])
     if t == 0.0 or t == g:
@@ -130,8 +111,12 @@ def ends_of_line(pair, ends_a, ends_b, least, most, count):
     radii = pair.a.radius + pair.b.radius + round_a + round_b
     edge_a = edge_part(s.number[0, ends_a[0]], s.number[0, ends_a[1]])
     edge_b = edge_part(s.number[1, ends_b[0]], s.number[1, ends_b[1]])
-    d, c = _minus(p, q), _dot(u, w)
-    du, dw = _dot(d, u), _dot(d, w)
+    d, c = minus(p, q), dot(u, w)
+    du, dw = dot(d, u), dot(d, w)
+    # at s from where axes cross with the sine e the normal is tilted by s e^2/(sum of the radii): there the end
+    # of a line of a mantle, found from its axis, is no point of the cylinder
+    if round_a + round_b > 0.0 and (1.0 - c * c) * max(g, h) > TILT * radii:
+        return count
     first = found[0].normal
     for end in range(4):
         if end < 2:
@@ -146,9 +131,9 @@ def ends_of_line(pair, ends_a, ends_b, least, most, count):
             i = s.number[1, ends_b[end - 2]]
             inside, feature = 0.0 < t < g, of_vertex_b(i)
             part_a, part_b = edge_a, corner_part(pair.b, i)
-        on_a, on_b = _at(p, t, u), _at(q, z, w)
-        n = _minus(on_a, on_b)
-        size = math.sqrt(_dot(n, n))
+        on_a, on_b = plus(p, t, u), plus(q, z, w)
+        n = minus(on_a, on_b)
+        size = math.sqrt(dot(n, n))
         gap, owner = size - radii, NOBODY
         if size > TOUCHING * (g + h):
             n = n[0] / size, n[1] / size, n[2] / size
@@ -157,7 +142,7 @@ def ends_of_line(pair, ends_a, ends_b, least, most, count):
         beside = n[0] * first[0] + n[1] * first[1] + n[2] * first[2] > BESIDE
         if not (inside and beside and least <= gap <= most):
             continue
-        on_a, on_b = _at(on_a, -round_a, n), _at(on_b, round_b, n)
+        on_a, on_b = plus(on_a, -round_a, n), plus(on_b, round_b, n)
         if not known(found, count, feature):
             put(found[count], gap, n, on_a, on_b, feature)
             put_parts(found[count], owner, part_a, part_b)

@@ -8,23 +8,18 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import inlined, kernel
-
-
-@inlined
-def _dot(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+from carom._compiled.decorators import kernel
+from carom.geometry.vectors import cross, dot, minus, plus
 
 
 @kernel
 def on_edge(a, b):
     """Return the weight of b in the nearest point of the segment a b, and the square of its distance."""
-    ex, ey, ez = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-    e2 = ex * ex + ey * ey + ez * ez
-    t = -(a[0] * ex + a[1] * ey + a[2] * ez) / e2 if e2 > 0.0 else 0.0
-    t = max(0.0, min(1.0, t))
-    x, y, z = a[0] + t * ex, a[1] + t * ey, a[2] + t * ez
-    return t, x * x + y * y + z * z
+    e = minus(b, a)
+    e2 = dot(e, e)
+    t = max(0.0, min(1.0, -dot(a, e) / e2 if e2 > 0.0 else 0.0))
+    p = plus(a, t, e)
+    return t, dot(p, p)
 
 
 @kernel
@@ -38,19 +33,13 @@ def on_triangle(a, b, c):
     t, d2 = on_edge(c, a)
     if d2 < best:
         best, wa, wb, wc = d2, t, 0.0, 1.0 - t
-    ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-    vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
-    nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-    n2 = nx * nx + ny * ny + nz * nz
+    n = cross(minus(b, a), minus(c, a))
+    n2 = dot(n, n)
     if n2 > 0.0:
         # Areas of the triangles between the sides and the projection of the origin: n.(x cross y) / n^2.
-        h = (a[0] * nx + a[1] * ny + a[2] * nz) / n2
-        px, py, pz = h * nx, h * ny, h * nz
-        ax, ay, az = a[0] - px, a[1] - py, a[2] - pz
-        bx, by, bz = b[0] - px, b[1] - py, b[2] - pz
-        cx, cy, cz = c[0] - px, c[1] - py, c[2] - pz
-        fa = (nx * (by * cz - bz * cy) + ny * (bz * cx - bx * cz) + nz * (bx * cy - by * cx)) / n2
-        fb = (nx * (cy * az - cz * ay) + ny * (cz * ax - cx * az) + nz * (cx * ay - cy * ax)) / n2
+        h = dot(a, n) / n2
+        pa, pb, pc = plus(a, -h, n), plus(b, -h, n), plus(c, -h, n)
+        fa, fb = dot(n, cross(pb, pc)) / n2, dot(n, cross(pc, pa)) / n2
         fc = 1.0 - fa - fb
         if fa > 0.0 and fb > 0.0 and fc > 0.0:
             d2 = h * h * n2
@@ -66,12 +55,8 @@ def _holds_origin(a, b, c, d):
         p, q, r, o = (
             (a, b, c, d) if k == 0 else (a, c, d, b) if k == 1 else (a, d, b, c) if k == 2 else (b, d, c, a)
         )  # fmt: skip
-        ux, uy, uz = q[0] - p[0], q[1] - p[1], q[2] - p[2]
-        vx, vy, vz = r[0] - p[0], r[1] - p[1], r[2] - p[2]
-        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        apex = nx * (o[0] - p[0]) + ny * (o[1] - p[1]) + nz * (o[2] - p[2])
-        origin = -(nx * p[0] + ny * p[1] + nz * p[2])
-        if not apex * origin > 0.0:
+        n = cross(minus(q, p), minus(r, p))
+        if not dot(n, minus(o, p)) * dot(n, p) < 0.0:
             return False
     return True
 
@@ -82,7 +67,7 @@ def reduce_simplex(s):
     w, points = s.w, s.points
     wa, wb, wc, wd, best = 1.0, 0.0, 0.0, 0.0, 0.0
     if points == 1:
-        best = _dot(w[0], w[0])
+        best = dot(w[0], w[0])
     elif points == 2:
         wb, best = on_edge(w[0], w[1])
         wa = 1.0 - wb
@@ -138,5 +123,5 @@ def size_of(s):
     """Return the greatest distance of a corner from the origin."""
     most = 0.0
     for k in range(s.points):
-        most = max(most, _dot(s.w[k], s.w[k]))
+        most = max(most, dot(s.w[k], s.w[k]))
     return math.sqrt(most)

@@ -6,6 +6,7 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom.collision.faces import LOWEST
+from carom.collision.farthest import VERTICES, farthest
 from carom.collision.frame import from_a, to_a
 from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, SEGMENT
 
@@ -29,14 +30,9 @@ def support(solid, hulls, x, y, z):
         number = 4 * (x > 0.0) + 2 * (y > 0.0) + 1 * (z > 0.0)
         return _end(x, h[0]), _end(y, h[1]), _end(z, h[2]), number
     if kind == HULL:
-        best, chosen = -math.inf, solid.first
-        for i in range(solid.first, solid.last):
-            p = hulls.vertices[i]
-            along = p[0] * x + p[1] * y + p[2] * z
-            if along > best:
-                best, chosen = along, i
-        p = hulls.vertices[chosen]
-        return p[0], p[1], p[2], chosen - solid.first
+        _, i = farthest(solid, hulls, VERTICES, x, y, z)
+        p = hulls.candidates[i].point
+        return p[0], p[1], p[2], hulls.candidates[i].number
     if kind == CYLINDER:
         across = math.sqrt(x * x + y * y)
         f = h[0] / across if across > 0.0 else 0.0

@@ -40,7 +40,8 @@ from carom.collision.faces import LOWEST, along_edge, normal_of_face
 from carom.collision.features import EDGE, FACE, FIXED, OF_A, OF_B, first_of, second_of
 from carom.collision.layout import CYLINDER, ELLIPSOID
 from carom.collision.support import change_of_support
-from carom.geometry.rotation import cross, multiply, rotate, rotate_back
+from carom.geometry.rotation import multiply, rotate, rotate_back
+from carom.geometry.vectors import cross, dot, plus
 
 PARALLEL = 1e-7  # sine of the angle below which two edges have no common normal
 SHARP = 1e-9  # relative to the smaller solid: shorter radii of curvature count as zero
@@ -55,22 +56,6 @@ class Core(NamedTuple):
     side: float  # 1 for A, -1 for B: its outward normal is -side n
     v: tuple  # velocity of its material point
     w: tuple  # angular velocity
-
-
-@inlined
-def _dot(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-@inlined
-def _cross(a, b):
-    return cross(a[0], a[1], a[2], b[0], b[1], b[2])
-
-
-@inlined
-def _plus(a, f, b):
-    """Return a + f b."""
-    return a[0] + f * b[0], a[1] + f * b[1], a[2] + f * b[2]
 
 
 @inlined
@@ -121,7 +106,7 @@ def _edge(core, hulls):
 def _across(n):
     """Return a unit vector perpendicular to n."""
     e = (0.0, -n[2], n[1]) if abs(n[0]) < 0.6 else (n[2], 0.0, -n[0])
-    f = 1.0 / math.sqrt(_dot(e, e))
+    f = 1.0 / math.sqrt(dot(e, e))
     return f * e[0], f * e[1], f * e[2]
 
 
@@ -129,67 +114,67 @@ def _across(n):
 def _two_edges(a, b, hulls, n):
     """Return n' of two edges, and whether they are not parallel."""
     e, f = _edge(a, hulls), _edge(b, hulls)
-    s = _cross(n, e)
-    along, other, sine = -_dot(n, _cross(a.w, e)), -_dot(n, _cross(b.w, f)), _dot(s, f)
+    s = cross(n, e)
+    along, other, sine = -dot(n, cross(a.w, e)), -dot(n, cross(b.w, f)), dot(s, f)
     if not abs(sine) > PARALLEL:
         return n, False
-    across = (other - along * _dot(e, f)) / sine
-    return _plus((across * s[0], across * s[1], across * s[2]), along, e), True
+    across = (other - along * dot(e, f)) / sine
+    return plus((across * s[0], across * s[1], across * s[2]), along, e), True
 
 
 @kernel
 def _bends(a, b, n, d, v):
     """Return (d + H_A + H_B) v."""
-    x = _plus(_bend(a, n, v), 1.0, _bend(b, n, v))
-    return _plus(x, d, v)
+    x = plus(_bend(a, n, v), 1.0, _bend(b, n, v))
+    return plus(x, d, v)
 
 
 @kernel
 def _free_normal(a, b, hulls, n, d):
     """Return n' of a normal that no face owns."""
-    edges = (_kind(a) == EDGE) + (_kind(b) == EDGE)
+    edges = int(_kind(a) == EDGE) + int(_kind(b) == EDGE)  # NumPy adds bools to a bool
     if edges == 2:
         rate, done = _two_edges(a, b, hulls, n)
         if done:
             return rate
     sharp = SHARP * min(a.solid.extent, b.solid.extent)
-    turn_a, turn_b = _cross(a.w, n), _cross(b.w, n)
-    rate = _plus(_plus(a.v, -1.0, b.v), 1.0, _bend(a, n, turn_a))
-    rate = _plus(rate, 1.0, _bend(b, n, turn_b))
+    turn_a, turn_b = cross(a.w, n), cross(b.w, n)
+    rate = plus(plus(a.v, -1.0, b.v), 1.0, _bend(a, n, turn_a))
+    rate = plus(rate, 1.0, _bend(b, n, turn_b))
     if edges > 0:
         on_a = _kind(a) == EDGE
         e, turn = (_edge(a, hulls), turn_a) if on_a else (_edge(b, hulls), turn_b)
     else:
         e, turn = _across(n), turn_b
-    s = _cross(n, e)
+    s = cross(n, e)
     bent = _bends(a, b, n, d, s)
-    along, other, stiff = _dot(e, turn), _dot(e, bent), _dot(s, bent)
+    along, other, stiff = dot(e, turn), dot(e, bent), dot(s, bent)
     if edges == 0:
         bent = _bends(a, b, n, d, e)
-        first = _dot(e, bent)
+        first = dot(e, bent)
         determinant = first * stiff - other * other
         if not (determinant > sharp * max(first, stiff) and first > 0.0):
             return turn
-        along = (_dot(e, rate) * stiff - _dot(s, rate) * other) / determinant
-    across = (_dot(s, rate) - along * other) / stiff if stiff > sharp else _dot(s, turn)
-    return _plus((along * e[0], along * e[1], along * e[2]), across, s)
+        along = (dot(e, rate) * stiff - dot(s, rate) * other) / determinant
+    across = (dot(s, rate) - along * other) / stiff if stiff > sharp else dot(s, turn)
+    return plus((along * e[0], along * e[1], along * e[2]), across, s)
 
 
 @kernel
 def _rate_of_normal(a, b, hulls, n, d, owner):
     """Return n'."""
     if owner == OF_B:
-        return _cross(b.w, n)
+        return cross(b.w, n)
     if owner == OF_A:
-        return _cross(a.w, n)
+        return cross(a.w, n)
     return _free_normal(a, b, hulls, n, d)
 
 
 @kernel
 def _along_support(core, n, rate):
     """Return the velocity of the farthest point along the normal: v_c -+ H (n' - w x n)."""
-    turn = _plus(rate, -1.0, _cross(core.w, n))
-    return _plus(core.v, -core.side, _bend(core, n, turn))
+    turn = plus(rate, -1.0, cross(core.w, n))
+    return plus(core.v, -core.side, _bend(core, n, turn))
 
 
 @kernel
@@ -208,16 +193,16 @@ def _follow(lead, other, hulls, n, d, rate, owner):
     k = lead.side
     p, step = _along_support(lead, n, rate), (k * d * rate[0], k * d * rate[1], k * d * rate[2])
     if _kind(lead) == EDGE and _kind(other) == EDGE:
-        e, s = _edge(lead, hulls), _cross(n, _edge(other, hulls))
-        miss = _plus(_plus(p, -1.0, step), -1.0, _along_support(other, n, rate))
-        sine = _dot(s, e)
+        e, s = _edge(lead, hulls), cross(n, _edge(other, hulls))
+        miss = plus(plus(p, -1.0, step), -1.0, _along_support(other, n, rate))
+        sine = dot(s, e)
         if abs(sine) > PARALLEL:
-            p = _plus(p, -_dot(s, miss) / sine, e)
+            p = plus(p, -dot(s, miss) / sine, e)
     m = n
     if _kind(other) == FACE and owner != (OF_B if k > 0.0 else OF_A):  # a face, perhaps tilted
         m = _in_world(other, normal_of_face(other.solid, hulls, first_of(other.part)))
-    miss = _plus(_plus(p, -1.0, step), -1.0, other.v)
-    q = _plus(_plus(p, -1.0, step), -_dot(m, miss) / _dot(m, n), n)
+    miss = plus(plus(p, -1.0, step), -1.0, other.v)
+    q = plus(plus(p, -1.0, step), -dot(m, miss) / dot(m, n), n)
     return p, q
 
 
@@ -236,8 +221,8 @@ def drift_of_solids(system, contact, other_solid, point, state):
         q_b = multiply(q[0], q[1], q[2], q[3], two.Q[0], two.Q[1], two.Q[2], two.Q[3])
     # the material points of the cores
     n, ra, rb = _vector(point.axes[0]), one.radius, two.radius
-    ua = _plus(va, 1.0, _cross(wa, _plus(point.arm_a, ra, n)))
-    ub = _plus(vb, 1.0, _cross(wb, _plus(point.arm_b, -rb, n)))
+    ua = plus(va, 1.0, cross(wa, plus(point.arm_a, ra, n)))
+    ub = plus(vb, 1.0, cross(wb, plus(point.arm_b, -rb, n)))
     a = Core(one, q_a, point.parts[0], 1.0, ua, wa)
     b = Core(two, q_b, point.parts[1], -1.0, ub, wb)
     # the motion of the normal and of the points
@@ -247,9 +232,9 @@ def drift_of_solids(system, contact, other_solid, point, state):
         pa, pb = _follow(a, b, system.hulls, n, d, rate, owner)
     else:
         pb, pa = _follow(b, a, system.hulls, n, d, rate, owner)
-    pa, pb = _plus(pa, -ra, rate), _plus(pb, rb, rate)
+    pa, pb = plus(pa, -ra, rate), plus(pb, rb, rate)
     # the rates of the rows
-    du = _plus(_cross(wa, _plus(pa, -1.0, va)), -1.0, _cross(wb, _plus(pb, -1.0, vb)))
-    ua, ub = _plus(va, 1.0, _cross(wa, point.arm_a)), _plus(vb, 1.0, _cross(wb, point.arm_b))
-    u, E = _plus(ua, -1.0, ub), point.axes
-    return _dot(n, du) + _dot(rate, u), _dot(E[1], du), _dot(E[2], du)
+    du = plus(cross(wa, plus(pa, -1.0, va)), -1.0, cross(wb, plus(pb, -1.0, vb)))
+    ua, ub = plus(va, 1.0, cross(wa, point.arm_a)), plus(vb, 1.0, cross(wb, point.arm_b))
+    u, E = plus(ua, -1.0, ub), point.axes
+    return dot(n, du) + dot(rate, u), dot(E[1], du), dot(E[2], du)

@@ -24,6 +24,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
+from carom.collision.farthest import VERTICES, farthest
 from carom.collision.features import NOBODY, OF_A
 from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, SEGMENT
 from carom.contact.place_of_other import centre_of_other, on_half_space
@@ -49,10 +50,7 @@ def height(solid, hulls, x, y, z):
     if kind == ELLIPSOID:
         return base + math.sqrt((h[0] * x) ** 2 + (h[1] * y) ** 2 + (h[2] * z) ** 2)
     if kind == HULL:
-        best = -math.inf
-        for i in range(solid.first, solid.last):
-            p = hulls.vertices[i]
-            best = max(best, p[0] * x + p[1] * y + p[2] * z)
+        best, _ = farthest(solid, hulls, VERTICES, x, y, z)
         return base + best
     return base
 

@@ -35,8 +35,8 @@ def resolve_group(k, W, u, mu, multiple):
     )
     given = multiple.settings
     settings = MultipleSettings(
-        given.multiple, given.rtol, exponent_of(k, multiple), given.adaptive_up_to, given.fixed_steps,
-        given.max_events, given.max_steps, given.max_rounds,
+        given.multiple, given.rtol, exponent_of(k, multiple), given.max_events, given.max_steps,
+        given.max_rounds,
     )  # fmt: skip
     code = resolve_contacts(contacts, settings, multiple.workspace, multiple.result)
     multiple.workspace.work.clock[0].code = code

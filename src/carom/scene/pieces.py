@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from carom import checks
 from carom.fields import keep
 from carom.geometry import quaternion
+from carom.geometry.cells import Cells, cells_of
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
 #: of the corners of a box
@@ -56,6 +57,16 @@ class Piece:
 
     def __post_init__(self):
         keep(self, half=np.array(self.half, dtype=float))
+
+    @cached_property
+    def normals(self) -> np.ndarray:
+        """Outward unit normals (f,3) of the faces of a hull, in axes of the piece."""
+        return np.array([normal for normal, _ in self.faces]).reshape(-1, 3)
+
+    @cached_property
+    def cells(self) -> tuple[Cells, Cells]:
+        """Cells of directions of the vertices of a hull, and of the normals of its faces."""
+        return cells_of(self.vertices), cells_of(self.normals)
 
     @cached_property
     def corners(self) -> np.ndarray | None:

@@ -27,7 +27,6 @@ MESSAGES = {
 PLASTIC = one.PLASTIC  #: the plastic event, because a body is trapped or all e are 0
 MISSED = 2  #: the law of Newton or Poisson was not satisfied; the nearest result or Stronge's law was used
 CAPPED = 4  #: the law of a contact requires e_* > 1, and is not satisfied: energy cannot grow
-FIXED = 8  #: the layer was passed with fixed steps
 EXACT = 16  #: contacts that move alike, resolved exactly as one
 AT_ONCE = one.AT_ONCE  #: the passage of the layer failed; one contact problem was solved instead
 REPELLED = 32  #: the impulse was changed by round-off, so that energy does not grow
@@ -39,8 +38,6 @@ class MultipleSettings(NamedTuple):
     multiple: int = SIMULTANEOUS
     rtol: float = 1e-8  # relative error of velocities
     exponent: float = 1.0  # p of the normal law; 0 in a run: by the shapes in contact
-    adaptive_up_to: int = 24  # classes of contacts; with more of them steps are fixed
-    fixed_steps: int = 40  # per unit of time of the fastest contact
     max_events: int = 200  # changes of mode per contact
     max_steps: int = 2000  # per contact
     max_rounds: int = 40  # of the outer iteration of Newton's and Poisson's law
@@ -94,7 +91,6 @@ RESULT = [
     ("energy_change", "f8"),
     ("plastic_change", "f8"),  # its part in the plastic event
     ("miss", "f8"),  # greatest ln(target/reached) of Newton's and Poisson's law where not met
-    ("error", "f8"),  # estimated error of the velocities; 0 if not estimated
     ("steps", "i8"),
     ("events", "i8"),
     ("rounds", "i8"),  # of the outer iteration

@@ -145,7 +145,7 @@ def _clear(contacts, out):
     """Write the result for contacts none of which strikes."""
     result = out.summary[0]
     result.energy_change, result.plastic_change = 0.0, 0.0
-    result.error, result.miss = 0.0, 0.0
+    result.miss = 0.0
     result.steps, result.events, result.rounds, result.classes, result.marks = 0, 0, 0, 0, 0
     for i in range(contacts.k):
         out.compression[i], out.restitution[i], out.friction[i] = 0.0, 0.0, 0.0
@@ -168,8 +168,8 @@ def _group(g, contacts, still, by_newton, settings, workspace, out):
     mass, speed, rate = _fill(n, contacts, still, settings.exponent, work)
     if not (mass > 0.0 and rate > 0.0):
         return
-    plastic, error = summary.plastic_change, summary.error
-    summary.plastic_change, summary.error = 0.0, 0.0
+    plastic = summary.plastic_change
+    summary.plastic_change = 0.0
     if by_newton:
         at_once(n, work, workspace.cones, summary)
     else:
@@ -186,7 +186,6 @@ def _group(g, contacts, still, by_newton, settings, workspace, out):
                 out.friction[i] = max(0.0, c.loss) * share * energy
                 out.wedged[i] = c.wedged
     summary.plastic_change = plastic + energy * summary.plastic_change
-    summary.error = max(error, speed * summary.error)
 
 
 @kernel

@@ -79,7 +79,7 @@ def take(contacts, m, blow, out):
     result, done = out.summary[0], part.summary[0]
     result.energy_change += done.energy_change
     result.plastic_change += done.plastic_change
-    result.error, result.miss = max(result.error, done.error), max(result.miss, done.miss)
+    result.miss = max(result.miss, done.miss)
     result.steps += done.steps
     result.events += done.events
     result.rounds += done.rounds

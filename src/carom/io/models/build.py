@@ -12,6 +12,7 @@ from carom.results.solution import Solution
 from carom.scene.bodies import GROUND, Body, Ground, HalfSpace
 from carom.scene.joints import Joint
 from carom.scene.scene import Scene
+from carom.scene.shapes.convex import Convex
 
 
 class Names:
@@ -67,10 +68,12 @@ class Build:
     report: Report
     names: Names
     light: float  # masses of links between two joints of one body, as a part of the body's
+    most_corners: int | None  # of the hull of a mesh
     bodies: dict[int, Body | Ground] = field(default_factory=lambda: {0: GROUND})  # of links
     coordinates: dict[int, Coordinate] = field(default_factory=dict)  # of hinges and slides
     balls: dict[int, Joint] = field(default_factory=dict)  # of ball joints
     geoms: dict[int, Body | HalfSpace] = field(default_factory=dict)
+    hulls: dict[int, Convex | None] = field(default_factory=dict)  # of meshes
 
     def moving(self, body: int) -> Body:
         """Return the body of the scene for one of the model that has joints."""

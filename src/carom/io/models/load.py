@@ -51,6 +51,7 @@ def load_model(
     contacts: bool = True,
     armature: bool = True,
     overlaps: str = "repair",
+    max_hull_vertices: int | None = 64,
     mocap: Mapping[str, Sequence] | None = None,
     package_dirs: Sequence[str | os.PathLike] = (),
 ) -> Model:
@@ -88,6 +89,10 @@ def load_model(
     overlaps : {"repair", "refuse"}
         Treatment of parts that penetrate each other at the start. ``"repair"`` (default): parts with a free
         joint are moved out of fixed parts, and other such pairs get no contact. ``"refuse"``: raise an error.
+    max_hull_vertices : int or None
+        Most corners of the convex hull of a mesh, at least 4. Default 64. A hull of more is replaced by that of
+        some of its corners, and the report says how far it reaches beyond that. Masses and inertias stay those
+        of the model. None: keep all corners.
     mocap : mapping, optional
         Motions of mocap bodies by name: up to six for a body, of its displacements along the world's x, y and
         z [m], then of its turns [rad] about x, y and z, one after the other, from where the model puts it. Each
@@ -117,6 +122,8 @@ def load_model(
     checks.choice("impact_law", impact_law, IMPACT_LAWS)
     checks.number("limit_restitution", limit_restitution, least=0.0, most=1.0)
     checks.choice("overlaps", overlaps, ("repair", "refuse"))
+    if max_hull_vertices is not None:
+        max_hull_vertices = checks.integer("max_hull_vertices", max_hull_vertices, least=4)
     for name, value in (("free_root", free_root), ("contacts", contacts), ("armature", armature)):
         checks.flag(name, value)
     if isinstance(source, os.PathLike) or (isinstance(source, str) and "<" not in source):
@@ -131,7 +138,7 @@ def load_model(
     acts = as_it_acts(model, motions)
     light = LIGHT_IN_LOOPS if motions or np.any(acts.eq_active0) else LIGHT
     data = starting_data(acts, keyframe, qpos, qvel)
-    build, links = _new_build(acts, data, report, light)
+    build, links = _new_build(acts, data, report, light, max_hull_vertices)
     restitution = _restitution(model, restitution, report)
     rules, contacts = Filter(model), contacts and not is_off(model, "CONTACT", "CONSTRAINT")
     standing = add_standing(build, rules) if contacts else []
@@ -161,7 +168,9 @@ def load_model(
     return _finished(build, model, links, covers, restitution)
 
 
-def _new_build(model, data, report: Report, light: float) -> tuple[Build, list[Link]]:
+def _new_build(
+    model, data, report: Report, light: float, most_corners: int | None
+) -> tuple[Build, list[Link]]:
     """Return a new `Build`, with the fixed and the moving bodies of the model."""
     links = moving_links(model)
     if not links:
@@ -171,7 +180,7 @@ def _new_build(model, data, report: Report, light: float) -> tuple[Build, list[L
         )
     scene = Scene(gravity=np.zeros(3) if is_off(model, "GRAVITY") else model.opt.gravity)
     names = Names(link.name for link in links)
-    return Build(model, data, scene, report, names, light), links
+    return Build(model, data, scene, report, names, light, most_corners), links
 
 
 def _restitution(model, given: float | None, report: Report) -> float:

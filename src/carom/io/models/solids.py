@@ -8,13 +8,13 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.io.models.build import Build
+from carom.io.models.hulls import hull_of_mesh
 from carom.io.models.links import IDENTITY, Link, called, name_of, pose_on_link
-from carom.io.models.report import Report, need_mujoco
+from carom.io.models.report import need_mujoco
 from carom.io.models.touching import Filter
 from carom.scene import joints
 from carom.scene.bodies import GROUND, Body, HalfSpace
 from carom.scene.shapes import Box, Compound, Ellipsoid, Shape, Sphere
-from carom.scene.shapes.convex import Convex
 from carom.scene.shapes.revolved import Capsule, Cylinder
 
 DENSITY = 1000.0  # [kg/m^3] of what is fixed to the ground, where it makes no difference
@@ -29,9 +29,9 @@ class Placed(NamedTuple):
     orientation: np.ndarray  # (4,)
 
 
-def placed_shape(model, geom: int, report: Report) -> Placed | None:
+def placed_shape(build: Build, geom: int) -> Placed | None:
     """Return the shape of a geom on its link; None for a plane, or if there is no equivalent."""
-    kinds = need_mujoco().mjtGeom
+    kinds, model = need_mujoco().mjtGeom, build.model
     kind, (a, b, c) = model.geom_type[geom], model.geom_size[geom].tolist()
     offset = np.zeros(3)
     if kind == kinds.mjGEOM_SPHERE:
@@ -45,7 +45,7 @@ def placed_shape(model, geom: int, report: Report) -> Placed | None:
     elif kind == kinds.mjGEOM_BOX:
         shape = Box(2.0 * a, 2.0 * b, 2.0 * c)
     elif kind == kinds.mjGEOM_MESH:
-        shape = _hull(model, geom, report)
+        shape = hull_of_mesh(build, int(model.geom_dataid[geom]))
         if shape is None:
             return None
         offset = shape.centroid
@@ -55,7 +55,7 @@ def placed_shape(model, geom: int, report: Report) -> Placed | None:
                 int(kinds.mjGEOM_HFIELD): "a height field",
                 int(kinds.mjGEOM_SDF): "a distance field",
             }
-            report.add(
+            build.report.add(
                 called(model, "geom", geom),
                 what.get(int(kind), "of a kind without equivalent"),
                 "left out",
@@ -67,17 +67,6 @@ def placed_shape(model, geom: int, report: Report) -> Placed | None:
     return Placed(
         shape, on_body + quaternion.rotate(turn, position), quaternion.normalize(orientation)
     )
-
-
-def _hull(model, geom: int, report: Report) -> Convex | None:
-    """Return the convex hull of the vertices of a mesh, which is what MuJoCo touches with."""
-    mesh = int(model.geom_dataid[geom])
-    first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
-    try:
-        return Convex(np.array(model.mesh_vert[first : first + count], dtype=float))
-    except ValueError as error:
-        report.add(called(model, "geom", geom), f"its mesh has no volume ({error})", "left out")
-        return None
 
 
 def body_shape(parts: list[Placed], centre: np.ndarray) -> Shape | None:
@@ -114,7 +103,7 @@ def covering(build: Build, link: Link, rules: Filter) -> tuple[Shape | None, lis
 
 
 def _parts(build: Build, geoms: list[int]) -> tuple[list[Placed], list[int]]:
-    found = [(g, placed_shape(build.model, g, build.report)) for g in geoms]
+    found = [(g, placed_shape(build, g)) for g in geoms]
     known = [(g, part) for g, part in found if part is not None]
     return [part for _, part in known], [g for g, _ in known]
 
@@ -140,7 +129,7 @@ def _half_space(build: Build, g: int) -> HalfSpace:
 
 
 def _fixed(build: Build, g: int) -> Body | None:
-    part = placed_shape(build.model, g, build.report)
+    part = placed_shape(build, g)
     if part is None:
         return None
     name = build.names.new(name_of(build.model, "geom", g), "geom")

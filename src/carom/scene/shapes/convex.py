@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -129,23 +130,52 @@ def _faces(vertices: np.ndarray, simplices: np.ndarray) -> tuple:
     """Return the faces: triangles with a common edge and plane form one face, its corners in a ring."""
     triangles = vertices[simplices]
     cross = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    double = np.linalg.norm(cross, axis=1)
-    owner = {(t[k], t[(k + 1) % 3]): f for f, t in enumerate(simplices) for k in range(3)}
-    group = np.arange(len(simplices))
-    for (i, j), f in owner.items():
-        g = owner[j, i]
-        sine = np.linalg.norm(np.cross(cross[f], cross[g]))
-        if i < j and not sine > SAME_FACE * double[f] * double[g] and cross[f] @ cross[g] >= 0.0:
-            group[group == group[g]] = group[f]
+    group = _planes(simplices, cross)
+    order = np.argsort(group, kind="stable")
+    first = np.flatnonzero(np.diff(group[order], prepend=-1))
+    turn = np.argmin(simplices, axis=1)[
+        :, None
+    ]  # the ring of a triangle has its least corner in the middle
+    rings = np.take_along_axis(simplices, (turn + np.array([2, 0, 1])) % 3, axis=1).tolist()
     faces = []
-    for number in np.unique(group):
-        chosen = group == number
-        normal = cross[chosen].sum(axis=0)
-        normal /= np.linalg.norm(normal)
-        corners = np.unique(simplices[chosen])
-        offsets = vertices[corners] - vertices[corners].mean(axis=0)
-        across = offsets[0] - (offsets[0] @ normal) * normal
-        angle = np.arctan2(offsets @ np.cross(normal, across), offsets @ across)
+    for start, stop in zip(first.tolist(), [*first[1:].tolist(), len(order)]):
+        t = order[start]
+        if stop == start + 1:
+            normal, ring = cross[t] / math.sqrt(cross[t].dot(cross[t])), tuple(rings[t])
+        else:
+            normal, ring = _ring(vertices, simplices, cross, order[start:stop])
         normal.setflags(write=False)
-        faces.append((normal, tuple(int(i) for i in corners[np.argsort(angle)])))
+        faces.append((normal, ring))
     return tuple(faces)
+
+
+def _planes(simplices: np.ndarray, cross: np.ndarray) -> np.ndarray:
+    """Return a number (k,) for each triangle, equal for those of one face: neighbours in one plane."""
+    edges = np.stack([simplices, np.roll(simplices, -1, axis=1)], axis=-1).reshape(-1, 2)
+    i, j = edges.T
+    n = simplices.max() + 1
+    here, there = np.lexsort((j, i)), np.lexsort((i, j))  # the same edges, seen from both triangles
+    assert np.array_equal(i[here] * n + j[here], j[there] * n + i[there])
+    other = np.empty(len(edges), dtype=np.int64)
+    other[here] = there // 3
+    own = np.arange(len(edges)) // 3
+    double = np.linalg.norm(cross, axis=1)
+    a, b = cross[own], cross[other]
+    sine = np.linalg.norm(np.cross(a, b), axis=1)
+    bent = sine > SAME_FACE * double[own] * double[other]
+    level = (i < j) & ~bent & (np.sum(a * b, axis=1) >= 0.0)
+    group = np.arange(len(simplices))
+    for f, g in zip(own[level], other[level]):
+        group[group == group[g]] = group[f]
+    return group
+
+
+def _ring(vertices, simplices, cross, chosen) -> tuple[np.ndarray, tuple[int, ...]]:
+    """Return the normal of a face of several triangles, and its corners, counter-clockwise from outside."""
+    normal = cross[chosen].sum(axis=0)
+    normal /= np.linalg.norm(normal)
+    corners = np.unique(simplices[chosen])
+    offsets = vertices[corners] - vertices[corners].mean(axis=0)
+    across = offsets[0] - (offsets[0] @ normal) * normal
+    angle = np.arctan2(offsets @ np.cross(normal, across), offsets @ across)
+    return normal, tuple(int(i) for i in corners[np.argsort(angle)])
