@@ -3,12 +3,12 @@
 python benchmarks/corpus.py FOLDER [FOLDER ...] [--seconds 60]
 
 Every MJCF and URDF file below the folders (of the packages gymnasium, dm_control, gymnasium_robotics,
-example-robot-data, pybullet) is loaded and simulated for 1 s in a child process with a limit of processor time. A
-model without a plane gets a floor 2 cm below it, and a URDF with one root a free one. A MJCF file that MuJoCo itself
-does not compile is counted, but not listed (a part of another file). The table has the time to load, and the
-processor time of a second run of the scene over the time that it covers. `differs` is the first
-time at which a body of the model without contacts is off by 1e-6 of its extent from MuJoCo (Runge-Kutta, .1 ms,
-without contacts, actuators and limits) within .2 s; soft constraints, tendons and what the report names differ.
+example-robot-data, pybullet) is loaded and simulated for 1 s in a child process with a limit of processor time.
+A model without a plane gets a floor 2 cm below it, and a URDF with one root a free one. A MJCF file that MuJoCo
+itself does not compile is counted, but not listed (a part of another file). The table has the time to load, and
+the processor time of a second run of the scene over the time that it covers. `differs` is the first time at
+which a body of the model without contacts is off by 1e-6 of its extent from MuJoCo (Runge-Kutta, .1 ms, without
+contacts, actuators and limits) within .2 s; soft constraints, tendons and what the report names differ.
 """
 
 from __future__ import annotations
