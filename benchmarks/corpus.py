@@ -35,16 +35,18 @@ BESIDE, STEP, NEAR = (
 
 
 def read(path: Path):
-    """Return a specification of a model, with a floor; the path of a URDF that MuJoCo cannot place; None."""
+    """Return a specification of a model with a floor, the path of a URDF, None for what does not compile."""
     import mujoco
     import numpy as np
 
+    if path.suffix == ".urdf":  # MuJoCo makes its root a part of the world
+        return path
     try:
         spec = mujoco.MjSpec.from_file(str(path))
         m = spec.compile()
-    except ValueError:  # a URDF has its meshes elsewhere
-        return path if path.suffix == ".urdf" else None
-    if m.nv == 0 and path.suffix != ".urdf":
+    except ValueError:
+        return None
+    if m.nv == 0:
         return None
     if not np.any(m.geom_type == mujoco.mjtGeom.mjGEOM_PLANE):
         d = mujoco.MjData(m)
@@ -81,7 +83,9 @@ def one(path: Path, seconds: float, runs: bool) -> None:
         return
     say(stage="loads", bodies=len(model.scene.bodies), load=time.process_time() - begin)
     if spec is path and not model.scene.half_spaces:
-        low = min(b.position[2] - b.shape.size for b in model.scene.bodies if b.shape is not None)
+        low = min(
+            (b.position[2] - b.shape.size for b in model.scene.bodies if b.shape), default=0.0
+        )
         model.scene.add_half_space((0, 0, low - BELOW), (0, 0, 1))
     if not runs:
         return
