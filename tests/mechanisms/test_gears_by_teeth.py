@@ -62,7 +62,7 @@ def test_no_tooth_is_skipped(speed):
     [(5, True), (8, True), (13, True), (38, True), (15, True), (45, False), (50, False)],
 )
 def test_cases_of_the_campaign(seed, tolerances):
-    """A ratchet, a cam, gears that touch at flanks of several faces, with their edges between; and three faults.
+    """A ratchet, a cam, gears that touch at flanks of several faces, with their edges between; three faults.
 
     15: friction of a Geneva drive that a stage leaves 3e-9 within its cone slips all the same. 45: a pin as
     thick as its slot leaves it sideways. 50: a time-stepping step does not turn a gear to free a point whose
