@@ -101,7 +101,7 @@ def read(folder):
             carom.load_model,
             dict(source=XML, restitution=0.5, friction=0.1, impact_law="newton", limit_restitution=0.0,
                  keyframe="k", qpos=[0.1], qvel=[0.0], free_root=False, contacts=True, armature=True,
-                 overlaps="repair", mocap={"hand": [lambda t: (0.0, 0.0, 0.0)]},
+                 overlaps="repair", max_hull_vertices=64, mocap={"hand": [lambda t: (0.0, 0.0, 0.0)]},
                  package_dirs=()),
         ),
         "Model.qpos": lambda: (model().qpos, dict(solution=swing())),
