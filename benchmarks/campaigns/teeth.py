@@ -200,7 +200,7 @@ def geneva(rng) -> Case:
     )  # fmt: skip
     drive = scene.add_joint(joints.Revolute((0, 0, 0), Z), GROUND, crank)
     scene.add_constraint(constraints.Driver(drive, rate=speed))
-    hub = (carom.Cylinder(0.5 * inner, 0.3 * THICK), (0, 0, -THICK))  # below the pin
+    hub = (carom.Cylinder(0.5 * inner, 0.3 * THICK), (0, 0, 0))  # smaller than what the pin reaches
     first = np.pi + half  # a slot, when the pin enters
     pieces = [hub, *(prism(turned(sector, first + 2.0 * half * k)) for k in range(slots))]
     body, driven, inertia = wheel(scene, pieces, radius, (far, 0, 0))
@@ -257,10 +257,11 @@ def ratchet(rng) -> Case:
     duration = 8.0 * turns / speed
 
     def off(s: carom.Solution) -> float:
-        """Return how far the wheel has gone back, by a pitch."""
+        """Return how far the wheel has gone back, by a pitch and what the pawl moves back as it drops."""
         angle = s.joint_coordinates(hinge.name)[0][:, 0]
         back = np.max(np.maximum.accumulate(angle) - angle)
-        return float(back) / ((1.0 + MARGIN) * pitch)
+        drop = np.max(np.abs(s.joint_coordinates(pivot.name)[0]))
+        return float(back) / ((1.0 + MARGIN) * pitch + float(drop) * over / root)
 
     label = {"kind": "ratchet", "teeth": count, "speed": speed, "torque": torque, **contact}
     return Case(scene, duration, duration / 200, label, off)

@@ -12,7 +12,8 @@ from carom.studies import identify
 W = np.diag([1.0, 3.5, 3.5])
 TETRAHEDRON = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
 FACES = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
-XML = """<mujoco><worldbody><body pos="0 0 1"><joint name="j" type="hinge" axis="0 1 0"/>
+XML = """<mujoco><worldbody><body name="hand" mocap="true"/>
+<body pos="0 0 1"><joint name="j" type="hinge" axis="0 1 0"/>
 <geom type="sphere" size="0.1" mass="1"/></body></worldbody>
 <keyframe><key name="k" qpos="0.1"/></keyframe></mujoco>"""
 

@@ -57,9 +57,17 @@ def test_no_tooth_is_skipped(speed):
     assert s.stats["trial_steps"] < 5000  # 500 to 1700; 10 times that with planes at rest
 
 
-@pytest.mark.parametrize("seed", [5, 8, 13, 38])
-def test_cases_of_the_campaign(seed):
-    """A ratchet, a cam, and gears that touch at flanks of several faces, with their edges between."""
+@pytest.mark.parametrize(
+    ("seed", "tolerances"),
+    [(5, True), (8, True), (13, True), (38, True), (15, True), (45, False), (50, False)],
+)
+def test_cases_of_the_campaign(seed, tolerances):
+    """A ratchet, a cam, gears that touch at flanks of several faces, with their edges between; three faults.
+
+    15: friction of a Geneva drive that a stage leaves 3e-9 within its cone slips all the same. 45: a pin as
+    thick as its slot leaves it sideways. 50: a time-stepping step does not turn a gear to free a point whose
+    normal meets the axis: it went on by five teeth. (A given step of .8 ms leaves energy unnamed there.)
+    """
     case = teeth.case(seed)
-    outcome = vars(run(case, True))
-    assert wrong(outcome) == []
+    outcome = vars(run(case, tolerances))
+    assert set(wrong(outcome)) <= (set() if tolerances else {"unnamed energy, said"})

@@ -96,6 +96,24 @@ def test_urdf():
     assert len(floats.scene.joints) == 3
 
 
+def test_what_other_programs_do_not_look_at():
+    """Empty lines before the declaration, commas, a fourth number, a second axis, a shape without a kind."""
+    text = """
+
+<?xml version="1.0"?><robot name="r"><link name="base"/><link name="arm">
+  <inertial><origin xyz="0, 0, -.3" rpy="0 0 0 0"/><mass value="1"/>
+  <inertia ixx=".03" iyy=".03" izz=".001" ixy="0" ixz="0" iyz="0"/></inertial>
+  <collision><geometry/></collision></link>
+  <joint name="j" type="continuous"><parent link="base"/><child link="arm"/>
+  <axis xyz="0 1 0"/><axis xyz="1 0 0"/></joint></robot>"""
+    model = carom.load_model(text)
+    np.testing.assert_allclose(model.scene["arm"].position, (0.0, 0.0, -0.3), atol=1e-15)
+    assert model.scene["j"].definition.axis.tolist() == [0.0, 1.0, 0.0]
+    assert "more than one axis; the first" in str(model.report)
+    assert "'0 0 0 0' has more than three" in str(model.report)
+    assert "a shape of it is empty" in str(model.report)
+
+
 def test_meshes_of_packages_are_found(tmp_path):
     folder = tmp_path / "r"
     folder.mkdir()

@@ -37,7 +37,7 @@ CLEAR = 1e-3  # relative to the smaller solid: such a distance has a direction e
 DIRECTED = 1e-9  # relative to the smaller solid: a shorter distance has no reliable direction
 CLIMBS = 9  # starts of the search for the depth; with more, no sharp hull gave a better result
 CLIMBS_CURVED = 3  # the same for curved cores, where each search takes longer
-ELSEWHERE = 0.95  # cosine of the angle to the best direction; nearer starts are not tried
+ELSEWHERE = 0.95  # cosine of the angle to an earlier climb; nearer starts are not tried
 NEARER = 30.0  # clearance of the second phase of a climb, relative to the depth
 LEAST = 1e-3  # least clearance, relative to the usual one; a smaller one gives no better direction
 ROUNDS = 30
@@ -181,22 +181,23 @@ def _search(pair, size, accuracy):
 def _candidate(s, k):
     """Return candidate k, of any length, for the direction that separates two overlapping cores.
 
-    The candidates are the line of centres, the normals of the simplex, and the axes of both solids.
+    The candidates are the line of centres, the normals of the simplex and of the sides of a triangle, and the
+    axes of both solids.
     """
-    x, y, z = 0.0, 0.0, 0.0
     i = k % 3
     if k == 0:
         return s.p[0], s.p[1], s.p[2]
+    if k < 9 and s.points < 3:
+        return 0.0, 0.0, 0.0
     if k < 9:
-        j = (k - 1) >> 1  # the corner that is not on this face
-        if s.points == 4 or (s.points == 3 and j == 3):
-            o, u, v = s.w[0 if j > 0 else 1], s.w[1 if j > 1 else 2], s.w[2 if j > 2 else 3]
-            e0, e1, e2 = u[0] - o[0], u[1] - o[1], u[2] - o[2]
-            f0, f1, f2 = v[0] - o[0], v[1] - o[1], v[2] - o[2]
-            x, y, z = e1 * f2 - e2 * f1, e2 * f0 - e0 * f2, e0 * f1 - e1 * f0
-            if k & 1:
-                x, y, z = -x, -y, -z
-        return x, y, z
+        j = (k - 1) >> 1  # the corner that is not on this face, or the first one of this side
+        i = j if s.points == 4 else 3
+        o, u, v = s.w[0 if i > 0 else 1], s.w[1 if i > 1 else 2], s.w[2 if i > 2 else 3]
+        n = cross(minus(u, o), minus(v, o))
+        if s.points == 3 and j < 3:  # solids of the same thickness: the plane is their middle
+            n = cross(n, minus(s.w[(j + 1) % 3], s.w[j]))
+        f = -1.0 if k & 1 else 1.0
+        return f * n[0], f * n[1], f * n[2]
     if k < 12:
         x = 1.0 if i == 0 else 0.0
         y = 1.0 if i == 1 else 0.0
@@ -229,12 +230,13 @@ def _way_out(pair, accuracy, clear):
                 chosen = k
         if start[chosen, 3] == -math.inf:
             break
-        x, y, z = start[chosen, 0], start[chosen, 1], start[chosen, 2]
-        start[chosen, 3] = -math.inf
-        if best == -math.inf or x * nx + y * ny + z * nz < ELSEWHERE:
-            value, x, y, z = _climb(pair, accuracy, clear, x, y, z)
-            if value > best:
-                best, nx, ny, nz = value, x, y, z
+        first = start[chosen, 0], start[chosen, 1], start[chosen, 2]
+        value, x, y, z = _climb(pair, accuracy, clear, first[0], first[1], first[2])
+        if value > best:
+            best, nx, ny, nz = value, x, y, z
+        for k in range(15):
+            if max(dot(first, start[k]), dot((x, y, z), start[k])) > ELSEWHERE:
+                start[k, 3] = -math.inf
     # The best climb is repeated, so that the simplex is that of the result.
     return _climb(pair, accuracy, clear, nx, ny, nz)
 

@@ -27,7 +27,7 @@ from carom.persistent.springs import note_accelerations, solve_springs
 from carom.persistent.step_control import POORLY, rest_speed
 
 REST = 0.1  # of the error of a step: slip that ends within so little has ended
-ON_CONE = 1.0 - 1e-9  # of the greatest friction: less is within it
+ON_CONE = 1.0 - 1e-6  # of the greatest friction: less is within it; a stage leaves 3e-9 of a line
 NEARLY = 1.0 - 1e-9  # of the time to a stop: a step that long has gone to it
 
 

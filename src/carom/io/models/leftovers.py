@@ -31,8 +31,8 @@ NOT_ZERO = (
 )
 
 
-def report_leftovers(model, report: Report) -> None:
-    """Add an entry for each part of a model that no part of the scene represents."""
+def report_leftovers(model, driven, report: Report) -> None:
+    """Add an entry for each part of a model that no part of the scene represents. Bodies `driven` move."""
     for kind, count, what, instead in LISTED:
         for k in range(getattr(model, count)):
             report.add(called(model, kind, k), what, instead)
@@ -44,11 +44,11 @@ def report_leftovers(model, report: Report) -> None:
             of = ("joint", int(model.dof_jntid[k])) if kind == "dof" else (kind, int(k))
             report.add(called(model, *of), what, instead)
     for b in range(model.nbody):
-        if model.body_mocapid[b] >= 0:
+        if model.body_mocapid[b] >= 0 and b not in driven:
             report.add(
                 called(model, "body", b),
                 "is moved from outside (mocap)",
-                "it does not move",
+                "it does not move; give its motion by mocap=",
             )
     for p in range(model.npair):
         five = model.pair_friction[p]

@@ -74,7 +74,7 @@ def parsed(data: bytes | str, what: str) -> ET.Element:
     if b"<!ENTITY" in plain:
         raise ValueError(f"{what} must not define entities (<!ENTITY ...>)")
     try:
-        return ET.fromstring(data)
+        return ET.fromstring(data.lstrip())  # some have empty lines first
     except (ET.ParseError, ValueError, LookupError) as error:
         line = " ".join(str(error).split())
         raise ValueError(f"{what} is not valid XML: {line}") from None

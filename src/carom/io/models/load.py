@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from carom.io.models.equalities import add_equalities
 from carom.io.models.joints import join
 from carom.io.models.leftovers import report_leftovers
 from carom.io.models.links import Link, moving_links, name_of, possible_inertia
+from carom.io.models.mocap import drive, first_velocity, motions_of
 from carom.io.models.model import Model
 from carom.io.models.overlaps import lift_out, pose
 from carom.io.models.reading import compiled_model
@@ -51,6 +52,7 @@ def load_model(
     armature: bool = True,
     overlaps: str = "repair",
     max_hull_vertices: int | None = 64,
+    mocap: Mapping[str, Sequence] | None = None,
     package_dirs: Sequence[str | os.PathLike] = (),
 ) -> Model:
     """Read a model in MJCF or URDF and make a scene from it. Needs ``carom[models]``.
@@ -91,6 +93,10 @@ def load_model(
         Most corners of the convex hull of a mesh, at least 4. Default 64. A hull of more is replaced by that of
         some of its corners, and the report says how far it reaches beyond that. Masses and inertias stay those
         of the model. None: keep all corners.
+    mocap : mapping, optional
+        Motions of mocap bodies by name: up to six for a body, of its displacements along the world's x, y and
+        z [m], then of its turns [rad] about x, y and z, one after the other, from where the model puts it. Each
+        is a `motion` of `constraints.Driver`, or None: this coordinate stays. Other mocap bodies are fixed.
     package_dirs : sequence of path
         Folders in which ``package://`` paths of a URDF are searched, besides the folders above the file.
 
@@ -128,28 +134,37 @@ def load_model(
     ]
     report = Report()
     model = compiled_model(source, free_root, package_dirs, report)
-    acts = as_it_acts(model)
-    light = LIGHT_IN_LOOPS if np.any(acts.eq_active0) else LIGHT
+    motions = motions_of(model, mocap)
+    acts = as_it_acts(model, motions)
+    light = LIGHT_IN_LOOPS if motions or np.any(acts.eq_active0) else LIGHT
     data = starting_data(acts, keyframe, qpos, qvel)
     build, links = _new_build(acts, data, report, light, max_hull_vertices)
     restitution = _restitution(model, restitution, report)
     rules, contacts = Filter(model), contacts and not is_off(model, "CONTACT", "CONSTRAINT")
     standing = add_standing(build, rules) if contacts else []
     covers = {link.body: covering(build, link, rules) for link in links}
+    jointed = [link for link in links if link.body not in motions]
     if overlaps == "repair":
-        lift_out(build, links, covers, standing, rules)
+        lift_out(build, jointed, covers, standing, rules)
     for link in links:
-        _add_body(build, link, covers[link.body][0])
-        join(build, link)
+        given = motions.get(link.body, [])
+        _add_body(build, link, covers[link.body][0], given)
+        if given:
+            drive(build, link, given)
+        else:
+            join(build, link)
     _add_gravcomp(build)
     add_coordinate_parts(build, limit_restitution, impact_law, armature)
-    add_mounts(build, links)
+    add_mounts(build, jointed)
     add_equalities(build)
     if contacts:
-        moving = [Solid(build.moving(one.body), covers[one.body][1], True) for one in links]
+        moving = [
+            Solid(build.moving(one.body), covers[one.body][1], one.body not in motions)
+            for one in links
+        ]
         solids = [*moving, *standing]
         add_contacts(build, solids, rules, restitution, friction, impact_law, overlaps == "refuse")
-    report_leftovers(model, report)
+    report_leftovers(model, motions, report)
     return _finished(build, model, links, covers, restitution)
 
 
@@ -181,10 +196,11 @@ def _restitution(model, given: float | None, report: Report) -> float:
     return RESTITUTION
 
 
-def _add_body(build: Build, link: Link, shape) -> None:
+def _add_body(build: Build, link: Link, shape, motions) -> None:
     """Add the body of a link, with its position and motion."""
     centre, orientation = pose(build, link)
     motion = point_velocity(build.model, build.data, link.body, centre)
+    motion += first_velocity(motions, centre - build.data.xpos[link.body])
     inertia, change = possible_inertia(link.inertia)
     if change > 1e-11:
         what = "its inertia is impossible for a rigid body"

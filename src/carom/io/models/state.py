@@ -26,8 +26,11 @@ def is_off(model, *flags: str) -> bool:
     return any(int(model.opt.disableflags) & int(bit) for bit in bits)
 
 
-def as_it_acts(model) -> Any:
-    """Return a copy of a model without what is switched off, and with mocap bodies as parts of the world."""
+def as_it_acts(model, driven) -> Any:
+    """Return a copy of a model without what is switched off, and with mocap bodies as parts of the world.
+
+    Those with the numbers `driven` stay bodies; one without mass gets 1 kg and 1 kg m^2: its motion is given.
+    """
     acts = copy.copy(model)
     for flags, arrays in SWITCHED:
         for name in arrays:
@@ -35,8 +38,11 @@ def as_it_acts(model) -> Any:
                 getattr(acts, name)[:] = 0
     if is_off(model, "PASSIVE") or (is_off(model, "SPRING") and is_off(model, "DAMPER")):
         acts.body_gravcomp[:] = 0.0  # MuJoCo has no passive forces then
-    moved = np.flatnonzero(model.body_mocapid >= 0)
-    acts.body_weldid[np.isin(model.body_weldid, moved)] = 0
+    fixed = [b for b in np.flatnonzero(model.body_mocapid >= 0) if b not in driven]
+    acts.body_weldid[np.isin(model.body_weldid, fixed)] = 0
+    for b in driven:
+        if not np.any(model.body_mass[model.body_weldid == b]):
+            acts.body_mass[b], acts.body_inertia[b] = 1.0, 1.0
     return acts
 
 

@@ -40,14 +40,14 @@ def prepared(root: ET.Element, folder: Path | None, package_dirs: Iterable, repo
     for link in root.iter("link"):
         for visual in link.findall("visual"):
             link.remove(visual)
+    mend_words(root, report)
+    for link in root.iter("link"):
         for collision in link.findall("collision"):
-            mesh = collision.find("geometry/mesh")
+            mesh, shape = collision.find("geometry/mesh"), collision.find("geometry/*")
             if mesh is None:
-                if _is_flat(collision.find("geometry/*")):
-                    called = f"link {link.get('name')!r}"
-                    report.add(
-                        called, "a shape of it has a size of 0, and touches nothing", "left out"
-                    )
+                if shape is None or _is_flat(shape):
+                    what = "is empty" if shape is None else "has a size of 0, and touches nothing"
+                    report.add(f"link {link.get('name')!r}", f"a shape of it {what}", "left out")
                     link.remove(collision)
                 continue
             name = mesh.get("filename", "")
@@ -70,9 +70,28 @@ def prepared(root: ET.Element, folder: Path | None, package_dirs: Iterable, repo
     return ET.tostring(root, encoding="unicode")
 
 
-def _is_flat(shape: ET.Element | None) -> bool:
+def mend_words(root: ET.Element, report: Report) -> None:
+    """Leave out what other programs do not look at: numbers beyond three, commas, further axes of a joint."""
+    for parent in (*root.iter("link"), *root.iter("joint")):
+        called = f"{parent.tag} {parent.get('name')!r}"
+        for axis in parent.findall("axis")[1:]:
+            report.add(called, "it has more than one axis", "the first one is used")
+            parent.remove(axis)
+        for element in parent.iter():
+            for name in ("xyz", "rpy", "scale"):
+                given = element.get(name, "")
+                words = given.replace(",", " ").split()
+                if len(words) > 3 and "$" not in given:
+                    report.add(
+                        called, f"{name}={given!r} has more than three numbers", "three are used"
+                    )
+                if "$" not in given and words:
+                    element.set(name, " ".join(words[:3]))
+
+
+def _is_flat(shape: ET.Element) -> bool:
     """Return whether a size of a shape is 0: other programs read such points, lines and faces."""
-    words = [] if shape is None else [shape.get(size, "") for size in ("radius", "length", "size")]
+    words = [shape.get(size, "") for size in ("radius", "length", "size")]
     with suppress(ValueError):
         sizes = [float(word) for word in " ".join(words).split()]
         return min(sizes, default=1.0) == 0.0

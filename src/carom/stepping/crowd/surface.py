@@ -1,6 +1,7 @@
 """Penetrating points return to the surfaces: 0 <= lam _|_ phi + W_nn lam >= 0, xi = P G_n^T lam.
 
-phi are the gaps. It is solved by sweeps over the normal rows, and repeated because gaps are not linear.
+phi are the gaps. It is solved by sweeps over the normal rows, and repeated because gaps are not linear. A point
+that joints hold along its normal is left where it is.
 """
 
 from __future__ import annotations
@@ -16,6 +17,9 @@ TINY = 1e-11  # allowed depth, relative to the smaller body
 # again costs as much as thirty sweeps
 PASSES, SWEEPS, WORK = 8, (100, 1000), 20000
 BETTER = 0.01  # part of the depth that a pass leaves: gaps are not linear, so less is no gain
+# least W_nn, as a part of the mean of the diagonal, of a point that returns: with the normal through the axis
+# of a hinge W_nn is round-off, and 1e-7 m would turn a gear by many teeth
+IMMOBILE = 1e-6
 
 
 @kernel
@@ -31,7 +35,8 @@ def onto_surfaces(system, k, count, end, crowd, work):
         for i in range(k):
             gap = crowd.points[1][i].gap
             size = smaller(system.contacts[crowd.spots[i].contact])
-            if crowd.spots[i].turns == 0 and gap < -TINY * size:
+            moves = crowd.spots[i].turns == 0 and crowd.problem.link[i].local[0] > IMMOBILE
+            if moves and gap < -TINY * size:
                 deepest, tiny = max(deepest, -gap), min(tiny, 0.1 * TINY * size)
         if deepest == 0.0:
             break
@@ -55,7 +60,7 @@ def lift(system, k, tolerance, crowd, work):
         change = 0.0
         for place in range(k):
             i = place if turn % 2 == 0 else k - 1 - place
-            if crowd.spots[i].turns == 0:
+            if crowd.spots[i].turns == 0 and problem.link[i].local[0] > IMMOBILE:
                 gap = crowd.points[1][i].gap
                 change = max(change, lift_one(problem, i, gap, lam))
         if change <= tolerance:
