@@ -94,7 +94,7 @@ def step_group(model, data, method, label, h):
         result.applied, result.friction = had + h * weight * applied, rubbed + h * weight * friction
         k = implicit_member(model, data, method, label, loaded, count, h)
         if k > 0:
-            note_modes(model, data, k)
+            note_modes(model, data, k, h)
             if land(model, data, loaded, k, count):
                 review(model, data, label, loaded, count, method.stiff.shape[0], h, False)
                 note_errors(model, data, method.stiff_E, 0, count, h)
@@ -105,7 +105,7 @@ def step_group(model, data, method, label, h):
     first_modes(data, label)
     result.applied, result.friction = had, rubbed
     k = closing_member(model, data, label, loaded, count, h)
-    note_modes(model, data, k)
+    note_modes(model, data, k, h)
     if not land(model, data, loaded, k, count):
         result.code = CONSTRAINTS_LOST
     review(model, data, label, loaded, count, 2, h, False)

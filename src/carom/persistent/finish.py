@@ -18,7 +18,7 @@ from carom.friction.layout import CONE, SLIDING, SOLVED
 from carom.impact.workspace import OLD, C, P, U
 from carom.persistent.forces import solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among
-from carom.persistent.joint_rows import JOINT, fix_friction, place_coordinate, radius_of
+from carom.persistent.joint_rows import JOINT, fix_friction, is_driven, place_coordinate, radius_of
 from carom.persistent.margins import greatest_push, set_margins
 from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
@@ -54,7 +54,7 @@ def land(model, data, loaded, k, count) -> bool:
             closed_point, sticks = group.closed[i], group.kind[i] != SLIDING
             closed_point.rows = 0
             if closed_point.turns == JOINT:
-                closed_point.rows = 1 if sticks else 0
+                closed_point.rows = 1 if sticks and not is_driven(group, i) else 0
             elif closed_point.turns == 0 and group.v[P][3 * i] > 0.0:
                 closed_point.rows = 0 if has_passed(active, i, group) else 3 if sticks else 1
         onto_tangents(system, k, count, end, group, work)
@@ -70,7 +70,7 @@ def show(count, state, group, work):
 
 
 @kernel
-def note_modes(model, data, k):
+def note_modes(model, data, k, h):
     """Write the modes at the end of a step whose stages have none: a point sticks where its disc holds it.
 
     What is on its disc at rest sticks: whether it slips is seen at the start of the next step.
@@ -85,6 +85,7 @@ def note_modes(model, data, k):
         force = math.hypot(p[3 * i + 1], p[3 * i + 2])
         bare = closed_point.turns == 0 and closed_point.loaded == 0  # round-off is no friction left
         full = slip > still and (bare or not force < ON_CONE * radius_of(group, i))
+        full = full or (closed_point.turns == JOINT and turns_back(i, h, group))
         group.kind[i] = SLIDING if group.mu[i] == 0.0 or full else CONE
         if closed_point.own == 0:
             continue
@@ -276,6 +277,8 @@ def stick_where_slip_ends(model, data, k, h, still):
         closed_point.stays = 0
         if group.kind[i] != SLIDING or group.mu[i] == 0.0 or closed_point.own == 0:
             continue
+        if closed_point.turns == JOINT and turns_back(i, h, group):
+            continue
         size = model.system.bodies[group.points[0][i].a].extent
         allowed = REST * allowed_error(controls.rtol, controls.atol, size, 0.0)
         speed = math.hypot(group.v[U][3 * i + 1], group.v[U][3 * i + 2])
@@ -307,6 +310,16 @@ def stick_where_slip_ends(model, data, k, h, still):
             else:
                 active_point.turning[closed_point.turns - 1, 2] = 0.0
     return True
+
+
+@kernel
+def turns_back(i, h, group):
+    """Return whether the rate of a joint ends without its friction, as at a dead centre of a loop.
+
+    Friction cannot have braked what needs a larger impulse than its own in the step, u/W > bound h: where W
+    vanishes, a rate of round-off would stop all bodies.
+    """
+    return abs(group.v[U][3 * i + 1]) > group.m[0][3 * i + 1, 3 * i + 1] * radius_of(group, i) * h
 
 
 @kernel
