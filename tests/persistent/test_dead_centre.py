@@ -53,6 +53,7 @@ def test_a_rocker_with_friction_turns_back(rtol):
     """
     s = carom.simulate(crank_and_rocker(8.0), 1.5, rtol=rtol)
     rocker = s.angular_velocity[:, 2, 1]
-    assert s.success and np.sum(rocker[1:] * rocker[:-1] < 0.0) >= 3
+    assert s.success
+    assert np.sum(rocker[1:] * rocker[:-1] < 0.0) >= 3
     assert np.max(np.abs(s.ledger.residual)) <= 300.0 * rtol * s.kinetic_energy[0]
     assert s.kinetic_energy[-1] < s.kinetic_energy[0]
