@@ -18,7 +18,7 @@ from carom.friction.layout import CONE, SLIDING, SOLVED
 from carom.impact.workspace import OLD, C, P, U
 from carom.persistent.forces import solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among
-from carom.persistent.joint_rows import JOINT, fix_friction, place_coordinate, radius_of
+from carom.persistent.joint_rows import JOINT, fix_friction, is_driven, place_coordinate, radius_of
 from carom.persistent.margins import greatest_push, set_margins
 from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
@@ -55,7 +55,7 @@ def land(model, data, loaded, k, count) -> bool:
             closed_point, sticks = group.closed[i], group.kind[i] != SLIDING
             closed_point.rows = 0
             if closed_point.turns == JOINT:
-                closed_point.rows = 1 if sticks else 0
+                closed_point.rows = 1 if sticks and not is_driven(group, i) else 0
             elif closed_point.turns == 0 and group.v[P][3 * i] > 0.0:
                 closed_point.rows = 0 if has_passed(active, i, group) else 3 if sticks else 1
         onto_tangents(system, k, count, end, group, work)
@@ -85,7 +85,8 @@ def note_modes(model, data, k, h):
         force = math.hypot(p[3 * i + 1], p[3 * i + 2])
         bare = closed_point.turns == 0 and closed_point.loaded == 0  # round-off is no friction left
         free = bare or not force < ON_CONE * radius_of(group, i)
-        full = slip > still and (free or slip > stoppable(i, h, group))
+        full = slip > still and (free or slip > 2.0 * braked(i, h, group))
+        full = full or turns_back(i, h, group)
         group.kind[i] = SLIDING if group.mu[i] == 0.0 or full else CONE
         if closed_point.own == 0:
             continue
@@ -107,10 +108,22 @@ def note_modes(model, data, k, h):
 
 
 @kernel
-def stoppable(i, h, group):
-    """Return the change of slip by friction in a step of length h, from one side of its disc to the other."""
+def braked(i, h, group):
+    """Return the greatest change of the slip of a point, or of the rate of a joint, by friction in a time h."""
     W, q = group.m[0], 3 * i
-    return 2.0 * h * radius_of(group, i) * max(W[q + 1, q + 1], W[q + 2, q + 2])
+    most = W[q + 1, q + 1]
+    if group.closed[i].turns != JOINT:
+        most = max(most, W[q + 2, q + 2])
+    return h * radius_of(group, i) * most
+
+
+@kernel
+def turns_back(i, h, group):
+    """Return whether the rate of a joint ends without its friction, as at a dead centre of a loop.
+
+    Friction cannot have braked it: where W vanishes, a rate of round-off would stop all bodies.
+    """
+    return group.closed[i].turns == JOINT and abs(group.v[U][3 * i + 1]) > braked(i, h, group)
 
 
 @unit
@@ -281,6 +294,8 @@ def stick_where_slip_ends(model, data, k, h, still):
         closed_point = group.closed[i]
         closed_point.stays = 0
         if group.kind[i] != SLIDING or group.mu[i] == 0.0 or closed_point.own == 0:
+            continue
+        if turns_back(i, h, group):
             continue
         size = model.system.bodies[group.points[0][i].a].extent
         allowed = REST * allowed_error(controls.rtol, controls.atol, size, 0.0)

@@ -123,7 +123,10 @@ def note_way(model, data, i, still):
 
 @kernel
 def rates(k, group):
-    """Return the greatest rate at which friction turns a slip, and the greatest acceleration by friction."""
+    """Return the greatest rate at which friction turns a slip, and the greatest acceleration by friction.
+
+    Of a joint it is at least that of its coordinate: it bounds the steps of order 1.
+    """
     rate, most, W = 0.0, 0.0, group.m[0]
     for i in range(k):
         q = 3 * i
@@ -132,6 +135,8 @@ def rates(k, group):
             force = max(force, radius_of(group, i))
         braked = force * max(W[q + 1, q + 1], W[q + 2, q + 2])
         most = max(most, braked)
+        if group.closed[i].turns == JOINT:  # where W vanishes it turns back by itself
+            most = max(most, abs(group.v[C][q + 1]))
         speed = math.hypot(group.v[U][q + 1], group.v[U][q + 2])
         if group.kind[i] == SLIDING and group.mu[i] > 0.0 and braked > 0.0:
             rate = max(rate, braked / speed if speed > 0.0 else math.inf)
