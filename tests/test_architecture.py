@@ -31,12 +31,12 @@ DOORS = {
 LOOSE = 8
 #: greatest number of lines of each folder, in hundreds: bounds only go down; a new capability states its room
 HUNDREDS = {
-    "_compiled": 18, "geometry": 8, "scene": 45, "collision": 29, "model": 31, "kinematics": 13,
-    "contact": 20, "friction": 21, "dynamics": 53, "impact": 65, "persistent": 36, "stepping": 51,
-    "results": 25, "generalized": 34, "io": 46, "control": 8, "studies": 52, "visual": 40, "baselines": 8,
+    "_compiled": 19, "geometry": 8, "scene": 45, "collision": 29, "model": 31, "kinematics": 13,
+    "contact": 20, "friction": 21, "dynamics": 53, "impact": 65, "persistent": 36, "stepping": 52,
+    "results": 26, "generalized": 35, "io": 46, "control": 8, "studies": 52, "visual": 40, "baselines": 8,
     "paper": 15, "bench": 10, "cli": 18,
 }  # fmt: skip
-MOST_LINES = 65480
+MOST_LINES = 66000
 
 
 @cache
