@@ -63,7 +63,6 @@ def assemble(run, status: Status) -> dict:
             "held_rounds": clock["rounds"], "whole_steps": clock["whole"],
             "explicit_steps": int(run.work.result["fallen"][0]),
             "parts": int(run.work.result["parts"][0]),
-            "function_calls": run.compiled.functions.calls,
             **dict(zip(("busiest_contact", "busiest_events"), busiest(rec.event, run))),
         },
         "scene": run.scene,

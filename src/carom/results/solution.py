@@ -87,8 +87,8 @@ class Solution(Portable, Drawn):
         positions that a symplectic method replaced by explicit ones; `parts`: additional steps because steps
         were divided for a large rotation of a body; `whole_steps`: steps that touching bodies, such as a crowd,
         took as time-stepping (Moreau) steps, with impacts at the end of the step (`impacts.located` is 0);
-        `function_calls`: calls of user-defined functions that Numba has not compiled. `busiest_contact` is the
-        name of the contact or stop with the most impacts and changes of contact, `busiest_events` their number.
+        `busiest_contact`: name of the contact or stop with the most impacts and changes of contact;
+        `busiest_events`: their number.
 
     scene : Scene
         The scene of the run.
