@@ -315,8 +315,11 @@ class Run:
         system = self.compiled.system, self.islands
         fields = [(one, name) for one in arrays_of(system) for name in one.dtype.names or ()]
         functions.call_from_python(one[name] for one, name in fields if name.endswith("address"))
-        state = (self.model, self.data, self.method, self.islands, self.grid, self.steps_done + 1)
-        self.call(time_loop.run, *state)
+        self.records = r.with_room(self.records, int(self.clock["saved"][0]))
+        self.save_now()  # the energy of the state that was reached
+        if not functions.blame(begin):
+            state = (self.model, self.data, self.method, self.islands, self.grid)
+            self.call(time_loop.run, *state, self.steps_done + 1)
         place.put_back()
         return functions.blame(begin)
 

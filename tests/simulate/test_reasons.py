@@ -22,6 +22,7 @@ WRONG = ("raise", "nan", "inf")
 
 def turning(rng, T, wrong, good):
     """A function that returns good(*arguments) until its first argument, the time, is beyond T."""
+    which = rng.uniform()
 
     def function(t, *arguments):
         value = np.array(good(t, *arguments), dtype=float)
@@ -29,7 +30,7 @@ def turning(rng, T, wrong, good):
             if wrong == "raise":
                 raise ArithmeticError("out of range")
             flat = value.reshape(-1)
-            flat[rng.integers(flat.size)] = np.inf if wrong == "inf" else np.nan
+            flat[int(which * flat.size)] = np.inf if wrong == "inf" else np.nan
         return value if value.ndim else float(value)
 
     return function
@@ -229,6 +230,27 @@ def test_a_large_number_is_none_that_is_not_finite():
     with np.errstate(all="ignore"):
         run = carom.simulate(system, 0.5, step=0.01, throw=False)
     assert run.status is not Status.FUNCTION_FAILED
+
+
+def test_what_costs_is_counted_and_shown(capsys, monkeypatch):
+    # Two balls that bounce: the one with e = .9 strikes more often in the same time.
+    import sys
+
+    monkeypatch.setitem(sys.modules, "tqdm", None)
+    scene = carom.Scene()
+    floor = scene.add_half_space((0, 0, 0), (0, 0, 1), name="floor")
+    for x, e, name in ((0, 0.1, "dull"), (5, 0.9, "lively")):
+        body = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(x, 0, 0.2), name=name)
+        scene.add_contact(body, floor, restitution=e)
+    a = carom.simulate(scene, 1.0, step=0.01, progress=True)
+    contact = a.events.contact
+    most = np.argmax(np.bincount(contact))
+    assert a.stats["busiest_contact"] == a.scene.contacts[most].name == "lively-floor"
+    assert a.stats["busiest_events"] == np.sum(contact == most)
+    said = capsys.readouterr().err.split("\r")[-1]
+    assert f"events, {a.stats['busiest_events']} of them of 'lively-floor'" in said
+    fall = carom.simulate(scene, 0.1, step=0.01)
+    assert (fall.stats["busiest_contact"], fall.stats["busiest_events"]) == ("", 0)
 
 
 def test_an_event_without_a_number_is_named():
