@@ -44,6 +44,7 @@ def assemble(run, status: Status) -> dict:
     """Return the fields of a `Solution`."""
     rec, clock = r.written(run.records, run.clock), r.as_numbers(run.clock)
     state, series, contacts = rec.state, rec.series, run.compiled.system.contacts
+    names = contact_names(run.scene, run.pairs).name
     return {
         "t": np.array(series["t"]),
         "position": np.array(state["x"]),
@@ -53,7 +54,7 @@ def assemble(run, status: Status) -> dict:
         "status": status,
         "warnings": (
             *sentences(run.watch[0], run.how.finer, run.scene, run.pairs),
-            *remarks(_in_time(rec.impact), _in_time(rec.event), run),
+            *remarks(_in_time(rec.impact), _in_time(rec.event), run, names),
             *stiff_forces.remarks(run, series, state),
         ),
         "stats": {
@@ -63,7 +64,7 @@ def assemble(run, status: Status) -> dict:
             "held_rounds": clock["rounds"], "whole_steps": clock["whole"],
             "explicit_steps": int(run.work.result["fallen"][0]),
             "parts": int(run.work.result["parts"][0]),
-            **dict(zip(("busiest_contact", "busiest_events"), busiest(rec.event, run))),
+            **dict(zip(("busiest_contact", "busiest_events"), busiest(rec.event, names))),
         },
         "scene": run.scene,
         "settings": dict(run.settings),

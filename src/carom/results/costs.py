@@ -8,14 +8,14 @@ from carom.model import records as r
 from carom.results.names import contact_names
 
 
-def busiest(events: np.recarray, run) -> tuple[str, int]:
+def busiest(events: np.recarray, names) -> tuple[str, int]:
     """Return the name of the contact or stop with the most impacts and changes of contact, and their number."""
     contact = events["contact"][events["contact"] >= 0]
     if not len(contact):
         return "", 0
     counts = np.bincount(contact)
     most = int(np.argmax(counts))
-    return str(contact_names(run.scene, run.pairs).name[most]), int(counts[most])
+    return str(names[most]), int(counts[most])
 
 
 def costs(run) -> str:
@@ -24,7 +24,9 @@ def costs(run) -> str:
     trials, calls = max(1, clock["trials"]), run.compiled.functions.calls
     said = []
     if clock["event"] > 0:
-        name, count = busiest(run.records.event[: clock["event"]], run)
+        name, count = busiest(
+            run.records.event[: clock["event"]], contact_names(run.scene, run.pairs).name
+        )
         said.append(f"{clock['event']} events, {count} of them of {name!r}")
     if clock["contact_steps"] > 0:
         said.append(
