@@ -19,9 +19,11 @@ from carom.model.answers import check_answers
 from carom.model.compile import compile_scene, with_pairs
 from carom.model.controls import LOCATE, PROJECT, WORK, Controls
 from carom.model.data import Data, Model
+from carom.model.kept import Snapshot, arrays_of
 from carom.model.method import IMPLICIT, THREE_FIELD
 from carom.options import Options
 from carom.results.accuracy import inaccurate
+from carom.results.costs import costs
 from carom.results.solution import Solution
 from carom.scene.all_pairs import PairTable
 from carom.scene.joints import Joint
@@ -280,6 +282,10 @@ class Run:
         """Time that the run has reached [s]."""
         return float(self.clock["now"][0])
 
+    def costs(self) -> str:
+        """Return what the run has done so far, for the progress bar."""
+        return costs(self)
+
     def go_on(self, until: int) -> Status:
         """Continue to step number `until`, or to a failure."""
         while True:
@@ -291,12 +297,31 @@ class Run:
                 if self.to_stop():  # here Ctrl-C is raised
                     return Status.INTERRUPTED
             elif isinstance(self.failure, KeyboardInterrupt):  # while a plain function ran
-                self.compiled.functions.failed = None
+                self.compiled.functions.forget()
                 return Status.INTERRUPTED
-            elif self.failure is not None:
+            elif self.failure is not None or self.is_to_blame(code):
                 return Status.FUNCTION_FAILED
             else:
                 return Status(code)
+
+    def is_to_blame(self, code: int) -> bool:
+        """Return whether a user-defined function without a finite result has ended the run."""
+        functions, begin = self.compiled.functions, float(self.clock["begin"][0])
+        if code == Status.SUCCESS or functions.blame(begin) or not functions.has_compiled:
+            return self.failure is not None
+        # once more, with compiled functions called from Python
+        place = Snapshot(self)
+        self.go_back()
+        system = self.compiled.system, self.islands
+        fields = [(one, name) for one in arrays_of(system) for name in one.dtype.names or ()]
+        functions.call_from_python(one[name] for one, name in fields if name.endswith("address"))
+        self.records = r.with_room(self.records, int(self.clock["saved"][0]))
+        self.save_now()  # the energy of the state that was reached
+        if not functions.blame(begin):
+            state = (self.model, self.data, self.method, self.islands, self.grid)
+            self.call(time_loop.run, *state, self.steps_done + 1)
+        place.put_back()
+        return functions.blame(begin)
 
     def judged(self, status: Status) -> Status:
         """Return the status at the end of the run, after the check of energy, gaps and contact problems."""

@@ -34,7 +34,16 @@ class Status(IntEnum):
     @property
     def message(self) -> str:
         """The cause of this status and a remedy, in sentences."""
-        return _MESSAGES[self]
+        return self.advice("Take a smaller step, or lower the tolerances")
+
+    @property
+    def cause(self) -> str:
+        """The cause of this status, in sentences."""
+        return _MESSAGES[self][0]
+
+    def advice(self, finer: str) -> str:
+        """Return cause and remedy; `finer` says how this run gets shorter steps (`Settings.finer`)."""
+        return " ".join(filter(None, _MESSAGES[self])).format(finer=finer)
 
 
 #: the same as plain integers, which kernels return
@@ -44,68 +53,77 @@ class Status(IntEnum):
     STEP_TOO_SMALL, INACCURATE, UNSTABLE, BLOCKED, STOPPED,
 ) = map(int, Status)  # fmt: skip
 
-_MESSAGES = {
-    Status.SUCCESS: "The run reached its end.",
+#: cause and remedy; {finer} says how a run gets shorter steps
+_MESSAGES: dict[Status, tuple[str, str]] = {
+    Status.SUCCESS: ("The run reached its end.", ""),
     Status.NO_CONVERGENCE: (
-        "The iteration of a step did not converge; take a smaller step, or raise "
-        "Options.max_iterations."
+        "The iteration of a step did not converge.",
+        "{finer}, or raise Options.max_iterations.",
     ),
     Status.STEP_CUT_TO_NOTHING: (
-        "The step was halved Options.max_cuts times, but an impact in it could not be located. Take a smaller "
-        "step, or raise Options.gap_tolerance."
+        "The step was halved Options.max_cuts times, but an impact in it could not be located.",
+        "{finer}, or raise Options.gap_tolerance.",
     ),
     Status.TOO_MANY_IMPACTS: (
         "One step has more impacts than Options.max_impacts_per_step: impacts accumulate, and no contact "
-        "becomes persistent. Take a smaller step, or a restitution below 1."
+        "becomes persistent.",
+        "{finer}, or take a restitution below 1.",
     ),
     Status.NOT_FINITE: (
-        "A position or velocity is not finite: the motion diverged. Take a smaller step, or check the forces "
-        "and stiffnesses."
+        "A position or velocity is not finite: the motion diverged.",
+        "{finer}, or check the forces and stiffnesses.",
     ),
     Status.RETURN_MAP_FAILED: (
-        "The return map to the contact surface did not converge: a body penetrates too deeply in one step. "
-        "Take a smaller step."
+        "The return map to the contact surface did not converge: a body penetrates too deeply in one step.",
+        "{finer}.",
     ),
     Status.IMPACT_FAILED: (
         "An impact has no solution: a driver moves a pair that is wedged by friction, so that no impulse stops "
-        "it, or the equations of the boundary layer could not be solved. Check W (the Delassus operator), the "
-        "friction and the velocity of the last impact."
+        "it, or the equations of the boundary layer could not be solved.",
+        "Check W (the Delassus operator), the friction and the velocity of the last impact.",
     ),
     Status.CONSTRAINTS_LOST: (
         "The bilateral constraints could not be satisfied at the end of a step: the mechanism is locked, or "
-        "the step is too large. Take a smaller step."
+        "the step is too large.",
+        "{finer}.",
     ),
     Status.FUNCTION_FAILED: (
-        "A function given by the user raised an error (the cause of this one). The solution has all results up "
-        "to then."
+        "A function given by the user raised an error, or returned a number that is not finite (the cause of "
+        "this error).",
+        "The solution has all results up to then.",
     ),
     Status.TOO_MANY_POINTS: (
-        "A group of bodies has more than 192 closed contact points at once. Give the shapes fewer vertices."
+        "A group of bodies has more than 192 closed contact points at once.",
+        "Give the shapes fewer vertices.",
     ),
     Status.SINGULAR_METRIC: (
-        "The metric is not positive definite at a position of the motion: the coordinates are singular there. "
-        "Use other coordinates, or take a smaller step."
+        "The metric is not positive definite at a position of the motion: the coordinates are singular there.",
+        "Use other coordinates. {finer}.",
     ),
     Status.STEP_TOO_SMALL: (
         "The tolerances need a step that is too small: a force jumps or grows without bound, or rtol and atol "
-        "are below round-off. Raise rtol and atol, or give a step."
+        "are below round-off.",
+        "Raise rtol and atol, or give a step.",
     ),
     Status.INACCURATE: (
-        "The run reached its end, but it is inaccurate. The solution is complete; do not trust it before the "
-        "reason is removed."
+        "The run reached its end, but it is inaccurate.",
+        "The solution is complete; do not trust it before the reason is removed.",
     ),
     Status.UNSTABLE: (
         "The steps gained as much energy as they exchanged, even after they were shortened: springs, dampers "
-        'or loads are too stiff for the step. Take a smaller step, or method="implicit".'
+        "or loads are too stiff for the step.",
+        '{finer}, or use method="implicit" with a step.',
     ),
     Status.BLOCKED: (
         "A driver presses a body against another one or a half-space, and the body cannot move away: no motion "
-        "satisfies both the driver and the contact. Change the prescribed motion, or attach the body by a "
-        "spring, or by a joint that lets it move away."
+        "satisfies both the driver and the contact.",
+        "Change the prescribed motion, or attach the body by a spring, or by a joint that lets it move away.",
     ),
-    Status.STOPPED: "An event ended the run, as requested.",
-    Status.INTERRUPTED: "The run was interrupted. The solution has all results up to then.",
-}
+    Status.STOPPED: ("An event ended the run, as requested.", ""),
+    Status.INTERRUPTED: (
+        "The run was interrupted.", "The solution has all results up to then.",
+    ),
+}  # fmt: skip
 
 
 class AccuracyWarning(UserWarning):

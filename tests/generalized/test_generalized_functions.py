@@ -115,7 +115,9 @@ def test_an_error_of_a_function_is_the_cause():
         return potential(q)
 
     system = GeneralizedSystem(metric, potential=fails, **START)
-    with pytest.raises(carom.SimulationError, match="raised an error") as caught:
+    with pytest.raises(
+        carom.SimulationError, match=r"function .potential. raised RuntimeError: beyond -1 at t = "
+    ) as caught:
         carom.simulate(system, 1.0, step=1e-2)
     assert isinstance(caught.value.__cause__, RuntimeError)
     assert "beyond -1" in str(caught.value.__cause__)
@@ -152,7 +154,8 @@ def test_a_gap_that_is_no_number_ends_the_run():
     system = GeneralizedSystem(lambda q: [[1.0]], [1.0], [-1.0])
     system.add_contact(lambda q: np.nan if q[0] < 0.5 else q[0] + 1.0, restitution=0.5)
     run = carom.simulate(system, 1.0, step=1e-2, throw=False)
-    assert run.status is carom.Status.NOT_FINITE
+    assert run.status is carom.Status.FUNCTION_FAILED
+    assert run.message.startswith("The function 'gap of contact 0' returned nan at t = 0.5")
 
 
 def test_motion_that_diverges_ends_with_a_status():
@@ -172,4 +175,5 @@ def test_a_potential_that_is_no_number_is_no_success():
     )  # fmt: skip
     s = carom.simulate(system, 0.2, step=0.01, throw=False)
     assert s.status is carom.Status.INACCURATE
-    assert "nan J" in s.warnings[0]
+    assert s.warnings[0].startswith("The function 'potential' returned nan at t = 0.15 s")
+    assert "nan J" in s.warnings[1]

@@ -13,6 +13,7 @@ from carom.results.accuracy import inaccurate, sentences, watched
 from carom.results.ledger import Ledger
 from simulate.scenes import G
 
+FINER = "Take a smaller step"
 TOLERANCE = carom.Options().energy_tolerance
 AS_THEY_ARE = carom.Options(energy_tolerance=1.0)  # steps are not cut for what they lose
 
@@ -142,12 +143,12 @@ def test_a_line_that_never_rises(line):
     assert np.all(np.abs(balance.residual) < 1e-15)
     watch = watched(np.arange(5.0), balance, 0.0, 1e-4)
     assert inaccurate(watch)
-    (said,) = sentences(watch)
+    (said,) = sentences(watch, FINER)
     assert "0.3 J at t = 3 s, 0.15 of the largest energy exchanged (2 J)" in said
     if line == "impacts":  # Newton's law with friction says so
         named = watched(np.arange(5.0), balance, np.array([0, 0, 0, 0.3, 0.3]), 1e-4)
         assert not inaccurate(named)
-        assert sentences(named) == ()
+        assert sentences(named, FINER) == ()
 
 
 @pytest.mark.parametrize("unit", [1e-20, 1e20])
@@ -157,7 +158,7 @@ def test_round_off_is_relative_to_the_energies(unit):
     zero = np.zeros(3)
     watch = watched(np.arange(3.0), Ledger(kinetic, zero, zero, impacts, zero, zero), 0.0, 1e-4)
     assert inaccurate(watch)
-    assert "0.15 of the largest energy exchanged" in sentences(watch)[0]
+    assert "0.15 of the largest energy exchanged" in sentences(watch, FINER)[0]
 
 
 def test_what_newtons_law_gives_is_named():
@@ -311,7 +312,7 @@ def test_a_body_in_another_and_a_joint_beyond_its_stop_are_said():
     run = carom.simulate(scene, 0.1, step=0.01)._run
     run.now["x"][1, 0] = 0.1 - 1e-6
     look_at_depth(run.compiled.system, run.now, 0.1, run.work, run.watch)
-    (said,) = sentences(run.watch[0], scene)
+    (said,) = sentences(run.watch[0], FINER, scene)
     assert said.startswith("Body 'right' penetrates 'left' by 2e-05 of its size")
 
     scene = carom.Scene(gravity=(0, 0, 0))
@@ -322,7 +323,7 @@ def test_a_body_in_another_and_a_joint_beyond_its_stop_are_said():
     run.now["Q"][0] = (np.cos(5e-5), 0, 0, -np.sin(5e-5))
     run.now["x"][0] = (0.1 * np.cos(1e-4), -0.1 * np.sin(1e-4), 0)
     look_at_depth(run.compiled.system, run.now, 0.1, run.work, run.watch)
-    (said,) = sentences(run.watch[0], scene)
+    (said,) = sentences(run.watch[0], FINER, scene)
     assert said.startswith("Joint 'hinge' exceeds its stop by 0.0001 of the size of its body")
 
 
@@ -340,14 +341,14 @@ def test_a_body_in_what_it_touches_is_said():
     size = 0.1 * np.sqrt(3.0)
     for body, words in ((0, "Body 'low' penetrates 'floor'"), (1, "Body 'high' penetrates 'low'")):
         run = carom.simulate(scene, 0.1, step=0.01)._run
-        assert sentences(run.watch[0], scene) == ()
+        assert sentences(run.watch[0], FINER, scene) == ()
         for depth, status in ((1e-6, Status.SUCCESS), (3e-2, Status.INACCURATE)):
             state = run.now.copy()
             state["x"][body:, 2] -= depth
             look_at_depth(run.compiled.system, state, 0.07, run.work, run.watch)
             assert run.watch["depth"][0] == pytest.approx(depth / size, abs=1e-12)
             assert run.judged(Status.SUCCESS) is status
-            (said,) = sentences(run.watch[0], scene)
+            (said,) = sentences(run.watch[0], FINER, scene)
             assert said.startswith(words)
             assert "t = 0.07 s" in said
 
@@ -366,7 +367,7 @@ def test_contacts_that_are_not_solved():
     for part, status, said in ((0.009, "SUCCESS", 0), (0.05, "SUCCESS", 1), (0.2, "INACCURATE", 1)):
         run.watch["unsolved"], run.watch["unsolved_at"] = part * run.watch["speed"], 0.15
         assert run.judged(Status.SUCCESS).name == status
-        assert len(sentences(run.watch[0], scene)) == said
+        assert len(sentences(run.watch[0], FINER, scene)) == said
     run.watch["unsolved"] = np.nan
     assert run.judged(Status.SUCCESS) is Status.INACCURATE
-    assert "m/s at t = 0.15 s" in sentences(run.watch[0], scene)[0]
+    assert "m/s at t = 0.15 s" in sentences(run.watch[0], FINER, scene)[0]

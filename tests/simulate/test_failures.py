@@ -15,7 +15,7 @@ def check_failure(status, scene, duration, **settings):
     a = carom.simulate(scene, duration, throw=False, **settings)
     assert a.status is status
     assert not a.success
-    assert a.message.startswith(status.message)
+    assert a.message.startswith(status.cause)
     assert "reached t = " in a.message
     with pytest.raises(SimulationError, match="reached t = ") as error:
         carom.simulate(scene, duration, **settings)

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from carom._compiled.user_functions import raised
 from carom.control.conditions import Condition, Look
 from carom.model.kept import Snapshot
 from carom.model.records import with_room
@@ -53,7 +54,10 @@ class Watched:
         self.stopped_by, self.joints = "", {}
         self.began, self.struck = 0.0, 0
         look = self.look()
-        self.values = [1.0 if c.rest else c.value(look) for c in conditions]  # it is yet to rest
+        self.asked, self.at = "", 0.0  # the condition that was evaluated last, and its time
+        self.values = [
+            1.0 if c.rest else self.value(c, look) for c in conditions
+        ]  # it is yet to rest
 
     def __getattr__(self, name: str) -> Any:
         # what the watch does not change: `steps`, `failure`, `go_back`, ...
@@ -90,6 +94,11 @@ class Watched:
         """Return the run as conditions see it."""
         return Look(self.run, SystemState(self.run, self.joints), self.struck)
 
+    def value(self, condition: Condition, look: Look) -> float:
+        """Return the value of a condition."""
+        self.asked, self.at = condition.name, look.state.t
+        return condition.value(look)
+
     def review(self) -> Status:
         """Look at the step that was just taken; go back before it where that fails."""
         try:
@@ -101,14 +110,16 @@ class Watched:
             self.put_back()
             raise
         except Exception as error:  # of a function of the user's
+            self.run.compiled.functions.fail(
+                error, f"{self.asked} {raised(error)} at t = {self.at:.9g} s"
+            )
             self.put_back()
-            self.run.compiled.functions.failed = error
             return Status.FUNCTION_FAILED
 
     def find(self) -> Status:
         """Find the events of the last step, and stop at the first that ends the run."""
         look, step = self.look(), self.run.steps_done
-        old, self.values = self.values, [c.value(look) for c in self.conditions]
+        old, self.values = self.values, [self.value(c, look) for c in self.conditions]
         changed = [i for i, c in enumerate(self.conditions) if crosses(c, old[i], self.values[i])]
         if not changed:
             return Status.SUCCESS
@@ -143,7 +154,7 @@ class Watched:
                 self.put_back()
                 self.go_to(step, t)
                 look = self.look()
-                known[t] = condition.value(look) or -side * LEAST
+                known[t] = self.value(condition, look) or -side * LEAST
                 if known[t] * side < 0.0 and t < best.t:
                     best = look.state
             return known[t]

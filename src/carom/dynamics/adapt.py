@@ -66,7 +66,7 @@ def note_miss(system, E, h, longest, b, work):
     T = min(longest, L / pace if pace > 0.0 else 0.0)
     for e in range(E.shape[0]):
         m = greatest_error(E[e], h, L, T, b, work)
-        if not m <= miss[e]:  # NaN too
+        if not m <= miss[e] and miss[e] == miss[e]:  # NaN stays
             miss[e] = m
     miss[2] = max(miss[2], max(L, abs(h) * speed))
     return T
@@ -108,7 +108,7 @@ def step_error(system, rtol, atol, work):
         error, second = miss[0] / allowed, miss[1] / allowed
         if second > 0.0:
             error = error * error / math.sqrt(error * error + 0.01 * second * second)
-        if not error <= greatest:  # NaN too
+        if not error <= greatest and greatest == greatest:  # NaN stays
             greatest = error
     return greatest
 

@@ -87,7 +87,7 @@ def note_kick(system, k, work):
         for i in range(6):
             unit_of = 1.0 if i < 3 else length
             size = max(size, abs(wrench[i]) / unit_of)
-            if not abs(wrench[i] - kept[i]) / unit_of <= change:
+            if not abs(wrench[i] - kept[i]) / unit_of <= change and change == change:
                 change = abs(wrench[i] - kept[i]) / unit_of
             kept[i] = wrench[i]
     if k == 0:

@@ -46,7 +46,7 @@ def largest_position_error(system, state, work):
         position_error(system, j, state, work)
         for k in range(6):
             e = abs(bias[k]) if k < 3 else (abs(bias[k]) - near) * size
-            if not (e <= largest):
+            if not e <= largest and largest == largest:  # NaN replaces any number, and stays
                 largest = e
             bias[k] = -bias[k]
     return largest

@@ -98,6 +98,16 @@ def _reach(q, v):
     return size / speed if speed > 0.0 else 0.0
 
 
+def points(q, v):
+    """Yield the coordinates at which differences at a state (q, v) call functions, q first."""
+    yield q
+    for s in (-1, 1, -2, 2):
+        for k in range(len(q)):
+            yield q + s * STEP * max(1.0, abs(q[k])) * (np.arange(len(q)) == k)
+        for step in (STEP, STEP_TWICE):
+            yield q + s * step * _reach(q, v) * v
+
+
 def along(rows, n, m):
     """Return (d rows/dt) v (m,), from the rows at points slightly forward and backward along v."""
     reach = joined(_reach, rows)

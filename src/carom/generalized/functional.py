@@ -8,12 +8,14 @@ from typing import Any
 import numpy as np
 
 from carom._compiled.composed import joined
+from carom._compiled.user_functions import raised, returned
 from carom.generalized.differences import (
     along,
     along_one,
     as_array,
     as_rows,
     derivative,
+    points,
     second,
     swapped,
 )
@@ -43,9 +45,28 @@ class FunctionalModel:
         made.append(self.row_terms() if self.rows else None)
         made.append(self.contact_terms() if C else None)
         return [
-            functions.address(one, (2 * n,), (size,)) if one is not None else 0
+            functions.address(one, (2 * n,), (size,), self.fault) if one is not None else 0
             for one, size in zip(made, sizes)
         ]
+
+    def fault(self, t: float, x: np.ndarray) -> str:
+        """Return which function raises an error or has a result that is not finite, at a state or beside it.
+
+        Return "" if none has: their products overflow.
+        """
+        n, parts = self.n, {name: f for name, f in self.given.items() if f is not None}
+        for c, (gap, gradient, tangent, _) in enumerate(self.contacts):
+            own = {"gap": gap, "gap_gradient": gradient, "tangent": tangent}
+            parts |= {f"{name} of contact {c}": f for name, f in own.items() if f is not None}
+        for q in points(x[:n], x[n:]):
+            for name, f in parts.items():
+                try:
+                    values = f(t, q.copy(), x[n:].copy()) if name == "force" else f(q.copy())
+                except Exception as error:
+                    return f"the function {name!r} {raised(error)}"
+                if said := returned(values):
+                    return f"the function {name!r} {said}"
+        return ""
 
     def inertia(self) -> Callable:
         """Return M and Gamma_kij v_i v_j."""

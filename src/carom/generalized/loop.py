@@ -132,7 +132,7 @@ def step_error(motion, h, plan):
                 q += E[e, s] * stages[s, i]
                 v += E[e, s] * stages[s, n + i]
             miss = h * max(abs(q), T * abs(v)) / allowed
-            if e == 0 and not miss <= first:
+            if e == 0 and not miss <= first and first == first:
                 first = miss
             if e == 1:
                 second = max(second, miss)

@@ -25,6 +25,7 @@ from carom.generalized.layout import (
 )  # fmt: skip
 from carom.generalized.loop import save_now, time_loop
 from carom.generalized.step import project_rates
+from carom.model.kept import Kept
 from carom.status import Status
 from carom.stepping.grid import STATES, Grid, make_grid
 
@@ -75,7 +76,7 @@ class GeneralizedRun:
             self.settings["atol"] = atol
         same = made.system.drop == options.drop_tolerance
         self.made: Evaluation = made if same else Evaluation(system, options.drop_tolerance)
-        self.made.functions.failed = None
+        self.made.functions.forget()
         self.system = self.made.system
         n, h, k, C = (int(one) for one in self.system.size)
         self.n = n
@@ -94,6 +95,7 @@ class GeneralizedRun:
         self.contacts = Contacts(self)
         self.counts = {"located events": 0, "impacts": 0, "holds": 0}
         self.failure: BaseException | None = None
+        self.reason = ""  # of a failure, beyond its status
         self.at_once, self.last, self.in_step = 0, -1.0, -1
         if start is None:
             self.check_start()
@@ -165,14 +167,34 @@ class GeneralizedRun:
             if code != EVENT:
                 break
             code = self.event()
-        if self.made.functions.failed is not None:
-            self.failure, self.made.functions.failed = self.made.functions.failed, None
+        functions = self.made.functions
+        if code != DONE and self.failure is None and not functions.blame(self.reached):
+            if functions.has_compiled:
+                self.look_again()
+        if functions.failed is not None:
+            self.failure, functions.failed = functions.failed, None
         if isinstance(self.failure, KeyboardInterrupt):  # while a plain function ran
             self.failure = None
             return Status.INTERRUPTED
         if self.failure is not None:
+            self.reason = functions.reason
             return Status.FUNCTION_FAILED
         return Status.SUCCESS if code == DONE else Status(code)
+
+    def look_again(self) -> None:
+        """Take the step that failed once more, with compiled functions of the user's called from Python."""
+        place = Kept((self.motion, self.x, self.clock))
+        self.made.functions.call_from_python([self.system.address])
+        time_loop(self.motion, self.x, self.plan, self.steps_done + 1, self.record)
+        place.restore()
+        self.made.functions.blame(self.reached)
+
+    def costs(self) -> str:
+        """Return what the run has done so far, for the progress bar."""
+        counts, calls = {k: n for k, n in self.counts.items() if n}, self.made.functions.calls
+        if calls:
+            counts["calls of Python functions"] = calls
+        return "; ".join(f"{count} {name}" for name, count in counts.items())
 
     def counted(self) -> dict[str, int]:
         """Return the numbers of steps, of trial steps, and of those that were rejected."""

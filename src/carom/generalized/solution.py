@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from carom import checks
+from carom._compiled.user_functions import Fault
 from carom.results.drawn import Drawn
+from carom.results.endings import message
 from carom.results.event_tables import EventTable
 from carom.results.ledger import Ledger
 from carom.scene.materials import IMPACT_LAWS
@@ -131,21 +133,25 @@ class GeneralizedSolution(Drawn):
         states = run.states[:saved].copy()
         kinetic, potential = np.zeros(saved), np.zeros(saved)
         t = np.array(series.t)
-        failed, run.made.functions.failed = run.made.functions.failed, None
+        functions, said = run.made.functions, ()
         energies(run.system, t, states, kinetic, potential, run.work)
+        if len(bad := np.flatnonzero(~np.isfinite(kinetic + potential))):
+            name = getattr(run.user._model, "fault", "an expression of the energy")
+            first = Fault(name, float(t[bad[0]]), states[bad[0]], "returned no finite number")
+            said = (f"{str(first).capitalize()}.",) if str(first) else ()
         some = slice(None, None, max(1, saved // 8))
         later, below = np.zeros((2, len(t[some])))
         at = t[some] + 0.4321 * run.plan.duration
         energies(run.system, at, states[some], later, below, run.work)
         now = [kinetic[some], potential[some]]
         steady = np.array_equal([later, below], now, equal_nan=True)
-        run.made.functions.failed = failed
+        functions.forget()
         names = ("loads", "impacts", "friction", "bounces")
         ledger = Ledger(kinetic, potential, *(np.array(series[one]) for one in names))
         impacts, warnings = impact_table(run.contacts.strike.records, n), ()
         if steady:  # energies that depend on time are not conserved
             watch = watched(t, ledger, given_by_law(t, impacts), run.options.energy_tolerance)
-            warnings = sentences(watch)
+            warnings = (*said, *sentences(watch, run.how.finer))
             if status is Status.SUCCESS and inaccurate(watch):
                 status = Status.INACCURATE
         events = run.contacts.events
@@ -168,11 +174,8 @@ class GeneralizedSolution(Drawn):
     @property
     def message(self) -> str:
         """How the run ended, in sentences; if it failed, with the time that it reached."""
-        if self.status.ended:
-            why = self.warnings if self.status is Status.INACCURATE else ()
-            return " ".join((self.status.message, *why))
-        failed = f"{self._run.failure!r}, " if self._run.failure is not None else ""
-        return f"{self.status.message} ({failed}reached t = {self.t[-1]:.9g} s)"
+        run = self._run
+        return message(self.status, run.reason, run.how.finer, self.t[-1], self.warnings)
 
     @property
     def total_energy(self) -> np.ndarray:

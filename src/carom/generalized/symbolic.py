@@ -232,7 +232,8 @@ class SymbolicModel:
                 result.append(0)
                 continue
             written = self.write(name, terms)
-            result.append(functions.written(written, (2 * self.n,), (len(terms),)))
+            sizes = (2 * self.n,), (len(terms),)
+            result.append(functions.written(written, *sizes, f"an expression ({name})"))
         return result
 
     def write(self, name: str, terms: list):

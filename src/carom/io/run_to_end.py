@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import warnings
+from collections.abc import Callable
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -26,6 +27,8 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
     """
     total = run.steps
     report = reporter(progress, total, "step")
+    if isinstance(report, _Shown):
+        report.costs = run.costs
     late, wish = isinstance(report, _Late), None
     if keeper is not None:
         wish = keeper.interval / LOOKS
@@ -91,20 +94,33 @@ def goals(done, total: int, most: int, wish: float | None):
             part = max(1, part // 2) if took > wish else part
 
 
-class _Text:
+class _Shown:
+    """Progress that is shown, with what has cost time so far."""
+
+    costs: Callable[[], str] = staticmethod(lambda: "")
+
+    def __call__(self, done: float, total: float) -> None:
+        """Show it."""
+        raise NotImplementedError
+
+
+class _Text(_Shown):
     """Progress as plain text: one line, written over."""
 
     def __init__(self, unit: str):
-        self.unit = unit
+        self.unit, self.width = unit, 0
 
     def __call__(self, done: float, total: float) -> None:
-        print(f"\r{self.unit} {done:g} of {total:g}", end="", file=sys.stderr, flush=True)
+        costs = self.costs()
+        said = f"{self.unit} {done:g} of {total:g}{costs and ': '}{costs}".ljust(self.width)
+        self.width = len(said.rstrip())
+        print(f"\r{said}", end="", file=sys.stderr, flush=True)
 
     def close(self) -> None:
         print(file=sys.stderr)
 
 
-class _Bar:
+class _Bar(_Shown):
     """A tqdm bar as a progress function."""
 
     def __init__(self, total: float, unit: str):
@@ -113,6 +129,7 @@ class _Bar:
         self.bar = tqdm(total=total, unit=unit)
 
     def __call__(self, done: float, total: float) -> None:
+        self.bar.set_postfix_str(self.costs(), refresh=False)
         self.bar.update(done - self.bar.n)
 
     def close(self) -> None:
@@ -126,7 +143,7 @@ def _shown(total: float, unit: str):
         return _Text(unit)
 
 
-class _Late:
+class _Late(_Shown):
     """A bar that appears when a run has taken longer than `PATIENCE`."""
 
     def __init__(self, total: float, unit: str):
@@ -135,6 +152,7 @@ class _Late:
     def __call__(self, done: float, total: float) -> None:
         if self.bar is None and perf_counter() - self.begin > PATIENCE and done < total:
             self.bar = _shown(*self.what)
+            self.bar.costs = self.costs
         if self.bar is not None:
             self.bar(done, total)
 

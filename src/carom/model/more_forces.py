@@ -47,17 +47,19 @@ class MoreForces:
             if isinstance(d, CurveSpring):
                 self.curves[force.index] = pieces.add(d.tension)
             elif isinstance(d, JointForce) or (isinstance(d, JointSpring) and not implicit):
-                self.pushes.append(_push(d, coordinates, functions))
+                self.pushes.append(_push(force, coordinates, functions))
             elif isinstance(d, JointFriction):
                 self.frictions.append(_friction(d, coordinates))
             elif isinstance(d, UserForce):
-                self.forces.append(self._of_user(d, functions))
+                self.forces.append(self._of_user(force, functions))
 
-    def _of_user(self, d, functions):
+    def _of_user(self, force, functions):
+        d, name = force.definition, f"the force {force.name!r}"
         made, n = table(USER_FORCE, 1), len(d.bodies)
-        made.address = functions.address(d.function, (n, 13), (n, 6))
+        made.address = functions.address(d.function, (n, 13), (n, 6), name)
         if d.potential is not None:
-            made.energy_address = functions.address(d.potential, (n, 13), (1,))
+            potential = f"the potential of {name}"
+            made.energy_address = functions.address(d.potential, (n, 13), (1,), potential)
         made.first = len(self.named)
         self.named += [b.index for b in d.bodies]
         made.last = len(self.named)
@@ -70,13 +72,14 @@ class MoreForces:
         return bool(self.pushes or self.forces or self.frictions or self.curves)
 
 
-def _push(d, coordinates, functions):
-    made = table(PUSH, 1)
+def _push(force, coordinates, functions):
+    d, made = force.definition, table(PUSH, 1)
     made.coordinate = coordinates.number(d.joint, d.coordinate)
     if isinstance(d, JointSpring):
         made.stiffness, made.damping, made.rest = d.stiffness, d.damping, d.rest
     elif callable(d.force):
-        made.address = functions.address(_of_coordinate(d.force), (2,), (1,))
+        name = f"the force {force.name!r}"
+        made.address = functions.address(_of_coordinate(d.force), (2,), (1,), name)
     else:
         made.force = d.force
     return made

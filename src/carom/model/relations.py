@@ -90,9 +90,9 @@ class Elements:
         for constraint in scene.constraints:
             d = constraint.definition
             if isinstance(d, Rows):
-                self._user(d, functions)
+                self._user(constraint, functions)
             else:
-                self._relation(d, functions, sizes)
+                self._relation(constraint, functions, sizes)
 
     def _add(self, kind, rows, number, bodies):
         self.kinds.append(kind)
@@ -134,18 +134,20 @@ class Elements:
             self.relations.append(table(RELATION_ROW, 1))
             self.terms.append([(coordinate, 1.0)])
 
-    def _user(self, d, functions):
+    def _user(self, constraint, functions):
+        d, name = constraint.definition, f"the constraint {constraint.name!r}"
         n, rows = len(d.bodies), d.rows
         made = table(USER_ROW, 1)
-        made.address = functions.address(d.function, (n, 7), (rows, 6 * n + 1))
+        made.address = functions.address(d.function, (n, 7), (rows, 6 * n + 1), name)
         if d.position is not None:
-            made.position_address = functions.address(d.position, (n, 7), (rows,))
+            position = f"the position of {name}"
+            made.position_address = functions.address(d.position, (n, 7), (rows,), position)
         self.width = max(self.width, rows * (6 * n + 1), 7 * n)
         self._add(USER_ROWS, rows, len(self.user), [b.index for b in d.bodies])
         self.user.append(made)
 
-    def _relation(self, d, functions, sizes):
-        made = table(RELATION_ROW, 1)
+    def _relation(self, constraint, functions, sizes):
+        d, made = constraint.definition, table(RELATION_ROW, 1)
         given = d.terms if isinstance(d, Coupling) else ((d.joint, d.coordinate, 1.0),)
         terms = [(self.coordinates.number(joint, k), factor) for joint, k, factor in given]
         lengths = [
@@ -154,20 +156,22 @@ class Elements:
         ]
         made.scale = max(lengths)
         if not isinstance(d, Coupling):
-            self._motion(d, made, functions)
+            self._motion(constraint, made, functions)
         bodies = sorted(set().union(*(self.coordinates.bodies(k) for k, _ in terms)))
         self._add(RELATION, 1, len(self.relations), bodies)
         self.relations.append(made)
         self.terms.append(terms)
 
-    def _motion(self, d, made, functions):
+    def _motion(self, constraint, made, functions):
+        d = constraint.definition
         if d.rate is not None:
             made.rate = d.rate
             return
         if hasattr(d.motion, "c") and hasattr(d.motion, "x"):
             made.piece, made.last_piece = self.pieces.add(d.motion)
         else:
-            made.address = functions.address(_of_time(d.motion), (1,), (3,))
+            name = f"the motion of {constraint.name!r}"
+            made.address = functions.address(_of_time(d.motion), (1,), (3,), name)
 
     def arrays(self, solver, more: MoreForces) -> Relations:
         """Return the tables, with the sides that `solver` gave to the bodies."""

@@ -200,7 +200,7 @@ def write_equations(k, n, hg, group):
         width = 2 if i + 1 < n and rows[i + 1] // 3 == row // 3 else 1
         write_disc(k, n, i, width, hg, group)
         for r in range(i, i + width):
-            if not abs(x[r]) <= most:
+            if not abs(x[r]) <= most and most == most:
                 most = abs(x[r])
         i += width
     return most

@@ -86,6 +86,6 @@ def greatest(n, a):
     """Return the greatest entry of a vector; NaN if it has one."""
     most = 0.0
     for i in range(n):
-        if not abs(a[i]) <= most:
+        if not abs(a[i]) <= most and most == most:
             most = abs(a[i])
     return most

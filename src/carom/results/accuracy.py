@@ -37,18 +37,18 @@ GOOD = 1e-3  # the same difference for the step that the sentence recommends
 _WHAT = {
     RESIDUAL: (
         "Energy error that no entry of the ledger explains:",
-        "Take a smaller step, or raise the tolerance",
+        "{finer}, or raise the tolerance",
     ),
     IMPACTS: ("Energy that impacts added, which is not physical:", 'Use impact_law="stronge"'),
     FRICTION: (
         "Energy that friction added, which is not physical:",
-        "Take a smaller step, or raise the tolerance",
+        "{finer}, or raise the tolerance",
     ),
     BOUNCES: (
         "Energy that was added where small bounces were dropped, which is not physical:",
-        "Take a smaller step",
+        "{finer}",
     ),
-    ALL: ("Sum of several energy errors:", "Take a smaller step, or raise the tolerance"),
+    ALL: ("Sum of several energy errors:", "{finer}, or raise the tolerance"),
 }
 
 _WHY = {
@@ -66,9 +66,13 @@ def beyond(i: int, watch: np.record | np.ndarray, times: float = 1.0):
     The work that applied forces could do over the allowed errors of positions is allowed too: at rest no energy
     is exchanged, and its round-off is no error.
     """
-    allowed = (watch["tolerance"] * watch["exchanged"] + watch["able"]) * times
-    allowed = allowed + ROUND_OFF * watch["size"]
-    return ~(np.abs(watch["amount"][..., i]) <= allowed)
+    return ~(np.abs(watch["amount"][..., i]) <= allowed(watch, times))
+
+
+def allowed(watch: np.record | np.ndarray, times: float = INACCURATE):
+    """Return `times` the energy errors that the tolerance allows [J]."""
+    most = (watch["tolerance"] * watch["exchanged"] + watch["able"]) * times
+    return most + ROUND_OFF * watch["size"]
 
 
 def inaccurate(watch: np.record | np.ndarray):
@@ -78,20 +82,34 @@ def inaccurate(watch: np.record | np.ndarray):
 
 
 def sentences(
-    watch: np.record, scene: Scene | None = None, pairs: PairTable | None = None
+    watch: np.record, finer: str, scene: Scene | None = None, pairs: PairTable | None = None
 ) -> tuple[str, ...]:
-    """Return a sentence for each error that is too large: of energy, penetration, or contact problems.
+    """Return a sentence for each error that is too large, of energy, penetration, or contact problems.
 
-    Each sentence has the time of the error and a remedy. `pairs` are the pairs of the contacts of the run, None
-    for all pairs of the scene.
+    The first is that of the error which exceeds its bound most: it decides whether a run is a success. Each has
+    the time of the error and a remedy, `finer` for shorter steps. `pairs` are the pairs of the contacts of the
+    run, None for all pairs of the scene.
     """
     kinds = [i for i in (RESIDUAL, IMPACTS, FRICTION, BOUNCES) if beyond(i, watch)]
     if not kinds and beyond(ALL, watch):
         kinds = [ALL]
-    deep = [_of_depth(watch, scene, pairs)] if scene is not None and watch.depth > DEEP else []
-    poor = [] if watch.unsolved <= POOR * watch.speed else [_of_contacts(watch)]
-    whole = [_of_whole(watch)] if watch.whole > 0 else []
-    return (*(_sentence(i, watch) for i in kinds), *deep, *poor, *whole)
+    found = [
+        (_excess(abs(watch.amount[i]), float(allowed(watch))), _of_energy(i, watch)) for i in kinds
+    ]
+    if scene is not None and watch.depth > DEEP:
+        found.append((_excess(watch.depth, TOO_DEEP), _of_depth(watch, scene, pairs)))
+    if not watch.unsolved <= POOR * watch.speed:
+        found.append((_excess(watch.unsolved, TOO_POOR * watch.speed), _of_contacts(watch)))
+    found.sort(key=lambda one: -one[0])
+    if watch.whole > 0:
+        found.append((0.0, _of_whole(watch)))
+    return tuple(sentence.format(finer=finer) for _, sentence in found)
+
+
+def _excess(error: float, bound: float) -> float:
+    """Return an error in parts of the bound beyond which a run is no success; NaN is the worst."""
+    part = float(error) / max(float(bound), 1e-300)
+    return np.inf if np.isnan(part) else part
 
 
 def _of_whole(watch: np.record) -> str:
@@ -101,7 +119,7 @@ def _of_whole(watch: np.record) -> str:
         f"{watch.whole} time-stepping (Moreau) steps of up to {watch.whole_length:.3g} s, the first at t = "
         f"{watch.whole_at:.6g} s of {watch.whole_bodies} bodies: {why}. Their "
         f"impacts are at the ends of these steps: a body is misplaced by up to {watch.whole_error:.2g} of its "
-        "size. Give a shorter Options.max_step, or a step."
+        "size. {finer}."
     )
 
 
@@ -110,7 +128,8 @@ def _of_contacts(watch: np.record) -> str:
     return (
         f"A contact problem was solved with an error of {watch.unsolved:.2g} m/s at t = "
         f"{watch.unsolved_at:.6g} s (greatest speed: {watch.speed:.2g} m/s): closed points may approach or "
-        "slip at this speed although they should not. Take a smaller step."
+        f"slip at this speed although they should not. Up to {TOO_POOR:g} of the greatest speed is allowed. "
+        "{finer}."
     )
 
 
@@ -126,18 +145,19 @@ def _of_depth(watch: np.record, scene: Scene, pairs: PairTable | None) -> str:
         stop = scene.stops[number - len(pairs.body)]
         said = f"Joint {stop.joint.name!r} exceeds its stop by {watch.depth:.2g} of the size of its body"
     return (
-        f"{said} at t = {watch.deep_at:.6g} s: events follow each other too fast to be located. Take a "
-        "smaller step."
+        f"{said} at t = {watch.deep_at:.6g} s ({TOO_DEEP:g} is allowed): events follow each other too fast to "
+        "be located. {finer}."
     )
 
 
-def _sentence(i: int, watch: np.record) -> str:
+def _of_energy(i: int, watch: np.record) -> str:
+    """Return the sentence about an energy error."""
     what, cure = _WHAT[i]
-    amount, of = float(watch.amount[i]), float(watch.exchanged)
+    amount, of, bound = float(watch.amount[i]), float(watch.exchanged), float(watch.tolerance)
     part = abs(amount) / of if of > 0.0 else np.inf
     return (
         f"{what} {amount:.3g} J at t = {watch.time[i]:.6g} s, {part:.2g} of the largest energy exchanged "
-        f"({of:.3g} J); the tolerance is Options.energy_tolerance = {float(watch.tolerance):g}. {cure}."
+        f"({of:.3g} J); the tolerance is Options.energy_tolerance = {bound:g}. {cure}."
     )
 
 

@@ -14,8 +14,10 @@ from carom.model import records as r
 from carom.model.arrays import STOP
 from carom.results import stiff_forces
 from carom.results.accuracy import sentences
+from carom.results.costs import busiest
 from carom.results.event_tables import ContactTable, EventTable, ImpactTable, contact_table
 from carom.results.impact_remarks import remarks
+from carom.results.locks import locked
 from carom.results.names import constrained, contact_names, row_units
 from carom.scene.forces import AppliedForce
 from carom.scene.materials import IMPACT_LAWS
@@ -42,6 +44,7 @@ def assemble(run, status: Status) -> dict:
     """Return the fields of a `Solution`."""
     rec, clock = r.written(run.records, run.clock), r.as_numbers(run.clock)
     state, series, contacts = rec.state, rec.series, run.compiled.system.contacts
+    names = contact_names(run.scene, run.pairs).name
     return {
         "t": np.array(series["t"]),
         "position": np.array(state["x"]),
@@ -50,8 +53,8 @@ def assemble(run, status: Status) -> dict:
         "held_residual": np.array(series["residual"]),
         "status": status,
         "warnings": (
-            *sentences(run.watch[0], run.scene, run.pairs),
-            *remarks(_in_time(rec.impact), _in_time(rec.event), run),
+            *sentences(run.watch[0], run.how.finer, run.scene, run.pairs),
+            *remarks(_in_time(rec.impact), _in_time(rec.event), run, names),
             *stiff_forces.remarks(run, series, state),
         ),
         "stats": {
@@ -61,11 +64,13 @@ def assemble(run, status: Status) -> dict:
             "held_rounds": clock["rounds"], "whole_steps": clock["whole"],
             "explicit_steps": int(run.work.result["fallen"][0]),
             "parts": int(run.work.result["parts"][0]),
+            **dict(zip(("busiest_contact", "busiest_events"), busiest(rec.event, names))),
         },
         "scene": run.scene,
         "settings": dict(run.settings),
         "pairs": run.pairs,
         "_run": run,
+        "_reason": run.compiled.functions.reason or locked(run, status),
         "_touch": rec.touch.copy(),
         "_written": Written(
             np.array(state["Q"]), series.copy(), _in_time(rec.impact), _in_time(rec.event),

@@ -7,16 +7,15 @@ import numpy as np
 from carom.impact import laws
 from carom.impact.layout import JAM, PLASTIC
 from carom.model import records as r
-from carom.results.names import contact_names
 from carom.status import Remark
 
 #: energy of a jam, of what the run exchanges, below which slip of round-off has jammed (a wheel that rolls)
 _ROUND_OFF = 1e-9
 
 
-def remarks(rows, events, run) -> tuple[str, ...]:
+def remarks(rows, events, run, names) -> tuple[str, ...]:
     """Return a sentence for each kind: how many impacts (`rows`) or `events` of a run, and the first."""
-    names, jams = contact_names(run.scene, run.pairs).name, events[events["kind"] == r.JAMS]
+    jams = events[events["kind"] == r.JAMS]
     counts = np.abs(rows["energy_change"]) > _ROUND_OFF * run.watch[0].exchanged
     jams = jams[np.isin(jams["time"], rows["time"][counts])]
     slides = rows[counts & (rows["phases"] & JAM != 0) & ~np.isin(rows["time"], jams["time"])]

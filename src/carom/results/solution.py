@@ -12,6 +12,7 @@ from carom import arguments, checks
 from carom.geometry import quaternion
 from carom.results.dense_output import curves, flights
 from carom.results.drawn import Drawn
+from carom.results.endings import message
 from carom.results.event_tables import (
     ContactTable,
     EventTable,
@@ -23,6 +24,7 @@ from carom.results.ledger import Ledger
 from carom.results.names import ConstraintRows, constraint_rows
 from carom.results.portable import Portable
 from carom.status import Status
+from carom.stepping.settings import settings_of
 
 if TYPE_CHECKING:
     from carom.results.assemble import Written
@@ -84,7 +86,9 @@ class Solution(Portable, Drawn):
         became persistent; steps with active contacts and their iterations; `explicit_steps`: steps in singular
         positions that a symplectic method replaced by explicit ones; `parts`: additional steps because steps
         were divided for a large rotation of a body; `whole_steps`: steps that touching bodies, such as a crowd,
-        took as time-stepping (Moreau) steps, with impacts at the end of the step (`impacts.located` is 0).
+        took as time-stepping (Moreau) steps, with impacts at the end of the step (`impacts.located` is 0);
+        `busiest_contact`: name of the contact or stop with the most impacts and changes of contact;
+        `busiest_events`: their number.
 
     scene : Scene
         The scene of the run.
@@ -121,7 +125,7 @@ class Solution(Portable, Drawn):
     angular_velocity: np.ndarray
     held_residual: np.ndarray
     status: Status
-    stats: dict[str, int]
+    stats: dict[str, Any]
     scene: Scene = field(repr=False)
     pairs: PairTable = field(repr=False)
     settings: dict[str, Any]
@@ -133,6 +137,8 @@ class Solution(Portable, Drawn):
     t_events: list[np.ndarray] | None = field(repr=False, default=None)
     state_events: list[list[SystemState]] | None = field(repr=False, default=None)
     _stopped_by: str = field(repr=False, default="")
+    #: what is known about a failure beyond its status
+    _reason: str = field(repr=False, default="")
 
     @classmethod
     def _from_run(cls, run: Run, status: Status) -> Solution:
@@ -203,17 +209,19 @@ class Solution(Portable, Drawn):
     @property
     def message(self) -> str:
         """How the run ended, in sentences; if it failed, with the time that it reached."""
-        if self.status.ended:
-            from carom.results.accuracy import taken_whole
+        finer = settings_of(self.settings, self._run.options).finer
+        said = message(self.status, self._reason, finer, self.t[-1], self.warnings)
+        if not self.status.ended:
+            return said
+        from carom.results.accuracy import taken_whole
 
-            why = self.warnings if self.status is Status.INACCURATE else ()
-            if self._stopped_by:
-                why = (f"That was {self._stopped_by} at t = {self.t[-1]:.9g} s.", *why)
-            elif not_seen := [i for i, t in enumerate(self.t_events or ()) if not len(t)]:
-                names = ", ".join(f"events[{i}]" for i in not_seen)
-                why = (f"{names} did not happen.", *why)
-            return " ".join((self.status.message, *why, *taken_whole(self.stats)))
-        return f"{self.status.message} (reached t = {self.t[-1]:.9g} s)"
+        more = () if self.status is Status.INACCURATE else taken_whole(self.stats)
+        if self._stopped_by:
+            more = (f"That was {self._stopped_by} at t = {self.t[-1]:.9g} s.", *more)
+        elif not_seen := [i for i, t in enumerate(self.t_events or ()) if not len(t)]:
+            names = ", ".join(f"events[{i}]" for i in not_seen)
+            more = (f"{names} did not happen.", *more)
+        return " ".join((said, *more))
 
     @property
     def total_energy(self) -> np.ndarray:

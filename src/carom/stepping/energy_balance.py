@@ -144,7 +144,7 @@ def watch_step(system, now, clock, records, watch):
     watch.speed = max(
         watch.speed, greatest_speed(system, now) + norm(system.gravity) * clock.length
     )
-    if not clock.residual <= watch.unsolved:
+    if not clock.residual <= watch.unsolved and watch.unsolved == watch.unsolved:
         watch.unsolved, watch.unsolved_at = clock.residual, clock.now
 
 

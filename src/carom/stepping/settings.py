@@ -49,6 +49,16 @@ class Settings(NamedTuple):
         """Whether tolerances choose the steps."""
         return self.step is None
 
+    @property
+    def finer(self) -> str:
+        """How the run gets shorter steps, by what was given: the beginning of a sentence."""
+        if self.step is not None:
+            return f"Take a smaller step than {self.step:g} s"
+        longest = self.options.max_step
+        return f"Lower rtol (it is {self.rtol:g}) or Options.max_step" + (
+            f" (it is {longest:g} s)" if longest else ""
+        )
+
     def as_dict(self) -> dict:
         """Return all settings except the options, by name; without tolerances if the step was given."""
         known = self._asdict()

@@ -148,6 +148,8 @@ def finish_step(model, data, grid):
     if not finite(state):
         return NOT_FINITE
     watch_step(system, state, clock, data.records, data.watch[0])
+    if not math.isfinite(clock.kinetic + clock.potential):
+        return NOT_FINITE
     if is_saved(grid, clock.step):
         if controls.location == LOCATE:
             watch_depth(system, state, clock.now, data.work, data.watch[0])

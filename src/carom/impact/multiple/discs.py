@@ -108,7 +108,7 @@ def mismatch(m, A, radius, t, w, f):
             x, y = x * rho / norm, y * rho / norm
         f[a], f[b] = t[a] - x, t[b] - y
         error = math.sqrt(f[a] * f[a] + f[b] * f[b]) * 0.5 * trace
-        if not error <= worst:
+        if not error <= worst and worst == worst:
             worst = error
     return worst
 

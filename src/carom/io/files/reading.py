@@ -82,9 +82,10 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
         "t": arrays.array("time", ("time",)),
         **motion,
         "status": Status[attributes["status"]],
+        "_reason": str(attributes.get("reason", "")),
         "warnings": tuple(str(one) for one in json.loads(attributes["warnings"])),
         "stats": {
-            str(name): checks.integer(name, n) if isinstance(n, int) else checks.number(name, n)
+            str(name): _count(name, n)
             for name, n in json.loads(attributes["stats"]).items()
         },
         "scene": scene, "settings": settings, "pairs": run.pairs, "_run": run, "_touch": records.touch,
@@ -98,6 +99,12 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
             **_cached(arrays),
         },
     }  # fmt: skip
+
+
+def _count(name: str, n):
+    if isinstance(n, str):
+        return n  # the name of a contact
+    return checks.integer(name, n) if isinstance(n, int) else checks.number(name, n)
 
 
 def _impacts(arrays: _Arrays, scene, pairs) -> ImpactTable:

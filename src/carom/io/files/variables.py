@@ -70,6 +70,7 @@ def attributes(solution) -> dict[str, Any]:
         "carom_format": FORMAT,
         "status": solution.status.name,
         "message": solution.message,
+        **({"reason": solution._reason} if solution._reason else {}),
         "warnings": json.dumps(solution.warnings),
         "stats": json.dumps(solution.stats),
         "settings": json.dumps(solution.settings),

@@ -55,7 +55,7 @@ class Again:
             there[...] = rows[k]
         run = self.run
         run.clock["saved"] = 0
-        run.compiled.functions.failed = None  # the error of a user-defined function in the last run
+        run.compiled.functions.forget()  # the error of a user-defined function in the last run
         run.start()
         return run
 

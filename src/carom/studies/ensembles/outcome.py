@@ -11,6 +11,7 @@ from carom.model import records as r
 from carom.model.arrays import STATE
 from carom.results.accuracy import energy_error, inaccurate, sentences
 from carom.results.assemble import to_scene_axes
+from carom.results.endings import message
 from carom.run import Run
 from carom.scene.all_pairs import PairTable
 from carom.scene.scene import Scene
@@ -65,6 +66,8 @@ class End(NamedTuple):
     to_principal: np.ndarray
     scene: Scene
     pairs: PairTable
+    reason: str
+    finer: str
 
 
 def end_of(run: Run, status: Status) -> End:
@@ -74,7 +77,7 @@ def end_of(run: Run, status: Status) -> End:
     return End(
         status, np.minimum.reduce(times) if struck else np.nan,
         run.now.tobytes(), run.clock.tobytes(), run.watch.tobytes(),
-        run.to_principal, run.scene, run.pairs,
+        run.to_principal, run.scene, run.pairs, run.compiled.functions.reason, run.how.finer,
     )  # fmt: skip
 
 
@@ -119,6 +122,5 @@ def _joined(fields: list, rows: list[bytes]) -> np.ndarray:
 
 
 def _message(status: Status, end: End, reached: float, watch: np.record) -> str:
-    if status.ended:
-        return " ".join((status.message, *sentences(watch, end.scene, end.pairs)))
-    return f"{status.message} (reached t = {reached:.9g} s)"
+    said = sentences(watch, end.finer, end.scene, end.pairs)
+    return message(status, end.reason, end.finer, reached, said)
