@@ -62,23 +62,3 @@ def find_contact_event(system, active, work):
         if active_point.grip < 0.0:
             return CONE, i
     return GAP, -1
-
-
-@inlined
-def braked(contact, active_point, h):
-    """Return the slip that friction can remove in the time h."""
-    return (
-        h
-        * contact.friction_held
-        * abs(active_point.force[0])
-        * (active_point.W[1, 1] + active_point.W[2, 2])
-    )
-
-
-@inlined
-def slides_on(system, active_point, h):
-    """Return whether a point slides too fast for friction to turn it within a step."""
-    if active_point.mode != SLIP or active_point.other >= 0:
-        return False
-    contact = system.contacts[active_point.contact]
-    return 10.0 * braked(contact, active_point, h) < active_point.speed

@@ -8,7 +8,7 @@ from carom.model import records as r
 from carom.model.actions import NOTHING
 from carom.model.event_rows import begin_event, end_event
 from carom.persistent.active_set import deactivate, refresh_pairs, regroup, set_anchor
-from carom.persistent.events import jam_margin, slides_on
+from carom.persistent.events import jam_margin
 from carom.persistent.jam import JAMMED, note_jam, presses
 
 
@@ -57,7 +57,6 @@ def turn_modes(model, data):
         if active_point.jams == 1:
             note_jam(active, active_point)
         if active_point.next == active_point.mode:
-            changed = changed or slides_on(system, active_point, controls.step)
             continue
         changed = True
         begin_event(system, active_point.contact, active_point.feature, now, clock, records)
