@@ -54,6 +54,8 @@ def _gains(rows, names, run) -> list[str]:
     own = rows[(rows["together"] == 1) & (rows["energy_change"] > 0.0)]
     own = own[np.isin(own["contact"], gains)]
     u, gain = own["before"][:, :, None], own["energy_change"]
+    if not gain.sum() > watch.tolerance * watch.exchanged:
+        return []
     part = 2.0 * gain / (u.transpose(0, 2, 1) @ np.linalg.pinv(own["W"]) @ u)[:, 0, 0]
     own, gain, part = (column[part > watch.tolerance] for column in (own, gain, part))
     if not gain.sum() > watch.tolerance * watch.exchanged:

@@ -209,16 +209,19 @@ def move_island(model, data, method):
 
 
 @inlined
-def may_be_whole(code):
-    """Return whether a step that ended with this code may succeed as a time-stepping step of a crowd."""
-    return code not in (BLOCKED, STEP_TOO_SMALL)
+def may_be_whole(code, active):
+    """Return whether a step that ended with this code may succeed as a time-stepping step of a crowd.
+
+    Forces that grow without bound, and mechanisms that lock, are no matter of contacts.
+    """
+    return code != BLOCKED and (code != STEP_TOO_SMALL or active.count[0] > 0)
 
 
 @inlined
 def retry_single(model, data, start, code):
     """Return to the start of a step that failed event by event; return whether this is done."""
     clock = data.clocks[0]
-    if code >= r.GROW or model.controls.retry == 0 or not may_be_whole(code):
+    if code >= r.GROW or model.controls.retry == 0 or not may_be_whole(code, data.active):
         return False
     if not one_island.give_up_single(model.controls, clock, data.work):
         return False
@@ -241,7 +244,7 @@ def retry_apart(model, data, islands, code):
     clock, again = data.clocks[0], code == r.LEFT_BALL
     if again:
         islands.plan[0].widen *= 2.0
-    elif model.controls.hold == 1 and may_be_whole(code):
+    elif model.controls.hold == 1 and may_be_whole(code, data.active):
         again = parts.give_up(model.controls, islands, clock, data.work)
         if again:
             bodies = parts.bodies_of_present(islands)
