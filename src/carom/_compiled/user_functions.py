@@ -37,9 +37,8 @@ _SIGNATURE = types.void(types.float64, types.CPointer(types.float64), types.CPoi
 class Fault(NamedTuple):
     """A call of a user-defined function that raised an error, or returned a number that is not finite."""
 
-    name: (
-        str | Callable[[float, np.ndarray], str]
-    )  # or what finds it among the functions that make this one
+    # or what finds it among the functions that make this one
+    name: str | Callable[[float, np.ndarray], str]
     t: float
     x: np.ndarray
     what: str

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from carom import checks
-from carom._compiled.user_functions import Fault
 from carom.results.drawn import Drawn
 from carom.results.endings import message
 from carom.results.event_tables import EventTable
@@ -125,6 +124,7 @@ class GeneralizedSolution(Drawn):
     @classmethod
     def _from_run(cls, run: GeneralizedRun, status: Status) -> GeneralizedSolution:
         """Make the solution from the records of a run."""
+        from carom._compiled.user_functions import Fault
         from carom.generalized.loop import energies
         from carom.results.accuracy import inaccurate, sentences, watched
 
