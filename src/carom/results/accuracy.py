@@ -103,7 +103,7 @@ def sentences(
     found.sort(key=lambda one: -one[0])
     if watch.whole > 0:
         found.append((0.0, _of_whole(watch)))
-    return tuple(sentence.format(finer=finer) for _, sentence in found)
+    return tuple(sentence.replace("{finer}", finer) for _, sentence in found)
 
 
 def _excess(error: float, bound: float) -> float:
