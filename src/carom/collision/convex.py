@@ -38,6 +38,7 @@ DIRECTED = 1e-9  # relative to the smaller solid: a shorter distance has no reli
 CLIMBS = 9  # starts of the search for the depth; with more, no sharp hull gave a better result
 CLIMBS_CURVED = 3  # the same for curved cores, where each search takes longer
 ELSEWHERE = 0.95  # cosine of the angle to an earlier climb; nearer starts are not tried
+SLIGHT = 1e-3  # overlap, relative to the usual clearance, to which no other way out is shorter
 NEARER = 30.0  # clearance of the second phase of a climb, relative to the depth
 LEAST = 1e-3  # least clearance, relative to the usual one; a smaller one gives no better direction
 ROUNDS = 30
@@ -234,6 +235,8 @@ def _way_out(pair, accuracy, clear):
         value, x, y, z = _climb(pair, accuracy, clear, first[0], first[1], first[2])
         if value > best:
             best, nx, ny, nz = value, x, y, z
+        if best > -SLIGHT * clear:
+            break
         for k in range(15):
             if max(dot(first, start[k]), dot((x, y, z), start[k])) > ELSEWHERE:
                 start[k, 3] = -math.inf
