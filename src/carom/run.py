@@ -23,7 +23,6 @@ from carom.model.kept import Snapshot, arrays_of
 from carom.model.method import IMPLICIT, THREE_FIELD
 from carom.options import Options
 from carom.results.accuracy import inaccurate
-from carom.results.costs import costs
 from carom.results.solution import Solution
 from carom.scene.all_pairs import PairTable
 from carom.scene.joints import Joint
@@ -281,10 +280,6 @@ class Run:
     def reached(self) -> float:
         """Time that the run has reached [s]."""
         return float(self.clock["now"][0])
-
-    def costs(self) -> str:
-        """Return what the run has done so far, for the progress bar."""
-        return costs(self)
 
     def go_on(self, until: int) -> Status:
         """Continue to step number `until`, or to a failure."""

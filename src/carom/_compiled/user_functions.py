@@ -96,9 +96,8 @@ class Functions:
         if is_compiled(function):
             made = _compiled(function, inside, outside)
             self._kept.append(made)
-            if made.address in self._plainly and not callable(
-                name
-            ):  # one function for several parts
+            # one function for several parts
+            if made.address in self._plainly and not callable(name):
                 name = f"{self._plainly[made.address][-1]} or {name}"
             self._plainly[made.address] = function, inside, outside, name
             return made.address

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import warnings
 from collections.abc import Callable
+from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -28,7 +29,9 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
     total = run.steps
     report = reporter(progress, total, "step")
     if isinstance(report, _Shown):
-        report.costs = run.costs
+        from carom.results.costs import costs
+
+        report.costs = partial(costs, run)
     late, wish = isinstance(report, _Late), None
     if keeper is not None:
         wish = keeper.interval / LOOKS
@@ -100,8 +103,7 @@ class _Shown:
     costs: Callable[[], str] = staticmethod(lambda: "")
 
     def __call__(self, done: float, total: float) -> None:
-        """Show it."""
-        raise NotImplementedError
+        """Show it; nothing by default."""
 
 
 class _Text(_Shown):
@@ -111,8 +113,8 @@ class _Text(_Shown):
         self.unit, self.width = unit, 0
 
     def __call__(self, done: float, total: float) -> None:
-        costs = self.costs()
-        said = f"{self.unit} {done:g} of {total:g}{costs and ': '}{costs}".ljust(self.width)
+        more = self.costs()
+        said = f"{self.unit} {done:g} of {total:g}{more and ': '}{more}".ljust(self.width)
         self.width = len(said.rstrip())
         print(f"\r{said}", end="", file=sys.stderr, flush=True)
 

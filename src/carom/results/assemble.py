@@ -44,7 +44,7 @@ def assemble(run, status: Status) -> dict:
     """Return the fields of a `Solution`."""
     rec, clock = r.written(run.records, run.clock), r.as_numbers(run.clock)
     state, series, contacts = rec.state, rec.series, run.compiled.system.contacts
-    names = contact_names(run.scene, run.pairs).name
+    names, (most, events) = contact_names(run.scene, run.pairs).name, busiest(rec.event)
     return {
         "t": np.array(series["t"]),
         "position": np.array(state["x"]),
@@ -64,7 +64,7 @@ def assemble(run, status: Status) -> dict:
             "held_rounds": clock["rounds"], "whole_steps": clock["whole"],
             "explicit_steps": int(run.work.result["fallen"][0]),
             "parts": int(run.work.result["parts"][0]),
-            **dict(zip(("busiest_contact", "busiest_events"), busiest(rec.event, names))),
+            "busiest_contact": str(names[most]) if most >= 0 else "", "busiest_events": events,
         },
         "scene": run.scene,
         "settings": dict(run.settings),

@@ -5,17 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from carom.model import records as r
-from carom.results.names import contact_names
+from carom.results.names import contact_name
 
 
-def busiest(events: np.recarray, names) -> tuple[str, int]:
-    """Return the name of the contact or stop with the most impacts and changes of contact, and their number."""
-    contact = events["contact"][events["contact"] >= 0]
-    if not len(contact):
-        return "", 0
-    counts = np.bincount(contact)
-    most = int(np.argmax(counts))
-    return str(names[most]), int(counts[most])
+def busiest(events: np.recarray) -> tuple[int, int]:
+    """Return the contact or stop with most impacts and changes of contact, -1 for none, and their number."""
+    counts = np.bincount(events["contact"][events["contact"] >= 0])
+    return (int(np.argmax(counts)), int(np.max(counts))) if len(counts) else (-1, 0)
 
 
 def costs(run) -> str:
@@ -24,9 +20,8 @@ def costs(run) -> str:
     trials, calls = max(1, clock["trials"]), run.compiled.functions.calls
     said = []
     if clock["event"] > 0:
-        name, count = busiest(
-            run.records.event[: clock["event"]], contact_names(run.scene, run.pairs).name
-        )
+        number, count = busiest(run.records.event[: clock["event"]])
+        name = contact_name(run.scene, run.pairs, number) if number >= 0 else ""
         said.append(f"{clock['event']} events, {count} of them of {name!r}")
     if clock["contact_steps"] > 0:
         said.append(

@@ -77,6 +77,16 @@ class ContactNames(NamedTuple):
     unit: np.ndarray  #: (C,) unit of speeds: "m/s", or "rad/s" for a stop of an angle
 
 
+def contact_name(scene, pairs, number: int) -> str:
+    """Return the name of one contact or stop of a run, as `contact_names` does for all."""
+    own, count = len(scene.contacts), len(pairs.body)
+    if not own <= number < count:
+        return (scene.contacts[number] if number < own else scene.stops[number - count]).name
+    plane = pairs.plane[number]
+    other = scene.fixed[plane] if plane >= 0 else scene.bodies[pairs.other[number]]
+    return f"{scene.bodies[pairs.body[number]].name}-{other.name}"
+
+
 def contact_names(scene, pairs) -> ContactNames:
     """Return the names of all contacts of a scene, which are the `pairs` of the run, and of its stops."""
     bodies = [body.name for body in scene.bodies]
