@@ -16,7 +16,8 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.dynamics.energy import kinetic_energy
 from carom.dynamics.forces import applied_wrenches
-from carom.geometry.rotation import norm
+from carom.dynamics.solve import solve
+from carom.geometry.rotation import norm, rotate_back
 from carom.model.controls import Controls
 
 #: longest step of a body that is in contact and loaded, relative to the time in which its load would move it by
@@ -77,21 +78,25 @@ def pull_of(system, controls, state, clock, work):
 
 @unit
 def greatest_pull(system, controls, state, clock, work) -> float:
-    """Return the greatest acceleration that applied forces give to a body, also of points by their torques.
+    """Return the greatest acceleration that applied forces give to a body, also of points by its rotation.
 
     The work that these forces could do over the allowed errors of the positions is written to the clock: their
-    sizes times atol + rtol L, and torques times the angle of this length at the distance L.
+    sizes times atol + rtol L, and torques times the angle of this length at the distance L. Joints are kept:
+    the torque of a damper moves the links on both sides, and the rotor of its motor, not a hand alone.
     """
     work.result[0].time, pull = clock.begin, 0.0
     applied_wrenches(system, state, False, work)
     for b in range(state.shape[0]):
         body, f = system.bodies[b], work.body[b].wrench
-        turning = (
-            norm(f[3:]) * body.extent / max(body.inertia[0], max(body.inertia[1], body.inertia[2]))
-        )
-        pull = max(pull, norm(f[:3]) / body.mass + turning)
         error = controls.atol + controls.rtol * body.extent
         clock.able += error * (norm(f[:3]) + norm(f[3:]) / body.extent)
+    solve(system, state, False, work)
+    for b in range(state.shape[0]):
+        body, a, q, J = system.bodies[b], work.body[b].motion, state[b].Q, system.bodies[b].inertia
+        w = rotate_back(q[0], q[1], q[2], q[3], a[3], a[4], a[5])
+        turning = math.sqrt((J[0] * w[0]) ** 2 + (J[1] * w[1]) ** 2 + (J[2] * w[2]) ** 2)
+        turning *= body.extent / max(J[0], max(J[1], J[2]))  # a turn about a thin axis moves little
+        pull = max(pull, norm(a[:3]) + turning)
     return pull
 
 
