@@ -13,7 +13,7 @@ from carom.dynamics.methods import EXPLICIT, METHODS, make_method
 from carom.dynamics.project import project_start
 from carom.dynamics.reactions import start_errors, start_speeds
 from carom.impact.multiple.layout import MULTIPLE, MultipleSettings
-from carom.impact.workspace import new_group, new_multiple
+from carom.impact.workspace import new_group, new_multiple, no_multiple
 from carom.model import records as r
 from carom.model.answers import check_answers
 from carom.model.compile import compile_scene, with_pairs
@@ -143,7 +143,7 @@ class Run:
         self.controls = self.controls._replace(retry=int(again))
         self.group = new_group(system, later is not None)
         self.crowd = no_crowd()  # made when there is one
-        self.multiple = new_multiple(1, multiple_settings(options))  # and this
+        self.multiple = no_multiple(multiple_settings(options))  # and this
         self.clock = r.new_clock()
         share = SHARE * options.energy_tolerance if self.how.method in EXPLICIT else np.inf
         self.watch = new_watch(options.energy_tolerance, share)

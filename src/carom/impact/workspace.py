@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -106,6 +107,12 @@ def new_group(system: System, more: bool = False) -> Group:
         member=np.zeros(n, dtype=np.int64),
         cone=new_contact_work(k),
     )
+
+
+@cache
+def no_multiple(settings: MultipleSettings) -> MultipleImpact:
+    """Return the workspace of a run before its first impact of several points: nothing is written to it."""
+    return new_multiple(1, settings)
 
 
 def new_multiple(k: int, settings: MultipleSettings) -> MultipleImpact:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from carom._compiled.composed import is_compiled, joined, once
@@ -11,6 +13,7 @@ from carom.model.arrays import (
     COORDINATE,
     FRICTION,
     INERTIA,
+    PIECE,
     PRISMATIC,
     PUSH,
     RELATION,
@@ -175,6 +178,8 @@ class Elements:
 
     def arrays(self, solver, more: MoreForces) -> Relations:
         """Return the tables, with the sides that `solver` gave to the bodies."""
+        if not (self.kinds or self.coordinates.rows or more.any):
+            return no_relations()._replace(pieces=self.pieces.rows)
         terms = []
         relation = iter(range(len(self.relations)))
         inertias = (float(rotor.inertia[0]) for rotor in self.rotors)
@@ -206,9 +211,8 @@ class Elements:
         listed = table(TERM, len(terms))
         for t, values in zip(listed, terms):
             t.coordinate, t.factor, t.child_side, t.parent_side = values
-        there = bool(self.kinds or self.coordinates.rows or more.any)
         return Relations(
-            int(there),
+            1,
             rows,
             _joined(RELATION_ROW, self.relations),
             listed,
@@ -223,6 +227,16 @@ class Elements:
             np.zeros(max(self.width, more.width)),
             np.zeros(max(self.width, more.width)),
         )
+
+
+@cache
+def no_relations() -> Relations:
+    """Return the tables of a scene without coordinates."""
+    kinds = (
+        COORDINATE, RELATION_ROW, TERM, USER_ROW, PIECE, PUSH, USER_FORCE, STIFF_SPRING, FRICTION, ROTOR,
+    )  # fmt: skip
+    named, none = np.zeros(0, dtype=np.int64), np.zeros(0)
+    return Relations(0, *(table(kind, 0) for kind in kinds), named, none, none)
 
 
 def _joined(fields, rows) -> np.recarray:

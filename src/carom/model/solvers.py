@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from carom._compiled.record_arrays import table
@@ -13,8 +15,9 @@ SPREAD = 1e5
 LIMIT = 1e24  # ratio of masses from which on even 31 digits are lost
 
 
+@cache
 def no_joints() -> Solver:
-    """Return the back end of bodies without joints."""
+    """Return the back end of bodies without joints: nothing is written to it."""
     number = np.zeros(0, dtype=np.int64)
     return Solver(
         kind=NO_JOINTS,
@@ -61,7 +64,9 @@ def tree_solver(
     )
     workspace = np.full((order.size, FIRST + WIDTH * most), np.nan)
     own = np.where(joint[:, None] >= 0, rotor[joint, :most], 0.0)
-    return no_joints()._replace(kind=FOREST, links=links, rotor=own, workspace=workspace)
+    return no_joints()._replace(
+        kind=FOREST, links=links, rotor=own, workspace=workspace, usual=np.full(1, -1)
+    )
 
 
 def spread(touching: list[list[int]], mass, moments, extent) -> tuple[float, int, int]:

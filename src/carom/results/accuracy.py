@@ -60,7 +60,7 @@ _WHY = {
 _OTHER = "they could not be moved from event to event"
 
 
-def beyond(i: int, watch: np.record | np.ndarray, times: float = 1.0):
+def beyond(i: int | slice, watch: np.record | np.ndarray, times: float = 1.0):
     """Return whether the energy error of a kind exceeds `times` the tolerance; for one record, or an array.
 
     The work that applied forces could do over the allowed errors of positions is allowed too: at rest no energy
@@ -90,8 +90,9 @@ def sentences(
     the time of the error and a remedy, `finer` for shorter steps. `pairs` are the pairs of the contacts of the
     run, None for all pairs of the scene.
     """
-    kinds = [i for i in (RESIDUAL, IMPACTS, FRICTION, BOUNCES) if beyond(i, watch)]
-    if not kinds and beyond(ALL, watch):
+    over = beyond(slice(None), watch).tolist()
+    kinds = [i for i in (RESIDUAL, IMPACTS, FRICTION, BOUNCES) if over[i]]
+    if not kinds and over[ALL]:
         kinds = [ALL]
     found = [
         (_excess(abs(watch.amount[i]), float(allowed(watch))), _of_energy(i, watch)) for i in kinds

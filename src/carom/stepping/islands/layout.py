@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -128,10 +129,14 @@ _NOWHERE = SingleIsland(
 
 def no_islands(system: System, active: ActiveSet) -> Islands:
     """Return the workspace for bodies that move together."""
+    return _together()._replace(single=new_single_island(system, active))
+
+
+@cache
+def _together() -> Islands:
+    """Return islands of no bodies: nothing is written to them."""
     none = np.zeros(0, dtype=np.int64)
-    return _islands(system, 0, (none, none, none), (none, none), 0, 0)._replace(
-        single=new_single_island(system, active)
-    )
+    return _islands(0, (none, none, none), (none, none), 0, 0)
 
 
 def new_islands(system: System, active: ActiveSet, later: Defaults | None = None) -> Islands:
@@ -148,7 +153,7 @@ def new_islands(system: System, active: ActiveSet, later: Defaults | None = None
     planes = planes[np.argsort(contacts.body[planes], kind="stable")]
     room = 8 * n + 64 if later is not None else min(rows.size, 8 * n + 64)
     grounded = contacts.body[planes], planes
-    islands = _islands(system, n, _partners(system, later), grounded, room, len(active.points))
+    islands = _islands(n, _partners(system, later), grounded, room, len(active.points))
     islands = islands._replace(joined=joined_bodies(system))
     islands.plan["open"], islands.plan["fixed"] = int(later is not None), rows.size
     return islands
@@ -177,9 +182,7 @@ def _partners(system: System, later: Defaults | None) -> tuple[np.ndarray, np.nd
     return low, high, rows[order]
 
 
-def _islands(
-    system: System, n: int, partners: tuple, grounded: tuple, room: int, points: int
-) -> Islands:
+def _islands(n: int, partners: tuple, grounded: tuple, room: int, points: int) -> Islands:
     """Return islands of `n` free bodies.
 
     `partners` are pairs of bodies and their contacts; `grounded`: bodies and their contacts with half-spaces.
@@ -189,8 +192,8 @@ def _islands(
     return Islands(
         apart=int(n > 0),
         single=_NOWHERE,
-        joined=no_bodies(system),
-        others=no_bodies(system),
+        joined=no_bodies(),
+        others=no_bodies(),
         plan=table(PLAN, 1),
         member=table(MEMBER, n),
         first=np.zeros((3, n + 1), dtype=np.int64),
