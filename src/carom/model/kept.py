@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 
@@ -68,7 +69,59 @@ def arrays_of(value) -> Iterator[np.ndarray]:
     """Yield the arrays in nested tuples that can be written to."""
     if isinstance(value, np.ndarray):
         if value.size and value.flags.writeable:
-            yield np.asarray(value)
+            yield value
     elif isinstance(value, tuple):
         for part in value:
             yield from arrays_of(part)
+
+
+class Mould:
+    """Contents of the arrays in nested named tuples, from which tuples with arrays of their own are made.
+
+    The new arrays are parts of one array of bytes, in which those of zeros come last and are not copied. Arrays
+    that are `shared` are no parts of it.
+    """
+
+    def __init__(self, parts: tuple, shared: tuple = ()):
+        shared_ones = {id(array) for array in arrays_of(shared)}
+        own = {id(one): one for one in arrays_of(parts) if id(one) not in shared_ones}
+        filled = {at: bool(one.reshape(-1).view(np.uint8).any()) for at, one in own.items()}
+        order, content, self.size = sorted(own, key=lambda at: not filled[at]), [], 0
+        self.places, number = [], {at: k for k, at in enumerate(order)}
+        for at in order:
+            one = own[at]
+            self.places.append((type(one), one.shape, one.dtype, self.size, one.strides))
+            pad = -one.nbytes % 16
+            content += [one.tobytes("A"), bytes(pad)] if filled[at] else []
+            self.size += one.nbytes + pad
+        self.content, self.plan = np.frombuffer(b"".join(content), np.uint8), _plan(parts, number)
+
+    def cast(self) -> Any:
+        """Return the tuples with new arrays."""
+        memory, new = np.zeros(self.size, np.uint8), np.ndarray.__new__
+        memory[: len(self.content)] = self.content
+        arrays = [
+            new(kind, shape, dtype, memory, at, strides)
+            for kind, shape, dtype, at, strides in self.places
+        ]
+        return _cast(arrays, *self.plan)
+
+
+def _plan(part: tuple, number: dict[int, int]) -> tuple:
+    """Return how a tuple is made: by what, of which parts, the places of arrays and plans of tuples in it."""
+    arrays = [(i, number[id(one)]) for i, one in enumerate(part) if id(one) in number]
+    plans = [(i, _plan(one, number)) for i, one in enumerate(part) if isinstance(one, tuple)]
+    plans = [(i, plan) for i, plan in plans if plan[2] or plan[3]]
+    found = list(part)
+    for i, _ in arrays + plans:
+        found[i] = None
+    return getattr(part, "_make", tuple), found, arrays, plans
+
+
+def _cast(made: list[np.ndarray], make: Callable, parts: list, arrays: list, plans: list):
+    found = parts.copy()
+    for i, k in arrays:
+        found[i] = made[k]
+    for i, plan in plans:
+        found[i] = _cast(made, *plan)
+    return make(found)

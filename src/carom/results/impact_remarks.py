@@ -17,9 +17,10 @@ _ROUND_OFF = 1e-9
 def remarks(rows, events, run) -> tuple[str, ...]:
     """Return a sentence for each kind: how many impacts (`rows`) or `events` of a run, and the first."""
     said = _gains(rows, run)
-    jams = events[events["kind"] == r.JAMS]
-    if not (len(jams) or (rows["phases"] & (JAM | PLASTIC)).any()):
+    jams = events["kind"] == r.JAMS
+    if not (jams.any() or (rows["phases"] & (JAM | PLASTIC)).any()):
         return tuple(map(Remark, said))
+    jams = events[jams]
     counts = np.abs(rows["energy_change"]) > _ROUND_OFF * run.watch[0].exchanged
     jams = jams[np.isin(jams["time"], rows["time"][counts])]
     slides = rows[counts & (rows["phases"] & JAM != 0) & ~np.isin(rows["time"], jams["time"])]
@@ -52,12 +53,13 @@ def _gains(rows, run) -> list[str]:
     energy of an impact is that of its relative velocity, u.W^-1 u/2.
     """
     watch, contacts = run.watch[0], run.compiled.system.contacts
-    own = rows[(rows["together"] == 1) & (rows["energy_change"] > 0.0)]
-    if not own["energy_change"].sum() > watch.tolerance * watch.exchanged:
+    single = (rows["together"] == 1) & (rows["energy_change"] > 0.0)
+    if not rows["energy_change"][single].sum() > watch.tolerance * watch.exchanged:
         return []
     gains = contacts[np.isin(contacts["law"], laws.GAINING) & (contacts["friction"] > 0.0)][
         "number"
     ]
+    own = rows[single]
     own = own[np.isin(own["contact"], gains)]
     u, gain = own["before"][:, :, None], own["energy_change"]
     part = 2.0 * gain / (u.transpose(0, 2, 1) @ np.linalg.pinv(own["W"]) @ u)[:, 0, 0]

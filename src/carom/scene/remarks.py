@@ -21,7 +21,10 @@ MOST = 6  # names in a sentence
 
 def remarks(scene: Scene) -> tuple[str, ...]:
     """Return sentences about bodies, contacts, gravity and stops that are nearly always a mistake."""
-    return (*_of_untouched(scene), *_of_unsaid(scene), *_of_gravity(scene), *_of_stops(scene))
+    kinds = _of_untouched, _of_unsaid, _of_gravity, _of_stops
+    return scene._derived.once(
+        "remarks", lambda: tuple(said for kind in kinds for said in kind(scene))
+    )
 
 
 def _of_untouched(scene: Scene) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from copy import copy
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
@@ -15,7 +14,7 @@ from carom.scene.forces import FORCES, AppliedForce, ForceDefinition, force_on
 from carom.scene.joints import JOINTS, Joint, JointDefinition
 from carom.scene.materials import Material
 from carom.scene.pairs import Pairs
-from carom.scene.registry import Registry
+from carom.scene.registry import Derived, Registry
 from carom.scene.shapes import Shape
 from carom.scene.stops import Stop
 from carom.scene.summary import counts, summary
@@ -53,7 +52,7 @@ class Scene(TouchingPairs):
         self._gravity = checks.finite_array("gravity", gravity, (3,), unit="m/s^2")
         self._gravity.setflags(write=False)
         self._parts = Registry()
-        self._pairs = Pairs()
+        self._pairs = Pairs(self._parts.derived)
         self._in_radians: set[str] = set()  # stops whose file has radians
 
     @arguments.known
@@ -412,9 +411,16 @@ class Scene(TouchingPairs):
 
     def _as_it_is(self) -> Scene:
         """Return a copy with the same parts, which does not change when parts are added to this scene."""
-        made = copy(self)
-        made._parts, made._pairs = self._parts.copied(), self._pairs.copied()
+        made: Any = object.__new__(type(self))
+        vars(made).update(vars(self))
+        made._parts = self._parts.copied()
+        made._pairs = self._pairs.copied(made._parts.derived)
         return made
+
+    @property
+    def _derived(self) -> Derived:
+        """Results of the scene as it is, such as its compiled arrays."""
+        return self._parts.derived
 
     def validate(self) -> None:
         """Check that the scene can start: it has bodies, and no body penetrates another one or a half-space.
@@ -426,6 +432,9 @@ class Scene(TouchingPairs):
         """
         if not self.bodies:
             raise ValueError("scene must have at least one body, got none; add it with add_body")
+        self._derived.once("gaps", self._check_gaps)
+
+    def _check_gaps(self) -> None:
         for contact in self.contacts:
             check_gap(contact)
         self._pairs.check_all(self.bodies, self.fixed)

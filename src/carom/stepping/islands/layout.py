@@ -129,11 +129,11 @@ _NOWHERE = SingleIsland(
 
 def no_islands(system: System, active: ActiveSet) -> Islands:
     """Return the workspace for bodies that move together."""
-    return _together()._replace(single=new_single_island(system, active))
+    return together()._replace(single=new_single_island(system, active))
 
 
 @cache
-def _together() -> Islands:
+def together() -> Islands:
     """Return islands of no bodies: nothing is written to them."""
     none = np.zeros(0, dtype=np.int64)
     return _islands(0, (none, none, none), (none, none), 0, 0)
