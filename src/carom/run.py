@@ -6,19 +6,22 @@ from collections.abc import Callable
 
 import numpy as np
 
+from carom._compiled.units import Entries
+from carom._compiled.user_functions import Functions
 from carom.contact.stop import write_stop_gaps
 from carom.dynamics.adapt import FIRST, complete, time_of_bounces
-from carom.dynamics.methods import EXPLICIT, METHODS
+from carom.dynamics.methods import EXPLICIT, METHODS, make_method
 from carom.dynamics.project import project_start
 from carom.dynamics.reactions import start_errors, start_speeds
 from carom.impact.multiple.layout import MULTIPLE, MultipleSettings
-from carom.impact.workspace import new_multiple, no_multiple
+from carom.impact.workspace import new_group, new_multiple, no_multiple
 from carom.model import records as r
 from carom.model.answers import check_answers
-from carom.model.compile import with_pairs
+from carom.model.compile import compiled_once, uses_functions, with_pairs
 from carom.model.controls import LOCATE, PROJECT, WORK, Controls
 from carom.model.data import Data, Model
-from carom.model.kept import Snapshot, arrays_of
+from carom.model.kept import Mould, Snapshot, arrays_of
+from carom.model.method import IMPLICIT, THREE_FIELD
 from carom.options import Options
 from carom.results.accuracy import inaccurate
 from carom.results.solution import Solution
@@ -40,10 +43,12 @@ from carom.stepping.grid import (
 )
 from carom.stepping.islands.layout import (
     has_events,
+    new_islands,
+    no_islands,
     roomier,
+    together,
     with_partners,
 )
-from carom.stepping.prepared import prepared
 from carom.stepping.settings import Settings
 
 LOCATIONS = {"locate": LOCATE, "project": PROJECT, "work": WORK}
@@ -64,13 +69,34 @@ class Run:
     to_stop: Callable[[], bool] = staticmethod(lambda: False)
 
     def __init__(self, scene: Scene, settings: Settings):
-        ready, made = prepared(scene, settings)
+        # from the third run with the same settings on, all but the records is cast from a mould
+        known = scene._derived.get(Run, (None, None, (), None))
+        again = known[:2] == (type(self), settings)
+        if again and known[3] is not None:
+            vars(self).update(zip(known[2], known[3].cast()))
+            self.compiled = self.compiled._replace(functions=Functions())
+        else:
+            self.make(scene, settings)
+            if not uses_functions(self.compiled):
+                shared = together(), self.crowd, self.multiple, self.method
+                mould = Mould(tuple(vars(self).values()), shared) if again else None
+                scene._derived[Run] = type(self), settings, tuple(vars(self)), mould
+        self.at_start, system = self.compiled, self.compiled.system
         self.scene = scene._as_it_is()  # the user may edit it afterwards
-        self.options, self.how, options = settings.options, settings, settings.options
-        self.at_start = self.compiled = made.compiled
-        self.active, self.work, self.islands, self.group = made[1:]
-        self.method, self.call, self.apart = ready.method, ready.call, ready.apart
-        system, self.now, adapts = made.compiled.system, made.compiled.start, settings.adapts
+        self.records = r.new_records(system, self.grid.rows, 512, len(self.active.points))
+        check_answers(self.scene)
+        self.start()
+
+    def make(self, scene: Scene, settings: Settings) -> None:
+        """Make all that the run needs besides the scene and the records."""
+        self.options, self.how = settings.options, settings
+        options, definition = settings.options, METHODS[settings.method]
+        kind, adapts = definition.kind, settings.adapts
+        self.apart = settings.impact_location == "locate" and kind != THREE_FIELD
+        ways = kind == THREE_FIELD, kind == IMPLICIT, self.apart
+        self.compiled = compiled_once(scene, options, *ways)
+        system = self.compiled.system
+        self.method = make_method(settings.method, options, adapts)
         self.tolerances = complete(settings.rtol, settings.atol, system) if adapts else None
         self.grid = self.make_grid()
         step = self.grid.interval
@@ -91,13 +117,11 @@ class Run:
             max_impacts=options.max_impacts_per_step,
             max_cuts=options.max_cuts,
             retry=0,
-            order=METHODS[settings.method].order if adapts else 0,
+            order=definition.order if adapts else 0,
             rtol=self.tolerances[0] if self.tolerances else 0.0,
             atol=self.tolerances[1] if self.tolerances else 0.0,
         )
         self.make_arrays()
-        check_answers(self.scene)
-        self.start()
 
     def make_grid(self) -> Grid:
         """Return the steps of the run; a resumed run has the steps that it had, and then more."""
@@ -125,8 +149,17 @@ class Run:
         return grid._replace(save_every=grid.save_every * save_every)
 
     def make_arrays(self) -> None:
-        """Make the other arrays that the run changes."""
+        """Make all arrays that the run changes, except the records."""
         options, system, later = self.options, self.compiled.system, self.compiled.later
+        self.now = self.compiled.start
+        self.active = r.new_active_set(system)
+        self.work = r.new_work(system, self.method.b.size)
+        if self.apart:
+            self.islands = new_islands(system, self.active, later)
+        else:
+            self.islands = no_islands(system, self.active)
+        self.group = new_group(system, later is not None)
+        self.call = Entries(system, self.method, self.controls)
         again = self.apart and options.hold and has_events(system, later is not None)
         self.controls = self.controls._replace(retry=int(again))
         self.crowd = no_crowd()  # made when there is one
@@ -136,7 +169,6 @@ class Run:
         self.watch = new_watch(options.energy_tolerance, share)
         flies = system.bodies["ballistic"] == 1  # in closed form: any step is good
         self.work.body["ahead"] = np.where(flies, 1.0, FIRST) * self.grid.interval
-        self.records = r.new_records(system, self.grid.rows, 512, len(self.active.points))
         if options.project_start and len(system.joints):
             error = project_start(system, self.now, self.work)
             if not error <= options.constraint_tolerance:

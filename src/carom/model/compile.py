@@ -13,6 +13,7 @@ from carom.geometry.frames import triad
 from carom.model import graph, solvers
 from carom.model.arrays import BODY, BUSHING, JOINT, KIND, LOAD, SCREW, SPRING, STATE, System
 from carom.model.contacts import Surfaces, compile_contacts, more_contacts
+from carom.model.kept import Mould
 from carom.model.more_forces import MoreForces, Pieces
 from carom.model.placement import Placement
 from carom.model.relations import Coordinates, Elements
@@ -82,6 +83,27 @@ def compile_scene(
         solver,
     )
     return Compiled(system, start, to_principal, flipped, functions, *touching[5:])
+
+
+def compiled_once(scene: Scene, options: Options, *ways: bool) -> Compiled:
+    """Return the same as `compile_scene`, with arrays of its own.
+
+    The scene keeps the result of the last `ways` while it does not change.
+    """
+    key = options, ways
+    kept = scene._derived.get(Compiled)
+    if kept is not None and kept[0] == key:
+        (made,) = kept[1].cast()
+        return made._replace(functions=Functions())
+    made = compile_scene(scene, options, *ways)
+    if not uses_functions(made):
+        scene._derived[Compiled] = key, Mould((made,))
+    return made
+
+
+def uses_functions(compiled: Compiled) -> bool:
+    """Return whether a scene has functions or curves of the user, which may answer otherwise the next time."""
+    return bool(compiled.functions._kept) or len(compiled.system.relations.pieces) > 0
 
 
 def with_pairs(compiled: Compiled, scene: Scene, options: Options, found: np.ndarray) -> Compiled:
