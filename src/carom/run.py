@@ -51,6 +51,7 @@ from carom.stepping.islands.layout import (
 )
 from carom.stepping.settings import Settings
 
+FEW = 8  # points of an impact for which there is room at first
 LOCATIONS = {"locate": LOCATE, "project": PROJECT, "work": WORK}
 
 
@@ -77,6 +78,8 @@ class Run:
             self.compiled = self.compiled._replace(functions=Functions())
         else:
             self.make(scene, settings)
+            check_answers(scene)
+            self.check(scene)
             if not uses_functions(self.compiled):
                 shared = together(), self.crowd, self.multiple, self.method
                 mould = Mould(tuple(vars(self).values()), shared) if again else None
@@ -84,8 +87,7 @@ class Run:
         self.at_start, system = self.compiled, self.compiled.system
         self.scene = scene._as_it_is()  # the user may edit it afterwards
         self.records = r.new_records(system, self.grid.rows, 512, len(self.active.points))
-        check_answers(self.scene)
-        self.start()
+        self.save_now()
 
     def make(self, scene: Scene, settings: Settings) -> None:
         """Make all that the run needs besides the scene and the records."""
@@ -178,12 +180,11 @@ class Run:
                 )
         self.work.body["label"] = np.where(flies, system.bodies["component"], system.bodies.size)
 
-    def start(self) -> None:
-        """Check the initial state, and save it."""
-        initial = self.scene, self.compiled, self.now, self.work, self.options
+    def check(self, scene: Scene) -> None:
+        """Check the initial state."""
+        initial = scene, self.compiled, self.now, self.work, self.options
         check_start(*initial)
         check_stops(*initial)
-        self.save_now()
 
     @property
     def settings(self) -> dict:
@@ -236,7 +237,8 @@ class Run:
         elif what == r.FULL_PAIRS:
             self.islands = roomier(self.islands)
         elif what == r.FULL_MULTIPLE:
-            self.multiple = new_multiple(len(self.group.mu), self.multiple.settings)
+            points = max(FEW, 2 * len(self.multiple.e), 2 * int(self.work.hit["closed"][0]))
+            self.multiple = new_multiple(min(len(self.group.mu), points), self.multiple.settings)
         elif what == r.NEW_PAIRS:
             noted = self.islands.pair[0, : self.islands.plan[0].noted]
             self.add_pairs(noted[np.lexsort(noted.T[::-1])])

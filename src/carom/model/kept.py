@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from mmap import mmap
 from typing import Any
 
 import numpy as np
+
+LARGE = (
+    1 << 20
+)  # bytes from which on memory comes from the system, which clears the pages that are used
 
 
 class Kept:
@@ -98,7 +103,8 @@ class Mould:
 
     def cast(self) -> Any:
         """Return the tuples with new arrays."""
-        memory, new = np.zeros(self.size, np.uint8), np.ndarray.__new__
+        large, new = self.size > LARGE, np.ndarray.__new__
+        memory = np.frombuffer(mmap(-1, self.size) if large else bytearray(self.size), np.uint8)
         memory[: len(self.content)] = self.content
         arrays = [
             new(kind, shape, dtype, memory, at, strides)

@@ -274,8 +274,8 @@ def written(records: Records, clock: np.recarray) -> Records:
 
 def _ends(clock: np.recarray) -> tuple[int, ...]:
     """Return how many rows of each table were written."""
-    row = as_numbers(clock)
-    return row["saved"], row["saved"], row["touched"], row["struck"], row["event"], row["snapped"]
+    names = "saved", "saved", "touched", "struck", "event", "snapped"
+    return tuple(int(clock[name][0]) for name in names)
 
 
 def as_numbers(clock: np.recarray) -> dict:

@@ -52,15 +52,16 @@ def _gains(rows, run) -> list[str]:
     Only an impact of a single point adds energy: several points return at most what they have absorbed. The
     energy of an impact is that of its relative velocity, u.W^-1 u/2.
     """
+    gains = rows["energy_change"] > 0.0
+    if not gains.any():
+        return []
     watch, contacts = run.watch[0], run.compiled.system.contacts
-    single = (rows["together"] == 1) & (rows["energy_change"] > 0.0)
+    single = gains & (rows["together"] == 1)
     if not rows["energy_change"][single].sum() > watch.tolerance * watch.exchanged:
         return []
-    gains = contacts[np.isin(contacts["law"], laws.GAINING) & (contacts["friction"] > 0.0)][
-        "number"
-    ]
+    able = contacts[np.isin(contacts["law"], laws.GAINING) & (contacts["friction"] > 0.0)]["number"]
     own = rows[single]
-    own = own[np.isin(own["contact"], gains)]
+    own = own[np.isin(own["contact"], able)]
     u, gain = own["before"][:, :, None], own["energy_change"]
     part = 2.0 * gain / (u.transpose(0, 2, 1) @ np.linalg.pinv(own["W"]) @ u)[:, 0, 0]
     own, gain, part = (column[part > watch.tolerance] for column in (own, gain, part))

@@ -76,7 +76,10 @@ class Registry:
 
     def parts(self, kind: type) -> tuple:
         """Return all parts of a `kind`, in the order added."""
-        return self.derived.once(kind, lambda: tuple(self._kinds.get(kind, ())))
+        found = self.derived.get(kind)
+        if found is None:
+            found = self.derived[kind] = tuple(self._kinds.get(kind, ()))
+        return found
 
     def __iter__(self) -> Iterator:
         """Go through all parts, in the order added."""
