@@ -161,7 +161,7 @@ class Run:
         else:
             self.islands = no_islands(system, self.active)
         self.group = new_group(system, later is not None)
-        self.call = Entries(system, self.method, self.controls)
+        self.call = Entries(system, self.method)
         again = self.apart and options.hold and has_events(system, later is not None)
         self.controls = self.controls._replace(retry=int(again))
         self.crowd = no_crowd()  # made when there is one

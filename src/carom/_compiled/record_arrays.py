@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -42,8 +41,10 @@ def table(fields: list, *shape: int) -> Columns:
     if id(fields) not in _KINDS:
         _KINDS[id(fields)] = fields, np.dtype((np.record, np.dtype(fields, align=True)))
     kind = _KINDS[id(fields)][1]
-    memory = np.zeros(math.prod(shape) * kind.itemsize, np.uint8)
-    return np.ndarray.__new__(Columns, shape, kind, memory)
+    size = kind.itemsize
+    for length in shape:
+        size *= length
+    return np.ndarray.__new__(Columns, shape, kind, np.zeros(size, np.uint8))
 
 
 def copied(rows: np.ndarray) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -48,6 +49,7 @@ class Levels(NamedTuple):
     own: np.ndarray  # (O,) surfaces of which a static solid has faces, solid by solid
 
 
+@cache
 def no_levels() -> Levels:
     """Return the level surfaces of a scene that has none."""
     return Levels(

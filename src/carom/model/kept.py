@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import cached_property
 from mmap import mmap
 from typing import Any
 
 import numpy as np
 
-LARGE = (
-    1 << 20
-)  # bytes from which on memory comes from the system, which clears the pages that are used
+#: bytes of an array up to which it takes longer to look for zeros than to copy them
+SMALL = 512
+#: bytes from which on memory comes from the system, which clears only the pages that are used
+LARGE = 1 << 20
 
 
 class Kept:
@@ -88,29 +90,41 @@ class Mould:
     """
 
     def __init__(self, parts: tuple, shared: tuple = ()):
-        shared_ones = {id(array) for array in arrays_of(shared)}
-        own = {id(one): one for one in arrays_of(parts) if id(one) not in shared_ones}
-        filled = {at: bool(one.reshape(-1).view(np.uint8).any()) for at, one in own.items()}
-        order, content, self.size = sorted(own, key=lambda at: not filled[at]), [], 0
-        self.places, number = [], {at: k for k, at in enumerate(order)}
-        for at in order:
-            one = own[at]
+        known = {id(one) for one in arrays_of(shared)}
+        own = {id(one): one for one in arrays_of(parts) if id(one) not in known}
+        filled = [
+            at
+            for at, one in own.items()
+            if one.nbytes < SMALL or one.reshape(-1).view(np.uint8).any()
+        ]
+        self.content = [own[at].tobytes("A") for at in filled]
+        self.parts, self.own = parts, {at: own[at] for at in dict.fromkeys([*filled, *own])}
+
+    @cached_property
+    def plan(self) -> tuple:
+        """How tuples are made, and the places of arrays: worked out when it is needed first."""
+        self.places, self.size, content = [], 0, bytearray()
+        for k, one in enumerate(self.own.values()):
             self.places.append((type(one), one.shape, one.dtype, self.size, one.strides))
-            pad = -one.nbytes % 16
-            content += [one.tobytes("A"), bytes(pad)] if filled[at] else []
-            self.size += one.nbytes + pad
-        self.content, self.plan = np.frombuffer(b"".join(content), np.uint8), _plan(parts, number)
+            self.size += one.nbytes + -one.nbytes % 16
+            if k < len(self.content):
+                content += self.content[k].ljust(self.size - len(content), b"\0")
+        plan = _plan(self.parts, {at: k for k, at in enumerate(self.own)})
+        self.content = np.frombuffer(content, np.uint8)
+        del self.parts, self.own
+        return plan
 
     def cast(self) -> Any:
         """Return the tuples with new arrays."""
-        large, new = self.size > LARGE, np.ndarray.__new__
+        plan, new = self.plan, np.ndarray.__new__
+        large = self.size > LARGE
         memory = np.frombuffer(mmap(-1, self.size) if large else bytearray(self.size), np.uint8)
         memory[: len(self.content)] = self.content
         arrays = [
             new(kind, shape, dtype, memory, at, strides)
             for kind, shape, dtype, at, strides in self.places
         ]
-        return _cast(arrays, *self.plan)
+        return _cast(arrays, *plan)
 
 
 def _plan(part: tuple, number: dict[int, int]) -> tuple:
