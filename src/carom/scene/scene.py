@@ -432,9 +432,6 @@ class Scene(TouchingPairs):
         """
         if not self.bodies:
             raise ValueError("scene must have at least one body, got none; add it with add_body")
-        self._derived.once("gaps", self._check_gaps)
-
-    def _check_gaps(self) -> None:
         for contact in self.contacts:
             check_gap(contact)
         self._pairs.check_all(self.bodies, self.fixed)

@@ -160,7 +160,7 @@ def check_save_at(save_at, duration: float) -> float | tuple[float, ...] | None:
 
 def check_scene(scene: Scene, settings: Settings) -> None:
     """Refuse a scene that cannot start, or that this method does not support."""
-    scene.validate()
+    scene._derived.once("valid", scene.validate)
     check_location(scene, settings.impact_location)
     check_method(scene, settings.method)
 
