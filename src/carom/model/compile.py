@@ -67,37 +67,19 @@ def compile_scene(
     contacts = with_stops(scene, touching.rows, coordinates, sizes, options)
     relations = elements.arrays(solver, more)
     gravity = np.array(scene.gravity)
-    system = System(
-        bodies,
-        gravity,
-        joints,
-        relations,
-        springs,
-        loads,
-        bushings,
-        contacts,
-        touching.vertices,
-        touching.solids,
-        touching.hulls,
-        touching.levels,
-        solver,
-    )
+    forces = springs, loads, bushings
+    system = System(bodies, gravity, joints, relations, *forces, contacts, *touching[1:5], solver)
     return Compiled(system, start, to_principal, flipped, functions, *touching[5:])
 
 
 def compiled_once(scene: Scene, options: Options, *ways: bool) -> Compiled:
-    """Return the same as `compile_scene`, with arrays of its own.
-
-    The scene keeps the result of the last `ways` while it does not change.
-    """
-    key = options, ways
-    kept = scene._derived.get(Compiled)
-    if kept is not None and kept[0] == key:
-        (made,) = kept[1].cast()
-        return made._replace(functions=Functions())
+    """Return what `compile_scene` does; the scene keeps the last result while it does not change."""
+    key, mould = scene._derived.get(Compiled, (None, None))
+    if key == (options, ways):
+        return mould.cast()._replace(functions=Functions())
     made = compile_scene(scene, options, *ways)
     if not uses_functions(made):
-        scene._derived[Compiled] = key, Mould((made,))
+        scene._derived[Compiled] = (options, ways), Mould(made)
     return made
 
 

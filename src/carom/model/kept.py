@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import cached_property
 from mmap import mmap
 from typing import Any
 
@@ -91,40 +90,39 @@ class Mould:
 
     def __init__(self, parts: tuple, shared: tuple = ()):
         known = {id(one) for one in arrays_of(shared)}
-        own = {id(one): one for one in arrays_of(parts) if id(one) not in known}
-        filled = [
-            at
-            for at, one in own.items()
-            if one.nbytes < SMALL or one.reshape(-1).view(np.uint8).any()
+        arrays = [one for one in arrays_of(parts) if id(one) not in known]
+        is_zero = [
+            one.nbytes > SMALL and not one.reshape(-1).view(np.uint8).any() for one in arrays
         ]
-        self.content = [own[at].tobytes("A") for at in filled]
-        self.parts, self.own = parts, {at: own[at] for at in dict.fromkeys([*filled, *own])}
-
-    @cached_property
-    def plan(self) -> tuple:
-        """How tuples are made, and the places of arrays: worked out when it is needed first."""
-        self.places, self.size, content = [], 0, bytearray()
-        for k, one in enumerate(self.own.values()):
-            self.places.append((type(one), one.shape, one.dtype, self.size, one.strides))
-            self.size += one.nbytes + -one.nbytes % 16
-            if k < len(self.content):
-                content += self.content[k].ljust(self.size - len(content), b"\0")
-        plan = _plan(self.parts, {at: k for k, at in enumerate(self.own)})
-        self.content = np.frombuffer(content, np.uint8)
-        del self.parts, self.own
-        return plan
+        contents = [one.tobytes("A") for one, zero in zip(arrays, is_zero) if not zero]
+        self.recipe = (
+            parts,
+            [a for k in (False, True) for a, z in zip(arrays, is_zero) if z == k],
+            contents,
+        )
 
     def cast(self) -> Any:
         """Return the tuples with new arrays."""
-        plan, new = self.plan, np.ndarray.__new__
-        large = self.size > LARGE
-        memory = np.frombuffer(mmap(-1, self.size) if large else bytearray(self.size), np.uint8)
-        memory[: len(self.content)] = self.content
-        arrays = [
-            new(kind, shape, dtype, memory, at, strides)
-            for kind, shape, dtype, at, strides in self.places
-        ]
-        return _cast(arrays, *plan)
+        recipe = self.recipe
+        if len(recipe) == 3:  # worked out when it is needed first
+            recipe = self.recipe = _recipe(*recipe)
+        plan, places, content, size = recipe
+        memory = np.frombuffer(mmap(-1, size) if size > LARGE else bytearray(size), np.uint8)
+        memory[: len(content)] = content
+        new = np.ndarray.__new__
+        return _cast([new(*kind, memory, *place) for kind, place in places], *plan)
+
+
+def _recipe(parts: tuple, arrays: list[np.ndarray], contents: list[bytes]) -> tuple:
+    """Return the plan of nested tuples, types and places of their arrays, the first bytes, and their number."""
+    size, places, content = 0, [], bytearray()
+    for k, one in enumerate(arrays):
+        places.append(((type(one), one.shape, one.dtype), (size, one.strides)))
+        size += one.nbytes + -one.nbytes % 16
+        if k < len(contents):
+            content += contents[k].ljust(size - len(content), b"\0")
+    plan = _plan(parts, {id(one): k for k, one in enumerate(arrays)})
+    return plan, places, np.frombuffer(content, np.uint8), size
 
 
 def _plan(part: tuple, number: dict[int, int]) -> tuple:

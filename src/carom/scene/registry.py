@@ -12,10 +12,7 @@ from carom.scene.contacts import Contact
 
 
 class Derived(dict):
-    """Results of a scene as it is now, by name; each change of the scene empties it.
-
-    Deep copies and pickles of a scene begin without results, because their parts may be changed.
-    """
+    """Results of a scene as it is now, by name; each change of the scene empties it."""
 
     def once(self, name: Hashable, compute: Callable[[], Any]) -> Any:
         """Return the result of this name; compute it if there is none."""
@@ -23,10 +20,7 @@ class Derived(dict):
             self[name] = compute()
         return self[name]
 
-    def __deepcopy__(self, memo: dict) -> Derived:
-        return Derived()
-
-    def __reduce__(self):
+    def __reduce__(self):  # deep copies, whose parts may be changed, and pickles begin without
         return Derived, ()
 
 

@@ -14,7 +14,7 @@ from carom.scene.forces import FORCES, AppliedForce, ForceDefinition, force_on
 from carom.scene.joints import JOINTS, Joint, JointDefinition
 from carom.scene.materials import Material
 from carom.scene.pairs import Pairs
-from carom.scene.registry import Derived, Registry
+from carom.scene.registry import Registry
 from carom.scene.shapes import Shape
 from carom.scene.stops import Stop
 from carom.scene.summary import counts, summary
@@ -52,7 +52,8 @@ class Scene(TouchingPairs):
         self._gravity = checks.finite_array("gravity", gravity, (3,), unit="m/s^2")
         self._gravity.setflags(write=False)
         self._parts = Registry()
-        self._pairs = Pairs(self._parts.derived)
+        self._derived = self._parts.derived
+        self._pairs = Pairs(self._derived)
         self._in_radians: set[str] = set()  # stops whose file has radians
 
     @arguments.known
@@ -414,13 +415,9 @@ class Scene(TouchingPairs):
         made: Any = object.__new__(type(self))
         vars(made).update(vars(self))
         made._parts = self._parts.copied()
-        made._pairs = self._pairs.copied(made._parts.derived)
+        made._derived = made._parts.derived
+        made._pairs = self._pairs.copied(made._derived)
         return made
-
-    @property
-    def _derived(self) -> Derived:
-        """Results of the scene as it is, such as its compiled arrays."""
-        return self._parts.derived
 
     def validate(self) -> None:
         """Check that the scene can start: it has bodies, and no body penetrates another one or a half-space.
