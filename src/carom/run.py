@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from carom._compiled.mould import Mould, arrays_of
 from carom._compiled.units import Entries
 from carom._compiled.user_functions import Functions
 from carom.contact.stop import write_stop_gaps
@@ -20,7 +21,7 @@ from carom.model.answers import check_answers
 from carom.model.compile import compiled_once, uses_functions, with_pairs
 from carom.model.controls import LOCATE, PROJECT, WORK, Controls
 from carom.model.data import Data, Model
-from carom.model.kept import Mould, Snapshot, arrays_of
+from carom.model.kept import Snapshot
 from carom.model.method import IMPLICIT, THREE_FIELD
 from carom.options import Options
 from carom.results.accuracy import inaccurate
@@ -101,28 +102,18 @@ class Run:
         self.method = make_method(settings.method, options, adapts)
         self.tolerances = complete(settings.rtol, settings.atol, system) if adapts else None
         self.grid = self.make_grid()
-        step = self.grid.interval
-        if self.tolerances is not None:
-            step = time_of_bounces(system, self.tolerances, step)
+        step, tolerances = self.grid.interval, self.tolerances or (0.0, 0.0)
+        if adapts:
+            step = time_of_bounces(system, tolerances, step)
         self.controls = Controls(
-            step=step,
-            pull=float(np.linalg.norm(system.gravity)),
-            interval=self.grid.interval,
-            duration=settings.duration,
-            location=LOCATIONS[settings.impact_location],
-            gap=options.gap_tolerance,
-            tie=options.tie_tolerance,
-            hold=int(options.hold),
-            rest=options.rest_tolerance,
-            layer_steps=options.layer_steps,
-            layer_time=int(options.add_layer_time),
-            max_impacts=options.max_impacts_per_step,
-            max_cuts=options.max_cuts,
-            retry=0,
-            order=definition.order if adapts else 0,
-            rtol=self.tolerances[0] if self.tolerances else 0.0,
-            atol=self.tolerances[1] if self.tolerances else 0.0,
-        )
+            step=step, pull=float(np.linalg.norm(system.gravity)), interval=self.grid.interval,
+            duration=settings.duration, location=LOCATIONS[settings.impact_location],
+            gap=options.gap_tolerance, tie=options.tie_tolerance, hold=int(options.hold),
+            rest=options.rest_tolerance, layer_steps=options.layer_steps,
+            layer_time=int(options.add_layer_time), max_impacts=options.max_impacts_per_step,
+            max_cuts=options.max_cuts, retry=0, order=definition.order if adapts else 0,
+            rtol=tolerances[0], atol=tolerances[1],
+        )  # fmt: skip
         self.make_arrays()
 
     def make_grid(self) -> Grid:
@@ -156,10 +147,8 @@ class Run:
         self.now = self.compiled.start
         self.active = r.new_active_set(system)
         self.work = r.new_work(system, self.method.b.size)
-        if self.apart:
-            self.islands = new_islands(system, self.active, later)
-        else:
-            self.islands = no_islands(system, self.active)
+        of = system, self.active
+        self.islands = new_islands(*of, later) if self.apart else no_islands(*of)
         self.group = new_group(system, later is not None)
         self.call = Entries(system, self.method)
         again = self.apart and options.hold and has_events(system, later is not None)

@@ -52,10 +52,5 @@ class Levels(NamedTuple):
 @cache
 def no_levels() -> Levels:
     """Return the level surfaces of a scene that has none."""
-    return Levels(
-        table(SURFACE, 0),
-        table(LEVEL_FACE, 0),
-        table(LEVEL_SIDE, 0),
-        table(RIM_SEGMENT, 0),
-        np.zeros(0, dtype=np.int64),
-    )
+    kinds = SURFACE, LEVEL_FACE, LEVEL_SIDE, RIM_SEGMENT
+    return Levels(*(table(kind, 0) for kind in kinds), np.zeros(0, dtype=np.int64))

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom._compiled.mould import Mould
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
 from carom.geometry import quaternion
@@ -13,7 +14,6 @@ from carom.geometry.frames import triad
 from carom.model import graph, solvers
 from carom.model.arrays import BODY, BUSHING, JOINT, KIND, LOAD, SCREW, SPRING, STATE, System
 from carom.model.contacts import Surfaces, compile_contacts, more_contacts
-from carom.model.kept import Mould
 from carom.model.more_forces import MoreForces, Pieces
 from carom.model.placement import Placement
 from carom.model.relations import Coordinates, Elements
@@ -66,8 +66,7 @@ def compile_scene(
     touching = compile_contacts(scene, to_principal, options, may_come)
     contacts = with_stops(scene, touching.rows, coordinates, sizes, options)
     relations = elements.arrays(solver, more)
-    gravity = np.array(scene.gravity)
-    forces = springs, loads, bushings
+    forces, gravity = (springs, loads, bushings), np.array(scene.gravity)
     system = System(bodies, gravity, joints, relations, *forces, contacts, *touching[1:5], solver)
     return Compiled(system, start, to_principal, flipped, functions, *touching[5:])
 

@@ -162,12 +162,10 @@ def new_active_set(system: System) -> workspace.ActiveSet:
     contacts = system.contacts
     grounded = int(np.count_nonzero((contacts["touches"] == 1) & (contacts["other"] < 0)))
     between = max(len(system.bodies), len(system.solids))  # bodies, or pieces of them
+    points = len(system.vertices) + 24 * between + 8 * grounded + len(contacts)
     active = workspace.ActiveSet(
-        points=table(
-            workspace.ACTIVE_POINT,
-            len(system.vertices) + 24 * between + 8 * grounded + len(system.contacts),
-        ),
-        contact_states=table(workspace.CONTACT_STATE, system.contacts.size),
+        points=table(workspace.ACTIVE_POINT, points),
+        contact_states=table(workspace.CONTACT_STATE, len(contacts)),
         carries=np.zeros(len(system.vertices), dtype=np.int64),
         count=np.zeros(1, dtype=np.int64),
     )
@@ -185,40 +183,27 @@ def with_contacts(active: workspace.ActiveSet, count: int) -> workspace.ActiveSe
 
 def new_work(system: System, stages: int) -> workspace.Work:
     """Return the workspace of one run."""
-    n, j = system.bodies.size, system.joints.size
-    body = table(workspace.BODY_WORK, n)
+    n, w = system.bodies.size, workspace
+    state, trial, middle, first = (table(STATE, n) for _ in range(4))
+    body = table(w.BODY_WORK, n)
     body["room"] = np.inf
-    return workspace.Work(
-        body=body,
-        joint=table(workspace.JOINT_WORK, j),
-        stages=table(workspace.STAGE, max(stages, len(ESDIRK)) + 1, n),
-        known=table(workspace.KNOWN, n),
-        stage=table(STATE, n),
-        trial=table(STATE, n),
-        middle=table(STATE, n),
-        first=table(STATE, n),
-        point=table(workspace.POINT, 1),
-        pair=new_pair_work(),
-        touches=new_points(),
-        solid_pose=np.zeros((2, 7)),
-        hit=table(workspace.HIT, 1),
-        result=table(workspace.RESULT, 1),
-        search=table(workspace.SEARCH, 1),
+    return w.Work(
+        body=body, joint=table(w.JOINT_WORK, system.joints.size),
+        stages=table(w.STAGE, max(stages, len(ESDIRK)) + 1, n), known=table(w.KNOWN, n),
+        stage=state, trial=trial, middle=middle, first=first, point=table(w.POINT, 1),
+        pair=new_pair_work(), touches=new_points(), solid_pose=np.zeros((2, 7)),
+        hit=table(w.HIT, 1), result=table(w.RESULT, 1), search=table(w.SEARCH, 1),
         history=np.zeros((0, 16)),
-    )
+    )  # fmt: skip
 
 
 def new_records(system: System, saves: int, events: int, points: int = 0) -> Records:
     """Return empty records for `saves` saved steps, `events` impacts and events, and more active `points`."""
     n = system.bodies.size
     return Records(
-        series=table(SERIES, saves),
-        state=table(STATE, saves, n),
-        touch=table(TOUCH, events + points),
-        impact=table(IMPACTS, events),
-        event=table(EVENT, events),
-        snapshot=table(SNAPSHOT, 2 * events + 2 * n),
-    )
+        table(SERIES, saves), table(STATE, saves, n), table(TOUCH, events + points),
+        table(IMPACTS, events), table(EVENT, events), table(SNAPSHOT, 2 * events + 2 * n),
+    )  # fmt: skip
 
 
 def longer(records: Records, clock: np.recarray) -> Records:

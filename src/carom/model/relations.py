@@ -195,22 +195,20 @@ class Elements:
         listed = table(arrays.TERM, len(terms))
         for t, values in zip(listed, terms):
             t.coordinate, t.factor, t.child_side, t.parent_side = values
-        return arrays.Relations(
-            1,
-            rows,
-            _joined(arrays.RELATION_ROW, self.relations),
-            listed,
-            _joined(arrays.USER_ROW, self.user),
-            self.pieces.rows,
-            _joined(arrays.PUSH, more.pushes),
-            _joined(arrays.USER_FORCE, more.forces),
-            _joined(arrays.STIFF_SPRING, self.stiff),
-            _joined(arrays.FRICTION, more.frictions),
-            _joined(arrays.ROTOR, self.rotors),
-            np.array(more.named, dtype=np.int64),
-            np.zeros(max(self.width, more.width)),
-            np.zeros(max(self.width, more.width)),
+        forces = (
+            (arrays.PUSH, more.pushes), (arrays.USER_FORCE, more.forces), (arrays.STIFF_SPRING, self.stiff),
+            (arrays.FRICTION, more.frictions), (arrays.ROTOR, self.rotors),
+        )  # fmt: skip
+        named, (read, write) = (
+            np.array(more.named, np.int64),
+            np.zeros((2, max(self.width, more.width))),
         )
+        relations, user = (
+            _joined(arrays.RELATION_ROW, self.relations),
+            _joined(arrays.USER_ROW, self.user),
+        )
+        tables = relations, listed, user, self.pieces.rows, *(_joined(*one) for one in forces)
+        return arrays.Relations(1, rows, *tables, named, read, write)
 
 
 @cache

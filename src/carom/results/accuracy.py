@@ -35,21 +35,12 @@ SEEN = 1e-3  # of the size of a body: smaller differences do not count
 GOOD = 1e-3  # the same difference for the step that the sentence recommends
 
 _WHAT = {
-    RESIDUAL: (
-        "Energy error that no entry of the ledger explains:",
-        "{finer}, or raise the tolerance",
-    ),
+    RESIDUAL: ("Energy error that no entry of the ledger explains:", "{finer}, or raise the tolerance"),
     IMPACTS: ("Energy that impacts added, which is not physical:", 'Use impact_law="stronge"'),
-    FRICTION: (
-        "Energy that friction added, which is not physical:",
-        "{finer}, or raise the tolerance",
-    ),
-    BOUNCES: (
-        "Energy that was added where small bounces were dropped, which is not physical:",
-        "{finer}",
-    ),
+    FRICTION: ("Energy that friction added, which is not physical:", "{finer}, or raise the tolerance"),
+    BOUNCES: ("Energy that was added where small bounces were dropped, which is not physical:", "{finer}"),
     ALL: ("Sum of several energy errors:", "{finer}, or raise the tolerance"),
-}
+}  # fmt: skip
 
 _WHY = {
     1: "a contact problem was not solved, or lost too much energy",

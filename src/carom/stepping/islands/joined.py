@@ -64,10 +64,8 @@ def joined_bodies(system: System) -> Joined:
 def no_bodies() -> Joined:
     """Return the empty joints and loads of islands without any."""
     none = np.zeros(0, dtype=np.int64)
-    springs, loads, bushings = table(SPRING, 0), table(LOAD, 0), table(BUSHING, 0)
-    return Joined(
-        none, none, table(JOINT, 0), no_relations(), springs, loads, bushings, no_joints()
-    )
+    forces = (table(kind, 0) for kind in (SPRING, LOAD, BUSHING))
+    return Joined(none, none, table(JOINT, 0), no_relations(), *forces, no_joints())
 
 
 def _moved(rows: np.recarray, place: np.ndarray, ends: tuple[str, ...]) -> np.recarray:
