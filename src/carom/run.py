@@ -144,8 +144,7 @@ class Run:
     def make_arrays(self) -> None:
         """Make all arrays that the run changes, except the records."""
         options, system, later = self.options, self.compiled.system, self.compiled.later
-        self.now = self.compiled.start
-        self.active = r.new_active_set(system)
+        self.now, self.active = self.compiled.start, r.new_active_set(system)
         self.work = r.new_work(system, self.method.b.size)
         of = system, self.active
         self.islands = new_islands(*of, later) if self.apart else no_islands(*of)
