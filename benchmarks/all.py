@@ -26,6 +26,7 @@ ROOT = HERE.parent
 SCRIPTS = (
     "free_step", "impact", "corner", "coulomb", "location", "convergence", "accuracy", "work_precision",
     "chain", "loops", "methods", "contacts", "heaps", "pairs", "ensembles", "scaling", "allocation", "startup",
+    "short_calls",
 )  # fmt: skip
 TABLES = (ROOT / "docs" / "benchmarks.md", ROOT / "docs" / "howto" / "accuracy.md")
 PICTURES = ("work_precision", "accuracy", "scaling", "convergence", "location")

@@ -88,7 +88,9 @@ def pile():
     return scene
 
 
-quiet = pytest.mark.filterwarnings("ignore::carom.status.MistakeWarning", "ignore::carom.status.AccuracyWarning")
+quiet = pytest.mark.filterwarnings(
+    "ignore::carom.status.MistakeWarning", "ignore::carom.status.AccuracyWarning"
+)
 WAYS = ({}, {"step": 0.01}, {"step": 0.01, "method": "implicit"}, {"rtol": 1e-6, "save_at": 0.07})
 
 

@@ -48,7 +48,7 @@ class Mould:
         block = mmap(-1, size, access=PRIVATE) if size > LARGE else bytearray(size)
         memory = np.frombuffer(block, np.uint8)
         memory[: len(content)] = content
-        arrays = [np.ndarray.__new__(*kind, memory, *place) for kind, place in places]
+        arrays = [np.ndarray.__new__(k, n, t, memory, at, by) for k, n, t, at, by in places]
         return _cast(arrays, *plan)
 
 
@@ -56,7 +56,7 @@ def _recipe(parts: tuple, arrays: list[np.ndarray], contents: list[bytes]) -> tu
     """Return the plan of nested tuples, types and places of their arrays, the first bytes, and their number."""
     size, places, content = 0, [], bytearray()
     for k, one in enumerate(arrays):
-        places.append(((type(one), one.shape, one.dtype), (size, one.strides)))
+        places.append((type(one), one.shape, one.dtype, size, one.strides))
         size += one.nbytes + -one.nbytes % 16
         if contents[k]:
             content += contents[k].ljust(size - len(content), b"\0")

@@ -53,4 +53,4 @@ class Levels(NamedTuple):
 def no_levels() -> Levels:
     """Return the level surfaces of a scene that has none."""
     kinds = SURFACE, LEVEL_FACE, LEVEL_SIDE, RIM_SEGMENT
-    return Levels(*(table(kind, 0) for kind in kinds), np.zeros(0, dtype=np.int64))
+    return Levels._make([*(table(kind, 0) for kind in kinds), np.zeros(0, dtype=np.int64)])

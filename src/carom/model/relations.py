@@ -208,7 +208,7 @@ class Elements:
             _joined(arrays.USER_ROW, self.user),
         )
         tables = relations, listed, user, self.pieces.rows, *(_joined(*one) for one in forces)
-        return arrays.Relations(1, rows, *tables, named, read, write)
+        return arrays.Relations._make([1, rows, *tables, named, read, write])
 
 
 @cache
@@ -218,7 +218,7 @@ def no_relations() -> arrays.Relations:
     kinds = a.COORDINATE, a.RELATION_ROW, a.TERM, a.USER_ROW, a.PIECE, a.PUSH, a.USER_FORCE
     kinds += a.STIFF_SPRING, a.FRICTION, a.ROTOR
     named = np.zeros(0, dtype=np.int64)
-    return arrays.Relations(0, *(table(kind, 0) for kind in kinds), named, none, none)
+    return a.Relations._make([0, *(table(kind, 0) for kind in kinds), named, none, none])
 
 
 def _joined(fields, rows) -> np.recarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -81,7 +81,7 @@ def sentences(
     the time of the error and a remedy, `finer` for shorter steps. `pairs` are the pairs of the contacts of the
     run, None for all pairs of the scene.
     """
-    numbers = dict(zip(watch.dtype.names or (), watch.item()))
+    numbers: dict[str, Any] = dict(zip(watch.dtype.names or (), watch.item()))
     bound = allowed(numbers, 1.0)
     over = [not abs(amount) <= bound for amount in numbers["amount"].tolist()]
     kinds = [i for i in (RESIDUAL, IMPACTS, FRICTION, BOUNCES) if over[i]]

@@ -65,7 +65,7 @@ def no_bodies() -> Joined:
     """Return the empty joints and loads of islands without any."""
     none = np.zeros(0, dtype=np.int64)
     forces = (table(kind, 0) for kind in (SPRING, LOAD, BUSHING))
-    return Joined(none, none, table(JOINT, 0), no_relations(), *forces, no_joints())
+    return Joined._make([none, none, table(JOINT, 0), no_relations(), *forces, no_joints()])
 
 
 def _moved(rows: np.recarray, place: np.ndarray, ends: tuple[str, ...]) -> np.recarray:
