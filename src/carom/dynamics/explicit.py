@@ -220,7 +220,7 @@ def return_to_joints(system, state, end, work):
             copy_state(end[b], state[b])
     if not (project_position(system, state, True, 1e-14, work) <= LOST):
         return False
-    project_velocity(system, state, work)
+    project_velocity(system, state, False, work)
     return True
 
 

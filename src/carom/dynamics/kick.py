@@ -72,7 +72,7 @@ def second_kick(system, h, end, work):
         if change == 0.0 or (change <= 1e-12 and not change < 0.5 * previous):
             break
         set_velocities(system, 0.5 * h, end, work)
-        project_velocity(system, end, work)
+        project_velocity(system, end, False, work)
         driven = driven_power(system, end, work)  # of an impulse: its work
     return 0.5 * h * power + driven
 

@@ -43,7 +43,7 @@ def land(model, data, loaded, k, count) -> bool:
     note_passed(active, k, group, data.state, end)
     onto_surfaces(system, active, k, count, end, group, work)
     if loaded:
-        project_velocity(system, end, work)
+        project_velocity(system, end, False, work)
     show(count, end, group, work)
     place_closed(system, k, end, group, group.points[0], work)
     for i in range(k):

@@ -242,7 +242,7 @@ def left_ball(system, now, dt, work):
 
 
 @unit
-def _check_pair(system, controls, active, c, now, work) -> int:
+def check_pair(system, controls, active, c, now, work) -> int:
     """Return whether a closed point of two bodies is to be struck or made persistent."""
     contact, action = system.contacts[c], NOTHING
     near, still = closed_within(controls, contact, now), slow(contact, now)
@@ -257,14 +257,6 @@ def _check_pair(system, controls, active, c, now, work) -> int:
             if rate <= still and not is_active(system, active, c, touch, now):
                 action = PERSIST
     return action
-
-
-@inlined
-def check_pair(system, controls, active, c, now, work):
-    """Return whether a closed point of two bodies is to be struck or made persistent."""
-    if system.solids.shape[0] > 0:
-        return _check_pair(system, controls, active, c, now, work)
-    return NOTHING
 
 
 @inlined

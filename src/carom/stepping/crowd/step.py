@@ -169,7 +169,7 @@ def move_on(model, data, method, h, patient, careful):
         gained = energy_gained(model, data, h, loaded) - applied - rubbed
         taken = take_out(system, gained - (named if n == 1 else 0.0), crowd.flight, end)
         if taken > 0.0:
-            project_velocity(system, end, work)
+            project_velocity(system, end, False, work)
         gained -= taken
         left = take_over(gained - named, impacts, friction, bounces, clock)
         if n == 1 and not loaded:
