@@ -13,8 +13,6 @@ from carom.dynamics.solve import solve
 from carom.dynamics.stiff import add_stiff
 from carom.model.parts_of_system import has_joints
 
-OPEN, SLIP, STICK = range(3)
-
 
 @unit(where=has_joints)
 def bias_joints(system, state, work):

@@ -15,7 +15,7 @@ from carom.dynamics.project import project_velocity
 from carom.dynamics.solve import free_body, solve
 from carom.geometry.rotation import cross, rotate, rotate_back
 
-MOST = 60  # substitutions
+SUBSTITUTIONS = 60  # substitutions
 
 
 @kernel
@@ -64,7 +64,7 @@ def second_kick(system, h, end, work):
     that the step is symmetric).
     """
     power, driven, change = 0.0, 0.0, math.inf
-    for k in range(MOST):
+    for k in range(SUBSTITUTIONS):
         if k == 0:
             set_velocities(system, 0.0, end, work)
         power = applied_wrenches(system, end, False, work)

@@ -38,7 +38,7 @@ from carom.model.parts_of_system import has_joints
 from carom.status import NO_CONVERGENCE
 
 DONE, STALLED, TOO_FAR = range(3)  # how a part of a step ended
-MOST = 60  # solves for Lam
+SOLVES = 60  # solves for Lam
 
 
 @inlined
@@ -102,13 +102,13 @@ def one_part(system, start, t, h, end, work):
     total = first_kick(system, start, h, work)
     lost = dropped_rows(system, 0.0)
     least, last, fine = math.inf, math.inf, round_off(system, start)
-    for k in range(MOST):
+    for k in range(SOLVES):
         if not move_all(system, start, h, end, work):
             return 0.0, TOO_FAR if k == 0 else STALLED
         error = error_of_move(system, start, t, h, end, work)
         if error <= 1e-15 or (error <= 100.0 * fine and not error < 0.5 * last):
             break
-        if not error < 1e3 * least or k == MOST - 1:
+        if not error < 1e3 * least or k == SOLVES - 1:
             return 0.0, STALLED
         least, last = min(least, error), error
         result.time = t

@@ -29,7 +29,7 @@ from carom.model.workspace import RESTS
 
 SINGULAR = 1e-5  # relative to a row's diagonal: the square of the angle to the rows before it
 # bodies turn by this angle in the time T; if rows still depend on each other, by more
-NEAR, FARTHER, TRIES = 1e-2, 3.0, 2
+NEAR, FARTHER, LONGER_TIMES = 1e-2, 3.0, 2
 
 
 @kernel
@@ -64,7 +64,7 @@ def pass_round(system, stage, sums, work, rates):
     if dropped <= usual[0]:
         return
     pace, time, reach = turning_pace(system, stage), result.time, NEAR
-    for _ in range(TRIES if pace > 0.0 else 0):
+    for _ in range(LONGER_TIMES if pace > 0.0 else 0):
         power, most = _sum_rates(system, stage, sums, work, rates, reach, pace)
         result.time = time
         if most > usual[0]:

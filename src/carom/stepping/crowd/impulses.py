@@ -13,7 +13,7 @@ from carom.dynamics.energy import spin_momentum
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.project import LOST, project_velocity, shift
 from carom.dynamics.rotors import add_rates, note_rates
-from carom.friction.layout import P
+from carom.friction.layout import ITERATE
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.allowance import affordable_whole
@@ -130,7 +130,7 @@ def limit_bounces(system, k, n, tolerance, effort, crowd, work, clock):
         s = min(1.0, -2.0 * a / root) if a < 0.0 < root else 0.0
     for i in range(3 * k):
         p = crowd.p[i] + s * (full[i] - crowd.p[i])
-        problem.vector[P, i] = p / (gamma * problem.contact[i // 3].scale)
+        problem.vector[ITERATE, i] = p / (gamma * problem.contact[i // 3].scale)
     answer(system, k, gamma, crowd, work)
     gain(crowd, work)
     return residual
