@@ -7,12 +7,13 @@ import numpy as np
 import carom
 from carom._compiled.decorators import entry
 from carom.bench.problems import corner_impact
-from carom.bench.problems.corner_impact import IMPACTS_TIMED, LAW
+from carom.bench.problems.corner_impact import IMPACTS_TIMED
+from carom.impact.laws import NEWTON, STRONGE
 from carom.impact.layer import traverse
 from carom.impact.layout import SIZE
 from common import ROUNDS, die_scene, report, seconds, spread
 
-US, STRONGE = 1e-6, 2
+US = 1e-6
 
 
 @entry
@@ -25,7 +26,7 @@ def traverse_many(W, u, mu, e, law, history, out):
     return failed
 
 
-def through_layer(mu: float = 0.2, e: float = 0.5, law: int = LAW):
+def through_layer(mu: float = 0.2, e: float = 0.5, law: int = NEWTON):
     """Return a function that passes all impacts through the paper's boundary layer, with two spline steps."""
     W, u = corner_impact.impacts()
     history, out = np.zeros((64, 11)), np.zeros(SIZE)
@@ -50,7 +51,7 @@ def main() -> None:
     rows = []
     frictions = {"no friction": 0.0, "mu = 0.2, slip bends": 0.2, "mu = 0.8, mostly stick": 0.8}
     for name, mu in frictions.items():
-        for law, number in (("newton", LAW), ("stronge", STRONGE)):
+        for law, number in (("newton", NEWTON), ("stronge", STRONGE)):
             times = [t / IMPACTS_TIMED for t in seconds(corner_impact.ours(mu, law=number))]
             rows.append([f"resolver, {name}, {law}", spread(times, US)])
     times = [t / IMPACTS_TIMED for t in seconds(through_layer())]
