@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom.impact import laws
-from carom.impact.layout import JAM, PLASTIC
+from carom.impact.layout import PHASE_JAM, PLASTIC
 from carom.model import records as r
 from carom.status import Remark
 
@@ -18,7 +18,7 @@ def remarks(rows, events, run, names) -> tuple[str, ...]:
     jams = events[events["kind"] == r.JAMS]
     counts = np.abs(rows["energy_change"]) > _ROUND_OFF * run.watch[0].exchanged
     jams = jams[np.isin(jams["time"], rows["time"][counts])]
-    slides = rows[counts & (rows["phases"] & JAM != 0) & ~np.isin(rows["time"], jams["time"])]
+    slides = rows[counts & (rows["phases"] & PHASE_JAM != 0) & ~np.isin(rows["time"], jams["time"])]
     said = _gains(rows, names, run)
     if len(jams) + len(slides) > 0:
         first = min((*jams[:1], *slides[:1]), key=lambda row: row["time"])
