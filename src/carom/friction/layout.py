@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -120,21 +121,10 @@ def new_contact_work(capacity: int) -> ContactWork:
     """Return work arrays for up to `capacity` contacts with a full matrix W."""
     contacts = max(capacity, 1)
     n = 3 * contacts
+    whole = partial(np.zeros, dtype=np.int64)
     return ContactWork(
-        kind=DENSE,
-        contact=table(CONTACT, contacts),
-        vector=np.zeros((VECTORS, n)),
-        count=np.zeros(5, dtype=np.int64),
-        mismatch=np.zeros(2),
-        W=np.zeros((n, n)),
-        matrix=np.zeros((n, n)),
-        pivot=np.zeros(n, dtype=np.int64),
-        active=np.zeros(n, dtype=np.int64),
-        link=table(LINK, 0),
-        other=table(OTHER, 0),
-        body=table(ISLAND_BODY, 0),
-        place=table(PLACE, 0),
-        later=np.zeros(0, dtype=np.int64),
-        target=np.zeros((0, 3), dtype=np.int64),
-        block=np.zeros((0, 6, 6)),
-    )
+        kind=DENSE, contact=table(CONTACT, contacts), vector=np.zeros((VECTORS, n)), count=whole(5),
+        mismatch=np.zeros(2), W=np.zeros((n, n)), matrix=np.zeros((n, n)), pivot=whole(n),
+        active=whole(n), link=table(LINK, 0), other=table(OTHER, 0), body=table(ISLAND_BODY, 0),
+        place=table(PLACE, 0), later=whole(0), target=whole((0, 3)), block=np.zeros((0, 6, 6)),
+    )  # fmt: skip

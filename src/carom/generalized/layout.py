@@ -121,14 +121,9 @@ class Record(NamedTuple):
 
 def new_active_set(contacts: int) -> ActiveSet:
     """Return an active set with room for all contacts, none active."""
-    return ActiveSet(
-        np.zeros(1, dtype=np.int64),
-        np.zeros(contacts, dtype=np.int64),
-        np.zeros(contacts, dtype=np.int64),
-        np.zeros((contacts, 2)),
-        np.zeros((contacts, 3)),
-        np.zeros(contacts),
-    )
+    count, (contact, mode) = np.zeros(1, np.int64), np.zeros((2, contacts), np.int64)
+    vectors = np.zeros((contacts, 2)), np.zeros((contacts, 3))
+    return ActiveSet(count, contact, mode, *vectors, np.zeros(contacts))
 
 
 def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> Work:

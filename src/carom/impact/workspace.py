@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -96,27 +97,22 @@ def new_group(system: System, more: bool = False) -> Group:
     """Return the workspace for the largest group of `system`; `more` says that contacts may be added."""
     n, k = system.bodies.size, capacity(system, more)
     return Group(
-        closed=table(CLOSED_POINT, k),
-        points=table(POINT, 2, k),
-        v=np.zeros((5, 3 * k)),
-        m=np.zeros((2, 3 * k, 3 * k)),
-        mu=np.zeros(k),
-        kind=np.zeros(k, dtype=np.int64),
-        heading=np.zeros((k, 2)),
-        member=np.zeros(n, dtype=np.int64),
-        cone=new_contact_work(k),
-    )
+        closed=table(CLOSED_POINT, k), points=table(POINT, 2, k), v=np.zeros((5, 3 * k)),
+        m=np.zeros((2, 3 * k, 3 * k)), mu=np.zeros(k), kind=np.zeros(k, dtype=np.int64),
+        heading=np.zeros((k, 2)), member=np.zeros(n, dtype=np.int64), cone=new_contact_work(k),
+    )  # fmt: skip
+
+
+@cache
+def no_multiple(settings: MultipleSettings) -> MultipleImpact:
+    """Return the workspace of a run before its first impact of several points: nothing is written to it."""
+    return new_multiple(1, settings)
 
 
 def new_multiple(k: int, settings: MultipleSettings) -> MultipleImpact:
     """Return the workspace of impacts of `k` points."""
+    law, pair, ball_like = np.zeros((3, k), dtype=np.int64)
     return MultipleImpact(
-        workspace=new_multiple_workspace(k),
-        settings=settings,
-        result=new_multiple_result(k),
-        e=np.zeros(k),
-        law=np.zeros(k, dtype=np.int64),
-        kappa=np.zeros(k),
-        pair=np.zeros(k, dtype=np.int64),
-        ball_like=np.zeros(k, dtype=np.int64),
-    )
+        workspace=new_multiple_workspace(k), settings=settings, result=new_multiple_result(k),
+        e=np.zeros(k), law=law, kappa=np.zeros(k), pair=pair, ball_like=ball_like,
+    )  # fmt: skip

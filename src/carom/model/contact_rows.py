@@ -61,6 +61,8 @@ def _added(scene: Scene, rest: PairTable) -> PairTable:
     ]
     body, other, plane = np.array(ends, dtype=np.int64).reshape(-1, 3).T
     first = PairTable(body, other, plane, np.arange(len(added)), [*added, *rest.laws])
+    if not len(rest.body):
+        return first
     return joined_tables(first, replace(rest, law=rest.law + len(added)))
 
 

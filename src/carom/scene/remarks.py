@@ -32,9 +32,8 @@ def _of_untouched(scene: Scene) -> list[str]:
     attached = {id(part) for joint in scene.joints for part in (joint.parent, joint.child)}
     attached |= {id(part) for constraint in scene.constraints for part in constraint.parts}
     for force in scene.forces:
-        if not isinstance(
-            force.definition, (Force, Torque)
-        ):  # springs and what the user writes may hold it
+        # springs and what the user writes may hold it
+        if not isinstance(force.definition, (Force, Torque)):
             attached |= {id(part) for part in (force.parent, force.child)}
             attached |= {id(part) for part in getattr(force.definition, "bodies", ())}
     free = [b for b in scene.bodies if not touched[b.index] and id(b) not in attached]

@@ -228,23 +228,15 @@ def new_multiple_workspace(capacity: int) -> MultipleWorkspace:
     k = max(int(capacity), 1)
     n, blocks = 3 * k, (k + LANES - 1) // LANES
     work = PassageWork(
-        contact=table(CONTACT, k),
-        saved=table(CONTACT, k),
-        clock=table(CLOCK, 1),
-        index=np.zeros((11, n), dtype=np.int64),
-        matrix=np.zeros((9, n, n)),
-        vector=np.zeros((39, 3 * LANES * blocks)),
-        series=np.zeros((18, ORDERS, blocks, LANES)),
-        columns=np.zeros((n, 3 * blocks, LANES)),
-        stage=np.zeros((2, 6, n)),
+        contact=table(CONTACT, k), saved=table(CONTACT, k), clock=table(CLOCK, 1),
+        index=np.zeros((11, n), dtype=np.int64), matrix=np.zeros((9, n, n)),
+        vector=np.zeros((39, 3 * LANES * blocks)), series=np.zeros((18, ORDERS, blocks, LANES)),
+        columns=np.zeros((n, 3 * blocks, LANES)), stage=np.zeros((2, 6, n)),
         single=np.zeros(SIZE),
-    )
+    )  # fmt: skip
     work.clock["left"] = UNLIMITED
     blow = BlowWork(
-        member=np.zeros(k, dtype=np.int64),
-        W=np.zeros((n, n)),
-        given=np.zeros((4, n)),
-        law=np.zeros((2, k), dtype=np.int64),
-        result=new_multiple_result(k),
-    )
+        member=np.zeros(k, dtype=np.int64), W=np.zeros((n, n)), given=np.zeros((4, n)),
+        law=np.zeros((2, k), dtype=np.int64), result=new_multiple_result(k),
+    )  # fmt: skip
     return MultipleWorkspace(work, new_contact_work(k), blow)

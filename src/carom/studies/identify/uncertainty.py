@@ -21,9 +21,8 @@ class Uncertainty(NamedTuple):
     centre: np.ndarray  #: (p,) minimum of the surface of all recordings
     samples: np.ndarray  #: (B, p) minima of the resampled surfaces
     reach: np.ndarray  #: (p,) half width of the region in which the surface is fitted
-    at_edge: (
-        np.ndarray
-    )  #: (p,) part of the samples at the edge of the region; the true spread is larger
+    #: (p,) part of the samples at the edge of the region; the true spread is larger
+    at_edge: np.ndarray
 
 
 def bootstrap(evaluate: Evaluator, resamples: int, seed: int) -> Uncertainty:

@@ -21,9 +21,8 @@ class Strikes(NamedTuple):
     number: np.ndarray  #: (K',) which of `Solution.impacts`
     arrow: np.ndarray  #: (K', 3) impulse on the body, world axes [N s]; 0 of stops
     contact: list[str]  #: (K',) names
-    turning: (
-        np.ndarray
-    )  #: (K',) whether it is an impact at the stop of an angle, in [rad/s] and [N m s]
+    #: (K',) whether it is an impact at the stop of an angle, in [rad/s] and [N m s]
+    turning: np.ndarray
 
 
 class PersistentForces(NamedTuple):
