@@ -52,7 +52,7 @@ from carom.stepping.islands.layout import (
 )
 from carom.stepping.settings import Settings
 
-FEW = 8  # points of an impact for which there is room at first
+ROOM_AT_FIRST = 8  # points of an impact for which there is room at first
 LOCATIONS = {"locate": LOCATE, "project": PROJECT, "work": WORK}
 
 
@@ -225,7 +225,9 @@ class Run:
         elif what == r.FULL_PAIRS:
             self.islands = roomier(self.islands)
         elif what == r.FULL_MULTIPLE:
-            points = max(FEW, 2 * len(self.multiple.e), 2 * int(self.work.hit["closed"][0]))
+            points = max(
+                ROOM_AT_FIRST, 2 * len(self.multiple.e), 2 * int(self.work.hit["closed"][0])
+            )
             self.multiple = new_multiple(min(len(self.group.mu), points), self.multiple.settings)
         elif what == r.NEW_PAIRS:
             noted = self.islands.pair[0, : self.islands.plan[0].noted]

@@ -21,7 +21,7 @@ from carom.model.arrays import System
 from carom.model.workspace import POINT
 
 #: greatest number of points that are solved together
-MOST = 192
+MOST_TOGETHER = 192
 
 #: a closed point: its contact, and its place in the list of active points
 CLOSED_POINT = [
@@ -81,16 +81,16 @@ class MultipleImpact(NamedTuple):
 def capacity(system: System, more: bool) -> int:
     """Return the greatest number of closed points in one group; `more` says that contacts may be added."""
     if more:
-        return MOST
+        return MOST_TOGETHER
     contacts, more_rows = system.contacts, len(system.relations.frictions)
     vertices, found = contacts["last"] - contacts["first"], contacts["touches"] == 1
     if found.any():
         points = np.where(found, MOST_POINTS, vertices)
-        return max(1, min(MOST, int(points.sum()) + more_rows))
+        return max(1, min(MOST_TOGETHER, int(points.sum()) + more_rows))
     count = np.zeros(system.bodies.size + 1, dtype=np.int64)
     rows = 1 + (contacts["turning"] > 0.0).sum(axis=1)
     np.add.at(count, system.bodies["component"][contacts["body"]], rows * vertices)
-    return max(1, min(MOST, int(count.max()) + more_rows))
+    return max(1, min(MOST_TOGETHER, int(count.max()) + more_rows))
 
 
 def new_group(system: System, more: bool = False) -> Group:

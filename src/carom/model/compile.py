@@ -284,13 +284,16 @@ def start_sizes(scene) -> np.ndarray:
 
 
 def _extents(scene, joints) -> np.ndarray:
-    """Return a length (N,) of each body: the largest of the size of its shape and the arms of its joints."""
-    size = np.array([0.0 if b.shape is None else b.shape.size for b in scene.bodies])
+    """Return a length (N,) of each body: the largest of the size of its shape and the arms of its joints.
+
+    Without a shape its radius of gyration counts: a joint may be at its mass centre, or nearly so.
+    """
+    size = start_sizes(scene)
     for side in ("parent", "child") if len(joints) else ():
         sides, anchors = joints[side], joints[f"{side}_anchor"]
         inside = sides >= 0
         np.maximum.at(size, sides[inside], np.linalg.norm(anchors[inside], axis=1))
-    return np.where(size == 0.0, start_sizes(scene), size)
+    return size
 
 
 def _bodies(scene, moments, joints, elements, springs, loads, bushings, more):

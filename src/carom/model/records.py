@@ -15,7 +15,7 @@ from carom.model.method import ESDIRK
 
 #: kinds of events, by code
 EVENTS = ("impact", "held", "slips", "sticks", "opens", "jams")
-IMPACT, PERSIST, SLIPS, STICKS, OPENS, JAMS = range(6)
+IMPACT, PERSISTS, SLIPS, STICKS, OPENS, JAMS = range(6)
 
 #: present energies, and energies summed since the start
 ENERGIES = [("kinetic", "f8"), ("potential", "f8")]

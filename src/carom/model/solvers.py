@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.model.arrays import FIRST, FOREST, LINK, LOOPS, NO_JOINTS, ROW, SIDE, WIDTH, Solver
+from carom.model.arrays import FOREST, HEAD, LINK, LOOPS, NO_JOINTS, ROW, SIDE, WIDTH, Solver
 from carom.model.graph import Sets, elimination
 
 #: ratio of masses from which on A M^-1 A^T loses too many digits (`carom.dynamics.light_bodies`)
@@ -48,7 +48,7 @@ def tree_solver(
     most = max(
         1, int(np.max(links.freedoms[(links.joint >= 0) | (links.has_child == 1)], initial=0))
     )
-    workspace = np.full((order.size, FIRST + WIDTH * most), np.nan)
+    workspace = np.full((order.size, HEAD + WIDTH * most), np.nan)
     own = np.where(joint[:, None] >= 0, rotor[joint, :most], 0.0)
     return no_joints()._replace(
         kind=FOREST, links=links, rotor=own, workspace=workspace, usual=np.full(1, -1)

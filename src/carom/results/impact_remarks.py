@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom.impact import laws
-from carom.impact.layout import JAM, PLASTIC
+from carom.impact.layout import PHASE_JAM, PLASTIC
 from carom.model import records as r
 from carom.results.names import contact_name
 from carom.status import Remark
@@ -18,12 +18,12 @@ def remarks(rows, events, run) -> tuple[str, ...]:
     """Return a sentence for each kind: how many impacts (`rows`) or `events` of a run, and the first."""
     said = _gains(rows, run)
     jams = events["kind"] == r.JAMS
-    if not (jams.any() or (rows["phases"] & (JAM | PLASTIC)).any()):
+    if not (jams.any() or (rows["phases"] & (PHASE_JAM | PLASTIC)).any()):
         return tuple(map(Remark, said))
     jams = events[jams]
     counts = np.abs(rows["energy_change"]) > _ROUND_OFF * run.watch[0].exchanged
     jams = jams[np.isin(jams["time"], rows["time"][counts])]
-    slides = rows[counts & (rows["phases"] & JAM != 0) & ~np.isin(rows["time"], jams["time"])]
+    slides = rows[counts & (rows["phases"] & PHASE_JAM != 0) & ~np.isin(rows["time"], jams["time"])]
     if len(jams) + len(slides) > 0:
         first = min((*jams[:1], *slides[:1]), key=lambda row: row["time"])
         said.append(

@@ -16,7 +16,7 @@ from carom.scene.forces import Force, Torque
 if TYPE_CHECKING:
     from carom.scene.scene import Scene
 
-MOST = 6  # names in a sentence
+MOST_NAMES = 6  # names in a sentence
 
 
 def remarks(scene: Scene) -> tuple[str, ...]:
@@ -119,8 +119,8 @@ def _all_of_materials(scene: Scene) -> bool:
 
 
 def _names(parts: Sequence) -> str:
-    shown = ", ".join(repr(part.name) for part in parts[:MOST])
-    return shown + (f" and {len(parts) - MOST} more" if len(parts) > MOST else "")
+    shown = ", ".join(repr(part.name) for part in parts[:MOST_NAMES])
+    return shown + (f" and {len(parts) - MOST_NAMES} more" if len(parts) > MOST_NAMES else "")
 
 
 def check_location(scene, impact_location: str) -> None:
