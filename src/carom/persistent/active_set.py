@@ -182,7 +182,7 @@ def replace_points(system, controls, active, c, mode, state, work):
     """
     contact = system.contacts[c]
     near, still = closed_within(controls, contact, state), 10.0 * slow(contact, state)
-    if apart(contact, state, near):
+    if apart(system, contact, state, near):
         return
     plane = on_half_space(contact)
     if not plane:
