@@ -1,7 +1,7 @@
 """Points that have passed an edge within a step: their normal jumps from that of one face to that of the next.
 
 A normal that a face owns turns with its body. Where it does not, the point has gone from this face to another,
-or, of sharp solids, to edges that cross or lie along each other (the tip of a saw tooth under the end of a pawl).
+or, of sharp solids, to edges on edges (the tip of a saw tooth at the end of a pawl).
 Beyond an edge of a convex piece the next face recedes: to keep the point on it would take a pull.
 """
 

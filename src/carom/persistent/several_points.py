@@ -100,12 +100,12 @@ def judge(model, data, k, rows, horizon):
 
 @kernel
 def leave_unreachable(system, state, k, group):
-    """Let points bounce on whose velocities cannot all be removed; return whether any velocity was to be removed.
+    """Let points bounce on whose velocities cannot all be removed; return whether forces were written over.
 
     Where a driver moves a body the rows of two points may depend on each other while their velocities do not:
     two flanks of a tooth on a gear that can only turn. The fastest are left until the others agree.
     """
-    first = False
+    written = False
     for _ in range(k):
         fastest, joined, left = -1, False, 0.0
         for i in range(k):
@@ -114,19 +114,19 @@ def leave_unreachable(system, state, k, group):
                 if fastest < 0 or group.v[U][3 * i] > group.v[U][3 * fastest]:
                     fastest = i
         if not joined:
-            return first
+            return written
         most = group.v[U][3 * fastest]
         if not most > slow(system.contacts[group.closed[fastest].contact], state):
-            return first
+            return written
         find_pull(k, 0, group)
-        first = True
+        written = True
         for i in range(k):
             if group.closed[i].stays == 1:
                 left = max(left, abs(velocity_after(3 * i, k, group)))
         if not left > AGREE * most:
-            return first
+            return written
         group.closed[fastest].stays = 0
-    return first
+    return written
 
 
 @kernel
