@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: paper test lint docs bench history release-check wheel clean
+.PHONY: paper test test-all lint docs bench history release-check wheel clean
 
 $(VENV)/installed-%: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -14,12 +14,15 @@ $(VENV)/installed-%: pyproject.toml
 paper: $(VENV)/installed-paper ## reproduce the paper: figures and table under out/paper
 	$(BIN)/carom paper --out out/paper
 
-test: $(VENV)/installed-test ## all checks: style, types, tests, a part of them without the JIT and for another processor
+test: $(VENV)/installed-test ## style, types, tests but for the slow ones, a part of them without the JIT
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/basedpyright
-	$(BIN)/python -m pytest -n auto
+	$(BIN)/python -m pytest -n auto -m "not slow"
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto -m plain
+
+test-all: test ## the slow tests too, and a part of all for another processor
+	$(BIN)/python -m pytest -n auto -m slow
 	NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= $(BIN)/python -m pytest -n auto --dist loadfile -m processors
 
 lint: $(VENV)/installed-test

@@ -7,12 +7,13 @@ import numpy as np
 import carom
 from carom._compiled.decorators import entry
 from carom.bench.problems import corner_impact
-from carom.bench.problems.corner_impact import COUNT, NEWTON
+from carom.bench.problems.corner_impact import IMPACTS_TIMED
+from carom.impact.laws import NEWTON, STRONGE
 from carom.impact.layer import traverse
 from carom.impact.layout import SIZE
 from common import ROUNDS, die_scene, report, seconds, spread
 
-US, STRONGE = 1e-6, 2
+US = 1e-6
 
 
 @entry
@@ -51,16 +52,16 @@ def main() -> None:
     frictions = {"no friction": 0.0, "mu = 0.2, slip bends": 0.2, "mu = 0.8, mostly stick": 0.8}
     for name, mu in frictions.items():
         for law, number in (("newton", NEWTON), ("stronge", STRONGE)):
-            times = [t / COUNT for t in seconds(corner_impact.ours(mu, law=number))]
+            times = [t / IMPACTS_TIMED for t in seconds(corner_impact.ours(mu, law=number))]
             rows.append([f"resolver, {name}, {law}", spread(times, US)])
-    times = [t / COUNT for t in seconds(through_layer())]
+    times = [t / IMPACTS_TIMED for t in seconds(through_layer())]
     rows.append(["layer by splines, 2 steps, mu = 0.2, newton", spread(times, US)])
     times, impacts, trials = run_with_impacts()
     name = f"in a run, {impacts} impacts, {trials / impacts:.1f} trial steps each: all of it"
     rows.append([name, spread([t / impacts for t in times], US)])
     report(
         "impact", "One impact of a cube on a corner", ["", "microseconds an impact"], rows,
-        f"Resolver and layer: mean over {COUNT} random corners and velocities, {ROUNDS} rounds.",
+        f"Resolver and layer: mean over {IMPACTS_TIMED} random corners and velocities, {ROUNDS} rounds.",
     )  # fmt: skip
 
 

@@ -19,7 +19,7 @@ from carom.bench.problems import (
     sphere,
     stack,
 )
-from carom.cli import OK, USAGE, main
+from carom.cli import EXIT_OK, USAGE, main
 
 #: what the default method makes of each problem with its longest step: round-off where free motion is exact,
 #: else the error of order 4 that chain and loops have there
@@ -128,7 +128,7 @@ def test_mujoco_does_the_same_problem(problem):
 
 
 def test_the_command_measures(capsys):
-    assert main(["bench", "corner_impact", "planar_die", "--rounds", "2", "--json"]) == OK
+    assert main(["bench", "corner_impact", "planar_die", "--rounds", "2", "--json"]) == EXIT_OK
     told = json.loads(capsys.readouterr().out)
     assert told["machine"]["versions"]["carom"] == carom.__version__
     names = [row["name"] for row in told["problems"]]
@@ -136,7 +136,7 @@ def test_the_command_measures(capsys):
     for row in told["problems"]:
         assert 0.0 < row["carom"]["low"] <= row["carom"]["median"] <= row["carom"]["high"]
         assert row["carom"]["error"] < 1e-11
-    assert main(["bench", "corner_impact", "--rounds", "1"]) == OK
+    assert main(["bench", "corner_impact", "--rounds", "1"]) == EXIT_OK
     out = capsys.readouterr().out
     assert "us an impact" in out
     assert f"carom {carom.__version__}" in out

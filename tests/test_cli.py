@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import carom
-from carom.cli import FAILED, INTERRUPTED, OK, USAGE, app, extras, main, scenes, show, warmup
+from carom.cli import CTRL_C, EXIT_OK, FAILED, USAGE, app, extras, main, scenes, show, warmup
 
 DIE = """
 import carom
@@ -31,7 +31,7 @@ def made(tmp_path_factory):
     folder = tmp_path_factory.mktemp("cli")
     (folder / "die.py").write_text(DIE)
     out = folder / "die.h5"
-    assert main(["simulate", str(folder / "die.py"), "-o", str(out), "-d", "0.05"]) == OK
+    assert main(["simulate", str(folder / "die.py"), "-o", str(out), "-d", "0.05"]) == EXIT_OK
     return folder
 
 
@@ -42,14 +42,14 @@ def one_line(capsys) -> str:
 
 
 def test_version(capsys):
-    assert main(["--version"]) == OK
+    assert main(["--version"]) == EXIT_OK
     assert capsys.readouterr().out.strip() == f"carom {carom.__version__}"
 
 
 @pytest.mark.parametrize("name", [name for name, _, _ in app.COMMANDS])
 def test_help_teaches(name, capsys):
     """Each command has at least one example that is a call of it."""
-    assert main([name, "--help"]) == OK
+    assert main([name, "--help"]) == EXIT_OK
     out = capsys.readouterr().out
     assert out.startswith(f"Usage: carom {name}")
     assert f"  carom {name}" in out.split("For example:")[1]
@@ -111,14 +111,14 @@ def test_simulate_keeps_what_simulate_gives(made):
 def test_simulate_saves_at_times_and_to_a_tolerance(made):
     """A given tolerance takes the place of both of the file's; a given step takes the place of tolerances."""
     out = ["-o", str(made / "finer.h5"), "--force"]
-    assert main(["simulate", str(made / "die.h5"), "--save-at", "0.02", *out]) == OK
+    assert main(["simulate", str(made / "die.h5"), "--save-at", "0.02", *out]) == EXIT_OK
     found = carom.Solution.load(made / "finer.h5")
     np.testing.assert_allclose(found.t, [0.0, 0.02, 0.04, 0.05], rtol=0, atol=1e-16)
-    assert main(["simulate", str(made / "die.h5"), "--rtol", "1e-10", *out]) == OK
+    assert main(["simulate", str(made / "die.h5"), "--rtol", "1e-10", *out]) == EXIT_OK
     found = carom.Solution.load(made / "finer.h5").settings
     assert (found["method"], found["rtol"]) == ("rk8", 1e-10)
     assert found["atol"] < 1e-10
-    assert main(["simulate", str(made / "finer.h5"), "--step", "0.01", *out]) == OK
+    assert main(["simulate", str(made / "finer.h5"), "--step", "0.01", *out]) == EXIT_OK
     found = carom.Solution.load(made / "finer.h5").settings
     assert (found["step"], found["method"], "rtol" in found) == (0.01, "rk4", False)
 
@@ -126,7 +126,7 @@ def test_simulate_saves_at_times_and_to_a_tolerance(made):
 def test_simulate_until_an_event(made, capsys):
     out, until = made / "until.h5", "first impact of die and half_space1"
     command = ["simulate", str(made / "die.py"), "-d", "9", "-o", str(out), "--until", until]
-    assert main([*command, "--until", "at rest"]) == OK
+    assert main([*command, "--until", "at rest"]) == EXIT_OK
     assert f'That was events[0] ("{until}") at t = ' in capsys.readouterr().out
     found = carom.Solution.load(out)
     assert found.status is carom.Status.STOPPED
@@ -147,11 +147,11 @@ def test_simulate_does_not_write_over_a_result(made, capsys):
 
 def test_a_result_and_its_json_are_scenes_too(made, capsys):
     """Settings are those of the result but for what is given."""
-    assert main(["info", str(made / "die.h5"), "--scene"]) == OK
+    assert main(["info", str(made / "die.h5"), "--scene"]) == EXIT_OK
     (made / "scene.json").write_text(capsys.readouterr().out)
     found = []
     for name, more in (("die.h5", []), ("scene.json", ["-d", "0.05"])):
-        assert main(["simulate", str(made / name), "--step", "2e-3", "--json", *more]) == OK
+        assert main(["simulate", str(made / name), "--step", "2e-3", "--json", *more]) == EXIT_OK
         found.append(json.loads(capsys.readouterr().out))
     for one in found:
         assert (one["status"], one["reached"], one["saved_steps"]) == ("SUCCESS", 0.05, 26)
@@ -203,14 +203,14 @@ def test_interrupted_simulate_keeps_the_run_and_resumes(made, capsys, monkeypatc
     command = ["simulate", str(made / "die.py"), "-d", "0.2"]
     with monkeypatch.context() as patch:
         patch.setattr(show.Progress, "__call__", stop)
-        assert main([*command, "-o", str(out)]) == INTERRUPTED
+        assert main([*command, "-o", str(out)]) == CTRL_C
     said = one_line(capsys)
     assert f"carom simulate --resume {out}" in said
     assert carom.Solution.load(out).t[-1] < 0.15
     assert main(["simulate", "--resume", str(out), "--step", "1"]) == USAGE
     assert "--step" in one_line(capsys)
-    assert main(["simulate", "--resume", str(out)]) == OK
-    assert main([*command, "-o", str(straight)]) == OK
+    assert main(["simulate", "--resume", str(out)]) == EXIT_OK
+    assert main([*command, "-o", str(straight)]) == EXIT_OK
     runs = [carom.Solution.load(path) for path in (out, straight)]
     np.testing.assert_array_equal(runs[0].position, runs[1].position)
 
@@ -218,10 +218,10 @@ def test_interrupted_simulate_keeps_the_run_and_resumes(made, capsys, monkeypatc
 def test_a_finished_run_goes_on(made, capsys):
     out, straight = made / "short.h5", made / "whole.h5"
     command = ["simulate", str(made / "die.py"), "--step", "0.001"]
-    assert main([*command, "-d", "0.1", "-o", str(out)]) == OK
-    assert main(["simulate", "--resume", str(out), "-d", "0.2"]) == OK
+    assert main([*command, "-d", "0.1", "-o", str(out)]) == EXIT_OK
+    assert main(["simulate", "--resume", str(out), "-d", "0.2"]) == EXIT_OK
     assert "t = 0 to 0.2 s" in capsys.readouterr().out
-    assert main([*command, "-d", "0.2", "-o", str(straight)]) == OK
+    assert main([*command, "-d", "0.2", "-o", str(straight)]) == EXIT_OK
     runs = [carom.Solution.load(path) for path in (out, straight)]
     np.testing.assert_array_equal(runs[0].position, runs[1].position)
     assert main(["simulate", "--resume", str(out), "-d", "0.1"]) == USAGE
@@ -230,7 +230,7 @@ def test_a_finished_run_goes_on(made, capsys):
 
 def test_the_suffix_of_out_decides(made, capsys):
     command = ["simulate", str(made / "die.py"), "-d", "0.1", "-o"]
-    assert main([*command, str(made / "die.csv")]) == OK
+    assert main([*command, str(made / "die.csv")]) == EXIT_OK
     head = (made / "die.csv").read_text().splitlines()[0]
     assert head.startswith("time,die.x,die.y,die.z,die.qw")
     assert (made / "die.impacts.csv").read_text().startswith("time,contact,")
@@ -253,7 +253,7 @@ def test_functions_of_a_scene_by_their_names_in_files():
 
 def test_info_is_what_the_solution_says(made, capsys):
     solution = carom.Solution.load(made / "die.h5")
-    assert main(["info", str(made / "die.h5"), "--json"]) == OK
+    assert main(["info", str(made / "die.h5"), "--json"]) == EXIT_OK
     found = json.loads(capsys.readouterr().out)
     assert found["impacts"]["count"] == len(solution.impacts)
     assert found["impacts"]["energy"] == pytest.approx(solution.impacts.energy_change.sum())
@@ -262,16 +262,17 @@ def test_info_is_what_the_solution_says(made, capsys):
     assert found["bodies"][0]["name"] == "die"
     assert found["source"] == f"carom {carom.__version__}"
     assert "10.1007" in found["citation"]
-    assert main(["info", str(made / "die.h5")]) == OK
+    assert main(["info", str(made / "die.h5")]) == EXIT_OK
     out = capsys.readouterr().out
     assert all(word in out for word in ("SUCCESS", "Box(lx=0.02", "greatest residual", "10.1007"))
     assert "\x1b" not in out  # no colours where nobody looks
 
 
 def test_info_of_a_run_that_touches_nothing(made, capsys):
-    assert main(["simulate", str(made / "die.py"), "-o", str(made / "up.h5"), "-d", "0.005"]) == OK
+    up = str(made / "up.h5")
+    assert main(["simulate", str(made / "die.py"), "-o", up, "-d", "0.005"]) == EXIT_OK
     capsys.readouterr()
-    assert main(["info", str(made / "up.h5")]) == OK
+    assert main(["info", str(made / "up.h5")]) == EXIT_OK
     assert re.search(r"persistent contact +0 intervals, 0 points", capsys.readouterr().out)
 
 
@@ -300,7 +301,7 @@ def test_extras_are_those_of_the_project():
 @pytest.mark.parametrize("figures", [["--figure", "fig3a", "fig2a"], ["--figure", "fig2a,fig3a"]])
 def test_figures(figures, tmp_path, capsys):
     """The first is the form that older versions had."""
-    assert main(["paper", "--out", str(tmp_path / "x"), *figures]) == OK
+    assert main(["paper", "--out", str(tmp_path / "x"), *figures]) == EXIT_OK
     names = [f"{name}.{end}" for name in ("fig2a", "fig3a") for end in ("pdf", "png")]
     assert sorted(path.name for path in (tmp_path / "x").iterdir()) == names
     assert "4 files" in capsys.readouterr().out
@@ -317,7 +318,7 @@ def test_doctor(capsys):
     out = capsys.readouterr()
     assert "numba" in out.out
     assert "bouncing sphere: error" in out.out
-    assert code == (OK if "no errors" in out.out else FAILED)
+    assert code == (EXIT_OK if "no errors" in out.out else FAILED)
     assert main(["doctor", "--json"]) == code
     found = json.loads(capsys.readouterr().out)
     assert found["packages"]["numpy"] == np.__version__
@@ -375,26 +376,26 @@ def test_narrow_and_wide_windows(columns):
         [sys.executable, "-m", "carom.cli", "info", "--help"], capture_output=True, text=True,
         env={**os.environ, "COLUMNS": columns, "TERMINAL_WIDTH": columns}, check=False,
     )  # fmt: skip
-    assert done.returncode == OK, done.stderr
+    assert done.returncode == EXIT_OK, done.stderr
     assert "carom info die.h5 --scene > die.json" in done.stdout
 
 
 def test_a_result_is_shown_drawn_and_filmed(made, capsys, monkeypatch):
     run, page, film = made / "die.h5", made / "page.html", made / "die.gif"
-    assert main(["view", str(run), "--export", str(page)]) == OK
+    assert main(["view", str(run), "--export", str(page)]) == EXIT_OK
     assert page.stat().st_size > 20_000
     assert str(page) in capsys.readouterr().out
     for kind in ((), ("energy",), ("contacts",)):  # several axes by name, two, one
         picture = made / f"{len(kind)}.png"
-        assert main(["plot", str(run), *kind, "-o", str(picture)]) == OK
+        assert main(["plot", str(run), *kind, "-o", str(picture)]) == EXIT_OK
         assert picture.read_bytes()[:4] == b"\x89PNG"
-    assert main(["film", str(run), "-o", str(film), "--fps", "50", "--speed", "0.5"]) == OK
+    assert main(["film", str(run), "-o", str(film), "--fps", "50", "--speed", "0.5"]) == EXIT_OK
     assert film.read_bytes()[:3] == b"GIF"
     assert main(["plot", str(run), "nonsense"]) == USAGE
     assert "overview" in capsys.readouterr().err
     calls = []
     monkeypatch.setattr(carom, "view", lambda *a, **k: calls.append((a, k)), raising=False)
-    assert main(["view", str(run), "--no-open", "--port", "8080"]) == OK
+    assert main(["view", str(run), "--no-open", "--port", "8080"]) == EXIT_OK
     assert calls == [((run,), {"port": 8080, "open": False, "export": None})]
 
 
@@ -418,7 +419,7 @@ def test_a_model_is_read_and_its_report_shown(made, capsys):
         "-o",
         str(out),
     ]
-    assert main(["simulate", str(made / "ball.xml"), *more]) == OK
+    assert main(["simulate", str(made / "ball.xml"), *more]) == EXIT_OK
     assert "actuator" in capsys.readouterr().err
     impacts = carom.Solution.load(out).impacts
     speed = np.sqrt(2 * 9.81 * 0.2)

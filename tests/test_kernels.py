@@ -14,7 +14,8 @@ SOURCE = Path(carom.__file__).parent
 
 
 def decorators(function: ast.FunctionDef) -> set[str]:
-    return {d.id for d in function.decorator_list if isinstance(d, ast.Name)}
+    made = (d.func if isinstance(d, ast.Call) else d for d in function.decorator_list)
+    return {d.id for d in made if isinstance(d, ast.Name)}
 
 
 def module(path: Path) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numba.core import config
 
-from carom._compiled.decorators import entry, kernel
+from carom._compiled.decorators import entry, inlined, kernel
 from carom._compiled.units import UNITS, Entries, unit
 
 compiled = pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
@@ -29,6 +29,28 @@ def norm(x, y) -> float:
 @unit
 def broken(x, out):
     out[0] = x.there_is_no_such_thing
+
+
+@inlined
+def is_long(out):
+    return out.shape[0] > 2
+
+
+@unit(where=is_long)
+def add(out, x):
+    """Add a number to the last element."""
+    out[2] += x
+
+
+@unit(where=is_long, otherwise=(-1, 0.5))
+def last(out) -> tuple[int, float]:
+    return out.shape[0] - 1, out[2]
+
+
+@entry
+def of_long(out, x):
+    add(out, x)
+    return last(out)
 
 
 @kernel
@@ -55,6 +77,16 @@ def test_a_unit_is_called_like_a_kernel():
     out = np.zeros(1)
     assert of_units(1.0, out) == 5.0
     assert out[0] == 4.0
+
+
+@pytest.mark.plain
+def test_a_unit_is_called_only_where_its_condition_holds():
+    made = {name: UNITS[f"test_units:{name}"] for name in ("add", "last")} if UNITS else {}
+    assert add.__doc__ == "Add a number to the last element."
+    assert of_long(np.zeros(2), 4.0) == (-1, 0.5)
+    assert not any(len(one.compiled.overloads) for one in made.values())
+    assert of_long(np.zeros(3), 4.0) == (2, 4.0)
+    assert all(len(one.compiled.overloads) == 1 for one in made.values())
 
 
 @compiled

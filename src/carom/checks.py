@@ -8,6 +8,7 @@ expected, other objects raise a `TypeError`.
 from __future__ import annotations
 
 import importlib
+import math
 import os
 from collections.abc import Callable, Iterable, Sequence
 from difflib import get_close_matches
@@ -74,17 +75,19 @@ def number(
 ) -> float:
     """Return `value` as a float inside the given bounds (`above`, `below` exclude the bound)."""
     try:
-        if _no_number(value) or np.iscomplexobj(value) or np.ndim(value) != 0:
+        if type(value) not in (float, int) and (
+            _no_number(value) or np.iscomplexobj(value) or np.ndim(value) != 0
+        ):
             raise TypeError
         result = float(value)
     except OverflowError:  # a whole number beyond all floats
-        result = np.inf
+        result = math.inf
     except _ERRORS:
         raise ValueError(
             f"{name} must be a number{_in(unit)}, got {shown(value)}{_text(value)}"
         ) from None
     inside = (
-        np.isfinite(result)
+        math.isfinite(result)
         and (above is None or result > above)
         and (least is None or result >= least)
         and (below is None or result < below)

@@ -98,9 +98,9 @@ def simulate(
         Relative and absolute tolerance, for ``step="auto"``: at the end of the run the position error of each
         body should be at most about ``atol + rtol * size`` [m], where `size` is the size of the body; an error
         of an angle is multiplied by `size`. Defaults: 1e-8, and `rtol` times the size of the smallest body.
-        Free flight and times of impacts are exact to round-off. Errors grow in chaotic motion. Persistent
-        contact at several points between bodies, or of joined bodies, has order 2. Each coordinate of a
-        `GeneralizedSystem` has the size 1, in its own unit. (Mathematics page, §1.3; "Choose an accuracy".)
+        Free flight and times of impacts are exact to round-off. Errors grow in chaotic motion.
+        Time-stepping steps do not follow the tolerance. Each coordinate of a `GeneralizedSystem` has the size
+        1, in its own unit. (Mathematics page, §1.3; "Choose an accuracy".)
     impact_location : {"locate", "project", "work"}
         ``"locate"`` (default): the time of an impact is located inside the step (event detection); the return
         map only refines the position. ``"project"``: as in the paper, the step keeps its length and the return

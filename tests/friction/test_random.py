@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from contact_problems import random_singular, solve
 
-from carom.friction.layout import BAD_INPUT, NOT_SOLVED, SOLVED
+from carom.friction.layout import BAD_PROBLEM, NOT_SOLVED, SOLVED
 
 HARD = np.load(Path(__file__).parents[1] / "data" / "coulomb" / "hard.npz")
 
@@ -63,12 +63,12 @@ def test_bad_input_is_a_status():
     W, c = random_singular(1)
     for mu in (-0.5, np.nan, np.inf):
         wrong = solve(W, c, mu)
-        assert wrong.status == BAD_INPUT
+        assert wrong.status == BAD_PROBLEM
         assert np.all(wrong.p == 0.0)
     for where in ("W", "c"):
         W, c = random_singular(1)
         (W if where == "W" else c)[2] = np.nan
-        assert solve(W, c, 0.5).status == BAD_INPUT
+        assert solve(W, c, 0.5).status == BAD_PROBLEM
     W, c = random_singular(1)
     # a start of rubbish is none
     assert solve(W, c, 0.5, start=np.full(len(c), np.nan)).status == SOLVED

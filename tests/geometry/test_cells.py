@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from carom.geometry.cells import FEW, cells_of
+from carom.geometry.cells import FEW_POINTS, cells_of
 
 rng = np.random.default_rng(7)
 
@@ -26,7 +26,7 @@ SETS = {
     "needle": sphere(300) * (1.0, 1e-6, 1e-6),
     "lattice": rng.integers(-3, 4, size=(400, 3)).astype(float),  # many equal products
     "off the origin": sphere(200) + (3.0, -5.0, 0.5),
-    "some more than few": sphere(FEW + 1),
+    "some more than few": sphere(FEW_POINTS + 1),
 }
 
 
@@ -60,7 +60,7 @@ def test_candidates_are_few():
 
 
 def test_few_points_have_one_cell():
-    across, starts, members = cells_of(sphere(FEW))
+    across, starts, members = cells_of(sphere(FEW_POINTS))
     assert across == 0
-    np.testing.assert_array_equal(starts, [0, FEW])
-    np.testing.assert_array_equal(members, np.arange(FEW))
+    np.testing.assert_array_equal(starts, [0, FEW_POINTS])
+    np.testing.assert_array_equal(members, np.arange(FEW_POINTS))

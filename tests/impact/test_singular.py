@@ -156,7 +156,7 @@ def test_no_impulse_is_greater_than_what_stops_the_body(many):
 
     # And that of compression: d sqrt(2 E)/dp <= -min(1, mu) sqrt(lambda), the least eigenvalue that is not 0,
     # for what moves in the range of W alone.
-    jams = out[:, o.PHASES].astype(int) & o.JAM != 0
+    jams = out[:, o.PHASES].astype(int) & o.PHASE_JAM != 0
     of = sound & ~jams & (mu > 0.0)
     values, V = np.linalg.eigh(W[of])
     keeps = values > 1e-12 * values[:, -1:]

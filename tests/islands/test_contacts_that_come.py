@@ -36,7 +36,7 @@ def swarm(shape, count=70, pull=0.0, speed=1.0):
 
 def from_the_start(monkeypatch, few):
     """Let up to so many pairs of bodies have contacts from the start."""
-    monkeypatch.setattr(contact_rows, "FEW", few)
+    monkeypatch.setattr(contact_rows, "FEW_PAIRS", few)
 
 
 def ends(solution, numbers):

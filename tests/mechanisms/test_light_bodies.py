@@ -144,3 +144,18 @@ def test_accelerations_of_random_loops(seed):
 def test_masses_beyond_all_digits_are_refused_by_name():
     with pytest.raises(ValueError, match=r"'body2' and 'body1'.*1e\+24"):
         carom.simulate(four_bar(1e-26), 0.1, step=0.01)
+
+
+def test_a_link_without_a_shape_whose_joints_are_at_its_mass_centre_does_not_shorten_steps():
+    """Its size is its radius of gyration, (J/m)^1/2 = 1 cm, not the arm of 1e-5 m: two axes of a gimbal."""
+    steps = []
+    for arm in (0.0, 1e-5):
+        scene = Scene(gravity=(0, 0, -9.81))
+        link = scene.add_body(mass=0.1, inertia=(1e-5,) * 3, position=(0, 0, 1))
+        bar = scene.add_body(shape=carom.Box(0.4, 0.1, 0.1), mass=1.0, position=(0.2, 0, 1))
+        axis = scene.add_joint(joints.Revolute((arm, 0, 1), (1, 0, 0)), GROUND, link)
+        scene.add_stop(axis, lower=-1.0)
+        scene.add_joint(joints.Revolute((-arm, 0, 1), (0, 1, 0)), link, bar)
+        scene.add_half_space((0, 0, 0.7), (0, 0, 1))
+        steps.append(carom.simulate(scene, 0.1).stats["trial_steps"])
+    assert steps[1] == steps[0]

@@ -193,3 +193,20 @@ def test_flags_of_the_model():
     assert model.scene.contact_default is None
     assert not model.scene.half_spaces
     assert not model.report.of("flag")
+
+
+def test_a_joint_whose_damper_lets_nothing_move_is_held():
+    """A base of 1 kg on a damper c falls m g t/c: 1e-10 m in a second at 1e11 N s/m."""
+    text = """<mujoco><worldbody><body name="base"><joint name="lift" type="slide" axis="0 0 1" damping="{}"
+      range="0 1" limited="true"/><geom size=".1" mass="1"/></body></worldbody></mujoco>"""
+    model = carom.load_model(text.format("1e11"))
+    assert "a damping of 1e+11" in str(model.report)
+    assert "held where it starts" in str(model.report)
+    assert not model.scene.stops
+    solution = carom.simulate(model.scene, 1.0)
+    assert solution.stats["trial_steps"] < 1000
+    np.testing.assert_allclose(model.qpos(solution)[-1], 0.0, atol=1e-12)
+    slow = carom.load_model(text.format("1e3").replace('limited="true"', 'limited="false"'))
+    assert "held" not in str(slow.report)
+    drop = 9.81e-3 * (1.0 - 1e-3)  # v = v_end (1 - e^{-t c/m}), v_end = m g/c
+    np.testing.assert_allclose(slow.qpos(carom.simulate(slow.scene, 1.0))[-1], -drop, rtol=1e-5)

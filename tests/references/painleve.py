@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import by_reference, entry, kernel
-from carom.impact.multiple.layout import OK, SEEDED, CornerContacts
+from carom.impact.layout import OK
+from carom.impact.multiple.layout import SEEDED, CornerContacts
 from carom.impact.multiple.resolve import resolve_multiple
 
 _SEED = 1e-7  # speed of approach given to a jammed contact, as a part of its slip

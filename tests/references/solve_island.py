@@ -6,7 +6,7 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 from carom.friction import layout as o
-from carom.friction.layout import BAD_INPUT, NOT_SOLVED, SOLVED
+from carom.friction.layout import BAD_PROBLEM, NOT_SOLVED, SOLVED
 from carom.friction.residual import NOTHING, summary, with_contact
 from carom.friction.solve import scale_link, scale_vectors
 from carom.friction.strategy import search
@@ -25,10 +25,10 @@ def solve_island(k, island, mu, kind, heading, p, workspace):
     if not math.isfinite(gamma):
         for i in range(3 * k):
             p[i] = 0.0
-        return BAD_INPUT, math.inf, 0
+        return BAD_PROBLEM, math.inf, 0
     search(workspace, k)
     for i in range(3 * k):
-        p[i] = gamma * workspace.contact[i // 3].scale * workspace.vector[o.P, i]
+        p[i] = gamma * workspace.contact[i // 3].scale * workspace.vector[o.ITERATE, i]
     residual, tolerance, _, _, _ = measure_island(k, island, mu, kind, heading, p)
     return SOLVED if residual <= tolerance else NOT_SOLVED, residual, workspace.count[o.ITERATIONS]
 

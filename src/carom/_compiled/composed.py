@@ -6,7 +6,7 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
-KEPT = 100  # functions for which `once` keeps what was made
+MOST_KEPT = 100  # functions for which `once` keeps what was made
 
 
 def is_compiled(function) -> bool:
@@ -27,7 +27,7 @@ def joined(function, *parts) -> Any:
 
 def once(make: Callable) -> Callable:
     """Decorate a function that makes something of a user's function: of a compiled one it is made once."""
-    kept = functools.lru_cache(maxsize=KEPT)(make)
+    kept = functools.lru_cache(maxsize=MOST_KEPT)(make)
 
     @functools.wraps(make)
     def made(function, *shapes):

@@ -5,6 +5,13 @@ minute. A unit is called through its address instead. The caller has a slot for 
 first. If it is empty, the caller requests the address from Python (`_find`), which loads the unit from disk or
 compiles it. So a scene waits only for the units that it needs: joints, several points or groups.
 
+If a call stands where every scene passes, the unit states which scenes need it, and the result for others:
+
+    @unit(where=has_relations, otherwise=0.0)
+    def rotor_energy(system, state) -> float: ...
+
+Its callers get a guard, which is inlined and calls the unit if `has_relations(system)`.
+
 Without compiling a unit is a plain function.
 """
 
@@ -12,6 +19,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import functools
 import hashlib
 import importlib
 import inspect
@@ -27,7 +35,7 @@ from numba.core import cgutils, types
 from numba.extending import intrinsic
 
 from carom._compiled import ahead
-from carom._compiled.decorators import COMPILES, INSIDE, RULES, jit, keep_on_disk
+from carom._compiled.decorators import COMPILES, INSIDE, RULES, inlined, jit, keep_on_disk
 
 if COMPILES:
     from carom._compiled.by_reference import refer_to
@@ -49,13 +57,33 @@ class NotCompiled(RuntimeError):
         self.__cause__ = NotCompiled.stopped_by
 
 
-def unit(function):
+def unit(function: Any = None, *, where: Any = None, otherwise: Any = None) -> Any:
     """Compile `function` separately; kernels call it like any other kernel.
 
-    It returns nothing, or the type in its annotation: `float`, `int`, `bool`, or a tuple of these.
+    It returns nothing, or the type in its annotation: `float`, `int`, `bool`, or a tuple of these. With
+    `where`, it is called only if this kernel is true for its first argument; if not, the result is `otherwise`.
     """
-    if not COMPILES:
-        return function
+    if function is None:
+        return functools.partial(unit, where=where, otherwise=otherwise)
+    made = _separate(function) if COMPILES else function
+    return made if where is None else _guarded(function, made, where, otherwise)
+
+
+def _guarded(function, made, where, otherwise):
+    """Return the kernel that calls `made`, the unit of a function, where its condition holds."""
+
+    def guard(first, *others):
+        if where(first):
+            return made(first, *others)
+        return otherwise
+
+    guard.__name__, guard.__qualname__ = function.__name__, function.__qualname__
+    guard.__module__, guard.__doc__ = function.__module__, function.__doc__
+    return inlined(guard)
+
+
+def _separate(function):
+    """Return what calls a function that is compiled separately."""
     compiled = keep_on_disk(jit(**RULES, **INSIDE)(function), function)
     given = inspect.signature(function)
     result = _returned(given.return_annotation)

@@ -110,7 +110,7 @@ def _free_step() -> Problem:
 def _corner() -> Problem:
     def ours(rounds: int) -> Side:
         times = seconds(corner_impact.ours(), rounds)
-        each = [1e6 * t / corner_impact.COUNT for t in times]
+        each = [1e6 * t / corner_impact.IMPACTS_TIMED for t in times]
         return Side(spread(each), corner_impact.error())
 
     return Problem(

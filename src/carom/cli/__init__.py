@@ -10,7 +10,7 @@ import sys
 from collections.abc import Sequence
 
 #: exit codes: done; failed; wrong arguments, nothing was run; interrupted (Ctrl-C, as shells have it)
-OK, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130
+EXIT_OK, FAILED, USAGE, CTRL_C = 0, 1, 2, 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -41,5 +41,5 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return FAILED
     except (KeyboardInterrupt, typer.Abort):
         print("carom: interrupted", file=sys.stderr)
-        return INTERRUPTED
-    return int(code or OK)
+        return CTRL_C
+    return int(code or EXIT_OK)

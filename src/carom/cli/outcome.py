@@ -10,7 +10,7 @@ from collections.abc import Callable
 from contextlib import contextmanager
 from functools import wraps
 
-from carom.cli import FAILED, INTERRUPTED, USAGE
+from carom.cli import CTRL_C, FAILED, USAGE
 
 
 class Refused(Exception):
@@ -33,7 +33,7 @@ def told(name: str, extra: str = "") -> Callable:
                 try:
                     return function(*args, **kwargs) or 0
                 except KeyboardInterrupt:
-                    return _say(name, "interrupted", INTERRUPTED)
+                    return _say(name, "interrupted", CTRL_C)
                 except BrokenPipeError:  # the reader has gone, as `head` does
                     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
                     return FAILED

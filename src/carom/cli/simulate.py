@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from carom.cli import FAILED, INTERRUPTED, scenes, show
+from carom.cli import CTRL_C, FAILED, scenes, show
 from carom.cli.outcome import Refused, warn
 
 
@@ -261,7 +261,7 @@ def _end(solution, out: Path | None, scene: Path | None, seconds: float, json: b
         also = f" {scene}" if scene is not None and _has_functions(solution) else ""
         more = f"continue with: carom simulate --resume {out}{also}"
     warn("simulate", f"interrupted at t = {facts['reached']:g} s; {more}")
-    return INTERRUPTED
+    return CTRL_C
 
 
 def _has_functions(solution) -> bool:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from carom.cli import INTERRUPTED, show
+from carom.cli import CTRL_C, show
 from carom.cli.outcome import warn
 
 
@@ -75,7 +75,7 @@ def run(
         show.as_json(found)
     else:
         print(text(found))
-    return 0 if thrown.complete else INTERRUPTED
+    return 0 if thrown.complete else CTRL_C
 
 
 def scene(given):

@@ -41,7 +41,7 @@ ELSEWHERE = 0.95  # cosine of the angle to an earlier climb; nearer starts are n
 SLIGHT = 1e-3  # overlap, relative to the usual clearance, to which no other way out is shorter
 NEARER = 30.0  # clearance of the second phase of a climb, relative to the depth
 LEAST = 1e-3  # least clearance, relative to the usual one; a smaller one gives no better direction
-ROUNDS = 30
+CLIMB_ROUNDS = 30
 ROUGH = 1e-6  # accuracy of the search for curved cores, which Newton's method then refines
 NEARLY = 1e-5  # 1 - cosine of the angle, up to which a normal may be that of a face
 NO_WORSE = (
@@ -262,7 +262,7 @@ def _climb(pair, accuracy, clear, nx, ny, nz):
                 continue
         if phase == 2 and not LEAST * clear < -NEARER * best < clear:
             continue
-        for _ in range(ROUNDS):
+        for _ in range(CLIMB_ROUNDS):
             move = gap - best
             s.shift[0], s.shift[1], s.shift[2] = move * nx, move * ny, move * nz
             d, x, y, z = distance(pair, accuracy, nx, ny, nz)

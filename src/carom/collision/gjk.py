@@ -15,7 +15,7 @@ from carom.collision.support import propose
 
 EXACT = 1e-15  # gain of a step, relative to the distance, that is only rounding
 INSIDE = 1e-14  # distance, relative to the size of the simplex, that counts as zero
-MOST_STEPS = 100
+GJK_STEPS = 100
 
 
 @kernel
@@ -32,7 +32,7 @@ def distance(pair, accuracy, x, y, z):
     s.points, s.weight[0] = 1, 1.0
     vx, vy, vz = s.w[0, 0], s.w[0, 1], s.w[0, 2]
     v2 = vx * vx + vy * vy + vz * vz
-    for _ in range(MOST_STEPS):
+    for _ in range(GJK_STEPS):
         scale = size_of(s)
         if not v2 > (INSIDE * scale) ** 2:
             return 0.0, 0.0, 0.0, 0.0

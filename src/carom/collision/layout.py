@@ -6,6 +6,7 @@ poses of the solids: the pose of the body, combined with the pose of the solid i
 
 from __future__ import annotations
 
+from functools import cache
 from itertools import chain
 from typing import NamedTuple
 
@@ -133,6 +134,7 @@ class Pair(NamedTuple):
     found: np.recarray  # (96,) TOUCH_POINT, in axes of B, points on the cores
 
 
+@cache
 def no_hulls() -> Hulls:
     """Return the hulls of a scene in which no two bodies may touch."""
     none = np.zeros(0, dtype=np.int64)

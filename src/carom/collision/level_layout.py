@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -48,12 +49,8 @@ class Levels(NamedTuple):
     own: np.ndarray  # (O,) surfaces of which a static solid has faces, solid by solid
 
 
+@cache
 def no_levels() -> Levels:
     """Return the level surfaces of a scene that has none."""
-    return Levels(
-        table(SURFACE, 0),
-        table(LEVEL_FACE, 0),
-        table(LEVEL_SIDE, 0),
-        table(RIM_SEGMENT, 0),
-        np.zeros(0, dtype=np.int64),
-    )
+    kinds = SURFACE, LEVEL_FACE, LEVEL_SIDE, RIM_SEGMENT
+    return Levels(*(table(kind, 0) for kind in kinds), np.zeros(0, dtype=np.int64))

@@ -18,7 +18,7 @@ from carom.collision.layout import CYLINDER
 from carom.collision.support import change_of_support, propose, separation
 from carom.geometry.vectors import cross, dot, minus, plus
 
-STEPS = 8
+POLISH_STEPS = 8
 NEAR = 0.99  # cosine of the largest angle by which the method may turn the normal
 ROUNDING = 1e-15  # relative to the smaller solid
 TIE = 1e-12  # relative to the smaller solid: two vertices are as far if they differ by less
@@ -136,7 +136,7 @@ def _step(pair, edges, n):
 @kernel
 def _iterate(pair, edges, n):
     """Return the normal to which Newton's method converges; zero if it does not converge."""
-    for _ in range(STEPS):
+    for _ in range(POLISH_STEPS):
         x, y, z = _step(pair, edges, n)
         # The remaining error is about the square of this step, times lengths over radii of curvature.
         if (x - n[0]) ** 2 + (y - n[1]) ** 2 + (z - n[2]) ** 2 < 1e-18:

@@ -17,7 +17,7 @@ import numpy as np
 from carom._compiled.decorators import entry, inlined, kernel
 
 LEVELS = 40  # sizes down to 2^-40 of the largest ball; smaller balls share the last level
-MOST = 2**62  # bound of the integer coordinates of a cell
+FARTHEST_CELL = 2**62  # bound of the integer coordinates of a cell
 LOW = 2**28 - 1  # bits of such a coordinate that are hashed
 
 
@@ -119,7 +119,7 @@ def _level(r, widest):
 @kernel
 def _cell(x, width):
     """Return the integer coordinate of the cell that contains x."""
-    return int(max(-MOST, min(MOST, math.floor(x / width))))
+    return int(max(-FARTHEST_CELL, min(FARTHEST_CELL, math.floor(x / width))))
 
 
 @kernel

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.gap import along_normal, gap_and_rate, plane_in_body, round_off
 from carom.contact.groups import unite
@@ -131,7 +131,7 @@ def add_stop(system, active, c, near, state, k, group):
 
 
 @unit
-def _add_touches(system, c, near, rim_time, state, k, group, work) -> int:
+def add_touches(system, c, near, rim_time, state, k, group, work) -> int:
     """Add the points of two solids that are closed; return the new count, -1 if there is no room.
 
     A rim that is flat within `rim_time` counts as flat.
@@ -155,28 +155,12 @@ def _add_touches(system, c, near, rim_time, state, k, group, work) -> int:
     return k
 
 
-@inlined
-def add_touches(system, c, near, rim_time, state, k, group, work):
-    """Add the points of two solids that are closed; return the new count, -1 if there is no room."""
-    if system.solids.shape[0] > 0:
-        return _add_touches(system, c, near, rim_time, state, k, group, work)
-    return k
-
-
 @unit
-def _is_same_point(system, active_point, point, state) -> bool:
+def is_same_point(system, active_point, point, state) -> bool:
     """Return whether a closed point with the feature of an active one is the same point."""
     contact, r, n = system.contacts[active_point.contact], point.arm_a, point.axes[0]
     moved = way_round(system, contact, n, (r[0], r[1], r[2]), active_point.point, state)
     return moved < OTHER_SIDE
-
-
-@inlined
-def is_same_point(system, active_point, point, state):
-    """Return whether a closed point with the feature of an active one is the same point."""
-    if system.solids.shape[0] > 0:
-        return _is_same_point(system, active_point, point, state)
-    return True
 
 
 @kernel

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.closed_points import RIM_TIME, round_off_of_both
 from carom.contact.continuous_detection import (
@@ -99,7 +99,7 @@ def flat_rim_strikes(system, contact, state, time, work):
 
 
 @unit
-def _lowest_pair(system, contact, c, active, state, work) -> tuple[float, float]:
+def lowest_pair(system, contact, c, active, state, work) -> tuple[float, float]:
     """Return the least gap of two solids, over points that are not active, and its rate."""
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
     return lowest_open(system, contact, c, count, active, state, work)
@@ -125,7 +125,7 @@ def far_apart(system, contact, start, end, h, work):
 
 
 @unit
-def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, float]:
+def passage_pair(system, controls, active, c, start, h, work) -> tuple[int, float]:
     """Return CLEAR, BELOW (they overlap at the end), UNSURE or FLAT_RIM, and a time before any contact.
 
     The end is the trial state. Only steps up to `longest` may follow the lowest point of a wobbling rim along a
@@ -165,7 +165,7 @@ def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, flo
                 return UNSURE, 0.0
             find_touches(system, contact, end, REACH * smaller(contact), work)
     if not least >= -(tiny if not touching else MISSED * smaller(contact)):
-        before, _ = _lowest_pair(system, contact, c, active, start, work)
+        before, _ = lowest_pair(system, contact, c, active, start, work)
         if before <= tiny:  # they touch already: they separate, or others push them
             if (before < -tiny and least >= before) or (
                 not flies and least >= -MISSED * smaller(contact)
@@ -251,19 +251,3 @@ def way_past(contact, start, end, h):
         v, y = state[contact.body].v, centre_of_other(contact, state)
         most = max(most, (v[0] - y[3]) ** 2 + (v[1] - y[4]) ** 2 + (v[2] - y[5]) ** 2)
     return h * math.sqrt(most)
-
-
-@inlined
-def lowest_pair(system, contact, c, active, state, work):
-    """Return the least gap of two solids, over points that are not active, and its rate."""
-    if system.solids.shape[0] > 0:
-        return _lowest_pair(system, contact, c, active, state, work)
-    return 0.0, 0.0
-
-
-@inlined
-def passage_pair(system, controls, active, c, start, h, work):
-    """Return CLEAR, BELOW (they overlap at the end), UNSURE or FLAT_RIM, and a time before any contact."""
-    if system.solids.shape[0] > 0:
-        return _passage_pair(system, controls, active, c, start, h, work)
-    return CLEAR, h

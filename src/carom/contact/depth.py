@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.closed_points import apart, round_off_of_both
 from carom.contact.gap import lowest
@@ -35,17 +35,9 @@ def least_gap(system, contact, state, work):
 
 
 @unit
-def _least_of_touches(system, contact, state, work) -> float:
+def least_of_touches(system, contact, state, work) -> float:
     """Return the least gap of the points of two solids."""
     least = 0.0
     for i in range(find_touches(system, contact, state, 0.0, work)):
         least = min(least, work.touches[i].gap)
     return least
-
-
-@inlined
-def least_of_touches(system, contact, state, work):
-    """Return the least gap of the points of two solids."""
-    if system.solids.shape[0] > 0:
-        return _least_of_touches(system, contact, state, work)
-    return 0.0

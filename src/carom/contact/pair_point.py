@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.collision.frame import place
 from carom.collision.layout import Placed, Plane
@@ -163,7 +163,7 @@ def list_on_solid(system, contact, solid, reach, work):
 
 
 @unit
-def _place_pair(system, contact, feature, p, state, point, work):
+def place_pair(system, contact, feature, p, state, point, work):
     """Write the found point that has the feature, or the point that replaces it."""
     i = touch_of_active(system, contact, feature, p, state, work)
     write_touch(contact, work.touches[i], state, point)
@@ -190,29 +190,14 @@ def slip_velocity(contact, touch, state):
 
 
 @unit
-def _drift(system, contact, feature, point, state) -> tuple[float, float, float]:
-    """Return (d/dt G) v, contact axes: the change of the velocity at the point for constant velocities."""
+def drift(system, contact, feature, point, state) -> tuple[float, float, float]:
+    """Return (d/dt G) v, contact axes: the change of the velocity at the point for constant velocities.
+
+    The point must have been written for this state (`write_touch`). For two solids `feature` is not used.
+    """
     if not on_half_space(contact):
         return drift_of_solids(system, contact, contact.other_solid, point, state)
     solid = solid_beyond(system, contact, point, state)
     if solid < 0:
         return roll_on_plane(system, contact, feature, point, state)
     return drift_of_solids(system, contact, solid, point, state)
-
-
-@inlined
-def place_pair(system, contact, feature, p, state, point, work):
-    """Write the found point that has the feature, or the point that replaces it."""
-    if system.solids.shape[0] > 0:
-        _place_pair(system, contact, feature, p, state, point, work)
-
-
-@inlined
-def drift(system, contact, feature, point, state):
-    """Return (d/dt G) v, contact axes: the change of the velocity at the point for constant velocities.
-
-    The point must have been written for this state (`write_touch`). For two solids `feature` is not used.
-    """
-    if system.solids.shape[0] > 0:
-        return _drift(system, contact, feature, point, state)
-    return 0.0, 0.0, 0.0

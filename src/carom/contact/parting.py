@@ -31,7 +31,7 @@ from carom.contact.place_of_other import centre_of_other, on_half_space
 from carom.geometry.rotation import cross, multiply, rotate, rotate_back
 from carom.kinematics.flight import core_extent
 
-HALVES = 30  # largest number of halvings of the step, until the bound is above zero
+MOST_HALVINGS = 30  # largest number of halvings of the step, until the bound is above zero
 CHORDS = 4  # each comes nearer to the root
 
 
@@ -109,7 +109,7 @@ def time_parted(system, contact, n, frame, sign, state, a, h):
     if g >= 0.0:
         return h
     t, end = h, h
-    for _ in range(HALVES):
+    for _ in range(MOST_HALVINGS):
         t *= 0.5
         f = least_gap(system, contact, n, frame, state, sign * t, a)
         if f > 0.0:

@@ -7,7 +7,7 @@ contains angles and torques (`carom.results.assemble`).
 
 from __future__ import annotations
 
-from carom._compiled.decorators import entry, inlined, kernel
+from carom._compiled.decorators import entry, kernel
 from carom._compiled.units import unit
 from carom.contact.continuous_detection import BELOW, CLEAR, MISSED, UNSURE, cubic_clears
 from carom.contact.gap import round_off, slow
@@ -20,7 +20,7 @@ from carom.model.arrays import PRISMATIC, STOP
 
 
 @unit
-def _place_stop(system, contact, state, point):
+def place_stop(system, contact, state, point):
     """Write the point, axes and gap of a stop."""
     c = system.relations.coordinates[contact.solid]
     nx, ny, nz = axis(state, c.parent, c.parent_frame, 0)
@@ -40,41 +40,18 @@ def _place_stop(system, contact, state, point):
     point.turns, point.length = 4 if c.kind == PRISMATIC else 3, abs(contact.side)
 
 
-@inlined
-def place_stop(system, contact, state, point):
-    """Write the point, axes and gap of a stop."""
-    if system.relations.there == 1:
-        _place_stop(system, contact, state, point)
-
-
 @unit
-def _stop_gap(system, contact, state, work) -> tuple[float, float]:
+def stop_gap(system, contact, state, work) -> tuple[float, float]:
     """Return the gap of a stop and its rate."""
-    _place_stop(system, contact, state, work.point[0])
+    place_stop(system, contact, state, work.point[0])
     return work.point[0].gap, contact_velocity(work.point[0], state)[0]
 
 
-@inlined
-def stop_gap(system, contact, state, work):
-    """Return the gap of a stop and its rate."""
-    if system.relations.there == 1:
-        return _stop_gap(system, contact, state, work)
-    return 1.0, 0.0
-
-
 @unit
-def _stop_drift(system, contact, state, work) -> float:
+def stop_drift(system, contact, state, work) -> float:
     """Return (d/dt G) v of the row of a stop."""
     c = system.relations.coordinates[contact.solid]
     return contact.side * drift(c, state, work.joint[0].target)
-
-
-@inlined
-def stop_drift(system, contact, state, work):
-    """Return (d/dt G) v of the row of a stop."""
-    if system.relations.there == 1:
-        return _stop_drift(system, contact, state, work)
-    return 0.0
 
 
 @kernel

@@ -29,9 +29,8 @@ class Applied:
 
     def __init__(self, run, implicit: bool):
         self.run, self.places = run, places(run, implicit)
-        self.history: list[
-            tuple[int, Place, Any]
-        ] = []  # rows that were saved before, and the value
+        # rows that were saved before, and the value
+        self.history: list[tuple[int, Place, Any]] = []
 
     def set(self, force, value) -> None:
         """Set a force, given itself or by its name."""

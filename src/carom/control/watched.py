@@ -55,9 +55,8 @@ class Watched:
         self.began, self.struck = 0.0, 0
         look = self.look()
         self.asked, self.at = "", 0.0  # the condition that was evaluated last, and its time
-        self.values = [
-            1.0 if c.rest else self.value(c, look) for c in conditions
-        ]  # it is yet to rest
+        # it is yet to rest
+        self.values = [1.0 if c.rest else self.value(c, look) for c in conditions]
 
     def __getattr__(self, name: str) -> Any:
         # what the watch does not change: `steps`, `failure`, `go_back`, ...

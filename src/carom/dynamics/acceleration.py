@@ -5,28 +5,20 @@
 
 from __future__ import annotations
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.dynamics.elements import acceleration_bias, driven_power
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.solve import solve
 from carom.dynamics.stiff import add_stiff
+from carom.model.parts_of_system import has_joints
 
-OPEN, SLIP, STICK = range(3)
 
-
-@unit
-def _bias_joints(system, state, work):
+@unit(where=has_joints)
+def bias_joints(system, state, work):
     """Write the bias of the relative acceleration of each joint."""
     for j in range(system.joints.shape[0]):
         acceleration_bias(system, j, state, work)
-
-
-@inlined
-def bias_joints(system, state, work):
-    """Write the bias of the relative acceleration of each joint."""
-    if system.joints.shape[0] > 0:
-        _bias_joints(system, state, work)
 
 
 @unit

@@ -37,6 +37,14 @@ def spread(system, point, state, ln, l1, l2, work):
 
 
 @kernel
+def acts(turns, r):
+    """Return whether an impulse along row r of a point has an effect: see `add_impulse`."""
+    if turns == 0 or turns == 1:
+        return r >= turns
+    return r == (0 if turns == 3 or turns == 4 else 1)
+
+
+@kernel
 def add_impulse(point, ln, l1, l2, work):
     """Add G^T (ln, l1, l2) to the wrenches."""
     E, r, s = point.axes, point.arm_a, point.arm_b

@@ -29,6 +29,7 @@ from carom.dynamics.user_rows import (
 from carom.kinematics import joints
 from carom.kinematics.rows import inverse_inertias, joint_rows, joint_target
 from carom.model.arrays import LOOPS, RELATION, STIFF, USER_ROWS
+from carom.model.parts_of_system import has_relation_rows
 
 
 @unit
@@ -115,8 +116,8 @@ def _prescribed_speeds(system, j, state, work, out):
         out[0] = prescribed(system.relations, system.relations.relations[joint.number], t)[1]
 
 
-@unit
-def _driven_power(system, state, work) -> float:
+@unit(where=has_relation_rows, otherwise=0.0)
+def driven_power(system, state, work) -> float:
     """Return the power of prescribed motions, multiplier times b, in the last solve of accelerations."""
     power = 0.0
     for j in range(system.joints.shape[0]):
@@ -184,14 +185,6 @@ def build_rows(system, state, work):
         inverse_inertias(system, state, work)
         for j in range(system.joints.shape[0]):
             joint_rows(system, j, state, work)
-
-
-@inlined
-def driven_power(system, state, work):
-    """Return the power of prescribed motions, multiplier times b, in the last solve of accelerations."""
-    if system.relations.there == 1 and system.solver.kind == LOOPS:
-        return _driven_power(system, state, work)
-    return 0.0
 
 
 @inlined

@@ -22,7 +22,7 @@ from carom.kinematics.flight import free_flight
 from carom.model.workspace import FREE, HELD, RESTS
 from carom.status import CONSTRAINTS_LOST
 
-MANY = 1 << 30  # more rows than any system has
+EVERY_ROW = 1 << 30  # more rows than any system has
 #: rotation of a body [rad] for each stage of a part of a step (0.3 for `rk4`), and greatest number of parts
 TURN, MOST_PARTS, TINY = 0.075, 100, 1e-300
 
@@ -167,7 +167,7 @@ def constrained_step(tableau, system, active, start, care, h, end, work):
     """
     A, weight, E, t0 = tableau.A, tableau.b, tableau.E, work.result[0].begin
     stages, last, stage = weight.size, stages_within(tableau), work.stage
-    applied, least, most = 0.0, MANY, 0
+    applied, least, most = 0.0, EVERY_ROW, 0
     keeps = last < stages and not care and of_state_alone(system, active)
     for s in range(last + 1):
         combine(weight if s == last else A[s], s, h, start, work.stages, stage)
@@ -220,7 +220,7 @@ def return_to_joints(system, state, end, work):
             copy_state(end[b], state[b])
     if not (project_position(system, state, True, 1e-14, work) <= LOST):
         return False
-    project_velocity(system, state, work)
+    project_velocity(system, state, False, work)
     return True
 
 

@@ -83,7 +83,7 @@ def whole_step(system, start, h, end, work):
     bound_accelerations(work, 2)
     if not (project_position(system, end, False, 1e-14, work) <= LOST):
         result.code = CONSTRAINTS_LOST
-    project_velocity(system, end, work)
+    project_velocity(system, end, False, work)
     result.applied = 0.5 * h * power + damper_work(system, start, h, end)
 
 

@@ -15,7 +15,7 @@ from carom.dynamics.project import project_velocity
 from carom.dynamics.solve import free_body, solve
 from carom.geometry.rotation import cross, rotate, rotate_back
 
-MOST = 60  # substitutions
+SUBSTITUTIONS = 60  # substitutions
 
 
 @kernel
@@ -64,7 +64,7 @@ def second_kick(system, h, end, work):
     that the step is symmetric).
     """
     power, driven, change = 0.0, 0.0, math.inf
-    for k in range(MOST):
+    for k in range(SUBSTITUTIONS):
         if k == 0:
             set_velocities(system, 0.0, end, work)
         power = applied_wrenches(system, end, False, work)
@@ -72,7 +72,7 @@ def second_kick(system, h, end, work):
         if change == 0.0 or (change <= 1e-12 and not change < 0.5 * previous):
             break
         set_velocities(system, 0.5 * h, end, work)
-        project_velocity(system, end, work)
+        project_velocity(system, end, False, work)
         driven = driven_power(system, end, work)  # of an impulse: its work
     return 0.5 * h * power + driven
 

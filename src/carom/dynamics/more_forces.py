@@ -7,13 +7,14 @@ of the user's         wrenches = f(t, states),            U if a potential is gi
 
 from __future__ import annotations
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom._compiled.user_functions import call_function
 from carom.dynamics.curve import curve, find_piece
 from carom.geometry.rotation import multiply
 from carom.kinematics.coordinate import push, rate, value
 from carom.model.arrays import PRISMATIC
+from carom.model.parts_of_system import has_relations
 
 FAR = 1.5  # rotation [rad] in a trial step, by the rates at its ends: safely below half a turn
 
@@ -45,8 +46,8 @@ def read_states(system, force, state):
         i += 13
 
 
-@unit
-def _add_more_forces(system, state, work) -> float:
+@unit(where=has_relations, otherwise=0.0)
+def add_more_forces(system, state, work) -> float:
     """Add the wrenches of these forces; return the power of those without potential."""
     power, t, relations = 0.0, work.result[0].time, system.relations
     for i in range(relations.pushes.shape[0]):
@@ -72,8 +73,8 @@ def _add_more_forces(system, state, work) -> float:
     return power
 
 
-@unit
-def _more_energy(system, state, t) -> float:
+@unit(where=has_relations, otherwise=0.0)
+def more_energy(system, state, t) -> float:
     """Return the potential energy of these forces [J]."""
     total, relations = 0.0, system.relations
     for i in range(relations.pushes.shape[0]):
@@ -119,8 +120,8 @@ def spring_energy(system, spring, length):
     return 0.5 * spring.stiffness * (length - spring.rest_length) ** 2
 
 
-@unit
-def _note_turns(system, state):
+@unit(where=has_relations)
+def note_turns(system, state):
     """Store the whole turns of all angles, after a trial step has been accepted."""
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
@@ -141,42 +142,11 @@ def forget_turns(system):
         system.relations.coordinates[i].reference = system.relations.coordinates[i].begun
 
 
-@unit
-def _turns_round(system, start, end, h) -> bool:
+@unit(where=has_relations, otherwise=False)
+def turns_round(system, start, end, h) -> bool:
     """Return whether an angle may turn so far in a step that its whole turns are not known."""
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
         if c.kind != PRISMATIC and not h * max(abs(rate(c, start)), abs(rate(c, end))) <= FAR:
             return True
-    return False
-
-
-@inlined
-def add_more_forces(system, state, work):
-    """Add the wrenches of these forces; return the power of those without potential."""
-    if system.relations.there == 1:
-        return _add_more_forces(system, state, work)
-    return 0.0
-
-
-@inlined
-def more_energy(system, state, t):
-    """Return the potential energy of these forces [J]."""
-    if system.relations.there == 1:
-        return _more_energy(system, state, t)
-    return 0.0
-
-
-@inlined
-def note_turns(system, state):
-    """Store the whole turns of all angles, after a trial step has been accepted."""
-    if system.relations.there == 1:
-        _note_turns(system, state)
-
-
-@inlined
-def turns_round(system, start, end, h):
-    """Return whether an angle may turn so far in a step that its whole turns are not known."""
-    if system.relations.there == 1:
-        return _turns_round(system, start, end, h)
     return False

@@ -11,7 +11,7 @@ xi = (x_1 - x_0, rotation vector of Q_1 Q_0^-1). The reverse step has -xi, so th
 
 from __future__ import annotations
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.dynamics.elements import velocity_error
 from carom.dynamics.explicit import copy_state
@@ -19,10 +19,11 @@ from carom.dynamics.project import largest_position_error
 from carom.geometry.rotation import log, multiply, rotate, rotate_back
 from carom.kinematics.joints import axis
 from carom.model.arrays import KNIFE_EDGE, RELATION, ROLLING, SLIDING, USER_ROWS
+from carom.model.parts_of_system import has_joints
 
 
-@unit
-def _error_of_move(system, start, t, h, end, work) -> float:
+@unit(where=has_joints, otherwise=0.0)
+def error_of_move(system, start, t, h, end, work) -> float:
     """Write minus the errors at the end, in axes of the start, as biases of elements; return the largest."""
     work.result[0].time = t + h
     error, ready = largest_position_error(system, end, work), False
@@ -113,11 +114,3 @@ def along_rows(joint, start, state, bias):
     bias[3], bias[4], bias[5] = bias[3] - f * nx, bias[4] - f * ny, bias[5] - f * nz
     if joint.parent >= 0:
         turn_on(start[joint.parent].Q, state[joint.parent].Q, bias[3:])
-
-
-@inlined
-def error_of_move(system, start, t, h, end, work):
-    """Write minus the errors at the end, in axes of the start, as biases of elements; return the largest."""
-    if system.joints.shape[0] > 0:
-        return _error_of_move(system, start, t, h, end, work)
-    return 0.0

@@ -14,7 +14,7 @@ from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
 
 JUMP = 1e-6  # of a component: those of a normal that has turned with its face differ by round-off
-CROSSES = 1e-3  # the same for edges: those of level faces have normals that differ by 4.5e-5 (`clip.LEVEL`)
+EDGE_JUMP = 1e-3  # the same for edges: those of level faces have normals that differ by 4.5e-5 (`clip.LEVEL`)
 
 
 @kernel
@@ -36,7 +36,7 @@ def note_passed(system, active, k, group, start, end):
         contact, least = system.contacts[active_point.contact], JUMP
         jumps = active_point.touches == 1 and active_point.owner != NOBODY
         if jumps and point.owner == NOBODY:
-            jumps, least = are_sharp(system, contact), CROSSES
+            jumps, least = are_sharp(system, contact), EDGE_JUMP
         jumps = jumps and jump_of_normal(active_point, point, start, end) > least
         active_point.passes = 1 if jumps and contact_velocity(point, end)[0] > 0.0 else 0
 

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import entry, inlined, kernel
+from carom._compiled.decorators import entry, kernel
 from carom._compiled.units import unit
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.elements import position_error, velocity_error
 from carom.dynamics.rotors import keep_rates
 from carom.dynamics.solve import solve, solve_near
 from carom.geometry.rotation import exp, multiply, normalize
+from carom.model.parts_of_system import has_joints
 
 ROUND_OFF = 4.4e-16  # two units in the last place
 LOST = 1e-9  # relative to a body: an error of position that cannot be corrected
@@ -52,8 +53,8 @@ def largest_position_error(system, state, work):
     return largest
 
 
-@unit
-def _project_position(system, state, near, tolerance, work) -> float:
+@unit(where=has_joints, otherwise=0.0)
+def project_position(system, state, near, tolerance, work) -> float:
     """Bring the positions back to the joints; return the remaining relative error.
 
     With `near`, the last solve was in a position nearby, and its factor serves for the first correction.
@@ -76,9 +77,13 @@ def _project_position(system, state, near, tolerance, work) -> float:
     return error
 
 
-@unit
-def _project_velocity(system, state, carried, work):
-    """Remove the velocities that the joints forbid; with `carried`, rotors keep their stored rates."""
+@unit(where=has_joints)
+def project_velocity(system, state, carried, work):
+    """Remove the velocities that the joints forbid.
+
+    With `carried`, the velocities are from the momenta of bodies, and rotors keep the rates that `rotors` has
+    stored.
+    """
     for j in range(system.joints.shape[0]):
         bias = work.joint[j].bias
         velocity_error(system, j, state, work)
@@ -100,30 +105,8 @@ def project_start(system, state, work):
     """Bring an initial state to the joints, for `Options.project_start`; return the remaining error."""
     error = 1.0
     for _ in range(20):
-        error = _project_position(system, state, False, 1e-14, work)
+        error = project_position(system, state, False, 1e-14, work)
         if error <= 1e-13:
             break
-    _project_velocity(system, state, False, work)
+    project_velocity(system, state, False, work)
     return error
-
-
-@inlined
-def project_position(system, state, near, tolerance, work):
-    """Bring the positions back to the joints; return the remaining relative error."""
-    if system.joints.shape[0] > 0:
-        return _project_position(system, state, near, tolerance, work)
-    return 0.0
-
-
-@inlined
-def project_velocity(system, state, work):
-    """Remove the velocities that the joints forbid."""
-    if system.joints.shape[0] > 0:
-        _project_velocity(system, state, False, work)
-
-
-@inlined
-def carry_velocity(system, state, work):
-    """Do the same for velocities from the momenta of bodies; rotors keep the rates that `rotors` has stored."""
-    if system.joints.shape[0] > 0:
-        _project_velocity(system, state, True, work)

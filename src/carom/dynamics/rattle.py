@@ -34,10 +34,11 @@ from carom.dynamics.loops import dropped_rows, solve_factored
 from carom.dynamics.move_error import error_of_move
 from carom.dynamics.solve import joint_wrench, solve, solve_near
 from carom.model.arrays import LOOPS, RELATION
+from carom.model.parts_of_system import has_joints
 from carom.status import NO_CONVERGENCE
 
 DONE, STALLED, TOO_FAR = range(3)  # how a part of a step ended
-MOST = 60  # solves for Lam
+SOLVES = 60  # solves for Lam
 
 
 @inlined
@@ -101,13 +102,13 @@ def one_part(system, start, t, h, end, work):
     total = first_kick(system, start, h, work)
     lost = dropped_rows(system, 0.0)
     least, last, fine = math.inf, math.inf, round_off(system, start)
-    for k in range(MOST):
+    for k in range(SOLVES):
         if not move_all(system, start, h, end, work):
             return 0.0, TOO_FAR if k == 0 else STALLED
         error = error_of_move(system, start, t, h, end, work)
         if error <= 1e-15 or (error <= 100.0 * fine and not error < 0.5 * last):
             break
-        if not error < 1e3 * least or k == MOST - 1:
+        if not error < 1e3 * least or k == SOLVES - 1:
             return 0.0, STALLED
         least, last = min(least, error), error
         result.time = t
@@ -171,8 +172,8 @@ def solve_again(system, state, work):
         solve(system, state, True, work)
 
 
-@unit
-def _correct(system, start, h, work):
+@unit(where=has_joints)
+def correct(system, start, h, work):
     """Change the momenta of the middle by reactions at the start that remove the error."""
     for j in range(system.joints.shape[0]):
         bias = work.joint[j].bias
@@ -182,10 +183,3 @@ def _correct(system, start, h, work):
     solve_again(system, start, work)
     for b in range(start.shape[0]):
         add_momentum(system.bodies[b], start[b].Q, 1.0, work.body[b])
-
-
-@inlined
-def correct(system, start, h, work):
-    """Change the momenta of the middle by reactions at the start that remove the error."""
-    if system.joints.shape[0] > 0:
-        _correct(system, start, h, work)

@@ -23,6 +23,7 @@ from carom.dynamics.stiff import add_stiff
 from carom.dynamics.tree import joint_wrenches
 from carom.kinematics.coordinate import rate, value
 from carom.model.arrays import FOREST, LOOPS, RELATION
+from carom.model.parts_of_system import has_relations
 
 
 @kernel
@@ -124,8 +125,8 @@ def add_touch(touch, work):
             wrench[3 + k] += touch.other_moment[k]
 
 
-@unit
-def _follow_turns(system, times, states, k):
+@unit(where=has_relations)
+def follow_turns(system, times, states, k):
     """Count the whole turns of all angles at saved state k, from those at the state before.
 
     The angle of a motor is the prescribed one; others change by the mean of the rates at both times.
@@ -148,13 +149,6 @@ def _follow_turns(system, times, states, k):
     for i in range(relations.coordinates.shape[0]):
         c = relations.coordinates[i]
         c.reference = value(c, states[k])
-
-
-@kernel
-def follow_turns(system, times, states, k):
-    """Count the whole turns of all angles at saved state k, from those at the state before."""
-    if system.relations.there == 1:
-        _follow_turns(system, times, states, k)
 
 
 @entry

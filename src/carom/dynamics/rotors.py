@@ -13,13 +13,13 @@ velocities of bodies from their own momenta, M v: there the rotors keep the rate
 
 from __future__ import annotations
 
-from carom._compiled.decorators import inlined
 from carom._compiled.units import unit
 from carom.kinematics.coordinate import motion_along, push, rate
+from carom.model.parts_of_system import has_relations
 
 
-@unit
-def _rotor_energy(system, state) -> float:
+@unit(where=has_relations, otherwise=0.0)
+def rotor_energy(system, state) -> float:
     """Return the kinetic energy along coordinates [J]."""
     total = 0.0
     for i in range(system.relations.rotors.shape[0]):
@@ -29,24 +29,24 @@ def _rotor_energy(system, state) -> float:
     return total
 
 
-@unit
-def _note_rates(system, state):
+@unit(where=has_relations)
+def note_rates(system, state):
     """Store the rates of `state`."""
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
         rotor.rate = rate(system.relations.coordinates[rotor.coordinate], state)
 
 
-@unit
-def _add_rates(system, state, work):
+@unit(where=has_relations)
+def add_rates(system, state, work):
     """Add the change by the motions of the last solve to the stored rates."""
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
         rotor.rate += motion_along(system.relations.coordinates[rotor.coordinate], state, work)
 
 
-@unit
-def _keep_rates(system, state, work):
+@unit(where=has_relations)
+def keep_rates(system, state, work):
     """Add the impulses of rotors that keep their stored rates to the wrenches."""
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
@@ -54,8 +54,8 @@ def _keep_rates(system, state, work):
         push(c, state, -rotor.inertia * (rate(c, state) - rotor.rate), work)
 
 
-@unit
-def _energy_of_change(system, before, after) -> tuple[float, float]:
+@unit(where=has_relations, otherwise=(0.0, 0.0))
+def energy_of_change(system, before, after) -> tuple[float, float]:
     """Return a, b of the additional kinetic energy a s^2 + b s of the rates q' + s (q' - q'_before)."""
     a, b = 0.0, 0.0
     for i in range(system.relations.rotors.shape[0]):
@@ -68,8 +68,8 @@ def _energy_of_change(system, before, after) -> tuple[float, float]:
     return a, b
 
 
-@unit
-def _work_of_change(system, state, work) -> float:
+@unit(where=has_relations, otherwise=0.0)
+def work_of_change(system, state, work) -> float:
     """Return the sum of I q'_0 (q' - q'_0); the velocities of q'_0 are in the motions of the bodies."""
     total = 0.0
     for i in range(system.relations.rotors.shape[0]):
@@ -78,48 +78,3 @@ def _work_of_change(system, state, work) -> float:
         speed = motion_along(c, state, work)
         total += rotor.inertia * speed * (rate(c, state) - speed)
     return total
-
-
-@inlined
-def rotor_energy(system, state):
-    """Return the kinetic energy along coordinates [J]."""
-    if system.relations.there == 1:
-        return _rotor_energy(system, state)
-    return 0.0
-
-
-@inlined
-def note_rates(system, state):
-    """Store the rates of `state`."""
-    if system.relations.there == 1:
-        _note_rates(system, state)
-
-
-@inlined
-def add_rates(system, state, work):
-    """Add the change by the motions of the last solve to the stored rates."""
-    if system.relations.there == 1:
-        _add_rates(system, state, work)
-
-
-@inlined
-def keep_rates(system, state, work):
-    """Add the impulses of rotors that keep their stored rates to the wrenches."""
-    if system.relations.there == 1:
-        _keep_rates(system, state, work)
-
-
-@inlined
-def energy_of_change(system, before, after):
-    """Return a, b of the additional kinetic energy a s^2 + b s of the rates q' + s (q' - q'_before)."""
-    if system.relations.there == 1:
-        return _energy_of_change(system, before, after)
-    return 0.0, 0.0
-
-
-@inlined
-def work_of_change(system, state, work):
-    """Return the sum of I q'_0 (q' - q'_0); the velocities of q'_0 are in the motions of the bodies."""
-    if system.relations.there == 1:
-        return _work_of_change(system, state, work)
-    return 0.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.dynamics.contact_impulse import add_impulse, alone, clear_wrenches, spread
+from carom.dynamics.contact_impulse import acts, add_impulse, alone, clear_wrenches, spread
 from carom.dynamics.solve import free_body, solve
 from carom.geometry.rotation import cross
 from carom.kinematics.contact_point import (
@@ -62,9 +62,13 @@ def inverse_masses(system, k, points, state, work, W):
     still_all(k, points, work)
     for j in range(k):
         for r in range(3):
+            m = 3 * j + r
+            if not acts(points[j].turns, r):
+                for row in range(3 * k):
+                    W[row, m] = 0.0
+                continue
             e0, e1, e2 = 1.0 if r == 0 else 0.0, 1.0 if r == 1 else 0.0, 1.0 if r == 2 else 0.0
             spread(system, points[j], state, e0, e1, e2, work)
-            m = 3 * j + r
             for i in range(k):
                 W[3 * i, m], W[3 * i + 1, m], W[3 * i + 2, m] = contact_motion(points[i], work)
         if alone(system, points[j]):

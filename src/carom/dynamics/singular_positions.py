@@ -24,11 +24,12 @@ from carom.dynamics.loops import dropped_rows
 from carom.dynamics.project import project_position, project_velocity
 from carom.geometry.rotation import exp, multiply
 from carom.model.arrays import LOOPS
+from carom.model.parts_of_system import has_loops
 from carom.model.workspace import RESTS
 
 SINGULAR = 1e-5  # relative to a row's diagonal: the square of the angle to the rows before it
 # bodies turn by this angle in the time T; if rows still depend on each other, by more
-NEAR, FARTHER, TRIES = 1e-2, 3.0, 2
+NEAR, FARTHER, LONGER_TIMES = 1e-2, 3.0, 2
 
 
 @kernel
@@ -37,11 +38,11 @@ def steps(system, b, work):
     return work.body[b].status != RESTS and system.bodies[b].ballistic == 0
 
 
-@unit
-def _return_stage(system, stage, work):
+@unit(where=has_loops)
+def return_stage(system, stage, work):
     """Bring a stage to the joints, positions and velocities."""
     project_position(system, stage, False, 1e-14, work)
-    project_velocity(system, stage, work)
+    project_velocity(system, stage, False, work)
 
 
 @kernel
@@ -52,8 +53,8 @@ def _is_singular(system, least, most):
     return most > usual[0]
 
 
-@unit
-def _pass_round(system, stage, sums, work, rates):
+@unit(where=has_loops)
+def pass_round(system, stage, sums, work, rates):
     """Write the accelerations of a stage in a singular position from those before and after it on its path.
 
     `sums` is workspace: the velocities of the bodies that step. If all positions on the path are singular, the
@@ -63,7 +64,7 @@ def _pass_round(system, stage, sums, work, rates):
     if dropped <= usual[0]:
         return
     pace, time, reach = turning_pace(system, stage), result.time, NEAR
-    for _ in range(TRIES if pace > 0.0 else 0):
+    for _ in range(LONGER_TIMES if pace > 0.0 else 0):
         power, most = _sum_rates(system, stage, sums, work, rates, reach, pace)
         result.time = time
         if most > usual[0]:
@@ -108,7 +109,7 @@ def _sum_rates(system, stage, sums, work, rates, reach, pace):
         for b in range(stage.shape[0]):
             go_on(stage[b], ahead, work.middle[b])
         work.result[0].time = time + ahead
-        _return_stage(system, work.middle, work)
+        return_stage(system, work.middle, work)
         accelerations(system, work.middle, work, rates)
         most = max(most, dropped_rows(system, SINGULAR))
         power += share * work.result[0].power
@@ -136,17 +137,3 @@ def go_on(start, dt, out):
 def is_singular(system, least, most):
     """Return whether a step came near a singular position, from the number of rows that stages left out."""
     return system.solver.kind == LOOPS and _is_singular(system, least, most)
-
-
-@inlined
-def return_stage(system, stage, work):
-    """Bring a stage to the joints, positions and velocities, if there are loops."""
-    if system.solver.kind == LOOPS:
-        _return_stage(system, stage, work)
-
-
-@inlined
-def pass_round(system, stage, sums, work, rates):
-    """Write the accelerations of a stage in a singular position from those before and after it on its path."""
-    if system.solver.kind == LOOPS:
-        _pass_round(system, stage, sums, work, rates)

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.geometry.rotation import cross
 from carom.kinematics.coordinate import add_rows, motion_along, push, rate, value
 from carom.kinematics.rows import mass_row
 from carom.kinematics.wrench import add_force, point, point_velocity
-from carom.model.arrays import LOOPS, STIFF
+from carom.model.arrays import STIFF
+from carom.model.parts_of_system import has_relation_rows
 
 
 @kernel
@@ -83,8 +84,8 @@ def stiff_rows(system, j, state, work):
         mass_row(system, solver.sides[s], 0, work)
 
 
-@unit
-def _add_stiff(system, state, work) -> float:
+@unit(where=has_relation_rows, otherwise=0.0)
+def add_stiff(system, state, work) -> float:
     """Add the present wrenches of these springs; return the power of their dampers."""
     power = 0.0
     for j in range(system.joints.shape[0]):
@@ -103,8 +104,8 @@ def _add_stiff(system, state, work) -> float:
     return power
 
 
-@unit
-def _stiff_energy(system, state) -> float:
+@unit(where=has_relation_rows, otherwise=0.0)
+def stiff_energy(system, state) -> float:
     """Return the potential energy of these springs [J]."""
     total = 0.0
     for j in range(system.joints.shape[0]):
@@ -113,19 +114,3 @@ def _stiff_energy(system, state) -> float:
             s, _ = stretch(system, one, state)
             total += 0.5 * one.stiffness * s * s
     return total
-
-
-@inlined
-def add_stiff(system, state, work):
-    """Add the present wrenches of these springs; return the power of their dampers."""
-    if system.relations.there == 1 and system.solver.kind == LOOPS:
-        return _add_stiff(system, state, work)
-    return 0.0
-
-
-@inlined
-def stiff_energy(system, state):
-    """Return the potential energy of these springs [J]."""
-    if system.relations.there == 1 and system.solver.kind == LOOPS:
-        return _stiff_energy(system, state)
-    return 0.0

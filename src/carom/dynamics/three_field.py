@@ -86,7 +86,7 @@ def three_field_step(method, system, active, start, h, end, work) -> tuple[float
             fine = fine or change <= 1e9 * method.tolerance
         if fine or change <= method.tolerance:
             if method.ode == 0 and change > method.tolerance:
-                project_velocity(system, end, work)
+                project_velocity(system, end, False, work)
             leave_for_later(system, start, h, end, work)
             return applied + driven_work(system, start, h, end, work), 0
     return applied, NO_CONVERGENCE

@@ -30,17 +30,7 @@ from carom._compiled.units import unit
 from carom.geometry.rotation import cross, matrix, spin_tensor
 from carom.kinematics.joints import axis, child_arm, parent_arm
 from carom.kinematics.pose import keep_pose, same_pose
-from carom.model.arrays import (
-    ALONG,
-    BALL,
-    FIRST,
-    REVOLUTE,
-    SCREW,
-    TURNING,
-    UNIVERSAL,
-    WIDTH,
-    WITHIN,
-)
+from carom.model.arrays import ALONG, BALL, HEAD, REVOLUTE, SCREW, TURNING, UNIVERSAL, WIDTH, WITHIN
 
 
 @kernel
@@ -83,9 +73,9 @@ def freedoms(joint, state, row):
     c, p = joint.child, joint.parent
     if kind == REVOLUTE:  # first, because most joints are of this kind
         ax, ay, az = axis(state, p, joint.parent_frame, 0)
-        turn(row, FIRST, ax, ay, az)
+        turn(row, HEAD, ax, ay, az)
         return
-    f = FIRST
+    f = HEAD
     for k in range(3):  # slides
         if (k == 0 and kind in ALONG and kind != SCREW) or (k > 0 and kind in WITHIN):
             row[f], row[f + 1], row[f + 2] = axis(state, p, joint.parent_frame, k)
@@ -117,7 +107,7 @@ def eliminate(row, count, rotor):
     h5, h6, h7, h8 = row[30], row[31], row[32], row[33]
     i0, i1, i2, i3, i4, i5 = row[34], row[35], row[36], row[37], row[38], row[39]
     for k in range(count):
-        f = FIRST + WIDTH * k
+        f = HEAD + WIDTH * k
         s = six(row, f)
         u0 = dot((m0, m1, m2, h0, h1, h2), s)
         u1 = dot((m1, m3, m4, h3, h4, h5), s)
@@ -193,7 +183,7 @@ def articulate(system, state):
             freedoms(joint, state, row)
         elif links[b].has_child == 1:  # a floating body has six
             for k in range(36):
-                row[FIRST + WIDTH * (k // 6) + k % 6] = 1.0 if k // 6 == k % 6 else 0.0
+                row[HEAD + WIDTH * (k // 6) + k % 6] = 1.0 if k // 6 == k % 6 else 0.0
     for i in range(links.shape[0] - 1, -1, -1):
         b = links[i].order
         link, row = links[b], workspace[b]
@@ -246,7 +236,7 @@ def inward(system):
             continue
         p0, p1, p2, p3, p4, p5 = row[46], row[47], row[48], row[49], row[50], row[51]
         for k in range(link.freedoms):
-            f = FIRST + WIDTH * k
+            f = HEAD + WIDTH * k
             u = dot(six(row, f), (p0, p1, p2, p3, p4, p5))
             row[f + 13] = -u
             u *= -row[f + 12]
@@ -280,7 +270,7 @@ def outward(system, biased, work):
             tx, ty, tz = cross(a3, a4, a5, row[16], row[17], row[18])
             a0, a1, a2 = up[46] + tx, up[47] + ty, up[48] + tz
         for k in range(link.freedoms - 1, -1, -1):
-            f = FIRST + WIDTH * k
+            f = HEAD + WIDTH * k
             s = dot(six(row, f + 6), (a0, a1, a2, a3, a4, a5))
             qdd = (row[f + 13] - s) * row[f + 12]
             a0, a1, a2 = a0 + row[f] * qdd, a1 + row[f + 1] * qdd, a2 + row[f + 2] * qdd
@@ -367,7 +357,7 @@ def joint_wrenches(system, work):
         reaction[3], reaction[4], reaction[5] = row[49] - tx, row[50] - ty, row[51] - tz
         for k in range(link.freedoms):
             if system.solver.rotor[b, k] > 0.0:
-                take_rotor_out(row, FIRST + WIDTH * k, reaction)
+                take_rotor_out(row, HEAD + WIDTH * k, reaction)
         if link.parent >= 0:
             above = workspace[link.parent]
             tx, ty, tz = cross(row[16], row[17], row[18], fx, fy, fz)

@@ -23,11 +23,12 @@ _RELAXATION = 1.6
 @kernel
 def alternate(work, k, sigma, limit):
     """Iterate `limit` times from p."""
-    x, z, v, c = work.vector[o.RHS], work.vector[o.P], work.vector[o.CHANGE], work.vector[o.C]
+    x, z = work.vector[o.RHS], work.vector[o.ITERATE]
+    v, c = work.vector[o.CHANGE], work.vector[o.BIAS]
     factor_shifted(work, k, sigma)
     velocity(work, k)
     for i in range(3 * k):
-        v[i] = work.vector[o.VELOCITY, i]
+        v[i] = work.vector[o.RESULTING, i]
     for i in range(k):
         t = work.contact[i]
         v[3 * i] += shift(t.kind, t.mu, t.h1, t.h2, v[3 * i + 1], v[3 * i + 2])

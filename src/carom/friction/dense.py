@@ -25,7 +25,7 @@ def multiply(work, k, x, out):
 @kernel
 def magnitude(work, k):
     """Return the greatest (|W| |p|)_i / s_i."""
-    most, p = 0.0, work.vector[o.P]
+    most, p = 0.0, work.vector[o.ITERATE]
     for i in range(3 * k):
         row, total = work.W[i], 0.0
         for j in range(3 * k):
@@ -37,7 +37,7 @@ def magnitude(work, k):
 @kernel
 def sweep(work, k, backward):
     """Solve each contact in turn, with fixed impulses of the others."""
-    p, c = work.vector[o.P], work.vector[o.C]
+    p, c = work.vector[o.ITERATE], work.vector[o.BIAS]
     for place in range(k):
         i = k - 1 - place if backward else place
         n = 3 * i
@@ -64,7 +64,7 @@ def factor_newton(work, k, eps):
 
     For an open contact D = 0 and the step is -f: its rows are left out.
     """
-    p, w, active, m = work.vector[o.P], work.vector[o.VELOCITY], work.active, 0
+    p, w, active, m = work.vector[o.ITERATE], work.vector[o.RESULTING], work.active, 0
     for i in range(k):
         n = 3 * i
         if p[n] - w[n] > 0.0 or work.contact[i].kind == o.STICKING:
@@ -92,15 +92,15 @@ def factor_newton(work, k, eps):
         j2[place + 1] -= e * d21
         j2[place + 2] += 1.0 - e * d22
     factor(work.matrix, m, work.pivot, _LEAST_PIVOT)
-    work.count[o.ROWS] = m
+    work.count[o.FACTOR_ROWS] = m
 
 
 @kernel
 def solve_newton(work, k):
     """Write the step for the f at p, w with the present factors."""
-    p, w, f = work.vector[o.P], work.vector[o.VELOCITY], work.vector[o.F]
+    p, w, f = work.vector[o.ITERATE], work.vector[o.RESULTING], work.vector[o.F]
     step, rhs = work.vector[o.STEP], work.vector[o.RHS]
-    opening, rows = False, work.count[o.ROWS]
+    opening, rows = False, work.count[o.FACTOR_ROWS]
     for j in range(3 * k):
         step[j] = -f[j]
     for q in range(rows):

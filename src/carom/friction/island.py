@@ -34,7 +34,7 @@ def multiply(work, k, x, out):
 @kernel
 def impart(work, k):
     """Write the motion that the present impulses cause."""
-    _impart(work, k, work.vector[o.P])
+    _impart(work, k, work.vector[o.ITERATE])
 
 
 @unit
@@ -53,7 +53,7 @@ def magnitude(work, k) -> float:
 @kernel
 def _push_size(work, i):
     """Add the absolute values of the motion that the impulse of contact i causes."""
-    link, p = work.link[i], work.vector[o.P]
+    link, p = work.link[i], work.vector[o.ITERATE]
     for side in range(2):
         if link.body[side] >= 0:
             Y, v = link.response[side], work.body[link.body[side]].motion
@@ -82,7 +82,7 @@ def _pull_size(work, i, a):
 @unit
 def sweep(work, k, backward):
     """Solve each contact in turn, with fixed impulses of the others."""
-    p, c = work.vector[o.P], work.vector[o.C]
+    p, c = work.vector[o.ITERATE], work.vector[o.BIAS]
     _impart(work, k, p)
     for place in range(k):
         i = k - 1 - place if backward else place
@@ -103,7 +103,7 @@ def sweep(work, k, backward):
 @unit
 def factor_newton(work, k, eps):
     """Factor for J = I - D + eps D, D the slope of the projection at p, w."""
-    p, w = work.vector[o.P], work.vector[o.VELOCITY]
+    p, w = work.vector[o.ITERATE], work.vector[o.RESULTING]
     e = 1.0 - eps
     for i in range(k):
         contact, n = work.contact[i], 3 * i
@@ -125,7 +125,7 @@ def factor_newton(work, k, eps):
             K[r, 2] = C[r, 1] * d12 + C[r, 2] * d22
     _assemble(work, k)
     factor_blocks(work)
-    work.count[o.ROWS] = 3 * k
+    work.count[o.FACTOR_ROWS] = 3 * k
 
 
 @unit

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ from carom._compiled.record_arrays import table
 CONE, SLIDING, STICKING, DISC = range(4)
 
 # Results of a solve.
-SOLVED, NOT_SOLVED, BAD_INPUT = 0, 1, 2
+SOLVED, NOT_SOLVED, BAD_PROBLEM = 0, 1, 2
 
 MESSAGES = {
     SOLVED: "The contact problem was solved to its tolerance.",
@@ -20,7 +21,7 @@ MESSAGES = {
         "The contact problem was not solved to its tolerance; `residual` is the remaining error. "
         "With large friction and redundant contacts the problem may have no solution."
     ),
-    BAD_INPUT: "The inverse mass, the velocity or the friction is not finite, or friction is negative.",
+    BAD_PROBLEM: "The inverse mass, the velocity or the friction is not finite, or friction is negative.",
 }
 
 
@@ -34,15 +35,15 @@ CONTACT = [
 ]
 
 # Vectors of length 3K, in scaled variables.
-C = 0  # velocity without impulses
-P = 1  # impulses: the iterate
-VELOCITY = 2  # W p + c
+BIAS = 0  # velocity without impulses
+ITERATE = 1  # impulses: the iterate
+RESULTING = 2  # W p + c
 F = 3  # p - projection
 STEP = 4
 CHANGE = 5  # W step
 RHS = 6  # right-hand side of a linear system
 CENTRE = 7  # centre of the proximal term
-KEPT = 8  # the best p of one start
+START_BEST = 8  # the best p of one start
 BEST = 9  # the best p of all
 GIVEN = 10  # p at the start
 VECTORS = 11
@@ -50,7 +51,7 @@ VECTORS = 11
 
 # Places in `count`, the numbers of a search.
 ITERATIONS = 0
-ROWS = 1  # rows of the present factors, -1 if there are none
+FACTOR_ROWS = 1  # rows of the present factors, -1 if there are none
 LIMIT = 3  # greatest number of steps of one call of Newton; 0: the default
 BUDGET = 4  # approximate greatest number of iterations of a search; 0: no limit
 NEAR = 2  # 1: seek the solution near the start, not the one of least norm
@@ -120,21 +121,10 @@ def new_contact_work(capacity: int) -> ContactWork:
     """Return work arrays for up to `capacity` contacts with a full matrix W."""
     contacts = max(capacity, 1)
     n = 3 * contacts
+    whole = partial(np.zeros, dtype=np.int64)
     return ContactWork(
-        kind=DENSE,
-        contact=table(CONTACT, contacts),
-        vector=np.zeros((VECTORS, n)),
-        count=np.zeros(5, dtype=np.int64),
-        mismatch=np.zeros(2),
-        W=np.zeros((n, n)),
-        matrix=np.zeros((n, n)),
-        pivot=np.zeros(n, dtype=np.int64),
-        active=np.zeros(n, dtype=np.int64),
-        link=table(LINK, 0),
-        other=table(OTHER, 0),
-        body=table(ISLAND_BODY, 0),
-        place=table(PLACE, 0),
-        later=np.zeros(0, dtype=np.int64),
-        target=np.zeros((0, 3), dtype=np.int64),
-        block=np.zeros((0, 6, 6)),
-    )
+        kind=DENSE, contact=table(CONTACT, contacts), vector=np.zeros((VECTORS, n)), count=whole(5),
+        mismatch=np.zeros(2), W=np.zeros((n, n)), matrix=np.zeros((n, n)), pivot=whole(n),
+        active=whole(n), link=table(LINK, 0), other=table(OTHER, 0), body=table(ISLAND_BODY, 0),
+        place=table(PLACE, 0), later=whole(0), target=whole((0, 3)), block=np.zeros((0, 6, 6)),
+    )  # fmt: skip

@@ -28,13 +28,13 @@ def newton(work, k, eps, patient):
     A step must reduce |f|; if `patient`, it must only be below the greatest of the last four |f|, which helps
     to pass a kink. Existing factors (work.count[ROWS] >= 0) are tried first.
     """
-    p, step, change = work.vector[o.P], work.vector[o.STEP], work.vector[o.CHANGE]
+    p, step, change = work.vector[o.ITERATE], work.vector[o.STEP], work.vector[o.CHANGE]
     count, limit = 0, work.count[o.LIMIT] if work.count[o.LIMIT] > 0 else _LIMIT
     size = _arrive(work, k, eps)
     before1, before2, before3 = 0.0, 0.0, 0.0
     while count < limit and size > work.mismatch[o.ENOUGH]:
         count += 1
-        chord = work.count[o.ROWS] >= 0
+        chord = work.count[o.FACTOR_ROWS] >= 0
         if not chord:
             factor(work, k, eps)
         solve(work, k)
@@ -48,7 +48,7 @@ def newton(work, k, eps, patient):
             if t == 0.0:
                 break
         elif not _mismatch(work, k, t) < _CHORD * size:
-            work.count[o.ROWS] = -1
+            work.count[o.FACTOR_ROWS] = -1
             if size < _FLOOR * largest_impulse(work, k):
                 break
             continue
@@ -59,7 +59,7 @@ def newton(work, k, eps, patient):
         if size < _FLOOR * largest_impulse(work, k) and not size < 0.5 * before1:
             break
         if not size < _CHORD * before1:
-            work.count[o.ROWS] = -1
+            work.count[o.FACTOR_ROWS] = -1
     work.count[o.ITERATIONS] += count
     work.mismatch[0] = size
 
@@ -67,7 +67,7 @@ def newton(work, k, eps, patient):
 @kernel
 def step(work, k, eps):
     """Make one whole step from p, which is also the centre of the proximal term, and project the result."""
-    p, centre, change = work.vector[o.P], work.vector[o.CENTRE], work.vector[o.STEP]
+    p, centre, change = work.vector[o.ITERATE], work.vector[o.CENTRE], work.vector[o.STEP]
     for i in range(3 * k):
         centre[i] = p[i]
     _arrive(work, k, eps)
@@ -99,7 +99,7 @@ def _search(work, k, bound):
 def _arrive(work, k, eps):
     """Write w and f at p; return |f|."""
     velocity(work, k)
-    p, w, centre = work.vector[o.P], work.vector[o.VELOCITY], work.vector[o.CENTRE]
+    p, w, centre = work.vector[o.ITERATE], work.vector[o.RESULTING], work.vector[o.CENTRE]
     for i in range(3 * k):
         w[i] += eps * (p[i] - centre[i])
     return _mismatch(work, k, 0.0)
@@ -108,16 +108,16 @@ def _arrive(work, k, eps):
 @kernel
 def velocity(work, k):
     """Write w = W p + c."""
-    w, c = work.vector[o.VELOCITY], work.vector[o.C]
+    w, c = work.vector[o.RESULTING], work.vector[o.BIAS]
     for i in range(3 * k):
         w[i] = c[i]
-    multiply(work, k, work.vector[o.P], w)
+    multiply(work, k, work.vector[o.ITERATE], w)
 
 
 @kernel
 def largest_impulse(work, k):
     """Return 1 + the greatest scaled impulse: the scale of round-off."""
-    most, p = 0.0, work.vector[o.P]
+    most, p = 0.0, work.vector[o.ITERATE]
     for i in range(3 * k):
         most = max(most, abs(p[i]))
     return 1.0 + most
@@ -127,7 +127,7 @@ def largest_impulse(work, k):
 def _mismatch(work, k, t):
     """Return |f| at p + t step; f itself is written for t = 0."""
     total = 0.0
-    p, w, f = work.vector[o.P], work.vector[o.VELOCITY], work.vector[o.F]
+    p, w, f = work.vector[o.ITERATE], work.vector[o.RESULTING], work.vector[o.F]
     step, change = work.vector[o.STEP], work.vector[o.CHANGE]
     for i in range(k):
         a, b, c = 3 * i, 3 * i + 1, 3 * i + 2

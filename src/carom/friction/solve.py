@@ -6,7 +6,7 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 from carom.friction import layout as o
-from carom.friction.layout import BAD_INPUT, DISC, NOT_SOLVED, SOLVED
+from carom.friction.layout import BAD_PROBLEM, DISC, NOT_SOLVED, SOLVED
 from carom.friction.local import prepare, solve_local
 from carom.friction.one_contact import upper_triangle
 from carom.friction.residual import measure
@@ -22,7 +22,7 @@ def solve_cones(k, W, c, mu, kind, heading, p, workspace):
     then the solution, `workspace` from `layout.new_contact_work(K)`. `kind` (K,) int64: CONE, friction against
     w_t; SLIDING, p_t = -mu p_n heading, `heading` (K, 2); STICKING, w_t = 0 with any tangential impulse, even
     if p_n = 0; DISC, friction |p_t| <= `heading[i, 0]`. Status: SOLVED; NOT_SOLVED, p is the best result found;
-    BAD_INPUT, p is 0. The residual is that of `residual.measure`.
+    BAD_PROBLEM, p is 0. The residual is that of `residual.measure`.
     """
     if k == 0:
         return SOLVED, 0.0, 0
@@ -30,10 +30,10 @@ def solve_cones(k, W, c, mu, kind, heading, p, workspace):
     if not math.isfinite(gamma):
         for i in range(3 * k):
             p[i] = 0.0
-        return BAD_INPUT, math.inf, 0
-    iterations, q = 0, workspace.vector[o.P]
+        return BAD_PROBLEM, math.inf, 0
+    iterations, q = 0, workspace.vector[o.ITERATE]
     if k == 1:
-        alone, b = upper_triangle(workspace.W), workspace.vector[o.C]
+        alone, b = upper_triangle(workspace.W), workspace.vector[o.BIAS]
         _, q[0], q[1], q[2] = solve_local(workspace.contact[0], alone, (b[0], b[1], b[2]))
     else:
         search(workspace, k)
@@ -126,14 +126,14 @@ def scale_vectors(work, k, c, p):
     gamma = 0.0
     for i in range(3 * k):
         scaled = work.contact[i // 3].scale * c[i]
-        work.vector[o.C, i] = scaled
+        work.vector[o.BIAS, i] = scaled
         if not math.isfinite(scaled):
             return math.nan
         gamma = max(gamma, abs(scaled))
     if gamma == 0.0:
         gamma = 1.0
     for i in range(3 * k):
-        work.vector[o.C, i] /= gamma
+        work.vector[o.BIAS, i] /= gamma
         q = p[i] / (work.contact[i // 3].scale * gamma)
-        work.vector[o.P, i] = q if math.isfinite(q) else 0.0
+        work.vector[o.ITERATE, i] = q if math.isfinite(q) else 0.0
     return gamma

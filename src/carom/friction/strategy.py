@@ -22,7 +22,7 @@ _STARTS = 20  # greatest number of starting points
 _EXTRA = 2  # further starting points if the tolerance is satisfied, but not round-off; or a hundred times that
 _NEARLY = 100.0
 _SETTLED = 1e-12  # relative to the impulses: |f| of equations that are solved
-_SWEEPS = 25  # at first; twice as many each time, up to
+_FIRST_SWEEPS = 25  # at first; twice as many each time, up to
 _MOST_SWEEPS = 200
 _ALTERNATIONS = 300
 _RELEASE_FROM, _RELEASE_BY = 0.1, 0.3  # weights of the proximal term in a release
@@ -38,7 +38,7 @@ def search(work, k):
     seeks a solution near the given p, unless p is 0. The others begin after sweeps, after alternating
     directions, and after a release, in turn.
     """
-    p, best, given = work.vector[o.P], work.vector[o.BEST], work.vector[o.GIVEN]
+    p, best, given = work.vector[o.ITERATE], work.vector[o.BEST], work.vector[o.GIVEN]
     least, last, cold = math.inf, _STARTS, True
     work.count[o.ITERATIONS] = 0
     for i in range(3 * k):
@@ -100,12 +100,12 @@ def spent(work):
 def _approach(work, k, method, again):
     """Move p to another starting point for Newton by a method; `again` counts its earlier uses."""
     if method == 0:
-        sweeps = min(_SWEEPS * 2**again, _MOST_SWEEPS)
+        sweeps = min(_FIRST_SWEEPS * 2**again, _MOST_SWEEPS)
         for i in range(sweeps):
             sweep(work, k, i % 2 == 1)
         work.count[o.ITERATIONS] += sweeps
     elif method == 1:
-        p = work.vector[o.P]
+        p = work.vector[o.ITERATE]
         if again == 0:
             for i in range(3 * k):
                 p[i] = 0.0
@@ -122,7 +122,7 @@ def release(work, k, enough):
 
     It ends when the residual is at most `enough`, which may happen before the term is weak.
     """
-    p, kept, centre = work.vector[o.P], work.vector[o.KEPT], work.vector[o.CENTRE]
+    p, kept, centre = work.vector[o.ITERATE], work.vector[o.START_BEST], work.vector[o.CENTRE]
     for i in range(3 * k):
         kept[i] = p[i]
     eps = _RELEASE_FROM
@@ -131,7 +131,7 @@ def release(work, k, enough):
             break
         for i in range(3 * k):
             centre[i] = p[i] = kept[i]
-        work.count[o.ROWS] = -1
+        work.count[o.FACTOR_ROWS] = -1
         newton(work, k, eps, True)
         if work.mismatch[0] < 1e-8:
             for i in range(3 * k):
@@ -154,11 +154,11 @@ def polished(work, k, least_norm, patient):
     The term is centred at 0, for the solution of least norm, or at p; then it is moved to each new solution
     until its bias is gone. p is the best of the rounds.
     """
-    p, kept, centre = work.vector[o.P], work.vector[o.KEPT], work.vector[o.CENTRE]
+    p, kept, centre = work.vector[o.ITERATE], work.vector[o.START_BEST], work.vector[o.CENTRE]
     for i in range(3 * k):
         centre[i] = 0.0 if least_norm else p[i]
     least = math.inf
-    work.count[o.ROWS] = -1
+    work.count[o.FACTOR_ROWS] = -1
     for i in range(3 * k):
         kept[i] = p[i]
     goal, tolerance, eps = 0.0, 0.0, _EPS
@@ -172,7 +172,7 @@ def polished(work, k, least_norm, patient):
         enough = r <= goal or (slow and (r <= tolerance or eps < _EPS)) or spent(work)
         if slow and not enough:  # a soft direction of W: a light body between heavy ones
             eps = _LEAST_EPS
-            work.count[o.ROWS] = -1
+            work.count[o.FACTOR_ROWS] = -1
         if r < least:
             least = r
             for i in range(3 * k):
@@ -196,7 +196,7 @@ def settled(work, k):
 def residual(work, k):
     """Return (residual, goal, tolerance) of p in velocity; the goal is what round-off allows."""
     velocity(work, k)
-    p, w, c = work.vector[o.P], work.vector[o.VELOCITY], work.vector[o.C]
+    p, w, c = work.vector[o.ITERATE], work.vector[o.RESULTING], work.vector[o.BIAS]
     worst, largest = 0.0, 0.0
     for i in range(k):
         t, n = work.contact[i], 3 * i

@@ -21,7 +21,7 @@ from carom.generalized.motion import (
 
 _STRAIGHT = 1e-4  # if Gamma(xi, xi)/2 is below this part of xi, two terms of the series suffice
 _PARTS = 8  # steps of order 4 for longer arcs
-_LONG = 64  # the same for arcs of the return map that are longer than round-off
+_LONG_PARTS = 64  # the same for arcs of the return map that are longer than round-off
 
 
 @kernel
@@ -165,7 +165,7 @@ def return_map(system, active, t, x, c, tolerance, work):
         if iteration == 0:
             if abs(rho) <= tolerance:
                 return 0, 0
-            parts = 1 if abs(rho) <= 1e-9 * work.gap_scale[c] else _LONG
+            parts = 1 if abs(rho) <= 1e-9 * work.gap_scale[c] else _LONG_PARTS
         if not w > 0.0:
             return -1, 0
         kappa -= rho / w

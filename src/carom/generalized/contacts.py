@@ -11,17 +11,25 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.generalized.autoparallel import return_map
-from carom.generalized.layout import CONE, GAP, JAM, REVERSE, SEPARATE, SLIP, STICK
 from carom.generalized.step import project_rates
 from carom.generalized.strike import Strike
 from carom.impact.laws import NUMBERS
+from carom.model.actions import (
+    EVENT_CONE,
+    EVENT_GAP,
+    EVENT_JAM,
+    EVENT_REVERSE,
+    EVENT_SEPARATE,
+    MODE_SLIP,
+    MODE_STICK,
+)
 from carom.status import Status
 
 if TYPE_CHECKING:
     from carom.generalized.run import GeneralizedRun
 
 STILL = 1e-12  # relative to the speeds of a contact: a relative velocity that is round-off
-ROUNDS = 50
+CONTACT_ROUNDS = 50
 
 
 class Contacts:
@@ -87,8 +95,9 @@ class Contacts:
             return 0
         now = float(run.clock[0].now)
         before = run.x.copy()
-        struck = index if kind == GAP else -1
-        marked = int(run.active.contact[index]) if kind in (SEPARATE, CONE, REVERSE, JAM) else -1
+        struck = index if kind == EVENT_GAP else -1
+        of_active = kind in (EVENT_SEPARATE, EVENT_CONE, EVENT_REVERSE, EVENT_JAM)
+        marked = int(run.active.contact[index]) if of_active else -1
         if struck >= 0:
             code = self.return_to(struck)
             if code != 0:
@@ -98,9 +107,9 @@ class Contacts:
             return self.seen.status
         was = {c: int(run.active.mode[i]) for i, c in enumerate(self.active())}
         closed = self.closed(struck)
-        if kind == SEPARATE:
+        if kind == EVENT_SEPARATE:
             self.let_go(marked)
-        code = self.strike.all(closed, now, marked if kind == JAM else -1)
+        code = self.strike.all(closed, now, marked if kind == EVENT_JAM else -1)
         if code != 0:
             return code
         if run.options.hold:
@@ -139,8 +148,8 @@ class Contacts:
                 self.run.counts["holds"] += 1
                 self.events.append((now, "held", c))
             elif modes[c] != was[c]:
-                self.events.append((now, "sticks" if modes[c] == STICK else "slips", c))
-            elif c == marked and kind == REVERSE:
+                self.events.append((now, "sticks" if modes[c] == MODE_STICK else "slips", c))
+            elif c == marked and kind == EVENT_REVERSE:
                 self.events.append((now, "slips", c))
 
     # --- persistent contacts ----------------------------------------------------------------------
@@ -166,7 +175,7 @@ class Contacts:
 
     def choose_active(self, closed: list[int], kind: int, marked: int, struck: int) -> int:
         """Choose the closed contacts that become active, and their modes; return a status."""
-        skip = marked if kind == SEPARATE else -1
+        skip = marked if kind == EVENT_SEPARATE else -1
         self.look()
         for c in self.active():
             if self.u[c, 0] > 10.0 * self.still[c]:
@@ -208,7 +217,7 @@ class Contacts:
         }
         if self.cones is None:
             self.cones = new_contact_work(len(self.friction))
-        for _ in range(ROUNDS):
+        for _ in range(CONTACT_ROUNDS):
             k = len(chosen)
             active.count[0] = k
             if k == 0:
@@ -257,7 +266,7 @@ class Contacts:
             size = float(np.linalg.norm(slip))
             if self.friction[c] > 0.0 and size > 10.0 * self.still[c]:
                 kinds[i], heading[i] = SLIDING, slip / size
-            elif c == marked and kind == CONE and self.friction[c] > 0.0:
+            elif c == marked and kind == EVENT_CONE and self.friction[c] > 0.0:
                 pull = was[c][2][1:]  # stick has just ended
                 kinds[i], heading[i] = SLIDING, -pull / np.linalg.norm(pull)
         return kinds, heading
@@ -276,13 +285,13 @@ class Contacts:
         """Write the new active contacts, with forces p (k, 3), and whether each sticks."""
         active = self.run.active
         for i, c in enumerate(chosen):
-            active.contact[i], active.mode[i], active.force[i] = c, SLIP, p[i]
+            active.contact[i], active.mode[i], active.force[i] = c, MODE_SLIP, p[i]
             active.heading[i] = heading[i]
             if heading[i].any() or not self.friction[c] > 0.0:
                 continue
             pull, most = float(np.linalg.norm(p[i, 1:])), self.friction[c] * p[i, 0]
-            if pull <= most * (1.0 - 1e-10) or (c in was and was[c][0] == STICK):
-                active.mode[i] = STICK
+            if pull <= most * (1.0 - 1e-10) or (c in was and was[c][0] == MODE_STICK):
+                active.mode[i] = MODE_STICK
             elif pull > 0.0:
                 active.heading[i] = -p[i, 1:] / pull
             elif c in was:
@@ -297,7 +306,7 @@ class Contacts:
             if self.friction[c] > 0.0:
                 slip = float(np.linalg.norm(self.u[c, 1:]))
                 stop = 10.0 * self.still[c]
-                if c == marked and kind == REVERSE:
+                if c == marked and kind == EVENT_REVERSE:
                     # speed that friction removes in a thousandth of a step
                     W_tt = np.einsum("in,nm,im->", self.seen.G[c, 1:], self.P, self.seen.G[c, 1:])
                     brake = self.friction[c] * abs(was[c][2][0]) * float(W_tt)

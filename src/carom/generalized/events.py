@@ -1,11 +1,11 @@
 """Events that end a mode of motion within a step: functions that are positive before and negative after.
 
-GAP        gap                  of an open contact
-RATE       - d gap/dt           of a gap that falls below zero and returns within a step
-SEPARATE   N                    of a persistent contact
-CONE       mu N - |T|           while it sticks
-REVERSE    u_t . e              while it slips, e its direction at the start of the step
-JAM        W_nn - mu W_nt . e   while it slips (mathematics page, §3.6)
+EVENT_GAP        gap                  of an open contact
+EVENT_RATE       - d gap/dt           of a gap that falls below zero and returns within a step
+EVENT_SEPARATE   N                    of a persistent contact
+EVENT_CONE       mu N - |T|           while it sticks
+EVENT_REVERSE    u_t . e              while it slips, e its direction at the start of the step
+EVENT_JAM        W_nn - mu W_nt . e   while it slips (mathematics page, §3.6)
 """
 
 from __future__ import annotations
@@ -13,21 +13,20 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.generalized.layout import (
-    CONE,
-    GAP,
-    JAM,
-    NOTHING,
-    RATE,
-    REVERSE,
-    SEPARATE,
-    SLIP,
-    STICK,
-    TOUCHES,
-    N,
-)
+from carom.generalized.layout import TOUCHES, N
 from carom.generalized.motion import acceleration, find_contacts, slip_of
 from carom.generalized.step import take
+from carom.model.actions import (
+    EVENT_CONE,
+    EVENT_GAP,
+    EVENT_JAM,
+    EVENT_RATE,
+    EVENT_REVERSE,
+    EVENT_SEPARATE,
+    MODE_SLIP,
+    MODE_STICK,
+    NO_EVENT,
+)
 from carom.status import NOT_FINITE
 
 ROUND_OFF = 1e-15  # of the gap's own terms
@@ -68,17 +67,17 @@ def detect_event(system, active, t, x, work):
 @kernel
 def value(system, active, kind, i, x, work):
     """Return (event function, greatest magnitude that counts as zero)."""
-    if kind == GAP:
+    if kind == EVENT_GAP:
         return work.gap[i], ROUND_OFF * work.gap_scale[i]
-    if kind == RATE:
+    if kind == EVENT_RATE:
         return -rate_of(system, i, x, work), 0.0
     force, mu = active.force[i], system.friction[active.contact[i]]
-    if kind == SEPARATE:
+    if kind == EVENT_SEPARATE:
         return force[0], 0.0
-    if kind == CONE:
+    if kind == EVENT_CONE:
         pull = math.sqrt(force[1] * force[1] + force[2] * force[2])
         return mu * force[0] - pull, 1e-12 * abs(force[0])
-    if kind == JAM:
+    if kind == EVENT_JAM:
         return active.yields[i], 0.0
     u1, u2 = slip_of(system, active, i, x, work)
     return u1 * active.heading[i, 0] + u2 * active.heading[i, 1], 0.0
@@ -89,7 +88,7 @@ def turned(system, active, t, x, work):
     """Return whether slip has turned by more than 60 degrees within a step, and has not only stopped."""
     looked = False
     for i in range(active.count[0]):
-        if active.mode[i] == SLIP and system.friction[active.contact[i]] > 0.0:
+        if active.mode[i] == MODE_SLIP and system.friction[active.contact[i]] > 0.0:
             if not looked:
                 find_contacts(system, t, x, work)
                 looked = True
@@ -119,21 +118,21 @@ def violated(system, active, kind, i, x, work):
 
 @kernel
 def first_violated(system, active, x, work):
-    """Return (kind, index) of an event function that is below zero at `x`, (NOTHING, -1) if none is."""
+    """Return (kind, index) of an event function that is below zero at `x`, (NO_EVENT, -1) if none is."""
     for c in range(system.size[TOUCHES]):
-        if open_contact(active, c) and violated(system, active, GAP, c, x, work):
-            return GAP, c
+        if open_contact(active, c) and violated(system, active, EVENT_GAP, c, x, work):
+            return EVENT_GAP, c
     for i in range(active.count[0]):
-        if active.mode[i] == SLIP and system.friction[active.contact[i]] > 0.0:
-            if violated(system, active, REVERSE, i, x, work):
-                return REVERSE, i
+        if active.mode[i] == MODE_SLIP and system.friction[active.contact[i]] > 0.0:
+            if violated(system, active, EVENT_REVERSE, i, x, work):
+                return EVENT_REVERSE, i
             if not active.yields[i] > 0.0:
-                return JAM, i
-        if violated(system, active, SEPARATE, i, x, work):
-            return SEPARATE, i
-        if active.mode[i] == STICK and violated(system, active, CONE, i, x, work):
-            return CONE, i
-    return NOTHING, -1
+                return EVENT_JAM, i
+        if violated(system, active, EVENT_SEPARATE, i, x, work):
+            return EVENT_SEPARATE, i
+        if active.mode[i] == MODE_STICK and violated(system, active, EVENT_CONE, i, x, work):
+            return EVENT_CONE, i
+    return NO_EVENT, -1
 
 
 @kernel
@@ -223,31 +222,31 @@ def value_at(motion, kind, i, t, x, s):
 def locate(motion, t, x, h):
     """Find the first event in the step h from `x`, whose end is known; return (s, kind, index, status).
 
-    The end is then the state at s. Without an event, the kind is NOTHING and s = h.
+    The end is then the state at s. Without an event, the kind is NO_EVENT and s = h.
     """
     system, active, work = motion.system, motion.active, motion.work
     end = work.end
     code = detect_event(system, active, t + h, end, work)
     if code != 0:
-        return h, NOTHING, -1, code
+        return h, NO_EVENT, -1, code
     kind, i = first_violated(system, active, end, work)
     high = h
-    if kind == NOTHING:
+    if kind == NO_EVENT:
         c = dips(system, active, h, end, work)
         if c < 0:
-            return h, NOTHING, -1, 0
-        high, code = find_root(motion, RATE, c, t, x, h)
-        if code == 0 and violated(system, active, GAP, c, end, work):
-            kind, i = GAP, c
+            return h, NO_EVENT, -1, 0
+        high, code = find_root(motion, EVENT_RATE, c, t, x, h)
+        if code == 0 and violated(system, active, EVENT_GAP, c, end, work):
+            kind, i = EVENT_GAP, c
         else:
-            return h, NOTHING, -1, max(code, state_at(motion, t, x, h))
+            return h, NO_EVENT, -1, max(code, state_at(motion, t, x, h))
     s = high
     for _ in range(20):
         s, code = find_root(motion, kind, i, t, x, high)
         if code != 0:
             break
         other, j = first_violated(system, active, end, work)
-        if other == NOTHING or (other == kind and j == i):
+        if other == NO_EVENT or (other == kind and j == i):
             break
         kind, i, high = other, j, s
     return s, kind, i, code

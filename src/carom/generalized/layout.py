@@ -14,22 +14,16 @@ from carom.model.method import Method
 from carom.stepping.grid import Grid
 
 # The four functions, by their place in `Coordinates.address`.
-INERTIA = 0  #: M (n, n), Gamma_kij v_i v_j (n,), first kind
-LOADS = 1  #: V, generalised forces Q - dV (n,), power Q.v of those that have no potential
-ROWS = 2  #: phi (h,), A (k, n), (dA/dt) v (k,)
-CONTACTS = 3  #: gap (C,), G (C, 3, n), (dG/dt) v (C, 3)
+CALL_INERTIA = 0  #: M (n, n), Gamma_kij v_i v_j (n,), first kind
+CALL_LOADS = 1  #: V, generalised forces Q - dV (n,), power Q.v of those that have no potential
+CALL_ROWS = 2  #: phi (h,), A (k, n), (dA/dt) v (k,)
+CALL_CONTACTS = 3  #: gap (C,), G (C, 3, n), (dG/dt) v (C, 3)
 
 # The four sizes, by their place in `Coordinates.size`.
 N, HOLONOMIC, ALL_ROWS, TOUCHES = range(4)
 
-# Modes of a persistent contact.
-SLIP, STICK = 1, 2
-
-# Events that end a mode of motion.
-NOTHING, GAP, RATE, SEPARATE, CONE, REVERSE, JAM = range(7)
-
-# How a call of the loop ended, if not by a `carom.status.Status`.
-DONE, EVENT, PAUSE = 0, 100, 101
+# An event ended a call of the loop; other codes are `carom.model.records.PAUSE`, and those of `carom.status`.
+EVENT = 100
 
 
 class Coordinates(NamedTuple):
@@ -46,7 +40,7 @@ class ActiveSet(NamedTuple):
 
     count: np.ndarray  # (1,) int64
     contact: np.ndarray  # (C,) int64
-    mode: np.ndarray  # (C,) int64, SLIP or STICK
+    mode: np.ndarray  # (C,) int64, MODE_SLIP or MODE_STICK
     heading: np.ndarray  # (C, 2) direction of slip
     force: np.ndarray  # (C, 3) normal first
     yields: np.ndarray  # (C,) W_nn - mu W_nt.heading of a slipping contact
@@ -127,14 +121,9 @@ class Record(NamedTuple):
 
 def new_active_set(contacts: int) -> ActiveSet:
     """Return an active set with room for all contacts, none active."""
-    return ActiveSet(
-        np.zeros(1, dtype=np.int64),
-        np.zeros(contacts, dtype=np.int64),
-        np.zeros(contacts, dtype=np.int64),
-        np.zeros((contacts, 2)),
-        np.zeros((contacts, 3)),
-        np.zeros(contacts),
-    )
+    count, (contact, mode) = np.zeros(1, np.int64), np.zeros((2, contacts), np.int64)
+    vectors = np.zeros((contacts, 2)), np.zeros((contacts, 3))
+    return ActiveSet(count, contact, mode, *vectors, np.zeros(contacts))
 
 
 def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> Work:

@@ -17,10 +17,12 @@ from carom._compiled.decorators import entry, kernel
 from carom._compiled.user_functions import call_function
 from carom.dynamics.adapt import LEAST, MOST, NOTHING_LEFT, SAFETY, allowed_error, part_of
 from carom.generalized.events import locate, note_start, turned
-from carom.generalized.layout import DONE, EVENT, LOADS, NOTHING, PAUSE, TOUCHES, N
+from carom.generalized.layout import CALL_LOADS, EVENT, TOUCHES, N
 from carom.generalized.motion import copy_row, find_metric
 from carom.generalized.step import take
-from carom.status import STEP_TOO_SMALL
+from carom.model.actions import NO_EVENT
+from carom.model.records import PAUSE
+from carom.status import STEP_TOO_SMALL, SUCCESS
 from carom.stepping.grid import end_of, is_saved
 
 CUTS = 12  # greatest number of halvings of a step in which slip turns
@@ -29,7 +31,7 @@ LONG = 20_000  # trial steps, times the square of the number of coordinates, aft
 
 @entry
 def time_loop(motion, x, plan, until, record):
-    """Continue to step number `until`; return DONE, EVENT (the clock has its kind) or a status of failure.
+    """Continue to step number `until`; return SUCCESS, EVENT (the clock has its kind) or a status of failure.
 
     Return PAUSE after much work, so that Ctrl-C is noticed.
     """
@@ -52,7 +54,7 @@ def time_loop(motion, x, plan, until, record):
             copy_row(work.end, x, x.size)
             c.loads += work.spent[0]
             c.friction += work.spent[1]
-            if kind != NOTHING:
+            if kind != NO_EVENT:
                 c.now += s
                 c.kind, c.index = kind, index
                 return EVENT
@@ -63,7 +65,7 @@ def time_loop(motion, x, plan, until, record):
         c.step += 1
         if is_saved(plan.grid, c.step):
             save(x, record)
-    return DONE
+    return SUCCESS
 
 
 @kernel
@@ -169,6 +171,6 @@ def energies(system, t, states, kinetic, potential, work):
             for j in range(n):
                 total += work.M[i, j] * states[k, n + i] * states[k, n + j]
         kinetic[k] = 0.5 * total
-        call_function(system.address[LOADS], t[k], states[k], work.loads)
+        call_function(system.address[CALL_LOADS], t[k], states[k], work.loads)
         potential[k] = work.loads[0]
     return system.size[TOUCHES]

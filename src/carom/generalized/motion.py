@@ -12,24 +12,23 @@ from carom._compiled.decorators import entry, kernel
 from carom._compiled.user_functions import call_function
 from carom.generalized.layout import (
     ALL_ROWS,
-    CONTACTS,
+    CALL_CONTACTS,
+    CALL_INERTIA,
+    CALL_LOADS,
+    CALL_ROWS,
     HOLONOMIC,
-    INERTIA,
-    LOADS,
-    ROWS,
-    SLIP,
-    STICK,
     TOUCHES,
     N,
 )
 from carom.generalized.linear import cholesky, factor, solve_metric, substitute
+from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.status import NOT_FINITE, SINGULAR_METRIC
 
 
 @kernel
 def find_metric(system, t, x, work):
     """Compute M, its factor and Gamma(v, v) at the state `x`; return a status."""
-    call_function(system.address[INERTIA], t, x, work.inertia)
+    call_function(system.address[CALL_INERTIA], t, x, work.inertia)
     n = system.size[N]
     if cholesky(work.M, work.L, n):
         return 0
@@ -43,9 +42,9 @@ def find_metric(system, t, x, work):
 def find_rows(system, active, t, x, work):
     """Compute constraint rows, and contacts if any is active."""
     if system.size[ALL_ROWS] > 0:
-        call_function(system.address[ROWS], t, x, work.rows)
+        call_function(system.address[CALL_ROWS], t, x, work.rows)
     if active.count[0] > 0:
-        call_function(system.address[CONTACTS], t, x, work.contacts)
+        call_function(system.address[CALL_CONTACTS], t, x, work.contacts)
 
 
 @kernel
@@ -53,7 +52,7 @@ def find_contacts(system, t, x, work):
     """Compute gaps and contact rows, and the size of the terms of each gap."""
     if system.size[TOUCHES] == 0:
         return
-    call_function(system.address[CONTACTS], t, x, work.contacts)
+    call_function(system.address[CALL_CONTACTS], t, x, work.contacts)
     for c in range(system.size[TOUCHES]):
         size = abs(work.gap[c])
         total = 0.0
@@ -106,13 +105,13 @@ def gather(system, active, x, work):
         copy_row(work.G[c, 0], work.R[m], n)
         copy_row(work.G[c, 0], work.D[m], n)
         work.rhs[m] = -work.G_rate[c, 0]
-        if active.mode[i] == SLIP and mu > 0.0:
+        if active.mode[i] == MODE_SLIP and mu > 0.0:
             u1, u2 = slip_of(system, active, i, x, work)
             e1, e2 = direction(active, i, u1, u2)
             for j in range(n):
                 work.D[m, j] -= mu * (e1 * work.G[c, 1, j] + e2 * work.G[c, 2, j])
         m += 1
-        if active.mode[i] == STICK:
+        if active.mode[i] == MODE_STICK:
             for r in range(1, 3):
                 copy_row(work.G[c, r], work.R[m], n)
                 copy_row(work.G[c, r], work.D[m], n)
@@ -160,7 +159,7 @@ def acceleration(system, active, t, x, work, rate):
     code = find_metric(system, t, x, work)
     if code != 0:
         return 0.0, 0.0, code
-    call_function(system.address[LOADS], t, x, work.loads)
+    call_function(system.address[CALL_LOADS], t, x, work.loads)
     a = work.a
     for j in range(n):
         a[j] = work.loads[1 + j] - work.c[j]
@@ -185,7 +184,7 @@ def note_forces(system, active, x, work):
         force, mu = active.force[i], system.friction[active.contact[i]]
         force[0] = work.rhs[m]
         active.yields[i] = work.K[m, m]
-        if active.mode[i] == STICK:
+        if active.mode[i] == MODE_STICK:
             force[1], force[2] = work.rhs[m + 1], work.rhs[m + 2]
             m += 3
         else:
@@ -202,6 +201,6 @@ def look(system, active, t, x, work):
     """Compute all quantities at a state, for Python; return a status. The acceleration is in `work.a`."""
     find_contacts(system, t, x, work)
     if system.size[HOLONOMIC] > 0 or system.size[ALL_ROWS] > 0:
-        call_function(system.address[ROWS], t, x, work.rows)
+        call_function(system.address[CALL_ROWS], t, x, work.rows)
     _, _, code = acceleration(system, active, t, x, work, work.trial)
     return code

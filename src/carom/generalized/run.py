@@ -11,29 +11,28 @@ from carom.dynamics.adapt import FIRST
 from carom.dynamics.methods import METHODS, make_method
 from carom.generalized.contacts import Contacts
 from carom.generalized.evaluate import Evaluation
-from carom.generalized.layout import (
+from carom.generalized.layout import (  # fmt: skip
     CLOCK,
-    DONE,
     EVENT,
-    PAUSE,
     SERIES,
     Motion,
     Plan,
     Record,
     new_active_set,
     new_work,
-)  # fmt: skip
+)
 from carom.generalized.loop import save_now, time_loop
 from carom.generalized.step import project_rates
 from carom.model.kept import Kept
-from carom.status import Status
+from carom.model.records import PAUSE
+from carom.status import SUCCESS, Status
 from carom.stepping.grid import STATES, Grid, make_grid
 
 if TYPE_CHECKING:
     from carom.generalized.system import GeneralizedSystem
     from carom.stepping.settings import Settings
 
-AT_ONCE = 200  # events at one instant
+EVENTS_AT_ONCE = 200  # events at one instant
 
 
 def grid_of(settings: Settings, touches: bool) -> Grid:
@@ -168,7 +167,7 @@ class GeneralizedRun:
                 break
             code = self.event()
         functions = self.made.functions
-        if code != DONE and self.failure is None and not functions.blame(self.reached):
+        if code != SUCCESS and self.failure is None and not functions.blame(self.reached):
             if functions.has_compiled:
                 self.look_again()
         if functions.failed is not None:
@@ -179,7 +178,7 @@ class GeneralizedRun:
         if self.failure is not None:
             self.reason = functions.reason
             return Status.FUNCTION_FAILED
-        return Status.SUCCESS if code == DONE else Status(code)
+        return Status.SUCCESS if code == SUCCESS else Status(code)
 
     def look_again(self) -> None:
         """Take the step that failed once more, with compiled functions of the user's called from Python."""
@@ -218,7 +217,7 @@ class GeneralizedRun:
         near = clock.now - self.last <= 1e-12 * self.plan.step
         self.at_once = self.at_once + 1 if near else 0
         self.last = float(clock.now)
-        if self.at_once > AT_ONCE:
+        if self.at_once > EVENTS_AT_ONCE:
             return Status.TOO_MANY_IMPACTS
         try:
             return self.contacts.resolve(int(clock.kind), int(clock.index))

@@ -249,9 +249,8 @@ class GeneralizedSolution(Drawn):
     def _nodes(self):
         """Times (K,), states before and after (K, 2n), of saved steps and events in order."""
         saved = np.concatenate([self.q, self.v], axis=1)
-        events: dict[
-            float, list
-        ] = {}  # state before the first event of a time, state after the last
+        # state before the first event of a time, state after the last
+        events: dict[float, list] = {}
         for time, before, after in self._run.nodes:
             events.setdefault(time, [before, after])[1] = after
         times = np.union1d(self.t, list(events))

@@ -6,7 +6,7 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 from carom.generalized.autoparallel import correct
-from carom.generalized.layout import ALL_ROWS, HOLONOMIC, STICK, N
+from carom.generalized.layout import ALL_ROWS, HOLONOMIC, N
 from carom.generalized.motion import (
     acceleration,
     copy_row,
@@ -17,6 +17,7 @@ from carom.generalized.motion import (
     react,
     slip_of,
 )
+from carom.model.actions import MODE_STICK
 from carom.status import CONSTRAINTS_LOST, NOT_FINITE
 
 _NONE = 4e-16  # relative to the terms of a row: its error cannot be smaller
@@ -71,7 +72,7 @@ def note_slip_directions(system, active, t, x, work):
         return
     find_rows(system, active, t, x, work)
     for i in range(active.count[0]):
-        if active.mode[i] != STICK:
+        if active.mode[i] != MODE_STICK:
             u1, u2 = slip_of(system, active, i, x, work)
             active.heading[i, 0], active.heading[i, 1] = direction(active, i, u1, u2)
 
@@ -111,7 +112,7 @@ def rate_rows(system, active, work):
         copy_row(work.A[r], work.R[m], n)
         m += 1
     for i in range(active.count[0]):
-        for r in range(3 if active.mode[i] == STICK else 1):
+        for r in range(3 if active.mode[i] == MODE_STICK else 1):
             copy_row(work.G[active.contact[i], r], work.R[m], n)
             m += 1
     for r in range(m):

@@ -83,9 +83,9 @@ class Strike:
 
     def several(self, closed: list[int], now: float, jams: int) -> int:
         """Solve the multiple impact of all closed contacts (mathematics page, part 2)."""
+        from carom.impact.layout import OK
         from carom.impact.multiple.layout import (
             MULTIPLE,
-            OK,
             CornerContacts,
             MultipleSettings,
             new_multiple_result,

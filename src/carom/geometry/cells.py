@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-FEW = 24  # points that are compared without cells
+FEW_POINTS = 24  # points that are compared without cells
 ROUNDING = 1e-12  # relative to the greatest coordinate: a smaller excess does not count
 #: weights of the corners of a cell in the directions whose farthest points are compared with the others
 SEEN = np.array(
@@ -36,7 +36,7 @@ class Cells(NamedTuple):
 def cells_of(points: np.ndarray) -> Cells:
     """Return the cells of directions of points (n,3)."""
     n = len(points)
-    if n <= FEW:
+    if n <= FEW_POINTS:
         return Cells(0, np.array([0, n]), np.arange(n))
     across, cell, member = 1, np.repeat(np.arange(6), n), np.tile(np.arange(n), 6)
     while True:

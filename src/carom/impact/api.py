@@ -154,9 +154,10 @@ def raise_for(code: int) -> None:
 
 def phase_names(mask: int) -> tuple[str, ...]:
     """Return the phases of a bit mask, in the order in which they are passed."""
-    from carom.impact.layout import JAM, RESTART, SLIP, STICK, WEDGED
+    from carom.impact.layout import PHASE_JAM, PHASE_RESTART, PHASE_SLIP, PHASE_STICK, WEDGED
 
     names = (
-        (SLIP, "slip"), (JAM, "jam"), (RESTART, "reversal"), (STICK, "stick"), (WEDGED, "wedged"),
+        (PHASE_SLIP, "slip"), (PHASE_JAM, "jam"), (PHASE_RESTART, "reversal"),
+        (PHASE_STICK, "stick"), (WEDGED, "wedged"),
     )  # fmt: skip
     return tuple(name for bit, name in names if mask & bit)

@@ -12,12 +12,13 @@ from carom._compiled.units import unit
 from carom.dynamics.rotors import work_of_change
 from carom.geometry.rotation import rotate_back
 from carom.model.arrays import LOOPS
+from carom.model.parts_of_system import has_relation_rows
 
 ROUND_OFF = 1e-13
 
 
-@unit
-def _driven_work(system, state, first, clock, records, work) -> float:
+@unit(where=has_relation_rows, otherwise=0.0)
+def driven_work(system, state, first, clock, records, work) -> float:
     """Return the work of motors in the impact that is being written; its rows begin at `first`."""
     total = 0.0
     for b in range(state.shape[0]):
@@ -44,14 +45,6 @@ def _blocked(system, point, inverse_mass):
     if point.b >= 0:
         free += 1.0 / system.bodies[point.b].mass
     return inverse_mass <= ROUND_OFF * free
-
-
-@inlined
-def driven_work(system, state, first, clock, records, work):
-    """Return the work of motors in the impact that is being written; its rows begin at `first`."""
-    if system.relations.there == 1 and system.solver.kind == LOOPS:
-        return _driven_work(system, state, first, clock, records, work)
-    return 0.0
 
 
 @inlined

@@ -60,10 +60,10 @@ def traverse(W, u, mu, e, law, layer, history, out):
     m, before = (W[0, 0], W[0, 1], W[0, 2], W[1, 1], W[1, 2], W[2, 2]), (u[0], u[1], u[2])
     depth, phases = -b * math.log1p(-delta), int(out[o.PHASES])
     wedged = phases & o.WEDGED != 0
-    code = o.NO_CONVERGENCE
+    code = o.SPLINE_FAILED
     for _ in range(_DOUBLINGS):
         n = max(1, steps // 2)
-        if law == laws.NEWTON and phases & (o.JAM | o.WEDGED) == 0:
+        if law == laws.NEWTON and phases & (o.PHASE_JAM | o.WEDGED) == 0:
             given = Passage(m, mu, before, e, law, depth, n, True, wedged)
             code = _pass(given, history, out)
         if code != o.OK:  # also so near a jam that law A fails with this number of steps
@@ -100,7 +100,7 @@ def _pass(given, history, out):
     accel = 0.5 * v0 * v0 / depth if timed else 0.0
     ok, end, fixed, total, row = _compress(given, accel, friction, history, out)
     if ok == 0:
-        return o.NO_CONVERGENCE
+        return o.SPLINE_FAILED
     before = (u[1], u[2], u[0])
     # In stick u_t is exactly 0, without the round-off of W (1, tau).
     state = (0.0, 0.0, 0.0) if fixed and sticks else (end[0], end[1], 0.0)
@@ -121,7 +121,7 @@ def _pass(given, history, out):
             given, accel, goal, before, friction, history, row, out
         )
         if ok == 0:
-            return o.NO_CONVERGENCE
+            return o.SPLINE_FAILED
         friction = Friction(fixed, friction.t1, friction.t2)
         u_n = e * v0 if timed else end[2]
         state = (0.0, 0.0, u_n) if fixed and sticks else (end[0], end[1], u_n)

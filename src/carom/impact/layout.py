@@ -23,10 +23,10 @@ KNOTS = 20  #: knots of the history; 0 from `resolve`
 STILL = 21  #: an input: speed that counts as zero, round-off of u itself [m/s]
 SIZE = 24  #: length of `out`; the rest is free
 
-SLIP = 1  #: the contact slipped
-STICK = 2  #: the contact stuck until the end
-RESTART = 4  #: slip stopped and began again at once (reversal)
-JAM = 8  #: the normal force drove the bodies together while slipping (Painleve)
+PHASE_SLIP = 1  #: the contact slipped
+PHASE_STICK = 2  #: the contact stuck until the end
+PHASE_RESTART = 4  #: slip stopped and began again at once (reversal)
+PHASE_JAM = 8  #: the normal force drove the bodies together while slipping (Painleve)
 WEDGED = (
     16  #: friction blocked the pair in restitution, however large the impulse: W is singular there
 )
@@ -41,12 +41,12 @@ BAD_INPUT = 1  #: a number is not finite, or W_nn is not positive
 NOT_APPROACHING = 2  #: u_n is not negative
 NO_END = 3  #: the pair approaches, and no impulse stops it: W is singular during the impact
 TOO_MANY_STEPS = 4  #: the integrator did not reach the end
-NO_CONVERGENCE = 5  #: a step of the spline was not solved
+SPLINE_FAILED = 5  #: a step of the spline was not solved
 
 MESSAGES = {
     BAD_INPUT: "a number is not finite, or the inverse mass of the normal is not positive",
     NOT_APPROACHING: "the normal velocity is not negative: the bodies do not approach",
     NO_END: "the pair is wedged and still approaches: no impulse stops it (the inverse mass is singular)",
     TOO_MANY_STEPS: "the equation of slip was not integrated to its end",
-    NO_CONVERGENCE: "a step of the spline through the layer was not solved to round-off",
+    SPLINE_FAILED: "a step of the spline through the layer was not solved to round-off",
 }

@@ -8,7 +8,7 @@ from carom._compiled.decorators import kernel
 from carom.impact import laws, layout
 from carom.impact.layer import E_MIN
 
-_NOT_LAW_A = layout.JAM | layout.WEDGED
+_NOT_LAW_A = layout.PHASE_JAM | layout.WEDGED
 
 
 @kernel

@@ -25,7 +25,7 @@ _ON_RAY = 1e-13  # the direction of slip is constant if it turns slower than thi
 _ROUND_OFF = 4e-15
 _LEFT = 1e-9  # greatest impulse that removes the slip that remains, relative to the impulse of the impact
 _FARTHEST = 1e6  # longest step in p, in units of size / W_nn: round-off of u grows with p
-_MAX_STEPS = 2000
+_SLIP_STEPS = 2000
 
 # The contact slips along a curve or along a line (in the plane of u_t), or it sticks.
 _CURVED, _STRAIGHT, _STICK = range(3)
@@ -121,24 +121,24 @@ def _follow(contact, u, e, law):
     phases, steps, stopped = 0, 0, not math.sqrt(u[1] * u[1] + u[2] * u[2]) > at_rest
     if mu == 0.0:
         line = Line(_STRAIGHT, 0.0, 0.0, 0.0)
-        phases, stopped = 0 if stopped else o.SLIP, False
+        phases, stopped = 0 if stopped else o.PHASE_SLIP, False
 
-    while steps < _MAX_STEPS:
+    while steps < _SLIP_STEPS:
         steps += 1
         # Does the contact slip or stick from here?
         if stopped:
-            if phases & o.SLIP:
+            if phases & o.PHASE_SLIP:
                 slip_end = (before[0] + s[3], s[2])
             s = _without_slip(contact.m, s, contact.size)
             line = _from_rest(contact)
             if line.mode == _STICK:
-                phases |= o.STICK
-            elif phases & o.SLIP:
-                phases |= o.RESTART
+                phases |= o.PHASE_STICK
+            elif phases & o.PHASE_SLIP:
+                phases |= o.PHASE_RESTART
         elif line.mode == _CURVED:
             line = _straightened(contact, s)
         if line.mode != _STICK and mu > 0.0:
-            phases |= o.SLIP
+            phases |= o.PHASE_SLIP
 
         # One piece, until the phase ends or slip ends, or one step.
         if line.mode == _CURVED:
@@ -223,7 +223,7 @@ def _along_curve(contact, phase, s):
     """Take one step of turning slip; return the new state, the kind of end, and marks of the phases."""
     m, mu, size, law, goal = contact.m, contact.mu, contact.size, phase.law, phase.goal
     r, k = normal_rate(m, mu, s)
-    marks = o.JAM if k <= 0.0 else 0
+    marks = o.PHASE_JAM if k <= 0.0 else 0
     t = expand(m, mu, s)
     h = reach(t[0], t[1], _ACCURACY * math.sqrt(size * r))
     # With hardly any friction the series reaches far: step little beyond the end expected from here.
@@ -261,7 +261,7 @@ def _along_line(contact, phase, line, s):
         length = left if law in laws.BY_IMPULSE else 0.0
         marks, ended = o.WEDGED if phase.restitution else 0, _CAUGHT
     elif k <= 0.0 and line.mode == _STRAIGHT:
-        marks = o.JAM
+        marks = o.PHASE_JAM
     if line.mode == _STICK and not abs(f1) + abs(f2) > _ROUND_OFF * (abs(m[1]) + abs(m[2])):
         f1, f2 = 0.0, 0.0  # otherwise W_tt is so nearly singular that stick leaves some creep
 

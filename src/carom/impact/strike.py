@@ -50,8 +50,7 @@ def onto_surface(system, controls, c, state, work):
     before = potential_energy(system, state, work.result[0].time)
     if return_map(system, contact, state, work, tie, tolerance) < 0:
         return RETURN_MAP_FAILED
-    if system.joints.shape[0] > 0:
-        project_velocity(system, state, work)
+    project_velocity(system, state, False, work)
     strike_point(contact, system.vertices, state, tie, point)
     if controls.location == WORK:
         drop = before - potential_energy(system, state, work.result[0].time)
@@ -104,8 +103,7 @@ def strike(model, data, method, c):
             strike_several(model, data, c, k)
         if hit.code != 0:
             return
-        if system.joints.shape[0] > 0:
-            project_velocity(system, state, work)
+        project_velocity(system, state, False, work)
         clock.loads += driven_work(system, state, first, clock, records, work)
         end_event(system, JAMS if jams else IMPACT, state, clock, records)
         forget_jams(active, k, group)

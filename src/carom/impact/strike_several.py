@@ -11,8 +11,8 @@ from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.dynamics.several_points import inverse_masses, velocities
 from carom.impact.driven import blocked
 from carom.impact.effective_restitution import count_blow, effective_restitution
-from carom.impact.layout import AT_ONCE, PLASTIC, WEDGED
-from carom.impact.multiple.layout import OK, SEQUENTIAL, CornerContacts, MultipleSettings
+from carom.impact.layout import AT_ONCE, OK, PLASTIC, WEDGED
+from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSettings
 from carom.impact.multiple.resolve import resolve_contacts
 from carom.impact.workspace import U
 from carom.model.allowance import affordable

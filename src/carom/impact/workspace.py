@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +21,7 @@ from carom.model.arrays import System
 from carom.model.workspace import POINT
 
 #: greatest number of points that are solved together
-MOST = 192
+MOST_TOGETHER = 192
 
 #: a closed point: its contact, and its place in the list of active points
 CLOSED_POINT = [
@@ -80,43 +81,38 @@ class MultipleImpact(NamedTuple):
 def capacity(system: System, more: bool) -> int:
     """Return the greatest number of closed points in one group; `more` says that contacts may be added."""
     if more:
-        return MOST
+        return MOST_TOGETHER
     contacts, more_rows = system.contacts, len(system.relations.frictions)
     vertices, found = contacts["last"] - contacts["first"], contacts["touches"] == 1
     if found.any():
         points = np.where(found, MOST_POINTS, vertices)
-        return max(1, min(MOST, int(points.sum()) + more_rows))
+        return max(1, min(MOST_TOGETHER, int(points.sum()) + more_rows))
     count = np.zeros(system.bodies.size + 1, dtype=np.int64)
     rows = 1 + (contacts["turning"] > 0.0).sum(axis=1)
     np.add.at(count, system.bodies["component"][contacts["body"]], rows * vertices)
-    return max(1, min(MOST, int(count.max()) + more_rows))
+    return max(1, min(MOST_TOGETHER, int(count.max()) + more_rows))
 
 
 def new_group(system: System, more: bool = False) -> Group:
     """Return the workspace for the largest group of `system`; `more` says that contacts may be added."""
     n, k = system.bodies.size, capacity(system, more)
     return Group(
-        closed=table(CLOSED_POINT, k),
-        points=table(POINT, 2, k),
-        v=np.zeros((5, 3 * k)),
-        m=np.zeros((2, 3 * k, 3 * k)),
-        mu=np.zeros(k),
-        kind=np.zeros(k, dtype=np.int64),
-        heading=np.zeros((k, 2)),
-        member=np.zeros(n, dtype=np.int64),
-        cone=new_contact_work(k),
-    )
+        closed=table(CLOSED_POINT, k), points=table(POINT, 2, k), v=np.zeros((5, 3 * k)),
+        m=np.zeros((2, 3 * k, 3 * k)), mu=np.zeros(k), kind=np.zeros(k, dtype=np.int64),
+        heading=np.zeros((k, 2)), member=np.zeros(n, dtype=np.int64), cone=new_contact_work(k),
+    )  # fmt: skip
+
+
+@cache
+def no_multiple(settings: MultipleSettings) -> MultipleImpact:
+    """Return the workspace of a run before its first impact of several points: nothing is written to it."""
+    return new_multiple(1, settings)
 
 
 def new_multiple(k: int, settings: MultipleSettings) -> MultipleImpact:
     """Return the workspace of impacts of `k` points."""
+    law, pair, ball_like = np.zeros((3, k), dtype=np.int64)
     return MultipleImpact(
-        workspace=new_multiple_workspace(k),
-        settings=settings,
-        result=new_multiple_result(k),
-        e=np.zeros(k),
-        law=np.zeros(k, dtype=np.int64),
-        kappa=np.zeros(k),
-        pair=np.zeros(k, dtype=np.int64),
-        ball_like=np.zeros(k, dtype=np.int64),
-    )
+        workspace=new_multiple_workspace(k), settings=settings, result=new_multiple_result(k),
+        e=np.zeros(k), law=law, kappa=np.zeros(k), pair=pair, ball_like=ball_like,
+    )  # fmt: skip

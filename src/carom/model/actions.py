@@ -1,3 +1,9 @@
-"""Actions of the loop on a closed point."""
+"""Codes of the loop: actions on a closed point, modes of a persistent contact, and events that end a motion."""
 
 NOTHING, STRIKE, PERSIST = range(3)
+
+MODE_OPEN, MODE_SLIP, MODE_STICK = range(3)
+
+#: a gap closes; a point opens; friction does not suffice for stick; slip jams; the rate of a gap, and the
+#: direction of slip, change sign (`carom.persistent.events`, `carom.generalized.events`)
+EVENT_GAP, EVENT_SEPARATE, EVENT_CONE, EVENT_JAM, EVENT_RATE, EVENT_REVERSE, NO_EVENT = range(7)

@@ -279,7 +279,7 @@ STOP = 2
 
 #: workspace of a forest, for each body: numbers before the freedoms, and for each freedom
 #: (`carom.dynamics.tree`)
-FIRST, WIDTH = 52, 14
+HEAD, WIDTH = 52, 14
 
 
 #: kinds of back ends: each body by itself; articulated-body elimination; sparse Cholesky factor
@@ -293,7 +293,7 @@ class Solver(NamedTuple):
     # forest: articulated-body elimination (`carom.dynamics.tree`)
     links: np.recarray  # (N,) LINK
     rotor: np.ndarray  # (N, most freedoms) inertia along each freedom of the joint of a link
-    workspace: np.ndarray  # (N, FIRST + WIDTH times the most freedoms) written by each solve
+    workspace: np.ndarray  # (N, HEAD + WIDTH times the most freedoms) written by each solve
     # closed loops: block-sparse Cholesky factor of A M^-1 A^T, joints in an order of low fill
     order: np.ndarray  # (J,) joints in the order of elimination
     column: np.ndarray  # (J+1,) ranges of the blocks below the diagonal, by place in the order

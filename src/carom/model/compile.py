@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom._compiled.mould import Mould
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
 from carom.geometry import quaternion
@@ -65,23 +66,25 @@ def compile_scene(
     touching = compile_contacts(scene, to_principal, options, may_come)
     contacts = with_stops(scene, touching.rows, coordinates, sizes, options)
     relations = elements.arrays(solver, more)
-    gravity = np.array(scene.gravity)
-    system = System(
-        bodies,
-        gravity,
-        joints,
-        relations,
-        springs,
-        loads,
-        bushings,
-        contacts,
-        touching.vertices,
-        touching.solids,
-        touching.hulls,
-        touching.levels,
-        solver,
-    )
+    forces, gravity = (springs, loads, bushings), np.array(scene.gravity)
+    system = System(bodies, gravity, joints, relations, *forces, contacts, *touching[1:5], solver)
     return Compiled(system, start, to_principal, flipped, functions, *touching[5:])
+
+
+def compiled_once(scene: Scene, options: Options, *ways: bool) -> Compiled:
+    """Return what `compile_scene` does; the scene keeps the last result while it does not change."""
+    key, mould = scene._derived.get(Compiled, (None, None))
+    if key == (options, ways):
+        return mould.cast()._replace(functions=Functions())
+    made = compile_scene(scene, options, *ways)
+    if not uses_functions(made):
+        scene._derived[Compiled] = (options, ways), Mould(made)
+    return made
+
+
+def uses_functions(compiled: Compiled) -> bool:
+    """Return whether a scene has functions or curves of the user, which may answer otherwise the next time."""
+    return bool(compiled.functions._kept) or len(compiled.system.relations.pieces) > 0
 
 
 def with_pairs(compiled: Compiled, scene: Scene, options: Options, found: np.ndarray) -> Compiled:
@@ -281,13 +284,16 @@ def start_sizes(scene) -> np.ndarray:
 
 
 def _extents(scene, joints) -> np.ndarray:
-    """Return a length (N,) of each body: the largest of the size of its shape and the arms of its joints."""
-    size = np.array([0.0 if b.shape is None else b.shape.size for b in scene.bodies])
+    """Return a length (N,) of each body: the largest of the size of its shape and the arms of its joints.
+
+    Without a shape its radius of gyration counts: a joint may be at its mass centre, or nearly so.
+    """
+    size = start_sizes(scene)
     for side in ("parent", "child") if len(joints) else ():
         sides, anchors = joints[side], joints[f"{side}_anchor"]
         inside = sides >= 0
         np.maximum.at(size, sides[inside], np.linalg.norm(anchors[inside], axis=1))
-    return np.where(size == 0.0, start_sizes(scene), size)
+    return size
 
 
 def _bodies(scene, moments, joints, elements, springs, loads, bushings, more):

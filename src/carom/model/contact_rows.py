@@ -14,7 +14,7 @@ from carom.scene.bodies import Body
 from carom.scene.scene import Scene
 
 #: number of pairs of bodies up to which all have rows from the start, in the order of the scene
-FEW = 64 * 63 // 2
+FEW_PAIRS = 64 * 63 // 2
 
 
 class Rows(NamedTuple):
@@ -40,7 +40,7 @@ def first_pairs(scene: Scene, apart: bool) -> tuple[PairTable, Defaults | None]:
     if default is None:
         return _added(scene, no_pairs()), None
     solid = int(np.count_nonzero(default.solid))
-    if apart and solid * (solid - 1) > 2 * FEW:
+    if apart and solid * (solid - 1) > 2 * FEW_PAIRS:
         added = _added(scene, default.grounded)
         laws = replace(
             default.grounded, law=default.grounded.law + len(scene.contacts), laws=added.laws
@@ -61,6 +61,8 @@ def _added(scene: Scene, rest: PairTable) -> PairTable:
     ]
     body, other, plane = np.array(ends, dtype=np.int64).reshape(-1, 3).T
     first = PairTable(body, other, plane, np.arange(len(added)), [*added, *rest.laws])
+    if not len(rest.body):
+        return first
     return joined_tables(first, replace(rest, law=rest.law + len(added)))
 
 

@@ -77,6 +77,8 @@ def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool =
 
 def _with_statics(scene: Scene, pairs: PairTable) -> PairTable:
     """Return the pairs with static bodies as bodies, which come after those that move."""
+    if not scene.statics:
+        return pairs
     static = pairs.plane - len(scene.half_spaces)
     other = np.where(static >= 0, len(scene.bodies) + static, pairs.other)
     return replace(pairs, other=other, plane=np.where(static >= 0, -1, pairs.plane))
@@ -84,6 +86,8 @@ def _with_statics(scene: Scene, pairs: PairTable) -> PairTable:
 
 def _and_of_statics(scene: Scene, to_principal: np.ndarray) -> np.ndarray:
     """Return the rotations (N + S, 4) from the axes in use to body axes; static bodies use world axes."""
+    if not scene.statics:
+        return to_principal
     axes = [quaternion.conjugate(solid.orientation) for solid in scene.statics]
     return np.concatenate([to_principal, np.reshape(axes, (-1, 4))])
 
@@ -201,11 +205,11 @@ def _solids(scene: Scene, every: list[Shape | None], curved: np.ndarray, to_prin
     It contains bodies that may touch other bodies, and those with a curved piece on a half-space.
     """
     meets = [b for b, shape in enumerate(every) if shape is not None]
-    bodies = np.union1d(np.array(meets, dtype=np.int64), curved)
     parts = _parts(scene)
     place = np.zeros(len(parts), dtype=np.int64)
-    if not len(bodies):
+    if not (meets or len(curved)):
         return place, table(SOLID, 0), no_hulls()
+    bodies = np.union1d(np.array(meets, dtype=np.int64), curved)
     solids, hulls = solid_table([parts[b].shape for b in bodies], to_principal[bodies])
     place[bodies] = np.searchsorted(solids.body, np.arange(len(bodies)))
     return place, solids, hulls

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
+
+from carom._compiled.mould import arrays_of
 
 
 class Kept:
@@ -62,13 +62,3 @@ class Snapshot:
         """Return the parts of the run that are replaced when they grow."""
         run = self.run
         return run.compiled, run.now, run.active, run.islands
-
-
-def arrays_of(value) -> Iterator[np.ndarray]:
-    """Yield the arrays in nested tuples that can be written to."""
-    if isinstance(value, np.ndarray):
-        if value.size and value.flags.writeable:
-            yield np.asarray(value)
-    elif isinstance(value, tuple):
-        for part in value:
-            yield from arrays_of(part)

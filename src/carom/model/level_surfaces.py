@@ -71,6 +71,8 @@ def find_levels(scene: Scene, pairs: PairTable, place: np.ndarray) -> tuple[Leve
     In `pairs`, static bodies have the numbers after those of bodies that move; `place` has the first solid of
     each.
     """
+    if not scene.statics:
+        return no_levels(), []
     laws = _laws_of_statics(scene, pairs)
     faces = _bare([face for face in _faces(scene, place) if laws[face.static][0]])
     groups = [group for group in _joined(faces, laws) if len(group) > 1]

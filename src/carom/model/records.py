@@ -8,27 +8,14 @@ import numpy as np
 
 from carom._compiled.record_arrays import Columns, table
 from carom.collision.layout import new_pair_work, new_points
+from carom.model import workspace
 from carom.model.allowance import SAVED
 from carom.model.arrays import STATE, System
 from carom.model.method import ESDIRK
-from carom.model.workspace import (
-    ACTIVE_POINT,
-    BODY_WORK,
-    CONTACT_STATE,
-    HIT,
-    JOINT_WORK,
-    KNOWN,
-    POINT,
-    RESULT,
-    SEARCH,
-    STAGE,
-    ActiveSet,
-    Work,
-)
 
 #: kinds of events, by code
 EVENTS = ("impact", "held", "slips", "sticks", "opens", "jams")
-IMPACT, PERSIST, SLIPS, STICKS, OPENS, JAMS = range(6)
+IMPACT, PERSISTS, SLIPS, STICKS, OPENS, JAMS = range(6)
 
 #: present energies, and energies summed since the start
 ENERGIES = [("kinetic", "f8"), ("potential", "f8")]
@@ -170,16 +157,15 @@ def new_clock() -> np.recarray:
     return clock
 
 
-def new_active_set(system: System) -> ActiveSet:
+def new_active_set(system: System) -> workspace.ActiveSet:
     """Return an empty active set: all contacts are to be checked first."""
     contacts = system.contacts
     grounded = int(np.count_nonzero((contacts["touches"] == 1) & (contacts["other"] < 0)))
     between = max(len(system.bodies), len(system.solids))  # bodies, or pieces of them
-    active = ActiveSet(
-        points=table(
-            ACTIVE_POINT, len(system.vertices) + 24 * between + 8 * grounded + len(system.contacts)
-        ),
-        contact_states=table(CONTACT_STATE, system.contacts.size),
+    points = len(system.vertices) + 24 * between + 8 * grounded + len(contacts)
+    active = workspace.ActiveSet(
+        points=table(workspace.ACTIVE_POINT, points),
+        contact_states=table(workspace.CONTACT_STATE, len(contacts)),
         carries=np.zeros(len(system.vertices), dtype=np.int64),
         count=np.zeros(1, dtype=np.int64),
     )
@@ -187,50 +173,37 @@ def new_active_set(system: System) -> ActiveSet:
     return active
 
 
-def with_contacts(active: ActiveSet, count: int) -> ActiveSet:
+def with_contacts(active: workspace.ActiveSet, count: int) -> workspace.ActiveSet:
     """Return the active set with the states of `count` contacts: new ones are to be checked first."""
-    states = table(CONTACT_STATE, count)
+    states = table(workspace.CONTACT_STATE, count)
     known = len(active.contact_states)
     states[:known], states["near"][known:] = active.contact_states, 1
     return active._replace(contact_states=states)
 
 
-def new_work(system: System, stages: int) -> Work:
+def new_work(system: System, stages: int) -> workspace.Work:
     """Return the workspace of one run."""
-    n, j = system.bodies.size, system.joints.size
-    body = table(BODY_WORK, n)
+    n, w = system.bodies.size, workspace
+    state, trial, middle, first = (table(STATE, n) for _ in range(4))
+    body = table(w.BODY_WORK, n)
     body["room"] = np.inf
-    return Work(
-        body=body,
-        joint=table(JOINT_WORK, j),
-        stages=table(STAGE, max(stages, len(ESDIRK)) + 1, n),
-        known=table(KNOWN, n),
-        stage=table(STATE, n),
-        trial=table(STATE, n),
-        middle=table(STATE, n),
-        first=table(STATE, n),
-        point=table(POINT, 1),
-        pair=new_pair_work(),
-        touches=new_points(),
-        solid_pose=np.zeros((2, 7)),
-        hit=table(HIT, 1),
-        result=table(RESULT, 1),
-        search=table(SEARCH, 1),
+    return w.Work(
+        body=body, joint=table(w.JOINT_WORK, system.joints.size),
+        stages=table(w.STAGE, max(stages, len(ESDIRK)) + 1, n), known=table(w.KNOWN, n),
+        stage=state, trial=trial, middle=middle, first=first, point=table(w.POINT, 1),
+        pair=new_pair_work(), touches=new_points(), solid_pose=np.zeros((2, 7)),
+        hit=table(w.HIT, 1), result=table(w.RESULT, 1), search=table(w.SEARCH, 1),
         history=np.zeros((0, 16)),
-    )
+    )  # fmt: skip
 
 
 def new_records(system: System, saves: int, events: int, points: int = 0) -> Records:
     """Return empty records for `saves` saved steps, `events` impacts and events, and more active `points`."""
     n = system.bodies.size
     return Records(
-        series=table(SERIES, saves),
-        state=table(STATE, saves, n),
-        touch=table(TOUCH, events + points),
-        impact=table(IMPACTS, events),
-        event=table(EVENT, events),
-        snapshot=table(SNAPSHOT, 2 * events + 2 * n),
-    )
+        table(SERIES, saves), table(STATE, saves, n), table(TOUCH, events + points),
+        table(IMPACTS, events), table(EVENT, events), table(SNAPSHOT, 2 * events + 2 * n),
+    )  # fmt: skip
 
 
 def longer(records: Records, clock: np.recarray) -> Records:
@@ -274,8 +247,8 @@ def written(records: Records, clock: np.recarray) -> Records:
 
 def _ends(clock: np.recarray) -> tuple[int, ...]:
     """Return how many rows of each table were written."""
-    row = as_numbers(clock)
-    return row["saved"], row["saved"], row["touched"], row["struck"], row["event"], row["snapped"]
+    names = "saved", "saved", "touched", "struck", "event", "snapped"
+    return tuple(int(clock[name][0]) for name in names)
 
 
 def as_numbers(clock: np.recarray) -> dict:

@@ -2,29 +2,14 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from carom._compiled.composed import is_compiled, joined, once
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
-from carom.model.arrays import (
-    COORDINATE,
-    FRICTION,
-    INERTIA,
-    PRISMATIC,
-    PUSH,
-    RELATION,
-    RELATION_ROW,
-    REVOLUTE,
-    ROTOR,
-    STIFF,
-    STIFF_SPRING,
-    TERM,
-    USER_FORCE,
-    USER_ROW,
-    USER_ROWS,
-    Relations,
-)
+from carom.model import arrays
 from carom.model.more_forces import MoreForces, Pieces
 from carom.model.placement import Placement
 from carom.scene.constraints import Coupling, Rows, coordinate_kind
@@ -56,10 +41,10 @@ class Coordinates:
 
     def table(self) -> np.recarray:
         """Return all rows."""
-        return np.concatenate([table(COORDINATE, 0), *self.rows]).view(Columns)
+        return np.concatenate([table(arrays.COORDINATE, 0), *self.rows]).view(Columns)
 
     def _row(self, joint, coordinate):
-        d, made = joint.definition, table(COORDINATE, 1)
+        d, made = joint.definition, table(arrays.COORDINATE, 1)
         row = made[0]
         turns = coordinate_kind(joint, coordinate) == "turn"
         first, second = (self.placement.side(joint, k) for k in range(2))
@@ -67,7 +52,7 @@ class Coordinates:
         if d.turn == "cross" and coordinate == 1:  # measured from the child
             first, second = second, first
         anchor = joint.anchor()
-        row.kind = REVOLUTE if turns else PRISMATIC
+        row.kind = arrays.REVOLUTE if turns else arrays.PRISMATIC
         row.parent, row.child = first.body.index, second.body.index
         row.parent_anchor[:], row.child_anchor[:] = first.point(anchor), second.point(anchor)
         row.parent_frame[:], row.child_frame[:] = first.axes(frame), second.axes(frame)
@@ -106,7 +91,7 @@ class Elements:
             d = force.definition
             if not isinstance(d, (Spring, JointSpring)) or not (d.stiffness + d.damping > 0.0):
                 continue
-            made = table(STIFF_SPRING, 1)
+            made = table(arrays.STIFF_SPRING, 1)
             made.stiffness, made.damping = d.stiffness, d.damping
             if isinstance(d, JointSpring):
                 made.coordinate, made.rest = self.coordinates.number(d.joint, d.coordinate), d.rest
@@ -118,11 +103,11 @@ class Elements:
                 made.parent_anchor[0] = placement.point(force.parent, d.anchor_parent)
                 made.child_anchor[0] = placement.point(force.child, d.anchor_child)
             bodies = sorted({int(made.child[0]), int(made.parent[0])} - {-1})
-            self._add(STIFF, 1, len(self.stiff), bodies)
+            self._add(arrays.STIFF, 1, len(self.stiff), bodies)
             self.stiff.append(made)
 
     def _rotor(self, d):
-        made = table(ROTOR, 1)
+        made = table(arrays.ROTOR, 1)
         made.coordinate, made.inertia = self.coordinates.number(d.joint, d.coordinate), d.inertia
         self.rotors.append(made)
 
@@ -130,24 +115,26 @@ class Elements:
         """Add inertias along coordinates as rows, for closed loops."""
         for rotor in self.rotors:
             coordinate = int(rotor.coordinate[0])
-            self._add(INERTIA, 1, len(self.relations), sorted(self.coordinates.bodies(coordinate)))
-            self.relations.append(table(RELATION_ROW, 1))
+            self._add(
+                arrays.INERTIA, 1, len(self.relations), sorted(self.coordinates.bodies(coordinate))
+            )
+            self.relations.append(table(arrays.RELATION_ROW, 1))
             self.terms.append([(coordinate, 1.0)])
 
     def _user(self, constraint, functions):
         d, name = constraint.definition, f"the constraint {constraint.name!r}"
         n, rows = len(d.bodies), d.rows
-        made = table(USER_ROW, 1)
+        made = table(arrays.USER_ROW, 1)
         made.address = functions.address(d.function, (n, 7), (rows, 6 * n + 1), name)
         if d.position is not None:
             position = f"the position of {name}"
             made.position_address = functions.address(d.position, (n, 7), (rows,), position)
         self.width = max(self.width, rows * (6 * n + 1), 7 * n)
-        self._add(USER_ROWS, rows, len(self.user), [b.index for b in d.bodies])
+        self._add(arrays.USER_ROWS, rows, len(self.user), [b.index for b in d.bodies])
         self.user.append(made)
 
     def _relation(self, constraint, functions, sizes):
-        d, made = constraint.definition, table(RELATION_ROW, 1)
+        d, made = constraint.definition, table(arrays.RELATION_ROW, 1)
         given = d.terms if isinstance(d, Coupling) else ((d.joint, d.coordinate, 1.0),)
         terms = [(self.coordinates.number(joint, k), factor) for joint, k, factor in given]
         lengths = [
@@ -158,7 +145,7 @@ class Elements:
         if not isinstance(d, Coupling):
             self._motion(constraint, made, functions)
         bodies = sorted(set().union(*(self.coordinates.bodies(k) for k, _ in terms)))
-        self._add(RELATION, 1, len(self.relations), bodies)
+        self._add(arrays.RELATION, 1, len(self.relations), bodies)
         self.relations.append(made)
         self.terms.append(terms)
 
@@ -173,8 +160,10 @@ class Elements:
             name = f"the motion of {constraint.name!r}"
             made.address = functions.address(_of_time(d.motion), (1,), (3,), name)
 
-    def arrays(self, solver, more: MoreForces) -> Relations:
+    def arrays(self, solver, more: MoreForces) -> arrays.Relations:
         """Return the tables, with the sides that `solver` gave to the bodies."""
+        if not (self.kinds or self.coordinates.rows or more.any):
+            return no_relations()._replace(pieces=self.pieces.rows)
         terms = []
         relation = iter(range(len(self.relations)))
         inertias = (float(rotor.inertia[0]) for rotor in self.rotors)
@@ -183,10 +172,10 @@ class Elements:
         for first, kind, bodies, number in zip(
             first_side, self.kinds, self.touching, self.numbers, strict=True
         ):
-            if kind == USER_ROWS:
+            if kind == arrays.USER_ROWS:
                 self.user[number].first, self.user[number].last = first, first + len(bodies)
                 continue
-            if kind == STIFF:
+            if kind == arrays.STIFF:
                 made = self.stiff[number]
                 for name, b in (("child_side", made.child[0]), ("parent_side", made.parent[0])):
                     made[name] = first + bodies.index(b) if b >= 0 else -1
@@ -201,28 +190,35 @@ class Elements:
                 ]
                 terms.append((coordinate, factor, *sides))
             self.relations[k].last = len(terms)
-            if kind == INERTIA:
+            if kind == arrays.INERTIA:
                 solver.rows.compliance[solver.rows.first == first, 0] = 1.0 / next(inertias)
-        listed = table(TERM, len(terms))
+        listed = table(arrays.TERM, len(terms))
         for t, values in zip(listed, terms):
             t.coordinate, t.factor, t.child_side, t.parent_side = values
-        there = bool(self.kinds or self.coordinates.rows or more.any)
-        return Relations(
-            int(there),
-            rows,
-            _joined(RELATION_ROW, self.relations),
-            listed,
-            _joined(USER_ROW, self.user),
-            self.pieces.rows,
-            _joined(PUSH, more.pushes),
-            _joined(USER_FORCE, more.forces),
-            _joined(STIFF_SPRING, self.stiff),
-            _joined(FRICTION, more.frictions),
-            _joined(ROTOR, self.rotors),
-            np.array(more.named, dtype=np.int64),
-            np.zeros(max(self.width, more.width)),
-            np.zeros(max(self.width, more.width)),
+        forces = (
+            (arrays.PUSH, more.pushes), (arrays.USER_FORCE, more.forces), (arrays.STIFF_SPRING, self.stiff),
+            (arrays.FRICTION, more.frictions), (arrays.ROTOR, self.rotors),
+        )  # fmt: skip
+        named, (read, write) = (
+            np.array(more.named, np.int64),
+            np.zeros((2, max(self.width, more.width))),
         )
+        relations, user = (
+            _joined(arrays.RELATION_ROW, self.relations),
+            _joined(arrays.USER_ROW, self.user),
+        )
+        tables = relations, listed, user, self.pieces.rows, *(_joined(*one) for one in forces)
+        return arrays.Relations(1, rows, *tables, named, read, write)
+
+
+@cache
+def no_relations() -> arrays.Relations:
+    """Return the tables of a scene without coordinates."""
+    a, none = arrays, np.zeros(0)
+    kinds = a.COORDINATE, a.RELATION_ROW, a.TERM, a.USER_ROW, a.PIECE, a.PUSH, a.USER_FORCE
+    kinds += a.STIFF_SPRING, a.FRICTION, a.ROTOR
+    named = np.zeros(0, dtype=np.int64)
+    return arrays.Relations(0, *(table(kind, 0) for kind in kinds), named, none, none)
 
 
 def _joined(fields, rows) -> np.recarray:

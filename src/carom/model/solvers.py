@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.model.arrays import FIRST, FOREST, LINK, LOOPS, NO_JOINTS, ROW, SIDE, WIDTH, Solver
+from carom.model.arrays import FOREST, HEAD, LINK, LOOPS, NO_JOINTS, ROW, SIDE, WIDTH, Solver
 from carom.model.graph import Sets, elimination
 
 #: ratio of masses from which on A M^-1 A^T loses too many digits (`carom.dynamics.light_bodies`)
@@ -13,30 +15,17 @@ SPREAD = 1e5
 LIMIT = 1e24  # ratio of masses from which on even 31 digits are lost
 
 
+@cache
 def no_joints() -> Solver:
-    """Return the back end of bodies without joints."""
+    """Return the back end of bodies without joints: nothing is written to it."""
     number = np.zeros(0, dtype=np.int64)
     return Solver(
-        kind=NO_JOINTS,
-        links=table(LINK, 0),
-        rotor=np.zeros((0, 0)),
-        workspace=np.zeros((0, 0)),
-        order=number,
-        column=number,
-        row=number,
-        update=number,
-        triple=np.zeros((0, 3), dtype=np.int64),
-        term=np.zeros((0, 3), dtype=np.int64),
-        rows=table(ROW, 0),
-        sides=table(SIDE, 0),
-        block=np.zeros((0, 6, 6)),
-        drop=0.0,
-        pose=np.zeros((0, 7)),
-        usual=np.full(1, -1),
-        fine=np.zeros((2, 0, 6, 6)),
-        digits=np.zeros((0, 4, 6)),
-        scaled=np.zeros((0, 3, 6)),
-    )
+        kind=NO_JOINTS, links=table(LINK, 0), rotor=np.zeros((0, 0)), workspace=np.zeros((0, 0)),
+        order=number, column=number, row=number, update=number, triple=number.reshape(0, 3),
+        term=number.reshape(0, 3), rows=table(ROW, 0), sides=table(SIDE, 0),
+        block=np.zeros((0, 6, 6)), drop=0.0, pose=np.zeros((0, 7)), usual=np.full(1, -1),
+        fine=np.zeros((2, 0, 6, 6)), digits=np.zeros((0, 4, 6)), scaled=np.zeros((0, 3, 6)),
+    )  # fmt: skip
 
 
 def tree_solver(
@@ -59,9 +48,11 @@ def tree_solver(
     most = max(
         1, int(np.max(links.freedoms[(links.joint >= 0) | (links.has_child == 1)], initial=0))
     )
-    workspace = np.full((order.size, FIRST + WIDTH * most), np.nan)
+    workspace = np.full((order.size, HEAD + WIDTH * most), np.nan)
     own = np.where(joint[:, None] >= 0, rotor[joint, :most], 0.0)
-    return no_joints()._replace(kind=FOREST, links=links, rotor=own, workspace=workspace)
+    return no_joints()._replace(
+        kind=FOREST, links=links, rotor=own, workspace=workspace, usual=np.full(1, -1)
+    )
 
 
 def spread(touching: list[list[int]], mass, moments, extent) -> tuple[float, int, int]:
@@ -129,21 +120,13 @@ def loop_solver(touching: list[list[int]], drop: float, poses: int, bodies: int)
         for t in near
         if place[element[s]] >= place[element[t]]
     ]
-    return no_joints()._replace(
-        kind=LOOPS,
-        order=np.array(order, dtype=np.int64),
-        column=np.array(column, dtype=np.int64),
-        row=np.array(row, dtype=np.int64),
-        update=np.array(update, dtype=np.int64),
-        triple=np.array(triple, dtype=np.int64).reshape(-1, 3),
-        term=np.array(term, dtype=np.int64).reshape(-1, 3),
-        rows=rows,
-        sides=sides,
-        block=np.zeros((number + len(row), 6, 6)),
-        drop=drop,
-        pose=np.full((poses, 7), np.nan),
-        usual=np.full(1, -1),
-        fine=np.zeros((2, number + len(row) if bodies else 0, 6, 6)),
-        digits=np.zeros((number if bodies else 0, 4, 6)),
-        scaled=np.zeros((bodies, 3, 6)),
+    order, column, row, update, triple, term = (
+        np.array(one, dtype=np.int64) for one in (order, column, row, update, triple, term)
     )
+    return no_joints()._replace(
+        kind=LOOPS, order=order, column=column, row=row, update=update, triple=triple.reshape(-1, 3),
+        term=term.reshape(-1, 3), rows=rows, sides=sides, block=np.zeros((number + len(row), 6, 6)),
+        drop=drop, pose=np.full((poses, 7), np.nan), usual=np.full(1, -1),
+        fine=np.zeros((2, number + len(row) if bodies else 0, 6, 6)),
+        digits=np.zeros((number if bodies else 0, 4, 6)), scaled=np.zeros((bodies, 3, 6)),
+    )  # fmt: skip

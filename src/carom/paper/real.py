@@ -30,7 +30,7 @@ MASS, INERTIA, HALF = 0.37, 8.1e-4, 0.0524  # [kg], [kg m^2], [m]
 NOMINAL = (0.125, 0.18)  # e, mu: drop test and tilt test by the authors of the data
 LAWS = ("newton", "poisson", "stronge")
 CLEAN = 0.015  # least height of the second corner [m]
-SAMPLES = 4  # samples between the two recorded velocities
+SAMPLES_BETWEEN = 4  # samples between the two recorded velocities
 
 _AXES = np.array([[0, 0, 1.0], [1, 0, 0], [0, 1, 0]])  # n, t1, t2
 _CORNERS = HALF * np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, 8).T
@@ -83,7 +83,7 @@ def load() -> Tosses:
         now,
         -arm[:, 2],
         G,
-        SAMPLES * DT - (since + 0.5 * DT),
+        SAMPLES_BETWEEN * DT - (since + 0.5 * DT),
     )
 
 

@@ -121,13 +121,13 @@ def write(folder: Path) -> list[Path]:
     ]
     head = ("prediction", "e", "mu", "median of dv [m/s]", "median of dw [rad/s]")
     lifted = np.zeros(6)
-    lifted[2] = real.GRAVITY * real.SAMPLES * real.DT
+    lifted[2] = real.GRAVITY * real.SAMPLES_BETWEEN * real.DT
     nominal, nothing = (cases()[name][3] for name in ("stronge, nominal", "no impact"))
     text = page(
         "real_impacts",
         count=len(real.load().toss),
         table=table(head, shown),
-        span=1e3 * real.SAMPLES * real.DT,
+        span=1e3 * real.SAMPLES_BETWEEN * real.DT,
         gravity=lifted[2],
         wrong_v=real.medians(nominal + lifted)[0],
         still_v=real.medians(nothing + lifted)[0],

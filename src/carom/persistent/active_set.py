@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.closed_points import apart, closed_within
 from carom.contact.gap import slow
@@ -14,6 +14,7 @@ from carom.contact.pair_point import REACH, find_touches, own_point, smaller, to
 from carom.contact.place import place_any
 from carom.contact.place_of_other import on_half_space
 from carom.contact.rim import same_point
+from carom.model.parts_of_system import has_solids
 from carom.persistent.step_control import UNSOLVED
 
 
@@ -134,8 +135,8 @@ def is_active(system, active, c, touch, state):
     return False
 
 
-@unit
-def _refresh_pairs(system, controls, active, state, work) -> bool:
+@unit(where=has_solids, otherwise=False)
+def refresh_pairs(system, controls, active, state, work) -> bool:
     """Replace points whose features no longer exist by the points of the new features.
 
     When faces slide on each other, the corners of their overlap change, and the active set must follow. The
@@ -205,11 +206,3 @@ def activate_touch(contact, c, touch, mode, state, active):
     active.count[0] += 1
     begin_point(active_point, contact, c, touch.feature, mode)
     own_point(contact, touch, state, active_point.point)
-
-
-@inlined
-def refresh_pairs(system, controls, active, state, work):
-    """Replace points whose features no longer exist by the points of the new features."""
-    if system.solids.shape[0] > 0:
-        return _refresh_pairs(system, controls, active, state, work)
-    return False

@@ -14,9 +14,9 @@ import math
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.groups import members
-from carom.dynamics.acceleration import OPEN
 from carom.dynamics.adapt import allowed_error, note_miss
 from carom.dynamics.explicit import CONSTRAINTS_LOST, bound_accelerations_of, rubs, stages_within
+from carom.model.actions import MODE_OPEN
 from carom.persistent.finish import land, note_modes, review
 from carom.persistent.members import closing_member, explicit_member, implicit_member
 from carom.persistent.rows import beyond_stop
@@ -130,7 +130,7 @@ def opens(data, label):
     for i in range(data.active.count[0]):
         active_point = data.active.points[i]
         if data.work.body[active_point.body].label == label:
-            if active_point.rest == 0 and active_point.next == OPEN:
+            if active_point.rest == 0 and active_point.next == MODE_OPEN:
                 return True
     return False
 

@@ -21,7 +21,7 @@ from carom.persistent.joint_rows import JOINT, is_driven, radius_of
 from carom.persistent.settle import settle
 from carom.persistent.springs import DEPEND, EPS, PULL, compliance_of, moves
 
-ITERATIONS, HALVES = 40, 6
+STAGE_ITERATIONS, HALVES = 40, 6
 FITS = 1e-13  # of the accelerations without forces: error of the equations
 EXACT = 1e-6  # of the error: that of the linear equations
 ON_DISC = 1e-9  # of its radius: less is within a disc
@@ -125,7 +125,7 @@ def newton(k, hg, halves, group):
     enough = FITS * push + 1e-15 * slip / hg
     share(n, group)
     size = write_equations(k, n, hg, group)
-    for _ in range(ITERATIONS):
+    for _ in range(STAGE_ITERATIONS):
         if size <= enough:
             return True
         for i in range(n):

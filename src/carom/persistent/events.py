@@ -2,26 +2,31 @@
 
 The function of an event is positive before it and negative after it, and is evaluated at the end of a step:
 
-    SEPARATE   the margin before opening        (`carom.persistent.margins`)
-    CONE       the margin before slip
-    JAM        k                                while slipping (`carom.persistent.jam`)
+    EVENT_SEPARATE   the margin before opening        (`carom.persistent.margins`)
+    EVENT_CONE       the margin before slip
+    EVENT_JAM        k                                while slipping (`carom.persistent.jam`)
 """
 
 from __future__ import annotations
 
 from carom._compiled.decorators import inlined, kernel
-from carom.dynamics.acceleration import OPEN, SLIP
+from carom.model.actions import (
+    EVENT_CONE,
+    EVENT_GAP,
+    EVENT_JAM,
+    EVENT_SEPARATE,
+    MODE_OPEN,
+    MODE_SLIP,
+)
 from carom.persistent.jam import JAMMED, yields
-
-GAP, SEPARATE, CONE, JAM = range(4)
 
 
 @kernel
 def contact_event_value(system, active_point, kind):
     """Return the event function `kind` with the forces of the end of the step."""
-    if kind == SEPARATE:
+    if kind == EVENT_SEPARATE:
         return active_point.lift
-    if kind == CONE:
+    if kind == EVENT_CONE:
         return active_point.grip
     return jam_margin(system, active_point)
 
@@ -49,16 +54,16 @@ def note_first_stops(system, active):
 def find_contact_event(system, active, work):
     """Return (event, index) of the first active point whose mode ends; index -1 if there is none."""
     if work.search[0].eager == 0:
-        return GAP, -1
+        return EVENT_GAP, -1
     for i in range(active.count[0]):
         active_point = active.points[i]
-        if active_point.mode == OPEN or active_point.rest == 1:
+        if active_point.mode == MODE_OPEN or active_point.rest == 1:
             continue
-        if active_point.several == 0 and active_point.mode == SLIP and active_point.next == SLIP:
-            if jam_margin(system, active_point) <= 0.0:
-                return JAM, i
+        slips = active_point.mode == MODE_SLIP and active_point.next == MODE_SLIP
+        if active_point.several == 0 and slips and jam_margin(system, active_point) <= 0.0:
+            return EVENT_JAM, i
         if active_point.lift < 0.0:
-            return SEPARATE, i
+            return EVENT_SEPARATE, i
         if active_point.grip < 0.0:
-            return CONE, i
-    return GAP, -1
+            return EVENT_CONE, i
+    return EVENT_GAP, -1

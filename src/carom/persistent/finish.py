@@ -8,7 +8,6 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.closed_points import place_closed
 from carom.contact.gap import slow
-from carom.dynamics.acceleration import OPEN, SLIP, STICK
 from carom.dynamics.adapt import allowed_error
 from carom.dynamics.explicit import copy_state, note_velocity
 from carom.dynamics.passed_edges import has_passed, note_passed
@@ -16,6 +15,7 @@ from carom.dynamics.project import LOST, project_position, project_velocity
 from carom.dynamics.several_points import velocities
 from carom.friction.layout import CONE, SLIDING, SOLVED
 from carom.impact.workspace import OLD, C, P, U
+from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
 from carom.persistent.forces import solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among
 from carom.persistent.joint_rows import JOINT, fix_friction, is_driven, place_coordinate, radius_of
@@ -43,7 +43,7 @@ def land(model, data, loaded, k, count) -> bool:
     note_passed(system, active, k, group, data.state, end)
     onto_surfaces(system, active, k, count, end, group, work)
     if loaded:
-        project_velocity(system, end, work)
+        project_velocity(system, end, False, work)
     show(count, end, group, work)
     place_closed(system, k, end, group, group.points[0], work)
     for i in range(k):
@@ -100,7 +100,7 @@ def note_modes(model, data, k, h):
         d1, d2 = u[3 * i + 1] / slip if slides else 0.0, u[3 * i + 2] / slip if slides else 0.0
         if closed_point.turns == 0:
             if group.mu[i] > 0.0:
-                active_point.next = SLIP if group.kind[i] == SLIDING else STICK
+                active_point.next = MODE_SLIP if group.kind[i] == SLIDING else MODE_STICK
             active_point.heading[0], active_point.heading[1], active_point.speed = d1, d2, slip
         else:
             way = active_point.turning[closed_point.turns - 1]
@@ -168,13 +168,13 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
         take_forces(active_point, i, group)
         if closed_point.turns > 0:
             continue
-        if not lasts and group.kind[i] == CONE and active_point.next == SLIP:
-            active_point.next = STICK
-        if slips and active_point.next == STICK:
+        if not lasts and group.kind[i] == CONE and active_point.next == MODE_SLIP:
+            active_point.next = MODE_STICK
+        if slips and active_point.next == MODE_STICK:
             if not (located > 0.0 and work.search[0].eager == 1):
                 if work.search[0].active == 0:
                     return False
-                active_point.next = SLIP
+                active_point.next = MODE_SLIP
         still = max(1e-6 * gain, 10.0 * slow(system.contacts[closed_point.contact], end))
         end_mode(active_point, i, still, at_rest, group)
         set_margins(active_point, i, located, group)
@@ -212,9 +212,9 @@ def end_mode(active_point, i, still, at_rest, group):
     """Let a point open that has no force and leaves its surface, faster than `still`, or stick at rest."""
     leaves = group.v[P][3 * i] <= 0.0 and group.v[U][3 * i] > still
     if leaves or active_point.passes == 1:
-        active_point.next = OPEN
+        active_point.next = MODE_OPEN
     if at_rest:
-        active_point.next = STICK
+        active_point.next = MODE_STICK
     active_point.comes_to_rest = 1 if at_rest else 0
 
 
@@ -324,7 +324,7 @@ def stick_where_slip_ends(model, data, k, h, still):
                 continue
             active_point = active.points[closed_point.active]
             if closed_point.turns == 0:
-                active_point.next = STICK
+                active_point.next = MODE_STICK
             else:
                 active_point.turning[closed_point.turns - 1, 2] = 0.0
     return True

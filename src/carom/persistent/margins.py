@@ -13,9 +13,8 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.dynamics.acceleration import OPEN, SLIP, STICK
 from carom.impact.workspace import OLD, C, P
-from carom.persistent.events import JAM, SEPARATE
+from carom.model.actions import EVENT_JAM, EVENT_SEPARATE, MODE_OPEN, MODE_SLIP, MODE_STICK
 from carom.persistent.settle import greatest
 
 LEAST = 1e-5  # least margin before an event
@@ -45,7 +44,7 @@ def set_margins(active_point, i, push, group):
     if not push > 0.0:
         return
     q, W, p, a = 3 * i, group.m[0], group.v[P], group.v[OLD]
-    if active_point.next == OPEN:
+    if active_point.next == MODE_OPEN:
         active_point.lift = -max(a[q] / push, 2.0 * NEAR)
         return
     if active_point.several == 0:  # its force is unique: both are continuous
@@ -54,9 +53,9 @@ def set_margins(active_point, i, push, group):
         active_point.lift = -a[q] / push
     else:
         active_point.lift = max(p[q] * W[q, q] / push, LEAST)
-    if active_point.mode == STICK:
+    if active_point.mode == MODE_STICK:
         gain = math.sqrt(a[q + 1] ** 2 + a[q + 2] ** 2) / push
-        if active_point.next == SLIP:
+        if active_point.next == MODE_SLIP:
             active_point.grip = -max(gain, 2.0 * NEAR)
         elif gain > NONE:
             active_point.grip = -gain
@@ -69,7 +68,7 @@ def set_margins(active_point, i, push, group):
 @kernel
 def margin(active_point, kind):
     """Return the margin of a point from an event."""
-    return active_point.lift if kind == SEPARATE else active_point.grip
+    return active_point.lift if kind == EVENT_SEPARATE else active_point.grip
 
 
 @kernel
@@ -85,12 +84,12 @@ def note_due(active, search, work):
 @kernel
 def switch_due(active, search):
     """Set the new mode of the points whose event has been located; return whether it is one of these."""
-    if search.kind == JAM:
+    if search.kind == EVENT_JAM:
         return False
     for i in range(active.count[0]):
         active_point = active.points[i]
         near = active_point.due == 1 and margin(active_point, search.kind) <= 2.0 * LEAST
         if near or i == search.contact:
-            active_point.next = OPEN if search.kind == SEPARATE else SLIP
+            active_point.next = MODE_OPEN if search.kind == EVENT_SEPARATE else MODE_SLIP
         active_point.due = 0
     return True

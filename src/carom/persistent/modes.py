@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.dynamics.acceleration import OPEN, STICK
 from carom.model import records as r
-from carom.model.actions import NOTHING
+from carom.model.actions import MODE_OPEN, MODE_STICK, NOTHING
 from carom.model.event_rows import begin_event, end_event
 from carom.persistent.active_set import deactivate, refresh_pairs, regroup, set_anchor
 from carom.persistent.events import jam_margin
@@ -60,15 +59,14 @@ def turn_modes(model, data):
             continue
         changed = True
         begin_event(system, active_point.contact, active_point.feature, now, clock, records)
-        if active_point.next == OPEN:
+        if active_point.next == MODE_OPEN:
             deactivate(active, i)
             end_event(system, r.OPENS, now, clock, records)
         else:
             active_point.mode = active_point.next
-            if active_point.mode == STICK:
+            if active_point.mode == MODE_STICK:
                 set_anchor(system, active_point, now, work)
-            end_event(
-                system, r.STICKS if active_point.mode == STICK else r.SLIPS, now, clock, records
-            )
+            kind = r.STICKS if active_point.mode == MODE_STICK else r.SLIPS
+            end_event(system, kind, now, clock, records)
     if refresh_pairs(system, controls, active, now, work) or changed:
         regroup(system, active, work)

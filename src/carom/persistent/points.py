@@ -87,8 +87,11 @@ def add_known(system, active, i, state, k, group, work):
 
 
 @unit
-def _add_pair(system, active, i, state, k, group, work) -> int:
-    """Add the points of two solids: of a face all its corners, else those of the active features."""
+def add_pair(system, active, i, state, k, group, work) -> int:
+    """Add the points of two solids: of a face all its corners, else those of the active features.
+
+    Return the new count.
+    """
     c = active.points[i].contact
     contact = system.contacts[c]
     count = list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
@@ -187,14 +190,6 @@ def add_touch(contact, c, touch, j, state, k, group):
     closed_point.active, closed_point.own = j, 0
     write_touch(contact, touch, state, group.points[0][k])
     return k + 1
-
-
-@kernel
-def add_pair(system, active, i, state, k, group, work):
-    """Add the points of two solids; return the new count."""
-    if system.solids.shape[0] > 0:
-        return _add_pair(system, active, i, state, k, group, work)
-    return k
 
 
 @kernel

@@ -14,12 +14,12 @@ from carom._compiled.decorators import kernel
 from carom.contact.closed_points import place_closed, round_off_of_both
 from carom.contact.gap import round_off
 from carom.contact.place import place_any
-from carom.dynamics.acceleration import STICK
 from carom.dynamics.passed_edges import has_passed
 from carom.dynamics.project import project_position, shift
 from carom.dynamics.several_points import factor, spread_all, substitute, velocities, yields
 from carom.impact.workspace import OLD, P, U
 from carom.kinematics.contact_point import in_axes
+from carom.model.actions import MODE_STICK
 
 DROP = 1e-10  # relative to its row: a smaller pivot is round-off of a redundant row
 
@@ -44,7 +44,8 @@ def mark_rows(system, active, k, group):
             friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
             contact = system.contacts[active_point.contact]
             core = contact.radius == 0.0 and contact.touches == 0
-            sticks = active_point.mode == STICK and friction < (1.0 - 1e-9) * group.mu[i] * p[q]
+            inside = friction < (1.0 - 1e-9) * group.mu[i] * p[q]
+            sticks = active_point.mode == MODE_STICK and inside
             group.closed[i].rows = 3 if core and sticks else 1
     return some
 

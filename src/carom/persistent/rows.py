@@ -13,12 +13,13 @@ import math
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.place import drift_of
-from carom.dynamics.acceleration import SLIP, accelerate, acceleration
+from carom.dynamics.acceleration import accelerate, acceleration
 from carom.dynamics.elements import driven_power
 from carom.dynamics.several_points import accelerations, inverse_masses, spread_all, velocities
 from carom.friction.layout import CONE, SLIDING
 from carom.impact.workspace import C, P, U
 from carom.kinematics.flight import free_rates
+from carom.model.actions import MODE_SLIP
 from carom.persistent.joint_rows import JOINT, PIVOT, drift_of_coordinate, is_driven
 from carom.persistent.points import find_points
 from carom.persistent.springs import bound_per_force
@@ -140,7 +141,7 @@ def way_of(system, active, closed_point):
         way = active_point.turning[closed_point.turns - 1]
         return way[2] > 0.0, way[0], way[1], way[2]
     d = active_point.heading
-    return active_point.next == SLIP, d[0], d[1], active_point.speed
+    return active_point.next == MODE_SLIP, d[0], d[1], active_point.speed
 
 
 @unit

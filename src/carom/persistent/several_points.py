@@ -7,7 +7,6 @@ import math
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.contact.groups import members
-from carom.dynamics.acceleration import SLIP, STICK
 from carom.dynamics.contact_impulse import add_velocity, alone, spread
 from carom.dynamics.elements import driven_power
 from carom.dynamics.energy import energies
@@ -15,8 +14,9 @@ from carom.dynamics.several_points import factor, inverse_masses, substitute, yi
 from carom.friction.layout import CONE, SLIDING
 from carom.impact.workspace import OLD, C, P, U
 from carom.kinematics.contact_point import contact_velocity
+from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.model.event_rows import begin_event, end_event
-from carom.model.records import OPENS, PERSIST, SLIPS, STICKS
+from carom.model.records import OPENS, PERSISTS, SLIPS, STICKS
 from carom.persistent.active_set import activate, any_turning, deactivate, set_anchor
 from carom.persistent.bounces import bounces_end, horizon_of, name_work, spare, time_of_bounces
 from carom.persistent.finish import add_forces_of_corners
@@ -30,8 +30,8 @@ from carom.persistent.start import first_stage
 LAID = 1e-9  # of the size of a body: the gap of a point that is on its surface
 DROP = 1e-10  # of a pivot, relative to its row
 LITTLE = 1e-4  # of the speed: what may be taken for round-off of rest
-AGREE = 1e-6  # of the greatest velocity to be removed: what may be left of others
-ROUNDS = 60  # of friction with what it does to the normal impulses
+VELOCITY_LEFT = 1e-6  # of the greatest velocity to be removed: what may be left of others
+FRICTION_ROUNDS = 60  # of friction with what it does to the normal impulses
 
 
 @kernel
@@ -123,7 +123,7 @@ def leave_unreachable(system, state, k, group):
         for i in range(k):
             if group.closed[i].stays == 1:
                 left = max(left, abs(velocity_after(3 * i, k, group)))
-        if not left > AGREE * most:
+        if not left > VELOCITY_LEFT * most:
             return written
         group.closed[fastest].stays = 0
     return written
@@ -238,7 +238,7 @@ def find_pull(k, friction, group):
         for i in range(n):
             last[i] = 0.0
         before = math.inf
-        for turn in range(ROUNDS):
+        for turn in range(FRICTION_ROUNDS):
             change, largest = pull_once(k, with_friction, group)
             for i in range(n):
                 last[i] = x[i]
@@ -284,7 +284,7 @@ def mode_of(system, i, state, group):
     # as `pose_forces` has found with the velocities before
     still = 10.0 * slow(system.contacts[group.closed[i].contact], state)
     slips = math.sqrt(u1 * u1 + u2 * u2) > still and group.kind[i] == SLIDING
-    return SLIP if slips else STICK
+    return MODE_SLIP if slips else MODE_STICK
 
 
 @kernel
@@ -305,7 +305,7 @@ def set_modes(model, data, k):
         closed_point.active = activate(system, active, closed_point, mode, state, work)
         clock.holds += 1
         records.event[clock.event].mode = mode
-        end_event(system, PERSIST, state, clock, records)
+        end_event(system, PERSISTS, state, clock, records)
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.stays == 0:
@@ -315,12 +315,12 @@ def set_modes(model, data, k):
         if closed_point.active >= before:
             continue
         active_point, mode = active.points[closed_point.active], mode_of(system, i, state, group)
-        if mode == STICK:  # from where it has slid to, before the impact
+        if mode == MODE_STICK:  # from where it has slid to, before the impact
             set_anchor(system, active_point, state, work)
         if active_point.mode != mode:
             active_point.mode = mode
             begin_event(system, closed_point.contact, closed_point.feature, state, clock, records)
-            end_event(system, SLIPS if mode == SLIP else STICKS, state, clock, records)
+            end_event(system, SLIPS if mode == MODE_SLIP else STICKS, state, clock, records)
 
 
 @kernel
@@ -361,7 +361,7 @@ def correct_mode(system, closed_point, mode, clock, records):
             break
         number = system.contacts[closed_point.contact].number
         same = event.contact == number and event.feature == closed_point.feature
-        if same and event.kind == PERSIST:
+        if same and event.kind == PERSISTS:
             event.mode = mode
             return True
     return False

@@ -10,11 +10,11 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
-from carom.dynamics.acceleration import SLIP, STICK
 from carom.dynamics.explicit import copy_state, note_velocity
 from carom.dynamics.passed_edges import note_normal
 from carom.friction.layout import SLIDING, SOLVED
 from carom.impact.workspace import C, P, U
+from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.persistent.finish import gains, solve_cones_of, within_cones
 from carom.persistent.joint_rows import JOINT, mode_of_joint, radius_of
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
@@ -84,7 +84,7 @@ def note_break_away(system, data, k, push):
             force = group.v[P][3 * i + 1]
             system.relations.frictions[closed_point.active].next = -1 if force > 0.0 else 1
         elif closed_point.turns == 0 and group.v[P][3 * i] > 0.0:
-            data.active.points[closed_point.active].next = SLIP
+            data.active.points[closed_point.active].next = MODE_SLIP
     return none
 
 
@@ -105,16 +105,16 @@ def note_way(model, data, i, still):
     moves = speed > max(10.0 * slow(contact, data.state), still)
     d1, d2 = u1 / speed if moves else 0.0, u2 / speed if moves else 0.0
     if closed_point.own == 0:
-        return moves or active_point.next != SLIP or group.mu[i] == 0.0
+        return moves or active_point.next != MODE_SLIP or group.mu[i] == 0.0
     if closed_point.turns > 0:
         way = active_point.turning[closed_point.turns - 1]
         way[0], way[1], way[2] = d1, d2, speed if moves else 0.0
         return True
-    if moves and active_point.mode != SLIP:  # a corner that has come since: the velocity decides
-        active_point.next = SLIP
-    slips = active_point.next == SLIP
+    if moves and active_point.mode != MODE_SLIP:
+        active_point.next = MODE_SLIP  # a corner that has come since: the velocity decides
+    slips = active_point.next == MODE_SLIP
     if slips and not moves and group.mu[i] > 0.0:  # it has stopped
-        active_point.next = STICK
+        active_point.next = MODE_STICK
     note_normal(group.points[0][i], active_point)
     active_point.heading[0], active_point.heading[1] = d1 if slips else 0.0, d2 if slips else 0.0
     active_point.speed = speed

@@ -35,21 +35,12 @@ SEEN = 1e-3  # of the size of a body: smaller differences do not count
 GOOD = 1e-3  # the same difference for the step that the sentence recommends
 
 _WHAT = {
-    RESIDUAL: (
-        "Energy error that no entry of the ledger explains:",
-        "{finer}, or raise the tolerance",
-    ),
+    RESIDUAL: ("Energy error that no entry of the ledger explains:", "{finer}, or raise the tolerance"),
     IMPACTS: ("Energy that impacts added, which is not physical:", 'Use impact_law="stronge"'),
-    FRICTION: (
-        "Energy that friction added, which is not physical:",
-        "{finer}, or raise the tolerance",
-    ),
-    BOUNCES: (
-        "Energy that was added where small bounces were dropped, which is not physical:",
-        "{finer}",
-    ),
+    FRICTION: ("Energy that friction added, which is not physical:", "{finer}, or raise the tolerance"),
+    BOUNCES: ("Energy that was added where small bounces were dropped, which is not physical:", "{finer}"),
     ALL: ("Sum of several energy errors:", "{finer}, or raise the tolerance"),
-}
+}  # fmt: skip
 
 _WHY = {
     1: "a contact problem was not solved, or lost too much energy",
@@ -69,7 +60,7 @@ def beyond(i: int, watch: np.record | np.ndarray, times: float = 1.0):
     return ~(np.abs(watch["amount"][..., i]) <= allowed(watch, times))
 
 
-def allowed(watch: np.record | np.ndarray, times: float = INACCURATE):
+def allowed(watch: np.record | np.ndarray | dict, times: float = INACCURATE):
     """Return `times` the energy errors that the tolerance allows [J]."""
     most = (watch["tolerance"] * watch["exchanged"] + watch["able"]) * times
     return most + ROUND_OFF * watch["size"]
@@ -90,18 +81,21 @@ def sentences(
     the time of the error and a remedy, `finer` for shorter steps. `pairs` are the pairs of the contacts of the
     run, None for all pairs of the scene.
     """
-    kinds = [i for i in (RESIDUAL, IMPACTS, FRICTION, BOUNCES) if beyond(i, watch)]
-    if not kinds and beyond(ALL, watch):
+    numbers = dict(zip(watch.dtype.names or (), watch.item()))
+    bound = allowed(numbers, 1.0)
+    over = [not abs(amount) <= bound for amount in numbers["amount"].tolist()]
+    kinds = [i for i in (RESIDUAL, IMPACTS, FRICTION, BOUNCES) if over[i]]
+    if not kinds and over[ALL]:
         kinds = [ALL]
     found = [
         (_excess(abs(watch.amount[i]), float(allowed(watch))), _of_energy(i, watch)) for i in kinds
     ]
-    if scene is not None and watch.depth > DEEP:
+    if scene is not None and numbers["depth"] > DEEP:
         found.append((_excess(watch.depth, TOO_DEEP), _of_depth(watch, scene, pairs)))
-    if not watch.unsolved <= POOR * watch.speed:
+    if not numbers["unsolved"] <= POOR * numbers["speed"]:
         found.append((_excess(watch.unsolved, TOO_POOR * watch.speed), _of_contacts(watch)))
     found.sort(key=lambda one: -one[0])
-    if watch.whole > 0:
+    if numbers["whole"] > 0:
         found.append((0.0, _of_whole(watch)))
     return tuple(sentence.replace("{finer}", finer) for _, sentence in found)
 

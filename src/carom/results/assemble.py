@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom._compiled.record_arrays import Columns
+from carom._compiled.record_arrays import Columns, copied
 from carom.geometry import quaternion
 from carom.impact.layout import AT_END, WEDGED
 from carom.model import records as r
@@ -18,7 +18,7 @@ from carom.results.costs import busiest
 from carom.results.event_tables import ContactTable, EventTable, ImpactTable, contact_table
 from carom.results.impact_remarks import remarks
 from carom.results.locks import locked
-from carom.results.names import constrained, contact_names, row_units
+from carom.results.names import constrained, contact_name, contact_names, row_units
 from carom.scene.forces import AppliedForce
 from carom.scene.materials import IMPACT_LAWS
 from carom.status import Status
@@ -44,7 +44,7 @@ def assemble(run, status: Status) -> dict:
     """Return the fields of a `Solution`."""
     rec, clock = r.written(run.records, run.clock), r.as_numbers(run.clock)
     state, series, contacts = rec.state, rec.series, run.compiled.system.contacts
-    names, (most, events) = contact_names(run.scene, run.pairs).name, busiest(rec.event)
+    impact, event, (most, events) = _in_time(rec.impact), _in_time(rec.event), busiest(rec.event)
     return {
         "t": np.array(series["t"]),
         "position": np.array(state["x"]),
@@ -54,7 +54,7 @@ def assemble(run, status: Status) -> dict:
         "status": status,
         "warnings": (
             *sentences(run.watch[0], run.how.finer, run.scene, run.pairs),
-            *remarks(_in_time(rec.impact), _in_time(rec.event), run, names),
+            *remarks(impact, event, run),
             *stiff_forces.remarks(run, series, state),
         ),
         "stats": {
@@ -64,16 +64,17 @@ def assemble(run, status: Status) -> dict:
             "held_rounds": clock["rounds"], "whole_steps": clock["whole"],
             "explicit_steps": int(run.work.result["fallen"][0]),
             "parts": int(run.work.result["parts"][0]),
-            "busiest_contact": str(names[most]) if most >= 0 else "", "busiest_events": events,
+            "busiest_contact": contact_name(run.scene, run.pairs, most) if most >= 0 else "",
+            "busiest_events": events,
         },
         "scene": run.scene,
         "settings": dict(run.settings),
         "pairs": run.pairs,
         "_run": run,
         "_reason": run.compiled.functions.reason or locked(run, status),
-        "_touch": rec.touch.copy(),
+        "_touch": copied(rec.touch),
         "_written": Written(
-            np.array(state["Q"]), series.copy(), _in_time(rec.impact), _in_time(rec.event),
+            np.array(state["Q"]), copied(series), impact, event,
             {name: np.array(contacts[name]) for name in OF_CONTACTS}, run.scene.forces,
         ),
     }  # fmt: skip
@@ -81,6 +82,8 @@ def assemble(run, status: Status) -> dict:
 
 def _in_time(rows: np.recarray) -> np.recarray:
     """Return rows in the order of time, because the islands of a step write theirs one after the other."""
+    if len(rows) < 2:
+        return copied(rows)
     return rows[rows["time"].argsort(kind="stable")].view(Columns)
 
 

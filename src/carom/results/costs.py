@@ -10,8 +10,9 @@ from carom.results.names import contact_name
 
 def busiest(events: np.recarray) -> tuple[int, int]:
     """Return the contact or stop with most impacts and changes of contact, -1 for none, and their number."""
-    counts = np.bincount(events["contact"][events["contact"] >= 0])
-    return (int(np.argmax(counts)), int(np.max(counts))) if len(counts) else (-1, 0)
+    contact = events["contact"]
+    counts = np.bincount(contact[contact >= 0])
+    return (most := int(counts.argmax()), int(counts[most])) if len(counts) else (-1, 0)
 
 
 def costs(run) -> str:

@@ -113,9 +113,8 @@ class ContactTable(Table[dict]):
     """
 
     contact: np.ndarray  #: (M,) index of the contact
-    feature: (
-        np.ndarray
-    )  #: (M,) number of the contact point; on a half-space the vertex of the shape
+    #: (M,) number of the contact point; on a half-space the vertex of the shape
+    feature: np.ndarray
     start: np.ndarray  #: (M,) start of the interval [s]
     end: np.ndarray  #: (M,) end of the interval, at latest the end of the run [s]
     mode: np.ndarray  #: (M,) "slipping" or "sticking" (or rolling, or at rest)

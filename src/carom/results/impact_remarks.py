@@ -5,57 +5,64 @@ from __future__ import annotations
 import numpy as np
 
 from carom.impact import laws
-from carom.impact.layout import JAM, PLASTIC
+from carom.impact.layout import PHASE_JAM, PLASTIC
 from carom.model import records as r
+from carom.results.names import contact_name
 from carom.status import Remark
 
 #: energy of a jam, of what the run exchanges, below which slip of round-off has jammed (a wheel that rolls)
 _ROUND_OFF = 1e-9
 
 
-def remarks(rows, events, run, names) -> tuple[str, ...]:
+def remarks(rows, events, run) -> tuple[str, ...]:
     """Return a sentence for each kind: how many impacts (`rows`) or `events` of a run, and the first."""
-    jams = events[events["kind"] == r.JAMS]
+    said = _gains(rows, run)
+    jams = events["kind"] == r.JAMS
+    if not (jams.any() or (rows["phases"] & (PHASE_JAM | PLASTIC)).any()):
+        return tuple(map(Remark, said))
+    jams = events[jams]
     counts = np.abs(rows["energy_change"]) > _ROUND_OFF * run.watch[0].exchanged
     jams = jams[np.isin(jams["time"], rows["time"][counts])]
-    slides = rows[counts & (rows["phases"] & JAM != 0) & ~np.isin(rows["time"], jams["time"])]
-    said = _gains(rows, names, run)
+    slides = rows[counts & (rows["phases"] & PHASE_JAM != 0) & ~np.isin(rows["time"], jams["time"])]
     if len(jams) + len(slides) > 0:
         first = min((*jams[:1], *slides[:1]), key=lambda row: row["time"])
         said.append(
             f"{len(jams)} persistent contacts and {len(slides)} impacts jam (Painleve's paradox: with its "
-            f"friction the normal force drives the bodies together), the first {_place(first, names)}. What "
+            f"friction the normal force drives the bodies together), the first {_place(first, run)}. What "
             "follows depends on the compliance that rigid bodies do not have: check the friction."
         )
     plastic = rows[rows["phases"] & PLASTIC != 0]
     if len(plastic) > 0:
         said.append(
             f"{len(np.unique(plastic['time']))} impacts of several contacts had no restitution although e > 0, "
-            f"because no velocity satisfies their laws, the first {_place(plastic[0], names)}. Compare with "
+            f"because no velocity satisfies their laws, the first {_place(plastic[0], run)}. Compare with "
             'multiple="sequential".'
         )
     return tuple(map(Remark, said))
 
 
-def _place(row, names) -> str:
-    return f"at t = {row['time']:.6g} s of contact {str(names[row['contact']])!r}"
+def _place(row, run) -> str:
+    name = contact_name(run.scene, run.pairs, int(row["contact"]))
+    return f"at t = {row['time']:.6g} s of contact {name!r}"
 
 
-def _gains(rows, names, run) -> list[str]:
+def _gains(rows, run) -> list[str]:
     """Return a sentence about the energy that Newton's law with friction has added, if beyond the tolerance.
 
     Only an impact of a single point adds energy: several points return at most what they have absorbed. The
     energy of an impact is that of its relative velocity, u.W^-1 u/2.
     """
-    watch, contacts = run.watch[0], run.compiled.system.contacts
-    gains = contacts[np.isin(contacts["law"], laws.GAINING) & (contacts["friction"] > 0.0)][
-        "number"
-    ]
-    own = rows[(rows["together"] == 1) & (rows["energy_change"] > 0.0)]
-    own = own[np.isin(own["contact"], gains)]
-    u, gain = own["before"][:, :, None], own["energy_change"]
-    if not gain.sum() > watch.tolerance * watch.exchanged:
+    gains = rows["energy_change"] > 0.0
+    if not gains.any():
         return []
+    watch, contacts = run.watch[0], run.compiled.system.contacts
+    single = gains & (rows["together"] == 1)
+    if not rows["energy_change"][single].sum() > watch.tolerance * watch.exchanged:
+        return []
+    able = contacts[np.isin(contacts["law"], laws.GAINING) & (contacts["friction"] > 0.0)]["number"]
+    own = rows[single]
+    own = own[np.isin(own["contact"], able)]
+    u, gain = own["before"][:, :, None], own["energy_change"]
     part = 2.0 * gain / (u.transpose(0, 2, 1) @ np.linalg.pinv(own["W"]) @ u)[:, 0, 0]
     own, gain, part = (column[part > watch.tolerance] for column in (own, gain, part))
     if not gain.sum() > watch.tolerance * watch.exchanged:
@@ -63,6 +70,6 @@ def _gains(rows, names, run) -> list[str]:
     k = int(np.argmax(gain))
     return [
         f"Newton's law with friction added energy in {len(own)} impacts, at most {gain[k]:.3g} J "
-        f"{_place(own[k], names)}, {part[k]:.2%} of the energy of this impact. impact_law="
+        f"{_place(own[k], run)}, {part[k]:.2%} of the energy of this impact. impact_law="
         '"stronge" cannot add any, nor can "poisson" at a single contact.'
     ]

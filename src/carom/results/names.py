@@ -23,12 +23,10 @@ UNITS = {"turn": "rad", "slide": "m"}
 class ConstraintRows(NamedTuple):
     """The R rows of all joints, and then of all constraints, in the order of the scene."""
 
-    name: (
-        np.ndarray
-    )  #: (R,) name of the joint or constraint, with an index if it has several rows: ``hinge[2]``
-    unit: (
-        np.ndarray
-    )  #: (R,) unit of the position error: "m", "rad", or "" if user-defined factors determine it
+    #: (R,) name of the joint or constraint, with an index if it has several rows: ``hinge[2]``
+    name: np.ndarray
+    #: (R,) unit of the position error: "m", "rad", or "" if user-defined factors determine it
+    unit: np.ndarray
 
 
 def constrained(scene) -> list[Joint | Constraint]:
@@ -71,9 +69,8 @@ class ContactNames(NamedTuple):
 
     name: np.ndarray  #: (C,) name of the contact; ``body-other`` for a default pair
     body: np.ndarray  #: (C,) name of the body; for a stop the child of its joint
-    other: (
-        np.ndarray
-    )  #: (C,) name of the half-space or other body; for a stop the parent of its joint
+    #: (C,) name of the half-space or other body; for a stop the parent of its joint
+    other: np.ndarray
     unit: np.ndarray  #: (C,) unit of speeds: "m/s", or "rad/s" for a stop of an angle
 
 

@@ -19,11 +19,11 @@ from carom.scene.forces import Bushing, Spring
 from carom.scene.more_forces import CurveSpring, JointForce, JointSpring
 from carom.status import Advice
 
-SOME = 1000  # trial steps below which nothing is said
+FEW_TRIALS = 1000  # trial steps below which nothing is said
 MUCH = 0.3  # of the trial steps: what stability alone requires (0.45 to 0.99 where stiffness limits them)
 DECAYS = 0.02  # least decay of a mode, relative to |lambda|
-STATES = 5  # saved states at which modes are computed
-MOST = 60  # forces with the fastest modes of their own that are taken together
+MODE_STATES = 5  # saved states at which modes are computed
+FASTEST = 60  # forces with the fastest modes of their own that are taken together
 TINY = 1e-6  # step of differences of the user's functions, relative to values and at least to 1
 
 
@@ -42,13 +42,13 @@ def remarks(run, series, states) -> tuple[str, ...]:
         int(run.clock["trials"][0]),
         float(min(run.clock["now"][0], run.clock["still"][0])),
     )
-    if run.tolerances is None or trials < SOME:  # methods with tolerances are explicit
+    if run.tolerances is None or trials < FEW_TRIALS:  # methods with tolerances are explicit
         return ()
     forces = stiff_forces(run)
     if not forces:
         return ()
     rows = np.unique(
-        np.linspace(0, np.searchsorted(series["t"], end, "right") - 1, STATES).astype(int)
+        np.linspace(0, np.searchsorted(series["t"], end, "right") - 1, MODE_STATES).astype(int)
     )
     found = [fastest(run, forces, states[k], float(series["t"][k])) for k in rows]
     steps = end * float(np.mean([pace for pace, _ in found])) / trials
@@ -109,7 +109,7 @@ def fastest(run, forces: list[Force], state, t: float) -> tuple[float, int]:
         if callable(function):
             k[i], c[i] = gains(function, t, *values[i])
     own = np.einsum("ibk,ibk->i", J, motions)
-    chosen = np.sort(np.argsort(-np.maximum(own * c, np.sqrt(np.maximum(own * k, 0.0))))[:MOST])
+    chosen = np.sort(np.argsort(-np.maximum(own * c, np.sqrt(np.maximum(own * k, 0.0))))[:FASTEST])
     k, c, n = k[chosen], c[chosen], len(chosen)
     W = np.einsum("ibk,jbk->ij", J[chosen], motions[chosen])
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-W * k, -W * c]])

@@ -29,9 +29,8 @@ class PairTable(Table[dict]):
 
     body: np.ndarray  #: (C,) index of the body
     other: np.ndarray  #: (C,) index of the other body, -1 for a half-space or static body
-    plane: (
-        np.ndarray
-    )  #: (C,) index in `Scene.fixed` of the half-space or static body, -1 for a body
+    #: (C,) index in `Scene.fixed` of the half-space or static body, -1 for a body
+    plane: np.ndarray
     law: np.ndarray  #: (C,) index in `laws`
     laws: list[ContactLaw]  #: the different laws
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from copy import copy
+from functools import partial
 
 import numpy as np
 
@@ -20,12 +20,14 @@ from carom.scene.all_pairs import (
 from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.contacts import check_overlap
 from carom.scene.materials import ContactLaw, checked_rule, law_of
+from carom.scene.registry import Derived
 
 
 class Pairs:
     """The pairs of one scene."""
 
-    def __init__(self):
+    def __init__(self, derived: Derived):
+        self._derived = derived  # of the scene
         self._own: set = set()
         self._ignored: set = set()
         self._rules: dict[str, str] = {}
@@ -34,9 +36,10 @@ class Pairs:
         self.unsaid_default = True  # whether neither restitution nor friction of it was stated
         self._unsaid: set = set()  # pairs with a contact of which neither was
 
-    def copied(self) -> Pairs:
+    def copied(self, derived: Derived) -> Pairs:
         """Return a copy with the same pairs."""
-        made = copy(self)
+        made = Pairs(derived)
+        vars(made).update(vars(self), _derived=derived)
         for name in ("_own", "_ignored", "_unsaid"):
             setattr(made, name, set(getattr(self, name)))
         return made
@@ -54,6 +57,7 @@ class Pairs:
 
     def add(self, body, other, given) -> None:
         """Store a pair that has a contact of its own, and the values that were given for it."""
+        self._derived.clear()
         self._own.add(_key(body, other))
         stated = given["restitution"] is not None or given["friction"] is not None
         if not stated and self.unsaid_default and body.material is None:
@@ -65,11 +69,13 @@ class Pairs:
 
     def ignore(self, body, other) -> None:
         """Let a pair pass through each other, for example two bodies of a joint."""
+        self._derived.clear()
         self._ignored.add(_key(body, other))
 
     def set_default(self, law: ContactLaw, combine, all_pairs: bool, stated: bool) -> None:
         """Store the default values of pairs; `stated`: restitution or friction was given."""
         all_pairs = checks.flag("all_pairs", all_pairs)
+        self._derived.clear()
         self._rules = checked_rule(combine)
         self._values = law
         self.default = law if all_pairs else None
@@ -92,8 +98,10 @@ class Pairs:
         """Return the default pairs as `Defaults`, without a list of them; None if there are none."""
         if self.default is None:
             return None
-        left_out = self._own | self._ignored
-        return defaults(bodies, fixed, left_out, lambda a, b: self.law(a, b, {}))
+        law = partial(self.law, given={})
+        return self._derived.once(
+            "defaults", lambda: defaults(bodies, fixed, self._own | self._ignored, law)
+        )
 
     def by_default(self, bodies, fixed) -> PairTable:
         """Return all pairs without a contact of their own that may touch, with their laws."""

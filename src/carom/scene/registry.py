@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Hashable, Iterator
 from difflib import get_close_matches
 from typing import Any
 
@@ -11,18 +11,33 @@ from carom.scene.bodies import Body, Ground
 from carom.scene.contacts import Contact
 
 
+class Derived(dict):
+    """Results of a scene as it is now, by name; each change of the scene empties it."""
+
+    def once(self, name: Hashable, compute: Callable[[], Any]) -> Any:
+        """Return the result of this name; compute it if there is none."""
+        if name not in self:
+            self[name] = compute()
+        return self[name]
+
+    def __reduce__(self):  # deep copies, whose parts may be changed, and pickles begin without
+        return Derived, ()
+
+
 class Registry:
     """All named parts of one scene, in the order in which they were added."""
 
     def __init__(self):
         self._parts = {}
         self._kinds = {}
+        self.derived = Derived()
 
     def copied(self) -> Registry:
         """Return a copy with the same parts."""
         made = Registry()
-        made._parts = dict(self._parts)
-        made._kinds = {kind: list(parts) for kind, parts in self._kinds.items()}
+        made._parts = self._parts.copy()
+        made._kinds = {kind: parts.copy() for kind, parts in self._kinds.items()}
+        made.derived.update(self.derived)
         return made
 
     def new(self, kind: type, name: str | None, default: str) -> tuple[int, str]:
@@ -48,13 +63,16 @@ class Registry:
 
     def add(self, part):
         """Store `part` under its name, and return it."""
+        self.derived.clear()
         self._parts[part.name] = part
         self._kinds.setdefault(type(part), []).append(part)
         return part
 
     def parts(self, kind: type) -> tuple:
         """Return all parts of a `kind`, in the order added."""
-        return tuple(self._kinds.get(kind, ()))
+        if kind not in self.derived:
+            self.derived[kind] = tuple(self._kinds.get(kind, ()))
+        return self.derived[kind]
 
     def __iter__(self) -> Iterator:
         """Go through all parts, in the order added."""

@@ -16,7 +16,7 @@ from carom.scene.forces import Force, Torque
 if TYPE_CHECKING:
     from carom.scene.scene import Scene
 
-MOST = 6  # names in a sentence
+MOST_NAMES = 6  # names in a sentence
 
 
 def remarks(scene: Scene) -> tuple[str, ...]:
@@ -32,9 +32,8 @@ def _of_untouched(scene: Scene) -> list[str]:
     attached = {id(part) for joint in scene.joints for part in (joint.parent, joint.child)}
     attached |= {id(part) for constraint in scene.constraints for part in constraint.parts}
     for force in scene.forces:
-        if not isinstance(
-            force.definition, (Force, Torque)
-        ):  # springs and what the user writes may hold it
+        # springs and what the user writes may hold it
+        if not isinstance(force.definition, (Force, Torque)):
             attached |= {id(part) for part in (force.parent, force.child)}
             attached |= {id(part) for part in getattr(force.definition, "bodies", ())}
     free = [b for b in scene.bodies if not touched[b.index] and id(b) not in attached]
@@ -120,8 +119,8 @@ def _all_of_materials(scene: Scene) -> bool:
 
 
 def _names(parts: Sequence) -> str:
-    shown = ", ".join(repr(part.name) for part in parts[:MOST])
-    return shown + (f" and {len(parts) - MOST} more" if len(parts) > MOST else "")
+    shown = ", ".join(repr(part.name) for part in parts[:MOST_NAMES])
+    return shown + (f" and {len(parts) - MOST_NAMES} more" if len(parts) > MOST_NAMES else "")
 
 
 def check_location(scene, impact_location: str) -> None:

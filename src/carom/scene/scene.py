@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from copy import copy
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
@@ -53,7 +52,8 @@ class Scene(TouchingPairs):
         self._gravity = checks.finite_array("gravity", gravity, (3,), unit="m/s^2")
         self._gravity.setflags(write=False)
         self._parts = Registry()
-        self._pairs = Pairs()
+        self._derived = self._parts.derived
+        self._pairs = Pairs(self._derived)
         self._in_radians: set[str] = set()  # stops whose file has radians
 
     @arguments.known
@@ -412,8 +412,11 @@ class Scene(TouchingPairs):
 
     def _as_it_is(self) -> Scene:
         """Return a copy with the same parts, which does not change when parts are added to this scene."""
-        made = copy(self)
-        made._parts, made._pairs = self._parts.copied(), self._pairs.copied()
+        made: Any = object.__new__(type(self))
+        vars(made).update(vars(self))
+        made._parts = self._parts.copied()
+        made._derived = made._parts.derived
+        made._pairs = self._pairs.copied(made._derived)
         return made
 
     def validate(self) -> None:

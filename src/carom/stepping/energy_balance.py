@@ -23,7 +23,7 @@ from carom._compiled.record_arrays import table
 from carom.dynamics.energy import energies
 from carom.geometry.rotation import norm
 from carom.impact import laws
-from carom.persistent.events import JAM
+from carom.model.actions import EVENT_JAM
 from carom.persistent.step_control import CAREFUL
 
 #: kinds of energy errors: indices in the columns of `WATCH`
@@ -264,7 +264,7 @@ def off_balance(model, data):
     result, search, clock, watch = work.result[0], work.search[0], data.clocks[0], data.watch[0]
     dt, named = search.dt, search.applied + search.friction
     shortest, careful = dt <= SHORTEST * controls.step, search.pace < math.inf
-    jams = search.active == 1 and search.kind == JAM
+    jams = search.active == 1 and search.kind == EVENT_JAM
     if active.count[0] == 0:
         result.unnamed = 0.0
     watch.able = max(watch.able, clock.able)

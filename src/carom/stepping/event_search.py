@@ -18,11 +18,12 @@ from carom.contact.continuous_detection_pair import lowest_pair, passage_pair
 from carom.contact.gap import gap_and_rate, lowest, plane_in_body, round_off
 from carom.contact.pair_point import smaller
 from carom.contact.stop import passage_stop, stop_gap
+from carom.model.actions import EVENT_GAP, EVENT_JAM
 from carom.model.arrays import STOP
-from carom.persistent.events import GAP, JAM, contact_event_value, find_contact_event
+from carom.persistent.events import contact_event_value, find_contact_event
 from carom.persistent.margins import LEAST, NEAR
 
-NEWTON = 6  # steps to the root of a cubic from a near start
+NEWTON_STEPS = 6  # steps to the root of a cubic from a near start
 
 
 @inlined
@@ -38,23 +39,23 @@ def detect_event(system, controls, active, now, dt, work):
         else:
             verdict, first = passage_pair(system, controls, active, c, now, dt, work)
         if verdict in (UNSURE, FLAT_RIM):
-            return verdict, GAP, c, 0.0
+            return verdict, EVENT_GAP, c, 0.0
         if verdict == BELOW and found == CLEAR:
             found, which, low = BELOW, c, 0.5 * first
         elif verdict == CLEAR and active.contact_states[c].leaving == 1 and first > 0.0:
             active.contact_states[c].leaving = 0
     if found == BELOW:
-        return BELOW, GAP, which, low
+        return BELOW, EVENT_GAP, which, low
     kind, i = find_contact_event(system, active, work)
     if i >= 0:
         return BELOW, kind, i, 0.0
-    return CLEAR, GAP, -1, 0.0
+    return CLEAR, EVENT_GAP, -1, 0.0
 
 
 @kernel
 def event_value(system, controls, active, search, state, work):
     """Return the event function and, for a gap, its rate; contact forces are those of `state`."""
-    if search.kind == GAP:
+    if search.kind == EVENT_GAP:
         contact = system.contacts[search.contact]
         search.tolerance = max(controls.gap * smaller(contact), round_off(contact, state))
         if contact.touches == 0:
@@ -63,7 +64,7 @@ def event_value(system, controls, active, search, state, work):
             return stop_gap(system, contact, state, work)
         search.tolerance = 4.0 * max(search.tolerance, round_off_of_both(contact, state))
         return lowest_pair(system, contact, search.contact, active, state, work)
-    if search.kind != JAM and active.points[search.contact].several == 1:
+    if search.kind != EVENT_JAM and active.points[search.contact].several == 1:
         search.tolerance = NEAR
     return contact_event_value(system, active.points[search.contact], search.kind), 0.0
 
@@ -113,7 +114,7 @@ def cubic_root(a, f, r, b, f_last, r_last):
     c = (3.0 * slope - 2.0 * r - r_last) / h
     d = (r + r_last - 2.0 * slope) / (h * h)
     x = h
-    for _ in range(NEWTON):
+    for _ in range(NEWTON_STEPS):
         value, rate = f + x * (r + x * (c + x * d)), r + x * (2.0 * c + x * 3.0 * d)
         if not rate < 0.0:
             return math.inf
@@ -136,7 +137,7 @@ def first_through(contact, vertices, active, start, search, end):
 @kernel
 def next_trial(search):
     """Return the next time to try, by a cubic, Newton's method or regula falsi, otherwise the middle."""
-    if search.kind == GAP and search.rate < 0.0:
+    if search.kind == EVENT_GAP and search.rate < 0.0:
         t = cubic_root(
             search.before, search.f_before, search.rate_before, search.t, search.f, search.rate
         )

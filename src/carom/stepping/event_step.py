@@ -22,14 +22,13 @@ from carom.geometry.rotation import norm
 from carom.impact.strike import strike
 from carom.kinematics.contact_point import contact_velocity
 from carom.model import records as r
-from carom.model.actions import NOTHING, PERSIST, STRIKE
+from carom.model.actions import EVENT_GAP, NOTHING, PERSIST, STRIKE
 from carom.model.allowance import SMOOTH, affordable
 from carom.model.arrays import STOP
 from carom.model.controls import LOCATE
 from carom.model.workspace import FREE
 from carom.persistent.active_set import is_active
 from carom.persistent.bounces import horizon_of
-from carom.persistent.events import GAP
 from carom.persistent.lifecycle import activate_contact
 from carom.persistent.margins import switch_due
 from carom.persistent.modes import jam_point, turn_modes
@@ -133,7 +132,7 @@ def accept_step(model, data):
         return r.LEFT_BALL, NOTHING
     if search.dt == search.left:
         clock.spent = clock.length
-    met = search.found == 1 and search.kind != GAP and switch_due(active, search)
+    met = search.found == 1 and search.kind != EVENT_GAP and switch_due(active, search)
     if active.count[0] > 0:
         turn_modes(model, data)
     if search.found == 0:
@@ -149,7 +148,7 @@ def accept_step(model, data):
         search.horizon = max(search.horizon - search.dt, 0.0)
     if met:
         return 0, NOTHING
-    return 0, STRIKE if search.kind == GAP else jam_point(model, data, search.contact)
+    return 0, STRIKE if search.kind == EVENT_GAP else jam_point(model, data, search.contact)
 
 
 @inlined
@@ -242,7 +241,7 @@ def left_ball(system, now, dt, work):
 
 
 @unit
-def _check_pair(system, controls, active, c, now, work) -> int:
+def check_pair(system, controls, active, c, now, work) -> int:
     """Return whether a closed point of two bodies is to be struck or made persistent."""
     contact, action = system.contacts[c], NOTHING
     near, still = closed_within(controls, contact, now), slow(contact, now)
@@ -257,14 +256,6 @@ def _check_pair(system, controls, active, c, now, work) -> int:
             if rate <= still and not is_active(system, active, c, touch, now):
                 action = PERSIST
     return action
-
-
-@inlined
-def check_pair(system, controls, active, c, now, work):
-    """Return whether a closed point of two bodies is to be struck or made persistent."""
-    if system.solids.shape[0] > 0:
-        return _check_pair(system, controls, active, c, now, work)
-    return NOTHING
 
 
 @inlined

@@ -160,14 +160,15 @@ def check_save_at(save_at, duration: float) -> float | tuple[float, ...] | None:
 
 def check_scene(scene: Scene, settings: Settings) -> None:
     """Refuse a scene that cannot start, or that this method does not support."""
-    scene.validate()
+    scene._derived.once("valid", scene.validate)
     check_location(scene, settings.impact_location)
     check_method(scene, settings.method)
 
 
 def mistakes(scene, settings: Settings) -> tuple[str, ...]:
     """Return sentences about settings and parts of the scene that are nearly always a mistake."""
-    found = remarks(scene) if isinstance(scene, Scene) else ()
+    known = isinstance(scene, Scene)
+    found = scene._derived.once("remarks", lambda: remarks(scene)) if known else ()
     if settings.step is not None and settings.step > settings.duration:
         said = f"step={settings.step:g} s is longer than the run of {settings.duration:g} s"
         return (*found, f"{said}, so the run is one step. Give a shorter step, or leave step out.")

@@ -23,7 +23,7 @@ from carom.stepping.islands import one_island, parts
 from carom.stepping.islands.plan import READY
 from carom.stepping.record import finite, grow, save, still
 
-AGAIN = -1  # the step is to be repeated
+REPEAT = -1  # the step is to be repeated
 
 
 @entry
@@ -44,7 +44,7 @@ def run(model, data, method, islands, grid, until):
             code = step_apart(model, data, method, islands)
         else:
             code = step_single(model, data, method, islands.single)
-        if code == AGAIN:
+        if code == REPEAT:
             continue
         if code != 0:
             return code
@@ -62,7 +62,7 @@ def run(model, data, method, islands, grid, until):
 
 @kernel
 def step_single(model, data, method, start):
-    """Move all bodies to the end of the step together; return 0, AGAIN, or a code."""
+    """Move all bodies to the end of the step together; return 0, REPEAT, or a code."""
     clock = data.clocks[0]
     if start.begun[0] == 0:
         note_scale(model.system, model.controls, data.state, clock, data.work)
@@ -76,12 +76,12 @@ def step_single(model, data, method, start):
             parts.end_count(controls, clock, data.work)
             note_gain(controls, clock, data.watch[0])
             pay(clock)
-    return AGAIN if code != 0 and retry_single(model, data, start, code) else code
+    return REPEAT if code != 0 and retry_single(model, data, start, code) else code
 
 
 @unit
 def step_apart(model, data, method, islands) -> int:
-    """Move the bodies to the end of the step, island by island; return 0, AGAIN, or a code."""
+    """Move the bodies to the end of the step, island by island; return 0, REPEAT, or a code."""
     clock, plan = data.clocks[0], islands.plan[0]
     if plan.planned == 0:
         plan.widen = max(1.0, plan.widen)
@@ -116,7 +116,7 @@ def step_apart(model, data, method, islands) -> int:
             note_gain(controls, clock, data.watch[0])
             parts.leave(own.active, islands)
             pay(clock)
-    return AGAIN if code != 0 and retry_apart(model, data, islands, code) else code
+    return REPEAT if code != 0 and retry_apart(model, data, islands, code) else code
 
 
 @inlined

@@ -6,17 +6,16 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom.contact.continuous_detection import CLEAR, FLAT_RIM, UNSURE
-from carom.dynamics.acceleration import SLIP
 from carom.dynamics.adapt import NOTHING_LEFT, allowed_step, plan_next, shorter, step_error
 from carom.dynamics.explicit import CONSTRAINTS_LOST, rubs
 from carom.dynamics.more_forces import turns_round
 from carom.dynamics.step import step
 from carom.model import records as r
-from carom.model.actions import STRIKE
+from carom.model.actions import EVENT_GAP, MODE_SLIP, STRIKE
 from carom.model.allowance import affordable
 from carom.model.controls import LOCATE
 from carom.persistent.contact_step import contact_step
-from carom.persistent.events import GAP, note_first_stops
+from carom.persistent.events import note_first_stops
 from carom.persistent.margins import note_due
 from carom.persistent.step_control import plain_step, too_long
 from carom.status import NOT_FINITE, STEP_TOO_SMALL, UNSTABLE
@@ -36,7 +35,7 @@ from carom.stepping.record import finite
 TRIES = 3000  # trial steps after which a step is given up
 SEARCH = 4.0  # approximate time for the distance of two solids of any kind [us]
 ONCE_MORE = -1  # another trial step is needed
-MANY = 20  # events in a time that counts as zero: after so many they wait for the end of a step
+EVENTS_AT_NOW = 20  # events in no time: after so many they wait for the end of a step
 
 
 @inlined
@@ -58,7 +57,7 @@ def propose_step(model, data):
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
     data.work.result[0].stiff = 0
     search.effort, search.counted = clock.effort, clock.counted
-    search.eager = 1 if clock.in_moment < MANY else 0
+    search.eager = 1 if clock.in_moment < EVENTS_AT_NOW else 0
 
 
 @inlined
@@ -81,12 +80,12 @@ def until_stop(model, active, dt, clock):
     for i in range(active.count[0]):
         active_point = active.points[i]
         if active_point.rest == 0:
-            first = min(first, active_point.stop if active_point.mode == SLIP else first)
+            first = min(first, active_point.stop if active_point.mode == MODE_SLIP else first)
             first = min(first, min(active_point.turn_stop[0], active_point.turn_stop[1]))
     # except if stops follow each other without end, or the difference is round-off of the step
     inside = first > model.controls.rest * min(dt, model.controls.step)
     inside = inside and first < (1.0 - 1e-12) * dt
-    return first if inside and clock.in_moment < MANY else dt
+    return first if inside and clock.in_moment < EVENTS_AT_NOW else dt
 
 
 @inlined
@@ -255,15 +254,15 @@ def halve(model, data, loses):
 def bracket(model, data):
     """Start to bracket the time of an event; if impacts are not located, they are at the end of the step."""
     system, controls, work, search = model.system, model.controls, data.work, data.work.search[0]
-    if search.kind != GAP:
+    if search.kind != EVENT_GAP:
         note_due(data.active, search, work)
-    if search.kind == GAP and controls.location != LOCATE:
+    if search.kind == EVENT_GAP and controls.location != LOCATE:
         search.found = 1
         return 0
     f, rate = event_value(system, controls, data.active, search, work.trial, work)
     update_bracket(search, search.dt, f, rate)
     dt = next_trial(search)
-    if search.kind == GAP and system.contacts[search.contact].touches == 0:
+    if search.kind == EVENT_GAP and system.contacts[search.contact].touches == 0:
         contact = system.contacts[search.contact]
         guess = first_through(contact, system.vertices, data.active, data.state, search, work.trial)
         dt = guess if search.low < guess < search.high else dt

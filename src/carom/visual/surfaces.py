@@ -79,9 +79,8 @@ def _of_piece(piece: Piece, n: int) -> tuple[np.ndarray, np.ndarray]:
         vertices, triangles = _hull(ball)
         return vertices * piece.half, triangles
     core = piece.vertices if piece.kind == "hull" else piece.half * SIGNS
-    if (
-        piece.radius
-    ):  # balls of this radius around all vertices of the core, and its faces moved out
+    # balls of this radius around all vertices of the core, and its faces moved out
+    if piece.radius:
         ball = np.array([*ball, *(normal for normal, _ in piece.faces)])
         core = (core[:, None] + piece.radius * ball).reshape(-1, 3)
     elif piece.faces:

@@ -7,11 +7,11 @@ from collections.abc import Callable
 import numpy as np
 
 NAME, TITLE = "corner_impact", "Impact of a cube on a corner, mu = 0.2"
-COUNT = 2000
-NEWTON = 0
+IMPACTS_TIMED = 2000
+LAW = 0  # of `carom.impact.laws`: Newton
 
 
-def impacts(count: int = COUNT, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
+def impacts(count: int = IMPACTS_TIMED, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
     """Return W (count, 3, 3) [1/kg] and u (count, 3) [m/s] of a cube that strikes with one corner."""
     random = np.random.default_rng(seed)
     m, a = 0.016, 0.02
@@ -27,7 +27,7 @@ def impacts(count: int = COUNT, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
     return np.ascontiguousarray(W), u
 
 
-def ours(mu: float = 0.2, e: float = 0.5, law: int = NEWTON) -> Callable[[], None]:
+def ours(mu: float = 0.2, e: float = 0.5, law: int = LAW) -> Callable[[], None]:
     """Return a function that resolves all impacts once."""
     from carom.bench.loops import resolve_many
     from carom.impact.layout import SIZE

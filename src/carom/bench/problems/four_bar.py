@@ -16,11 +16,11 @@ NAME, TITLE = "four_bar", "Four-bars (A02), 10 s"
 ERROR = "error of the tip at the end [m]"
 METHODS, STEPS = ("rk4", "rk5", "rk8"), (2e-2, 1e-2, 5e-3, 2.5e-3)
 PEER_STEPS = (4e-3, 2e-3, 1e-3, 5e-4)
-N, GRAVITY, DURATION = 2, 9.81, 10.0
+BARS, GRAVITY, DURATION = 2, 9.81, 10.0
 TIP = (0.328458111536, 0.944518538180)  # m at 10 s: elliptic motion
 
 
-def scene(count: int = N):
+def scene(count: int = BARS):
     """Return `count` upright four-bars with theta' = 1 rad/s."""
     import carom
 
@@ -51,10 +51,10 @@ def mujoco(module, step: float) -> Task:
     """Return the work of MuJoCo: hinges, and loops closed by equalities as stiff as it advises for the step."""
     bar = '<inertial pos="{} {} 0" mass="1" diaginertia=".0833333 .0833333 .0833333"/>'
     bodies = []
-    for k in range(N + 1):
+    for k in range(BARS + 1):
         across = (
             f'<body name="a{k}" pos="0 1 0"><joint axis="0 0 1"/>{bar.format(0.5, 0)}</body>'
-            if k < N
+            if k < BARS
             else ""
         )
         bodies.append(
@@ -63,20 +63,20 @@ def mujoco(module, step: float) -> Task:
         )
     ties = "".join(
         f'<connect body1="a{k}" body2="u{k + 1}" anchor="1 0 0" solref="{2 * step} 1"/>'
-        for k in range(N)
+        for k in range(BARS)
     )
     made = module.MjModel.from_xml_string(f"""
     <mujoco><option timestep="{step}" integrator="implicitfast" gravity="0 {-GRAVITY} 0"/>
     <worldbody>{"".join(bodies)}</worldbody><equality>{ties}</equality></mujoco>""")
     data = module.MjData(made)
-    ups = [made.joint(f"j{k}").dofadr[0] for k in range(N + 1)]
+    ups = [made.joint(f"j{k}").dofadr[0] for k in range(BARS + 1)]
 
     def steps(count: int):
         module.mj_resetData(made, data)
         data.qvel[:] = 0.0
         for k, address in enumerate(ups):
             data.qvel[address] = -1.0
-            if k < N:
+            if k < BARS:
                 data.qvel[address + 1] = 1.0  # the bars across stay level
         module.mj_step(made, data, nstep=count)
         return data.qpos[ups[0]]

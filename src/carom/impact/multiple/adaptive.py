@@ -9,7 +9,7 @@ from carom._compiled.units import unit
 from carom.impact.multiple import events, law
 from carom.impact.multiple.by_series import series_step
 from carom.impact.multiple.by_stages import by_stages
-from carom.impact.multiple.layout import DISC_T, SAVED_D, SAVED_P, SAVED_WHEN, WHEN, D, P, U
+from carom.impact.multiple.layout import DISC_T, NOW_P, NOW_U, SAVED_D, SAVED_P, SAVED_WHEN, WHEN, D
 from carom.impact.multiple.motion import set_velocity
 
 ENDED, TRAPPED = 0, 1
@@ -30,7 +30,7 @@ def start(k, work):
     clock.steps, clock.events, clock.idle, clock.branched, clock.stiff = 0, 0, 0, 0, 0
     clock.rest, clock.cut, clock.stretched = 0, 0, 0
     for i in range(3 * k):
-        work.vector[P, i] = 0.0
+        work.vector[NOW_P, i] = 0.0
         work.vector[DISC_T, i] = 0.0  # a first guess, independent of other impacts
     for i in range(k):
         c = work.contact[i]
@@ -40,7 +40,7 @@ def start(k, work):
         work.vector[D, i] = 0.0
     set_velocity(k, work)
     for i in range(k):
-        if work.vector[U, 3 * i] <= APART:  # contacts at rest too, as forces may press them
+        if work.vector[NOW_U, 3 * i] <= APART:  # contacts at rest too, as forces may press them
             law.close(work.contact[i])
 
 
@@ -52,7 +52,7 @@ def branch(k, work, latest):
     clock.saved_stiff = clock.stiff
     clock.saved_idle = clock.idle
     for i in range(3 * k):
-        work.vector[SAVED_P, i] = work.vector[P, i]
+        work.vector[SAVED_P, i] = work.vector[NOW_P, i]
     for i in range(k):
         work.saved[i] = work.contact[i]
         work.vector[SAVED_D, i] = work.vector[D, i]
@@ -66,7 +66,7 @@ def resume(k, work, p):
     clock.step, clock.idle, clock.stiff = clock.saved_step, clock.saved_idle, clock.saved_stiff
     clock.rest, clock.cut, clock.stretched = 0, 0, 0
     for i in range(3 * k):
-        work.vector[P, i] = work.vector[SAVED_P, i]
+        work.vector[NOW_P, i] = work.vector[SAVED_P, i]
     for i in range(k):
         e = work.contact[i].e
         work.contact[i] = work.saved[i]
@@ -80,7 +80,7 @@ def resume(k, work, p):
 @inlined
 def drift(k, work, apart, p):
     """Return 1 if the event is over; if no force acts, move with constant velocities to the next closure."""
-    u, d = work.vector[U], work.vector[D]
+    u, d = work.vector[NOW_U], work.vector[D]
     for i in range(k):
         c = work.contact[i]
         forced = law.force(c, d[i], p) > events.ROUND_OFF
@@ -90,7 +90,7 @@ def drift(k, work, apart, p):
     for i in range(k):
         c = work.contact[i]
         if c.mode != law.OPEN:
-            law.release(c, d[i], work.vector[P, 3 * i], p)
+            law.release(c, d[i], work.vector[NOW_P, 3 * i], p)
         if u[3 * i] < -apart:
             time = min(time, max(0.0, c.d0 - d[i]) / -u[3 * i])
     if not time < math.inf:
@@ -115,7 +115,7 @@ def wedged(k, work, h, p):
     contacts keep their velocity too. At the deepest point all contacts may rest for an instant, so only rest
     during steps of some length counts; `h` is the last step.
     """
-    clock, u = work.clock[0], work.vector[U]
+    clock, u = work.clock[0], work.vector[NOW_U]
     for i in range(k):
         n, active = 3 * i, work.contact[i].mode != law.OPEN
         slip = abs(u[n + 1]) + abs(u[n + 2]) if active and work.contact[i].mu > 0.0 else 0.0

@@ -8,8 +8,9 @@ from carom._compiled.decorators import inlined, kernel
 from carom._compiled.simd import add, greatest, larger, load, multiply, same, store, subtract
 from carom.impact.multiple.lanes import blocks, values
 from carom.impact.multiple.layout import (
-    FINE,
     LANES,
+    NOW_P,
+    NOW_U,
     ONE_OVER,
     S_AT,
     S_D,
@@ -20,9 +21,8 @@ from carom.impact.multiple.layout import (
     S_U1,
     S_U2,
     SLIPPING,
+    SLOWNESS,
     D,
-    P,
-    U,
 )
 from carom.impact.multiple.series import slips
 
@@ -51,7 +51,7 @@ def _greatest(k, S, n):
     for b in range(blocks(k)):
         i = n * line + LANES * b
         x, y = load(S[S_U1], i), load(S[S_U2], i)
-        slip = multiply(load(S[S_LANE], FINE * line + LANES * b), larger(_size(x), _size(y)))
+        slip = multiply(load(S[S_LANE], SLOWNESS * line + LANES * b), larger(_size(x), _size(y)))
         most = larger(most, larger(slip, larger(_size(load(S[S_U], i)), _size(load(S[S_D], i)))))
     return greatest(most)
 
@@ -73,8 +73,8 @@ def move(k, work, degree, x):
             store(S[S_AT], 0, values(line, S[S_P + r], n, degree, x))
             store(S[S_AT], line, values(line, S[S_U + r], n, degree, x))
             for i in range(n, min(k, n + LANES)):
-                vector[P, 3 * i + r] = S[S_AT, 0, 0, i - n]
-                vector[U, 3 * i + r] = S[S_AT, 1, 0, i - n]
+                vector[NOW_P, 3 * i + r] = S[S_AT, 0, 0, i - n]
+                vector[NOW_U, 3 * i + r] = S[S_AT, 1, 0, i - n]
         store(vector[D], n, values(line, S[S_D], n, degree, x))
         if S[S_LANE, SLIPPING, b, 0] > 0.0:
             store(S[S_AT], 0, values(line, S[S_LOSS], n, degree, x))

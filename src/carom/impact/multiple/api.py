@@ -129,12 +129,11 @@ def resolve_impacts(
     divided among them.
     """
     from carom.impact.laws import NUMBERS
+    from carom.impact.layout import AT_ONCE, OK
     from carom.impact.multiple.layout import (
-        AT_ONCE,
         CAPPED,
         MESSAGES,
         MULTIPLE,
-        OK,
         CornerContacts,
         MultipleSettings,
         new_multiple_result,

@@ -17,20 +17,19 @@ from carom._compiled.units import unit
 from carom.friction.layout import CONE, ENOUGH, SOLVED
 from carom.friction.solve import solve_cones
 from carom.friction.strategy import allow
+from carom.impact.layout import AT_ONCE, PLASTIC
 from carom.impact.multiple.adaptive import start
 from carom.impact.multiple.layout import (
-    AT_ONCE,
     FACTOR,
     MASS,
     MISSED,
-    PLASTIC,
+    NOW_P,
+    NOW_U,
     SCRATCH,
     STACK,
     TRY,
     U0,
     WEIGHT,
-    P,
-    U,
 )
 from carom.impact.multiple.motion import set_velocity
 
@@ -64,7 +63,7 @@ def solve_group(k, work, cones):
         clock.change += _once(k, work, cones, turn)
         least = 0.0
         for i in range(k):
-            least = min(least, work.vector[U, 3 * i])
+            least = min(least, work.vector[NOW_U, 3 * i])
         if least >= -1e-10:
             break
 
@@ -100,7 +99,7 @@ def round_off(n, row, impulse):
 @kernel
 def _sound(k, work, change):
     """Return whether no contact approaches, and the `change` of energy is no rise, both beyond round-off."""
-    u, p, allowed, left = work.vector[U], work.vector[P], 0.0, 0.0
+    u, p, allowed, left = work.vector[NOW_U], work.vector[NOW_P], 0.0, 0.0
     for a in range(3 * k):
         own = round_off(3 * k, work.matrix[MASS, a], p)
         allowed += abs(p[a]) * (_GROWTH * abs(work.vector[U0, a]) + own)
@@ -112,7 +111,7 @@ def _sound(k, work, change):
 @kernel
 def _once(k, work, cones, turn):
     """Solve the contact problem once; from the third turn on without friction. Return the change of energy."""
-    n, u, before, impulse = 3 * k, work.vector[U], work.vector[SCRATCH], work.vector[TRY]
+    n, u, before, impulse = 3 * k, work.vector[NOW_U], work.vector[SCRATCH], work.vector[TRY]
     for i in range(n):
         before[i] = u[i]
         impulse[i] = 0.0
@@ -152,7 +151,7 @@ def _take(k, work, solved):
     _add(k, work, 1.0)
     for i in range(3 * k):
         slope += impulse[i] * before[i]
-        curve += impulse[i] * (work.vector[U, i] - before[i])
+        curve += impulse[i] * (work.vector[NOW_U, i] - before[i])
     if not solved and slope + 0.5 * curve > 0.0:
         part = min(1.0, max(0.0, -slope / curve)) if curve > 0.0 else 0.0
         _add(k, work, part - 1.0)
@@ -165,5 +164,5 @@ def _take(k, work, solved):
 def _add(k, work, part):
     """Add a part of the impulse."""
     for i in range(3 * k):
-        work.vector[P, i] += part * work.vector[TRY, i]
+        work.vector[NOW_P, i] += part * work.vector[TRY, i]
     set_velocity(k, work)

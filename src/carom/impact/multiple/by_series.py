@@ -8,7 +8,7 @@ from carom._compiled.decorators import inlined, kernel
 from carom.impact.multiple import along, events
 from carom.impact.multiple import series as taylor
 from carom.impact.multiple.grip import first_slip, gather_stuck, halt
-from carom.impact.multiple.layout import LANES, S_SIGMA, S_U1, S_U2, WEIGHT, WHEN, U
+from carom.impact.multiple.layout import LANES, NOW_U, S_SIGMA, S_U1, S_U2, WEIGHT, WHEN
 
 AT_REST = 1e-10  # slip below this velocity, or below 0.1 rtol, has ended
 _FEWER = 2  # orders of the series that are left out if it reaches a change of mode without them
@@ -22,7 +22,7 @@ def series_step(k, work, rtol):
 
     The length is -1 if the step has to be taken by stages.
     """
-    clock, when, u = work.clock[0], work.vector[WHEN], work.vector[U]
+    clock, when, u = work.clock[0], work.vector[WHEN], work.vector[NOW_U]
     least = max(AT_REST, 0.1 * rtol)
     captured = False
     for i in range(k):

@@ -9,7 +9,7 @@ from carom._compiled.units import unit
 from carom.impact.multiple import events, law
 from carom.impact.multiple.by_series import AT_REST
 from carom.impact.multiple.implicit import advance, implicit_step, interpolate
-from carom.impact.multiple.layout import DISC, DISC_T, FORCE, MASS, NEW_D, NEW_U, WHEN, D
+from carom.impact.multiple.layout import DISC_T, FORCE, IN_DISC, MASS, NEW_D, NEW_U, WHEN, D
 from carom.impact.multiple.motion import friction_now, gather_discs, normal_forces, set_velocity
 
 _LEAST_STEP = 1e-9
@@ -96,7 +96,7 @@ def _land(k, m, work, h, p, tolerance, residual):
 @kernel
 def _sticks(s, work, slow):
     """Return 1 if disc `s` ends the step at rest, with friction inside the disc."""
-    t, i = work.vector[DISC_T], work.index[DISC, s]
+    t, i = work.vector[DISC_T], work.index[IN_DISC, s]
     u, n = work.vector[NEW_U], work.stage[FORCE, 5, 3 * i]
     size = math.sqrt(t[2 * s] * t[2 * s] + t[2 * s + 1] * t[2 * s + 1])
     speed = math.sqrt(u[3 * i + 1] * u[3 * i + 1] + u[3 * i + 2] * u[3 * i + 2])
@@ -107,7 +107,7 @@ def _sticks(s, work, slow):
 def regime_changes(m, work, slow):
     """Return whether a contact begins or ceases to stick in the step: its error estimate is then too small."""
     for s in range(m):
-        if work.contact[work.index[DISC, s]].sticks != _sticks(s, work, slow):
+        if work.contact[work.index[IN_DISC, s]].sticks != _sticks(s, work, slow):
             return True
     return False
 
@@ -116,4 +116,4 @@ def regime_changes(m, work, slow):
 def set_regime(m, work, slow):
     """Note which contacts stick."""
     for s in range(m):
-        work.contact[work.index[DISC, s]].sticks = _sticks(s, work, slow)
+        work.contact[work.index[IN_DISC, s]].sticks = _sticks(s, work, slow)

@@ -19,7 +19,7 @@ from carom.impact.multiple.layout import (
     DISC_T,
     DISC_TRY,
     DISC_W,
-    PIVOT,
+    PIVOTS,
     RADIUS,
 )
 
@@ -116,7 +116,7 @@ def mismatch(m, A, radius, t, w, f):
 @kernel
 def _newton_step(m, A, J, vector, index):
     """Write the solution of (I - M + s M (A + eps)) step = -f, M the derivative of the projection."""
-    n, pivot, radius, step = 2 * m, index[PIVOT], vector[RADIUS], vector[DISC_STEP]
+    n, pivot, radius, step = 2 * m, index[PIVOTS], vector[RADIUS], vector[DISC_STEP]
     t, w, f = vector[DISC_T], vector[DISC_W], vector[DISC_F]
     for i in range(m):
         a, b = 2 * i, 2 * i + 1

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.impact.multiple.layout import CLASS, FIRST, GROUP, PRESSED, SIZE, STACK
+from carom.impact.multiple.layout import CLASS, CLASS_SIZE, FIRST_MEMBER, GROUP, PRESSED, STACK
 
 SAME = 1e-11  # smaller relative differences of velocities and inverse masses are round-off
 _NONE = 1e-13  # coupling below this part of the diagonal is round-off
@@ -60,7 +60,7 @@ def clean(given, acting):
 @kernel
 def find_classes(contacts, scale_u, index):
     """Write the class of each contact, and the first member and size of each class; return their number."""
-    k, cls, first, count = contacts.k, index[CLASS], index[FIRST], 0
+    k, cls, first, count = contacts.k, index[CLASS], index[FIRST_MEMBER], 0
     for i in range(k):
         cls[i] = -1
         for q in range(count):
@@ -79,16 +79,16 @@ def find_classes(contacts, scale_u, index):
         else:
             q += 1
     for q in range(count):
-        index[SIZE, q] = 0
+        index[CLASS_SIZE, q] = 0
     for i in range(k):
-        index[SIZE, cls[i]] += 1
+        index[CLASS_SIZE, cls[i]] += 1
     return count
 
 
 @kernel
 def _split(contacts, q, count, index):
     """Move the members of class `q` with another coupling than its first to a class `count`; return if any."""
-    cls, first, found = index[CLASS], index[FIRST], False
+    cls, first, found = index[CLASS], index[FIRST_MEMBER], False
     for i in range(first[q] + 1, contacts.k):
         if cls[i] == q and not _same_coupling(contacts, count, i, first[q], index):
             if not found:
@@ -111,7 +111,7 @@ def friction_sleeps(contacts, count, index):
         for r in range(1, 3 if contacts.friction[i] > 0.0 else 1):
             row = contacts.W[3 * i + r]
             for q in range(count):
-                tolerance = SAME * _coupling_scale(contacts.W, i, index[FIRST, q])
+                tolerance = SAME * _coupling_scale(contacts.W, i, index[FIRST_MEMBER, q])
                 if not abs(_of_class(contacts.k, row, q, index[CLASS])) <= tolerance:
                     return False
     return True
@@ -162,7 +162,7 @@ def _same_coupling(contacts, count, i, j, index):
     """Return whether contacts i and j are coupled to each class in the same way."""
     k, W, cls = contacts.k, contacts.W, index[CLASS]
     for q in range(count):
-        tolerance = SAME * _coupling_scale(W, j, index[FIRST, q])
+        tolerance = SAME * _coupling_scale(W, j, index[FIRST_MEMBER, q])
         for r in range(3):
             for s in range(3):
                 difference = _difference(k, W[3 * i + r], W[3 * j + r], s, q, cls[j] == q, cls)
@@ -190,7 +190,7 @@ def class_coupling(k, W, index, p, q, r, s):
             for j in range(k):
                 if index[CLASS, j] == q:
                     total += W[3 * i + r, 3 * j + s]
-    return total / (index[SIZE, p] * index[SIZE, q])
+    return total / (index[CLASS_SIZE, p] * index[CLASS_SIZE, q])
 
 
 @kernel
@@ -247,7 +247,7 @@ def find_groups(k, count, W, index):
         group[q] = -1
     groups = 0
     for start in range(count):
-        if group[start] >= 0 or index[PRESSED, index[FIRST, start]] == 0:
+        if group[start] >= 0 or index[PRESSED, index[FIRST_MEMBER, start]] == 0:
             continue
         group[start] = groups
         stack[0] = start

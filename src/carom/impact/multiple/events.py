@@ -6,11 +6,11 @@ from carom._compiled.decorators import inlined, kernel
 from carom._compiled.simd import store
 from carom.impact.multiple import law
 from carom.impact.multiple.lanes import blocks, value_and_slope, values
-from carom.impact.multiple.layout import AT_D, AT_U, LANES, S_AT, S_D, S_U, D, P
+from carom.impact.multiple.layout import AT_D, AT_U, LANES, NOW_P, S_AT, S_D, S_U, D
 
 ROUND_OFF = 1e-13  # relative to the scales of velocity and depth
 SAME_TIME = 1e-10  # changes closer than this in time are simultaneous
-_SAMPLES = 5
+_EVENT_SAMPLES = 5
 
 
 @kernel
@@ -55,8 +55,8 @@ def find_changes(k, work, degree, end, when):
     d, u = work.series[S_AT, AT_D], work.series[S_AT, AT_U]
     for i in range(k):
         when[i] = first
-    for s in range(_SAMPLES):
-        x = end if s == _SAMPLES - 1 else end * ((s + 1) / _SAMPLES)
+    for s in range(_EVENT_SAMPLES):
+        x = end if s == _EVENT_SAMPLES - 1 else end * ((s + 1) / _EVENT_SAMPLES)
         if any_change(k, work, degree, x):
             for i in range(k):
                 c, b, l = work.contact[i], i // LANES, i % LANES
@@ -122,7 +122,7 @@ def change_modes(k, work, when, latest, p, one_only):
         if not when[i] <= latest:
             continue
         c = work.contact[i]
-        d, p_n = work.vector[D, i], work.vector[P, 3 * i]
+        d, p_n = work.vector[D, i], work.vector[NOW_P, 3 * i]
         count += 1
         if c.mode == law.OPEN:
             law.close(c)

@@ -19,6 +19,8 @@ from carom.impact.multiple.layout import (
     LEFT,
     MASS,
     MIDDLE,
+    NOW_P,
+    NOW_U,
     S_P,
     S_P1,
     S_P2,
@@ -26,14 +28,12 @@ from carom.impact.multiple.layout import (
     STICK_T,
     STUCK,
     D,
-    P,
-    U,
 )
 from carom.impact.multiple.motion import set_velocity
 from carom.impact.multiple.series import stick
 
 _EMPTY = 1e-11  # directions with pivots below this part of the largest are redundant
-_SAMPLES = 5
+_GRIP_SAMPLES = 5
 _MOMENT = 0.3  # the moment ahead, in units of the time of the fastest contact
 
 
@@ -56,7 +56,7 @@ def gather_stuck(k, work):
 @kernel
 def _bearing(z, work, weight):
     """Write (mu N)^2 of the sticking contacts, relative to the greatest, a moment ahead or at an opening."""
-    d, u, slot = work.vector[D], work.vector[U], work.index[STUCK]
+    d, u, slot = work.vector[D], work.vector[NOW_U], work.index[STUCK]
     moment = _MOMENT
     for a in range(z):
         i = slot[a]
@@ -194,11 +194,11 @@ def solve_cholesky(n, M, x):
 @kernel
 def halt(k, z, work):
     """Bring the sticking contacts to rest: an impulse removes the rest of their velocity."""
-    stick(k, z, work, work.vector[P], work.vector[U])
+    stick(k, z, work, work.vector[NOW_P], work.vector[NOW_U])
     set_velocity(k, work)
     for b in range(z):
         n = 3 * work.index[STUCK, b]
-        work.vector[U, n + 1], work.vector[U, n + 2] = 0.0, 0.0
+        work.vector[NOW_U, n + 1], work.vector[NOW_U, n + 2] = 0.0, 0.0
 
 
 @kernel
@@ -236,8 +236,8 @@ def first_slip(z, work, degree, end):
         i = work.index[STUCK, b]
         c = work.contact[i]
         low = 0.0
-        for s in range(_SAMPLES):
-            high = end * ((s + 1) / _SAMPLES)
+        for s in range(_GRIP_SAMPLES):
+            high = end * ((s + 1) / _GRIP_SAMPLES)
             if excess(c, i, S, degree, high) > 0.0:
                 low = _last_hold(c, i, S, degree, low, high, 1e-12 * end)
                 first = min(first, low)

@@ -14,26 +14,26 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.impact.multiple.discs import friction
 from carom.impact.multiple.layout import (
-    DISC,
     DISC_C,
     DISC_T,
     DISCS,
     ERROR,
     FORCE,
+    IN_DISC,
     JACOBIAN,
     LANES,
     MASS,
     NEW_D,
     NEW_P,
     NEW_U,
+    NOW_P,
+    NOW_U,
     RADIUS,
     S_D,
     S_U,
     SCRATCH,
     STAGE,
     D,
-    P,
-    U,
 )
 from carom.impact.multiple.motion import add_velocity, normal_forces
 
@@ -76,7 +76,7 @@ def implicit_step(k, m, work, h, p, tolerance):
     n = 3 * k
     force, rate, W = work.stage[FORCE], work.stage[STAGE], work.matrix[MASS]
     vector = work.vector
-    u, u1, q = vector[U], vector[NEW_U], vector[SCRATCH]
+    u, u1, q = vector[NOW_U], vector[NEW_U], vector[SCRATCH]
     for i in range(k):
         rate[0, i] = -u[3 * i]
         rate[0, k + i] = -(force[0, 3 * i + 1] * u[3 * i + 1] + force[0, 3 * i + 2] * u[3 * i + 2])
@@ -101,7 +101,7 @@ def implicit_step(k, m, work, h, p, tolerance):
             a = 3 * i
             rate[s, i] = -u1[a]
             rate[s, k + i] = -(force[s, a + 1] * u1[a + 1] + force[s, a + 2] * u1[a + 2])
-    p0, p1, error = vector[P], vector[NEW_P], vector[ERROR]
+    p0, p1, error = vector[NOW_P], vector[NEW_P], vector[ERROR]
     for i in range(n):
         total, wrong = 0.0, 0.0
         for s in range(6):
@@ -127,7 +127,7 @@ def implicit_step(k, m, work, h, p, tolerance):
 @kernel
 def _friction(k, m, work, step, force, u, tolerance):
     """Add friction to `force`, and its effect within `step` to `u`."""
-    slot, vector = work.index[DISC], work.vector
+    slot, vector = work.index[IN_DISC], work.vector
     c, t = vector[DISC_C], vector[DISC_T]
     largest = 0.0
     for s in range(m):
@@ -152,7 +152,7 @@ def advance(k, work, h):
     """Make the new state the present one; add the friction loss."""
     rate, vector = work.stage[STAGE], work.vector
     for i in range(3 * k):
-        vector[P, i] = vector[NEW_P, i]
+        vector[NOW_P, i] = vector[NEW_P, i]
     for i in range(k):
         vector[D, i] = vector[NEW_D, i]
         loss = 0.0
@@ -177,7 +177,7 @@ def interpolate(k, work, h):
     d, u = work.series[S_D], work.series[S_U]
     for i in range(k):
         n, b, l = 3 * i, i // LANES, i % LANES
-        y0, v0, w0 = vector[D, i], -vector[U, n], -a0[n]
+        y0, v0, w0 = vector[D, i], -vector[NOW_U, n], -a0[n]
         y1, v1, w1 = vector[NEW_D, i], -vector[NEW_U, n], -a1[n]
         # Differences at the end from the Taylor polynomial at the start, times powers of h.
         e0 = y1 - y0 - h * (v0 + 0.5 * h * w0)

@@ -9,26 +9,23 @@ import numpy as np
 from carom._compiled.record_arrays import table
 from carom._compiled.simd import LANES
 from carom.friction.layout import ContactWork, new_contact_work
-from carom.impact import layout as one
+from carom.impact.layout import BAD_INPUT, SIZE
 
 SIMULTANEOUS, SEQUENTIAL, BY_NEWTON = 0, 1, 2
 MULTIPLE = {"simultaneous": SIMULTANEOUS, "sequential": SEQUENTIAL, "newton": BY_NEWTON}
 
-OK = 0
-BAD_INPUT = 1  #: a number is not finite, or a law or a coefficient is out of its range
-NOT_RESOLVED = 2  #: after every method some contact still approaches
+#: beside those of `carom.impact.layout`: after every method some contact still approaches
+NOT_RESOLVED = 2
 
 MESSAGES = {
     BAD_INPUT: "a number is not finite or out of its range",
     NOT_RESOLVED: "with every method some contacts still approach at the end",
 }
 
-# Bits of `marks`.
-PLASTIC = one.PLASTIC  #: the plastic event, because a body is trapped or all e are 0
+# Bits of `marks`, beside AT_ONCE and PLASTIC of `carom.impact.layout`.
 MISSED = 2  #: the law of Newton or Poisson was not satisfied; the nearest result or Stronge's law was used
 CAPPED = 4  #: the law of a contact requires e_* > 1, and is not satisfied: energy cannot grow
 EXACT = 16  #: contacts that move alike, resolved exactly as one
-AT_ONCE = one.AT_ONCE  #: the passage of the layer failed; one contact problem was solved instead
 REPELLED = 32  #: the impulse was changed by round-off, so that energy does not grow
 
 
@@ -152,18 +149,20 @@ BLOW_U, BLOW_FRICTION, BLOW_RESTITUTION, BLOW_STIFFNESS = range(4)
 #: rows of `index`: class of a contact, first member of a class, its size, its group, members of
 #: a group, a stack, contacts of the discs, contacts that stick, pivots, contacts that are closed,
 #: 1 for those that some force can press
-CLASS, FIRST, SIZE, GROUP, MEMBER, STACK, DISC, STUCK, PIVOT, CLOSED, PRESSED = range(11)
+CLASS, FIRST_MEMBER, CLASS_SIZE, GROUP, MEMBER, STACK, IN_DISC, STUCK, PIVOTS, CLOSED, PRESSED = (
+    range(11)
+)
 #: `matrix`: W of all contacts, cleaned; W of the group, scaled; W_tt of the discs; Newton's matrix; H of the
 #: sticking contacts, and two to find it; the inverse Jacobian of the outer iteration; W of one contact
 CLEAN, MASS, DISCS, JACOBIAN, HOLDING, FACTOR, MIDDLE, INVERSE, SINGLE = range(9)
 #: rows of `vector`. Velocities before, impulse, velocity; the same at the end of a step
-U0, P, U, NEW_P, NEW_U, D, NEW_D, SAVED_P, SAVED_D, WHEN, SCRATCH, ERROR, TRY = range(13)
+U0, NOW_P, NOW_U, NEW_P, NEW_U, D, NEW_D, SAVED_P, SAVED_D, WHEN, SCRATCH, ERROR, TRY = range(13)
 #: of the discs: given c, friction T, w = A T + c, mismatch, step, trial, radii
 DISC_C, DISC_T, DISC_W, DISC_F, DISC_STEP, DISC_TRY, RADIUS = range(13, 20)
 #: velocities of contacts that jam, with a seed
 SEEDED = 32
 #: friction where it acts, otherwise 0
-FRICTION = 33
+ACTING_MU = 33
 #: of the series and of stick
 WEIGHT, SCALE, LEFT, STICK_T = range(20, 24)
 #: of the outer iteration: ln e_*, misses, new misses, step, change of misses, a product, best e_*, its misses
@@ -182,7 +181,7 @@ S_U, S_U1, S_U2, S_P, S_P1, S_P2, S_D, S_N, S_Q, S_R, S_F, S_FS, S_G, S_LOSS, S_
 S_LANE, S_AT = 16, 17
 #: rows of S_LANE: stiffness, mu where a contact slips, 1/|u_t| there, the rates c_i of stretched time,
 #: the weight of errors of slow slip, whether any contact of a block slips
-SLOPE, ROUGH, ONE_OVER, PULL, FINE, SLIPPING = range(6)
+SLOPE, ROUGH, ONE_OVER, PULL, SLOWNESS, SLIPPING = range(6)
 #: rows of S_AT, values at one instant: depth, normal velocity
 AT_D, AT_U = 0, 1
 FORCE, STAGE = 0, 1  # of `stage`
@@ -229,23 +228,15 @@ def new_multiple_workspace(capacity: int) -> MultipleWorkspace:
     k = max(int(capacity), 1)
     n, blocks = 3 * k, (k + LANES - 1) // LANES
     work = PassageWork(
-        contact=table(CONTACT, k),
-        saved=table(CONTACT, k),
-        clock=table(CLOCK, 1),
-        index=np.zeros((11, n), dtype=np.int64),
-        matrix=np.zeros((9, n, n)),
-        vector=np.zeros((39, 3 * LANES * blocks)),
-        series=np.zeros((18, ORDERS, blocks, LANES)),
-        columns=np.zeros((n, 3 * blocks, LANES)),
-        stage=np.zeros((2, 6, n)),
-        single=np.zeros(one.SIZE),
-    )
+        contact=table(CONTACT, k), saved=table(CONTACT, k), clock=table(CLOCK, 1),
+        index=np.zeros((11, n), dtype=np.int64), matrix=np.zeros((9, n, n)),
+        vector=np.zeros((39, 3 * LANES * blocks)), series=np.zeros((18, ORDERS, blocks, LANES)),
+        columns=np.zeros((n, 3 * blocks, LANES)), stage=np.zeros((2, 6, n)),
+        single=np.zeros(SIZE),
+    )  # fmt: skip
     work.clock["left"] = UNLIMITED
     blow = BlowWork(
-        member=np.zeros(k, dtype=np.int64),
-        W=np.zeros((n, n)),
-        given=np.zeros((4, n)),
-        law=np.zeros((2, k), dtype=np.int64),
-        result=new_multiple_result(k),
-    )
+        member=np.zeros(k, dtype=np.int64), W=np.zeros((n, n)), given=np.zeros((4, n)),
+        law=np.zeros((2, k), dtype=np.int64), result=new_multiple_result(k),
+    )  # fmt: skip
     return MultipleWorkspace(work, new_contact_work(k), blow)

@@ -9,18 +9,18 @@ from carom.impact.multiple.discs import friction
 from carom.impact.multiple.lanes import blocks
 from carom.impact.multiple.law import OPEN, force
 from carom.impact.multiple.layout import (
-    DISC,
     DISC_C,
     DISC_T,
     DISCS,
+    IN_DISC,
     JACOBIAN,
     LANES,
     MASS,
+    NOW_P,
+    NOW_U,
     RADIUS,
     SCRATCH,
     U0,
-    P,
-    U,
 )
 
 
@@ -37,10 +37,10 @@ def add_velocity(n, W, impulse, u):
 @kernel
 def set_velocity(k, work):
     """Write u = u0 + W P, so that momentum is exact at every step."""
-    u, u0 = work.vector[U], work.vector[U0]
+    u, u0 = work.vector[NOW_U], work.vector[U0]
     for i in range(3 * k):
         u[i] = u0[i]
-    add_velocity(3 * k, work.matrix[MASS], work.vector[P], u)
+    add_velocity(3 * k, work.matrix[MASS], work.vector[NOW_P], u)
 
 
 @kernel
@@ -59,7 +59,7 @@ def into_lanes(k, work):
 @kernel
 def gather_discs(k, work):
     """List the closed contacts with friction and write their W_tt; return their number."""
-    slot, A, W, m = work.index[DISC], work.matrix[DISCS], work.matrix[MASS], 0
+    slot, A, W, m = work.index[IN_DISC], work.matrix[DISCS], work.matrix[MASS], 0
     for i in range(k):
         if work.contact[i].mode != OPEN and work.contact[i].mu > 0.0:
             slot[m] = i
@@ -94,8 +94,9 @@ def friction_now(k, m, work, horizon, slow, tolerance, out):
     """
     if m == 0:
         return
-    slot, vector = work.index[DISC], work.vector
-    u, c, t, radius, a = vector[U], vector[DISC_C], vector[DISC_T], vector[RADIUS], vector[SCRATCH]
+    slot, vector = work.index[IN_DISC], work.vector
+    u, c, t = vector[NOW_U], vector[DISC_C], vector[DISC_T]
+    radius, a = vector[RADIUS], vector[SCRATCH]
     for i in range(3 * k):
         a[i] = 0.0
     add_velocity(3 * k, work.matrix[MASS], out, a)

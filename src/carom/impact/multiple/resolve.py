@@ -7,10 +7,11 @@ import math
 from carom._compiled.decorators import by_reference, entry, kernel
 from carom.impact import laws
 from carom.impact import layout as one
+from carom.impact.layout import BAD_INPUT, OK, PLASTIC
 from carom.impact.multiple import equal_contacts
 from carom.impact.multiple.at_once import unsound
 from carom.impact.multiple.layout import (
-    BAD_INPUT,
+    ACTING_MU,
     BLOW_FRICTION,
     BLOW_RESTITUTION,
     BLOW_STIFFNESS,
@@ -18,24 +19,21 @@ from carom.impact.multiple.layout import (
     BY_NEWTON,
     CAPPED,
     CLASS,
+    CLASS_SIZE,
     CLEAN,
     EXACT,
-    FIRST,
-    FRICTION,
+    FIRST_MEMBER,
     GROUP,
     MASS,
     MEMBER,
     MISSED,
     NOT_RESOLVED,
-    OK,
-    PLASTIC,
+    NOW_P,
     REPELLED,
     SINGLE,
-    SIZE,
     TRY,
     U0,
     CornerContacts,
-    P,
 )
 from carom.impact.multiple.one import resolve_single
 from carom.impact.multiple.passage import at_once, pass_group
@@ -100,8 +98,8 @@ def _together(contacts, scale, settings, workspace, out):
     index, clean = work.index, work.matrix[CLEAN]
     acting = by_reference(
         CornerContacts(
-            k, contacts.others, clean, contacts.u, work.vector[FRICTION], contacts.restitution, contacts.law,
-            contacts.stiffness, contacts.pair,
+            k, contacts.others, clean, contacts.u, work.vector[ACTING_MU],
+            contacts.restitution, contacts.law, contacts.stiffness, contacts.pair,
         )
     )  # fmt: skip
     result.classes = equal_contacts.reduce(contacts, acting, scale, index)
@@ -178,9 +176,9 @@ def _group(g, contacts, still, by_newton, settings, workspace, out):
     for i in range(contacts.k):
         for a in range(n):
             if index[CLASS, i] == index[MEMBER, a]:
-                c, share = work.contact[a], 1.0 / index[SIZE, index[MEMBER, a]]
+                c, share = work.contact[a], 1.0 / index[CLASS_SIZE, index[MEMBER, a]]
                 for r in range(3):
-                    out.impulse[3 * i + r] = work.vector[P, 3 * a + r] * share * speed / mass
+                    out.impulse[3 * i + r] = work.vector[NOW_P, 3 * a + r] * share * speed / mass
                 out.compression[i] = -max(0.0, c.absorbed) * share * energy
                 out.restitution[i] = max(0.0, c.returned) * share * energy
                 out.friction[i] = max(0.0, c.loss) * share * energy
@@ -196,7 +194,7 @@ def _gather(g, contacts, still, classes, work):
         if index[GROUP, q] == g:
             index[MEMBER, n] = q
             n += 1
-            strikes = strikes or contacts.u[3 * index[FIRST, q]] < -still
+            strikes = strikes or contacts.u[3 * index[FIRST_MEMBER, q]] < -still
     if not strikes:
         return 0
     for a in range(n):
@@ -217,12 +215,12 @@ def _fill(n, contacts, still, exponent, work):
     index, W = work.index, work.matrix[MASS]
     mass, speed, most, stiff = 0.0, 0.0, 0.0, 0.0
     for a in range(n):
-        i = index[FIRST, index[MEMBER, a]]
+        i = index[FIRST_MEMBER, index[MEMBER, a]]
         mass = max(mass, W[3 * a, 3 * a])
         speed = max(speed, -u[3 * i])
         for r in range(3 if mu[i] > 0.0 else 1):
             most = max(most, abs(u[3 * i + r]))
-        stiff = max(stiff, kappa[i] * index[SIZE, index[MEMBER, a]] * W[3 * a, 3 * a])
+        stiff = max(stiff, kappa[i] * index[CLASS_SIZE, index[MEMBER, a]] * W[3 * a, 3 * a])
     if not (mass > 0.0 and stiff > 0.0):
         return 0.0, 0.0, 0.0
     speed = max(speed, 1e-3 * most)
@@ -232,11 +230,11 @@ def _fill(n, contacts, still, exponent, work):
             row[b] /= mass
     for a in range(n):
         q = index[MEMBER, a]
-        i = index[FIRST, q]
+        i = index[FIRST_MEMBER, q]
         c = work.contact[a]
         c.mu, c.restitution, c.law = mu[i], contacts.restitution[i], contacts.law[i]
-        c.e, c.members = c.restitution, index[SIZE, q]
-        c.root = (kappa[i] * index[SIZE, q] * mass / stiff) ** (1.0 / exponent)
+        c.e, c.members = c.restitution, index[CLASS_SIZE, q]
+        c.root = (kappa[i] * index[CLASS_SIZE, q] * mass / stiff) ** (1.0 / exponent)
         c.grip = mu[i] * (W[3 * a + 1, 3 * a + 1] + W[3 * a + 2, 3 * a + 2])
         for r in range(3):
             work.vector[U0, 3 * a + r] = u[3 * i + r] / speed if r == 0 or mu[i] > 0.0 else 0.0
@@ -256,7 +254,7 @@ def _exactly(contacts, still, work, out):
     """
     index, W, before = work.index, work.matrix[SINGLE], work.vector[TRY]
     q = index[MEMBER, 0]
-    i = index[FIRST, q]
+    i = index[FIRST_MEMBER, q]
     mu, e, law = contacts.friction[i], contacts.restitution[i], contacts.law[i]
     parts = equal_contacts.parts_others(contacts.k, contacts.W, i, index)
     if parts and not e > 0.0:
@@ -274,7 +272,7 @@ def _exactly(contacts, still, work, out):
         summary.marks |= CAPPED
     if clock[0].code != one.OK:
         return NOT_RESOLVED
-    share = 1.0 / index[SIZE, q]
+    share = 1.0 / index[CLASS_SIZE, q]
     for j in range(contacts.k):
         if index[CLASS, j] == q:
             for r in range(3):

@@ -15,6 +15,7 @@ from carom.impact import laws
 from carom.impact.multiple.law import E_MIN
 from carom.impact.multiple.layout import (
     INVERSE,
+    NOW_U,
     OUT_BEST,
     OUT_BEST_F,
     OUT_DF,
@@ -25,7 +26,6 @@ from carom.impact.multiple.layout import (
     OUT_NEW,
     OUT_V,
     OUT_X,
-    U,
 )
 
 _FARTHEST = 1.5  # greatest |ln(target/reached)| and step that is believed
@@ -71,7 +71,7 @@ def misses(k, work, out):
         if not has_target(c) or c.wedged == 1:  # no e_* separates a wedged contact
             continue
         target = laws.goal(c.law, c.restitution, c.approach, c.loading, 0.0)
-        reached = work.vector[U, 3 * i] if c.law in laws.BY_SPEED else c.unloading
+        reached = work.vector[NOW_U, 3 * i] if c.law in laws.BY_SPEED else c.unloading
         if not target > 0.0:
             continue
         miss = _FARTHEST

@@ -16,10 +16,11 @@ from carom.impact.multiple.lanes import blocks, product
 from carom.impact.multiple.law import OPEN
 from carom.impact.multiple.layout import (
     CLOSED,
-    FINE,
     HOLDING,
     LANES,
     MASS,
+    NOW_P,
+    NOW_U,
     ONE_OVER,
     ORDER_P,
     ORDER_U,
@@ -44,12 +45,11 @@ from carom.impact.multiple.layout import (
     S_U2,
     SLIPPING,
     SLOPE,
+    SLOWNESS,
     STICK_T,
     STUCK,
     WEIGHT,
     D,
-    P,
-    U,
 )
 
 _NEAR = 0.3  # a time ahead, for the force of a contact that is closing
@@ -78,7 +78,7 @@ def likely_force(c, d, u_n):
 def stretch_weights(k, work):
     """Write c_i, the rate at which a contact's own friction can change its slip; return if any matters."""
     stretched = False
-    u, d, weights = work.vector[U], work.vector[D], work.vector[WEIGHT]
+    u, d, weights = work.vector[NOW_U], work.vector[D], work.vector[WEIGHT]
     for i in range(k):
         weights[i] = 0.0
         c = work.contact[i]
@@ -102,8 +102,8 @@ def begin(k, work, stretched):
             slope, rest, rough, inverse, fine, r = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
             pull = 0.0
             for s in range(3):
-                S[S_U + s, 0, b, l] = vector[U, 3 * i + s] if i < k else 0.0
-                S[S_P + s, 0, b, l] = vector[P, 3 * i + s] if i < k else 0.0
+                S[S_U + s, 0, b, l] = vector[NOW_U, 3 * i + s] if i < k else 0.0
+                S[S_P + s, 0, b, l] = vector[NOW_P, 3 * i + s] if i < k else 0.0
             S[S_D, 0, b, l] = vector[D, i] if i < k else 0.0
             S[S_LOSS, 0, b, l] = 0.0
             if i < k:
@@ -121,7 +121,7 @@ def begin(k, work, stretched):
             S[S_R, 0, b, l] = r
             S[S_G, 0, b, l] = inverse
             lane[SLOPE, b, l], lane[ROUGH, b, l], lane[ONE_OVER, b, l] = slope, rough, inverse
-            lane[PULL, b, l], lane[FINE, b, l] = pull, fine
+            lane[PULL, b, l], lane[SLOWNESS, b, l] = pull, fine
         v = lane[ONE_OVER, b]
         lane[SLIPPING, b, 0] = v[0] + v[1] + v[2] + v[3]
     return closed

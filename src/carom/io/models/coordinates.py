@@ -8,19 +8,43 @@ from carom.geometry import quaternion
 from carom.io.models.build import Build, Coordinate
 from carom.io.models.links import Link, called, name_of
 from carom.io.models.report import need_mujoco
-from carom.scene import forces
+from carom.scene import constraints, forces
 from carom.scene.bodies import GROUND
 
 RELAXED = 1e-9  # angle, or distance by the extent of the model, within which a mount starts relaxed
+#: rate [1/s] at which a damper ends the motion of its joint, above which the joint is held: steps that resolve
+#: it are below a microsecond, and what forces then move is below their size by as much
+HELD = 1e7
 
 
 def add_coordinate_parts(build: Build, restitution: float, impact_law: str, armature: bool) -> None:
     """Add the parts that act along each hinge and slide."""
     for j, coordinate in build.coordinates.items():
+        if _held(build, j, coordinate):
+            continue
         _spring(build, j, coordinate)
         _friction(build, j, coordinate)
         _stops(build, j, coordinate, restitution, impact_law)
         _armature(build, j, coordinate, armature)
+
+
+def _held(build: Build, j: int, c: Coordinate) -> bool:
+    """Hold a joint at its start if its damper lets nothing move it, as models fix a base; return whether so."""
+    model, dof = build.model, build.model.jnt_dofadr[j]
+    damping = float(model.dof_damping[dof])
+    rate = damping * float(
+        model.dof_invweight0[dof]
+    )  # by the inverse inertia that forces on it meet
+    if rate <= HELD:
+        return False
+    name = build.names.new(f"{name_of(model, 'joint', j)}:held", "constraint")
+    build.scene.add_constraint(constraints.Driver(c.joint, 0.0, coordinate=c.index), name=name)
+    build.report.add(
+        called(model, "joint", j),
+        f"a damping of {damping:g}, which ends its motion within {1.0 / rate:.1g} s",
+        "it is held where it starts",
+    )
+    return True
 
 
 def _spring(build: Build, j: int, c: Coordinate) -> None:

@@ -61,9 +61,8 @@ def _connected(build: Build, e: int) -> tuple[int, int, Frame, Frame]:
 def _welded(build: Build, e: int) -> tuple[int, int, Frame, Frame]:
     """Return both bodies and the frames of the world that are to be one."""
     first, second, frames = _sides(build, e)
-    if (
-        frames is None
-    ):  # the second stands at the first times `turn`; points: of the second, the first
+    # the second stands at the first times `turn`; points: of the second, the first
+    if frames is None:
         given = build.model.eq_data[e]
         turn = quaternion.normalize(given[6:10])
         frames = [

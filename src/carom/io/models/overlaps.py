@@ -15,7 +15,7 @@ from carom.scene.contacts import far, overlap
 from carom.scene.contacts import place as place_of
 from carom.scene.shapes import Shape
 
-ROUNDS = 20
+OVERLAP_ROUNDS = 20
 Covers = dict[int, tuple[Shape | None, list[int]]]
 
 
@@ -31,7 +31,7 @@ def lift_out(build: Build, links: list[Link], covers: Covers, standing: list[Sol
             continue
         tree = [one for one in links if model.body_rootid[one.body] == root.body]
         first, shift = int(model.jnt_qposadr[joint]), np.zeros(3)
-        for _ in range(ROUNDS):
+        for _ in range(OVERLAP_ROUNDS):
             depth, normal = _deepest(build, tree, covers, standing, rules)
             if depth <= 0.0:
                 break

@@ -13,7 +13,7 @@ def need_mujoco() -> Any:
     return checks.need("mujoco", "load_model", "models")
 
 
-SHOWN = 4  # names of elements that are printed before "and 17 more"
+SHOWN_NAMES = 4  # names of elements that are printed before "and 17 more"
 
 
 class Entry(NamedTuple):
@@ -79,6 +79,6 @@ class Report(Sequence[Entry]):
 
 
 def _listed(elements: list[str]) -> str:
-    more = len(elements) - SHOWN
-    text = ", ".join(elements[:SHOWN])
+    more = len(elements) - SHOWN_NAMES
+    text = ", ".join(elements[:SHOWN_NAMES])
     return f"{text} and {more} more" if more > 0 else text

@@ -133,9 +133,8 @@ def _faces(vertices: np.ndarray, simplices: np.ndarray) -> tuple:
     group = _planes(simplices, cross)
     order = np.argsort(group, kind="stable")
     first = np.flatnonzero(np.diff(group[order], prepend=-1))
-    turn = np.argmin(simplices, axis=1)[
-        :, None
-    ]  # the ring of a triangle has its least corner in the middle
+    # the ring of a triangle has its least corner in the middle
+    turn = np.argmin(simplices, axis=1)[:, None]
     rings = np.take_along_axis(simplices, (turn + np.array([2, 0, 1])) % 3, axis=1).tolist()
     faces = []
     for start, stop in zip(first.tolist(), [*first[1:].tolist(), len(order)]):

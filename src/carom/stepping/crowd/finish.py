@@ -6,13 +6,13 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
-from carom.dynamics.acceleration import SLIP, STICK
 from carom.dynamics.explicit import copy_state
 from carom.geometry.rotation import norm
 from carom.impact.layout import AT_END
 from carom.kinematics.contact_point import contact_velocity
+from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.model.event_rows import note_event
-from carom.model.records import IMPACT, OPENS, PERSIST, SLIPS, STICKS
+from carom.model.records import IMPACT, OPENS, PERSISTS, SLIPS, STICKS
 from carom.persistent.active_set import begin_point
 from carom.persistent.step_control import MANY, POORLY, rest_speed
 from carom.stepping.crowd.response import block_of_point
@@ -110,9 +110,9 @@ def list_active(model, data, k, h, tolerance):
         _, w1, w2 = contact_velocity(crowd.points[0][i], end)
         w1, w2 = w1 + spot.drift[1], w2 + spot.drift[2]
         slips = math.sqrt(w1 * w1 + w2 * w2) > max(tolerance, 10.0 * slow(contact, end))
-        mode = SLIP if slips else STICK
+        mode = MODE_SLIP if slips else MODE_STICK
         if spot.active < 0:
-            note_event(system, c, spot.feature, PERSIST, mode, clock, records)
+            note_event(system, c, spot.feature, PERSISTS, mode, clock, records)
             clock.holds += 1
         else:
             crowd.follows[spot.active] = 1

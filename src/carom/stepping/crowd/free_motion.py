@@ -15,7 +15,7 @@ from carom.persistent.contact_step import contact_step
 from carom.persistent.step_control import plain_step
 from carom.stepping.energy_balance import unbalanced
 
-MISSED = -1  # the piece is too long
+TOO_LONG = -1  # the piece is too long
 
 
 @kernel
@@ -32,7 +32,7 @@ def fly(model, data, method, h, loaded, cut):
     """Write the motion without contacts to `crowd.flight`, and its middle for loaded bodies.
 
     Return a code, and the power of this path (`power_of_path`) of loads and of friction in joints.
-    With `cut` the code is `MISSED` if the energy error of this motion is larger than a step may have.
+    With `cut` the code is `TOO_LONG` if the energy error of this motion is larger than a step may have.
     """
     system, active, now, crowd, work = model.system, data.active, data.state, data.crowd, data.work
     clock, search, code, loads, friction = data.clocks[0], work.search[0], 0, 0.0, 0.0
@@ -54,7 +54,7 @@ def fly(model, data, method, h, loaded, cut):
             off, grows = unbalanced(
                 system, active, now, work.trial, named, work.result[0].start, h, watch
             )
-            code = MISSED if grows or off > 1.0 else 0
+            code = TOO_LONG if grows or off > 1.0 else 0
         loads, friction = power_of_path(system, h, now, crowd.flight, work)
         active.count[0] = count
     else:

@@ -11,9 +11,9 @@ from carom.contact.pair_point import smaller
 from carom.dynamics.elements import driven_power
 from carom.dynamics.energy import spin_momentum
 from carom.dynamics.explicit import copy_state
-from carom.dynamics.project import LOST, carry_velocity, shift
+from carom.dynamics.project import LOST, project_velocity, shift
 from carom.dynamics.rotors import add_rates, note_rates
-from carom.friction.layout import P
+from carom.friction.layout import ITERATE
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.allowance import affordable_whole
@@ -130,7 +130,7 @@ def limit_bounces(system, k, n, tolerance, effort, crowd, work, clock):
         s = min(1.0, -2.0 * a / root) if a < 0.0 < root else 0.0
     for i in range(3 * k):
         p = crowd.p[i] + s * (full[i] - crowd.p[i])
-        problem.vector[P, i] = p / (gamma * problem.contact[i // 3].scale)
+        problem.vector[ITERATE, i] = p / (gamma * problem.contact[i // 3].scale)
     answer(system, k, gamma, crowd, work)
     gain(crowd, work)
     return residual
@@ -168,7 +168,7 @@ def impose(model, data, k, h):
     holds = onto_surfaces(system, k, end.shape[0], end, crowd, work) <= LOST
     respin(system, crowd.flight, end)
     if joined:
-        carry_velocity(system, end, work)
+        project_velocity(system, end, True, work)
         driven += driven_power(system, end, work)
     return driven, holds
 
@@ -193,8 +193,7 @@ def lift_others(system, k, depth, crowd, work):
         write_responses(system, k, last, crowd, work)
         holds = onto_surfaces(system, last, end.shape[0], end, crowd, work) <= LOST
     respin(system, work.stage, end)
-    if system.joints.shape[0] > 0:
-        carry_velocity(system, end, work)
+    project_velocity(system, end, True, work)
     return True, holds
 
 

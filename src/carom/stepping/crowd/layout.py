@@ -2,23 +2,13 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, partial
 from typing import NamedTuple
 
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.friction.layout import (
-    BY_BODIES,
-    CONTACT,
-    ISLAND_BODY,
-    LINK,
-    OTHER,
-    PLACE,
-    VECTORS,
-    ContactWork,
-    new_contact_work,
-)
+from carom.friction import layout as friction
 from carom.model.arrays import STATE
 from carom.model.workspace import ACTIVE_POINT, POINT
 from carom.stepping.crowd.graph import WORD
@@ -71,7 +61,7 @@ class Crowd(NamedTuple):
     p: np.ndarray  # (3K,) impulses
     lift: np.ndarray  # (K,) scaled multipliers of the return to the surfaces
     bouncing: np.ndarray  # (3K,) impulses with full restitution
-    problem: ContactWork
+    problem: friction.ContactWork
     mixing: Mixing
     graph: Graph
     flight: np.recarray  # (N,) STATE at the end of the step without contacts
@@ -90,41 +80,24 @@ def new_crowd(bodies: int, active: int, points: int, joined: int = 0) -> Crowd:
     tied = min(joined, MOST_TIED)
     pairs, updates = 4 * points + tied * tied, 128 * points + tied**3
     others = points * max(0, joined - 1)
-    problem = new_contact_work(0)._replace(
-        kind=BY_BODIES,
-        contact=table(CONTACT, points),
-        link=table(LINK, points),
-        other=table(OTHER, others),
-        vector=np.zeros((VECTORS, 3 * points)),
-        body=table(ISLAND_BODY, bodies),
-        place=table(PLACE, bodies),
-        later=np.zeros(pairs, dtype=np.int64),
-        target=np.zeros((updates, 3), dtype=np.int64),
-        block=np.zeros((bodies + 2 * pairs, 6, 6)),
-    )
+    whole = partial(np.zeros, dtype=np.int64)
+    problem = friction.new_contact_work(0)._replace(
+        kind=friction.BY_BODIES, contact=table(friction.CONTACT, points), link=table(friction.LINK, points),
+        other=table(friction.OTHER, others), vector=np.zeros((friction.VECTORS, 3 * points)),
+        body=table(friction.ISLAND_BODY, bodies), place=table(friction.PLACE, bodies), later=whole(pairs),
+        target=whole((updates, 3)), block=np.zeros((bodies + 2 * pairs, 6, 6)),
+    )  # fmt: skip
+    graph = Graph(
+        count=whole(4), body=whole((points, 3)), other=whole(others),
+        near=whole((bodies, bodies // WORD + 1)), degree=whole(bodies), rank=whole(bodies),
+    )  # fmt: skip
     return Crowd(
-        spots=table(SPOT, points),
-        points=table(POINT, 2, points),
-        c=np.zeros(3 * points),
-        p=np.zeros(3 * points),
-        lift=np.zeros(points),
-        bouncing=np.zeros(3 * points),
-        problem=problem,
-        mixing=new_mixing(points),
-        graph=Graph(
-            count=np.zeros(4, dtype=np.int64),
-            body=np.zeros((points, 3), dtype=np.int64),
-            other=np.zeros(others, dtype=np.int64),
-            near=np.zeros((bodies, bodies // WORD + 1), dtype=np.int64),
-            degree=np.zeros(bodies, dtype=np.int64),
-            rank=np.zeros(bodies, dtype=np.int64),
-        ),
-        flight=table(STATE, bodies),
-        active=table(ACTIVE_POINT, active),
-        follows=np.zeros(active, dtype=np.int64),
-        parent=np.zeros(bodies, dtype=np.int64),
+        spots=table(SPOT, points), points=table(POINT, 2, points), c=np.zeros(3 * points),
+        p=np.zeros(3 * points), lift=np.zeros(points), bouncing=np.zeros(3 * points),
+        problem=problem, mixing=new_mixing(points), graph=graph, flight=table(STATE, bodies),
+        active=table(ACTIVE_POINT, active), follows=whole(active), parent=whole(bodies),
         speed=np.zeros((2, bodies)),
-    )
+    )  # fmt: skip
 
 
 @cache

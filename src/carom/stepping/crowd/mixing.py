@@ -14,7 +14,7 @@ import numpy as np
 
 from carom._compiled.decorators import kernel
 from carom.friction.cone import project
-from carom.friction.layout import P
+from carom.friction.layout import ITERATE
 
 WINDOW = 8  # number of stored differences
 ASTRAY = 2.0  # relative to the last |f|: with more the stored differences are dropped
@@ -56,7 +56,7 @@ def forget(mixing):
 @kernel
 def note_start(work, k, mixing):
     """Store the impulses before two sweeps."""
-    p, start = work.vector[P], mixing.start
+    p, start = work.vector[ITERATE], mixing.start
     for i in range(3 * k):
         start[i] = p[i]
 
@@ -64,7 +64,7 @@ def note_start(work, k, mixing):
 @kernel
 def note_end(work, k, mixing):
     """Store the result of two sweeps from the stored impulses, and its differences from the last result."""
-    p, start, change, reached = work.vector[P], mixing.start, mixing.change, mixing.reached
+    p, start, change, reached = work.vector[ITERATE], mixing.start, mixing.change, mixing.reached
     n, size, known = 3 * k, 0.0, mixing.size[0] < np.inf
     at = mixing.count[1]
     F, H = mixing.F[at], mixing.H[at]
@@ -87,7 +87,7 @@ def note_end(work, k, mixing):
 @kernel
 def extrapolate(work, k, mixing):
     """Replace the impulses by the combination of least change, projected onto the cones."""
-    p, theta, n = work.vector[P], mixing.theta, 3 * k
+    p, theta, n = work.vector[ITERATE], mixing.theta, 3 * k
     if mixing.count[0] == 0 or not solve_least(n, mixing):
         return
     for j in range(mixing.count[0]):

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.dynamics.acceleration import STICK
 from carom.friction.layout import CONE, DISC
 from carom.kinematics.contact_point import contact_velocity
+from carom.model.actions import MODE_STICK
 from carom.stepping.crowd.response import write_responses
 
 LEAVES = 1e-6  # of the speed that gravity gives in the step: a slower point does not leave
@@ -64,7 +64,7 @@ def note_drift(active, k, several, start, crowd):
             continue
         before = contact_velocity(crowd.points[1][i], start)
         u = contact_velocity(crowd.points[0][i], start)
-        for r in range(3 if active.points[spot.active].mode == STICK else 1):
+        for r in range(3 if active.points[spot.active].mode == MODE_STICK else 1):
             spot.drift[r] = u[r] - before[r]
 
 

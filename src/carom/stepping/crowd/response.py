@@ -48,7 +48,7 @@ def answer(system, k, gamma, crowd, work):
     """Write `crowd.p` from the present scaled impulses, and the motion of all bodies that they cause."""
     problem = crowd.problem
     for i in range(3 * k):
-        crowd.p[i] = gamma * problem.contact[i // 3].scale * problem.vector[o.P, i]
+        crowd.p[i] = gamma * problem.contact[i // 3].scale * problem.vector[o.ITERATE, i]
     if system.joints.shape[0] > 0:
         spread_impulses(system, k, crowd, work)
         return

@@ -18,7 +18,7 @@ from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.splitting import split_until
 from carom.stepping.crowd.sweeps import sweep_until
 
-FIRST, BETWEEN, MOST = 40, 30, 150  # sweeps: at first, after a step; allowed cost of all, in sweeps
+FIRST, BETWEEN, ALLOWED = 40, 30, 150  # sweeps: at first; after a step; allowed for all
 # weights of the proximal term, in turn: impulses are often not unique (four corners of a box), and with 1e-8 a
 # step changes the undetermined part arbitrarily
 PROXIMAL, LAST_DIGITS = (1e-2, 1e-3, 1e-4), 1e-8
@@ -45,7 +45,7 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
     work.count[o.ITERATIONS] = 0
     gamma = scale_vectors(work, k, crowd.c, crowd.p)
     each = SWEEP * k + TIE * work.link[k - 1].others_end if k > 0 else 0.0
-    most = MOST * each
+    most = ALLOWED * each
     if patient:
         most = max(most, min(left, PATIENT * most))
     speed = greatest_speed(crowd, k) / gamma
@@ -53,7 +53,7 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
     enough, good = max(tolerance / gamma, goal, PRECISE * speed), max(goal, AGREED * speed)
     good = max(good, AT_REST * tolerance / gamma)
     spent, least, turn, idle = done * each, r, 0, 0
-    p, kept = work.vector[o.P], work.vector[o.KEPT]
+    p, kept = work.vector[o.ITERATE], work.vector[o.START_BEST]
     copy(k, p, kept)
     while not least <= enough and spent < most and idle < 2 * IDLE:
         before = least

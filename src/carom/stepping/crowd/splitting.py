@@ -20,7 +20,7 @@ from carom.friction.strategy import copy, residual
 
 RHO = 0.05  # relative to the mean of the diagonal of W
 AHEAD = 1.6  # over-relaxation a
-EACH = 25  # iterations between two checks of the residual
+UNCHECKED_ITERATIONS = 25  # iterations between two checks of the residual
 
 
 @kernel
@@ -30,7 +30,7 @@ def split_until(work, k, tolerance, at_least, most):
     `at_least` iterations are made, and more, up to `most`, while as many again halve the residual. `work` is
     the problem without rolling and pivoting, with an order of elimination. The best impulses are returned.
     """
-    z, u, best = work.vector[o.P], work.vector[o.CENTRE], work.vector[o.BEST]
+    z, u, best = work.vector[o.ITERATE], work.vector[o.CENTRE], work.vector[o.BEST]
     least, goal, _ = residual(work, k)
     copy(k, z, best)
     begin(work, k)
@@ -41,9 +41,9 @@ def split_until(work, k, tolerance, at_least, most):
             if not least < 0.5 * before:
                 break
             before = least
-        for _ in range(EACH):
+        for _ in range(UNCHECKED_ITERATIONS):
             iterate(work, k, z, u)
-        done += EACH
+        done += UNCHECKED_ITERATIONS
         r, goal, _ = residual(work, k)
         if r < least:
             least = r
@@ -55,7 +55,7 @@ def split_until(work, k, tolerance, at_least, most):
 @kernel
 def begin(work, k):
     """Write u from the present velocities."""
-    u, w = work.vector[o.CENTRE], work.vector[o.VELOCITY]
+    u, w = work.vector[o.CENTRE], work.vector[o.RESULTING]
     for i in range(k):
         n = 3 * i
         t = work.contact[i]
@@ -66,7 +66,7 @@ def begin(work, k):
 @kernel
 def iterate(work, k, z, u):
     """Make one iteration."""
-    x, c = work.vector[o.RHS], work.vector[o.C]
+    x, c = work.vector[o.RHS], work.vector[o.BIAS]
     for i in range(k):
         n, t = 3 * i, work.contact[i]
         s = RHO * shift(t.kind, t.mu, t.h1, t.h2, u[n + 1], u[n + 2])

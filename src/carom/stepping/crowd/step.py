@@ -25,7 +25,7 @@ from carom.model.allowance import affordable_whole
 from carom.stepping.crowd.balance import energy_gained, off, slow_down, take_out, take_over
 from carom.stepping.crowd.finish import finish
 from carom.stepping.crowd.free_motion import (
-    MISSED,
+    TOO_LONG,
     fly,
     follow_path,
     greatest_change,
@@ -88,8 +88,8 @@ def step_crowd(model, data, method):
             careful = patient and dt > SHORTEST * controls.interval
             result.code = move_on(model, data, method, dt, patient, careful)
             if result.code == CONSTRAINTS_LOST and dt > SHORTEST * controls.interval:
-                result.code = MISSED
-            if result.code != MISSED:
+                result.code = TOO_LONG
+            if result.code != TOO_LONG:
                 break
             dt *= 0.5
         if result.code != 0:
@@ -130,7 +130,7 @@ def thickness(body):
 
 @kernel
 def move_on(model, data, method, h, patient, careful):
-    """Make one piece of the step; return 0 or a code, MISSED if `careful` and the piece is too long."""
+    """Make one piece of the step; return 0 or a code, TOO_LONG if `careful` and the piece is too long."""
     system, now, crowd, work = model.system, data.state, data.crowd, data.work
     clock, n, end, loaded = data.clocks[0], now.shape[0], work.trial, is_loaded(system)
 
@@ -157,7 +157,7 @@ def move_on(model, data, method, h, patient, careful):
         rubbed = work_on_path(search.friction, h, rubbing, rubbed)
     gained = energy_gained(model, data, h, loaded) - applied - rubbed
     if careful and n > 1 and off(model, data, k, gained):
-        return MISSED
+        return TOO_LONG
 
     # the energy balance, and the persistent contacts from now on
     clock.residual = max(clock.residual, residual)
@@ -169,7 +169,7 @@ def move_on(model, data, method, h, patient, careful):
         gained = energy_gained(model, data, h, loaded) - applied - rubbed
         taken = take_out(system, gained - (named if n == 1 else 0.0), crowd.flight, end)
         if taken > 0.0:
-            project_velocity(system, end, work)
+            project_velocity(system, end, False, work)
         gained -= taken
         left = take_over(gained - named, impacts, friction, bounces, clock)
         if n == 1 and not loaded:
@@ -199,9 +199,9 @@ def collide(model, data, h, fall, patient, careful):
             return grow(clock, r.FULL_EVENTS), k, 0.0, 0.0
         residual = find_impulses(model, data, k, h, fall, patient)
         if careful and residual > POOR * greatest_speed(crowd, k) + POOR * fall * h:
-            return MISSED, k, residual, 0.0  # a shorter piece is a different problem
+            return TOO_LONG, k, residual, 0.0  # a shorter piece is a different problem
         if careful and misses_bounce(system, k, h, fall, crowd):
-            return MISSED, k, residual, 0.0
+            return TOO_LONG, k, residual, 0.0
         driven, holds = impose(model, data, k, h)
         if not holds:
             return CONSTRAINTS_LOST, k, residual, driven
@@ -211,7 +211,7 @@ def collide(model, data, h, fall, patient, careful):
             return 0, k, residual, driven
         if times >= AGAIN or (wide == WIDEST and k == before):
             if sunk > DEEP and h > SHORTER * model.controls.interval:
-                return MISSED, k, residual, driven
+                return TOO_LONG, k, residual, driven
             room, holds = lift_others(system, k, SUNK, crowd, work)
             if not room:
                 return grow(clock, r.FULL_SPOTS), k, residual, driven

@@ -15,7 +15,7 @@ from carom.stepping.crowd.spots import place_all
 TINY = 1e-11  # allowed depth, relative to the smaller body
 # passes; least and greatest number of sweeps of a pass, and number of sweeps times points. To place all points
 # again costs as much as thirty sweeps
-PASSES, SWEEPS, WORK = 8, (100, 1000), 20000
+SURFACE_PASSES, SWEEPS, SURFACE_WORK = 8, (100, 1000), 20000
 BETTER = 0.01  # part of the depth that a pass leaves: gaps are not linear, so less is no gain
 # least W_nn, as a part of the mean of the diagonal, of a point that returns: with the normal through the axis
 # of a hinge W_nn is round-off, and 1e-7 m would turn a gear by many teeth
@@ -29,7 +29,7 @@ def onto_surfaces(system, k, count, end, crowd, work):
     `crowd.points[1]` are the points at the end.
     """
     missed = project_position(system, end, True, 1e-14, work)
-    for _ in range(PASSES):
+    for _ in range(SURFACE_PASSES):
         place_all(system, 0, k, end, crowd, crowd.points[1], work)
         deepest, tiny = 0.0, 1.0
         for i in range(k):
@@ -56,7 +56,7 @@ def lift(system, k, tolerance, crowd, work):
             problem.body[b].motion[j] = 0.0
     for i in range(k):
         lam[i] = 0.0
-    for turn in range(max(SWEEPS[0], min(SWEEPS[1], WORK // max(1, k)))):
+    for turn in range(max(SWEEPS[0], min(SWEEPS[1], SURFACE_WORK // max(1, k)))):
         change = 0.0
         for place in range(k):
             i = place if turn % 2 == 0 else k - 1 - place

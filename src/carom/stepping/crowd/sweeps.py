@@ -7,12 +7,12 @@ A sweep costs 60 ns per contact. The first one begins with the impulses of the l
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.friction.layout import BEST, P
+from carom.friction.layout import BEST, ITERATE
 from carom.friction.operators import sweep
 from carom.friction.strategy import copy, residual
 from carom.stepping.crowd.mixing import extrapolate, forget, note_end, note_start
 
-EACH = 10  # sweeps between two checks of the residual
+UNCHECKED_SWEEPS = 10  # sweeps between two checks of the residual
 
 
 @kernel
@@ -23,20 +23,20 @@ def sweep_until(system, crowd, k, tolerance, most):
     points, so the best impulses found are the result.
     """
     work, mixing, done = crowd.problem, crowd.mixing, 0
-    p, best = work.vector[P], work.vector[BEST]
+    p, best = work.vector[ITERATE], work.vector[BEST]
     least, goal, _ = residual(work, k)
     copy(k, p, best)
     forget(mixing)
     while not least <= max(tolerance, goal) and done < most:
         bound_torques(system, crowd, k)
-        for turn in range(0, EACH, 2):
+        for turn in range(0, UNCHECKED_SWEEPS, 2):
             if turn > 0 or done > 0:
                 extrapolate(work, k, mixing)
             note_start(work, k, mixing)
             sweep(work, k, False)
             sweep(work, k, True)
             note_end(work, k, mixing)
-        done += EACH
+        done += UNCHECKED_SWEEPS
         r, goal, _ = residual(work, k)
         if r < least:
             least = r
@@ -48,7 +48,7 @@ def sweep_until(system, crowd, k, tolerance, most):
 @kernel
 def bound_torques(system, crowd, k):
     """Write the bounds d N of rolling and pivoting friction from the present normal impulses."""
-    row, q = crowd.problem.contact, crowd.problem.vector[P]
+    row, q = crowd.problem.contact, crowd.problem.vector[ITERATE]
     for i in range(k):
         spot = crowd.spots[i]
         if spot.turns > 0:

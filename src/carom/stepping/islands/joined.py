@@ -9,13 +9,15 @@ to the scene: it is copied when a step begins, and copied back when it has ended
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 
 from carom._compiled.decorators import kernel
-from carom._compiled.record_arrays import Columns
-from carom.model.arrays import FOREST, STOP, Relations, Solver, System
+from carom._compiled.record_arrays import table
+from carom.model.arrays import BUSHING, FOREST, JOINT, LOAD, SPRING, STOP, Relations, Solver, System
+from carom.model.relations import no_relations
 from carom.model.solvers import no_joints
 
 
@@ -37,7 +39,7 @@ def joined_bodies(system: System) -> Joined:
     loaded = system.bodies["ballistic"] == 0
     body = np.flatnonzero(loaded)
     if not body.size:
-        return no_bodies(system)
+        return no_bodies()
     order = np.append(body, np.flatnonzero(~loaded))
     place = np.append(np.argsort(order), -1)  # the ground has place -1, like its number
     relations, ends = system.relations, ("parent", "child")
@@ -58,19 +60,12 @@ def joined_bodies(system: System) -> Joined:
     )
 
 
-def no_bodies(system: System) -> Joined:
+@cache
+def no_bodies() -> Joined:
     """Return the empty joints and loads of islands without any."""
-    none, relations = np.zeros(0, dtype=np.int64), system.relations
-    empty = {name: a[:0].copy() for name, a in relations._asdict().items() if name != "there"}
-    return Joined(
-        none, none, _none(system.joints), relations._replace(there=0, **empty),
-        _none(system.springs), _none(system.loads), _none(system.bushings), no_joints(),
-    )  # fmt: skip
-
-
-def _none(rows: np.recarray) -> np.recarray:
-    """Return an empty table of the same type."""
-    return rows[:0].copy().view(Columns)
+    none = np.zeros(0, dtype=np.int64)
+    forces = (table(kind, 0) for kind in (SPRING, LOAD, BUSHING))
+    return Joined(none, none, table(JOINT, 0), no_relations(), *forces, no_joints())
 
 
 def _moved(rows: np.recarray, place: np.ndarray, ends: tuple[str, ...]) -> np.recarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -105,33 +106,30 @@ def has_events(system: System, more: bool = False) -> bool:
 
 def new_single_island(system: System, active: ActiveSet) -> SingleIsland:
     """Return the workspace for bodies that move together."""
-    keeps = has_events(system)
-    return SingleIsland(
-        begun=np.zeros(1, dtype=np.int64),
-        state=table(STATE, system.bodies.size if keeps else 0),
-        contact_states=table(CONTACT_STATE, len(active.contact_states)),
-        points=table(ACTIVE_POINT, len(active.points)),
-        count=np.zeros(1, dtype=np.int64),
-        clock=table(CLOCK, 1),
-    )
+    bodies = system.bodies.size if has_events(system) else 0
+    return _single(bodies, len(active.contact_states), len(active.points))
 
 
-_NOWHERE = SingleIsland(
-    begun=np.zeros(1, dtype=np.int64),
-    state=table(STATE, 0),
-    contact_states=table(CONTACT_STATE, 0),
-    points=table(ACTIVE_POINT, 0),
-    count=np.zeros(1, dtype=np.int64),
-    clock=table(CLOCK, 1),
-)
+def _single(bodies: int, contacts: int, points: int) -> SingleIsland:
+    state, clock = table(STATE, bodies), table(CLOCK, 1)
+    contact_states, actives = table(CONTACT_STATE, contacts), table(ACTIVE_POINT, points)
+    begun, count = np.zeros((2, 1), dtype=np.int64)
+    return SingleIsland(begun, state, contact_states, actives, count, clock)
+
+
+_NOWHERE = _single(0, 0, 0)
 
 
 def no_islands(system: System, active: ActiveSet) -> Islands:
     """Return the workspace for bodies that move together."""
+    return together()._replace(single=new_single_island(system, active))
+
+
+@cache
+def together() -> Islands:
+    """Return islands of no bodies: nothing is written to them."""
     none = np.zeros(0, dtype=np.int64)
-    return _islands(system, 0, (none, none, none), (none, none), 0, 0)._replace(
-        single=new_single_island(system, active)
-    )
+    return _islands(0, (none, none, none), (none, none), 0, 0)
 
 
 def new_islands(system: System, active: ActiveSet, later: Defaults | None = None) -> Islands:
@@ -148,7 +146,7 @@ def new_islands(system: System, active: ActiveSet, later: Defaults | None = None
     planes = planes[np.argsort(contacts.body[planes], kind="stable")]
     room = 8 * n + 64 if later is not None else min(rows.size, 8 * n + 64)
     grounded = contacts.body[planes], planes
-    islands = _islands(system, n, _partners(system, later), grounded, room, len(active.points))
+    islands = _islands(n, _partners(system, later), grounded, room, len(active.points))
     islands = islands._replace(joined=joined_bodies(system))
     islands.plan["open"], islands.plan["fixed"] = int(later is not None), rows.size
     return islands
@@ -177,44 +175,24 @@ def _partners(system: System, later: Defaults | None) -> tuple[np.ndarray, np.nd
     return low, high, rows[order]
 
 
-def _islands(
-    system: System, n: int, partners: tuple, grounded: tuple, room: int, points: int
-) -> Islands:
+def _islands(n: int, partners: tuple, grounded: tuple, room: int, points: int) -> Islands:
     """Return islands of `n` free bodies.
 
     `partners` are pairs of bodies and their contacts; `grounded`: bodies and their contacts with half-spaces.
     """
     (low, high, pairs), (body, planes) = partners, grounded
-    numbers = np.arange(n + 1)
+    whole, numbers = partial(np.zeros, dtype=np.int64), np.arange(n + 1)
     return Islands(
-        apart=int(n > 0),
-        single=_NOWHERE,
-        joined=no_bodies(system),
-        others=no_bodies(system),
-        plan=table(PLAN, 1),
-        member=table(MEMBER, n),
-        first=np.zeros((3, n + 1), dtype=np.int64),
-        body_of=np.zeros(n, dtype=np.int64),
-        bodies=table(BODY, n),
-        state=table(STATE, n),
-        memory=table(BODY_WORK, n),
-        which=np.zeros(room, dtype=np.int64),
-        contacts=table(CONTACT, room),
-        contact_states=table(CONTACT_STATE, room),
-        active_of=np.zeros(points, dtype=np.int64),
-        points=table(ACTIVE_POINT, 2, points),
-        carried=np.zeros(1, dtype=np.int64),
-        clock=table(CLOCK, 1),
-        centre=np.zeros((n, 3)),
-        radius=np.zeros(n),
-        pair=np.zeros((2, 8 * n + 64, 2), dtype=np.int64),
-        pair_first=np.zeros(n + 1, dtype=np.int64),
-        sweep=new_sweep_work(n),
-        partner=np.stack([high, pairs]),
-        partner_first=np.searchsorted(low, numbers),
-        plane=planes,
-        plane_first=np.searchsorted(body, numbers),
-    )
+        apart=int(n > 0), single=_NOWHERE, joined=no_bodies(), others=no_bodies(),
+        plan=table(PLAN, 1), member=table(MEMBER, n), first=whole((3, n + 1)), body_of=whole(n),
+        bodies=table(BODY, n), state=table(STATE, n), memory=table(BODY_WORK, n), which=whole(room),
+        contacts=table(CONTACT, room), contact_states=table(CONTACT_STATE, room),
+        active_of=whole(points), points=table(ACTIVE_POINT, 2, points), carried=whole(1),
+        clock=table(CLOCK, 1), centre=np.zeros((n, 3)), radius=np.zeros(n),
+        pair=whole((2, 8 * n + 64, 2)), pair_first=whole(n + 1), sweep=new_sweep_work(n),
+        partner=np.stack([high, pairs]), partner_first=np.searchsorted(low, numbers),
+        plane=planes, plane_first=np.searchsorted(body, numbers),
+    )  # fmt: skip
 
 
 def roomier(islands: Islands) -> Islands:

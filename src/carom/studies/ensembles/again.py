@@ -56,7 +56,8 @@ class Again:
         run = self.run
         run.clock["saved"] = 0
         run.compiled.functions.forget()  # the error of a user-defined function in the last run
-        run.start()
+        run.check(run.scene)
+        run.save_now()
         return run
 
     def take(self, values: dict[str, np.ndarray]) -> None:

@@ -15,7 +15,7 @@ from itertools import islice
 from carom import checks
 
 NAMES = ("threads", "processes", "serial")
-TRIES = 5  # greatest number of times that a part is submitted, if its worker is lost
+SUBMISSIONS = 5  # greatest number of times that a part is submitted, if its worker is lost
 
 
 def check_engine(executor) -> None:
@@ -115,7 +115,7 @@ def _all(tasks, function: Callable, submit, most: int, running: dict) -> Generat
             result, error = _outcome(future)
             if error is None:
                 yield result
-            elif tried < TRIES and _lost(error):
+            elif tried < SUBMISSIONS and _lost(error):
                 start(task, tried + 1)
             else:
                 raise error

@@ -113,9 +113,8 @@ def _points(runs: int, total: int, seed: int, sampling: str) -> np.ndarray:
 
         engines = {"sobol": qmc.Sobol, "halton": qmc.Halton, "latin": qmc.LatinHypercube}
         engine = engines[sampling](total, rng=np.random.default_rng(seed))
-        if (
-            sampling == "sobol"
-        ):  # balanced for powers of two: draw the next power, and use the first points
+        # balanced for powers of two: draw the next power, and use the first points
+        if sampling == "sobol":
             points = engine.random_base2(max(0, (runs - 1).bit_length()))[:runs]
         else:
             points = engine.random(runs)

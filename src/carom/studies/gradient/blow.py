@@ -46,7 +46,7 @@ def blow(W: np.ndarray, u: np.ndarray, mu: float, e: float, law: int) -> Blow | 
     impulse, end, rate, phases = base[:3], float(base[3]), float(base[4]), int(base[5])
     slips = np.hypot(u[1], u[2]) > AT_REST * np.linalg.norm(u)
     kink = ""
-    if not slips and phases & o.SLIP and mu > 0.0:
+    if not slips and phases & o.PHASE_SLIP and mu > 0.0:
         kink = "slip starts from rest, so its direction depends on the change"
     unit = _units(W, u, slips)
     d, error = np.zeros((4, INPUTS)), 0.0
@@ -110,8 +110,9 @@ def _same_course(found, base, z, law) -> bool:
     """Return whether two impacts have the same phases, in compression and in restitution."""
     if z[9] == 0.0:  # without friction the phases have no effect
         return True
-    if not int(base[5]) & o.SLIP:  # it sticks from the start; changed impacts slip slightly first
-        return bool(int(found[5]) & ~o.SLIP == int(base[5]))
+    if not int(base[5]) & o.PHASE_SLIP:
+        # it sticks from the start; changed impacts slip slightly first
+        return bool(int(found[5]) & ~o.PHASE_SLIP == int(base[5]))
     same = found[5] == base[5] and (found[3] >= 0.0) == (base[3] >= 0.0)
     if z[10] == 0.0 or law in BY_SPEED:  # the phase of the end of slip has no effect
         return bool(same)

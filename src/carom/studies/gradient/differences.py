@@ -29,7 +29,7 @@ from carom.studies.gradient.tangents import Steps
 
 # changes of the state, relative to its size: if the first one changes the contacts, the second is tried
 CHANGES = (3e-4, 1e-5)
-LONGEST = 100  # greatest number of steps of a piece
+LONGEST_PIECE = 100  # greatest number of steps of a piece
 CONVERGED = 1e-3  # allowed difference of the two differences, relative to the greatest derivative
 ROWS = ("time", "point", "before", "after", "impulse")
 
@@ -272,8 +272,8 @@ def ends_of(solution: Solution, step: float, steps: int) -> list[int]:
     after = np.floor(events["time"] / step * (1.0 - 1e-12)).astype(int) + 1
     ends: list[int] = []
     for end in [*np.unique(after[(after > 0) & (after < steps)]).tolist(), steps]:
-        while end - (ends[-1] if ends else 0) > LONGEST:
-            ends.append((ends[-1] if ends else 0) + LONGEST)
+        while end - (ends[-1] if ends else 0) > LONGEST_PIECE:
+            ends.append((ends[-1] if ends else 0) + LONGEST_PIECE)
         ends.append(end)
     return ends
 

@@ -13,7 +13,7 @@ from carom.studies.gradient.body import Moving, cross, fly, path
 from carom.studies.gradient.result import Margin
 from carom.studies.gradient.saltation import Strike
 
-FEWEST = 24  # samples of a flight; to these are added A_TURN samples for each rotation
+FEWEST_SAMPLES = 24  # samples of a flight; to these are added A_TURN samples for each rotation
 A_TURN = 12
 MISSES = 6  # greatest number of near misses of a flight
 ROUGHLY = 1e-8  # accuracy of near misses, which are only warnings
@@ -78,8 +78,8 @@ def _course(done: Strike, hit: Blow, u, W, k, t, speed, mu, d_mu):
     found = []
     after = u + W @ hit.impulse
     slip = float(np.hypot(after[1], after[2]))
-    if not hit.phases & (o.STICK | o.RESTART):
-        if hit.phases & o.SLIP and slip > AT_REST * speed:
+    if not hit.phases & (o.PHASE_STICK | o.PHASE_RESTART):
+        if hit.phases & o.PHASE_SLIP and slip > AT_REST * speed:
             gradient = (after[1:] / slip) @ done.after[1:]
             what = "slip at the end of the impact: at 0 it sticks"
             found.append(Margin(t, k, what, slip, "m/s", slip / speed, gradient))
@@ -122,7 +122,7 @@ def of_flight(system, b: int, body: Moving, until: float, at_end: bool) -> list[
     if not len(rows) or not until > body.t:
         return []
     turns = float(np.linalg.norm(body.w)) * (until - body.t) / (2 * np.pi)
-    times = np.linspace(body.t, until, int(FEWEST + A_TURN * turns) + 1)
+    times = np.linspace(body.t, until, int(FEWEST_SAMPLES + A_TURN * turns) + 1)
     x, R = path(body, times)
     size = float(system.bodies.extent[b])
     near = []

@@ -6,7 +6,7 @@ import numpy as np
 
 from carom.geometry import quaternion
 
-ITERATIONS = 50
+FIT_ITERATIONS = 50
 DIFFERENCE = 1e-5  # [rad], for difference quotients
 
 
@@ -28,7 +28,7 @@ def fit_attitude(t, q, inertia=None) -> dict:
         return off.reshape(13, -1)
 
     before = np.inf
-    for _ in range(ITERATIONS):
+    for _ in range(FIT_ITERATIONS):
         here = residuals()
         slope = (here[1:7] - here[7:]).T / (2.0 * DIFFERENCE)
         change = np.linalg.lstsq(slope, -here[0], rcond=None)[0]
@@ -41,8 +41,8 @@ def fit_attitude(t, q, inertia=None) -> dict:
     else:
         raise RuntimeError(
             "orientation is not that of a free body: the fit of the attitude did not converge in "
-            f"{ITERATIONS} iterations (change in the last one: {length:.3g} rad); give only samples of free "
-            "flight"
+            f"{FIT_ITERATIONS} iterations (change in the last one: {length:.3g} rad); give only samples of "
+            "free flight"
         )
     here = residuals()[0].reshape(-1, 3)
     noise = float(np.sqrt(np.sum(here**2) / (here.size - 6)))

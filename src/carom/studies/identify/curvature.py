@@ -17,7 +17,7 @@ from carom.studies.identify.evaluate import Evaluator
 #: least noise: of positions relative to the largest displacement, of rotations [rad]; and least difference of a
 #: parameter, relative to its step in the search
 EXACT = 1e-6
-HALVINGS = 12  # of an interval in which a value that is not excluded becomes one that is
+STEP_HALVINGS = 12  # of an interval in which a value that is not excluded becomes one that is
 EXCLUDED = 4.0  # change of the sum of squares by a value that is two standard errors off
 CURVED = 16.0  # change that the curvature predicts where a change below `EXCLUDED` contradicts it
 FAR = 10.0  # number of scales to which parameters without a bound are varied
@@ -90,7 +90,7 @@ class Residuals:
         near, far = self.best[i], end
         if not self.exclude(i, end):
             return end
-        for _ in range(HALVINGS):
+        for _ in range(STEP_HALVINGS):
             middle = 0.5 * (near + far)
             near, far = (near, middle) if self.exclude(i, middle) else (middle, far)
         return near

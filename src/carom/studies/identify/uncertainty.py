@@ -11,7 +11,7 @@ from carom.studies.identify.evaluate import Evaluator
 #: fewest recordings that are resampled: the spread over K of them has a relative standard error of
 #: 1/sqrt(2 (K - 1)), 0.32 for six
 FEWEST = 6
-ROUNDS = 6
+DESIGNS = 6
 ROUGH = 1e-9  # least curvature, relative to the largest, of a surface with a minimum
 
 
@@ -21,9 +21,8 @@ class Uncertainty(NamedTuple):
     centre: np.ndarray  #: (p,) minimum of the surface of all recordings
     samples: np.ndarray  #: (B, p) minima of the resampled surfaces
     reach: np.ndarray  #: (p,) half width of the region in which the surface is fitted
-    at_edge: (
-        np.ndarray
-    )  #: (p,) part of the samples at the edge of the region; the true spread is larger
+    #: (p,) part of the samples at the edge of the region; the true spread is larger
+    at_edge: np.ndarray
 
 
 def bootstrap(evaluate: Evaluator, resamples: int, seed: int) -> Uncertainty:
@@ -36,7 +35,7 @@ def bootstrap(evaluate: Evaluator, resamples: int, seed: int) -> Uncertainty:
     space = evaluate.space
     p, reach = space.start.size, 0.5 * space.step
     best = evaluate.points[evaluate.best]
-    for _ in range(ROUNDS):
+    for _ in range(DESIGNS):
         reach = np.minimum(reach, 0.5 * (space.upper - space.lower))
         centre = np.clip(best, space.lower + reach, space.upper - reach)
         points = [centre + reach * z for z in design(p)]

@@ -91,9 +91,8 @@ def fitted(axes: Axes, places, radii, size: tuple[int, int]) -> Camera:
     middle = 0.5 * ((across - radii).min(axis=1) + (across + radii).max(axis=1))
     far = np.linalg.norm(across - middle[:, None], axis=0) + radii
     camera = Camera(axes, middle @ np.array(axes), float(np.max(far)) / OPENING, width, height)
-    for _ in range(
-        8
-    ):  # what is near is larger: middle and size of the picture follow from each other
+    # what is near is larger: middle and size of the picture follow from each other
+    for _ in range(8):
         seen = camera.project(places)
         reach = radii[:, None] * camera.focal * seen[:, 2:]
         low, high = (seen[:, :2] - reach).min(axis=0), (seen[:, :2] + reach).max(axis=0)

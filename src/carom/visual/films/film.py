@@ -14,7 +14,7 @@ from carom.visual.films.stage import Stage, pillow
 from carom.visual.plots.figure import need_bodies
 
 SUFFIXES = (".gif", ".mp4")
-MOST = 100_000  # pictures of a film: an hour
+MOST_PICTURES = 100_000  # pictures of a film: an hour
 
 
 @arguments.known
@@ -105,9 +105,9 @@ def film(
 
 def frame_times(begin: float, end: float, fps: float, speed: float) -> np.ndarray:
     """Return the times of the pictures [s], the first at `begin`."""
-    if not (end - begin) * fps <= MOST * speed:
+    if not (end - begin) * fps <= MOST_PICTURES * speed:
         raise ValueError(
-            f"speed and fps must give at most {MOST} frames, got {(end - begin):g} s with "
+            f"speed and fps must give at most {MOST_PICTURES} frames, got {(end - begin):g} s with "
             f"speed={speed:g} and fps={fps:g}"
         )
     count = math.floor((end - begin) * fps / speed + 1e-9) + 1

@@ -12,7 +12,7 @@ from carom.visual.bodies import Part, colours_of, parts_of
 from carom.visual.plots import style
 
 COLOURS = (style.BLUE, style.ORANGE, style.GREEN, style.RED, style.PURPLE, style.SKY)
-MOST = 20_000  # triangles of a body, from which on large ones are not split any more
+MOST_TRIANGLES = 20_000  # triangles of a body, from which on large ones are not split any more
 SHARP = np.cos(np.radians(35.0))  # of the angle from which an edge is one
 FACET = np.cos(np.radians(1.0))  # the same of a polyhedron, whose faces are all flat
 NARROW = 0.8  # inner radius by outer radius from which a ring has no room for lines at its edges
@@ -55,7 +55,7 @@ def split(model: Model, longest: float) -> Model:
 
     A triangle much larger than the picture reaches behind the camera and cannot be drawn, but its parts can.
     """
-    while len(model.corners) < MOST:
+    while len(model.corners) < MOST_TRIANGLES:
         edges = np.roll(model.corners, -1, axis=1) - np.roll(model.corners, 1, axis=1)
         sides = np.linalg.norm(edges, axis=2)  # opposite each corner
         large = sides.max(axis=1) > longest

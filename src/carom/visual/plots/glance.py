@@ -11,7 +11,7 @@ from carom.visual.plots.errors import constraint_errors
 from carom.visual.plots.paths import trajectory
 from carom.visual.plots.timeline import contacts, touching
 
-ROWS = 8  # contacts to draw
+CONTACTS_DRAWN = 8  # contacts to draw
 LETTERS = 20  # of the name of a contact
 
 
@@ -41,7 +41,7 @@ def overview(solution) -> dict:
     below = [name for name, there in (("contacts", touched), ("constraints", kept)) if there]
     if below:
         rows.append([below[0], below[-1]])
-        heights.append(1.2 if not touched else 0.8 + 0.16 * min(ROWS, touching(solution)))
+        heights.append(1.2 if not touched else 0.8 + 0.16 * min(CONTACTS_DRAWN, touching(solution)))
     with figure.drawing_mosaic(rows, (style.PAGE, sum(heights)), heights) as axes:
         if whole:
             trajectory(solution, ax=axes["motion"])
@@ -50,7 +50,7 @@ def overview(solution) -> dict:
         energy(solution, ax=[axes["energy"], axes["error"]])
         axes["energy"].tick_params(labelbottom=False)
         if "contacts" in axes:
-            contacts(solution, most=ROWS, ax=axes["contacts"])
+            contacts(solution, most=CONTACTS_DRAWN, ax=axes["contacts"])
             labels = [_short(label.get_text()) for label in axes["contacts"].get_yticklabels()]
             axes["contacts"].set_yticks(axes["contacts"].get_yticks(), labels)
         if "constraints" in axes:

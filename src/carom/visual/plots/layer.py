@@ -7,11 +7,11 @@ import numpy as np
 from carom.arguments import known
 from carom.visual.plots import figure, style
 
-KNOTS = 64  # steps of the spline: so many that a force, given at its knots, is a curve
+LAYER_KNOTS = 64  # steps of the spline: so many that a force, given at its knots, is a curve
 
 
 @known
-def impact_inside(solution, k: int = 0, *, steps: int = KNOTS, ax=None):
+def impact_inside(solution, k: int = 0, *, steps: int = LAYER_KNOTS, ax=None):
     """Draw one impact inside its boundary layer: normal coordinate, velocities and forces.
 
     There are three axes over the time since entry. The normal velocity is that of the flat coordinate: it is

@@ -11,7 +11,7 @@ from carom.visual.plots import figure, style
 
 GROUND = "#ececec"
 FLAT = 0.02  # height by width of motion on a level table
-MOST = 200  # outlines: more would cover each other
+OUTLINES = 200  # outlines: more would cover each other
 
 
 @known
@@ -112,12 +112,14 @@ def _times(outlines, solution) -> np.ndarray:
         return np.zeros(0)
     if checks.real_array("outlines", outlines, "() or (m,)").ndim == 0:
         return np.linspace(
-            solution.t[0], solution.t[-1], checks.integer("outlines", outlines, least=1, most=MOST)
+            solution.t[0],
+            solution.t[-1],
+            checks.integer("outlines", outlines, least=1, most=OUTLINES),
         )
     times = checks.finite_array("outlines", outlines, (None,), "s")
     (first, last) = solution.t[[0, -1]]
-    if len(times) > MOST:
-        raise ValueError(f"outlines must be at most {MOST} times, got {len(times)}")
+    if len(times) > OUTLINES:
+        raise ValueError(f"outlines must be at most {OUTLINES} times, got {len(times)}")
     if not np.all((times >= first) & (times <= last)):
         raise ValueError(
             f"outlines must be times within [{first:g}, {last:g}] s, got {checks.shown(outlines)}"

@@ -46,9 +46,8 @@ def work_precision(series: Mapping, *, error: str = "error", ax=None):
             colour, mark = figure.COLOURS[k % 7], _MARKS[k % 8]
             axes.plot(times, errors, marker=mark, color=colour, lw=1.0, label=str(name))
         axes.set(xscale="log", yscale="log", xlabel="wall time [s]", ylabel=error)
-        if (
-            axes.get_xlim()[1] < 100.0 * axes.get_xlim()[0]
-        ):  # hardly a decade has its label in there
+        # hardly a decade has its label in there
+        if axes.get_xlim()[1] < 100.0 * axes.get_xlim()[0]:
             axes.xaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
             axes.xaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(9.0, 9.0)))
         axes.grid(which="major", color="#dddddd", lw=0.5)

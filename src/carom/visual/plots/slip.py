@@ -8,7 +8,7 @@ from carom import checks
 from carom.arguments import known
 from carom.visual.plots import figure, style
 
-STEPS = 128  # of the spline through the impact
+FLOW_STEPS = 128  # of the spline through the impact
 FLOW = 0.7  # density of the lines of the flow
 
 
@@ -71,7 +71,7 @@ def _course(record):
 
     return impact_layer(
         record.inverse_mass, record.relative_velocity_before, record.friction, record.restitution,
-        penetration=0.5, width=1e-6, law=record.law, steps=STEPS,
+        penetration=0.5, width=1e-6, law=record.law, steps=FLOW_STEPS,
     )  # fmt: skip
 
 

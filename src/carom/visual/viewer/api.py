@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING
 
 from carom import checks
-from carom.visual.viewer.frames import MOST
+from carom.visual.viewer.frames import MOST_FRAMES
 
 if TYPE_CHECKING:
     from carom.results.solution import Solution
@@ -21,7 +21,7 @@ def view(
     title: str | None = None,
     follow: str | None = None,
     speed: float | None = None,
-    frames: int = MOST,
+    frames: int = MOST_FRAMES,
     port: int | None = None,
     host: str = "127.0.0.1",
     open: bool = True,

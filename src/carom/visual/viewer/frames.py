@@ -9,7 +9,7 @@ import numpy as np
 from carom.geometry import quaternion
 from carom.visual.bodies import Outline, moving
 
-MOST = 5000  # frames, if nothing else is asked for
+MOST_FRAMES = 5000  # frames, if nothing else is asked for
 VALUES = 3_000_000  # numbers of all poses together: 12 MB before packing
 FLAT = 1e-4  # part of the square of the displacements that leaves a plane, up to which it is one
 NEAR = 0.5  # of the width of what moves: so near is what rests and is shown in full
@@ -34,7 +34,7 @@ class Place(NamedTuple):
     lift: float  #: angle of the eye above the level [rad]
 
 
-def frames_of(solution, most: int = MOST) -> Frames:
+def frames_of(solution, most: int = MOST_FRAMES) -> Frames:
     """Return the frames to show: saved times, thinned out to `most`, and times of impacts.
 
     If a run has few saved times, `Solution.evaluate` gives states between them. With many bodies there are

@@ -23,7 +23,7 @@ SCRIPTS = (
     "space", "data", "motion", "meshes", "shaders", "draw", "camera", "paint", "chart", "impacts",
     "play", "controls",
 )  # fmt: skip
-POINTS = 1500  # of the curves of energy
+CURVE_POINTS = 1500  # of the curves of energy
 
 
 class Exported(NamedTuple):
@@ -130,7 +130,7 @@ def _link(link, centre: np.ndarray) -> dict:
 def _energy(solution, packer: Packer) -> dict:
     """Return the energies at saved times, thinned."""
     last = len(solution.t) - 1
-    chosen = np.unique(np.linspace(0, last, min(last + 1, POINTS)).round().astype(int))
+    chosen = np.unique(np.linspace(0, last, min(last + 1, CURVE_POINTS)).round().astype(int))
     potential = solution.potential_energy[chosen]
     return {
         "time": packer.add(solution.t[chosen], "f8"),

@@ -56,7 +56,7 @@ class Show(NamedTuple):
         return words
 
 
-def show_of(what, title: str | None = None, most: int = frames.MOST) -> Show:
+def show_of(what, title: str | None = None, most: int = frames.MOST_FRAMES) -> Show:
     """Return the show of a solution, or of the file of one."""
     solution = solution_of(what)
     if title is None:

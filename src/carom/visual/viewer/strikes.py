@@ -11,8 +11,8 @@ from carom.scene.constraints import coordinate_kind
 
 LISTED = 1000  # impacts in the list: the strongest
 OPENED = 200  # impacts whose inside is kept: the strongest
-STEPS = 24  # spline steps through a layer
-ROWS = 100_000  # arrows of persistent contacts, of all times together
+SPLINE_STEPS = 24  # spline steps through a layer
+MOST_ARROWS = 100_000  # arrows of persistent contacts, of all times together
 
 
 class Strikes(NamedTuple):
@@ -21,9 +21,8 @@ class Strikes(NamedTuple):
     number: np.ndarray  #: (K',) which of `Solution.impacts`
     arrow: np.ndarray  #: (K', 3) impulse on the body, world axes [N s]; 0 of stops
     contact: list[str]  #: (K',) names
-    turning: (
-        np.ndarray
-    )  #: (K',) whether it is an impact at the stop of an angle, in [rad/s] and [N m s]
+    #: (K',) whether it is an impact at the stop of an angle, in [rad/s] and [N m s]
+    turning: np.ndarray
 
 
 class PersistentForces(NamedTuple):
@@ -66,7 +65,7 @@ def strikes_of(solution, listed: int = LISTED) -> Strikes:
     return Strikes(chosen, arrow, names, np.array(turning, dtype=bool))
 
 
-def persistent_forces(solution, times: np.ndarray, rows: int = ROWS) -> PersistentForces:
+def persistent_forces(solution, times: np.ndarray, rows: int = MOST_ARROWS) -> PersistentForces:
     """Return the forces of persistent contacts at the saved times among `times`, or fewer of them."""
     table = solution.forces
     saved = np.unique(np.searchsorted(solution.t, times, side="right") - 1)
@@ -82,7 +81,7 @@ def inside_of(solution, k: int) -> Inside | None:
     """Return the course of impact `k` in its layer; None if it is part of a multiple impact."""
     if solution.impacts.together[k] > 1:
         return None
-    history = solution.impact_history(k, steps=STEPS)
+    history = solution.impact_history(k, steps=SPLINE_STEPS)
     force = np.column_stack([history.normal_force, history.friction_force])
     return Inside(history.t, history.velocity, force, history.phases)
 
