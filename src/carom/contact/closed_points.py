@@ -9,7 +9,7 @@ from carom.contact.groups import unite
 from carom.contact.pair_point import REACH, find_touches, own_point, smaller, write_touch
 from carom.contact.parting import beside_face
 from carom.contact.place import place_any
-from carom.contact.place_of_other import centre_of_other, on_half_space
+from carom.contact.place_of_other import centre_of_other, centres_of_balls, on_half_space
 from carom.contact.rim import OTHER_SIDE, closed_rim, most_of_rim, way_round
 from carom.contact.stop import is_active, place_stop
 from carom.kinematics.contact_point import place
@@ -45,13 +45,19 @@ def concerns(contact, label, work):
 
 
 @kernel
-def apart(contact, state, near):
-    """Return whether the distance of the balls around the two is larger than `near`."""
+def apart(system, contact, state, near):
+    """Return whether the distance of the balls around the two, or around two pieces, is larger than `near`."""
     x = state[contact.body].x
     if on_half_space(contact):
         return along_normal(contact, x) - contact.offset - contact.radius - contact.extent > near
-    y = centre_of_other(contact, state)
     d = contact.extent + contact.other_extent + near
+    x, y = centres_of_balls(system, contact, state, False)
+    if (x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2 > d * d:
+        return True
+    if contact.part == 0:
+        return False
+    d = system.solids[contact.solid].extent + system.solids[contact.other_solid].extent + near
+    x, y = centres_of_balls(system, contact, state, True)
     return (x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2 > d * d
 
 
@@ -77,7 +83,7 @@ def gather_closed(system, controls, active, c, state, group, work, strikes):
                 continue
             contact_state.seen = 1
             near = closed_within(controls, contact, state)
-            if contact.touches != STOP and apart(contact, state, near):
+            if contact.touches != STOP and apart(system, contact, state, near):
                 continue
             before = k
             if contact.touches == 0:

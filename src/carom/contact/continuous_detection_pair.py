@@ -28,11 +28,9 @@ from carom.contact.gap import slow
 from carom.contact.level import related
 from carom.contact.pair_point import REACH, find_touches, list_touches, smaller, touch_rate
 from carom.contact.parting import stays_beside_face, time_apart
-from carom.contact.place_of_other import centre_of_other, on_half_space
+from carom.contact.place_of_other import centre_of_other, centres_of_balls, on_half_space
 from carom.contact.rim import OTHER_SIDE, SMOOTH, closed_rim, longest_way, same_point
-from carom.geometry.rotation import rotate
 from carom.kinematics.flight import relative_bound
-from carom.kinematics.wrench import point_velocity
 from carom.model.workspace import FREE, RESTS
 
 SHORT = 0.25  # displacement relative to the smaller body within which none passes through the other
@@ -49,30 +47,13 @@ def balls_apart(s, u, radii, sign, a):
 
 
 @kernel
-def centre_of_ball(b, solid, pieces, state):
-    """Return position and velocity of the centre of a body, or of one of its pieces."""
-    x, v = state[b].x, state[b].v
-    if not pieces:
-        return x[0], x[1], x[2], v[0], v[1], v[2]
-    q, p = state[b].Q, solid.x
-    r0, r1, r2 = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
-    v0, v1, v2 = point_velocity(state, b, r0, r1, r2)
-    return x[0] + r0, x[1] + r1, x[2] + r2, v0, v1, v2
-
-
-@kernel
 def balls_clear(system, contact, start, end, h, a, pieces):
     """Return whether the balls around both bodies, or two `pieces` of them, stay apart during the step."""
     p, q, time = system.solids[contact.solid], system.solids[contact.other_solid], 0.0
     radii = p.extent + q.extent if pieces else contact.extent + contact.other_extent
     for side in range(2):
         state, sign = (start, 1.0) if side == 0 else (end, -1.0)
-        x = centre_of_ball(contact.body, p, pieces, state)
-        y = centre_of_other(contact, state)
-        if pieces and contact.static == 1:
-            y = (q.x[0], q.x[1], q.x[2], 0.0, 0.0, 0.0)
-        elif pieces:
-            y = centre_of_ball(contact.other, q, pieces, state)
+        x, y = centres_of_balls(system, contact, state, pieces)
         s, u = (x[0] - y[0], x[1] - y[1], x[2] - y[2]), (x[3] - y[3], x[4] - y[4], x[5] - y[5])
         time += balls_apart(s, u, radii, sign, a)
     return time >= h

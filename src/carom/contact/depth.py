@@ -16,7 +16,7 @@ def watch_depth(system, state, t, work, watch):
     """Store the largest penetration so far, relative to the size of the (smaller) body, and its time."""
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
-        if contact.touches != STOP and apart(contact, state, 0.0):
+        if contact.touches != STOP and apart(system, contact, state, 0.0):
             continue
         depth = -least_gap(system, contact, state, work) - 4.0 * round_off_of_both(contact, state)
         depth /= smaller(contact)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
+from carom.geometry.rotation import rotate
+from carom.kinematics.wrench import point_velocity
 
 
 @kernel
@@ -19,3 +21,25 @@ def centre_of_other(contact, state):
         return c[0], c[1], c[2], 0.0, 0.0, 0.0
     x, v = state[contact.other].x, state[contact.other].v
     return x[0], x[1], x[2], v[0], v[1], v[2]
+
+
+@kernel
+def centre_of_piece(b, solid, state):
+    """Return position and velocity of the centre of a piece of a body."""
+    x, q, p = state[b].x, state[b].Q, solid.x
+    r0, r1, r2 = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    v0, v1, v2 = point_velocity(state, b, r0, r1, r2)
+    return x[0] + r0, x[1] + r1, x[2] + r2, v0, v1, v2
+
+
+@kernel
+def centres_of_balls(system, contact, state, pieces):
+    """Return positions and velocities of the centres of balls around both bodies, or around two `pieces`."""
+    x, v = state[contact.body].x, state[contact.body].v
+    if not pieces:
+        return (x[0], x[1], x[2], v[0], v[1], v[2]), centre_of_other(contact, state)
+    p, q = system.solids[contact.solid], system.solids[contact.other_solid]
+    y = (q.x[0], q.x[1], q.x[2], 0.0, 0.0, 0.0)
+    if contact.static == 0:
+        y = centre_of_piece(contact.other, q, state)
+    return centre_of_piece(contact.body, p, state), y

@@ -1,6 +1,7 @@
 """Points that have passed an edge within a step: their normal jumps from that of one face to that of the next.
 
-A normal that a face owns turns with its body. Where it does not, the point has gone from this face to another.
+A normal that a face owns turns with its body. Where it does not, the point has gone from this face to another,
+or, of sharp solids, to edges on edges (the tip of a saw tooth at the end of a pawl).
 Beyond an edge of a convex piece the next face recedes: to keep the point on it would take a pull.
 """
 
@@ -8,10 +9,12 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.collision.features import NOBODY, OF_A
+from carom.collision.layout import BOX, HULL
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
 
 JUMP = 1e-6  # of a component: those of a normal that has turned with its face differ by round-off
+EDGE_JUMP = 1e-3  # the same for edges: those of level faces have normals that differ by 4.5e-5 (`clip.LEVEL`)
 
 
 @kernel
@@ -23,30 +26,42 @@ def note_normal(point, active_point):
 
 
 @kernel
-def note_passed(active, k, group, start, end):
+def note_passed(system, active, k, group, start, end):
     """Mark the points of two bodies that have passed an edge, from their places at the end of a step."""
     for i in range(k):
         closed_point, point = group.closed[i], group.points[0][i]
         if closed_point.turns > 0 or closed_point.own == 0:
             continue
         active_point = active.points[closed_point.active]
-        faces = active_point.owner != NOBODY and point.owner != NOBODY
-        jumps = (
-            active_point.touches == 1 and faces and normal_jumps(active_point, point, start, end)
-        )
+        contact, least = system.contacts[active_point.contact], JUMP
+        jumps = active_point.touches == 1 and active_point.owner != NOBODY
+        if jumps and point.owner == NOBODY:
+            jumps, least = are_sharp(system, contact), EDGE_JUMP
+        jumps = jumps and jump_of_normal(active_point, point, start, end) > least
         active_point.passes = 1 if jumps and contact_velocity(point, end)[0] > 0.0 else 0
 
 
 @kernel
-def normal_jumps(active_point, point, start, end):
-    """Return whether a normal is not that of the start, turned with the body that owns it now."""
-    b, n, m = point.a if point.owner == OF_A else point.b, active_point.normal, point.axes[0]
+def are_sharp(system, contact):
+    """Return whether two solids are polyhedra whose edges are not rounded."""
+    if contact.surface > 0:
+        return False
+    a, b = system.solids[contact.solid], system.solids[contact.other_solid]
+    flat = (a.kind == BOX or a.kind == HULL) and (b.kind == BOX or b.kind == HULL)
+    return flat and a.radius == 0.0 and b.radius == 0.0
+
+
+@kernel
+def jump_of_normal(active_point, point, start, end):
+    """Return the greatest change of a component of a normal that turns with the body whose face owns it."""
+    owner = point.owner if point.owner != NOBODY else active_point.owner
+    b, n, m = point.a if owner == OF_A else point.b, active_point.normal, point.axes[0]
     x, y, z = n[0], n[1], n[2]
     if b >= 0:
         q, Q = start[b].Q, end[b].Q
         x, y, z = rotate_back(q[0], q[1], q[2], q[3], x, y, z)
         x, y, z = rotate(Q[0], Q[1], Q[2], Q[3], x, y, z)
-    return max(abs(x - m[0]), max(abs(y - m[1]), abs(z - m[2]))) > JUMP
+    return max(abs(x - m[0]), max(abs(y - m[1]), abs(z - m[2])))
 
 
 @kernel

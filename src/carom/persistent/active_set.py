@@ -15,6 +15,7 @@ from carom.contact.place import place_any
 from carom.contact.place_of_other import on_half_space
 from carom.contact.rim import same_point
 from carom.model.parts_of_system import has_solids
+from carom.persistent.step_control import UNSOLVED
 
 
 @kernel
@@ -175,17 +176,26 @@ def refresh_pairs(system, controls, active, state, work) -> bool:
 
 @kernel
 def replace_points(system, controls, active, c, mode, state, work):
-    """Activate the closed points of contact c, in place of a point that no longer exists."""
+    """Activate the closed points of contact c, in place of a point that no longer exists.
+
+    Points that approach faster than a contact problem may leave unsolved are not persistent: of two bodies they
+    strike (the edge of a cam whose flat top becomes level with its follower).
+    """
     contact = system.contacts[c]
     near, still = closed_within(controls, contact, state), 10.0 * slow(contact, state)
-    if apart(contact, state, near):
+    if apart(system, contact, state, near):
         return
+    plane = on_half_space(contact)
+    if not plane:
+        still = max(still, UNSOLVED * controls.step * controls.pull)
     for t in range(find_touches(system, contact, state, REACH * smaller(contact), work)):
         touch = work.touches[t]
         free = active.count[0] < active.points.shape[0]
         if touch.gap > near or is_active(system, active, c, touch, state):
             continue
-        if free and (not on_half_space(contact) or touch_rate(contact, touch, state) >= -still):
+        if touch_rate(contact, touch, state) < -still:
+            active.contact_states[c].near = max(active.contact_states[c].near, 0 if plane else 1)
+        elif free:
             activate_touch(contact, c, touch, mode, state, active)
 
 

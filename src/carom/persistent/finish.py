@@ -40,7 +40,7 @@ def land(model, data, loaded, k, count) -> bool:
         return False
     show(count, end, group, work)
     place_closed(system, k, end, group, group.points[0], work)
-    note_passed(active, k, group, data.state, end)
+    note_passed(system, active, k, group, data.state, end)
     onto_surfaces(system, active, k, count, end, group, work)
     if loaded:
         project_velocity(system, end, False, work)

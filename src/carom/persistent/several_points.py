@@ -30,6 +30,7 @@ from carom.persistent.start import first_stage
 LAID = 1e-9  # of the size of a body: the gap of a point that is on its surface
 DROP = 1e-10  # of a pivot, relative to its row
 LITTLE = 1e-4  # of the speed: what may be taken for round-off of rest
+VELOCITY_LEFT = 1e-6  # of the greatest velocity to be removed: what may be left of others
 FRICTION_ROUNDS = 60  # of friction with what it does to the normal impulses
 
 
@@ -43,6 +44,8 @@ def activate_several(model, data, k, label, horizon):
     inverse_masses(system, rows, group.points[0], state, work, group.m[0])
     pose_forces(system, controls, rows, state, group, work)
     judge(model, data, k, rows, horizon)
+    if leave_unreachable(system, state, k, group):
+        solve_forces(model, data, rows)
     new, stay = -1, False
     for i in range(k):
         closed_point = group.closed[i]
@@ -93,6 +96,46 @@ def judge(model, data, k, rows, horizon):
                 group.closed[i].stays = 0  # it has no force
         if not more:
             break
+
+
+@kernel
+def leave_unreachable(system, state, k, group):
+    """Let points bounce on whose velocities cannot all be removed; return whether forces were written over.
+
+    Where a driver moves a body the rows of two points may depend on each other while their velocities do not:
+    two flanks of a tooth on a gear that can only turn. The fastest are left until the others agree.
+    """
+    written = False
+    for _ in range(k):
+        fastest, joined, left = -1, False, 0.0
+        for i in range(k):
+            if group.closed[i].stays == 1:
+                joined = joined or not alone(system, group.points[0][i])
+                if fastest < 0 or group.v[U][3 * i] > group.v[U][3 * fastest]:
+                    fastest = i
+        if not joined:
+            return written
+        most = group.v[U][3 * fastest]
+        if not most > slow(system.contacts[group.closed[fastest].contact], state):
+            return written
+        find_pull(k, 0, group)
+        written = True
+        for i in range(k):
+            if group.closed[i].stays == 1:
+                left = max(left, abs(velocity_after(3 * i, k, group)))
+        if not left > VELOCITY_LEFT * most:
+            return written
+        group.closed[fastest].stays = 0
+    return written
+
+
+@kernel
+def velocity_after(q, k, group):
+    """Return the velocity of row q after the impulses in `old`."""
+    after, x = group.v[U][q], group.v[OLD]
+    for j in range(3 * k):
+        after += group.m[0][q, j] * x[j]
+    return after
 
 
 @kernel
@@ -168,16 +211,12 @@ def end_bounces(model, data, k, label, horizon):
 @kernel
 def work_of_pull(k, group):
     """Return the work of the impulses in `old`: half of each times its velocities before and after."""
-    x, u, W = group.v[OLD], group.v[U], group.m[0]
+    x, u = group.v[OLD], group.v[U]
     normal, tangential = 0.0, 0.0
     for i in range(3 * k):
         if x[i] == 0.0:
             continue
-        after = 0.0
-        if not stops(group, i):
-            after = u[i]
-            for j in range(3 * k):
-                after += W[i, j] * x[j]
+        after = 0.0 if stops(group, i) else velocity_after(i, k, group)
         if i % 3 > 0 and not stops(group, i):
             tangential += 0.5 * x[i] * (u[i] + after)
         else:

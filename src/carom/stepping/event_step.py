@@ -245,7 +245,7 @@ def check_pair(system, controls, active, c, now, work) -> int:
     """Return whether a closed point of two bodies is to be struck or made persistent."""
     contact, action = system.contacts[c], NOTHING
     near, still = closed_within(controls, contact, now), slow(contact, now)
-    if apart(contact, now, near) or beside_face(system, contact, now, near):
+    if apart(system, contact, now, near) or beside_face(system, contact, now, near):
         return NOTHING
     for i in range(find_touches(system, contact, now, REACH * smaller(contact), work)):
         touch = work.touches[i]

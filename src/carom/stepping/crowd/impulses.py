@@ -207,7 +207,7 @@ def deepest_of_others(system, end, work):
     deepest = 0.0
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
-        if contact.touches == STOP or not apart(contact, end, 0.0):
+        if contact.touches == STOP or not apart(system, contact, end, 0.0):
             gap = least_gap(system, contact, end, work)
             deepest = max(deepest, -gap / smaller(contact))
     return deepest

@@ -61,7 +61,7 @@ def gather(system, active, h, fall, wide, state, crowd, work):
         if wide > 1.0:  # also with the velocities from the impulses found before
             speed = max(speed, closing_speed(contact, work.trial))
         reach = h * (quicker * speed + 2.0 * wide * fall * h)
-        if apart(contact, state, reach):
+        if apart(system, contact, state, reach):
             continue
         first = k
         if contact.touches == 0:
@@ -87,7 +87,7 @@ def gather_sunk(system, k, depth, end, crowd, work):
     last = k
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
-        if contact.touches == STOP or apart(contact, end, 0.0):
+        if contact.touches == STOP or apart(system, contact, end, 0.0):
             continue
         if least_gap(system, contact, end, work) >= -depth * smaller(contact):
             continue
