@@ -12,6 +12,7 @@ from ensembles.test_ensemble import THROWN, same
 distributed = pytest.importorskip("distributed")
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")  # of the cluster, whose worker is killed
 def test_a_killed_worker_loses_nothing():
     given = {"step": 2e-3, "vary": THROWN, "runs": 60}
