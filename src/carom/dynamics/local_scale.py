@@ -3,9 +3,9 @@
 The time of a bounce as high as the tolerance, T = (8 tol / a)^1/2, is a negligible time: within it a body that
 starts at rest moves by less than the tolerance. It replaces the length of the step where this is a measure of
 time. Its acceleration a is the greatest of the island: of gravity, and of what the applied forces give to its
-bodies with their joints at the start of a step. Without both it is V^2 / L with the greatest speed V of the bodies by their kinetic energies, which free
-flight does not change, and their least size L. So T does not depend on the length of a step or of the run, nor
-on other bodies.
+bodies with their joints at the start of a step. Without both it is V^2 / L with the greatest speed V of the
+bodies by their kinetic energies, which free flight does not change, and their least size L. So T does not
+depend on the length of a step or of the run, nor on other bodies.
 """
 
 from __future__ import annotations
