@@ -22,6 +22,7 @@ from carom.dynamics.project import project_velocity
 from carom.geometry.rotation import norm
 from carom.model import records as r
 from carom.model.allowance import affordable_whole
+from carom.status import NOT_FINITE
 from carom.stepping.crowd.balance import energy_gained, off, slow_down, take_out, take_over
 from carom.stepping.crowd.finish import finish
 from carom.stepping.crowd.free_motion import (
@@ -42,7 +43,7 @@ from carom.stepping.crowd.impulses import (
 )
 from carom.stepping.crowd.layout import SPOTS
 from carom.stepping.crowd.solve import greatest_speed
-from carom.stepping.record import grow
+from carom.stepping.record import finite, grow
 
 # greatest displacement of a body in a piece of the step, relative to its ball, and rotation of a single body
 # [rad]. Several bodies also move at most FAR of their thickness, but THIN of the first limit is always allowed
@@ -137,6 +138,8 @@ def move_on(model, data, method, h, patient, careful):
     # the motion without contacts, then the impulses
     shortest = h <= SHORTEST * model.controls.interval
     code, loads, rubbing = fly(model, data, method, h, loaded, not shortest)
+    if code == 0 and loaded and shortest and not finite(crowd.flight):
+        code = NOT_FINITE  # a force without a value: no piece is short enough
     if code != 0:
         return code
     fall = norm(system.gravity)
