@@ -210,3 +210,9 @@ def test_a_joint_whose_damper_lets_nothing_move_is_held():
     assert "held" not in str(slow.report)
     drop = 9.81e-3 * (1.0 - 1e-3)  # v = v_end (1 - e^{-t c/m}), v_end = m g/c
     np.testing.assert_allclose(slow.qpos(carom.simulate(slow.scene, 1.0))[-1], -drop, rtol=1e-5)
+    # a light part of a model whose damper ends its own motion within 1e-9 s can still be pushed by the others
+    light = """<mujoco><worldbody><body><freejoint/><geom size=".1" mass="1"/><body><joint type="slide"
+      damping="1"/><geom size=".01" mass="1e-9"/></body></body></worldbody></mujoco>"""
+    assert "held" not in str(carom.load_model(light).report)
+    sprung = text.format("1e11").replace("range=", 'stiffness="1e11" springref=".1" range=')
+    assert "held" not in str(carom.load_model(sprung).report)

@@ -12,8 +12,8 @@ from carom.scene import constraints, forces
 from carom.scene.bodies import GROUND
 
 RELAXED = 1e-9  # angle, or distance by the extent of the model, within which a mount starts relaxed
-#: rate [1/s] at which a damper ends the motion of its joint, above which the joint is held: steps that resolve
-#: it are below a microsecond, and what forces then move is below their size by as much
+#: rate [1/s] at which a damper ends the motion of the whole model along its joint, above which the joint is
+#: held: steps that resolve it are below a microsecond, and forces of the model's weight do not move it
 HELD = 1e7
 
 
@@ -30,12 +30,10 @@ def add_coordinate_parts(build: Build, restitution: float, impact_law: str, arma
 
 def _held(build: Build, j: int, c: Coordinate) -> bool:
     """Hold a joint at its start if its damper lets nothing move it, as models fix a base; return whether so."""
-    model, dof = build.model, build.model.jnt_dofadr[j]
-    damping = float(model.dof_damping[dof])
-    rate = damping * float(
-        model.dof_invweight0[dof]
-    )  # by the inverse inertia that forces on it meet
-    if rate <= HELD:
+    model, damping = build.model, float(build.model.dof_damping[build.model.jnt_dofadr[j]])
+    slides = model.jnt_type[j] == need_mujoco().mjtJoint.mjJNT_SLIDE
+    rate = damping / (float(model.body_mass.sum()) * (1.0 if slides else model.stat.extent**2))
+    if rate <= HELD or model.jnt_stiffness[j] > 0.0:  # a spring moves it, however slowly
         return False
     name = build.names.new(f"{name_of(model, 'joint', j)}:held", "constraint")
     build.scene.add_constraint(constraints.Driver(c.joint, 0.0, coordinate=c.index), name=name)
