@@ -38,6 +38,7 @@ CLOSED_POINT = [
     ("patch", "i8"),  # the first point of its patch
     ("weight", "f8"),  # stiffness of its spring, as a part of that of its patch
     ("spring", "f8"),  # compliance of its spring [1/kg]
+    ("hold", "f8"),  # compliance of its stick [1/kg]
     ("turns", "i8"),  # as in its POINT, 5 for all friction in joints (then `active` is its number)
     # of a torque of rolling or pivoting friction: the closed point whose normal force bounds it
     ("parent", "i8"),

@@ -19,6 +19,8 @@ import math
 from carom._compiled.decorators import kernel
 from carom.contact.pair_point import smaller
 
+PLASTIC = 1e-4
+
 
 @kernel
 def horizon_of(contact, controls, g, horizon):
@@ -26,6 +28,8 @@ def horizon_of(contact, controls, g, horizon):
     if controls.order == 0:
         return horizon
     tolerance = controls.atol + controls.rtol * smaller(contact)
+    if contact.restitution == 0.0:
+        tolerance *= PLASTIC
     return math.sqrt(8.0 * tolerance / g) if g > 0.0 else 0.0
 
 

@@ -18,8 +18,8 @@ from carom._compiled.decorators import kernel
 from carom.friction import lu
 from carom.impact.workspace import KEPT, OLD, C, P, U
 from carom.persistent.joint_rows import JOINT, is_driven, radius_of
-from carom.persistent.settle import settle
-from carom.persistent.springs import DEPEND, EPS, PULL, compliance_of, moves
+from carom.persistent.settle import greatest, settle
+from carom.persistent.springs import DEPEND, EPS, PULL, ROUNDS, SMALL, compliance_of, grip, moves, soften
 
 STAGE_ITERATIONS, HALVES = 40, 6
 FITS = 1e-13  # of the accelerations without forces: error of the equations
@@ -123,7 +123,7 @@ def newton(k, hg, halves, group):
     for i in range(k):
         slip = max(slip, max(abs(group.v[U][3 * i + 1]), abs(group.v[U][3 * i + 2])))
     enough = FITS * push + 1e-15 * slip / hg
-    share(n, group)
+    share(k, n, group)
     size = write_equations(k, n, hg, group)
     for _ in range(STAGE_ITERATIONS):
         if size <= enough:
@@ -134,7 +134,8 @@ def newton(k, hg, halves, group):
             L[i, i] += EPS * compliance_of(group, rows[i])
             x[i], kept[i] = -x[i], p[rows[i]]
         lu.factor(L, n, group.cone.pivot, 0.0)
-        rest = settle(n, 0.0, 0.01 * max(enough, EXACT * size), group.cone, group.m[1], x)
+        force = greatest(3 * k, p)
+        rest = settle(n, 0.0, 0.01 * max(enough, EXACT * size), SMALL * push, force, group.cone, group.m[1], x)
         part, best = 1.0, size
         for _ in range(halves):
             for i in range(n):
@@ -153,28 +154,36 @@ def newton(k, hg, halves, group):
 
 
 @kernel
-def share(n, group):
+def share(k, n, group):
     """Share the first forces of what presses or sticks as springs do, with nearly the same accelerations.
 
     Else forces that are not unique would depend on those of the last stage, and change with each iteration of
     its pose: normal ones, and what sticks where others already hold it (a floor, and a hand that pushes).
     """
-    rows, x, p, m = group.cone.active, group.v[OLD], group.v[P], 0
-    L, W = group.cone.matrix, group.m[0]
+    rows, x, kept, p, m = group.cone.active, group.v[OLD], group.v[KEPT], group.v[P], 0
+    L, W, chosen = group.cone.matrix, group.m[0], group.cone.vector[0]
     for i in range(n):
-        if rows[i] % 3 == 0 or sticks(group, rows[i] // 3):
-            group.cone.vector[0, m], m = rows[i], m + 1
+        whole = sticks(group, rows[i] // 3)
+        group.closed[rows[i] // 3].rows = 3 if whole else 1
+        if rows[i] % 3 == 0 or whole:
+            chosen[m], m = rows[i], m + 1
     for i in range(m):
-        row, x[i] = int(group.cone.vector[0, i]), 0.0
+        kept[i] = 0.0
         for j in range(m):
-            column = int(group.cone.vector[0, j])
-            L[i, j] = W[row, column]
-            x[i] += W[row, column] * p[column]
-        L[i, i] += EPS * compliance_of(group, row)
-    lu.factor(L, m, group.cone.pivot, 0.0)
-    lu.substitute(L, m, group.cone.pivot, x)
-    for i in range(m):
-        p[int(group.cone.vector[0, i])] = x[i]
+            kept[i] += W[int(chosen[i]), int(chosen[j])] * p[int(chosen[j])]
+    soften(k, group)
+    for _ in range(ROUNDS):
+        for i in range(m):
+            x[i] = kept[i]
+            for j in range(m):
+                L[i, j] = W[int(chosen[i]), int(chosen[j])]
+            L[i, i] += EPS * compliance_of(group, int(chosen[i]))
+        lu.factor(L, m, group.cone.pivot, 0.0)
+        lu.substitute(L, m, group.cone.pivot, x)
+        for i in range(m):
+            p[int(chosen[i])] = x[i]
+        if not grip(k, group):
+            break
 
 
 @kernel

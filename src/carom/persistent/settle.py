@@ -23,7 +23,7 @@ REMOVES = 1e-3  # of an error: a correction that removes less leaves it as that 
 
 
 @kernel
-def settle(n, held, enough, cone, Z, r):
+def settle(n, held, enough, small, force, cone, Z, r):
     """Solve A x = r with W for A and the factor of A + eps S in `matrix`; return the greatest error left.
 
     x is `vector[0]`, r becomes the error, Z has room for the corrections. `held` corrections of the first r are
@@ -50,6 +50,8 @@ def settle(n, held, enough, cone, Z, r):
         length, whole = math.sqrt(dot(n, q, q)), dot(n, r, r)
         along = dot(n, q, r) / length if length > 0.0 else 0.0
         removes = along * along > REMOVES * REMOVES * whole and abs(along) <= LARGEST * length
+        if size <= small and abs(along) * greatest(n, z) > length * force:
+            removes = False
         if not removes:
             correct(n, cone, r, z)
             for i in range(n):

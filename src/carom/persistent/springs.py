@@ -28,11 +28,14 @@ from carom.persistent.joint_rows import JOINT, is_driven
 from carom.persistent.settle import greatest, settle
 
 EPS = 1e-5
+SOFT = 1e2  # compliance of stick over that of pressing: what others hold already needs no friction
+WEAKEST, SAME, ROUNDS = 1e-3, 1e-9, 6
 DEPEND = 1e-3  # of the accelerations without forces: greatest error of such rows
 FITS = 1e-13  # of the accelerations without forces: error of the rows
 PULL = 1e-11  # of the greatest normal force: less is round-off of zero
 GIVES = 1e-6  # of the displacements of springs: their error
 ROUND_OFF = 1e-15  # of the acceleration by a force
+SMALL = 1e-5  # of the accelerations without forces: an error that asks for no greater forces
 DEEPER = 1e-12  # of the accelerations without forces, of a point whose spring is unloaded
 
 
@@ -52,13 +55,17 @@ def solve_springs(k, group) -> bool:
     closed, push = group.closed, greatest(3 * k, group.v[C])
     for i in range(k):
         closed[i].rows = rows_of(k, i, group)
+    soften(k, group)
+    rounds = 0
     for turn in range(3 * k + 4):
         n = factor_rows(k, group)
         changed = first_forces(k, n, turn, push, group)
         if changed < 0:
             return False
         if changed == 0:
-            return True
+            rounds += 1
+            if rounds > ROUNDS or not grip(k, group):
+                return True
         for i in range(k):
             closed[i].rows = rows_of(k, i, group)
     return False
@@ -109,7 +116,37 @@ def compliance_of(group, row):
     """Return the compliance of a row: that of its point, or of its torque."""
     if group.closed[row // 3].turns > 0:
         return group.m[0][row, row]
+    if group.closed[row // 3].turns == 0 and row % 3 > 0:
+        return group.closed[row // 3].hold
     return group.closed[row // 3].spring
+
+
+@kernel
+def soften(k, group):
+    """Let all stick hold alike."""
+    for i in range(k):
+        group.closed[i].hold = SOFT * group.closed[i].spring
+
+
+@kernel
+def grip(k, group):
+    """Let the compliances of stick be as 1/(mu N), as those of micro-slip are; return whether one changes."""
+    closed, most, base, count, changed = group.closed, 0.0, 0.0, 0, False
+    for i in range(k):
+        if closed[i].turns == 0 and closed[i].rows == 3 and closed[i].loaded == 1:
+            count += 1
+            bound = group.mu[i] * group.v[P][3 * i]
+            if bound > most:
+                most, base = bound, closed[i].spring
+    if count < 2:
+        return False
+    for i in range(k):
+        if closed[i].turns == 0 and closed[i].rows == 3 and closed[i].loaded == 1:
+            bound = group.mu[i] * group.v[P][3 * i]
+            hold = SOFT * base * most / max(bound, WEAKEST * most)
+            changed = changed or abs(hold - closed[i].hold) > SAME * hold
+            closed[i].hold = hold
+    return changed
 
 
 @kernel
@@ -161,7 +198,7 @@ def first_forces(k, n, turn, push, group):
         add_force(k, group, rows[i], x[i])
     for i in range(n):
         x[i] = -acceleration_of(k, rows[i], group)
-    if not settle(n, 1.0, FITS * push, group.cone, group.m[1], x) <= DEPEND * push:
+    if not settle(n, 1.0, FITS * push, SMALL * push, greatest(3 * k, p), group.cone, group.m[1], x) <= DEPEND * push:
         return -1
     for i in range(n):
         add_force(k, group, rows[i], group.cone.vector[0, i])
@@ -186,7 +223,7 @@ def load(k, n, push, group):
     for i in range(n):
         x[i] = compliance_of(group, rows[i]) * p[rows[i]]
         most, force = max(most, abs(x[i])), max(force, abs(p[rows[i]]))
-    settle(n, 0.0, GIVES * most, group.cone, group.m[1], x)
+    settle(n, 0.0, GIVES * most, 0.0, 0.0, group.cone, group.m[1], x)
     for i in range(k):
         row = 3 * i
         if closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0:
