@@ -178,6 +178,8 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
         still = max(1e-6 * gain, 10.0 * slow(system.contacts[closed_point.contact], end))
         end_mode(active_point, i, still, at_rest, group)
         set_margins(active_point, i, located, group)
+        if not given:
+            active_point.grip = 1.0
         active_point.jams = jams_among(i, status, group)
     add_forces_of_corners(active, k, group)
     note_residual(active, k, group, work)
