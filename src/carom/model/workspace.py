@@ -178,6 +178,7 @@ SEARCH = [
     ("left", "f8"),  # time to the end of the step
     ("dt", "f8"),  # the trial step,
     ("pace", "f8"),  # the longest that may be taken,
+    ("sure", "f8"),  # twice the last step in which it was sure that nothing closes,
     ("cuts", "i8"),  # number of times that it was cut,
     ("effort", "f8"),  # work of the step until it was proposed [us],
     ("counted", "f8"),  # trial steps that counted until it was proposed,

@@ -47,7 +47,7 @@ def advance(model, data, method) -> int:
     """
     clock, search = data.clocks[0], data.work.search[0]
     if not (clock.spent > 0.0 or clock.paused == 1 or search.pending != NOTHING):
-        search.pace = math.inf
+        search.pace, search.sure = math.inf, math.inf
     while clock.spent < clock.length:
         code = may_go_on(model, data)
         if code != 0:

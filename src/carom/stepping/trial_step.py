@@ -54,6 +54,9 @@ def propose_step(model, data):
     if data.active.count[0] > 0:
         dt = until_bounces_end(data.active, min(dt, clock.longest))
     dt = until_stop(model, data.active, dt, clock)
+    if search.sure < dt:
+        dt = search.sure
+        search.sure *= 2.0
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
     data.work.result[0].stiff = 0
     search.effort, search.counted = clock.effort, clock.counted
@@ -234,7 +237,11 @@ def event_within(model, data):
 
 @inlined
 def halve(model, data, loses):
-    """Halve the trial step; if it `loses` energy, later steps too. Return 0 if it is too short to halve."""
+    """Halve the trial step; return 0 if it is too short to halve.
+
+    If it `loses` energy, later steps are as short; else the next one is at most twice as long: what lies near
+    in this step will be near in the next.
+    """
     clock, search = data.clocks[0], data.work.search[0]
     if search.active == 1 and search.dt <= 1e-9 * search.horizon:
         search.found = 1
@@ -247,6 +254,8 @@ def halve(model, data, loses):
     search.dt *= 0.5
     if loses:
         search.pace = search.dt
+    else:
+        search.sure = 2.0 * search.dt
     return ONCE_MORE
 
 
