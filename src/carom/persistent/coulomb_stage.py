@@ -16,6 +16,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction import lu
+from carom.friction.layout import SLIDING
 from carom.impact.workspace import KEPT, OLD, C, P, U
 from carom.persistent.joint_rows import JOINT, is_driven, radius_of
 from carom.persistent.settle import greatest, settle
@@ -32,7 +33,8 @@ ENOUGH = 1e-9  # the same for an error that no iteration makes less
 def solve_stage(k, hg, group):
     """Write the forces of a stage to P; return whether they exist.
 
-    U has u~, C the accelerations without forces.
+    U has u~, C the accelerations without forces. With hg = 0 the law is that of accelerations: slip goes on
+    along `heading`, what has no velocity slips the way it accelerates.
     """
     closed = group.closed
     for i in range(k):
@@ -122,7 +124,7 @@ def newton(k, hg, halves, group):
     push, slip = largest(k, group), 0.0
     for i in range(k):
         slip = max(slip, max(abs(group.v[U][3 * i + 1]), abs(group.v[U][3 * i + 2])))
-    enough = FITS * push + 1e-15 * slip / hg
+    enough = FITS * push + (1e-15 * slip / hg if hg > 0.0 else 0.0)
     share(k, n, group)
     size = write_equations(k, n, hg, group)
     for _ in range(STAGE_ITERATIONS):
@@ -223,17 +225,22 @@ def write_disc(k, n, i, width, hg, group):
     closed_point = group.closed[unit]
     normal = 3 * (unit if closed_point.turns == 0 else closed_point.parent)  # below 0 for a joint
     scale = 0.5 * (W[a, a] + W[b, b])
-    ga = group.v[U][a] / hg + product(k, a, group)
-    gb = group.v[U][b] / hg + product(k, b, group) if width == 2 else 0.0
+    known = hg == 0.0 and group.kind[unit] == SLIDING
+    first = group.v[C][a] if hg == 0.0 else group.v[U][a] / hg
+    second = group.v[C][b] if hg == 0.0 else group.v[U][b] / hg
+    ga = first + product(k, a, group)
+    gb = second + product(k, b, group) if width == 2 else 0.0
     za, zb = p[a] - ga / scale, p[b] - gb / scale if width == 2 else 0.0
     z, radius = math.sqrt(za * za + zb * zb), radius_of(group, unit)
-    if z <= radius:
+    if known:
+        za, zb, z = -group.heading[unit, 0], -group.heading[unit, 1], 1.0
+    if not known and z <= radius:
         for r in range(width):
             for j in range(n):
                 L[i + r, j] = W[rows[i + r], rows[j]]
         x[i], x[i + width - 1] = ga, gb if width == 2 else ga
         return
-    ea, eb, part = za / z, zb / z, radius / z
+    ea, eb, part = za / z, zb / z, 0.0 if known else radius / z
     x[i] = scale * (p[a] - radius * ea)
     if width == 2:
         x[i + 1] = scale * (p[b] - radius * eb)

@@ -16,6 +16,7 @@ from carom.dynamics.several_points import velocities
 from carom.friction.layout import CONE, SLIDING, SOLVED
 from carom.impact.workspace import OLD, C, P, U
 from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
+from carom.persistent.coulomb_stage import solve_stage
 from carom.persistent.forces import solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among
 from carom.persistent.joint_rows import JOINT, fix_friction, is_driven, place_coordinate, radius_of
@@ -269,10 +270,14 @@ def solve_cones_of(model, data, k) -> int:
     """Solve the contact problem of accelerations: slip along the headings that are known, else within cones."""
     group = data.group
     for i in range(k):
-        group.closed[i].stays = 1
         known = group.heading[i, 0] != 0.0 or group.heading[i, 1] != 0.0
         if group.kind[i] == SLIDING and not known:
             group.kind[i] = CONE
+        group.closed[i].stays = 1
+    if solve_stage(k, 0.0, group):
+        note_accelerations(k, group)
+        return SOLVED
+    for i in range(k):
         if group.closed[i].turns == JOINT:
             fix_friction(k, i, group)
         elif group.closed[i].turns > 0:
