@@ -163,7 +163,18 @@ def closing_member(model, data, label, loaded, count, h):
         b = group.member[m]
         copy_state(start[b], work.first[b])
         copy_state(start[b], work.stage[b])
+        for r in range(6):
+            work.stages[1, b].rate[r] = work.stages[0, b].rate[r]
     result.time = result.start + h
+    k, power, rubbed = implicit_stage(model, data, label, loaded, count, 1, h)
+    if k > 0:
+        result.applied += h * power
+        result.friction += h * rubbed
+        for m in range(count):
+            copy_state(work.stage[group.member[m]], end[group.member[m]])
+        return k
+    for m in range(count):
+        copy_state(start[group.member[m]], work.stage[group.member[m]])
     for turn in range(3):
         power = accelerate_freely(model, data, loaded, count, 1)
         k = write_rows(model, data, label, 1)
