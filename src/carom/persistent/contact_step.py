@@ -106,8 +106,9 @@ def step_group(model, data, method, label, h):
     result.applied, result.friction = had, rubbed
     k = closing_member(model, data, label, loaded, count, h)
     note_modes(model, data, k, h)
-    if not land(model, data, loaded, k, count):
+    if k == 0 or not land(model, data, loaded, k, count):
         result.code = CONSTRAINTS_LOST
+        return
     review(model, data, label, loaded, count, 2, h, False)
     lets_go = order > 0 and opens(data, label)
     if lets_go:

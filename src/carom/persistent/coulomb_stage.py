@@ -20,7 +20,17 @@ from carom.friction.layout import SLIDING
 from carom.impact.workspace import KEPT, OLD, C, P, U
 from carom.persistent.joint_rows import JOINT, is_driven, radius_of
 from carom.persistent.settle import greatest, settle
-from carom.persistent.springs import DEPEND, EPS, PULL, ROUNDS, SMALL, compliance_of, grip, moves, soften
+from carom.persistent.springs import (
+    DEPEND,
+    EPS,
+    PULL,
+    ROUNDS,
+    SMALL,
+    compliance_of,
+    grip,
+    moves,
+    soften,
+)
 
 STAGE_ITERATIONS, HALVES = 40, 6
 FITS = 1e-13  # of the accelerations without forces: error of the equations
@@ -137,7 +147,9 @@ def newton(k, hg, halves, group):
             x[i], kept[i] = -x[i], p[rows[i]]
         lu.factor(L, n, group.cone.pivot, 0.0)
         force = greatest(3 * k, p)
-        rest = settle(n, 0.0, 0.01 * max(enough, EXACT * size), SMALL * push, force, group.cone, group.m[1], x)
+        rest = settle(
+            n, 0.0, 0.01 * max(enough, EXACT * size), SMALL * push, force, group.cone, group.m[1], x
+        )
         part, best = 1.0, size
         for _ in range(halves):
             for i in range(n):

@@ -70,7 +70,7 @@ def implicit_member(model, data, method, label, loaded, count, h):
             for r in range(6):
                 work.stages[s, b].rate[r] = work.stages[s - 1, b].rate[r]
         result.time = result.start + h * node(A[s], s + 1)
-        k, power, rubbed = implicit_stage(model, data, label, loaded, count, s, h * A[s, s])
+        k, power, rubbed = implicit_stage(model, data, label, loaded, count, s, h * A[s, s], False)
         if k < 0:
             return 0
         result.applied += h * A[stages - 1, s] * power
@@ -82,7 +82,7 @@ def implicit_member(model, data, method, label, loaded, count, h):
 
 
 @kernel
-def implicit_stage(model, data, label, loaded, count, s, hg):
+def implicit_stage(model, data, label, loaded, count, s, hg, closes):
     """Solve for stage s in `work.stage`, from `work.first` without it.
 
     Return the number of points, -1 if there is no solution, and the powers of loads and of friction.
@@ -113,13 +113,15 @@ def implicit_stage(model, data, label, loaded, count, s, hg):
             for row in range(3 * k):
                 group.v[P][row] = 0.0
         if not solve_stage(k, hg, group):
-            return -1, 0.0, 0.0
+            if not closes:
+                return -1, 0.0, 0.0
+            solve_impulses(model, data, k, hg)
         for i in range(k):  # the work of friction of all points: what sticks has no velocity
             group.kind[i] = SLIDING
         velocities(k, group.points[0], work.stage, group.v[U])
         driven, rubbed = push_bodies(model, data, loaded, k, count, s)
         power = applied + driven
-    if model.controls.order > 0 and not change <= CLOSE:  # a given step is judged by its balance
+    if model.controls.order > 0 and not closes and not change <= CLOSE:
         return -1, 0.0, 0.0
     return k, power, rubbed
 
@@ -143,6 +145,7 @@ def move_stage(base, hg, length, stage, out):
         v, w = base.v[r] + hg * stage.rate[r], base.w[r] + hg * stage.rate[3 + r]
         change = max(change, max(abs(v - out.v[r]), length * abs(w - out.w[r])))
         size = max(size, max(abs(v), length * abs(w)))
+        size = max(size, max(abs(base.v[r]), length * abs(base.w[r])))
         out.v[r], out.w[r] = v, w
     note_velocity(out, stage)
     q, Q = stage.turn, base.Q
@@ -156,66 +159,37 @@ def move_stage(base, hg, length, stage, out):
 
 @kernel
 def closing_member(model, data, label, loaded, count, h):
-    """Make a time-stepping step: velocities by impulses at its end; return the number of points."""
+    """Make a step of implicit Euler, the stiff method of one stage; return the number of points, 0 if none."""
     start, end, group, work = data.state, data.work.trial, data.group, data.work
-    result, k = work.result[0], 0
+    result = work.result[0]
     for m in range(count):
         b = group.member[m]
         copy_state(start[b], work.first[b])
-        copy_state(start[b], work.stage[b])
         for r in range(6):
             work.stages[1, b].rate[r] = work.stages[0, b].rate[r]
     result.time = result.start + h
-    k, power, rubbed = implicit_stage(model, data, label, loaded, count, 1, h)
-    if k > 0:
-        result.applied += h * power
-        result.friction += h * rubbed
-        for m in range(count):
-            copy_state(work.stage[group.member[m]], end[group.member[m]])
-        return k
-    for m in range(count):
-        copy_state(start[group.member[m]], work.stage[group.member[m]])
-    for turn in range(3):
-        power = accelerate_freely(model, data, loaded, count, 1)
-        k = write_rows(model, data, label, 1)
-        for m in range(count):
-            b = group.member[m]
-            add_velocity(work.first[b], h, work.stages[1, b], work.middle[b])
-        velocities(k, group.points[0], work.middle, group.v[U])
-        solve_impulses(model, data, k, h if turn > 0 else 0.0, h)
-        for row in range(3 * k):
-            group.v[P][row] /= h
-        velocities(k, group.points[0], work.stage, group.v[U])
-        driven, _ = push_bodies(model, data, loaded, k, count, 1)
-        for m in range(count):
-            b = group.member[m]
-            move_stage(work.first[b], h, 1.0, work.stages[1, b], work.stage[b])
-        if turn == 2:
-            velocities(k, group.points[0], work.stage, group.v[U])
-            result.applied += h * (power + driven)
-            for i in range(k):
-                u, p = group.v[U], group.v[P]
-                result.friction += h * (p[3 * i + 1] * u[3 * i + 1] + p[3 * i + 2] * u[3 * i + 2])
+    k, power, rubbed = implicit_stage(model, data, label, loaded, count, 1, h, True)
+    if k < 0:
+        return 0
+    result.applied += h * power
+    result.friction += h * rubbed
     for m in range(count):
         copy_state(work.stage[group.member[m]], end[group.member[m]])
     return k
 
 
 @kernel
-def solve_impulses(model, data, k, h, length):
-    """Write the impulses to P for which Coulomb's law holds with the velocities W p + U.
-
-    The step has the given length; h P is the first guess.
-    """
+def solve_impulses(model, data, k, h):
+    """Write forces to P under which Coulomb's law holds with the velocities h W p + U."""
     group = data.group
     for i in range(3 * k):
-        group.v[P][i] *= h
+        group.v[P][i] = 0.0
         group.v[C][i] = group.v[U][i]
     turning = False
     for i in range(k):
         group.kind[i] = CONE
         if group.closed[i].turns == JOINT:
-            group.kind[i], group.heading[i, 0] = DISC, length * group.mu[i]
+            group.kind[i], group.heading[i, 0] = DISC, h * group.mu[i]
         elif group.closed[i].turns > 0:
             group.mu[i], turning = 1.0, True
     group.cone.count[NEAR], group.cone.mismatch[ENOUGH], group.cone.count[BUDGET] = 0, 0.0, 0
@@ -229,3 +203,5 @@ def solve_impulses(model, data, k, h, length):
     for i in range(k):
         if 0 < group.closed[i].turns < JOINT:
             group.mu[i] = bound_per_force(model.system, group.points[0][i], group.closed[i])
+    for i in range(3 * k):
+        group.v[P][i] /= h

@@ -198,7 +198,8 @@ def first_forces(k, n, turn, push, group):
         add_force(k, group, rows[i], x[i])
     for i in range(n):
         x[i] = -acceleration_of(k, rows[i], group)
-    if not settle(n, 1.0, FITS * push, SMALL * push, greatest(3 * k, p), group.cone, group.m[1], x) <= DEPEND * push:
+    enough, small, force = FITS * push, SMALL * push, greatest(3 * k, p)
+    if not settle(n, 1.0, enough, small, force, group.cone, group.m[1], x) <= DEPEND * push:
         return -1
     for i in range(n):
         add_force(k, group, rows[i], group.cone.vector[0, i])

@@ -145,8 +145,9 @@ def trial_step(model, data, method):
         return TOO_MANY
     if (active.count[0] > 0 or rubs(system)) and code == 0:
         contact_step(model, data, method, search.dt)
-        if work.result[0].code != 0:
-            return work.result[0].code
+        if work.result[0].code != 0:  # a stage without a solution: a shorter step may have one
+            search.code = work.result[0].code
+            return 0
         if retry and clock.effort > affordable(controls, clock):
             return TOO_MANY  # some of its rounds were left out
         search.applied += work.result[0].applied
