@@ -146,10 +146,8 @@ def newton(k, hg, halves, group):
             L[i, i] += EPS * compliance_of(group, rows[i])
             x[i], kept[i] = -x[i], p[rows[i]]
         lu.factor(L, n, group.cone.pivot, 0.0)
-        force = greatest(3 * k, p)
-        rest = settle(
-            n, 0.0, 0.01 * max(enough, EXACT * size), SMALL * push, force, group.cone, group.m[1], x
-        )
+        asked, force = 0.01 * max(enough, EXACT * size), greatest(3 * k, p)
+        rest = settle(n, 0.0, asked, SMALL * push, force, group.cone, group.m[1], x)
         part, best = 1.0, size
         for _ in range(halves):
             for i in range(n):
@@ -162,7 +160,7 @@ def newton(k, hg, halves, group):
             return False
         if size >= 0.9 * best and size <= ENOUGH * push + 1e3 * enough:
             return True
-        if size <= 2.0 * rest <= DEPEND * push:  # rows that depend on others
+        if rest > asked and size <= 2.0 * rest <= DEPEND * push:  # rows that depend on others
             return True
     return size <= ENOUGH * push
 
