@@ -59,6 +59,7 @@ class Group(NamedTuple):
     points: np.recarray  # (2, K) POINT: of the present state; of the end of a step
     v: np.ndarray  # (5, 3K) vectors
     m: np.ndarray  # (2, 3K, 3K) inverse mass W, and a factor
+    idle: np.ndarray  # (2, K, K) the projector to normal forces that move nothing, and its square
     mu: np.ndarray  # (K,)
     kind: np.ndarray  # (K,) of `carom.friction`
     heading: np.ndarray  # (K, 2)
@@ -99,7 +100,7 @@ def new_group(system: System, more: bool = False) -> Group:
     n, k = system.bodies.size, capacity(system, more)
     return Group(
         closed=table(CLOSED_POINT, k), points=table(POINT, 2, k), v=np.zeros((5, 3 * k)),
-        m=np.zeros((2, 3 * k, 3 * k)), mu=np.zeros(k), kind=np.zeros(k, dtype=np.int64),
+        m=np.zeros((2, 3 * k, 3 * k)), idle=np.zeros((2, k, k)), mu=np.zeros(k), kind=np.zeros(k, dtype=np.int64),
         heading=np.zeros((k, 2)), member=np.zeros(n, dtype=np.int64), cone=new_contact_work(k),
     )  # fmt: skip
 

@@ -32,7 +32,7 @@ from carom.persistent.springs import (
     soften,
 )
 
-STAGE_ITERATIONS, HALVES = 40, 6
+STAGE_ITERATIONS, HALVES, SQUARES = 40, 6, 3
 FITS = 1e-13  # of the accelerations without forces: error of the equations
 EXACT = 1e-6  # of the error: that of the linear equations
 ON_DISC = 1e-9  # of its radius: less is within a disc
@@ -50,11 +50,54 @@ def solve_stage(k, hg, group):
     for i in range(k):
         closed[i].loaded = 1 if closed[i].weight > 0.0 else 0
     for _ in range(2 * k + 2):
-        if not (newton(k, hg, HALVES, group) or newton(k, hg, 1, group)):
+        share(k, list_unknowns(k, group), group)
+        idle = find_idle(k, group)
+        if idle > 0.0 and not newton(k, hg, HALVES, idle, group):
+            idle = 0.0
+        if not (newton(k, hg, HALVES, 0.0, group) or newton(k, hg, 1, 0.0, group)):
             return False
         if not change_loads(k, group):
             return True
     return False
+
+
+@kernel
+def find_idle(k, group):
+    """Write the projector to normal forces that move nothing; return a stiffness for them, 0 if there are none.
+
+    Springs share so that S N is orthogonal to these. The projector is the limit of ((W + eps S)^-1 eps S)^m for
+    the normal rows of what presses.
+    """
+    rows, L, Y, Z, n, size = group.cone.active, group.cone.matrix, group.idle[0], group.idle[1], 0, 0.0
+    closed, x, W = group.closed, group.v[OLD], group.m[0]
+    for i in range(k):
+        if closed[i].turns == 0 and closed[i].loaded == 1:
+            rows[n], n, size = i, n + 1, max(size, closed[i].spring)
+    for i in range(n):
+        for j in range(n):
+            L[i, j] = W[3 * rows[i], 3 * rows[j]]
+        L[i, i] += EPS * closed[rows[i]].spring
+    lu.factor(L, n, group.cone.pivot, 0.0)
+    for j in range(n):
+        for i in range(n):
+            x[i] = EPS * closed[rows[j]].spring if i == j else 0.0
+        lu.substitute(L, n, group.cone.pivot, x)
+        for i in range(n):
+            Y[rows[i], rows[j]] = x[i]
+    for _ in range(SQUARES):
+        for i in range(n):
+            for j in range(n):
+                total = 0.0
+                for m in range(n):
+                    total += Y[rows[i], rows[m]] * Y[rows[m], rows[j]]
+                Z[i, j] = total
+        for i in range(n):
+            for j in range(n):
+                Y[rows[i], rows[j]] = Z[i, j]
+    total = 0.0
+    for i in range(n):
+        total += Y[rows[i], rows[i]]
+    return size if total > 0.5 else 0.0
 
 
 @kernel
@@ -124,7 +167,7 @@ def list_unknowns(k, group):
 
 
 @kernel
-def newton(k, hg, halves, group):
+def newton(k, hg, halves, idle, group):
     """Solve for given loads, by steps that are halved less than `halves` times; return whether equations hold.
 
     Halved steps can stop where discs meet, between stick and slip; whole steps then go on.
@@ -135,8 +178,7 @@ def newton(k, hg, halves, group):
     for i in range(k):
         slip = max(slip, max(abs(group.v[U][3 * i + 1]), abs(group.v[U][3 * i + 2])))
     enough = FITS * push + (1e-15 * slip / hg if hg > 0.0 else 0.0)
-    share(k, n, group)
-    size = write_equations(k, n, hg, group)
+    size = write_equations(k, n, hg, idle, group)
     for _ in range(STAGE_ITERATIONS):
         if size <= enough:
             return True
@@ -152,7 +194,7 @@ def newton(k, hg, halves, group):
         for _ in range(halves):
             for i in range(n):
                 p[rows[i]] = kept[i] + part * group.cone.vector[0, i]
-            size = write_equations(k, n, hg, group)
+            size = write_equations(k, n, hg, idle, group)
             if size < (1.0 - 0.1 * part) * best:
                 break
             part *= 0.5
@@ -206,7 +248,7 @@ def sticks(group, i):
 
 
 @kernel
-def write_equations(k, n, hg, group):
+def write_equations(k, n, hg, idle, group):
     """Write the errors of the equations, as accelerations, to OLD, and their Jacobian; return the greatest."""
     rows, x, L, W, most = group.cone.active, group.v[OLD], group.cone.matrix, group.m[0], 0.0
     i = 0
@@ -216,6 +258,11 @@ def write_equations(k, n, hg, group):
             x[i] = group.v[C][row] + product(k, row, group)
             for j in range(n):
                 L[i, j] = W[row, rows[j]]
+            if idle > 0.0:
+                for j in range(n):
+                    if rows[j] % 3 == 0:
+                        part = idle * group.idle[0, row // 3, rows[j] // 3]
+                        x[i], L[i, j] = x[i] + part * group.v[P][rows[j]], L[i, j] + part
             most, i = max(most, abs(x[i])), i + 1
             continue
         width = 2 if i + 1 < n and rows[i + 1] // 3 == row // 3 else 1
