@@ -101,7 +101,8 @@ def new_group(system: System, more: bool = False) -> Group:
     return Group(
         closed=table(CLOSED_POINT, k), points=table(POINT, 2, k), v=np.zeros((5, 3 * k)),
         m=np.zeros((2, 3 * k, 3 * k)), idle=np.zeros((2, k, k)), mu=np.zeros(k),
-        kind=np.zeros(k, dtype=np.int64), heading=np.zeros((k, 2)), member=np.zeros(n, dtype=np.int64), cone=new_contact_work(k),
+        kind=np.zeros(k, dtype=np.int64), heading=np.zeros((k, 2)), member=np.zeros(n, dtype=np.int64),
+        cone=new_contact_work(k),
     )  # fmt: skip
 
 

@@ -19,6 +19,8 @@ import math
 from carom._compiled.decorators import kernel
 from carom.contact.pair_point import smaller
 
+# of the tolerance, for e = 0: what others throw up and falls back does not bounce, but may be thrown again (an
+# elbow that strikes a box on a floor), and each throw changes velocities by its own
 PLASTIC = 1e-4
 
 

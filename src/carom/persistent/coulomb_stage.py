@@ -5,9 +5,9 @@
 
 u~ the slip of the stage without its contact forces. Slip that begins, ends or turns needs no mode: the disc
 decides. Rolling and pivoting friction are discs whose radius is that of the normal force of their point times
-delta over a length. Newton's method on the equations as they stand (semismooth, damped); forces that are not
-unique stay on the springs of `carom.persistent.springs`, whose compliance eps S acts on the change of an
-iteration only.
+delta over a length. Newton's method on the equations as they stand (semismooth, damped), with the compliance
+eps S of `carom.persistent.springs` on the change of an iteration. Forces that are not unique are those of
+springs (`carom.persistent.sharing`).
 """
 
 from __future__ import annotations
@@ -20,22 +20,12 @@ from carom.friction.layout import SLIDING
 from carom.impact.workspace import KEPT, OLD, C, P, U
 from carom.persistent.joint_rows import JOINT, is_driven, radius_of
 from carom.persistent.settle import greatest, settle
-from carom.persistent.springs import (
-    DEPEND,
-    EPS,
-    PULL,
-    ROUNDS,
-    SMALL,
-    compliance_of,
-    grip,
-    moves,
-    soften,
-)
+from carom.persistent.sharing import find_idle, share
+from carom.persistent.springs import DEPEND, EPS, PULL, SMALL, compliance_of, moves
 
-STAGE_ITERATIONS, HALVES, SQUARES = 40, 6, 3
+STAGE_ITERATIONS, HALVES = 40, 6
 FITS = 1e-13  # of the accelerations without forces: error of the equations
 EXACT = 1e-6  # of the error: that of the linear equations
-ON_DISC = 1e-9  # of its radius: less is within a disc
 ENOUGH = 1e-9  # the same for an error that no iteration makes less
 
 
@@ -59,45 +49,6 @@ def solve_stage(k, hg, group):
         if not change_loads(k, group):
             return True
     return False
-
-
-@kernel
-def find_idle(k, group):
-    """Write the projector to normal forces that move nothing; return a stiffness for them, 0 if there are none.
-
-    Springs share so that S N is orthogonal to these. The projector is the limit of ((W + eps S)^-1 eps S)^m for
-    the normal rows of what presses.
-    """
-    rows, L, Y, Z, n, size = group.cone.active, group.cone.matrix, group.idle[0], group.idle[1], 0, 0.0
-    closed, x, W = group.closed, group.v[OLD], group.m[0]
-    for i in range(k):
-        if closed[i].turns == 0 and closed[i].loaded == 1:
-            rows[n], n, size = i, n + 1, max(size, closed[i].spring)
-    for i in range(n):
-        for j in range(n):
-            L[i, j] = W[3 * rows[i], 3 * rows[j]]
-        L[i, i] += EPS * closed[rows[i]].spring
-    lu.factor(L, n, group.cone.pivot, 0.0)
-    for j in range(n):
-        for i in range(n):
-            x[i] = EPS * closed[rows[j]].spring if i == j else 0.0
-        lu.substitute(L, n, group.cone.pivot, x)
-        for i in range(n):
-            Y[rows[i], rows[j]] = x[i]
-    for _ in range(SQUARES):
-        for i in range(n):
-            for j in range(n):
-                total = 0.0
-                for m in range(n):
-                    total += Y[rows[i], rows[m]] * Y[rows[m], rows[j]]
-                Z[i, j] = total
-        for i in range(n):
-            for j in range(n):
-                Y[rows[i], rows[j]] = Z[i, j]
-    total = 0.0
-    for i in range(n):
-        total += Y[rows[i], rows[i]]
-    return size if total > 0.5 else 0.0
 
 
 @kernel
@@ -205,46 +156,6 @@ def newton(k, hg, halves, idle, group):
         if rest > asked and size <= 2.0 * rest <= DEPEND * push:  # rows that depend on others
             return True
     return size <= ENOUGH * push
-
-
-@kernel
-def share(k, n, group):
-    """Share the first forces of what presses or sticks as springs do, with nearly the same accelerations.
-
-    Else forces that are not unique would depend on those of the last stage, and change with each iteration of
-    its pose: normal ones, and what sticks where others already hold it (a floor, and a hand that pushes).
-    """
-    rows, x, kept, p, m = group.cone.active, group.v[OLD], group.v[KEPT], group.v[P], 0
-    L, W, chosen = group.cone.matrix, group.m[0], group.cone.vector[0]
-    for i in range(n):
-        whole = sticks(group, rows[i] // 3)
-        group.closed[rows[i] // 3].rows = 3 if whole else 1
-        if rows[i] % 3 == 0 or whole:
-            chosen[m], m = rows[i], m + 1
-    for i in range(m):
-        kept[i] = 0.0
-        for j in range(m):
-            kept[i] += W[int(chosen[i]), int(chosen[j])] * p[int(chosen[j])]
-    soften(k, group)
-    for _ in range(ROUNDS):
-        for i in range(m):
-            x[i] = kept[i]
-            for j in range(m):
-                L[i, j] = W[int(chosen[i]), int(chosen[j])]
-            L[i, i] += EPS * compliance_of(group, int(chosen[i]))
-        lu.factor(L, m, group.cone.pivot, 0.0)
-        lu.substitute(L, m, group.cone.pivot, x)
-        for i in range(m):
-            p[int(chosen[i])] = x[i]
-        if not grip(k, group):
-            break
-
-
-@kernel
-def sticks(group, i):
-    """Return whether the friction of the first guess of a point is within its disc."""
-    p = group.v[P]
-    return math.hypot(p[3 * i + 1], p[3 * i + 2]) < (1.0 - ON_DISC) * radius_of(group, i)
 
 
 @kernel

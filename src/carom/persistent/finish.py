@@ -13,13 +13,12 @@ from carom.dynamics.explicit import copy_state, note_velocity
 from carom.dynamics.passed_edges import has_passed, note_passed
 from carom.dynamics.project import LOST, project_position, project_velocity
 from carom.dynamics.several_points import velocities
-from carom.friction.layout import CONE, SLIDING, SOLVED
+from carom.friction.layout import CONE, SLIDING
 from carom.impact.workspace import OLD, C, P, U
 from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
-from carom.persistent.coulomb_stage import solve_stage
 from carom.persistent.forces import solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among
-from carom.persistent.joint_rows import JOINT, fix_friction, is_driven, place_coordinate, radius_of
+from carom.persistent.joint_rows import JOINT, is_driven, place_coordinate, radius_of
 from carom.persistent.margins import greatest_push, set_margins
 from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
@@ -146,7 +145,7 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
         return False
     gain = h * push
     tolerance = rest_speed(controls, gain, work.result[0].residual, k, POORLY)
-    lasts, status = solve_end(model, data, loaded, k, count, s, tolerance * controls.step / h, h)
+    lasts, found = solve_end(model, data, loaded, k, count, s, tolerance * controls.step / h, h)
     located = greatest_push(k, group)
     for i in range(active.count[0]):
         if work.body[active.points[i].body].label == label:
@@ -181,7 +180,7 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
         set_margins(active_point, i, located, group)
         if not given:
             active_point.grip = 1.0
-        active_point.jams = jams_among(i, status, group)
+        active_point.jams = jams_among(i, found, group)
     add_forces_of_corners(active, k, group)
     note_residual(active, k, group, work)
     return True
@@ -189,7 +188,7 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
 
 @kernel
 def solve_end(model, data, loaded, k, count, s, still, h):
-    """Write the forces at the end of a step of length h; return whether its modes last, and a status.
+    """Write the forces at the end of a step of length h; return whether its modes last, and there are any.
 
     Slip slower than `still` ends. Stage s has the accelerations before modes change, those that the estimate
     of the error needs.
@@ -203,11 +202,11 @@ def solve_end(model, data, loaded, k, count, s, still, h):
             onto_tangents_of(model, data, k, count)
             lasts = True
         if lasts:
-            return True, SOLVED
-    status = solve_cones_of(model, data, k)
+            return True, True
+    found = solve_forces(k, group)
     if not solved:
         push_bodies(model, data, loaded, k, count, s)
-    return False, status
+    return False, found
 
 
 @kernel
@@ -263,30 +262,6 @@ def within_cones(k, group):
         if force > radius_of(group, i) * (1.0 + 1e-10) + 1e-13 * most:
             return False
     return True
-
-
-@unit
-def solve_cones_of(model, data, k) -> int:
-    """Solve the contact problem of accelerations: slip along the headings that are known, else within cones."""
-    group = data.group
-    for i in range(k):
-        known = group.heading[i, 0] != 0.0 or group.heading[i, 1] != 0.0
-        if group.kind[i] == SLIDING and not known:
-            group.kind[i] = CONE
-        group.closed[i].stays = 1
-    if solve_stage(k, 0.0, group):
-        note_accelerations(k, group)
-        return SOLVED
-    for i in range(k):
-        if group.closed[i].turns == JOINT:
-            fix_friction(k, i, group)
-        elif group.closed[i].turns > 0:
-            group.mu[i] = 1.0
-    status = solve_forces(model, data, k)
-    for i in range(k):
-        if group.closed[i].turns == JOINT and group.closed[i].stays == 0:
-            group.v[P][3 * i + 1] = -group.mu[i] * group.heading[i, 0]
-    return status
 
 
 @kernel

@@ -1,9 +1,8 @@
-"""Forces of several active points in one state: the contact problem at the level of accelerations.
+"""Forces in one state: the contact problem at the level of accelerations, with the normal forces of springs.
 
     a = W f + c,    0 <= f_n _|_ a_n >= 0,    Coulomb's law for f_t:
 
 with friction against slip if the point slips, and otherwise against the acceleration of slip, within the cone.
-Forces need not be unique (four corners of a box); accelerations are.
 """
 
 from __future__ import annotations
@@ -14,15 +13,15 @@ from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.dynamics.acceleration import acceleration
 from carom.dynamics.several_points import of_one_body
-from carom.friction.layout import BUDGET, CONE, ENOUGH, NEAR, SLIDING
-from carom.friction.solve import solve_cones
+from carom.friction.layout import CONE, SLIDING
 from carom.impact.workspace import OLD, C, P, U
 from carom.kinematics.flight import free_rates
-from carom.persistent.joint_rows import JOINT, fix_friction, mode_of_joint
-from carom.persistent.rolling_friction import bound_turning, take_torque
+from carom.persistent.coulomb_stage import solve_stage
+from carom.persistent.joint_rows import JOINT, mode_of_joint
+from carom.persistent.rolling_friction import take_torque
 from carom.persistent.rows import write_motion
 from carom.persistent.settle import greatest
-from carom.persistent.step_control import charge_iterations, iterations_left
+from carom.persistent.springs import note_accelerations
 
 
 @kernel
@@ -41,11 +40,8 @@ def pose_forces(system, controls, k, state, group, work):
             way = mode_of_joint(system, group.closed[i].active, u, still, state)
             group.kind[i] = CONE if way == 0 else SLIDING
             group.heading[i, 0], group.heading[i, 1] = float(way), 0.0
-            fix_friction(k, i, group)
             continue
         contact = system.contacts[group.closed[i].contact]
-        if group.closed[i].turns > 0:
-            group.mu[i] = 1.0
         still = max(10.0 * slow(contact, state), controls.rest * push * controls.step)
         set_heading(group, i, group.v[U][3 * i + 1], group.v[U][3 * i + 2], still)
 
@@ -63,43 +59,17 @@ def set_heading(group, i, u1, u2, still):
 
 
 @kernel
-def solve_forces(model, data, k):
-    """Write the forces of the points that stay closed to P, and the accelerations of all k points to OLD."""
-    system, group, turning = model.system, data.group, False
+def solve_forces(k, group):
+    """Write the forces of the points that stay closed to P, and the accelerations of all k points to OLD.
+
+    Slip goes on along the headings that are known. Return whether there is a solution.
+    """
     for i in range(k):
-        turning = turning or 0 < group.closed[i].turns < 3
-    for i in range(3 * k):
-        group.v[P][i] = 0.0
-    status = solve_once(model, data, k)
-    for _ in range(50 if turning else 0):
-        if not bound_turning(system, k, group) > 1e-14:
-            break
-        status = solve_once(model, data, k)
-    return status
-
-
-@kernel
-def solve_once(model, data, k):
-    """Write forces and accelerations for known bounds of torques."""
-    group, clock = data.group, data.clocks[0]
-    W, M, b, p = group.m[0], group.m[1], group.v[OLD], group.v[P]
-    n = 3 * k
-    for i in range(n):
-        stays = group.closed[i // 3].stays == 1
-        for j in range(n):
-            both = stays and group.closed[j // 3].stays == 1
-            M[i, j] = W[i, j] if both else 1.0 if i == j else 0.0
-        b[i] = group.v[C][i] if stays else 1.0 if i % 3 == 0 else 0.0
-    group.cone.mismatch[ENOUGH], group.cone.count[NEAR] = 0.0, 0  # to round-off, of least norm
-    group.cone.count[BUDGET] = iterations_left(model.controls, clock, k)
-    status, _, iterations = solve_cones(k, M, b, group.mu, group.kind, group.heading, p, group.cone)
-    charge_iterations(clock, k, iterations)
-    for i in range(n):
-        a = group.v[C][i]
-        for j in range(n):
-            a += W[i, j] * p[j]
-        b[i] = a
-    return status
+        if group.kind[i] == SLIDING and group.heading[i, 0] == 0.0 and group.heading[i, 1] == 0.0:
+            group.kind[i] = CONE
+    found = solve_stage(k, 0.0, group)
+    note_accelerations(k, group)
+    return found
 
 
 @kernel

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.friction.layout import SLIDING, SOLVED
+from carom.friction.layout import SLIDING
 
 JAMMED = 1e-6
 
@@ -43,11 +43,9 @@ def note_jam(active, active_point):
 
 
 @kernel
-def jams_among(i, status, group):
+def jams_among(i, found, group):
     """Return whether point i of several jams: it slips, k <= 0, and the contact problem has no solution."""
-    if status == SOLVED or group.kind[i] != SLIDING or group.closed[i].turns > 0:
-        return 0
-    if group.closed[i].stays == 0:
+    if found or group.kind[i] != SLIDING or group.closed[i].turns > 0:
         return 0
     q, W = 3 * i, group.m[0]
     along = W[q, q + 1] * group.heading[i, 0] + W[q, q + 2] * group.heading[i, 1]

@@ -12,8 +12,7 @@ from carom.contact.closed_points import write_closed
 from carom.contact.pair_point import tangents
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.solve import free_body
-from carom.friction.layout import DISC, SLIDING
-from carom.impact.workspace import C, P
+from carom.impact.workspace import P
 from carom.kinematics.coordinate import drift, motion_along, push, speeds_of
 from carom.kinematics.joints import arm, axis, parent_arm
 from carom.model.arrays import PRISMATIC
@@ -113,16 +112,3 @@ def mode_of_joint(system, i, u, still, state):
     if abs(u) <= max(still, STILL * speeds_of(system, c, state)):
         return 0
     return 1 if u > 0.0 else -1
-
-
-@kernel
-def fix_friction(k, i, group):
-    """Pose friction in a joint: a disc where it sticks, a given force, in C, where it slips."""
-    slides = group.kind[i] == SLIDING
-    group.closed[i].stays = 0 if slides else 1
-    if slides:
-        for row in range(3 * k):
-            group.v[C][row] -= group.m[0][row, 3 * i + 1] * group.mu[i] * group.heading[i, 0]
-        return
-    group.kind[i] = DISC
-    group.heading[i, 0], group.heading[i, 1] = group.mu[i], 0.0

@@ -27,7 +27,7 @@ def settle(n, held, enough, small, force, cone, Z, r):
     """Solve A x = r with W for A and the factor of A + eps S in `matrix`; return the greatest error left.
 
     x is `vector[0]`, r becomes the error, Z has room for the corrections. `held` corrections of the first r are
-    in the solution already.
+    in the solution already. An error below `small` asks for no entry of x above `force`: the rows have it.
     """
     A, x = cone.W, cone.vector[0]
     size, part, first, room = greatest(n, r), cone.vector[1], 0, Z.shape[0] // 2
@@ -50,8 +50,7 @@ def settle(n, held, enough, small, force, cone, Z, r):
         length, whole = math.sqrt(dot(n, q, q)), dot(n, r, r)
         along = dot(n, q, r) / length if length > 0.0 else 0.0
         removes = along * along > REMOVES * REMOVES * whole and abs(along) <= LARGEST * length
-        if size <= small and abs(along) * greatest(n, z) > length * force:
-            removes = False
+        removes = removes and not (size <= small and abs(along) * greatest(n, z) > length * force)
         if not removes:
             correct(n, cone, r, z)
             for i in range(n):

@@ -23,6 +23,7 @@ from carom.persistent.finish import add_forces_of_corners
 from carom.persistent.forces import pose_forces, solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among, note_jam
 from carom.persistent.joint_rows import JOINT, add_frictions
+from carom.persistent.points import weigh
 from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.settle import greatest
 from carom.persistent.start import first_stage
@@ -45,7 +46,7 @@ def activate_several(model, data, k, label, horizon):
     pose_forces(system, controls, rows, state, group, work)
     judge(model, data, k, rows, horizon)
     if leave_unreachable(system, state, k, group):
-        solve_forces(model, data, rows)
+        solve_among(system, k, rows, group)
     new, stay = -1, False
     for i in range(k):
         closed_point = group.closed[i]
@@ -82,7 +83,7 @@ def judge(model, data, k, rows, horizon):
         group.closed[i].stays = 1 if abs(u) <= slow(contact, state) else 0
     push = greatest(3 * k, group.v[C])
     for turn in range(k + 1):
-        solve_forces(model, data, rows)
+        solve_among(system, k, rows, group)
         more = False
         for i in range(k):
             contact, u = system.contacts[group.closed[i].contact], group.v[U][3 * i]
@@ -96,6 +97,16 @@ def judge(model, data, k, rows, horizon):
                 group.closed[i].stays = 0  # it has no force
         if not more:
             break
+
+
+@kernel
+def solve_among(system, k, rows, group):
+    """Write the forces of those of k points that stay closed to P, and the accelerations of all to OLD."""
+    weigh(system, rows, group)
+    for i in range(k):
+        if group.closed[i].stays == 0:
+            group.closed[i].weight = 0.0
+    solve_forces(rows, group)
 
 
 @kernel
@@ -332,14 +343,14 @@ def first_forces(model, data, label):
     for m in range(count):
         loaded = loaded or system.bodies[group.member[m]].ballistic == 0
     work.result[0].start = clock.now
-    k, _, _, _, status = first_stage(model, data, label, loaded, count)
+    k, _, _, _, found = first_stage(model, data, label, loaded, count)
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.own == 0 or closed_point.turns == JOINT:
             continue
         active_point = active.points[closed_point.active]
         take_forces(active_point, i, group)
-        if jams_among(i, status, group) == 1:
+        if jams_among(i, found, group) == 1:
             note_jam(active, active_point)
         if closed_point.turns == 0 and active_point.next != active_point.mode:
             active_point.mode = active_point.next

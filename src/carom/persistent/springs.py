@@ -13,6 +13,9 @@ of the points that press, (R P F^T + eps S) lam = -c for eps -> 0: corrections w
 leaves (`settle`). With eps a point that does not press must not be deeper than its neighbours let it be: its
 spring would press, too.
 
+Stick is softer, and among points as 1/(mu N), like micro-slip: what others hold needs no friction, and points
+that slip together reach their cones together.
+
 Rows that depend on each other (two wheels of an axle) fit each other in a position of the system, and in a
 stage to the error of the stage: what no force removes is left to the return at the end of the step.
 """
@@ -29,7 +32,8 @@ from carom.persistent.settle import greatest, settle
 
 EPS = 1e-5
 SOFT = 1e2  # compliance of stick over that of pressing: what others hold already needs no friction
-WEAKEST, SAME, ROUNDS = 1e-3, 1e-9, 6
+WEAKEST = 1e-3  # of the greatest mu N: a point holds as if it had that at least
+SAME, SHARES = 1e-9, 6  # relative change of a compliance of stick that is none; rounds until then
 DEPEND = 1e-3  # of the accelerations without forces: greatest error of such rows
 FITS = 1e-13  # of the accelerations without forces: error of the rows
 PULL = 1e-11  # of the greatest normal force: less is round-off of zero
@@ -64,7 +68,7 @@ def solve_springs(k, group) -> bool:
             return False
         if changed == 0:
             rounds += 1
-            if rounds > ROUNDS or not grip(k, group):
+            if rounds > SHARES or not grip(k, group):
                 return True
         for i in range(k):
             closed[i].rows = rows_of(k, i, group)

@@ -12,10 +12,11 @@ from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.dynamics.explicit import copy_state, note_velocity
 from carom.dynamics.passed_edges import note_normal
-from carom.friction.layout import SLIDING, SOLVED
+from carom.friction.layout import SLIDING
 from carom.impact.workspace import C, P, U
 from carom.model.actions import MODE_SLIP, MODE_STICK
-from carom.persistent.finish import gains, solve_cones_of, within_cones
+from carom.persistent.finish import gains, within_cones
+from carom.persistent.forces import solve_forces
 from carom.persistent.joint_rows import JOINT, mode_of_joint, radius_of
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
 from carom.persistent.settle import greatest
@@ -36,7 +37,7 @@ def first_stage(model, data, label, loaded, count):
     """Write the accelerations of a group at the start of a step as stage 0, and the ways of its points.
 
     Return the number of points, the greatest rate at which friction turns a slip, the greatest acceleration by
-    friction, its power, and the status of the contact problem. The power of loads goes to `work.result`.
+    friction, its power, and whether the contact problem has a solution. The power of loads is in `work.result`.
     """
     start, group, work, system = data.state, data.group, data.work, model.system
     result, controls = work.result[0], model.controls
@@ -53,10 +54,10 @@ def first_stage(model, data, label, loaded, count):
     for i in range(k):
         known = note_way(model, data, i, controls.rest * push * controls.step) and known
     set_modes(system, data.active, k, group)
-    status, held = SOLVED, known and solve_springs(k, group)
+    found, held = True, known and solve_springs(k, group)
     shared = held and within_cones(k, group)
     if not shared:
-        status = solve_cones_of(model, data, k)
+        found = solve_forces(k, group)
     known = note_break_away(system, data, k, push) and known
     if held and known and not shared:  # nothing begins to slip: the springs share, as in the stages
         k = write_rows(model, data, label, 0)
@@ -65,7 +66,7 @@ def first_stage(model, data, label, loaded, count):
     driven, rubbed = push_bodies(model, data, loaded, k, count, 0)
     result.power = power + driven
     rate, friction = rates(k, group)
-    return k, rate if known else math.inf, friction, rubbed, status
+    return k, rate if known else math.inf, friction, rubbed, found
 
 
 @kernel

@@ -150,19 +150,6 @@ def plain_step(system):
 
 
 @kernel
-def iterations_left(controls, clock, k):
-    """Return the number of iterations for k points that the step can afford, at least SOME."""
-    return max(SOME, int((affordable(controls, clock) - clock.effort) / (ITERATION * k * k)))
-
-
-@kernel
-def charge_iterations(clock, k, iterations):
-    """Add the time of iterations for k points to that of the step."""
-    clock.effort += ITERATION * k * k * iterations
-    clock.since += ITERATION * k * k * iterations
-
-
-@kernel
 def rest_speed(controls, gained, residual, k, poorly):
     """Return the speed [m/s] below which bodies on k persistent points are at rest.
 
