@@ -23,7 +23,7 @@ from carom.persistent.settle import greatest, settle
 from carom.persistent.sharing import find_idle, share
 from carom.persistent.springs import DEPEND, EPS, PULL, SMALL, compliance_of, moves
 
-STAGE_ITERATIONS, HALVES = 40, 6
+STAGE_ITERATIONS, HALVES, AT_ONCE = 40, 6, 3
 FITS = 1e-13  # of the accelerations without forces: error of the equations
 EXACT = 1e-6  # of the error: that of the linear equations
 ENOUGH = 1e-9  # the same for an error that no iteration makes less
@@ -39,40 +39,41 @@ def solve_stage(k, hg, group):
     closed = group.closed
     for i in range(k):
         closed[i].loaded = 1 if closed[i].weight > 0.0 else 0
-    for _ in range(2 * k + 2):
+    for turn in range(2 * k + 2):
         share(k, list_unknowns(k, group), group)
         idle = find_idle(k, group)
         if idle > 0.0 and not newton(k, hg, HALVES, idle, group):
             idle = 0.0
         if not (newton(k, hg, HALVES, 0.0, group) or newton(k, hg, 1, 0.0, group)):
             return False
-        if not change_loads(k, group):
+        if not change_loads(k, turn, group):
             return True
     return False
 
 
 @kernel
-def change_loads(k, group):
-    """Unload the spring that pulls most, or load one whose point approaches; return whether there is one."""
-    p, closed, most, worst, which = group.v[P], group.closed, 0.0, 0.0, -1
+def change_loads(k, turn, group):
+    """Unload springs that pull, or load one whose point approaches; return whether there is one.
+
+    In the first turns all that pull, then that which pulls most.
+    """
+    p, closed, most, worst, found = group.v[P], group.closed, 0.0, 0.0, False
     push = largest(k, group)
     for i in range(k):
         if closed[i].turns == 0:
-            most = max(most, p[3 * i])
+            most, worst = max(most, p[3 * i]), min(worst, p[3 * i])
+    limit = -PULL * most if turn < AT_ONCE else min(worst, -PULL * most)
     for i in range(k):
-        if closed[i].turns == 0 and closed[i].loaded == 1 and p[3 * i] < worst - PULL * most:
-            worst, which = p[3 * i], i
-    if which >= 0:
-        closed[which].loaded = 0
-        for row in range(3 * which, 3 * which + 3):
-            p[row] = 0.0
-        return True
-    for i in range(k):
+        if closed[i].turns == 0 and closed[i].loaded == 1 and p[3 * i] < 0.0 and p[3 * i] <= limit:
+            closed[i].loaded, found = 0, True
+            for row in range(3 * i, 3 * i + 3):
+                p[row] = 0.0
+    for i in range(0 if found else k):
         if closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0:
             if product(k, 3 * i, group) + group.v[C][3 * i] < -ENOUGH * push:
                 closed[i].loaded = 1
                 return True
-    return False
+    return found
 
 
 @kernel
