@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.generalized.autoparallel import return_map
-from carom.generalized.step import project_rates
+from carom.generalized.step import project
 from carom.generalized.strike import Strike
 from carom.impact.laws import NUMBERS
 from carom.model.actions import (
@@ -121,13 +120,15 @@ class Contacts:
         return 0
 
     def return_to(self, contact: int) -> int:
-        """Improve the located state by the return map; return a status."""
-        run, now = self.run, float(self.run.clock[0].now)
-        tolerance = 1e-15 * float(run.work.gap_scale[contact])
-        steps, code = return_map(run.system, run.active, now, run.x, contact, tolerance, run.work)
-        if code == 0 and steps > 0 and (run.system.size[2] > 0 or run.active.count[0] > 0):
-            code = project_rates(run.system, run.active, now, run.x, run.work)
-        return Status.RETURN_MAP_FAILED if code == 0 and steps < 0 else code
+        """Remove round-off of the gap of a contact from the located state; return a status."""
+        run, active, now = self.run, self.run.active, float(self.run.clock[0].now)
+        k = int(active.count[0])
+        active.contact[k], active.mode[k], active.count[0] = contact, MODE_SLIP, k + 1
+        code = project(run.system, active, now, run.x, False, run.work)
+        active.count[0] = k
+        if code == 0 and (run.system.size[2] > 0 or k > 0):
+            code = project(run.system, active, now, run.x, True, run.work)
+        return Status.RETURN_MAP_FAILED if code == Status.CONSTRAINTS_LOST else code
 
     def let_go(self, contact: int) -> None:
         """Remove a contact from the active ones."""
@@ -252,7 +253,7 @@ class Contacts:
                 chosen = pressed
                 continue
             self.write_held(chosen, p, heading, was)
-            return project_rates(run.system, active, float(run.clock[0].now), run.x, run.work)
+            return project(run.system, active, float(run.clock[0].now), run.x, True, run.work)
         return Status.NO_CONVERGENCE
 
     def slips(self, chosen, kind: int, marked: int, was: dict):

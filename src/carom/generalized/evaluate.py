@@ -8,16 +8,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom._compiled.user_functions import Functions
-from carom.generalized.autoparallel import return_map, run_along
-from carom.generalized.layout import ActiveSet, Coordinates, new_active_set, new_work
+from carom.dynamics.methods import make_method
+from carom.generalized.layout import ActiveSet, Coordinates, Motion, new_active_set, new_work
 from carom.generalized.motion import look
-from carom.generalized.step import project_rates
+from carom.generalized.step import move_freely
+from carom.options import Options
 from carom.status import Status
 
 if TYPE_CHECKING:
     from carom.generalized.system import GeneralizedSystem
 
 STAGES = 12
+PARTS = 64  # steps of order 4 along the arc of a return map: the error of a great circle of 1 rad is 2e-10
+NEAR = 1e-11  # of the coordinates: residual of a return map, beyond the round-off of its arc
 
 
 @dataclass(frozen=True)
@@ -89,31 +92,43 @@ class Evaluation:
         return np.linalg.solve(self.look(q).M, first.reshape(n, -1)).reshape(n, n, n)
 
     def autoparallel(self, q, v, parts):
-        """Return the end (q, v) of an autoparallel."""
-        x = np.concatenate([q, v])
-        code = run_along(self.system, 0.0, x, parts, self.work)
+        """Return the end (q, v) of an autoparallel: the motion without loads, constraints and contacts."""
+        x, none = np.concatenate([q, v]), new_active_set(0)
+        address, size = self.system.address * [1, 0, 0, 0], self.system.size * [1, 0, 0, 0]
+        free, work = Coordinates(address, size, np.zeros(0), 0.0), new_work(self.n, 0, 0, 0, STAGES)
+        code = move_freely(Motion(free, make_method("rk4", Options()), none, work), x, parts)
         self.failed()
         if code != 0:
             raise ValueError(f"the autoparallel could not be integrated: {Status(code).message}")
         return x[: self.n], x[self.n :]
 
     def return_map(self, q, contact: int):
-        """Return coordinates on the surface of a contact."""
-        x = np.concatenate([q, np.zeros(self.n)])
-        self.look(q)
-        tolerance = 1e-15 * float(self.work.gap_scale[contact])
-        for _ in range(20):
-            steps, code = return_map(
-                self.system, self.none_active, 0.0, x, contact, tolerance, self.work
+        """Return coordinates q_e on the surface of a contact, and of the constraints.
+
+        With rho the gap and the constraints, the autoparallel from q_e to q begins at a right angle to these
+        surfaces in the metric:
+
+            q = Exp_{q_e}(M^-1 (d rho)^T kappa),   rho(q_e) = 0
+        """
+        from scipy.optimize import root
+
+        n = self.n
+
+        def surfaces(at):
+            seen = self.look(at)
+            rows = np.vstack([seen.G[contact, :1], seen.A[: len(seen.phi)]])
+            return np.append(seen.gap[contact], seen.phi), rows, np.linalg.solve(seen.M, rows.T)
+
+        def misses(unknowns):
+            at, kappa = unknowns[:n], unknowns[n:]
+            rho, _, normals = surfaces(at)
+            return np.append(self.autoparallel(at, normals @ kappa, PARTS)[0] - q, rho)
+
+        rho, rows, normals = surfaces(q)
+        kappa = np.linalg.lstsq(rows @ normals, rho)[0]
+        found = root(misses, np.append(q - normals @ kappa, kappa), tol=1e-14)
+        if not np.max(np.abs(found.fun)) <= NEAR * max(1.0, np.max(np.abs(q))):
+            raise ValueError(
+                f"position must be nearer to the contact, got {q!r}: the return map did not converge"
             )
-            self.failed()
-            if steps < 0 or code != 0:
-                raise ValueError(
-                    f"position must be nearer to the contact, got {q!r}: the return map did not converge"
-                )
-            if self.system.size[1] == 0 or steps == 0:
-                break
-            code = project_rates(self.system, self.none_active, 0.0, x, self.work)
-            if code != 0:
-                raise ValueError(f"position must be nearer to the contact: {Status(code).message}")
-        return x[: self.n].copy()
+        return found.x[:n]

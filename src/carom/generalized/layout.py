@@ -29,7 +29,7 @@ EVENT = 100
 class Coordinates(NamedTuple):
     """A system: addresses of its functions, sizes, friction of its contacts."""
 
-    address: np.ndarray  # (4,) int64
+    address: np.ndarray  # (4,) int64; 0 for a function that the system does not have
     size: np.ndarray  # (4,) int64
     friction: np.ndarray  # (C,)
     drop: float  # a row is left out if its pivot is below this part of its diagonal
@@ -72,8 +72,6 @@ class Work(NamedTuple):
     stages: np.ndarray  # (S, 2n)
     trial: np.ndarray  # (2n,)
     end: np.ndarray  # (2n,)
-    best: np.ndarray  # (2n,)
-    arc: np.ndarray  # (8, 2n) of autoparallels
     before: np.ndarray  # (2, C) gaps and their rates at the start of a step
     row_scale: np.ndarray  # (h,) greatest sum |A_j q_j|
     gap_scale: np.ndarray  # (C,) the same of the gaps, or the greatest gap
@@ -140,6 +138,6 @@ def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> W
         touch[:contacts], touch[contacts:g].reshape(contacts, 3, n), touch[g:].reshape(contacts, 3),
         np.zeros((n, n)), np.zeros(n), np.zeros((m, n)), np.zeros((m, n)), np.zeros((m, n)),
         np.zeros((m, m)), np.zeros(m), np.zeros(m), np.zeros((stages, 2 * n)), np.zeros(2 * n),
-        np.zeros(2 * n), np.zeros(2 * n), np.zeros((8, 2 * n)), np.zeros((2, contacts)),
+        np.zeros(2 * n), np.zeros((2, contacts)),
         np.zeros(holonomic), np.zeros(contacts), np.zeros(2),
     )  # fmt: skip

@@ -159,7 +159,8 @@ def acceleration(system, active, t, x, work, rate):
     code = find_metric(system, t, x, work)
     if code != 0:
         return 0.0, 0.0, code
-    call_function(system.address[CALL_LOADS], t, x, work.loads)
+    if system.address[CALL_LOADS] != 0:
+        call_function(system.address[CALL_LOADS], t, x, work.loads)
     a = work.a
     for j in range(n):
         a[j] = work.loads[1 + j] - work.c[j]

@@ -22,7 +22,7 @@ from carom.generalized.layout import (  # fmt: skip
     new_work,
 )
 from carom.generalized.loop import save_now, time_loop
-from carom.generalized.step import project_rates
+from carom.generalized.step import project
 from carom.model.kept import Kept
 from carom.model.records import PAUSE
 from carom.status import SUCCESS, Status
@@ -127,7 +127,7 @@ class GeneralizedRun:
                 f"position must not be inside a contact, got the gap {seen.gap[contact]:.6g} of {name!r}"
             )
         if seen.status == 0 and self.system.size[2] > 0:
-            project_rates(self.system, self.active, 0.0, x, self.work)
+            project(self.system, self.active, 0.0, x, True, self.work)
 
     @property
     def steps(self) -> int:

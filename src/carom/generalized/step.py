@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, kernel
-from carom.generalized.autoparallel import correct
 from carom.generalized.layout import ALL_ROWS, HOLONOMIC, N
+from carom.generalized.linear import solve_metric
 from carom.generalized.motion import (
     acceleration,
     copy_row,
@@ -46,7 +46,19 @@ def take(motion, t, x, h):
     if not math.isfinite(total):
         return NOT_FINITE
     if system.size[ALL_ROWS] > 0 or active.count[0] > 0:
-        return project(system, active, t + h, end, work)
+        code = return_to_surfaces(system, active, t + h, end, work)
+        return project_rates(system, active, t + h, end, work) if code == 0 else code
+    return 0
+
+
+@entry
+def move_freely(motion, x, parts):
+    """Move x = (q, v) for a time of 1 in `parts` steps, for Python; return a status."""
+    for part in range(parts):
+        code = take(motion, part / parts, x, 1.0 / parts)
+        if code != 0:
+            return code
+        copy_row(motion.work.end, x, x.size)
     return 0
 
 
@@ -122,9 +134,14 @@ def rate_rows(system, active, work):
 
 
 @kernel
-def project(system, active, t, x, work):
-    """Project `x` to constraints and persistent contacts: coordinates along autoparallels, then velocities."""
-    n, last = system.size[N], 0.0
+def return_to_surfaces(system, active, t, x, work):
+    """Move the coordinates in `x` to constraints and persistent contacts along autoparallels; return a status.
+
+    Exp_q(xi) is replaced by the first two terms of its series, q + xi - Gamma(xi, xi)/2 (a retraction of
+    second order: Absil, Mahony and Sepulchre 2008, §5.5): xi is the error of a step, and what is left of phi
+    is removed by the next iteration.
+    """
+    n, last, y, xi = system.size[N], 0.0, work.trial, work.a
     for iteration in range(20):
         code = find_metric(system, t, x, work)
         if code != 0:
@@ -135,18 +152,30 @@ def project(system, active, t, x, work):
             break
         last = error
         factor_rows(system, m, work)
-        xi = work.a
         for j in range(n):
             xi[j] = 0.0
         react(system, m, xi, work)
-        code = correct(system, t, x, xi, work)
+        for j in range(n):
+            y[j], y[n + j] = x[j], xi[j]
+        code = find_metric(system, t, y, work)
         if code != 0:
             return code
-    if not error <= 1e-9:
-        return CONSTRAINTS_LOST
+        solve_metric(work.L, work.c, n)
+        for j in range(n):
+            x[j] += xi[j] - 0.5 * work.c[j]
+    return 0 if error <= 1e-9 else CONSTRAINTS_LOST
+
+
+@kernel
+def project_rates(system, active, t, x, work):
+    """Project the velocities in `x` to constraints and persistent contacts; return a status."""
+    n, v = system.size[N], work.a
+    code = find_metric(system, t, x, work)
+    if code != 0:
+        return code
+    find_rows(system, active, t, x, work)
     m = rate_rows(system, active, work)
     factor_rows(system, m, work)
-    v = work.a
     for j in range(n):
         v[j] = x[n + j]
     react(system, m, v, work)
@@ -156,6 +185,7 @@ def project(system, active, t, x, work):
 
 
 @entry
-def project_rates(system, active, t, x, work):
-    """Do the same as `project`, for Python."""
-    return project(system, active, t, x, work)
+def project(system, active, t, x, rates, work):
+    """Project coordinates, and if `rates` is set also velocities, for Python; return a status."""
+    code = return_to_surfaces(system, active, t, x, work)
+    return project_rates(system, active, t, x, work) if rates and code == 0 else code
