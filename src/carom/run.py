@@ -14,7 +14,7 @@ from carom.dynamics.adapt import FIRST, complete, time_of_bounces
 from carom.dynamics.methods import EXPLICIT, METHODS, make_method
 from carom.dynamics.project import project_start
 from carom.dynamics.reactions import start_errors, start_speeds
-from carom.impact.multiple.layout import MULTIPLE, MultipleSettings
+from carom.impact.multiple.layout import multiple_settings
 from carom.impact.workspace import new_group, new_multiple, no_multiple
 from carom.model import records as r
 from carom.model.answers import check_answers
@@ -54,14 +54,6 @@ from carom.stepping.settings import Settings
 
 ROOM_AT_FIRST = 8  # points of an impact for which there is room at first
 LOCATIONS = {"locate": LOCATE, "project": PROJECT, "work": WORK}
-
-
-def multiple_settings(options: Options) -> MultipleSettings:
-    """Return the settings of impacts of several points."""
-    return MultipleSettings(
-        multiple=MULTIPLE[options.multiple], rtol=options.corner_tolerance,
-        exponent=options.corner_exponent or 0.0,
-    )  # fmt: skip
 
 
 class Run:

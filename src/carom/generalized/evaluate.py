@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,23 +20,6 @@ if TYPE_CHECKING:
 STAGES = 12
 PARTS = 64  # steps of order 4 along the arc of a return map: the error of a great circle of 1 rad is 2e-10
 NEAR = 1e-11  # of the coordinates: residual of a return map, beyond the round-off of its arc
-
-
-@dataclass(frozen=True)
-class Look:
-    """The quantities of a system at one state that an event needs."""
-
-    M: np.ndarray  # (n, n)
-    c: np.ndarray  # (n,) Gamma(v, v), first kind
-    load: np.ndarray  # (n,)
-    phi: np.ndarray  # (h,)
-    A: np.ndarray  # (k, n)
-    A_rate: np.ndarray  # (k,)
-    gap: np.ndarray  # (C,)
-    G: np.ndarray  # (C, 3, n)
-    G_rate: np.ndarray  # (C, 3)
-    acceleration: np.ndarray  # (n,) with the active contacts
-    status: int
 
 
 class Evaluation:
@@ -59,14 +41,12 @@ class Evaluation:
         self.work = new_work(n, model.holonomic, model.rows, C, STAGES)
         self.none_active = new_active_set(C)
 
-    def look(self, q, v=None, t: float = 0.0, active: ActiveSet | None = None) -> Look:
-        """Return all quantities at a state."""
-        x = np.concatenate([q, np.zeros(self.n) if v is None else v])
+    def look(self, x, t: float = 0.0, active: ActiveSet | None = None) -> int:
+        """Compute all quantities at a state (q, v), or (q, 0) from q; they are in `work`. Return a status."""
+        x = np.append(x, np.zeros(2 * self.n - len(x)))
         code = look(self.system, self.none_active if active is None else active, t, x, self.work)
         self.failed()
-        w = self.work
-        seen = (w.M, w.c, w.loads[1:-1], w.phi, w.A, w.A_rate, w.gap, w.G, w.G_rate, w.a)
-        return Look(*(array.copy() for array in seen), status=code)
+        return code
 
     def failed(self) -> None:
         """Raise the error that a function of the user's has raised."""
@@ -81,7 +61,8 @@ class Evaluation:
         e, quadratic = np.eye(n), {}
         for i in range(n):
             for j in range(i + 1):
-                quadratic[i, j] = self.look(q, e[i] + e[j] if i != j else e[i]).c
+                self.look(np.append(q, e[i] + e[j] if i != j else e[i]))
+                quadratic[i, j] = self.work.c.copy()
         first = np.zeros((n, n, n))
         for i in range(n):
             for j in range(i + 1):
@@ -89,7 +70,7 @@ class Evaluation:
                 if i != j:
                     one = 0.5 * (one - quadratic[i, i] - quadratic[j, j])
                 first[:, i, j] = first[:, j, i] = one
-        return np.linalg.solve(self.look(q).M, first.reshape(n, -1)).reshape(n, n, n)
+        return np.linalg.solve(self.work.M, first.reshape(n, -1)).reshape(n, n, n)
 
     def autoparallel(self, q, v, parts):
         """Return the end (q, v) of an autoparallel: the motion without loads, constraints and contacts."""
@@ -112,10 +93,10 @@ class Evaluation:
         """
         from scipy.optimize import root
 
-        n = self.n
+        n, seen = self.n, self.work
 
         def surfaces(at):
-            seen = self.look(at)
+            self.look(at)
             rows = np.vstack([seen.G[contact, :1], seen.A[: len(seen.phi)]])
             return np.append(seen.gap[contact], seen.phi), rows, np.linalg.solve(seen.M, rows.T)
 

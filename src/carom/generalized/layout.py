@@ -47,7 +47,7 @@ class ActiveSet(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Workspace. The first four arrays are results of the functions, the next eight are views of them."""
+    """Workspace. The first four arrays are results of the functions, the next nine are views of them."""
 
     inertia: np.ndarray
     loads: np.ndarray
@@ -55,6 +55,7 @@ class Work(NamedTuple):
     contacts: np.ndarray
     M: np.ndarray  # (n, n)
     c: np.ndarray  # (n,)
+    load: np.ndarray  # (n,) generalised forces Q - dV
     phi: np.ndarray  # (h,)
     A: np.ndarray  # (k, n)
     A_rate: np.ndarray  # (k,)
@@ -133,7 +134,7 @@ def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> W
     k, g = holonomic + rows * n, contacts * (1 + 3 * n)
     return Work(
         inertia, loads, row, touch,
-        inertia[: n * n].reshape(n, n), inertia[n * n :],
+        inertia[: n * n].reshape(n, n), inertia[n * n :], loads[1:-1],
         row[:holonomic], row[holonomic:k].reshape(rows, n), row[k:],
         touch[:contacts], touch[contacts:g].reshape(contacts, 3, n), touch[g:].reshape(contacts, 3),
         np.zeros((n, n)), np.zeros(n), np.zeros((m, n)), np.zeros((m, n)), np.zeros((m, n)),

@@ -104,7 +104,7 @@ class GeneralizedRun:
     def check_start(self) -> None:
         """Raise an error if the start violates constraints or contacts; `project_start` projects velocities."""
         options, x, n = self.options, self.x, self.n
-        seen = self.made.look(x[:n], x[n:])
+        code, seen = self.made.look(x), self.made.work
         tolerance = options.constraint_tolerance
         scale = np.abs(seen.A[: len(seen.phi)]) @ np.abs(x[:n]) + 1.0
         if np.any(~(np.abs(seen.phi) <= tolerance * scale)):
@@ -126,7 +126,7 @@ class GeneralizedRun:
             raise ValueError(
                 f"position must not be inside a contact, got the gap {seen.gap[contact]:.6g} of {name!r}"
             )
-        if seen.status == 0 and self.system.size[2] > 0:
+        if code == 0 and self.system.size[2] > 0:
             project(self.system, self.active, 0.0, x, True, self.work)
 
     @property
@@ -213,7 +213,8 @@ class GeneralizedRun:
         self.counts["located events"] += 1
         if clock.step != self.in_step:
             self.in_step = int(clock.step)
-            self.contacts.new_step()
+            if self.plan.order == 0:
+                self.contacts.strike.blows[:] = 0
         near = clock.now - self.last <= 1e-12 * self.plan.step
         self.at_once = self.at_once + 1 if near else 0
         self.last = float(clock.now)

@@ -264,9 +264,13 @@ class GeneralizedSystem:
             self._made = Evaluation(self)
         return self._made
 
+    def _look(self, position):
+        self.evaluation().look(self._at(position))
+        return self.evaluation().work
+
     def metric(self, position) -> np.ndarray:
         """Return M (n, n) at coordinates (n,)."""
-        return self.evaluation().look(self._at(position)).M
+        return self._look(position).M.copy()
 
     def christoffel(self, position) -> np.ndarray:
         r"""Return the affinities :math:`\Gamma^k_{ij}` (n, n, n), k first, at `position` (n,)."""
@@ -274,7 +278,7 @@ class GeneralizedSystem:
 
     def gaps(self, position) -> np.ndarray:
         """Return the gaps (C,) of all contacts at coordinates (n,)."""
-        return self.evaluation().look(self._at(position)).gap.copy()
+        return self._look(position).gap.copy()
 
     def autoparallel(self, position, velocity, parts: int = 100) -> tuple[np.ndarray, np.ndarray]:
         """Return the end (q, v) of the autoparallel from `position` with `velocity`, after a time of 1.
