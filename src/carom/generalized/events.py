@@ -14,7 +14,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.generalized.layout import TOUCHES, N
-from carom.generalized.motion import acceleration, find_contacts, slip_of
+from carom.generalized.motion import acceleration, find_contacts, rate_of, slip_of
 from carom.generalized.step import take
 from carom.model.actions import (
     EVENT_CONE,
@@ -33,20 +33,11 @@ ROUND_OFF = 1e-15  # of the gap's own terms
 
 
 @kernel
-def rate_of(system, c, x, work):
-    """Return the rate of gap c; contact rows must be those of `x`."""
-    n, rate = system.size[N], 0.0
-    for j in range(n):
-        rate += work.G[c, 0, j] * x[n + j]
-    return rate
-
-
-@kernel
 def note_start(system, t, x, work):
     """Store gaps and their rates at the start of a step."""
     find_contacts(system, t, x, work)
     for c in range(system.size[TOUCHES]):
-        work.before[0, c], work.before[1, c] = work.gap[c], rate_of(system, c, x, work)
+        work.before[0, c], work.before[1, c] = work.gap[c], rate_of(work.G[c, 0], x, system.size[N])
 
 
 @kernel
@@ -70,7 +61,7 @@ def value(system, active, kind, i, x, work):
     if kind == EVENT_GAP:
         return work.gap[i], ROUND_OFF * work.gap_scale[i]
     if kind == EVENT_RATE:
-        return -rate_of(system, i, x, work), 0.0
+        return -rate_of(work.G[i, 0], x, system.size[N]), 0.0
     force, mu = active.force[i], system.friction[active.contact[i]]
     if kind == EVENT_SEPARATE:
         return force[0], 0.0
@@ -144,7 +135,7 @@ def dips(system, active, h, x, work):
     """
     for c in range(system.size[TOUCHES]):
         g0, r0 = work.before[0, c], h * work.before[1, c]
-        g1, r1 = work.gap[c], h * rate_of(system, c, x, work)
+        g1, r1 = work.gap[c], h * rate_of(work.G[c, 0], x, system.size[N])
         if not (r0 < 0.0 < r1 and open_contact(active, c)):
             continue
         a, b = 2.0 * (g0 - g1) + r0 + r1, 3.0 * (g1 - g0) - 2.0 * r0 - r1

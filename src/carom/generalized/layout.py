@@ -40,6 +40,7 @@ class ActiveSet(NamedTuple):
 
     count: np.ndarray  # (1,) int64
     contact: np.ndarray  # (C,) int64
+    row: np.ndarray  # (C,) int64, its first row of R
     mode: np.ndarray  # (C,) int64, MODE_SLIP or MODE_STICK
     heading: np.ndarray  # (C, 2) direction of slip
     force: np.ndarray  # (C, 3) normal first
@@ -62,7 +63,7 @@ class Work(NamedTuple):
     gap: np.ndarray  # (C,)
     G: np.ndarray  # (C, 3, n)
     G_rate: np.ndarray  # (C, 3)
-    L: np.ndarray  # (n, n) Cholesky factor of M
+    L: np.ndarray  # (n, n) M = L D L^T, D on the diagonal
     a: np.ndarray  # (n,)
     R: np.ndarray  # (m, n) rows that must keep their rate
     D: np.ndarray  # (m, n) directions of their reactions: R itself, except for a slipping contact
@@ -120,9 +121,9 @@ class Record(NamedTuple):
 
 def new_active_set(contacts: int) -> ActiveSet:
     """Return an active set with room for all contacts, none active."""
-    count, (contact, mode) = np.zeros(1, np.int64), np.zeros((2, contacts), np.int64)
+    count, (contact, row, mode) = np.zeros(1, np.int64), np.zeros((3, contacts), np.int64)
     vectors = np.zeros((contacts, 2)), np.zeros((contacts, 3))
-    return ActiveSet(count, contact, mode, *vectors, np.zeros(contacts))
+    return ActiveSet(count, contact, row, mode, *vectors, np.zeros(contacts))
 
 
 def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> Work:

@@ -1,41 +1,8 @@
-"""Dense solves of a few unknowns: the metric by Cholesky, rows by elimination without dependent pivots."""
+"""Elimination for a few rows with different reactions, without those that depend on earlier ones."""
 
 from __future__ import annotations
 
-import math
-
 from carom._compiled.decorators import kernel
-
-
-@kernel
-def cholesky(M, L, n):
-    """Write the lower factor of M; return whether M is positive definite."""
-    for j in range(n):
-        d = M[j, j]
-        for s in range(j):
-            d -= L[j, s] * L[j, s]
-        if not (d > 1e-15 * M[j, j] and math.isfinite(d)):
-            return False
-        L[j, j] = math.sqrt(d)
-        for i in range(j + 1, n):
-            t = M[i, j]
-            for s in range(j):
-                t -= L[i, s] * L[j, s]
-            L[i, j] = t / L[j, j]
-    return True
-
-
-@kernel
-def solve_metric(L, b, n):
-    """Replace b by M^-1 b."""
-    for i in range(n):
-        for s in range(i):
-            b[i] -= L[i, s] * b[s]
-        b[i] /= L[i, i]
-    for i in range(n - 1, -1, -1):
-        for s in range(i + 1, n):
-            b[i] -= L[s, i] * b[s]
-        b[i] /= L[i, i]
 
 
 @kernel

@@ -6,16 +6,19 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 from carom.generalized.layout import ALL_ROWS, HOLONOMIC, N
-from carom.generalized.linear import solve_metric
 from carom.generalized.motion import (
+    POSITION,
+    RATE,
     acceleration,
     copy_row,
     direction,
-    factor_rows,
     find_metric,
     find_rows,
+    gather,
     react,
     slip_of,
+    solve_metric,
+    terms,
 )
 from carom.model.actions import MODE_STICK
 from carom.status import CONSTRAINTS_LOST, NOT_FINITE
@@ -90,47 +93,17 @@ def note_slip_directions(system, active, t, x, work):
 
 
 @kernel
-def place_rows(system, active, x, work):
-    """Write the rows for positions into R = D, and -phi and -gap into `rhs`; return (rows, error).
-
-    The error is the greatest of all rows, each relative to the terms of its row.
-    """
-    n, m, worst = system.size[N], 0, 0.0
-    for r in range(system.size[HOLONOMIC] + active.count[0]):
-        h = r - system.size[HOLONOMIC]
-        row = work.A[r] if h < 0 else work.G[active.contact[h], 0]
-        value = work.phi[r] if h < 0 else work.gap[active.contact[h]]
-        size = 0.0
-        for j in range(n):
-            size += abs(row[j] * x[j])
-        if h < 0:
-            work.row_scale[r] = max(work.row_scale[r], size)
-            size = work.row_scale[r]
-        else:
-            size = max(size, work.gap_scale[active.contact[h]])
-        copy_row(row, work.R[m], n)
-        copy_row(row, work.D[m], n)
-        work.rhs[m] = -value
-        worst = max(worst, abs(value) / size if size > 0.0 else abs(value))
-        m += 1
-    return m, worst
-
-
-@kernel
-def rate_rows(system, active, work):
-    """Write the rows for velocities into R = D, and 0 into `rhs`; return the number of rows."""
-    n, m = system.size[N], 0
-    for r in range(system.size[ALL_ROWS]):
-        copy_row(work.A[r], work.R[m], n)
-        m += 1
-    for i in range(active.count[0]):
-        for r in range(3 if active.mode[i] == MODE_STICK else 1):
-            copy_row(work.G[active.contact[i], r], work.R[m], n)
-            m += 1
+def error_of(system, active, m, x, work):
+    """Return the greatest error of the m rows for coordinates, each relative to the terms of its row."""
+    n, h, worst = system.size[N], system.size[HOLONOMIC], 0.0
     for r in range(m):
-        copy_row(work.R[r], work.D[r], n)
-        work.rhs[r] = 0.0
-    return m
+        size = terms(work.R[r], x, n)
+        if r < h:
+            work.row_scale[r] = size = max(work.row_scale[r], size)
+        else:
+            size = max(size, work.gap_scale[active.contact[r - h]])
+        worst = max(worst, abs(work.rhs[r]) / size if size > 0.0 else abs(work.rhs[r]))
+    return worst
 
 
 @kernel
@@ -147,11 +120,11 @@ def return_to_surfaces(system, active, t, x, work):
         if code != 0:
             return code
         find_rows(system, active, t, x, work)
-        m, error = place_rows(system, active, x, work)
+        m = gather(system, active, POSITION, x, work)
+        error = error_of(system, active, m, x, work)
         if not error > _NONE or (iteration > 0 and error >= 0.5 * last):
             break
         last = error
-        factor_rows(system, m, work)
         for j in range(n):
             xi[j] = 0.0
         react(system, m, xi, work)
@@ -160,7 +133,7 @@ def return_to_surfaces(system, active, t, x, work):
         code = find_metric(system, t, y, work)
         if code != 0:
             return code
-        solve_metric(work.L, work.c, n)
+        solve_metric(n, work.L, work.c)
         for j in range(n):
             x[j] += xi[j] - 0.5 * work.c[j]
     return 0 if error <= 1e-9 else CONSTRAINTS_LOST
@@ -169,19 +142,11 @@ def return_to_surfaces(system, active, t, x, work):
 @kernel
 def project_rates(system, active, t, x, work):
     """Project the velocities in `x` to constraints and persistent contacts; return a status."""
-    n, v = system.size[N], work.a
     code = find_metric(system, t, x, work)
-    if code != 0:
-        return code
-    find_rows(system, active, t, x, work)
-    m = rate_rows(system, active, work)
-    factor_rows(system, m, work)
-    for j in range(n):
-        v[j] = x[n + j]
-    react(system, m, v, work)
-    for j in range(n):
-        x[n + j] = v[j]
-    return 0
+    if code == 0:
+        find_rows(system, active, t, x, work)
+        react(system, gather(system, active, RATE, x, work), x[system.size[N] :], work)
+    return code
 
 
 @entry
