@@ -70,7 +70,10 @@ class Contacts:
         self.u = seen.G @ v
         self.W_ii = np.einsum("cin,nm,cim->ci", seen.G, self.P, seen.G)
         size = np.sqrt(np.maximum(self.W_ii.sum(axis=1), 0.0))
-        self.still = STILL * size * max(np.sqrt(max(v @ seen.M @ v, 0.0)), push)
+        speed = size * max(np.sqrt(max(v @ seen.M @ v, 0.0)), push)
+        self.still = STILL * speed
+        # at rest in the origin a gap has no terms, but a step has a length
+        np.maximum(run.work.gap_scale, speed * run.plan.step, out=run.work.gap_scale)
         return code
 
     def active(self) -> list[int]:
@@ -150,7 +153,6 @@ class Contacts:
 
     def chosen(self, closed: list[int], struck: int) -> list[int]:
         """Return the closed contacts that stay active or become active."""
-        self.look()
         run, seen, size = self.run, self.seen, self.free @ self.seen.M @ self.free
         gone = self.marked if self.kind == EVENT_SEPARATE else -1
         kept = [c for c in self.active() if c != gone and not self.u[c, 0] > 10.0 * self.still[c]]

@@ -28,8 +28,12 @@ from carom.model.actions import (
     NO_EVENT,
 )
 from carom.status import NOT_FINITE
+from carom.stepping.event_search import begin_search, next_trial, update_bracket
 
 ROUND_OFF = 1e-15  # of the gap's own terms
+CONE_ROUND_OFF = 1e-12  # of the normal force, which is a result of elimination
+TRIALS = 200  # of a search: the bracket is then round-off of its length
+EARLIER = 20  # events that may lie before the first one that was found
 
 
 @kernel
@@ -41,33 +45,23 @@ def note_start(system, t, x, work):
 
 
 @kernel
-def detect_event(system, active, t, x, work):
-    """Evaluate at `x` all quantities that `value` needs; return a status."""
-    if system.size[TOUCHES] == 0:
-        return 0
-    find_contacts(system, t, x, work)
-    for c in range(system.size[TOUCHES]):
-        if not math.isfinite(work.gap[c]):
-            return NOT_FINITE
-    if active.count[0] == 0:
-        return 0
-    _, _, code = acceleration(system, active, t, x, work, work.trial)
-    return code
-
-
-@kernel
 def value(system, active, kind, i, x, work):
-    """Return (event function, greatest magnitude that counts as zero)."""
+    """Return the event function, and for a gap its rate; note the greatest magnitude that counts as zero.
+
+    Its default, for functions that do not need another one, is that of `update_bracket`.
+    """
+    n, search = system.size[N], work.search[0]
     if kind == EVENT_GAP:
-        return work.gap[i], ROUND_OFF * work.gap_scale[i]
+        search.tolerance = ROUND_OFF * work.gap_scale[i]
+        return work.gap[i], rate_of(work.G[i, 0], x, n)
     if kind == EVENT_RATE:
-        return -rate_of(work.G[i, 0], x, system.size[N]), 0.0
+        return -rate_of(work.G[i, 0], x, n), 0.0
     force, mu = active.force[i], system.friction[active.contact[i]]
     if kind == EVENT_SEPARATE:
         return force[0], 0.0
     if kind == EVENT_CONE:
-        pull = math.sqrt(force[1] * force[1] + force[2] * force[2])
-        return mu * force[0] - pull, 1e-12 * abs(force[0])
+        search.tolerance = CONE_ROUND_OFF * abs(force[0])
+        return mu * force[0] - math.sqrt(force[1] * force[1] + force[2] * force[2]), 0.0
     if kind == EVENT_JAM:
         return active.yields[i], 0.0
     u1, u2 = slip_of(system, active, i, x, work)
@@ -103,8 +97,9 @@ def open_contact(active, c):
 @kernel
 def violated(system, active, kind, i, x, work):
     """Return whether an event function is below zero."""
-    f, none = value(system, active, kind, i, x, work)
-    return f < -none
+    work.search[0].tolerance = 0.0
+    f, _ = value(system, active, kind, i, x, work)
+    return f < -work.search[0].tolerance
 
 
 @kernel
@@ -149,44 +144,24 @@ def dips(system, active, h, x, work):
 
 @kernel
 def find_root(motion, kind, i, t, x, high):
-    """Return (s, status): the time s in (0, high] where an event function crosses zero, `work.end` its state.
+    """Return (s, status): the time s in (0, high] where an event function crosses zero.
 
-    The function is positive at 0 and negative at `high`. (If it is zero at 0, a later time at which it is
-    positive is found first.) Regula falsi with the weights of Anderson and Bjorck (1973); every fourth step is
-    a bisection.
+    It is negative at `high`, whose state is in `work.end`; this is then the state at s.
     """
-    low, f_low, f_high, length = 0.0, 0.0, 0.0, high
-    for _ in range(40):  # halve the time until the function is positive
-        f_high, none, code = value_at(motion, kind, i, t, x, high)
-        if code != 0:
-            return high, code
-        s = low + 0.5 * (high - low)
-        f_low, none, code = value_at(motion, kind, i, t, x, s)
-        if code != 0:
-            return s, code
-        if f_low > none:
-            low = s
-            break
-        high = s
-        if abs(f_low) <= none and high - low <= 1e-9 * length:
-            return s, 0
-    for turn in range(200):
-        s = low - f_low * (high - low) / (f_high - f_low)
-        if not low < s < high or turn % 4 == 3:
-            s = low + 0.5 * (high - low)
-        f, none, code = value_at(motion, kind, i, t, x, s)
+    work, search = motion.work, motion.work.search[0]
+    begin_search(search, kind, i, 0.0, high)
+    if kind == EVENT_GAP:
+        search.f, search.rate = work.before[0, i], work.before[1, i]
+    s = high
+    for _ in range(TRIALS):
+        f, rate = value(motion.system, motion.active, kind, i, work.end, work)
+        found = update_bracket(search, s, f, rate)
+        if found != 0:
+            return s, 0 if found > 0 else NOT_FINITE
+        s = next_trial(search)
+        code = state_at(motion, t, x, s)
         if code != 0:
             return s, code
-        if abs(f) <= none or not high - low > 4e-16 * (t + high):
-            break
-        if f > 0.0:
-            weight = 1.0 - f / f_low
-            low, f_low = s, f
-            f_high *= weight if weight > 0.0 else 0.5
-        else:
-            weight = 1.0 - f / f_high
-            high, f_high = s, f
-            f_low *= weight if weight > 0.0 else 0.5
     return s, 0
 
 
@@ -196,17 +171,21 @@ def state_at(motion, t, x, s):
     code = take(motion, t, x, s)
     if code != 0:
         return code
-    return detect_event(motion.system, motion.active, t + s, motion.work.end, motion.work)
+    return look_at_end(motion, t + s)
 
 
 @kernel
-def value_at(motion, kind, i, t, x, s):
-    """Return (event function, greatest magnitude that counts as zero, status) a time s after `x`."""
-    code = state_at(motion, t, x, s)
-    if code != 0:
-        return 0.0, 0.0, code
-    f, none = value(motion.system, motion.active, kind, i, motion.work.end, motion.work)
-    return f, none, 0
+def look_at_end(motion, t):
+    """Evaluate all quantities that `value` needs at the end of the step; return a status."""
+    system, work = motion.system, motion.work
+    find_contacts(system, t, work.end, work)
+    for c in range(system.size[TOUCHES]):
+        if not math.isfinite(work.gap[c]):
+            return NOT_FINITE
+    if motion.active.count[0] == 0:
+        return 0
+    _, _, code = acceleration(system, motion.active, t, work.end, work, work.trial)
+    return code
 
 
 @kernel
@@ -215,29 +194,25 @@ def locate(motion, t, x, h):
 
     The end is then the state at s. Without an event, the kind is NO_EVENT and s = h.
     """
-    system, active, work = motion.system, motion.active, motion.work
-    end = work.end
-    code = detect_event(system, active, t + h, end, work)
+    system, active, work, s = motion.system, motion.active, motion.work, h
+    code = look_at_end(motion, t + h)
     if code != 0:
         return h, NO_EVENT, -1, code
-    kind, i = first_violated(system, active, end, work)
-    high = h
+    kind, i = first_violated(system, active, work.end, work)
     if kind == NO_EVENT:
-        c = dips(system, active, h, end, work)
+        c = dips(system, active, h, work.end, work)
         if c < 0:
             return h, NO_EVENT, -1, 0
-        high, code = find_root(motion, EVENT_RATE, c, t, x, h)
-        if code == 0 and violated(system, active, EVENT_GAP, c, end, work):
-            kind, i = EVENT_GAP, c
-        else:
+        s, code = find_root(motion, EVENT_RATE, c, t, x, h)
+        if code != 0 or not violated(system, active, EVENT_GAP, c, work.end, work):
             return h, NO_EVENT, -1, max(code, state_at(motion, t, x, h))
-    s = high
-    for _ in range(20):
-        s, code = find_root(motion, kind, i, t, x, high)
+        kind, i = EVENT_GAP, c
+    for _ in range(EARLIER):
+        s, code = find_root(motion, kind, i, t, x, s)
         if code != 0:
             break
-        other, j = first_violated(system, active, end, work)
+        other, j = first_violated(system, active, work.end, work)
         if other == NO_EVENT or (other == kind and j == i):
             break
-        kind, i, high = other, j, s
+        kind, i = other, j
     return s, kind, i, code

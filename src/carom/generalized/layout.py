@@ -10,7 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom._compiled.record_arrays import table
 from carom.model.method import Method
+from carom.model.workspace import SEARCH
 from carom.stepping.grid import Grid
 
 # The four functions, by their place in `Coordinates.address`.
@@ -77,6 +79,7 @@ class Work(NamedTuple):
     before: np.ndarray  # (2, C) gaps and their rates at the start of a step
     row_scale: np.ndarray  # (h,) greatest sum |A_j q_j|
     gap_scale: np.ndarray  # (C,) the same of the gaps, or the greatest gap
+    search: np.recarray  # (1,) SEARCH, of an event
     spent: np.ndarray  # (2,) work of loads and of friction in the last step
 
 
@@ -104,7 +107,8 @@ class Plan(NamedTuple):
 CLOCK = [
     ("now", "f8"), ("step", "i8"), ("saved", "i8"), ("loads", "f8"), ("friction", "f8"),
     ("impacts", "f8"), ("bounces", "f8"), ("kind", "i8"), ("index", "i8"), ("trials", "i8"),
-    ("ahead", "f8"), ("rejected", "i8"),  # next step by tolerances, number of steps with too large an error
+    # the next step by tolerances, the length that fitted them last, number of steps with too large an error
+    ("ahead", "f8"), ("fits", "f8"), ("rejected", "i8"),
 ]  # fmt: skip
 
 #: data of a saved state besides the state itself
@@ -141,5 +145,5 @@ def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> W
         np.zeros((n, n)), np.zeros(n), np.zeros((m, n)), np.zeros((m, n)), np.zeros((m, n)),
         np.zeros((m, m)), np.zeros(m), np.zeros(m), np.zeros((stages, 2 * n)), np.zeros(2 * n),
         np.zeros(2 * n), np.zeros((2, contacts)),
-        np.zeros(holonomic), np.zeros(contacts), np.zeros(2),
+        np.zeros(holonomic), np.zeros(contacts), table(SEARCH, 1), np.zeros(2),
     )  # fmt: skip

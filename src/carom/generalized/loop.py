@@ -15,7 +15,8 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.user_functions import call_function
-from carom.dynamics.adapt import LEAST, MOST, NOTHING_LEFT, SAFETY, allowed_error, part_of
+from carom.dynamics.adapt import NOTHING_LEFT, allowed_error, of_two, part_of, shrunk
+from carom.dynamics.adapt import plan as plan_ahead
 from carom.generalized.events import locate, note_start, turned
 from carom.generalized.layout import CALL_LOADS, EVENT, TOUCHES, N
 from carom.generalized.motion import copy_row, find_metric
@@ -102,17 +103,13 @@ def exact_part(motion, x, left, plan, c):
         c.trials += 1
         error = math.inf if code != 0 else step_error(motion, part, plan)
         if error <= 1.0:
-            factor = MOST if error == 0.0 else min(MOST, SAFETY * error ** (-1.0 / plan.order))
-            if again:
-                factor = min(1.0, factor)
-            ahead = part * factor if factor < MOST else max(c.ahead, part * MOST)
-            c.ahead = min(ahead, plan.step)
+            plan_ahead(c, part, error, again, plan.order, plan.step)
             return part, 0
         if not part > NOTHING_LEFT * plan.duration:
             return part, code if code != 0 else STEP_TOO_SMALL
         again = True
         c.rejected += 1
-        part *= max(LEAST, SAFETY * error ** (-1.0 / plan.order)) if math.isfinite(error) else LEAST
+        part *= shrunk(error, plan.order)
 
 
 @kernel
@@ -138,9 +135,7 @@ def step_error(motion, h, plan):
                 first = miss
             if e == 1:
                 second = max(second, miss)
-    if second > 0.0:
-        return first * first / math.sqrt(first * first + 0.01 * second * second)
-    return first
+    return of_two(first, second)
 
 
 @kernel

@@ -33,15 +33,14 @@ class Strike:
         """Resolve impacts until no closed contact approaches; return a status."""
         here = self.contacts
         for _ in range(BLOWS):
-            code = here.look()
-            if code != 0:
-                return code
             approach = [c for c in closed if here.u[c, 0] < -here.still[c]]
             if not approach and jams < 0:
                 return 0
             if not self.together(closed, jams if not approach else -1):
                 return Status.IMPACT_FAILED
-            jams = -1
+            code, jams = here.look(), -1
+            if code != 0:
+                return code
         return Status.TOO_MANY_IMPACTS
 
     def restitution(self, c: int) -> float:
