@@ -42,6 +42,7 @@ class Contacts:
         self.law = np.array([NUMBERS[one.impact_law] for one in contacts], dtype=np.int64)
         self.events: list[tuple[float, str, int]] = []
         self.strike = Strike(self)
+        self.light = 0.0  # kinetic energy that the loads give in a step: less is round-off
         self.cones: Any = None  # workspace of the contact problem, made when it is first needed
         # the event that is handled: its kind, its active contact, and what was active before it
         self.kind, self.marked, self.was = 0, -1, {}
@@ -63,6 +64,7 @@ class Contacts:
         code = run.made.look(run.x, run.reached)
         P = np.linalg.inv(seen.M)
         push = np.sqrt(max(seen.load @ P @ seen.load, 0.0)) * run.plan.step
+        self.light = max(self.light, 0.5 * push**2)
         if len(seen.A):
             Y = P @ seen.A.T
             P = P - Y @ np.linalg.pinv(seen.A @ Y, rcond=run.system.drop, hermitian=True) @ Y.T

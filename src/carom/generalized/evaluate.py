@@ -48,6 +48,12 @@ class Evaluation:
         self.failed()
         return code
 
+    def energies(self, x, t: float) -> tuple[float, float]:
+        """Return kinetic and potential energy of a state (q, v)."""
+        self.look(x, t)
+        v = x[self.n :]
+        return 0.5 * float(v @ self.work.M @ v), float(self.work.loads[0])
+
     def failed(self) -> None:
         """Raise the error that a function of the user's has raised."""
         error, self.functions.failed = self.functions.failed, None

@@ -69,23 +69,6 @@ def value(system, active, kind, i, x, work):
 
 
 @kernel
-def turned(system, active, t, x, work):
-    """Return whether slip has turned by more than 60 degrees within a step, and has not only stopped."""
-    looked = False
-    for i in range(active.count[0]):
-        if active.mode[i] == MODE_SLIP and system.friction[active.contact[i]] > 0.0:
-            if not looked:
-                find_contacts(system, t, x, work)
-                looked = True
-            u1, u2 = slip_of(system, active, i, x, work)
-            h1, h2 = active.heading[i, 0], active.heading[i, 1]
-            along, across = u1 * h1 + u2 * h2, abs(u1 * h2 - u2 * h1)
-            if across > (1.7320508 * along if along > 0.0 else -0.1 * along):
-                return True
-    return False
-
-
-@kernel
 def open_contact(active, c):
     """Return whether contact c is not active."""
     for i in range(active.count[0]):

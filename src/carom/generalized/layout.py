@@ -106,13 +106,17 @@ class Plan(NamedTuple):
 #: progress of a run
 CLOCK = [
     ("now", "f8"), ("step", "i8"), ("saved", "i8"), ("loads", "f8"), ("friction", "f8"),
-    ("impacts", "f8"), ("bounces", "f8"), ("kind", "i8"), ("index", "i8"), ("trials", "i8"),
+    ("impacts", "f8"), ("bounces", "f8"), ("given", "f8"), ("kind", "i8"), ("index", "i8"), ("trials", "i8"),
     # the next step by tolerances, the length that fitted them last, number of steps with too large an error
     ("ahead", "f8"), ("fits", "f8"), ("rejected", "i8"),
 ]  # fmt: skip
 
 #: data of a saved state besides the state itself
-SERIES = [("t", "f8"), ("loads", "f8"), ("impacts", "f8"), ("friction", "f8"), ("bounces", "f8")]
+SERIES = [
+    ("t", "f8"), ("kinetic", "f8"), ("potential", "f8"), ("loads", "f8"), ("impacts", "f8"),
+    ("friction", "f8"), ("bounces", "f8"),
+    ("given", "f8"),  # energy that impacts have added where their law allows it (V8)
+]  # fmt: skip
 
 
 class Record(NamedTuple):

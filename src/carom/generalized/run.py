@@ -153,7 +153,7 @@ class GeneralizedRun:
 
     def save_now(self) -> None:
         """Write the present state into the records."""
-        save_now(self.x, self.record)
+        save_now(self.system, self.x, self.record, self.work)
 
     def go_on(self, until: float) -> Status:
         """Continue until step number `until`, or a failure."""

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from carom import checks
+from carom.generalized.layout import SERIES
+from carom.geometry.spline import cubic
 from carom.results.drawn import Drawn
 from carom.results.endings import message
 from carom.results.event_tables import EventTable
 from carom.results.ledger import Ledger
-from carom.scene.materials import IMPACT_LAWS
 from carom.scene.table import RecordTable
 from carom.status import Status
 
@@ -60,17 +61,6 @@ def impact_table(records: list[CoordinateImpact], n: int) -> CoordinateImpactTab
     )
     columns = {name: np.array(column) for name, column in zip(like._fields, zip(like, *records))}
     return CoordinateImpactTable(**{name: column[1:] for name, column in columns.items()})
-
-
-def given_by_law(t: np.ndarray, impacts: CoordinateImpactTable) -> np.ndarray:
-    """Return the energy that impacts have added until each time (T,), where their law allows it (V8)."""
-    from carom.impact.laws import GAINING
-
-    named = np.array(IMPACT_LAWS)[list(GAINING)]
-    may = np.isin(impacts.law, named) & (impacts.friction > 0.0)
-    given = np.where(may, np.maximum(impacts.energy_change, 0.0), 0.0)
-    before = np.concatenate([[0.0], np.cumsum(given)])
-    return before[np.searchsorted(impacts.time, t, side="right")]
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,43 +115,34 @@ class GeneralizedSolution(Drawn):
     def _from_run(cls, run: GeneralizedRun, status: Status) -> GeneralizedSolution:
         """Make the solution from the records of a run."""
         from carom._compiled.user_functions import Fault
-        from carom.generalized.loop import energies
         from carom.results.accuracy import inaccurate, sentences, watched
 
-        saved, n = int(run.clock[0].saved), run.n
-        series: Any = run.series[:saved]
-        states = run.states[:saved].copy()
-        kinetic, potential = np.zeros(saved), np.zeros(saved)
-        t = np.array(series.t)
-        functions, said = run.made.functions, ()
-        energies(run.system, t, states, kinetic, potential, run.work)
-        if len(bad := np.flatnonzero(~np.isfinite(kinetic + potential))):
+        saved, n, made = int(run.clock[0].saved), run.n, run.made
+        columns: Any = {name: np.array(run.series[name][:saved]) for name, _ in SERIES}
+        given, states = columns.pop("given"), run.states[:saved].copy()
+        t, ledger, said = columns.pop("t"), Ledger(**columns), ()
+        if len(bad := np.flatnonzero(~np.isfinite(ledger.kinetic + ledger.potential))):
             name = getattr(run.user._model, "fault", "an expression of the energy")
             first = Fault(name, float(t[bad[0]]), states[bad[0]], "returned no finite number")
             said = (f"{str(first).capitalize()}.",) if str(first) else ()
-        some = slice(None, None, max(1, saved // 8))
-        later, below = np.zeros((2, len(t[some])))
-        at = t[some] + 0.4321 * run.plan.duration
-        energies(run.system, at, states[some], later, below, run.work)
-        now = [kinetic[some], potential[some]]
-        steady = np.array_equal([later, below], now, equal_nan=True)
-        functions.forget()
-        names = ("loads", "impacts", "friction", "bounces")
-        ledger = Ledger(kinetic, potential, *(np.array(series[one]) for one in names))
-        impacts, warnings = impact_table(run.contacts.strike.records, n), ()
+        some, later = slice(None, None, max(1, saved // 8)), 0.4321 * run.plan.duration
+        steady = all(
+            np.array_equal(made.energies(x, time), made.energies(x, time + later), equal_nan=True)
+            for time, x in zip(t[some], states[some])
+        )
+        made.functions.forget()
+        warnings = ()
         if steady:  # energies that depend on time are not conserved
-            watch = watched(t, ledger, given_by_law(t, impacts), run.options.energy_tolerance)
+            watch = watched(t, ledger, given, run.options.energy_tolerance)
+            watch["size"] = max(watch.size, run.contacts.light)
             warnings = (*said, *sentences(watch, run.how.finer))
             if status is Status.SUCCESS and inaccurate(watch):
                 status = Status.INACCURATE
-        events = run.contacts.events
-        columns = [np.array(column) for column in zip(*events)]
+        events = [np.array(column) for column in zip(*run.contacts.events)] or [np.zeros(0)] * 3
         return cls(
-            t=t, q=states[:, :n].copy(), v=states[:, n:].copy(), kinetic_energy=kinetic,
-            potential_energy=potential,
-            impacts=impacts,
-            events=EventTable(*columns) if columns else EventTable(*(np.zeros(0) for _ in range(3))),
-            ledger=ledger, status=status, warnings=warnings,
+            t=t, q=states[:, :n].copy(), v=states[:, n:].copy(), kinetic_energy=ledger.kinetic,
+            potential_energy=ledger.potential, impacts=impact_table(run.contacts.strike.records, n),
+            events=EventTable(*events), ledger=ledger, status=status, warnings=warnings,
             stats={**run.counted(), **run.counts}, system=run.user, settings=run.settings,
             _run=run,
         )  # fmt: skip
@@ -237,10 +218,8 @@ class GeneralizedSolution(Drawn):
         i = np.clip(i, 0, max(len(at) - 2, 0))
         k = np.minimum(i + 1, len(at) - 1)
         n, h = self.q.shape[1], np.maximum(at[k] - at[i], 1e-300)[:, None]
-        s = (times - at[i])[:, None] / h
-        q0, v0, q1, v1 = after[i, :n], h * after[i, n:], before[k, :n], h * before[k, n:]
-        a, b = 2.0 * (q0 - q1) + v0 + v1, 3.0 * (q1 - q0) - 2.0 * v0 - v1
-        q, v = q0 + s * (v0 + s * (b + s * a)), (v0 + s * (2.0 * b + 3.0 * s * a)) / h
+        start, end = np.split(after[i], [n], axis=1), np.split(before[k], [n], axis=1)
+        q, v = cubic((times - at[i])[:, None] / h, h, *start, *end)
         last = times == at[-1]
         if side == "right" and np.any(last):
             v[last] = after[-1, n:]
@@ -248,20 +227,14 @@ class GeneralizedSolution(Drawn):
 
     @cached_property
     def _nodes(self):
-        """Times (K,), states before and after (K, 2n), of saved steps and events in order."""
-        saved = np.concatenate([self.q, self.v], axis=1)
-        # state before the first event of a time, state after the last
-        events: dict[float, list] = {}
-        for time, before, after in self._run.nodes:
-            events.setdefault(time, [before, after])[1] = after
-        times = np.union1d(self.t, list(events))
-        place = np.searchsorted(self.t, times)
-        before = np.zeros((len(times), saved.shape[1]))
-        after = np.zeros((len(times), saved.shape[1]))
-        for k, (time, j) in enumerate(zip(times, place)):
-            first, second = events.get(time, (saved[min(j, len(saved) - 1)],) * 2)
-            before[k], after[k] = first, second
-        return times, before, after
+        """Times (K,), states before and after (K, 2n), of events and of saved steps in order."""
+        events = self._run.nodes
+        at = np.array([time for time, *_ in events])
+        own = ~np.isin(self.t, at)  # a step that ends with an event is saved after it
+        saved, time = np.hstack([self.q, self.v])[own], np.concatenate([self.t[own], at])
+        order = np.argsort(time, kind="stable")
+        before, after = (np.array([*saved, *(one[k] for one in events)])[order] for k in (1, 2))
+        return time[order], before, after
 
     def __repr__(self) -> str:
         return (

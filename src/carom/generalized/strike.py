@@ -8,6 +8,7 @@ import numpy as np
 
 from carom.generalized.solution import CoordinateImpact
 from carom.impact import layout as o
+from carom.impact.laws import GAINING
 from carom.impact.resolve import resolve
 from carom.status import Status
 
@@ -84,10 +85,13 @@ class Strike:
         run.clock[0].impacts += 0.5 * (run.x[run.n :] - v) @ M @ (run.x[run.n :] + v)
         for i in np.flatnonzero(np.any(p != 0.0, axis=1)):
             own, parts = slice(3 * i, 3 * i + 3), [float(one[i]) for one in works]
+            change = parts[0] + parts[1] - parts[2]
+            if here.law[closed[i]] in GAINING and mu[i] > 0.0:
+                run.clock[0].given += max(change, 0.0)
             here.note("impact", closed[i])
             self.records.append(CoordinateImpact(
                 run.reached, closed[i], run.x[: run.n].copy(), u[i], after[i], p[i],
-                parts[0] + parts[1] - parts[2], run.user.contacts[closed[i]].impact_law, W[own, own],
+                change, run.user.contacts[closed[i]].impact_law, W[own, own],
                 float(e[i]), float(mu[i]), *parts, together=k, wedged=int(wedged[i]),
             ))  # fmt: skip
         return True
