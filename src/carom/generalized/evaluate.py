@@ -8,7 +8,14 @@ import numpy as np
 
 from carom._compiled.user_functions import Functions
 from carom.dynamics.methods import make_method
-from carom.generalized.layout import ActiveSet, Coordinates, Motion, new_active_set, new_work
+from carom.generalized.layout import (
+    METRIC,
+    ActiveSet,
+    Coordinates,
+    Motion,
+    new_active_set,
+    new_work,
+)
 from carom.generalized.motion import look
 from carom.generalized.step import move_freely
 from carom.options import Options
@@ -31,9 +38,10 @@ class Evaluation:
         self.n = n
         self.functions = Functions()
         self.raised: BaseException | None = None
-        addresses = model.addresses(self.functions)
+        addresses, parts = model.addresses(self.functions)
         self.system = Coordinates(
             np.array(addresses, dtype=np.int64),
+            np.array(parts, dtype=np.int64).reshape(-1, 3),
             np.array([n, model.holonomic, model.rows, C], dtype=np.int64),
             np.array([one.friction for one in contacts]),
             drop,
@@ -47,12 +55,6 @@ class Evaluation:
         code = look(self.system, self.none_active if active is None else active, t, x, self.work)
         self.failed()
         return code
-
-    def energies(self, x, t: float) -> tuple[float, float]:
-        """Return kinetic and potential energy of a state (q, v)."""
-        self.look(x, t)
-        v = x[self.n :]
-        return 0.5 * float(v @ self.work.M @ v), float(self.work.loads[0])
 
     def failed(self) -> None:
         """Raise the error that a function of the user's has raised."""
@@ -82,7 +84,9 @@ class Evaluation:
         """Return the end (q, v) of an autoparallel: the motion without loads, constraints and contacts."""
         x, none = np.concatenate([q, v]), new_active_set(0)
         address, size = self.system.address * [1, 0, 0, 0], self.system.size * [1, 0, 0, 0]
-        free, work = Coordinates(address, size, np.zeros(0), 0.0), new_work(self.n, 0, 0, 0, STAGES)
+        part, work = self.system.part.copy(), new_work(self.n, 0, 0, 0, STAGES)
+        part[METRIC + 1 :] = 0
+        free = Coordinates(address, part, size, np.zeros(0), 0.0)
         code = move_freely(Motion(free, make_method("rk4", Options()), none, work), x, parts)
         self.failed()
         if code != 0:

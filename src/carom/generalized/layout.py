@@ -21,6 +21,10 @@ CALL_LOADS = 1  #: V, generalised forces Q - dV (n,), power Q.v of those that ha
 CALL_ROWS = 2  #: phi (h,), A (k, n), (dA/dt) v (k,)
 CALL_CONTACTS = 3  #: gap (C,), G (C, 3, n), (dG/dt) v (C, 3)
 
+# The user's functions that make them, by their place in `Coordinates.part`; at the end gap and tangents of each
+# contact.
+METRIC, POTENTIAL, FORCE, CONSTRAINT, ROWS, CONTACT = range(6)
+
 # The four sizes, by their place in `Coordinates.size`.
 N, HOLONOMIC, ALL_ROWS, TOUCHES = range(4)
 
@@ -31,7 +35,11 @@ EVENT = 100
 class Coordinates(NamedTuple):
     """A system: addresses of its functions, sizes, friction of its contacts."""
 
-    address: np.ndarray  # (4,) int64; 0 for a function that the system does not have
+    address: (
+        np.ndarray
+    )  # (4,) int64; 0 for a function that the system does not have, or that has parts
+    # (P, 3) int64 addresses of a function and of its derivative, 0 for none, and the number of results
+    part: np.ndarray
     size: np.ndarray  # (4,) int64
     friction: np.ndarray  # (C,)
     drop: float  # a row is left out if its pivot is below this part of its diagonal
@@ -79,6 +87,9 @@ class Work(NamedTuple):
     before: np.ndarray  # (2, C) gaps and their rates at the start of a step
     row_scale: np.ndarray  # (h,) greatest sum |A_j q_j|
     gap_scale: np.ndarray  # (C,) the same of the gaps, or the greatest gap
+    point: np.ndarray  # (n,) of differences
+    sample: np.ndarray  # results there
+    slope: np.ndarray  # (n, m) derivatives of m results
     search: np.recarray  # (1,) SEARCH, of an event
     spent: np.ndarray  # (2,) work of loads and of friction in the last step
 
@@ -136,7 +147,7 @@ def new_active_set(contacts: int) -> ActiveSet:
 
 def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> Work:
     """Return workspace for a system of these sizes and a method with this number of stages."""
-    m = rows + 3 * contacts
+    m, most = rows + 3 * contacts, max(n, rows, 2) * n
     inertia, loads = np.zeros(n * n + n), np.zeros(n + 2)
     row = np.zeros(holonomic + rows * n + rows)
     touch = np.zeros(contacts * (4 + 3 * n))
@@ -149,5 +160,6 @@ def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> W
         np.zeros((n, n)), np.zeros(n), np.zeros((m, n)), np.zeros((m, n)), np.zeros((m, n)),
         np.zeros((m, m)), np.zeros(m), np.zeros(m), np.zeros((stages, 2 * n)), np.zeros(2 * n),
         np.zeros(2 * n), np.zeros((2, contacts)),
-        np.zeros(holonomic), np.zeros(contacts), table(SEARCH, 1), np.zeros(2),
+        np.zeros(holonomic), np.zeros(contacts), np.zeros(n), np.zeros(most), np.zeros(n * most),
+        table(SEARCH, 1), np.zeros(2),
     )  # fmt: skip

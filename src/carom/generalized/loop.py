@@ -14,12 +14,11 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, kernel
-from carom._compiled.user_functions import call_function
 from carom.dynamics.adapt import NOTHING_LEFT, allowed_error, of_two, part_of, shrunk
 from carom.dynamics.adapt import plan as plan_ahead
 from carom.generalized.events import locate, note_start
 from carom.generalized.layout import CALL_LOADS, EVENT, N
-from carom.generalized.motion import copy_row, find_metric, rate_of
+from carom.generalized.motion import copy_row, evaluate, find_metric, rate_of
 from carom.generalized.step import take
 from carom.model.actions import NO_EVENT
 from carom.model.records import PAUSE
@@ -123,7 +122,7 @@ def save(system, x, record, work):
     clock, n = record.clock[0], system.size[N]
     row, total = record.series[clock.saved], 0.0
     find_metric(system, clock.now, x, work)
-    call_function(system.address[CALL_LOADS], clock.now, x, work.loads)
+    evaluate(system, CALL_LOADS, clock.now, x, work.loads, work)
     for i in range(n):
         total += x[n + i] * rate_of(work.M[i], x, n)
     row.t, row.kinetic, row.potential = clock.now, 0.5 * total, work.loads[0]

@@ -13,6 +13,7 @@ from carom._compiled.decorators import entry, kernel
 from carom._compiled.user_functions import call_function
 from carom.dynamics.several_points import factor as factor_symmetric
 from carom.dynamics.several_points import substitute as solve_metric
+from carom.generalized.differences import evaluate_parts
 from carom.generalized.layout import (
     ALL_ROWS,
     CALL_CONTACTS,
@@ -32,9 +33,18 @@ SINGULAR = 1e-15  # of the diagonal: a pivot of the metric that is round-off
 
 
 @kernel
+def evaluate(system, which, t, x, out, work):
+    """Write the result of one of the four functions of a system into `out`, its array of the workspace."""
+    if system.address[which] != 0:
+        call_function(system.address[which], t, x, out)
+    else:
+        evaluate_parts(system, which, t, x, work)
+
+
+@kernel
 def find_metric(system, t, x, work):
     """Compute M, its factor and Gamma(v, v) at the state `x`; return a status."""
-    call_function(system.address[CALL_INERTIA], t, x, work.inertia)
+    evaluate(system, CALL_INERTIA, t, x, work.inertia, work)
     n, total = system.size[N], 0.0
     for i in range(n):
         copy_row(work.M[i], work.L[i], n)
@@ -51,9 +61,9 @@ def find_metric(system, t, x, work):
 def find_rows(system, active, t, x, work):
     """Compute constraint rows, and contacts if any is active."""
     if system.size[ALL_ROWS] > 0:
-        call_function(system.address[CALL_ROWS], t, x, work.rows)
+        evaluate(system, CALL_ROWS, t, x, work.rows, work)
     if active.count[0] > 0:
-        call_function(system.address[CALL_CONTACTS], t, x, work.contacts)
+        evaluate(system, CALL_CONTACTS, t, x, work.contacts, work)
 
 
 @kernel
@@ -61,7 +71,7 @@ def find_contacts(system, t, x, work):
     """Compute gaps and contact rows, and the size of the terms of each gap."""
     if system.size[TOUCHES] == 0:
         return
-    call_function(system.address[CALL_CONTACTS], t, x, work.contacts)
+    evaluate(system, CALL_CONTACTS, t, x, work.contacts, work)
     for c in range(system.size[TOUCHES]):
         size = max(abs(work.gap[c]), terms(work.G[c, 0], x, system.size[N]))
         if math.isfinite(size):
@@ -177,8 +187,7 @@ def acceleration(system, active, t, x, work, rate):
     code = find_metric(system, t, x, work)
     if code != 0:
         return 0.0, 0.0, code
-    if system.address[CALL_LOADS] != 0:
-        call_function(system.address[CALL_LOADS], t, x, work.loads)
+    evaluate(system, CALL_LOADS, t, x, work.loads, work)
     for j in range(n):
         a[j] = work.loads[1 + j] - work.c[j]
     solve_metric(n, work.L, a)

@@ -183,7 +183,7 @@ class GeneralizedRun:
     def look_again(self) -> None:
         """Take the step that failed once more, with compiled functions of the user's called from Python."""
         place = Kept((self.motion, self.x, self.clock))
-        self.made.functions.call_from_python([self.system.address])
+        self.made.functions.call_from_python([self.system.address, *self.system.part[:, :2].T])
         time_loop(self.motion, self.x, self.plan, self.steps_done + 1, self.record)
         place.restore()
         self.made.functions.blame(self.reached)

@@ -86,8 +86,7 @@ class GeneralizedSolution(Drawn):
     status : Status
         How the run ended; see also `success` and `message`.
     warnings : tuple of str
-        Sentences about energy errors above `Options.energy_tolerance` at saved times. (They are not checked if
-        the energies depend on time explicitly.)
+        Sentences about energy errors above `Options.energy_tolerance` at saved times.
     stats : dict
         Counts: steps, located events, impacts, contacts that became persistent.
     system : GeneralizedSystem
@@ -114,30 +113,23 @@ class GeneralizedSolution(Drawn):
     @classmethod
     def _from_run(cls, run: GeneralizedRun, status: Status) -> GeneralizedSolution:
         """Make the solution from the records of a run."""
-        from carom._compiled.user_functions import Fault
+        from carom._compiled.user_functions import Fault, returned
         from carom.results.accuracy import inaccurate, sentences, watched
 
-        saved, n, made = int(run.clock[0].saved), run.n, run.made
+        saved, n = int(run.clock[0].saved), run.n
         columns: Any = {name: np.array(run.series[name][:saved]) for name, _ in SERIES}
         given, states = columns.pop("given"), run.states[:saved].copy()
         t, ledger, said = columns.pop("t"), Ledger(**columns), ()
-        if len(bad := np.flatnonzero(~np.isfinite(ledger.kinetic + ledger.potential))):
-            name = getattr(run.user._model, "fault", "an expression of the energy")
-            first = Fault(name, float(t[bad[0]]), states[bad[0]], "returned no finite number")
-            said = (f"{str(first).capitalize()}.",) if str(first) else ()
-        some, later = slice(None, None, max(1, saved // 8)), 0.4321 * run.plan.duration
-        steady = all(
-            np.array_equal(made.energies(x, time), made.energies(x, time + later), equal_nan=True)
-            for time, x in zip(t[some], states[some])
-        )
-        made.functions.forget()
-        warnings = ()
-        if steady:  # energies that depend on time are not conserved
-            watch = watched(t, ledger, given, run.options.energy_tolerance)
-            watch["size"] = max(watch.size, run.contacts.light)
-            warnings = (*said, *sentences(watch, run.how.finer))
-            if status is Status.SUCCESS and inaccurate(watch):
-                status = Status.INACCURATE
+        energies = np.column_stack([ledger.kinetic, ledger.potential])
+        if len(bad := np.argwhere(~np.isfinite(energies))):
+            k, which = bad[0]
+            name = f"The {run.user._model.kind} {('metric', 'potential')[which]!r}"
+            said = (f"{Fault(name, float(t[k]), states[k], returned(energies[k]))}.",)
+        watch = watched(t, ledger, given, run.options.energy_tolerance)
+        watch["size"] = max(watch.size, run.contacts.light)
+        warnings = (*said, *sentences(watch, run.how.finer))
+        if status is Status.SUCCESS and inaccurate(watch):
+            status = Status.INACCURATE
         events = [np.array(column) for column in zip(*run.contacts.events)] or [np.zeros(0)] * 3
         return cls(
             t=t, q=states[:, :n].copy(), v=states[:, n:].copy(), kinetic_energy=ledger.kinetic,

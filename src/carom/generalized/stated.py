@@ -48,8 +48,8 @@ def checked_contact(
     return contact
 
 
-def checked_functions(q: np.ndarray, gap, gradient, tangent) -> int:
-    """Check that the functions of a contact return the right shapes; return the number of tangents."""
+def checked_functions(q: np.ndarray, gap, gradient, tangent) -> tuple[int, ...]:
+    """Check that the functions of a contact return the right shapes; return that of the tangents."""
     n = len(q)
     for what, one in (("gap", gap), ("gap_gradient", gradient), ("tangent", tangent)):
         checks.function(what, one, optional=what != "gap")
@@ -57,14 +57,14 @@ def checked_functions(q: np.ndarray, gap, gradient, tangent) -> int:
     if gradient is not None:
         answer("gap_gradient(q)", gradient, (n,), q)
     if tangent is None:
-        return 0
+        return (0, n)
     rows = checks.call("tangent(q)", tangent, q.copy())
     rows = checks.real_array("tangent(q)", rows, f"({n},) or (2, {n})")
     if not np.all(np.isfinite(rows)):
         raise ValueError(f"tangent(q) must be finite, got {rows.tolist()}")
     if rows.shape not in ((n,), (1, n), (2, n)):
         raise ValueError(f"tangent(q) must have shape ({n},) or (2, {n}), got shape {rows.shape}")
-    return rows.size // n
+    return rows.shape
 
 
 def answer(name: str, function: Callable, shape: tuple, *arguments) -> np.ndarray:

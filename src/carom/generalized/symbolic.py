@@ -27,6 +27,8 @@ def sympy() -> Any:
 class SymbolicModel:
     """Expressions of a system, in symbols of its own: coordinates q, velocities v, time t."""
 
+    kind = "expression"
+
     def __init__(
         self, coordinates, velocities, kinetic_energy, metric, potential, forces, constraints, rates,
         parameters, time,
@@ -223,8 +225,8 @@ class SymbolicModel:
         """Return (d row/dt) v."""
         return sum(self.rate(a) * v for a, v in zip(row, self.v))
 
-    def addresses(self, functions) -> list[int]:
-        """Return the addresses of the four compiled functions."""
+    def addresses(self, functions) -> tuple[list[int], list]:
+        """Return the addresses of the four compiled functions, which have no parts."""
         result = []
         for name in ("inertia", "loads", "row_terms", "contact_terms"):
             terms = getattr(self, name)()
@@ -234,7 +236,7 @@ class SymbolicModel:
             written = self.write(name, terms)
             sizes = (2 * self.n,), (len(terms),)
             result.append(functions.written(written, *sizes, f"an expression ({name})"))
-        return result
+        return result, []
 
     def write(self, name: str, terms: list):
         """Return ``name(t, x, out)`` as Python code of scalars; common subexpressions are computed once."""

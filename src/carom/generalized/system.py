@@ -96,19 +96,21 @@ class GeneralizedSystem:
                     f"{name} must be left out without {of}, got {checks.shown(given[name])}"
                 )
         v = _rates(velocity, n)
-        answers = {"metric": (n, n), "potential": (), "metric_derivative": (n, n, n)}
-        answers["potential_gradient"] = (n,)
         h = 0 if constraint is None else answer("constraint(q)", constraint, (None,), q).size
         k = 0 if rows is None else len(answer("rows(q)", rows, (None, n), q))
-        answers["constraint_jacobian"] = (h, n)
-        for name, shape in answers.items():
-            if given[name] is not None:
+        shapes = {
+            "metric": (n, n), "potential": (), "constraint": (h,), "rows": (k, n), "force": (n,),
+            "metric_derivative": (n, n, n), "potential_gradient": (n,), "constraint_jacobian": (h, n),
+        }  # fmt: skip
+        for name, shape in shapes.items():
+            if given[name] is not None and name != "force":
                 answer(f"{name}(q)", given[name], shape, q)
         if force is not None:
             answer("force(t, q, v)", force, (n,), 0.0, q, v)
         from carom.generalized.functional import FunctionalModel
 
-        self._start(FunctionalModel(n, given, h, k), q, v)
+        model = FunctionalModel(n, {name: (given[name], shapes[name]) for name in shapes})
+        self._start(model, q, v)
 
     @classmethod
     @arguments.known
@@ -250,8 +252,8 @@ class GeneralizedSystem:
                 raise ValueError("gap must be an expression in a system from SymPy, got a function")
             self._model.add_contact(gap, tangent)
         else:
-            count = checked_functions(self.position, gap, gap_gradient, tangent)
-            self._model.add_contact(gap, gap_gradient, tangent, count)
+            shape = checked_functions(self.position, gap, gap_gradient, tangent)
+            self._model.add_contact(gap, gap_gradient, tangent, shape)
         self._made = None
         self._contacts.append(contact)
         return contact
