@@ -50,8 +50,6 @@ class Contacts:
     def note(self, what: str, contact: int) -> None:
         """Write an event."""
         self.events.append((self.run.reached, what, contact))
-        if what in ("impact", "held"):
-            self.run.counts["impacts" if what == "impact" else "holds"] += 1
 
     # --- quantities of the state ---------------------------------------------------------------
 
@@ -61,7 +59,7 @@ class Contacts:
         Compute P, the relative velocities u (C, 3), the speeds that count as 0 (C,), and the acceleration.
         """
         run, seen, v = self.run, self.seen, self.run.x[self.run.n :]
-        code = run.made.look(run.x, run.reached)
+        code = run.made.compute(run.x, run.reached)
         P = np.linalg.inv(seen.M)
         push = np.sqrt(max(seen.load @ P @ seen.load, 0.0)) * run.plan.step
         self.light = max(self.light, 0.5 * push**2)
@@ -70,6 +68,7 @@ class Contacts:
             P = P - Y @ np.linalg.pinv(seen.A @ Y, rcond=run.system.drop, hermitian=True) @ Y.T
         self.P, self.free = 0.5 * (P + P.T), seen.a.copy()
         self.u = seen.G @ v
+        self.slip = np.linalg.norm(self.u[:, 1:], axis=1)
         self.W_ii = np.einsum("cin,nm,cim->ci", seen.G, self.P, seen.G)
         size = np.sqrt(np.maximum(self.W_ii.sum(axis=1), 0.0))
         speed = size * max(np.sqrt(max(v @ seen.M @ v, 0.0)), push)
@@ -160,7 +159,7 @@ class Contacts:
         kept = [c for c in self.active() if c != gone and not self.u[c, 0] > 10.0 * self.still[c]]
         for c in sorted(set(closed) - {gone} - set(kept), key=lambda c: abs(self.u[c, 0])):
             self.activate(kept)
-            run.made.look(run.x, run.reached, run.active)
+            run.made.compute(run.x, run.reached, run.active)
             draw = -(seen.G[c, 0] @ seen.a + seen.G_rate[c, 0])
             # a contact that others keep closed (the fourth leg of a table) was located by round-off
             least = -1e-9 if c == struck and kept else 1e-12
@@ -182,7 +181,7 @@ class Contacts:
 
     def set_active(self, chosen: list[int], closed: list[int]) -> int:
         """Make `chosen` active: find stick or slip of each from the accelerations; return a status."""
-        from carom.friction.layout import SOLVED, new_contact_work
+        from carom.friction.layout import CONE, SLIDING, SOLVED, new_contact_work
         from carom.friction.solve import solve_cones
 
         run, seen = self.run, self.seen
@@ -200,12 +199,14 @@ class Contacts:
             G = seen.G[chosen].reshape(3 * k, run.n)
             W = G @ self.P @ G.T
             c0 = G @ self.free + seen.G_rate[chosen].reshape(3 * k)
-            mu, p = self.friction[chosen], np.zeros(3 * k)
-            kinds, heading = self.slips(chosen)
+            mu, p, heading = self.friction[chosen], np.zeros(3 * k), self.headings(chosen)
+            kinds = np.where(heading.any(axis=1), SLIDING, CONE)
             status, _, _ = solve_cones(k, W, c0, mu, kinds, heading, p, self.cones)
             if status != SOLVED:
-                jam = self.jam(chosen, W, mu, heading)
-                code = self.strike.all(chosen, jam) if jam >= 0 else Status.NO_CONVERGENCE
+                own = W.reshape(k, 3, k, 3)[range(k), 0, range(k)]
+                yields = own[:, 0] - mu * np.sum(heading * own[:, 1:], axis=1)  # W_nn - mu W_nt . e
+                jams = [c for c, left in zip(chosen, yields) if left <= 0.0]
+                code = self.strike.all(chosen, jams[0]) if jams else Status.NO_CONVERGENCE
                 if code != 0:
                     return code
                 chosen = [c for c in chosen if not self.u[c, 0] > 10.0 * self.still[c]]
@@ -222,47 +223,24 @@ class Contacts:
     def take_out(self, chosen: list[int]) -> int:
         """Activate contacts: remove their normal velocities, and slip that has stopped; return a status."""
         run, n, M = self.run, self.run.n, self.seen.M.copy()
-        stop = 10.0 * self.still
+        stop = np.where(self.friction > 0.0, 10.0 * self.still, -1.0)
         if self.kind == EVENT_REVERSE:  # speed that friction removes in a thousandth of a step
             c = self.marked
             brake = self.friction[c] * abs(self.was[c][2][0]) * float(self.W_ii[c, 1:].sum())
             stop[c] = max(stop[c], 1e-3 * run.moment(brake) * brake)
-        stick = [c for c in chosen if self.friction[c] > 0.0 and self.slip(c) <= stop[c]]
-        self.activate(chosen, stick)
         v = run.x[n:].copy()
+        self.activate(chosen, np.flatnonzero(self.slip <= stop))
         code = self.project() if chosen else 0
         run.clock[0].bounces += 0.5 * (run.x[n:] - v) @ M @ (run.x[n:] + v)
         return code or self.look()
 
-    def slip(self, c: int) -> float:
-        """Return the speed of slip of a contact."""
-        return float(np.linalg.norm(self.u[c, 1:]))
-
-    def slips(self, chosen: list[int]):
-        """Return kinds (k,) and directions (k, 2) for the solver: sliding, or free to stick or slip."""
-        from carom.friction.layout import CONE as FREE
-        from carom.friction.layout import SLIDING
-
-        kinds, heading = np.full(len(chosen), FREE), np.zeros((len(chosen), 2))
-        for i, c in enumerate(chosen):
-            along = np.zeros(2)
-            if self.slip(c) > 10.0 * self.still[c]:
-                along = self.u[c, 1:]
-            elif c == self.marked and self.kind == EVENT_CONE:
-                along = -self.was[c][2][1:]  # stick has just ended
-            if self.friction[c] > 0.0 and along.any():
-                kinds[i], heading[i] = SLIDING, along / np.linalg.norm(along)
-        return kinds, heading
-
-    @staticmethod
-    def jam(chosen, W: np.ndarray, mu: np.ndarray, heading: np.ndarray) -> int:
-        """Return the first contact that jams, because friction outweighs W_nn in slip; -1 if there is none."""
-        for i, c in enumerate(chosen):
-            if heading[i].any():
-                pressing = mu[i] * heading[i] @ W[3 * i, 3 * i + 1 : 3 * i + 3]
-                if W[3 * i, 3 * i] - pressing <= 0.0:
-                    return c
-        return -1
+    def headings(self, chosen: list[int]) -> np.ndarray:
+        """Return the directions of slip (k, 2); 0 for a contact that is free to stick or slip."""
+        along = np.where((self.slip > 10.0 * self.still)[:, None], self.u[:, 1:], 0.0)
+        if self.kind == EVENT_CONE and not along[self.marked].any():
+            along[self.marked] = -self.was[self.marked][2][1:]  # stick has just ended
+        along[self.friction == 0.0] = 0.0
+        return along[chosen] / np.maximum(np.linalg.norm(along[chosen], axis=1), 1e-300)[:, None]
 
     def write_held(self, chosen: list[int], p: np.ndarray, heading: np.ndarray) -> None:
         """Write forces p (k, 3) of active contacts, and whether each sticks."""

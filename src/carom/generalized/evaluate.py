@@ -37,7 +37,6 @@ class Evaluation:
         n, C = system.coordinates, len(contacts)
         self.n = n
         self.functions = Functions()
-        self.raised: BaseException | None = None
         addresses, parts = model.addresses(self.functions)
         self.system = Coordinates(
             np.array(addresses, dtype=np.int64),
@@ -49,10 +48,14 @@ class Evaluation:
         self.work = new_work(n, model.holonomic, model.rows, C, STAGES)
         self.none_active = new_active_set(C)
 
-    def look(self, x, t: float = 0.0, active: ActiveSet | None = None) -> int:
-        """Compute all quantities at a state (q, v), or (q, 0) from q; they are in `work`. Return a status."""
-        x = np.append(x, np.zeros(2 * self.n - len(x)))
+    def compute(self, x, t: float, active: ActiveSet | None = None) -> int:
+        """Compute all quantities at a state (q, v); they are in `work`. Return a status."""
         code = look(self.system, self.none_active if active is None else active, t, x, self.work)
+        return Status.FUNCTION_FAILED if self.functions.failed is not None else code
+
+    def look(self, x, t: float = 0.0) -> int:
+        """Do the same at (q, v), or at (q, 0) for q; raise the error of a user-defined function."""
+        code = self.compute(np.append(x, np.zeros(2 * self.n - len(x))), t)
         self.failed()
         return code
 
@@ -60,25 +63,19 @@ class Evaluation:
         """Raise the error that a function of the user's has raised."""
         error, self.functions.failed = self.functions.failed, None
         if error is not None:
-            self.raised = error
             raise error
 
     def christoffel(self, q) -> np.ndarray:
-        """Return Gamma^k_ij, from Gamma(v, v) of all pairs of directions."""
-        n = self.n
-        e, quadratic = np.eye(n), {}
-        for i in range(n):
-            for j in range(i + 1):
-                self.look(np.append(q, e[i] + e[j] if i != j else e[i]))
-                quadratic[i, j] = self.work.c.copy()
-        first = np.zeros((n, n, n))
-        for i in range(n):
-            for j in range(i + 1):
-                one = quadratic[i, j]
-                if i != j:
-                    one = 0.5 * (one - quadratic[i, i] - quadratic[j, j])
-                first[:, i, j] = first[:, j, i] = one
-        return np.linalg.solve(self.work.M, first.reshape(n, -1)).reshape(n, n, n)
+        """Return Gamma^k_ij, from 4 Gamma(v, w) = Gamma(v + w, v + w) - Gamma(v - w, v - w)."""
+        n, e = self.n, np.eye(self.n)
+
+        def bend(v):
+            self.look(np.append(q, v))
+            return self.work.c.copy()
+
+        first = [[bend(a + b) - bend(a - b) for b in e] for a in e]  # (i, j, k)
+        first = 0.25 * np.moveaxis(np.array(first), 2, 0).reshape(n, -1)
+        return np.linalg.solve(self.work.M, first).reshape(n, n, n)
 
     def autoparallel(self, q, v, parts):
         """Return the end (q, v) of an autoparallel: the motion without loads, constraints and contacts."""

@@ -135,7 +135,7 @@ class GeneralizedSolution(Drawn):
             t=t, q=states[:, :n].copy(), v=states[:, n:].copy(), kinetic_energy=ledger.kinetic,
             potential_energy=ledger.potential, impacts=impact_table(run.contacts.strike.records, n),
             events=EventTable(*events), ledger=ledger, status=status, warnings=warnings,
-            stats={**run.counted(), **run.counts}, system=run.user, settings=run.settings,
+            stats=run.counted(), system=run.user, settings=run.settings,
             _run=run,
         )  # fmt: skip
 
