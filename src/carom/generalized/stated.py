@@ -60,27 +60,12 @@ def checked_functions(q: np.ndarray, gap, gradient, tangent) -> tuple[int, ...]:
         return (0, n)
     rows = checks.call("tangent(q)", tangent, q.copy())
     rows = checks.real_array("tangent(q)", rows, f"({n},) or (2, {n})")
-    if not np.all(np.isfinite(rows)):
-        raise ValueError(f"tangent(q) must be finite, got {rows.tolist()}")
     if rows.shape not in ((n,), (1, n), (2, n)):
         raise ValueError(f"tangent(q) must have shape ({n},) or (2, {n}), got shape {rows.shape}")
-    return rows.shape
+    return checks.finite_array("tangent(q)", rows, rows.shape).shape
 
 
 def answer(name: str, function: Callable, shape: tuple, *arguments) -> np.ndarray:
     """Return the result of a function at the start; raise an error for a shape other than `shape`."""
     given = [np.copy(a) if np.ndim(a) else a for a in arguments]
-    result = checks.real_array(
-        name, checks.call(name, function, *given), "(" + ", ".join(map(str, shape)) + ")"
-    )
-    wrong = result.ndim != len(shape) or any(
-        s not in (None, k) for s, k in zip(shape, result.shape)
-    )
-    if wrong:
-        wanted = ", ".join("k" if s is None else str(s) for s in shape)
-        n = next(len(a) for a in given if np.ndim(a))
-        raise ValueError(
-            f"{name} must have shape ({wanted}{',' * (len(shape) == 1)}), as position has {n} coordinates, "
-            f"got shape {result.shape}"
-        )
-    return checks.finite_array(name, result, shape)
+    return checks.finite_array(name, checks.call(name, function, *given), shape)
