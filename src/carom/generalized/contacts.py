@@ -96,8 +96,7 @@ class Contacts:
             return 0
         before = run.x.copy()
         struck = index if kind == EVENT_GAP else -1
-        of_active = kind in (EVENT_SEPARATE, EVENT_CONE, EVENT_REVERSE, EVENT_JAM)
-        self.kind, self.marked = kind, int(active.contact[index]) if of_active else -1
+        self.kind, self.marked = kind, -1 if kind == EVENT_GAP else index
         parts = (
             one[: active.count[0]].copy() for one in (active.mode, active.heading, active.force)
         )

@@ -14,7 +14,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.generalized.layout import TOUCHES, N
-from carom.generalized.motion import acceleration, find_contacts, rate_of, slip_of
+from carom.generalized.motion import acceleration, copy_row, find_contacts, rate_of, slip_of
 from carom.generalized.step import take
 from carom.model.actions import (
     EVENT_CONE,
@@ -23,7 +23,6 @@ from carom.model.actions import (
     EVENT_RATE,
     EVENT_REVERSE,
     EVENT_SEPARATE,
-    MODE_SLIP,
     MODE_STICK,
     NO_EVENT,
 )
@@ -37,84 +36,76 @@ EARLIER = 20  # events that may lie before the first one that was found
 
 
 @kernel
-def note_start(system, t, x, work):
-    """Store gaps and their rates at the start of a step."""
+def find_gaps(system, t, x, work):
+    """Evaluate the event functions of open contacts at `x`; return whether all gaps are finite."""
+    margin, finite = work.margin, True
     find_contacts(system, t, x, work)
     for c in range(system.size[TOUCHES]):
-        work.before[0, c], work.before[1, c] = work.gap[c], rate_of(work.G[c, 0], x, system.size[N])
+        finite = finite and math.isfinite(work.gap[c])
+        for kind in range(NO_EVENT):
+            margin[kind, c], work.nothing[kind, c] = math.inf, 0.0
+        margin[EVENT_GAP, c], work.nothing[EVENT_GAP, c] = (
+            work.gap[c],
+            ROUND_OFF * work.gap_scale[c],
+        )
+        margin[EVENT_RATE, c] = -rate_of(work.G[c, 0], x, system.size[N])
+    return finite
 
 
 @kernel
-def value(system, active, kind, i, x, work):
-    """Return the event function, and for a gap its rate; note the greatest magnitude that counts as zero.
+def find_margins(motion, t):
+    """Evaluate all event functions at the end of the step; return a status.
 
-    Its default, for functions that do not need another one, is that of `update_bracket`.
+    They are infinite for contacts that are not in their mode.
     """
-    n, search = system.size[N], work.search[0]
-    if kind == EVENT_GAP:
-        search.tolerance = ROUND_OFF * work.gap_scale[i]
-        return work.gap[i], rate_of(work.G[i, 0], x, n)
-    if kind == EVENT_RATE:
-        return -rate_of(work.G[i, 0], x, n), 0.0
-    force, mu = active.force[i], system.friction[active.contact[i]]
-    if kind == EVENT_SEPARATE:
-        return force[0], 0.0
-    if kind == EVENT_CONE:
-        search.tolerance = CONE_ROUND_OFF * abs(force[0])
-        return mu * force[0] - math.sqrt(force[1] * force[1] + force[2] * force[2]), 0.0
-    if kind == EVENT_JAM:
-        return active.yields[i], 0.0
-    u1, u2 = slip_of(system, active, i, x, work)
-    return u1 * active.heading[i, 0] + u2 * active.heading[i, 1], 0.0
-
-
-@kernel
-def open_contact(active, c):
-    """Return whether contact c is not active."""
+    system, active, work = motion.system, motion.active, motion.work
+    margin = work.margin
+    if not find_gaps(system, t, work.end, work):
+        return NOT_FINITE
+    if active.count[0] == 0:
+        return 0
+    _, _, code = acceleration(system, active, t, work.end, work, work.trial)
     for i in range(active.count[0]):
-        if active.contact[i] == c:
-            return False
-    return True
+        c, force = active.contact[i], active.force[i]
+        mu = system.friction[c]
+        margin[EVENT_GAP, c], margin[EVENT_RATE, c], margin[EVENT_SEPARATE, c] = (
+            math.inf,
+            math.inf,
+            force[0],
+        )
+        if active.mode[i] == MODE_STICK:
+            margin[EVENT_CONE, c] = mu * force[0] - math.sqrt(
+                force[1] * force[1] + force[2] * force[2]
+            )
+            work.nothing[EVENT_CONE, c] = CONE_ROUND_OFF * abs(force[0])
+        elif mu > 0.0:
+            u1, u2 = slip_of(system, active, i, work.end, work)
+            margin[EVENT_REVERSE, c] = u1 * active.heading[i, 0] + u2 * active.heading[i, 1]
+            margin[EVENT_JAM, c] = active.yields[i]
+    return code
 
 
 @kernel
-def violated(system, active, kind, i, x, work):
-    """Return whether an event function is below zero."""
-    work.search[0].tolerance = 0.0
-    f, _ = value(system, active, kind, i, x, work)
-    return f < -work.search[0].tolerance
-
-
-@kernel
-def first_violated(system, active, x, work):
-    """Return (kind, index) of an event function that is below zero at `x`, (NO_EVENT, -1) if none is."""
-    for c in range(system.size[TOUCHES]):
-        if open_contact(active, c) and violated(system, active, EVENT_GAP, c, x, work):
-            return EVENT_GAP, c
-    for i in range(active.count[0]):
-        if active.mode[i] == MODE_SLIP and system.friction[active.contact[i]] > 0.0:
-            if violated(system, active, EVENT_REVERSE, i, x, work):
-                return EVENT_REVERSE, i
-            if not active.yields[i] > 0.0:
-                return EVENT_JAM, i
-        if violated(system, active, EVENT_SEPARATE, i, x, work):
-            return EVENT_SEPARATE, i
-        if active.mode[i] == MODE_STICK and violated(system, active, EVENT_CONE, i, x, work):
-            return EVENT_CONE, i
+def first_violated(system, work):
+    """Return (kind, contact) of an event function that is below zero, (NO_EVENT, -1) if none is."""
+    for kind in (EVENT_GAP, EVENT_REVERSE, EVENT_JAM, EVENT_SEPARATE, EVENT_CONE):
+        for c in range(system.size[TOUCHES]):
+            if not work.margin[kind, c] >= -work.nothing[kind, c]:
+                return kind, c
     return NO_EVENT, -1
 
 
 @kernel
-def dips(system, active, h, x, work):
+def dips(system, h, work):
     """Return a contact whose gap may have been below zero within the step, -1 if none.
 
     The cubic with the gaps and rates at both ends decides: its least value is below a tenth of the depth of the
     dip.
     """
     for c in range(system.size[TOUCHES]):
-        g0, r0 = work.before[0, c], h * work.before[1, c]
-        g1, r1 = work.gap[c], h * rate_of(work.G[c, 0], x, system.size[N])
-        if not (r0 < 0.0 < r1 and open_contact(active, c)):
+        g0, r0 = work.before[EVENT_GAP, c], -h * work.before[EVENT_RATE, c]
+        g1, r1 = work.margin[EVENT_GAP, c], -h * work.margin[EVENT_RATE, c]
+        if not r0 < 0.0 < r1:
             continue
         a, b = 2.0 * (g0 - g1) + r0 + r1, 3.0 * (g1 - g0) - 2.0 * r0 - r1
         root = math.sqrt(max(b * b - 3.0 * a * r0, 0.0))  # of 3 a s^2 + 2 b s + r0
@@ -126,19 +117,20 @@ def dips(system, active, h, x, work):
 
 
 @kernel
-def find_root(motion, kind, i, t, x, high):
+def find_root(motion, kind, c, t, x, high):
     """Return (s, status): the time s in (0, high] where an event function crosses zero.
 
     It is negative at `high`, whose state is in `work.end`; this is then the state at s.
     """
-    work, search = motion.work, motion.work.search[0]
-    begin_search(search, kind, i, 0.0, high)
+    work, search, s = motion.work, motion.work.search[0], high
+    begin_search(search, kind, c, 0.0, high)
     if kind == EVENT_GAP:
-        search.f, search.rate = work.before[0, i], work.before[1, i]
-    s = high
+        search.f, search.rate = work.before[EVENT_GAP, c], -work.before[EVENT_RATE, c]
     for _ in range(TRIALS):
-        f, rate = value(motion.system, motion.active, kind, i, work.end, work)
-        found = update_bracket(search, s, f, rate)
+        if work.nothing[kind, c] > 0.0:
+            search.tolerance = work.nothing[kind, c]
+        rate = -work.margin[EVENT_RATE, c] if kind == EVENT_GAP else 0.0
+        found = update_bracket(search, s, work.margin[kind, c], rate)
         if found != 0:
             return s, 0 if found > 0 else NOT_FINITE
         s = next_trial(search)
@@ -150,52 +142,39 @@ def find_root(motion, kind, i, t, x, high):
 
 @kernel
 def state_at(motion, t, x, s):
-    """Write the state a time s after `x` as the end of the step, with all quantities that `value` needs."""
+    """Write the state a time s after `x` as the end of the step, with its event functions; return a status."""
     code = take(motion, t, x, s)
-    if code != 0:
-        return code
-    return look_at_end(motion, t + s)
-
-
-@kernel
-def look_at_end(motion, t):
-    """Evaluate all quantities that `value` needs at the end of the step; return a status."""
-    system, work = motion.system, motion.work
-    find_contacts(system, t, work.end, work)
-    for c in range(system.size[TOUCHES]):
-        if not math.isfinite(work.gap[c]):
-            return NOT_FINITE
-    if motion.active.count[0] == 0:
-        return 0
-    _, _, code = acceleration(system, motion.active, t, work.end, work, work.trial)
-    return code
+    return find_margins(motion, t + s) if code == 0 else code
 
 
 @kernel
 def locate(motion, t, x, h):
-    """Find the first event in the step h from `x`, whose end is known; return (s, kind, index, status).
+    """Find the first event in the step h from `x`, whose end is known; return (s, kind, contact, status).
 
     The end is then the state at s. Without an event, the kind is NO_EVENT and s = h.
     """
-    system, active, work, s = motion.system, motion.active, motion.work, h
-    code = look_at_end(motion, t + h)
+    system, work, s = motion.system, motion.work, h
+    find_gaps(system, t, x, work)
+    for kind in (EVENT_GAP, EVENT_RATE):
+        copy_row(work.margin[kind], work.before[kind], system.size[TOUCHES])
+    code = find_margins(motion, t + h)
     if code != 0:
         return h, NO_EVENT, -1, code
-    kind, i = first_violated(system, active, work.end, work)
+    kind, c = first_violated(system, work)
     if kind == NO_EVENT:
-        c = dips(system, active, h, work.end, work)
+        c = dips(system, h, work)
         if c < 0:
             return h, NO_EVENT, -1, 0
         s, code = find_root(motion, EVENT_RATE, c, t, x, h)
-        if code != 0 or not violated(system, active, EVENT_GAP, c, work.end, work):
+        if code != 0 or work.margin[EVENT_GAP, c] >= -work.nothing[EVENT_GAP, c]:
             return h, NO_EVENT, -1, max(code, state_at(motion, t, x, h))
-        kind, i = EVENT_GAP, c
+        kind = EVENT_GAP
     for _ in range(EARLIER):
-        s, code = find_root(motion, kind, i, t, x, s)
+        s, code = find_root(motion, kind, c, t, x, s)
         if code != 0:
             break
-        other, j = first_violated(system, active, work.end, work)
-        if other == NO_EVENT or (other == kind and j == i):
+        other, b = first_violated(system, work)
+        if other == NO_EVENT or (other == kind and b == c):
             break
-        kind, i = other, j
-    return s, kind, i, code
+        kind, c = other, b
+    return s, kind, c, code

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom._compiled.record_arrays import table
+from carom.model.actions import NO_EVENT
 from carom.model.method import Method
 from carom.model.workspace import SEARCH
 from carom.stepping.grid import Grid
@@ -84,7 +85,10 @@ class Work(NamedTuple):
     stages: np.ndarray  # (S, 2n)
     trial: np.ndarray  # (2n,)
     end: np.ndarray  # (2n,)
-    before: np.ndarray  # (2, C) gaps and their rates at the start of a step
+    # (NO_EVENT, C) by kind of event: its function, what is round-off of it, the function at the start of a step
+    margin: np.ndarray
+    nothing: np.ndarray
+    before: np.ndarray
     row_scale: np.ndarray  # (h,) greatest sum |A_j q_j|
     gap_scale: np.ndarray  # (C,) the same of the gaps, or the greatest gap
     point: np.ndarray  # (n,) of differences
@@ -148,18 +152,21 @@ def new_active_set(contacts: int) -> ActiveSet:
 def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> Work:
     """Return workspace for a system of these sizes and a method with this number of stages."""
     m, most = rows + 3 * contacts, max(n, rows, 2) * n
-    inertia, loads = np.zeros(n * n + n), np.zeros(n + 2)
-    row = np.zeros(holonomic + rows * n + rows)
-    touch = np.zeros(contacts * (4 + 3 * n))
     k, g = holonomic + rows * n, contacts * (1 + 3 * n)
-    return Work(
-        inertia, loads, row, touch,
-        inertia[: n * n].reshape(n, n), inertia[n * n :], loads[1:-1],
-        row[:holonomic], row[holonomic:k].reshape(rows, n), row[k:],
-        touch[:contacts], touch[contacts:g].reshape(contacts, 3, n), touch[g:].reshape(contacts, 3),
-        np.zeros((n, n)), np.zeros(n), np.zeros((m, n)), np.zeros((m, n)), np.zeros((m, n)),
-        np.zeros((m, m)), np.zeros(m), np.zeros(m), np.zeros((stages, 2 * n)), np.zeros(2 * n),
-        np.zeros(2 * n), np.zeros((2, contacts)),
-        np.zeros(holonomic), np.zeros(contacts), np.zeros(n), np.zeros(most), np.zeros(n * most),
-        table(SEARCH, 1), np.zeros(2),
-    )  # fmt: skip
+    inertia, loads = np.zeros(n * n + n), np.zeros(n + 2)
+    row, touch = np.zeros(k + rows), np.zeros(g + 3 * contacts)
+    results = {
+        "inertia": inertia, "M": inertia[: n * n].reshape(n, n), "c": inertia[n * n :],
+        "loads": loads, "load": loads[1:-1],
+        "rows": row, "phi": row[:holonomic], "A": row[holonomic:k].reshape(rows, n), "A_rate": row[k:],
+        "contacts": touch, "gap": touch[:contacts], "G": touch[contacts:g].reshape(contacts, 3, n),
+        "G_rate": touch[g:].reshape(contacts, 3),
+    }  # fmt: skip
+    shapes = {
+        "L": (n, n), "a": n, "R": (m, n), "D": (m, n), "Z": (m, n), "K": (m, m), "inverse": m, "rhs": m,
+        "stages": (stages, 2 * n), "trial": 2 * n, "end": 2 * n, "row_scale": holonomic,
+        "gap_scale": contacts, "margin": (NO_EVENT, contacts), "nothing": (NO_EVENT, contacts),
+        "before": (NO_EVENT, contacts), "point": n, "sample": most, "slope": n * most, "spent": 2,
+    }  # fmt: skip
+    own = {name: np.zeros(shape) for name, shape in shapes.items()}
+    return Work(**results, **own, search=table(SEARCH, 1))

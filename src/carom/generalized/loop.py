@@ -16,7 +16,7 @@ import math
 from carom._compiled.decorators import entry, kernel
 from carom.dynamics.adapt import NOTHING_LEFT, allowed_error, of_two, part_of, shrunk
 from carom.dynamics.adapt import plan as plan_ahead
-from carom.generalized.events import locate, note_start
+from carom.generalized.events import locate
 from carom.generalized.layout import CALL_LOADS, EVENT, N
 from carom.generalized.motion import copy_row, evaluate, find_metric, rate_of
 from carom.generalized.step import take
@@ -43,7 +43,6 @@ def time_loop(motion, x, plan, until, record):
         target = end_of(plan.grid, plan.duration, c.step + 1)
         left = target - c.now
         if left > 1e-13 * plan.step:
-            note_start(system, c.now, x, work)
             part, code = take_accurately(motion, x, left, plan, c)
             if code != 0:
                 return code
