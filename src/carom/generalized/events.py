@@ -14,7 +14,8 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.generalized.layout import TOUCHES, N
-from carom.generalized.motion import acceleration, copy_row, find_contacts, rate_of, slip_of
+from carom.generalized.linear import copy_row, dot
+from carom.generalized.motion import acceleration, find_contacts, slip_of
 from carom.generalized.step import take
 from carom.model.actions import (
     EVENT_CONE,
@@ -48,7 +49,7 @@ def find_gaps(system, t, x, work):
             work.gap[c],
             ROUND_OFF * work.gap_scale[c],
         )
-        margin[EVENT_RATE, c] = -rate_of(work.G[c, 0], x, system.size[N])
+        margin[EVENT_RATE, c] = -dot(work.G[c, 0], x[system.size[N] :], system.size[N])
     return finite
 
 

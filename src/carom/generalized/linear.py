@@ -1,8 +1,31 @@
-"""Elimination for a few rows with different reactions, without those that depend on earlier ones."""
+"""Rows of numbers, and elimination for a few of them with other reactions, without dependent ones."""
 
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
+
+
+@kernel
+def copy_row(row, out, n):
+    """Copy n numbers."""
+    for j in range(n):
+        out[j] = row[j]
+
+
+@kernel
+def add_row(f, row, out, n):
+    """Add f times n numbers to `out`."""
+    for j in range(n):
+        out[j] += f * row[j]
+
+
+@kernel
+def dot(a, b, n):
+    """Return the sum of the products of n numbers."""
+    total = 0.0
+    for j in range(n):
+        total += a[j] * b[j]
+    return total
 
 
 @kernel

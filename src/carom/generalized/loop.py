@@ -18,7 +18,8 @@ from carom.dynamics.adapt import NOTHING_LEFT, allowed_error, of_two, part_of, s
 from carom.dynamics.adapt import plan as plan_ahead
 from carom.generalized.events import locate
 from carom.generalized.layout import CALL_LOADS, EVENT, N
-from carom.generalized.motion import copy_row, evaluate, find_metric, rate_of
+from carom.generalized.linear import copy_row, dot
+from carom.generalized.motion import evaluate, find_metric
 from carom.generalized.step import take
 from carom.model.actions import NO_EVENT
 from carom.model.records import PAUSE
@@ -103,10 +104,7 @@ def step_error(motion, h, plan):
         T = 1.0 / pace if pace > 0.0 else 0.0
         allowed = allowed_error(plan.rtol, plan.atol, 1.0, h * speed)
         for e in range(E.shape[0]):
-            q, v = 0.0, 0.0
-            for s in range(E.shape[1]):
-                q += E[e, s] * stages[s, i]
-                v += E[e, s] * stages[s, n + i]
+            q, v = dot(E[e], stages[:, i], E.shape[1]), dot(E[e], stages[:, n + i], E.shape[1])
             miss = h * max(abs(q), T * abs(v)) / allowed
             if e == 0 and not miss <= first and first == first:
                 first = miss
@@ -123,7 +121,7 @@ def save(system, x, record, work):
     find_metric(system, clock.now, x, work)
     evaluate(system, CALL_LOADS, clock.now, x, work.loads, work)
     for i in range(n):
-        total += x[n + i] * rate_of(work.M[i], x, n)
+        total += x[n + i] * dot(work.M[i], x[n:], n)
     row.t, row.kinetic, row.potential = clock.now, 0.5 * total, work.loads[0]
     row.loads, row.impacts = clock.loads, clock.impacts
     row.friction, row.bounces, row.given = clock.friction, clock.bounces, clock.given

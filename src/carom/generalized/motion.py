@@ -24,7 +24,7 @@ from carom.generalized.layout import (
     TOUCHES,
     N,
 )
-from carom.generalized.linear import factor, substitute
+from carom.generalized.linear import add_row, copy_row, dot, factor, substitute
 from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.status import NOT_FINITE, SINGULAR_METRIC
 
@@ -88,19 +88,10 @@ def terms(row, x, n):
 
 
 @kernel
-def rate_of(row, x, n):
-    """Return the speed along a row: its product with the velocities."""
-    rate = 0.0
-    for j in range(n):
-        rate += row[j] * x[n + j]
-    return rate
-
-
-@kernel
 def slip_of(system, active, i, x, work):
     """Return the slip (u_1, u_2) of persistent contact i; rows must be those of `x`."""
     n, rows = system.size[N], work.G[active.contact[i]]
-    return rate_of(rows[1], x, n), rate_of(rows[2], x, n)
+    return dot(rows[1], x[n:], n), dot(rows[2], x[n:], n)
 
 
 @kernel
@@ -111,13 +102,6 @@ def direction(active, i, u1, u2):
     if size > 0.0 and u1 * h1 + u2 * h2 > 0.0:
         return u1 / size, u2 / size
     return h1, h2
-
-
-@kernel
-def copy_row(row, out, n):
-    """Copy n numbers."""
-    for j in range(n):
-        out[j] = row[j]
 
 
 @kernel
@@ -147,8 +131,8 @@ def gather(system, active, what, x, work):
         if active.mode[i] == MODE_SLIP and mu > 0.0:
             u1, u2 = slip_of(system, active, i, x, work)
             e1, e2 = direction(active, i, u1, u2)
-            for j in range(n):
-                work.D[active.row[i], j] -= mu * (e1 * work.G[c, 1, j] + e2 * work.G[c, 2, j])
+            add_row(-mu * e1, work.G[c, 1], work.D[active.row[i]], n)
+            add_row(-mu * e2, work.G[c, 2], work.D[active.row[i]], n)
     return m
 
 
@@ -164,17 +148,12 @@ def react(system, m, out, work):
         solve_metric(n, work.L, work.Z[r])
     for r in range(m):
         for s in range(m):
-            total = 0.0
-            for j in range(n):
-                total += work.R[r, j] * work.Z[s, j]
-            work.K[r, s] = total
-        for j in range(n):
-            work.rhs[r] -= work.R[r, j] * out[j]
+            work.K[r, s] = dot(work.R[r], work.Z[s], n)
+        work.rhs[r] -= dot(work.R[r], out, n)
     factor(work.K, work.inverse, m, system.drop)
     substitute(work.K, work.inverse, work.rhs, m)
     for r in range(m):
-        for j in range(n):
-            out[j] += work.Z[r, j] * work.rhs[r]
+        add_row(work.rhs[r], work.Z[r], out, n)
 
 
 @kernel
@@ -188,15 +167,15 @@ def acceleration(system, active, t, x, work, rate):
     if code != 0:
         return 0.0, 0.0, code
     evaluate(system, CALL_LOADS, t, x, work.loads, work)
-    for j in range(n):
-        a[j] = work.loads[1 + j] - work.c[j]
+    copy_row(work.load, a, n)
+    add_row(-1.0, work.c, a, n)
     solve_metric(n, work.L, a)
     if system.size[ALL_ROWS] > 0 or active.count[0] > 0:
         find_rows(system, active, t, x, work)
         react(system, gather(system, active, ACCELERATION, x, work), a, work)
         friction = note_forces(system, active, x, work)
-    for j in range(n):
-        rate[j], rate[n + j] = x[n + j], a[j]
+    copy_row(x[n:], rate, n)
+    copy_row(a, rate[n:], n)
     return work.loads[n + 1], friction, 0
 
 

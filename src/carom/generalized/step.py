@@ -6,11 +6,11 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 from carom.generalized.layout import ALL_ROWS, HOLONOMIC, N
+from carom.generalized.linear import add_row, copy_row
 from carom.generalized.motion import (
     POSITION,
     RATE,
     acceleration,
-    copy_row,
     direction,
     find_metric,
     find_rows,
@@ -69,14 +69,12 @@ def move_freely(motion, x, parts):
 def combine(weight, count, h, x, stages, out):
     """Write x + h sum weight[r] stages[r], r < count; return h sum weight."""
     ahead = 0.0
-    for j in range(x.size):
-        out[j] = x[j]
+    copy_row(x, out, x.size)
     for r in range(count):
         a = h * weight[r]
         ahead += a
         if a != 0.0:
-            for j in range(x.size):
-                out[j] += a * stages[r, j]
+            add_row(a, stages[r], out, x.size)
     return ahead
 
 
@@ -128,14 +126,14 @@ def return_to_surfaces(system, active, t, x, work):
         for j in range(n):
             xi[j] = 0.0
         react(system, m, xi, work)
-        for j in range(n):
-            y[j], y[n + j] = x[j], xi[j]
+        copy_row(x, y, n)
+        copy_row(xi, y[n:], n)
         code = find_metric(system, t, y, work)
         if code != 0:
             return code
         solve_metric(n, work.L, work.c)
-        for j in range(n):
-            x[j] += xi[j] - 0.5 * work.c[j]
+        add_row(1.0, xi, x, n)
+        add_row(-0.5, work.c, x, n)
     return 0 if error <= 1e-9 else CONSTRAINTS_LOST
 
 
