@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from carom import checks
 from carom._compiled.composed import joined, once
 
 
@@ -28,19 +29,56 @@ def of_state(function: Callable) -> Any:
     return joined(force, function)
 
 
+def answer(name: str, function: Callable, shape: tuple, *arguments) -> np.ndarray:
+    """Return the result of a function at the start; raise an error for a shape other than `shape`."""
+    given = [np.copy(a) if np.ndim(a) else a for a in arguments]
+    return checks.finite_array(name, checks.call(name, function, *given), shape)
+
+
 class FunctionalModel:
-    """Functions of a system of n coordinates, with `holonomic` constraints and `rows` further ones."""
+    """Functions of a system with their shapes, checked at the start (q, v)."""
 
     kind = "function"
 
-    def __init__(self, n: int, given: dict[str, tuple[Callable | None, tuple[int, ...]]]):
-        self.n, self.given, self.contacts = n, dict(given), 0
-        self.holonomic, more = (given[name][1][0] for name in ("constraint", "rows"))
-        self.rows = self.holonomic + more
+    def __init__(self, q: np.ndarray, v: np.ndarray, given: dict[str, Callable | None]):
+        self.n, self.start, self.contacts = len(q), q, 0
+        for name, of in (("metric_derivative", "metric"), ("potential_gradient", "potential"),
+                         ("constraint_jacobian", "constraint")):  # fmt: skip
+            if given[name] is not None and given[of] is None:
+                raise ValueError(
+                    f"{name} must be left out without {of}, got {checks.shown(given[name])}"
+                )
+        n, phi, rows = self.n, given["constraint"], given["rows"]
+        h = 0 if phi is None else answer("constraint(q)", phi, (None,), q).size
+        k = 0 if rows is None else len(answer("rows(q)", rows, (None, n), q))
+        self.holonomic, self.rows = h, h + k
+        shapes = {
+            "metric": (n, n), "potential": (), "constraint": (h,), "rows": (k, n), "force": (n,),
+            "metric_derivative": (n, n, n), "potential_gradient": (n,), "constraint_jacobian": (h, n),
+        }  # fmt: skip
+        for name, function in given.items():
+            arguments = ("t, q, v", 0.0, q, v) if name == "force" else ("q", q)
+            if function is not None:
+                answer(f"{name}({arguments[0]})", function, shapes[name], *arguments[1:])
+        self.given = {name: (given[name], shape) for name, shape in shapes.items()}
 
-    def add_contact(self, gap, gradient, tangent, shape: tuple[int, ...]) -> None:
-        """Store the functions of a contact; `shape` is that of its tangents."""
-        own = {"gap": (gap, ()), "gap_gradient": (gradient, (self.n,)), "tangent": (tangent, shape)}
+    def add_contact(self, gap, gradient, tangent) -> None:
+        """Store the functions of a contact, if their results have the right shapes."""
+        n, q, shape = self.n, self.start, (0, self.n)
+        for what, one in (("gap", gap), ("gap_gradient", gradient), ("tangent", tangent)):
+            checks.function(what, one, optional=what != "gap")
+        answer("gap(q)", gap, (), q)
+        if gradient is not None:
+            answer("gap_gradient(q)", gradient, (n,), q)
+        if tangent is not None:
+            rows = checks.call("tangent(q)", tangent, q.copy())
+            rows = checks.real_array("tangent(q)", rows, f"({n},) or (2, {n})")
+            if rows.shape not in ((n,), (1, n), (2, n)):
+                raise ValueError(
+                    f"tangent(q) must have shape ({n},) or (2, {n}), got shape {rows.shape}"
+                )
+            shape = checks.finite_array("tangent(q)", rows, rows.shape).shape
+        own = {"gap": (gap, ()), "gap_gradient": (gradient, (n,)), "tangent": (tangent, shape)}
         self.given |= {f"{name} of contact {self.contacts}": one for name, one in own.items()}
         self.contacts += 1
 

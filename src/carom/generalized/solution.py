@@ -140,20 +140,10 @@ class GeneralizedSolution(Drawn):
         )  # fmt: skip
 
     @property
-    def success(self) -> bool:
-        """Whether the status is ``SUCCESS``: the run reached its end with the required accuracy."""
-        return self.status is Status.SUCCESS
-
-    @property
     def message(self) -> str:
         """How the run ended, in sentences; if it failed, with the time that it reached."""
         run = self._run
         return message(self.status, run.reason, run.how.finer, self.t[-1], self.warnings)
-
-    @property
-    def total_energy(self) -> np.ndarray:
-        """Kinetic plus potential energy (T,) [J]."""
-        return self.kinetic_energy + self.potential_energy
 
     @cached_property
     def constraint_errors(self) -> tuple[np.ndarray, np.ndarray]:

@@ -1,11 +1,9 @@
-"""`CoordinateContact`, and checks of user-defined functions."""
+"""`CoordinateContact`, and its checks."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
 
 from carom import checks
 from carom.fields import Number, Word, number, word
@@ -46,26 +44,3 @@ def checked_contact(
     if any(name == other.name for other in others):
         raise ValueError(f"name must be unique, got {checks.shown(name)} twice")
     return contact
-
-
-def checked_functions(q: np.ndarray, gap, gradient, tangent) -> tuple[int, ...]:
-    """Check that the functions of a contact return the right shapes; return that of the tangents."""
-    n = len(q)
-    for what, one in (("gap", gap), ("gap_gradient", gradient), ("tangent", tangent)):
-        checks.function(what, one, optional=what != "gap")
-    answer("gap(q)", gap, (), q)
-    if gradient is not None:
-        answer("gap_gradient(q)", gradient, (n,), q)
-    if tangent is None:
-        return (0, n)
-    rows = checks.call("tangent(q)", tangent, q.copy())
-    rows = checks.real_array("tangent(q)", rows, f"({n},) or (2, {n})")
-    if rows.shape not in ((n,), (1, n), (2, n)):
-        raise ValueError(f"tangent(q) must have shape ({n},) or (2, {n}), got shape {rows.shape}")
-    return checks.finite_array("tangent(q)", rows, rows.shape).shape
-
-
-def answer(name: str, function: Callable, shape: tuple, *arguments) -> np.ndarray:
-    """Return the result of a function at the start; raise an error for a shape other than `shape`."""
-    given = [np.copy(a) if np.ndim(a) else a for a in arguments]
-    return checks.finite_array(name, checks.call(name, function, *given), shape)

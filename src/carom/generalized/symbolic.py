@@ -172,8 +172,10 @@ class SymbolicModel:
         points = 0.1 + 0.8 * np.random.default_rng(0).random((4, len(symbols)))
         return all(abs(f(*point)[0]) <= 1e-9 for point in points)
 
-    def add_contact(self, gap, tangent) -> None:
-        """Store the expressions of a contact."""
+    def add_contact(self, gap, gradient, tangent) -> None:
+        """Store the expressions of a contact; its gradient is derived, not given."""
+        if callable(gap) and not hasattr(gap, "free_symbols"):
+            raise ValueError("gap must be an expression in a system from SymPy, got a function")
         given = () if tangent is None else tangent
         given = tuple(given) if isinstance(given, Sequence) else (given,)
         if len(given) > 2:

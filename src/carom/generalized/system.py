@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom import arguments, checks
-from carom.generalized.stated import CoordinateContact, answer, checked_contact, checked_functions
+from carom.generalized.stated import CoordinateContact, checked_contact
 
 if TYPE_CHECKING:
     from carom.generalized.evaluate import Evaluation
@@ -89,28 +89,10 @@ class GeneralizedSystem:
             raise ValueError(
                 f"position must have at least one coordinate, got {checks.shown(position)}"
             )
-        for name, of in (("metric_derivative", "metric"), ("potential_gradient", "potential"),
-                         ("constraint_jacobian", "constraint")):  # fmt: skip
-            if given[name] is not None and given[of] is None:
-                raise ValueError(
-                    f"{name} must be left out without {of}, got {checks.shown(given[name])}"
-                )
         v = _rates(velocity, n)
-        h = 0 if constraint is None else answer("constraint(q)", constraint, (None,), q).size
-        k = 0 if rows is None else len(answer("rows(q)", rows, (None, n), q))
-        shapes = {
-            "metric": (n, n), "potential": (), "constraint": (h,), "rows": (k, n), "force": (n,),
-            "metric_derivative": (n, n, n), "potential_gradient": (n,), "constraint_jacobian": (h, n),
-        }  # fmt: skip
-        for name, shape in shapes.items():
-            if given[name] is not None and name != "force":
-                answer(f"{name}(q)", given[name], shape, q)
-        if force is not None:
-            answer("force(t, q, v)", force, (n,), 0.0, q, v)
         from carom.generalized.functional import FunctionalModel
 
-        model = FunctionalModel(n, {name: (given[name], shapes[name]) for name in shapes})
-        self._start(model, q, v)
+        self._start(FunctionalModel(q, v, given), q, v)
 
     @classmethod
     @arguments.known
@@ -189,8 +171,7 @@ class GeneralizedSystem:
 
     def set_state(self, position, velocity) -> None:
         """Set the initial coordinates and velocities, each (n,)."""
-        q = checks.finite_array("position", position, (self.coordinates,))
-        self.position, self.velocity = q, _rates(velocity, self.coordinates)
+        self.position, self.velocity = self._at(position), _rates(velocity, self.coordinates)
 
     def _as_it_is(self) -> GeneralizedSystem:
         """Return a copy that does not change when this system gets a contact or another state."""
@@ -247,13 +228,7 @@ class GeneralizedSystem:
             If an argument is invalid, or `friction` is given without `tangent`.
         """
         contact = checked_contact(self._contacts, tangent, restitution, friction, impact_law, name)
-        if hasattr(self._model, "sp"):
-            if callable(gap) and not hasattr(gap, "free_symbols"):
-                raise ValueError("gap must be an expression in a system from SymPy, got a function")
-            self._model.add_contact(gap, tangent)
-        else:
-            shape = checked_functions(self.position, gap, gap_gradient, tangent)
-            self._model.add_contact(gap, gap_gradient, tangent, shape)
+        self._model.add_contact(gap, gap_gradient, tangent)
         self._made = None
         self._contacts.append(contact)
         return contact
