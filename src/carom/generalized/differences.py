@@ -19,13 +19,13 @@ from carom.generalized.layout import (
     CALL_INERTIA,
     CALL_LOADS,
     CALL_ROWS,
-    CONSTRAINT,
-    CONTACT,
-    FORCE,
+    OF_CONSTRAINT,
+    OF_CONTACT,
+    OF_FORCE,
     HOLONOMIC,
-    METRIC,
-    POTENTIAL,
-    ROWS,
+    OF_METRIC,
+    OF_POTENTIAL,
+    OF_ROWS,
     TOUCHES,
     N,
 )
@@ -52,12 +52,12 @@ def evaluate_parts(system, which, t, x, work):
         evaluate_loads(system, t, x, work)
     elif which == CALL_ROWS:
         out, rates = work.rows[h:], work.rows[h + k * n :]
-        evaluate_rows(system.part[CONSTRAINT], t, x, work.rows, out, rates, work)
-        evaluate_rows(system.part[ROWS], t, x, work.rows, out[h * n :], rates[h:], work)
+        evaluate_rows(system.part[OF_CONSTRAINT], t, x, work.rows, out, rates, work)
+        evaluate_rows(system.part[OF_ROWS], t, x, work.rows, out[h * n :], rates[h:], work)
     else:
         for c in range(C):
             values, out = work.contacts[c:], work.contacts[C + 3 * n * c :]
-            rates, part = work.contacts[C + 3 * n * C + 3 * c :], CONTACT + 2 * c
+            rates, part = work.contacts[C + 3 * n * C + 3 * c :], OF_CONTACT + 2 * c
             evaluate_rows(system.part[part], t, x, values, out, rates, work)
             evaluate_rows(system.part[part + 1], t, x, values, out[n:], rates[1:], work)
 
@@ -65,7 +65,7 @@ def evaluate_parts(system, which, t, x, work):
 @kernel
 def evaluate_inertia(system, t, x, work):
     """Write M and Gamma_kij v_i v_j."""
-    n, out, part, dM = system.size[N], work.inertia, system.part[METRIC], work.slope
+    n, out, part, dM = system.size[N], work.inertia, system.part[OF_METRIC], work.slope
     call_function(part[0], t, x, out)
     find_slope(part, t, x, n, work)
     for i in range(n):
@@ -82,8 +82,8 @@ def evaluate_loads(system, t, x, work):
     n, out, potential, force = (
         system.size[N],
         work.loads,
-        system.part[POTENTIAL],
-        system.part[FORCE],
+        system.part[OF_POTENTIAL],
+        system.part[OF_FORCE],
     )
     for j in range(n + 2):
         out[j] = 0.0

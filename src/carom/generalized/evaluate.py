@@ -9,7 +9,7 @@ import numpy as np
 from carom._compiled.user_functions import Functions
 from carom.dynamics.methods import make_method
 from carom.generalized.layout import (
-    METRIC,
+    OF_METRIC,
     ActiveSet,
     Coordinates,
     Motion,
@@ -82,7 +82,7 @@ class Evaluation:
         x, none = np.concatenate([q, v]), new_active_set(0)
         address, size = self.system.address * [1, 0, 0, 0], self.system.size * [1, 0, 0, 0]
         part, work = self.system.part.copy(), new_work(self.n, 0, 0, 0, STAGES)
-        part[METRIC + 1 :] = 0
+        part[OF_METRIC + 1 :] = 0
         free = Coordinates(address, part, size, np.zeros(0), 0.0)
         code = move_freely(Motion(free, make_method("rk4", Options()), none, work), x, parts)
         self.failed()

@@ -24,7 +24,7 @@ CALL_CONTACTS = 3  #: gap (C,), G (C, 3, n), (dG/dt) v (C, 3)
 
 # The user's functions that make them, by their place in `Coordinates.part`; at the end gap and tangents of each
 # contact.
-METRIC, POTENTIAL, FORCE, CONSTRAINT, ROWS, CONTACT = range(6)
+OF_METRIC, OF_POTENTIAL, OF_FORCE, OF_CONSTRAINT, OF_ROWS, OF_CONTACT = range(6)
 
 # The four sizes, by their place in `Coordinates.size`.
 N, HOLONOMIC, ALL_ROWS, TOUCHES = range(4)

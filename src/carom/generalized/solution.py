@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from carom import checks
-from carom.generalized.layout import SERIES
 from carom.geometry.spline import cubic
 from carom.results.drawn import Drawn
 from carom.results.endings import message
@@ -114,6 +113,7 @@ class GeneralizedSolution(Drawn):
     def _from_run(cls, run: GeneralizedRun, status: Status) -> GeneralizedSolution:
         """Make the solution from the records of a run."""
         from carom._compiled.user_functions import Fault, returned
+        from carom.generalized.layout import SERIES
         from carom.results.accuracy import inaccurate, sentences, watched
 
         saved, n = int(run.clock[0].saved), run.n
