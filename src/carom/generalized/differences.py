@@ -29,6 +29,7 @@ from carom.generalized.layout import (
     TOUCHES,
     N,
 )
+from carom.generalized.linear import copy_row
 
 STEP = float(np.finfo(float).eps ** 0.2)
 STEP_TWICE = float(np.finfo(float).eps ** (1.0 / 6.0))
@@ -44,8 +45,12 @@ def has_parts(system):
 
 @unit(where=has_parts)
 def evaluate_parts(system, which, t, x, work):
-    """Write the result of one of the four functions of a system, made of the user's functions."""
+    """Write the result of one of the four functions of a system, made of the user's functions.
+
+    Those of the coordinates get a copy of them, `work.point`.
+    """
     n, h, k, C = system.size[N], system.size[HOLONOMIC], system.size[ALL_ROWS], system.size[TOUCHES]
+    copy_row(x, work.point, n)
     if which == CALL_INERTIA:
         evaluate_inertia(system, t, x, work)
     elif which == CALL_LOADS:
@@ -66,7 +71,7 @@ def evaluate_parts(system, which, t, x, work):
 def evaluate_inertia(system, t, x, work):
     """Write M and Gamma_kij v_i v_j."""
     n, out, part, dM = system.size[N], work.inertia, system.part[OF_METRIC], work.slope
-    call_function(part[0], t, x, out)
+    call_function(part[0], t, work.point, out)
     find_slope(part, t, x, n, work)
     for i in range(n):
         out[n * n + i] = 0.0
@@ -92,7 +97,7 @@ def evaluate_loads(system, t, x, work):
     for j in range(n):
         out[n + 1] += out[1 + j] * x[n + j]
     if potential[0] != 0:
-        call_function(potential[0], t, x, out)
+        call_function(potential[0], t, work.point, out)
         find_slope(potential, t, x, n, work)
         for j in range(n):
             out[1 + j] -= work.slope[j]
@@ -103,9 +108,9 @@ def evaluate_rows(part, t, x, values, out, rates, work):
     """Write values, rows A and (dA/dt) v of a function and its derivative; of rows alone, the last two."""
     n, m = x.size // 2, part[2]
     if part[0] != 0:
-        call_function(part[0], t, x, values)
+        call_function(part[0], t, work.point, values)
     if part[1] != 0:
-        call_function(part[1], t, x, out)
+        call_function(part[1], t, work.point, out)
         differ_along(part[1], m, n, t, x, rates, work)
     elif part[0] != 0:
         find_slope(part, t, x, n, work)
@@ -120,13 +125,11 @@ def find_slope(part, t, x, n, work):
     """Write the derivatives (n, m) of a function of the coordinates into `work.slope`."""
     q, y, out, m = work.point, work.sample, work.slope, part[2]
     if part[1] != 0:
-        call_function(part[1], t, x, out)
+        call_function(part[1], t, q, out)
         return
     for k in range(n):
-        q[k] = x[k]
         for i in range(m):
             out[k * m + i] = 0.0
-    for k in range(n):
         h = STEP * max(1.0, abs(x[k]))
         for s in (-2, -1, 1, 2):
             q[k] = x[k] + s * h
@@ -158,3 +161,4 @@ def differ_along(address, m, n, t, x, out, work):
                 out[i] += _FIRST[s + 2] / h * y[i * n + j] * x[size + j]
             if n == 0:
                 out[i] += _SECOND[s + 2] / (h * h) * y[i]
+    copy_row(x, q, size)

@@ -9,13 +9,15 @@ from typing import Any
 import numpy as np
 
 from carom import checks
-from carom._compiled.composed import joined, once
+from carom._compiled.composed import is_compiled, joined, once
 
 
 @once
 def of_position(function: Callable) -> Any:
-    """Return ``f(t, q)`` of a function of the coordinates, which gets an array of its own."""
-    return joined(lambda t, q: function(q.copy()), function)
+    """Return ``f(t, q)`` of a function of the coordinates; a plain one may keep its argument."""
+    if is_compiled(function):
+        return joined(lambda t, q: function(q), function)
+    return lambda t, q: function(q.copy())
 
 
 @once
