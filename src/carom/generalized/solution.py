@@ -10,6 +10,7 @@ import numpy as np
 
 from carom import checks
 from carom.geometry.spline import cubic
+from carom.results.dense_output import NEAR
 from carom.results.drawn import Drawn
 from carom.results.endings import message
 from carom.results.event_tables import EventTable
@@ -182,9 +183,9 @@ class GeneralizedSolution(Drawn):
         """
         checks.choice("side", side, ("right", "left"))
         times = checks.times("t", t, self.t[0], self.t[-1])
-        q, v = self._cubic(times, side)
-        if len(self.t) > 1 and len(self.q[0]) == len(self.system.position):
-            self._replay.improve(times, q, v)
+        q, v, inside = self._cubic(times, side)
+        for k in self._replay.better(times, inside):
+            q[k], v[k] = np.split(self._replay.state, 2)
         return (q[0], v[0]) if np.ndim(t) == 0 else (q, v)
 
     @cached_property
@@ -193,8 +194,8 @@ class GeneralizedSolution(Drawn):
 
         return Replay(self)
 
-    def _cubic(self, times: np.ndarray, side: str) -> tuple[np.ndarray, np.ndarray]:
-        """Return (q, v) at times (K,) by a cubic between saved states and events."""
+    def _cubic(self, times: np.ndarray, side: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return (q, v) at times (K,) by a cubic between saved states and events, and which are not near."""
         at, before, after = self._nodes
         i = np.searchsorted(at, times, side="left" if side == "left" else "right") - 1
         i = np.clip(i, 0, max(len(at) - 2, 0))
@@ -205,7 +206,8 @@ class GeneralizedSolution(Drawn):
         last = times == at[-1]
         if side == "right" and np.any(last):
             v[last] = after[-1, n:]
-        return q, v
+        margin = NEAR * (at[k] - at[i])
+        return q, v, (times - at[i] > margin) & (at[k] - times > margin)
 
     @cached_property
     def _nodes(self):
