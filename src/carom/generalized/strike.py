@@ -113,24 +113,15 @@ class Strike:
 
     def several(self, W, u, mu, e, closed):
         """Return the same of the multiple impact of several contacts (mathematics page, part 2)."""
-        from carom.impact.multiple.layout import (
-            CornerContacts,
-            multiple_settings,
-            new_multiple_result,
-            new_multiple_workspace,
-        )
-        from carom.impact.multiple.resolve import resolve_multiple
+        from carom.impact.multiple.api import solve
+        from carom.impact.multiple.layout import multiple_settings, new_multiple_workspace
 
         here, k = self.contacts, len(closed)
         if self.room is None:
             self.room = new_multiple_workspace(len(here.law))
-        out, ones = new_multiple_result(k), np.ones(k)
-        pair = np.arange(k) if here.run.options.multiple == "sequential" else np.zeros(k, np.int64)
-        contacts = CornerContacts(k, 0, W, u.reshape(-1), mu, e, here.law[closed], ones, pair)
-        if (
-            resolve_multiple(contacts, multiple_settings(here.run.options, 1.0), self.room, out)
-            != o.OK
-        ):
+        settings = multiple_settings(here.run.options, 1.0)
+        code, out = solve(W, u, mu, e, here.law[closed], np.ones(k), settings, self.room)
+        if code != o.OK:
             return None
         works = out.compression, out.restitution, out.friction
         return out.velocity.reshape(k, 3), out.impulse.reshape(k, 3), works, out.wedged
