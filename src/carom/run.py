@@ -14,7 +14,7 @@ from carom.dynamics.adapt import FIRST, complete, time_of_bounces
 from carom.dynamics.methods import EXPLICIT, METHODS, make_method
 from carom.dynamics.project import project_start
 from carom.dynamics.reactions import start_errors, start_speeds
-from carom.impact.multiple.layout import MULTIPLE, MultipleSettings
+from carom.impact.multiple.layout import multiple_settings
 from carom.impact.workspace import new_group, new_multiple, no_multiple
 from carom.model import records as r
 from carom.model.answers import check_answers
@@ -34,12 +34,11 @@ from carom.stepping import record, time_loop
 from carom.stepping.crowd.layout import SPOTS, new_crowd, no_crowd, roomier_crowd
 from carom.stepping.energy_balance import SHARE, new_watch
 from carom.stepping.grid import (
-    STATES,
     Grid,
     cut_grid,
     longer_grid,
     longest_step,
-    make_grid,
+    planned_grid,
     step_at,
 )
 from carom.stepping.islands.layout import (
@@ -54,14 +53,6 @@ from carom.stepping.settings import Settings
 
 ROOM_AT_FIRST = 8  # points of an impact for which there is room at first
 LOCATIONS = {"locate": LOCATE, "project": PROJECT, "work": WORK}
-
-
-def multiple_settings(options: Options) -> MultipleSettings:
-    """Return the settings of impacts of several points."""
-    return MultipleSettings(
-        multiple=MULTIPLE[options.multiple], rtol=options.corner_tolerance,
-        exponent=options.corner_exponent or 0.0,
-    )  # fmt: skip
 
 
 class Run:
@@ -129,17 +120,11 @@ class Run:
 
     def first_grid(self, duration: float) -> Grid:
         """Return the steps of a run with this duration, without the parts that were run before."""
-        how, later = self.how, self.compiled.later is not None
-        save_at, save_every = how.save_at, how.save_every
-        if how.step is not None:
-            return make_grid(duration, how.step, save_every, save_at)
-        longest = longest_step(
-            self.compiled.system, self.compiled.start, duration, self.options.max_step, later
+        system, later = self.compiled.system, self.compiled.later is not None
+        longest = self.how.step or longest_step(
+            system, self.compiled.start, duration, self.options.max_step, later
         )
-        if save_at is not None:
-            return make_grid(duration, longest, 1, save_at)
-        grid = make_grid(duration, longest, 1, duration / STATES)
-        return grid._replace(save_every=grid.save_every * save_every)
+        return planned_grid(self.how, duration, longest)
 
     def make_arrays(self) -> None:
         """Make all arrays that the run changes, except the records."""

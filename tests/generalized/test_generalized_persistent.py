@@ -207,3 +207,18 @@ def test_two_held_contacts_keep_the_order(friction):
         assert [str(kind) for kind in exact.events.kind] == ["held", "held", "sticks", "sticks"]
         assert runs[-1].events.time[2] == pytest.approx(exact.events.time[2], abs=1e-10)
         np.testing.assert_allclose(runs[-1].v[-1], 0.0, atol=1e-14)
+
+
+@pytest.mark.parametrize("how", [dict(step=5e-3), dict(rtol=1e-8)])
+def test_table_stands_in_the_origin(how):
+    # All coordinates, gaps and energies are zero: nothing but the loads gives them a scale.
+    q, v = symbols("z a b")
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.diag(1, sp.Rational(1, 3), sp.Rational(1, 3)), potential=G * q[0],
+        position=[0, 0, 0], velocity=[0, 0, 0],
+    )  # fmt: skip
+    for x, y in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
+        system.add_contact(q[0] + x * q[1] + y * q[2], restitution=0.3)
+    run = carom.simulate(system, 1.0, **how)
+    np.testing.assert_allclose(run.q, 0.0, atol=1e-15)
+    assert len(run.impacts) == 0

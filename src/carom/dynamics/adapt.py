@@ -105,12 +105,18 @@ def step_error(system, rtol, atol, work):
     for b in range(work.body.shape[0]):
         miss = work.body[b].miss
         allowed = allowed_error(rtol, atol, system.bodies[b].extent, miss[2])
-        error, second = miss[0] / allowed, miss[1] / allowed
-        if second > 0.0:
-            error = error * error / math.sqrt(error * error + 0.01 * second * second)
+        error = of_two(miss[0] / allowed, miss[1] / allowed)
         if not error <= greatest and greatest == greatest:  # NaN stays
             greatest = error
     return greatest
+
+
+@kernel
+def of_two(first, second):
+    """Return the error from the two estimates of order 8; the second is 0 for methods with one estimate."""
+    if second > 0.0:
+        return first * first / math.sqrt(first * first + 0.01 * second * second)
+    return first
 
 
 @kernel
@@ -129,15 +135,35 @@ def part_of(left, ahead):
 
 
 @kernel
+def shrunk(error, order):
+    """Return the factor for the length of a step whose error was too large."""
+    return max(LEAST, SAFETY * error ** (-1.0 / order)) if math.isfinite(error) else LEAST
+
+
+@kernel
 def shorter(dt, error, clock, work):
     """Return the length to try after a step whose error was too large."""
-    factor = LEAST
-    if math.isfinite(error):
-        factor = max(LEAST, SAFETY * error ** (-1.0 / work.result[0].order))
+    factor = shrunk(error, work.result[0].order)
     clock.rejected += 1
     for b in range(work.body.shape[0]):
         work.body[b].ahead = factor * dt
     return factor * dt
+
+
+@kernel
+def plan(memory, dt, error, again, order, longest):
+    """Store in `memory` the length `ahead` of the next step; the others are as in `plan_next`."""
+    factor = MOST
+    if error > 0.0:
+        factor = min(MOST, SAFETY * error ** (-1.0 / order))
+    fits = factor * dt
+    trend = fits / memory.fits if memory.fits > fits else 1.0
+    memory.fits = fits
+    if factor == MOST:
+        ahead = max(memory.ahead, fits)
+    else:
+        ahead = min(dt if again else fits, max(LEAST, trend) * fits)
+    memory.ahead = min(ahead, longest)
 
 
 @kernel
@@ -148,18 +174,8 @@ def plan_next(dt, error, again, controls, work):
     tolerance has shrunk since the last step, as it does before slip stops, it is expected to shrink by as much
     again (Gustafsson 1994).
     """
-    factor = MOST
-    if error > 0.0:
-        factor = min(MOST, SAFETY * error ** (-1.0 / work.result[0].order))
     for b in range(work.body.shape[0]):
-        memory, fits = work.body[b], factor * dt
-        trend = fits / memory.fits if memory.fits > fits else 1.0
-        memory.fits = fits
-        if factor == MOST:
-            ahead = max(memory.ahead, fits)
-        else:
-            ahead = min(dt if again else fits, max(LEAST, trend) * fits)
-        memory.ahead = min(ahead, controls.interval)
+        plan(work.body[b], dt, error, again, work.result[0].order, controls.interval)
 
 
 def complete(rtol: float, atol: float | None, system) -> tuple[float, float]:

@@ -2,39 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom._compiled.user_functions import Functions
-from carom.generalized.autoparallel import return_map, run_along
-from carom.generalized.layout import ActiveSet, Coordinates, new_active_set, new_work
+from carom.dynamics.methods import make_method
+from carom.generalized.layout import (
+    OF_METRIC,
+    ActiveSet,
+    Coordinates,
+    Motion,
+    new_active_set,
+    new_work,
+)
 from carom.generalized.motion import look
-from carom.generalized.step import project_rates
+from carom.generalized.step import move_freely
+from carom.options import Options
 from carom.status import Status
 
 if TYPE_CHECKING:
     from carom.generalized.system import GeneralizedSystem
 
 STAGES = 12
-
-
-@dataclass(frozen=True)
-class Look:
-    """The quantities of a system at one state that an event needs."""
-
-    M: np.ndarray  # (n, n)
-    c: np.ndarray  # (n,) Gamma(v, v), first kind
-    load: np.ndarray  # (n,)
-    phi: np.ndarray  # (h,)
-    A: np.ndarray  # (k, n)
-    A_rate: np.ndarray  # (k,)
-    gap: np.ndarray  # (C,)
-    G: np.ndarray  # (C, 3, n)
-    G_rate: np.ndarray  # (C, 3)
-    acceleration: np.ndarray  # (n,) with the active contacts
-    status: int
+PARTS = 64  # steps of order 4 along the arc of a return map: the error of a great circle of 1 rad is 2e-10
+NEAR = 1e-11  # of the coordinates: residual of a return map, beyond the round-off of its arc
 
 
 class Evaluation:
@@ -45,10 +37,10 @@ class Evaluation:
         n, C = system.coordinates, len(contacts)
         self.n = n
         self.functions = Functions()
-        self.raised: BaseException | None = None
-        addresses = model.addresses(self.functions)
+        addresses, parts = model.addresses(self.functions)
         self.system = Coordinates(
             np.array(addresses, dtype=np.int64),
+            np.array(parts, dtype=np.int64).reshape(-1, 3),
             np.array([n, model.holonomic, model.rows, C], dtype=np.int64),
             np.array([one.friction for one in contacts]),
             drop,
@@ -56,64 +48,75 @@ class Evaluation:
         self.work = new_work(n, model.holonomic, model.rows, C, STAGES)
         self.none_active = new_active_set(C)
 
-    def look(self, q, v=None, t: float = 0.0, active: ActiveSet | None = None) -> Look:
-        """Return all quantities at a state."""
-        x = np.concatenate([q, np.zeros(self.n) if v is None else v])
+    def compute(self, x, t: float, active: ActiveSet | None = None) -> int:
+        """Compute all quantities at a state (q, v); they are in `work`. Return a status."""
         code = look(self.system, self.none_active if active is None else active, t, x, self.work)
+        return Status.FUNCTION_FAILED if self.functions.failed is not None else code
+
+    def look(self, x, t: float = 0.0) -> int:
+        """Do the same at (q, v), or at (q, 0) for q; raise the error of a user-defined function."""
+        code = self.compute(np.append(x, np.zeros(2 * self.n - len(x))), t)
         self.failed()
-        w = self.work
-        seen = (w.M, w.c, w.loads[1:-1], w.phi, w.A, w.A_rate, w.gap, w.G, w.G_rate, w.a)
-        return Look(*(array.copy() for array in seen), status=code)
+        return code
 
     def failed(self) -> None:
         """Raise the error that a function of the user's has raised."""
         error, self.functions.failed = self.functions.failed, None
         if error is not None:
-            self.raised = error
             raise error
 
     def christoffel(self, q) -> np.ndarray:
-        """Return Gamma^k_ij, from Gamma(v, v) of all pairs of directions."""
-        n = self.n
-        e, quadratic = np.eye(n), {}
-        for i in range(n):
-            for j in range(i + 1):
-                quadratic[i, j] = self.look(q, e[i] + e[j] if i != j else e[i]).c
-        first = np.zeros((n, n, n))
-        for i in range(n):
-            for j in range(i + 1):
-                one = quadratic[i, j]
-                if i != j:
-                    one = 0.5 * (one - quadratic[i, i] - quadratic[j, j])
-                first[:, i, j] = first[:, j, i] = one
-        return np.linalg.solve(self.look(q).M, first.reshape(n, -1)).reshape(n, n, n)
+        """Return Gamma^k_ij, from 4 Gamma(v, w) = Gamma(v + w, v + w) - Gamma(v - w, v - w)."""
+        n, e = self.n, np.eye(self.n)
+
+        def bend(v):
+            self.look(np.append(q, v))
+            return self.work.c.copy()
+
+        first = [[bend(a + b) - bend(a - b) for b in e] for a in e]  # (i, j, k)
+        first = 0.25 * np.moveaxis(np.array(first), 2, 0).reshape(n, -1)
+        return np.linalg.solve(self.work.M, first).reshape(n, n, n)
 
     def autoparallel(self, q, v, parts):
-        """Return the end (q, v) of an autoparallel."""
-        x = np.concatenate([q, v])
-        code = run_along(self.system, 0.0, x, parts, self.work)
+        """Return the end (q, v) of an autoparallel: the motion without loads, constraints and contacts."""
+        x, none = np.concatenate([q, v]), new_active_set(0)
+        address, size = self.system.address * [1, 0, 0, 0], self.system.size * [1, 0, 0, 0]
+        part, work = self.system.part.copy(), new_work(self.n, 0, 0, 0, STAGES)
+        part[OF_METRIC + 1 :] = 0
+        free = Coordinates(address, part, size, np.zeros(0), 0.0)
+        code = move_freely(Motion(free, make_method("rk4", Options()), none, work), x, parts)
         self.failed()
         if code != 0:
             raise ValueError(f"the autoparallel could not be integrated: {Status(code).message}")
         return x[: self.n], x[self.n :]
 
     def return_map(self, q, contact: int):
-        """Return coordinates on the surface of a contact."""
-        x = np.concatenate([q, np.zeros(self.n)])
-        self.look(q)
-        tolerance = 1e-15 * float(self.work.gap_scale[contact])
-        for _ in range(20):
-            steps, code = return_map(
-                self.system, self.none_active, 0.0, x, contact, tolerance, self.work
+        """Return coordinates q_e on the surface of a contact, and of the constraints.
+
+        With rho the gap and the constraints, the autoparallel from q_e to q begins at a right angle to these
+        surfaces in the metric:
+
+            q = Exp_{q_e}(M^-1 (d rho)^T kappa),   rho(q_e) = 0
+        """
+        from scipy.optimize import root
+
+        n, seen = self.n, self.work
+
+        def surfaces(at):
+            self.look(at)
+            rows = np.vstack([seen.G[contact, :1], seen.A[: len(seen.phi)]])
+            return np.append(seen.gap[contact], seen.phi), rows, np.linalg.solve(seen.M, rows.T)
+
+        def misses(unknowns):
+            at, kappa = unknowns[:n], unknowns[n:]
+            rho, _, normals = surfaces(at)
+            return np.append(self.autoparallel(at, normals @ kappa, PARTS)[0] - q, rho)
+
+        rho, rows, normals = surfaces(q)
+        kappa = np.linalg.lstsq(rows @ normals, rho)[0]
+        found = root(misses, np.append(q - normals @ kappa, kappa), tol=1e-14)
+        if not np.max(np.abs(found.fun)) <= NEAR * max(1.0, np.max(np.abs(q))):
+            raise ValueError(
+                f"position must be nearer to the contact, got {q!r}: the return map did not converge"
             )
-            self.failed()
-            if steps < 0 or code != 0:
-                raise ValueError(
-                    f"position must be nearer to the contact, got {q!r}: the return map did not converge"
-                )
-            if self.system.size[1] == 0 or steps == 0:
-                break
-            code = project_rates(self.system, self.none_active, 0.0, x, self.work)
-            if code != 0:
-                raise ValueError(f"position must be nearer to the contact: {Status(code).message}")
-        return x[: self.n].copy()
+        return found.x[:n]

@@ -14,6 +14,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.generalized.layout import TOUCHES, N
+from carom.generalized.linear import copy_row, dot
 from carom.generalized.motion import acceleration, find_contacts, slip_of
 from carom.generalized.step import take
 from carom.model.actions import (
@@ -23,129 +24,89 @@ from carom.model.actions import (
     EVENT_RATE,
     EVENT_REVERSE,
     EVENT_SEPARATE,
-    MODE_SLIP,
     MODE_STICK,
     NO_EVENT,
 )
 from carom.status import NOT_FINITE
+from carom.stepping.event_search import begin_search, next_trial, update_bracket
 
 ROUND_OFF = 1e-15  # of the gap's own terms
+CONE_ROUND_OFF = 1e-12  # of the normal force, which is a result of elimination
+TRIALS = 200  # of a search: the bracket is then round-off of its length
+EARLIER = 20  # events that may lie before the first one that was found
 
 
 @kernel
-def rate_of(system, c, x, work):
-    """Return the rate of gap c; contact rows must be those of `x`."""
-    n, rate = system.size[N], 0.0
-    for j in range(n):
-        rate += work.G[c, 0, j] * x[n + j]
-    return rate
-
-
-@kernel
-def note_start(system, t, x, work):
-    """Store gaps and their rates at the start of a step."""
+def find_gaps(system, t, x, work):
+    """Evaluate the event functions of open contacts at `x`; return whether all gaps are finite."""
+    margin, finite = work.margin, True
     find_contacts(system, t, x, work)
     for c in range(system.size[TOUCHES]):
-        work.before[0, c], work.before[1, c] = work.gap[c], rate_of(system, c, x, work)
+        finite = finite and math.isfinite(work.gap[c])
+        for kind in range(NO_EVENT):
+            margin[kind, c], work.nothing[kind, c] = math.inf, 0.0
+        margin[EVENT_GAP, c], work.nothing[EVENT_GAP, c] = (
+            work.gap[c],
+            ROUND_OFF * work.gap_scale[c],
+        )
+        margin[EVENT_RATE, c] = -dot(work.G[c, 0], x[system.size[N] :], system.size[N])
+    return finite
 
 
 @kernel
-def detect_event(system, active, t, x, work):
-    """Evaluate at `x` all quantities that `value` needs; return a status."""
-    if system.size[TOUCHES] == 0:
-        return 0
-    find_contacts(system, t, x, work)
-    for c in range(system.size[TOUCHES]):
-        if not math.isfinite(work.gap[c]):
-            return NOT_FINITE
+def find_margins(motion, t):
+    """Evaluate all event functions at the end of the step; return a status.
+
+    They are infinite for contacts that are not in their mode.
+    """
+    system, active, work = motion.system, motion.active, motion.work
+    margin = work.margin
+    if not find_gaps(system, t, work.end, work):
+        return NOT_FINITE
     if active.count[0] == 0:
         return 0
-    _, _, code = acceleration(system, active, t, x, work, work.trial)
+    _, _, code = acceleration(system, active, t, work.end, work, work.trial)
+    for i in range(active.count[0]):
+        c, force = active.contact[i], active.force[i]
+        mu = system.friction[c]
+        margin[EVENT_GAP, c], margin[EVENT_RATE, c], margin[EVENT_SEPARATE, c] = (
+            math.inf,
+            math.inf,
+            force[0],
+        )
+        if active.mode[i] == MODE_STICK:
+            margin[EVENT_CONE, c] = mu * force[0] - math.sqrt(
+                force[1] * force[1] + force[2] * force[2]
+            )
+            work.nothing[EVENT_CONE, c] = CONE_ROUND_OFF * abs(force[0])
+        elif mu > 0.0:
+            u1, u2 = slip_of(system, active, i, work.end, work)
+            margin[EVENT_REVERSE, c] = u1 * active.heading[i, 0] + u2 * active.heading[i, 1]
+            margin[EVENT_JAM, c] = active.yields[i]
     return code
 
 
 @kernel
-def value(system, active, kind, i, x, work):
-    """Return (event function, greatest magnitude that counts as zero)."""
-    if kind == EVENT_GAP:
-        return work.gap[i], ROUND_OFF * work.gap_scale[i]
-    if kind == EVENT_RATE:
-        return -rate_of(system, i, x, work), 0.0
-    force, mu = active.force[i], system.friction[active.contact[i]]
-    if kind == EVENT_SEPARATE:
-        return force[0], 0.0
-    if kind == EVENT_CONE:
-        pull = math.sqrt(force[1] * force[1] + force[2] * force[2])
-        return mu * force[0] - pull, 1e-12 * abs(force[0])
-    if kind == EVENT_JAM:
-        return active.yields[i], 0.0
-    u1, u2 = slip_of(system, active, i, x, work)
-    return u1 * active.heading[i, 0] + u2 * active.heading[i, 1], 0.0
-
-
-@kernel
-def turned(system, active, t, x, work):
-    """Return whether slip has turned by more than 60 degrees within a step, and has not only stopped."""
-    looked = False
-    for i in range(active.count[0]):
-        if active.mode[i] == MODE_SLIP and system.friction[active.contact[i]] > 0.0:
-            if not looked:
-                find_contacts(system, t, x, work)
-                looked = True
-            u1, u2 = slip_of(system, active, i, x, work)
-            h1, h2 = active.heading[i, 0], active.heading[i, 1]
-            along, across = u1 * h1 + u2 * h2, abs(u1 * h2 - u2 * h1)
-            if across > (1.7320508 * along if along > 0.0 else -0.1 * along):
-                return True
-    return False
-
-
-@kernel
-def open_contact(active, c):
-    """Return whether contact c is not active."""
-    for i in range(active.count[0]):
-        if active.contact[i] == c:
-            return False
-    return True
-
-
-@kernel
-def violated(system, active, kind, i, x, work):
-    """Return whether an event function is below zero."""
-    f, none = value(system, active, kind, i, x, work)
-    return f < -none
-
-
-@kernel
-def first_violated(system, active, x, work):
-    """Return (kind, index) of an event function that is below zero at `x`, (NO_EVENT, -1) if none is."""
-    for c in range(system.size[TOUCHES]):
-        if open_contact(active, c) and violated(system, active, EVENT_GAP, c, x, work):
-            return EVENT_GAP, c
-    for i in range(active.count[0]):
-        if active.mode[i] == MODE_SLIP and system.friction[active.contact[i]] > 0.0:
-            if violated(system, active, EVENT_REVERSE, i, x, work):
-                return EVENT_REVERSE, i
-            if not active.yields[i] > 0.0:
-                return EVENT_JAM, i
-        if violated(system, active, EVENT_SEPARATE, i, x, work):
-            return EVENT_SEPARATE, i
-        if active.mode[i] == MODE_STICK and violated(system, active, EVENT_CONE, i, x, work):
-            return EVENT_CONE, i
+def first_violated(system, work):
+    """Return (kind, contact) of an event function that is below zero, (NO_EVENT, -1) if none is."""
+    for kind in (EVENT_GAP, EVENT_REVERSE, EVENT_JAM, EVENT_SEPARATE, EVENT_CONE):
+        for c in range(system.size[TOUCHES]):
+            if not work.margin[kind, c] >= -work.nothing[kind, c]:
+                return kind, c
     return NO_EVENT, -1
 
 
 @kernel
-def dips(system, active, h, x, work):
+def dips(system, h, work):
     """Return a contact whose gap may have been below zero within the step, -1 if none.
 
     The cubic with the gaps and rates at both ends decides: its least value is below a tenth of the depth of the
     dip.
     """
     for c in range(system.size[TOUCHES]):
-        g0, r0 = work.before[0, c], h * work.before[1, c]
-        g1, r1 = work.gap[c], h * rate_of(system, c, x, work)
-        if not (r0 < 0.0 < r1 and open_contact(active, c)):
+        g0, r0 = work.before[EVENT_GAP, c], -h * work.before[EVENT_RATE, c]
+        g1, r1 = work.margin[EVENT_GAP, c], -h * work.margin[EVENT_RATE, c]
+        if not r0 < 0.0 < r1:
             continue
         a, b = 2.0 * (g0 - g1) + r0 + r1, 3.0 * (g1 - g0) - 2.0 * r0 - r1
         root = math.sqrt(max(b * b - 3.0 * a * r0, 0.0))  # of 3 a s^2 + 2 b s + r0
@@ -157,96 +118,64 @@ def dips(system, active, h, x, work):
 
 
 @kernel
-def find_root(motion, kind, i, t, x, high):
-    """Return (s, status): the time s in (0, high] where an event function crosses zero, `work.end` its state.
+def find_root(motion, kind, c, t, x, high):
+    """Return (s, status): the time s in (0, high] where an event function crosses zero.
 
-    The function is positive at 0 and negative at `high`. (If it is zero at 0, a later time at which it is
-    positive is found first.) Regula falsi with the weights of Anderson and Bjorck (1973); every fourth step is
-    a bisection.
+    It is negative at `high`, whose state is in `work.end`; this is then the state at s.
     """
-    low, f_low, f_high, length = 0.0, 0.0, 0.0, high
-    for _ in range(40):  # halve the time until the function is positive
-        f_high, none, code = value_at(motion, kind, i, t, x, high)
-        if code != 0:
-            return high, code
-        s = low + 0.5 * (high - low)
-        f_low, none, code = value_at(motion, kind, i, t, x, s)
-        if code != 0:
-            return s, code
-        if f_low > none:
-            low = s
-            break
-        high = s
-        if abs(f_low) <= none and high - low <= 1e-9 * length:
-            return s, 0
-    for turn in range(200):
-        s = low - f_low * (high - low) / (f_high - f_low)
-        if not low < s < high or turn % 4 == 3:
-            s = low + 0.5 * (high - low)
-        f, none, code = value_at(motion, kind, i, t, x, s)
+    work, search, s = motion.work, motion.work.search[0], high
+    begin_search(search, kind, c, 0.0, high)
+    if kind == EVENT_GAP:
+        search.f, search.rate = work.before[EVENT_GAP, c], -work.before[EVENT_RATE, c]
+    for _ in range(TRIALS):
+        if work.nothing[kind, c] > 0.0:
+            search.tolerance = work.nothing[kind, c]
+        rate = -work.margin[EVENT_RATE, c] if kind == EVENT_GAP else 0.0
+        found = update_bracket(search, s, work.margin[kind, c], rate)
+        if found != 0:
+            return s, 0 if found > 0 else NOT_FINITE
+        s = next_trial(search)
+        code = state_at(motion, t, x, s)
         if code != 0:
             return s, code
-        if abs(f) <= none or not high - low > 4e-16 * (t + high):
-            break
-        if f > 0.0:
-            weight = 1.0 - f / f_low
-            low, f_low = s, f
-            f_high *= weight if weight > 0.0 else 0.5
-        else:
-            weight = 1.0 - f / f_high
-            high, f_high = s, f
-            f_low *= weight if weight > 0.0 else 0.5
     return s, 0
 
 
 @kernel
 def state_at(motion, t, x, s):
-    """Write the state a time s after `x` as the end of the step, with all quantities that `value` needs."""
+    """Write the state a time s after `x` as the end of the step, with its event functions; return a status."""
     code = take(motion, t, x, s)
-    if code != 0:
-        return code
-    return detect_event(motion.system, motion.active, t + s, motion.work.end, motion.work)
-
-
-@kernel
-def value_at(motion, kind, i, t, x, s):
-    """Return (event function, greatest magnitude that counts as zero, status) a time s after `x`."""
-    code = state_at(motion, t, x, s)
-    if code != 0:
-        return 0.0, 0.0, code
-    f, none = value(motion.system, motion.active, kind, i, motion.work.end, motion.work)
-    return f, none, 0
+    return find_margins(motion, t + s) if code == 0 else code
 
 
 @kernel
 def locate(motion, t, x, h):
-    """Find the first event in the step h from `x`, whose end is known; return (s, kind, index, status).
+    """Find the first event in the step h from `x`, whose end is known; return (s, kind, contact, status).
 
     The end is then the state at s. Without an event, the kind is NO_EVENT and s = h.
     """
-    system, active, work = motion.system, motion.active, motion.work
-    end = work.end
-    code = detect_event(system, active, t + h, end, work)
+    system, work, s = motion.system, motion.work, h
+    find_gaps(system, t, x, work)
+    for kind in (EVENT_GAP, EVENT_RATE):
+        copy_row(work.margin[kind], work.before[kind], system.size[TOUCHES])
+    code = find_margins(motion, t + h)
     if code != 0:
         return h, NO_EVENT, -1, code
-    kind, i = first_violated(system, active, end, work)
-    high = h
+    kind, c = first_violated(system, work)
     if kind == NO_EVENT:
-        c = dips(system, active, h, end, work)
+        c = dips(system, h, work)
         if c < 0:
             return h, NO_EVENT, -1, 0
-        high, code = find_root(motion, EVENT_RATE, c, t, x, h)
-        if code == 0 and violated(system, active, EVENT_GAP, c, end, work):
-            kind, i = EVENT_GAP, c
-        else:
+        s, code = find_root(motion, EVENT_RATE, c, t, x, h)
+        if code != 0 or work.margin[EVENT_GAP, c] >= -work.nothing[EVENT_GAP, c]:
             return h, NO_EVENT, -1, max(code, state_at(motion, t, x, h))
-    s = high
-    for _ in range(20):
-        s, code = find_root(motion, kind, i, t, x, high)
+        kind = EVENT_GAP
+    for _ in range(EARLIER):
+        s, code = find_root(motion, kind, c, t, x, s)
         if code != 0:
             break
-        other, j = first_violated(system, active, end, work)
-        if other == NO_EVENT or (other == kind and j == i):
+        other, b = first_violated(system, work)
+        if other == NO_EVENT or (other == kind and b == c):
             break
-        kind, i, high = other, j, s
-    return s, kind, i, code
+        kind, c = other, b
+    return s, kind, c, code

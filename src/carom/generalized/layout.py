@@ -10,7 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom._compiled.record_arrays import table
+from carom.model.actions import NO_EVENT
 from carom.model.method import Method
+from carom.model.workspace import SEARCH
 from carom.stepping.grid import Grid
 
 # The four functions, by their place in `Coordinates.address`.
@@ -18,6 +21,10 @@ CALL_INERTIA = 0  #: M (n, n), Gamma_kij v_i v_j (n,), first kind
 CALL_LOADS = 1  #: V, generalised forces Q - dV (n,), power Q.v of those that have no potential
 CALL_ROWS = 2  #: phi (h,), A (k, n), (dA/dt) v (k,)
 CALL_CONTACTS = 3  #: gap (C,), G (C, 3, n), (dG/dt) v (C, 3)
+
+# The user's functions that make them, by their place in `Coordinates.part`; at the end gap and tangents of each
+# contact.
+OF_METRIC, OF_POTENTIAL, OF_FORCE, OF_CONSTRAINT, OF_ROWS, OF_CONTACT = range(6)
 
 # The four sizes, by their place in `Coordinates.size`.
 N, HOLONOMIC, ALL_ROWS, TOUCHES = range(4)
@@ -29,7 +36,11 @@ EVENT = 100
 class Coordinates(NamedTuple):
     """A system: addresses of its functions, sizes, friction of its contacts."""
 
-    address: np.ndarray  # (4,) int64
+    address: (
+        np.ndarray
+    )  # (4,) int64; 0 for a function that the system does not have, or that has parts
+    # (P, 3) int64 addresses of a function and of its derivative, 0 for none, and the number of results
+    part: np.ndarray
     size: np.ndarray  # (4,) int64
     friction: np.ndarray  # (C,)
     drop: float  # a row is left out if its pivot is below this part of its diagonal
@@ -40,6 +51,7 @@ class ActiveSet(NamedTuple):
 
     count: np.ndarray  # (1,) int64
     contact: np.ndarray  # (C,) int64
+    row: np.ndarray  # (C,) int64, its first row of R
     mode: np.ndarray  # (C,) int64, MODE_SLIP or MODE_STICK
     heading: np.ndarray  # (C, 2) direction of slip
     force: np.ndarray  # (C, 3) normal first
@@ -47,7 +59,7 @@ class ActiveSet(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Workspace. The first four arrays are results of the functions, the next eight are views of them."""
+    """Workspace. The first four arrays are results of the functions, the next nine are views of them."""
 
     inertia: np.ndarray
     loads: np.ndarray
@@ -55,13 +67,14 @@ class Work(NamedTuple):
     contacts: np.ndarray
     M: np.ndarray  # (n, n)
     c: np.ndarray  # (n,)
+    load: np.ndarray  # (n,) generalised forces Q - dV
     phi: np.ndarray  # (h,)
     A: np.ndarray  # (k, n)
     A_rate: np.ndarray  # (k,)
     gap: np.ndarray  # (C,)
     G: np.ndarray  # (C, 3, n)
     G_rate: np.ndarray  # (C, 3)
-    L: np.ndarray  # (n, n) Cholesky factor of M
+    L: np.ndarray  # (n, n) M = L D L^T, D on the diagonal
     a: np.ndarray  # (n,)
     R: np.ndarray  # (m, n) rows that must keep their rate
     D: np.ndarray  # (m, n) directions of their reactions: R itself, except for a slipping contact
@@ -72,11 +85,16 @@ class Work(NamedTuple):
     stages: np.ndarray  # (S, 2n)
     trial: np.ndarray  # (2n,)
     end: np.ndarray  # (2n,)
-    best: np.ndarray  # (2n,)
-    arc: np.ndarray  # (8, 2n) of autoparallels
-    before: np.ndarray  # (2, C) gaps and their rates at the start of a step
+    # (NO_EVENT, C) by kind of event: its function, what is round-off of it, the function at the start of a step
+    margin: np.ndarray
+    nothing: np.ndarray
+    before: np.ndarray
     row_scale: np.ndarray  # (h,) greatest sum |A_j q_j|
     gap_scale: np.ndarray  # (C,) the same of the gaps, or the greatest gap
+    point: np.ndarray  # (n,) of differences
+    sample: np.ndarray  # results there
+    slope: np.ndarray  # (n, m) derivatives of m results
+    search: np.recarray  # (1,) SEARCH, of an event
     spent: np.ndarray  # (2,) work of loads and of friction in the last step
 
 
@@ -103,12 +121,17 @@ class Plan(NamedTuple):
 #: progress of a run
 CLOCK = [
     ("now", "f8"), ("step", "i8"), ("saved", "i8"), ("loads", "f8"), ("friction", "f8"),
-    ("impacts", "f8"), ("bounces", "f8"), ("kind", "i8"), ("index", "i8"), ("trials", "i8"),
-    ("ahead", "f8"), ("rejected", "i8"),  # next step by tolerances, number of steps with too large an error
+    ("impacts", "f8"), ("bounces", "f8"), ("given", "f8"), ("kind", "i8"), ("index", "i8"), ("trials", "i8"),
+    # the next step by tolerances, the length that fitted them last, number of steps with too large an error
+    ("ahead", "f8"), ("fits", "f8"), ("rejected", "i8"),
 ]  # fmt: skip
 
 #: data of a saved state besides the state itself
-SERIES = [("t", "f8"), ("loads", "f8"), ("impacts", "f8"), ("friction", "f8"), ("bounces", "f8")]
+SERIES = [
+    ("t", "f8"), ("kinetic", "f8"), ("potential", "f8"), ("loads", "f8"), ("impacts", "f8"),
+    ("friction", "f8"), ("bounces", "f8"),
+    ("given", "f8"),  # energy that impacts have added where their law allows it (V8)
+]  # fmt: skip
 
 
 class Record(NamedTuple):
@@ -121,25 +144,29 @@ class Record(NamedTuple):
 
 def new_active_set(contacts: int) -> ActiveSet:
     """Return an active set with room for all contacts, none active."""
-    count, (contact, mode) = np.zeros(1, np.int64), np.zeros((2, contacts), np.int64)
+    count, (contact, row, mode) = np.zeros(1, np.int64), np.zeros((3, contacts), np.int64)
     vectors = np.zeros((contacts, 2)), np.zeros((contacts, 3))
-    return ActiveSet(count, contact, mode, *vectors, np.zeros(contacts))
+    return ActiveSet(count, contact, row, mode, *vectors, np.zeros(contacts))
 
 
 def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> Work:
     """Return workspace for a system of these sizes and a method with this number of stages."""
-    m = rows + 3 * contacts
-    inertia, loads = np.zeros(n * n + n), np.zeros(n + 2)
-    row = np.zeros(holonomic + rows * n + rows)
-    touch = np.zeros(contacts * (4 + 3 * n))
+    m, most = rows + 3 * contacts, max(n, rows, 2) * n
     k, g = holonomic + rows * n, contacts * (1 + 3 * n)
-    return Work(
-        inertia, loads, row, touch,
-        inertia[: n * n].reshape(n, n), inertia[n * n :],
-        row[:holonomic], row[holonomic:k].reshape(rows, n), row[k:],
-        touch[:contacts], touch[contacts:g].reshape(contacts, 3, n), touch[g:].reshape(contacts, 3),
-        np.zeros((n, n)), np.zeros(n), np.zeros((m, n)), np.zeros((m, n)), np.zeros((m, n)),
-        np.zeros((m, m)), np.zeros(m), np.zeros(m), np.zeros((stages, 2 * n)), np.zeros(2 * n),
-        np.zeros(2 * n), np.zeros(2 * n), np.zeros((8, 2 * n)), np.zeros((2, contacts)),
-        np.zeros(holonomic), np.zeros(contacts), np.zeros(2),
-    )  # fmt: skip
+    inertia, loads = np.zeros(n * n + n), np.zeros(n + 2)
+    row, touch = np.zeros(k + rows), np.zeros(g + 3 * contacts)
+    results = {
+        "inertia": inertia, "M": inertia[: n * n].reshape(n, n), "c": inertia[n * n :],
+        "loads": loads, "load": loads[1:-1],
+        "rows": row, "phi": row[:holonomic], "A": row[holonomic:k].reshape(rows, n), "A_rate": row[k:],
+        "contacts": touch, "gap": touch[:contacts], "G": touch[contacts:g].reshape(contacts, 3, n),
+        "G_rate": touch[g:].reshape(contacts, 3),
+    }  # fmt: skip
+    shapes = {
+        "L": (n, n), "a": n, "R": (m, n), "D": (m, n), "Z": (m, n), "K": (m, m), "inverse": m, "rhs": m,
+        "stages": (stages, 2 * n), "trial": 2 * n, "end": 2 * n, "row_scale": holonomic,
+        "gap_scale": contacts, "margin": (NO_EVENT, contacts), "nothing": (NO_EVENT, contacts),
+        "before": (NO_EVENT, contacts), "point": n, "sample": most, "slope": n * most, "spent": 2,
+    }  # fmt: skip
+    own = {name: np.zeros(shape) for name, shape in shapes.items()}
+    return Work(**results, **own, search=table(SEARCH, 1))

@@ -1,41 +1,31 @@
-"""Dense solves of a few unknowns: the metric by Cholesky, rows by elimination without dependent pivots."""
+"""Rows of numbers, and elimination for a few of them with other reactions, without dependent ones."""
 
 from __future__ import annotations
-
-import math
 
 from carom._compiled.decorators import kernel
 
 
 @kernel
-def cholesky(M, L, n):
-    """Write the lower factor of M; return whether M is positive definite."""
+def copy_row(row, out, n):
+    """Copy n numbers."""
     for j in range(n):
-        d = M[j, j]
-        for s in range(j):
-            d -= L[j, s] * L[j, s]
-        if not (d > 1e-15 * M[j, j] and math.isfinite(d)):
-            return False
-        L[j, j] = math.sqrt(d)
-        for i in range(j + 1, n):
-            t = M[i, j]
-            for s in range(j):
-                t -= L[i, s] * L[j, s]
-            L[i, j] = t / L[j, j]
-    return True
+        out[j] = row[j]
 
 
 @kernel
-def solve_metric(L, b, n):
-    """Replace b by M^-1 b."""
-    for i in range(n):
-        for s in range(i):
-            b[i] -= L[i, s] * b[s]
-        b[i] /= L[i, i]
-    for i in range(n - 1, -1, -1):
-        for s in range(i + 1, n):
-            b[i] -= L[s, i] * b[s]
-        b[i] /= L[i, i]
+def add_row(f, row, out, n):
+    """Add f times n numbers to `out`."""
+    for j in range(n):
+        out[j] += f * row[j]
+
+
+@kernel
+def dot(a, b, n):
+    """Return the sum of the products of n numbers."""
+    total = 0.0
+    for j in range(n):
+        total += a[j] * b[j]
+    return total
 
 
 @kernel

@@ -14,18 +14,18 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, kernel
-from carom._compiled.user_functions import call_function
-from carom.dynamics.adapt import LEAST, MOST, NOTHING_LEFT, SAFETY, allowed_error, part_of
-from carom.generalized.events import locate, note_start, turned
-from carom.generalized.layout import CALL_LOADS, EVENT, TOUCHES, N
-from carom.generalized.motion import copy_row, find_metric
+from carom.dynamics.adapt import NOTHING_LEFT, allowed_error, of_two, part_of, shrunk
+from carom.dynamics.adapt import plan as plan_ahead
+from carom.generalized.events import locate
+from carom.generalized.layout import CALL_LOADS, EVENT, N
+from carom.generalized.linear import copy_row, dot
+from carom.generalized.motion import evaluate, find_metric
 from carom.generalized.step import take
 from carom.model.actions import NO_EVENT
 from carom.model.records import PAUSE
 from carom.status import STEP_TOO_SMALL, SUCCESS
 from carom.stepping.grid import end_of, is_saved
 
-CUTS = 12  # greatest number of halvings of a step in which slip turns
 LONG = 20_000  # trial steps, times the square of the number of coordinates, after which the loop pauses
 
 
@@ -44,8 +44,7 @@ def time_loop(motion, x, plan, until, record):
         target = end_of(plan.grid, plan.duration, c.step + 1)
         left = target - c.now
         if left > 1e-13 * plan.step:
-            note_start(system, c.now, x, work)
-            part, code = first_part(motion, x, left, plan, c)
+            part, code = take_accurately(motion, x, left, plan, c)
             if code != 0:
                 return code
             s, kind, index, code = locate(motion, c.now, x, part)
@@ -64,55 +63,31 @@ def time_loop(motion, x, plan, until, record):
         c.now = target
         c.step += 1
         if is_saved(plan.grid, c.step):
-            save(x, record)
+            save(system, x, record, work)
     return SUCCESS
 
 
 @kernel
-def first_part(motion, x, left, plan, c):
-    """Take a step with the required accuracy, halved until slip does not turn in it.
+def take_accurately(motion, x, left, plan, c):
+    """Take all of the time `left`, or a step whose estimated error is within the tolerances.
 
     Return its length and a status.
     """
-    part, work = left, motion.work
-    if plan.order > 0:
-        part, code = exact_part(motion, x, left, plan, c)
-        if code != 0:
-            return part, code
-    for cut in range(CUTS):
-        if cut > 0 or plan.order == 0:
-            code = take(motion, c.now, x, part)
-            c.trials += 1
-            if code != 0:
-                return part, code
-        if cut + 1 == CUTS or not turned(
-            motion.system, motion.active, c.now + part, work.end, work
-        ):
-            break
-        part *= 0.5
-    return part, 0
-
-
-@kernel
-def exact_part(motion, x, left, plan, c):
-    """Take a step whose estimated error is within the tolerances; return its length and a status."""
-    part, again = part_of(left, c.ahead), False
+    part, again = left if plan.order == 0 else part_of(left, c.ahead), False
     while True:
         code = take(motion, c.now, x, part)
         c.trials += 1
+        if plan.order == 0:
+            return part, code
         error = math.inf if code != 0 else step_error(motion, part, plan)
         if error <= 1.0:
-            factor = MOST if error == 0.0 else min(MOST, SAFETY * error ** (-1.0 / plan.order))
-            if again:
-                factor = min(1.0, factor)
-            ahead = part * factor if factor < MOST else max(c.ahead, part * MOST)
-            c.ahead = min(ahead, plan.step)
+            plan_ahead(c, part, error, again, plan.order, plan.step)
             return part, 0
         if not part > NOTHING_LEFT * plan.duration:
             return part, code if code != 0 else STEP_TOO_SMALL
         again = True
         c.rejected += 1
-        part *= max(LEAST, SAFETY * error ** (-1.0 / plan.order)) if math.isfinite(error) else LEAST
+        part *= shrunk(error, plan.order)
 
 
 @kernel
@@ -129,48 +104,32 @@ def step_error(motion, h, plan):
         T = 1.0 / pace if pace > 0.0 else 0.0
         allowed = allowed_error(plan.rtol, plan.atol, 1.0, h * speed)
         for e in range(E.shape[0]):
-            q, v = 0.0, 0.0
-            for s in range(E.shape[1]):
-                q += E[e, s] * stages[s, i]
-                v += E[e, s] * stages[s, n + i]
+            q, v = dot(E[e], stages[:, i], E.shape[1]), dot(E[e], stages[:, n + i], E.shape[1])
             miss = h * max(abs(q), T * abs(v)) / allowed
             if e == 0 and not miss <= first and first == first:
                 first = miss
             if e == 1:
                 second = max(second, miss)
-    if second > 0.0:
-        return first * first / math.sqrt(first * first + 0.01 * second * second)
-    return first
+    return of_two(first, second)
 
 
 @kernel
-def save(x, record):
-    """Write the state into the next row."""
-    clock = record.clock[0]
-    row = record.series[clock.saved]
-    row.t, row.loads, row.impacts = clock.now, clock.loads, clock.impacts
-    row.friction, row.bounces = clock.friction, clock.bounces
+def save(system, x, record, work):
+    """Write the state and its energies into the next row."""
+    clock, n = record.clock[0], system.size[N]
+    row, total = record.series[clock.saved], 0.0
+    find_metric(system, clock.now, x, work)
+    evaluate(system, CALL_LOADS, clock.now, x, work.loads, work)
+    for i in range(n):
+        total += x[n + i] * dot(work.M[i], x[n:], n)
+    row.t, row.kinetic, row.potential = clock.now, 0.5 * total, work.loads[0]
+    row.loads, row.impacts = clock.loads, clock.impacts
+    row.friction, row.bounces, row.given = clock.friction, clock.bounces, clock.given
     copy_row(x, record.states[clock.saved], x.size)
     clock.saved += 1
 
 
 @entry
-def save_now(x, record):
+def save_now(system, x, record, work):
     """Do the same as `save`, for Python: at the start, and after a failure."""
-    save(x, record)
-
-
-@entry
-def energies(system, t, states, kinetic, potential, work):
-    """Write kinetic and potential energy of the states (T, 2n)."""
-    n = system.size[N]
-    for k in range(t.size):
-        find_metric(system, t[k], states[k], work)
-        total = 0.0
-        for i in range(n):
-            for j in range(n):
-                total += work.M[i, j] * states[k, n + i] * states[k, n + j]
-        kinetic[k] = 0.5 * total
-        call_function(system.address[CALL_LOADS], t[k], states[k], work.loads)
-        potential[k] = work.loads[0]
-    return system.size[TOUCHES]
+    save(system, x, record, work)

@@ -1,7 +1,8 @@
 """Accelerations in coordinates: ``M v' = Q - dV - Gamma(v, v) + D^T lam`` with ``R v' = -R' v``.
 
 R are the rows of constraints and of persistent contacts; D = R, except for a contact that slips, whose reaction
-is N (G_n - mu e G_t). (Mathematics page, §4.1 and §4.4.)
+is N (G_n - mu e G_t). (Mathematics page, §4.1 and §4.4.) Returns of coordinates to phi = 0, and of velocities
+to R v = 0, are solves with the same rows.
 """
 
 from __future__ import annotations
@@ -10,6 +11,9 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.user_functions import call_function
+from carom.dynamics.several_points import factor as factor_symmetric
+from carom.dynamics.several_points import substitute as solve_metric
+from carom.generalized.differences import evaluate_parts
 from carom.generalized.layout import (
     ALL_ROWS,
     CALL_CONTACTS,
@@ -20,31 +24,46 @@ from carom.generalized.layout import (
     TOUCHES,
     N,
 )
-from carom.generalized.linear import cholesky, factor, solve_metric, substitute
+from carom.generalized.linear import add_row, copy_row, dot, factor, substitute
 from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.status import NOT_FINITE, SINGULAR_METRIC
+
+POSITION, RATE, ACCELERATION = range(3)  # what the rows must give
+SINGULAR = 1e-15  # of the diagonal: a pivot of the metric that is round-off
+
+
+@kernel
+def evaluate(system, which, t, x, out, work):
+    """Write the result of one of the four functions of a system into `out`, its array of the workspace."""
+    if system.address[which] != 0:
+        call_function(system.address[which], t, x, out)
+    else:
+        evaluate_parts(system, which, t, x, work)
 
 
 @kernel
 def find_metric(system, t, x, work):
     """Compute M, its factor and Gamma(v, v) at the state `x`; return a status."""
-    call_function(system.address[CALL_INERTIA], t, x, work.inertia)
-    n = system.size[N]
-    if cholesky(work.M, work.L, n):
-        return 0
-    total = 0.0
-    for i in range(n * n):
-        total += work.inertia[i]
-    return SINGULAR_METRIC if math.isfinite(total) else NOT_FINITE
+    evaluate(system, CALL_INERTIA, t, x, work.inertia, work)
+    n, total = system.size[N], 0.0
+    for i in range(n):
+        copy_row(work.M[i], work.L[i], n)
+    factor_symmetric(n, SINGULAR, work.L)
+    for i in range(n):
+        if not 0.0 < work.L[i, i] < math.inf:
+            for k in range(n * n):
+                total += work.inertia[k]
+            return SINGULAR_METRIC if math.isfinite(total) else NOT_FINITE
+    return 0
 
 
 @kernel
 def find_rows(system, active, t, x, work):
     """Compute constraint rows, and contacts if any is active."""
     if system.size[ALL_ROWS] > 0:
-        call_function(system.address[CALL_ROWS], t, x, work.rows)
+        evaluate(system, CALL_ROWS, t, x, work.rows, work)
     if active.count[0] > 0:
-        call_function(system.address[CALL_CONTACTS], t, x, work.contacts)
+        evaluate(system, CALL_CONTACTS, t, x, work.contacts, work)
 
 
 @kernel
@@ -52,26 +71,27 @@ def find_contacts(system, t, x, work):
     """Compute gaps and contact rows, and the size of the terms of each gap."""
     if system.size[TOUCHES] == 0:
         return
-    call_function(system.address[CALL_CONTACTS], t, x, work.contacts)
+    evaluate(system, CALL_CONTACTS, t, x, work.contacts, work)
     for c in range(system.size[TOUCHES]):
-        size = abs(work.gap[c])
-        total = 0.0
-        for j in range(system.size[N]):
-            total += abs(work.G[c, 0, j] * x[j])
-        size = max(size, total)
+        size = max(abs(work.gap[c]), terms(work.G[c, 0], x, system.size[N]))
         if math.isfinite(size):
             work.gap_scale[c] = max(work.gap_scale[c], size)
 
 
 @kernel
+def terms(row, x, n):
+    """Return sum |row_j x_j|."""
+    total = 0.0
+    for j in range(n):
+        total += abs(row[j] * x[j])
+    return total
+
+
+@kernel
 def slip_of(system, active, i, x, work):
     """Return the slip (u_1, u_2) of persistent contact i; rows must be those of `x`."""
-    n, c = system.size[N], active.contact[i]
-    u1, u2 = 0.0, 0.0
-    for j in range(n):
-        u1 += work.G[c, 1, j] * x[n + j]
-        u2 += work.G[c, 2, j] * x[n + j]
-    return u1, u2
+    n, rows = system.size[N], work.G[active.contact[i]]
+    return dot(rows[1], x[n:], n), dot(rows[2], x[n:], n)
 
 
 @kernel
@@ -85,68 +105,55 @@ def direction(active, i, u1, u2):
 
 
 @kernel
-def copy_row(row, out, n):
-    """Copy n numbers."""
-    for j in range(n):
-        out[j] = row[j]
+def gather(system, active, what, x, work):
+    """Write R, D, and into `rhs` what R must give: -phi of coordinates, 0 of rates, -R' v of accelerations.
 
-
-@kernel
-def gather(system, active, x, work):
-    """Write R and D, and the targets -R' v into `rhs`; return the number of rows."""
-    n, m = system.size[N], system.size[ALL_ROWS]
+    Return the number of rows.
+    """
+    n, m = system.size[N], system.size[HOLONOMIC if what == POSITION else ALL_ROWS]
     for r in range(m):
         copy_row(work.A[r], work.R[r], n)
-        copy_row(work.A[r], work.D[r], n)
-        work.rhs[r] = -work.A_rate[r]
+        work.rhs[r] = -work.phi[r] if what == POSITION else -work.A_rate[r]
     for i in range(active.count[0]):
         c = active.contact[i]
+        active.row[i] = m
+        for r in range(3 if active.mode[i] == MODE_STICK and what != POSITION else 1):
+            copy_row(work.G[c, r], work.R[m], n)
+            work.rhs[m] = -work.gap[c] if what == POSITION else -work.G_rate[c, r]
+            m += 1
+    for r in range(m):
+        copy_row(work.R[r], work.D[r], n)
+        if what == RATE:
+            work.rhs[r] = 0.0
+    for i in range(active.count[0] if what == ACCELERATION else 0):
+        c = active.contact[i]
         mu = system.friction[c]
-        copy_row(work.G[c, 0], work.R[m], n)
-        copy_row(work.G[c, 0], work.D[m], n)
-        work.rhs[m] = -work.G_rate[c, 0]
         if active.mode[i] == MODE_SLIP and mu > 0.0:
             u1, u2 = slip_of(system, active, i, x, work)
             e1, e2 = direction(active, i, u1, u2)
-            for j in range(n):
-                work.D[m, j] -= mu * (e1 * work.G[c, 1, j] + e2 * work.G[c, 2, j])
-        m += 1
-        if active.mode[i] == MODE_STICK:
-            for r in range(1, 3):
-                copy_row(work.G[c, r], work.R[m], n)
-                copy_row(work.G[c, r], work.D[m], n)
-                work.rhs[m] = -work.G_rate[c, r]
-                m += 1
+            add_row(-mu * e1, work.G[c, 1], work.D[active.row[i]], n)
+            add_row(-mu * e2, work.G[c, 2], work.D[active.row[i]], n)
     return m
 
 
 @kernel
-def factor_rows(system, m, work):
-    """Compute Z = M^-1 D, and factor K = R M^-1 D."""
+def react(system, m, out, work):
+    """Add to `out` (n,) the reactions that give it what `rhs` says; these become the multipliers.
+
+    With Z = M^-1 D^T and K = R Z they are the solution of K lam = rhs - R out.
+    """
     n = system.size[N]
     for r in range(m):
         copy_row(work.D[r], work.Z[r], n)
-        solve_metric(work.L, work.Z[r], n)
+        solve_metric(n, work.L, work.Z[r])
     for r in range(m):
         for s in range(m):
-            total = 0.0
-            for j in range(n):
-                total += work.R[r, j] * work.Z[s, j]
-            work.K[r, s] = total
+            work.K[r, s] = dot(work.R[r], work.Z[s], n)
+        work.rhs[r] -= dot(work.R[r], out, n)
     factor(work.K, work.inverse, m, system.drop)
-
-
-@kernel
-def react(system, m, out, work):
-    """Add to `out` (n,) the reactions that give it the rates in `rhs`; these become the multipliers."""
-    n = system.size[N]
-    for r in range(m):
-        for j in range(n):
-            work.rhs[r] -= work.R[r, j] * out[j]
     substitute(work.K, work.inverse, work.rhs, m)
     for r in range(m):
-        for j in range(n):
-            out[j] += work.Z[r, j] * work.rhs[r]
+        add_row(work.rhs[r], work.Z[r], out, n)
 
 
 @kernel
@@ -155,44 +162,38 @@ def acceleration(system, active, t, x, work, rate):
 
     Forces of persistent contacts go to `active.force`.
     """
-    n = system.size[N]
+    n, a, friction = system.size[N], work.a, 0.0
     code = find_metric(system, t, x, work)
     if code != 0:
         return 0.0, 0.0, code
-    call_function(system.address[CALL_LOADS], t, x, work.loads)
-    a = work.a
-    for j in range(n):
-        a[j] = work.loads[1 + j] - work.c[j]
-    solve_metric(work.L, a, n)
-    friction = 0.0
+    evaluate(system, CALL_LOADS, t, x, work.loads, work)
+    copy_row(work.load, a, n)
+    add_row(-1.0, work.c, a, n)
+    solve_metric(n, work.L, a)
     if system.size[ALL_ROWS] > 0 or active.count[0] > 0:
         find_rows(system, active, t, x, work)
-        m = gather(system, active, x, work)
-        factor_rows(system, m, work)
-        react(system, m, a, work)
+        react(system, gather(system, active, ACCELERATION, x, work), a, work)
         friction = note_forces(system, active, x, work)
-    for j in range(n):
-        rate[j], rate[n + j] = x[n + j], a[j]
+    copy_row(x[n:], rate, n)
+    copy_row(a, rate[n:], n)
     return work.loads[n + 1], friction, 0
 
 
 @kernel
 def note_forces(system, active, x, work):
     """Write the forces of persistent contacts from the multipliers; return the power of friction."""
-    power, m = 0.0, system.size[ALL_ROWS]
+    power = 0.0
     for i in range(active.count[0]):
-        force, mu = active.force[i], system.friction[active.contact[i]]
+        force, mu, m = active.force[i], system.friction[active.contact[i]], active.row[i]
         force[0] = work.rhs[m]
         active.yields[i] = work.K[m, m]
         if active.mode[i] == MODE_STICK:
             force[1], force[2] = work.rhs[m + 1], work.rhs[m + 2]
-            m += 3
         else:
             u1, u2 = slip_of(system, active, i, x, work)
             e1, e2 = direction(active, i, u1, u2)
             force[1], force[2] = -mu * force[0] * e1, -mu * force[0] * e2
             power += force[1] * u1 + force[2] * u2
-            m += 1
     return power
 
 
@@ -200,7 +201,5 @@ def note_forces(system, active, x, work):
 def look(system, active, t, x, work):
     """Compute all quantities at a state, for Python; return a status. The acceleration is in `work.a`."""
     find_contacts(system, t, x, work)
-    if system.size[HOLONOMIC] > 0 or system.size[ALL_ROWS] > 0:
-        call_function(system.address[CALL_ROWS], t, x, work.rows)
     _, _, code = acceleration(system, active, t, x, work, work.trial)
     return code

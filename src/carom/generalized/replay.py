@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from carom.generalized.run import GeneralizedRun
-from carom.results.dense_output import NEAR
 from carom.results.replay import FACTOR, RTOL, Replays
 from carom.status import Status
 from carom.stepping.grid import part_of_grid
@@ -19,20 +18,6 @@ class Replay(Replays):
         self.grid, plan = solution._run.plan.grid, solution._run.plan
         self.allowed = FACTOR * (plan.atol + plan.rtol if plan.order > 0 else 2.0 * RTOL)
         self.arrives: dict[int, bool] = {}
-
-    def improve(self, times: np.ndarray, q: np.ndarray, v: np.ndarray) -> None:
-        """Replace the states of a cubic at times (K,) where a replay is better."""
-        nodes = self.solution._nodes[0]
-        n, last = q.shape[1], len(self.solution.t) - 2
-        for k, time in enumerate(times):
-            j = int(np.searchsorted(nodes, time))
-            around = nodes[max(j - 1, 0)], nodes[min(j, len(nodes) - 1)]
-            margin = NEAR * (around[1] - around[0])
-            if min(time - around[0], around[1] - time) <= margin:
-                continue
-            i = min(int(np.searchsorted(self.solution.t, time, side="right")) - 1, last)
-            if self.is_good(i) and self.go(i, float(time)):
-                q[k], v[k] = self.state[:n], self.state[n:]
 
     def go(self, i: int, until: float) -> bool:
         """Continue from saved state i to a time; return whether it was reached."""
@@ -54,4 +39,4 @@ class Replay(Replays):
 
     def cubic(self, i: int, t: float) -> np.ndarray:
         """Return the state of the cubic at a time."""
-        return np.concatenate(self.solution._cubic(np.array([t]), "right"), axis=1)[0]
+        return np.concatenate(self.solution._cubic(np.array([t]), "right")[:2], axis=1)[0]

@@ -22,34 +22,17 @@ from carom.generalized.layout import (  # fmt: skip
     new_work,
 )
 from carom.generalized.loop import save_now, time_loop
-from carom.generalized.step import project_rates
+from carom.generalized.step import project
 from carom.model.kept import Kept
 from carom.model.records import PAUSE
 from carom.status import SUCCESS, Status
-from carom.stepping.grid import STATES, Grid, make_grid
+from carom.stepping.grid import STATES, planned_grid
 
 if TYPE_CHECKING:
     from carom.generalized.system import GeneralizedSystem
     from carom.stepping.settings import Settings
 
 EVENTS_AT_ONCE = 200  # events at one instant
-
-
-def grid_of(settings: Settings, touches: bool) -> Grid:
-    """Return the ends of steps and the saved states, 200 of these by default.
-
-    With contacts, no step by tolerances is longer than the time between saved states: a gap that closes and
-    opens within a step is detected from both ends of the step.
-    """
-    how, every = settings, settings.save_every
-    if how.step is not None:
-        return make_grid(how.duration, how.step, every, how.save_at)
-    between = how.duration / STATES
-    longest = how.options.max_step or (between if touches else how.duration)
-    if how.save_at is not None:
-        return make_grid(how.duration, longest, 1, how.save_at)
-    grid = make_grid(how.duration, longest, 1, between)
-    return grid._replace(save_every=grid.save_every * every)
 
 
 class GeneralizedRun:
@@ -66,7 +49,10 @@ class GeneralizedRun:
         made = system.evaluation()
         system = system._as_it_is()
         self.user, self.options, self.how = system, options, settings
-        grid = grid_of(settings, len(system.contacts) > 0)
+        # a gap that closes and opens within a step is detected from both ends of the step
+        between = settings.duration / (STATES if system.contacts else 1)
+        longest = settings.step or options.max_step or between
+        grid = planned_grid(settings, settings.duration, longest)
         order = METHODS[settings.method].order if settings.adapts else 0
         atol = settings.rtol if settings.atol is None else settings.atol
         self.plan = Plan(settings.duration, grid.interval, grid, order, settings.rtol, atol)
@@ -92,42 +78,45 @@ class GeneralizedRun:
         self.record = Record(self.clock, self.series, self.states)
         self.nodes: list[tuple[float, np.ndarray, np.ndarray]] = []  # time, state before, after
         self.contacts = Contacts(self)
-        self.counts = {"located events": 0, "impacts": 0, "holds": 0}
-        self.failure: BaseException | None = None
         self.reason = ""  # of a failure, beyond its status
-        self.at_once, self.last, self.in_step = 0, -1.0, -1
+        self.located, self.at_once, self.last, self.in_step = 0, 0, -1.0, -1
         if start is None:
             self.check_start()
-        self.start_code = self.contacts.resolve(0, -1)
+        self.code = self.contacts.resolve(0, -1)
         self.save_now()
 
     def check_start(self) -> None:
         """Raise an error if the start violates constraints or contacts; `project_start` projects velocities."""
         options, x, n = self.options, self.x, self.n
-        seen = self.made.look(x[:n], x[n:])
-        tolerance = options.constraint_tolerance
-        scale = np.abs(seen.A[: len(seen.phi)]) @ np.abs(x[:n]) + 1.0
-        if np.any(~(np.abs(seen.phi) <= tolerance * scale)):
+        code, seen = self.made.look(x), self.made.work
+
+        def exceed(errors, rows, at, least):
+            most = options.constraint_tolerance * np.maximum(np.abs(rows) @ np.abs(at), least)
+            return bool(np.any(~(np.abs(errors) <= most)))
+
+        A, rates = seen.A, seen.A @ x[n:]
+        if exceed(seen.phi, A[: len(seen.phi)], x[:n], 1.0):
             raise ValueError(
                 f"position must satisfy the constraints, got phi(q) = {seen.phi.tolist()} at the start"
             )
-        speed = np.abs(seen.A) @ np.abs(x[n:])
-        if np.any(~(np.abs(seen.A @ x[n:]) <= tolerance * np.maximum(speed, 1e-300))):
-            if not options.project_start:
-                raise ValueError(
-                    f"velocity must satisfy the constraints, got A v = {(seen.A @ x[n:]).tolist()} at the "
-                    "start; use Options(project_start=True)"
-                )
-        sizes = np.abs(seen.G[:, 0]) @ np.abs(x[:n]) if len(seen.gap) else np.zeros(0)
-        inside = seen.gap < -1e-9 * np.maximum(sizes, np.abs(seen.gap))
-        inside &= seen.gap < -1e-9 * sizes
-        for contact in np.flatnonzero(inside):
+        if exceed(rates, A, x[n:], 1e-300) and not options.project_start:
+            raise ValueError(
+                f"velocity must satisfy the constraints, got A v = {rates.tolist()} at the start; use "
+                "Options(project_start=True)"
+            )
+        sizes = np.abs(seen.G[:, 0]) @ np.abs(x[:n])
+        for contact in np.flatnonzero(seen.gap < -1e-9 * sizes):
             name = self.user.contacts[contact].name
             raise ValueError(
                 f"position must not be inside a contact, got the gap {seen.gap[contact]:.6g} of {name!r}"
             )
-        if seen.status == 0 and self.system.size[2] > 0:
-            project_rates(self.system, self.active, 0.0, x, self.work)
+        if code == 0 and len(A):
+            project(self.system, self.active, 0.0, x, True, self.work)
+
+    @property
+    def failure(self) -> BaseException | None:
+        """The error that a user-defined function has raised, or None."""
+        return self.made.functions.failed
 
     @property
     def steps(self) -> int:
@@ -153,56 +142,53 @@ class GeneralizedRun:
 
     def save_now(self) -> None:
         """Write the present state into the records."""
-        save_now(self.x, self.record)
+        save_now(self.system, self.x, self.record, self.work)
 
     def go_on(self, until: float) -> Status:
         """Continue until step number `until`, or a failure."""
-        code = self.start_code
-        while code == 0:
-            code = time_loop(self.motion, self.x, self.plan, int(until), self.record)
-            if code == PAUSE and self.made.functions.failed is None:
-                code = 0  # Python raises Ctrl-C here
-                continue
-            if code != EVENT:
+        while self.code == 0:
+            self.code = time_loop(self.motion, self.x, self.plan, int(until), self.record)
+            if self.code == EVENT:
+                self.code = self.event()
+            elif self.code == PAUSE and self.failure is None:
+                self.code = 0  # Python raises Ctrl-C here
+            else:
                 break
-            code = self.event()
-        functions = self.made.functions
-        if code != SUCCESS and self.failure is None and not functions.blame(self.reached):
-            if functions.has_compiled:
-                self.look_again()
-        if functions.failed is not None:
-            self.failure, functions.failed = functions.failed, None
+        code, self.code = self.code, 0
         if isinstance(self.failure, KeyboardInterrupt):  # while a plain function ran
-            self.failure = None
+            self.made.functions.forget()
             return Status.INTERRUPTED
-        if self.failure is not None:
-            self.reason = functions.reason
+        if code != SUCCESS and self.is_to_blame():
+            self.reason = self.made.functions.reason
             return Status.FUNCTION_FAILED
         return Status.SUCCESS if code == SUCCESS else Status(code)
 
-    def look_again(self) -> None:
-        """Take the step that failed once more, with compiled functions of the user's called from Python."""
-        place = Kept((self.motion, self.x, self.clock))
-        self.made.functions.call_from_python([self.system.address])
-        time_loop(self.motion, self.x, self.plan, self.steps_done + 1, self.record)
-        place.restore()
-        self.made.functions.blame(self.reached)
+    def is_to_blame(self) -> bool:
+        """Return whether a user-defined function has ended the run."""
+        functions = self.made.functions
+        if self.failure is None and not functions.blame(self.reached) and functions.has_compiled:
+            # the step once more, with compiled functions called from Python
+            place = Kept((self.motion, self.x, self.clock))
+            functions.call_from_python([self.system.address, *self.system.part[:, :2].T])
+            time_loop(self.motion, self.x, self.plan, self.steps_done + 1, self.record)
+            place.restore()
+            functions.blame(self.reached)
+        return self.failure is not None
 
     def costs(self) -> str:
         """Return what the run has done so far, for the progress bar."""
-        counts, calls = {k: n for k, n in self.counts.items() if n}, self.made.functions.calls
-        if calls:
-            counts["calls of Python functions"] = calls
-        return "; ".join(f"{count} {name}" for name, count in counts.items())
+        counts = list(self.counted().items())[3:]
+        counts.append(("calls of Python functions", self.made.functions.calls))
+        return "; ".join(f"{count} {name}" for name, count in counts if count)
 
     def counted(self) -> dict[str, int]:
-        """Return the numbers of steps, of trial steps, and of those that were rejected."""
-        clock = self.clock[0]
+        """Return the numbers of steps, of trial steps, of those that were rejected, and of events."""
+        clock, kinds = self.clock[0], [kind for _, kind, _ in self.contacts.events]
         return {
-            "steps": int(clock.step),
-            "trial_steps": int(clock.trials),
-            "rejected": int(clock.rejected),
-        }
+            "steps": int(clock.step), "trial_steps": int(clock.trials), "rejected": int(clock.rejected),
+            "located events": self.located, "impacts": kinds.count("impact"),
+            "holds": kinds.count("held"),
+        }  # fmt: skip
 
     def go_back(self) -> None:
         """Do nothing: a run is only interrupted where it can be continued."""
@@ -210,22 +196,17 @@ class GeneralizedRun:
     def event(self) -> int:
         """Handle the event at which the loop has stopped; return a status."""
         clock = self.clock[0]
-        self.counts["located events"] += 1
+        self.located += 1
         if clock.step != self.in_step:
             self.in_step = int(clock.step)
-            self.contacts.new_step()
+            if self.plan.order == 0:
+                self.contacts.strike.blows[:] = 0
         near = clock.now - self.last <= 1e-12 * self.plan.step
         self.at_once = self.at_once + 1 if near else 0
         self.last = float(clock.now)
         if self.at_once > EVENTS_AT_ONCE:
             return Status.TOO_MANY_IMPACTS
-        try:
-            return self.contacts.resolve(int(clock.kind), int(clock.index))
-        except BaseException as error:
-            if error is not self.made.raised:
-                raise
-            self.failure = error
-            return Status.FUNCTION_FAILED
+        return self.contacts.resolve(int(clock.kind), int(clock.index))
 
     def solution(self, status: Status):
         """Return the solution; after a failure it ends with the last state."""

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from carom import checks
+from carom.geometry.spline import cubic
+from carom.results.dense_output import NEAR
 from carom.results.drawn import Drawn
 from carom.results.endings import message
 from carom.results.event_tables import EventTable
 from carom.results.ledger import Ledger
-from carom.scene.materials import IMPACT_LAWS
 from carom.scene.table import RecordTable
 from carom.status import Status
 
@@ -62,17 +63,6 @@ def impact_table(records: list[CoordinateImpact], n: int) -> CoordinateImpactTab
     return CoordinateImpactTable(**{name: column[1:] for name, column in columns.items()})
 
 
-def given_by_law(t: np.ndarray, impacts: CoordinateImpactTable) -> np.ndarray:
-    """Return the energy that impacts have added until each time (T,), where their law allows it (V8)."""
-    from carom.impact.laws import GAINING
-
-    named = np.array(IMPACT_LAWS)[list(GAINING)]
-    may = np.isin(impacts.law, named) & (impacts.friction > 0.0)
-    given = np.where(may, np.maximum(impacts.energy_change, 0.0), 0.0)
-    before = np.concatenate([[0.0], np.cumsum(given)])
-    return before[np.searchsorted(impacts.time, t, side="right")]
-
-
 @dataclass(frozen=True, eq=False)
 class GeneralizedSolution(Drawn):
     """The motion of a system in n coordinates at T saved times, with K impacts.
@@ -96,8 +86,7 @@ class GeneralizedSolution(Drawn):
     status : Status
         How the run ended; see also `success` and `message`.
     warnings : tuple of str
-        Sentences about energy errors above `Options.energy_tolerance` at saved times. (They are not checked if
-        the energies depend on time explicitly.)
+        Sentences about energy errors above `Options.energy_tolerance` at saved times.
     stats : dict
         Counts: steps, located events, impacts, contacts that became persistent.
     system : GeneralizedSystem
@@ -124,52 +113,32 @@ class GeneralizedSolution(Drawn):
     @classmethod
     def _from_run(cls, run: GeneralizedRun, status: Status) -> GeneralizedSolution:
         """Make the solution from the records of a run."""
-        from carom._compiled.user_functions import Fault
-        from carom.generalized.loop import energies
+        from carom._compiled.user_functions import Fault, returned
+        from carom.generalized.layout import SERIES
         from carom.results.accuracy import inaccurate, sentences, watched
 
         saved, n = int(run.clock[0].saved), run.n
-        series: Any = run.series[:saved]
-        states = run.states[:saved].copy()
-        kinetic, potential = np.zeros(saved), np.zeros(saved)
-        t = np.array(series.t)
-        functions, said = run.made.functions, ()
-        energies(run.system, t, states, kinetic, potential, run.work)
-        if len(bad := np.flatnonzero(~np.isfinite(kinetic + potential))):
-            name = getattr(run.user._model, "fault", "an expression of the energy")
-            first = Fault(name, float(t[bad[0]]), states[bad[0]], "returned no finite number")
-            said = (f"{str(first).capitalize()}.",) if str(first) else ()
-        some = slice(None, None, max(1, saved // 8))
-        later, below = np.zeros((2, len(t[some])))
-        at = t[some] + 0.4321 * run.plan.duration
-        energies(run.system, at, states[some], later, below, run.work)
-        now = [kinetic[some], potential[some]]
-        steady = np.array_equal([later, below], now, equal_nan=True)
-        functions.forget()
-        names = ("loads", "impacts", "friction", "bounces")
-        ledger = Ledger(kinetic, potential, *(np.array(series[one]) for one in names))
-        impacts, warnings = impact_table(run.contacts.strike.records, n), ()
-        if steady:  # energies that depend on time are not conserved
-            watch = watched(t, ledger, given_by_law(t, impacts), run.options.energy_tolerance)
-            warnings = (*said, *sentences(watch, run.how.finer))
-            if status is Status.SUCCESS and inaccurate(watch):
-                status = Status.INACCURATE
-        events = run.contacts.events
-        columns = [np.array(column) for column in zip(*events)]
+        columns: Any = {name: np.array(run.series[name][:saved]) for name, _ in SERIES}
+        given, states = columns.pop("given"), run.states[:saved].copy()
+        t, ledger, said = columns.pop("t"), Ledger(**columns), ()
+        energies = np.column_stack([ledger.kinetic, ledger.potential])
+        if len(bad := np.argwhere(~np.isfinite(energies))):
+            k, which = bad[0]
+            name = f"The {run.user._model.kind} {('metric', 'potential')[which]!r}"
+            said = (f"{Fault(name, float(t[k]), states[k], returned(energies[k]))}.",)
+        watch = watched(t, ledger, given, run.options.energy_tolerance)
+        watch["size"] = max(watch.size, run.contacts.light)
+        warnings = (*said, *sentences(watch, run.how.finer))
+        if status is Status.SUCCESS and inaccurate(watch):
+            status = Status.INACCURATE
+        events = [np.array(column) for column in zip(*run.contacts.events)] or [np.zeros(0)] * 3
         return cls(
-            t=t, q=states[:, :n].copy(), v=states[:, n:].copy(), kinetic_energy=kinetic,
-            potential_energy=potential,
-            impacts=impacts,
-            events=EventTable(*columns) if columns else EventTable(*(np.zeros(0) for _ in range(3))),
-            ledger=ledger, status=status, warnings=warnings,
-            stats={**run.counted(), **run.counts}, system=run.user, settings=run.settings,
+            t=t, q=states[:, :n].copy(), v=states[:, n:].copy(), kinetic_energy=ledger.kinetic,
+            potential_energy=ledger.potential, impacts=impact_table(run.contacts.strike.records, n),
+            events=EventTable(*events), ledger=ledger, status=status, warnings=warnings,
+            stats=run.counted(), system=run.user, settings=run.settings,
             _run=run,
         )  # fmt: skip
-
-    @property
-    def success(self) -> bool:
-        """Whether the status is ``SUCCESS``: the run reached its end with the required accuracy."""
-        return self.status is Status.SUCCESS
 
     @property
     def message(self) -> str:
@@ -177,17 +146,13 @@ class GeneralizedSolution(Drawn):
         run = self._run
         return message(self.status, run.reason, run.how.finer, self.t[-1], self.warnings)
 
-    @property
-    def total_energy(self) -> np.ndarray:
-        """Kinetic plus potential energy (T,) [J]."""
-        return self.kinetic_energy + self.potential_energy
-
     @cached_property
     def constraint_errors(self) -> tuple[np.ndarray, np.ndarray]:
         """Greatest errors of the constraints at each saved time: of phi(q) (T,) and of A v (T,)."""
         position, rate = np.zeros(len(self.t)), np.zeros(len(self.t))
+        seen = self._run.made.work
         for k in range(len(self.t)):
-            seen = self._run.made.look(self.q[k], self.v[k], float(self.t[k]))
+            self._run.made.look(np.append(self.q[k], self.v[k]), float(self.t[k]))
             position[k] = np.max(np.abs(seen.phi), initial=0.0)
             rate[k] = np.max(np.abs(seen.A @ self.v[k]), initial=0.0)
         return position, rate
@@ -218,9 +183,9 @@ class GeneralizedSolution(Drawn):
         """
         checks.choice("side", side, ("right", "left"))
         times = checks.times("t", t, self.t[0], self.t[-1])
-        q, v = self._cubic(times, side)
-        if len(self.t) > 1 and len(self.q[0]) == len(self.system.position):
-            self._replay.improve(times, q, v)
+        q, v, inside = self._cubic(times, side)
+        for k in self._replay.better(times, inside):
+            q[k], v[k] = np.split(self._replay.state, 2)
         return (q[0], v[0]) if np.ndim(t) == 0 else (q, v)
 
     @cached_property
@@ -229,38 +194,31 @@ class GeneralizedSolution(Drawn):
 
         return Replay(self)
 
-    def _cubic(self, times: np.ndarray, side: str) -> tuple[np.ndarray, np.ndarray]:
-        """Return (q, v) at times (K,) by a cubic between saved states and events."""
+    def _cubic(self, times: np.ndarray, side: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return (q, v) at times (K,) by a cubic between saved states and events, and which are not near."""
         at, before, after = self._nodes
         i = np.searchsorted(at, times, side="left" if side == "left" else "right") - 1
         i = np.clip(i, 0, max(len(at) - 2, 0))
         k = np.minimum(i + 1, len(at) - 1)
         n, h = self.q.shape[1], np.maximum(at[k] - at[i], 1e-300)[:, None]
-        s = (times - at[i])[:, None] / h
-        q0, v0, q1, v1 = after[i, :n], h * after[i, n:], before[k, :n], h * before[k, n:]
-        a, b = 2.0 * (q0 - q1) + v0 + v1, 3.0 * (q1 - q0) - 2.0 * v0 - v1
-        q, v = q0 + s * (v0 + s * (b + s * a)), (v0 + s * (2.0 * b + 3.0 * s * a)) / h
+        start, end = np.split(after[i], [n], axis=1), np.split(before[k], [n], axis=1)
+        q, v = cubic((times - at[i])[:, None] / h, h, *start, *end)
         last = times == at[-1]
         if side == "right" and np.any(last):
             v[last] = after[-1, n:]
-        return q, v
+        margin = NEAR * (at[k] - at[i])
+        return q, v, (times - at[i] > margin) & (at[k] - times > margin)
 
     @cached_property
     def _nodes(self):
-        """Times (K,), states before and after (K, 2n), of saved steps and events in order."""
-        saved = np.concatenate([self.q, self.v], axis=1)
-        # state before the first event of a time, state after the last
-        events: dict[float, list] = {}
-        for time, before, after in self._run.nodes:
-            events.setdefault(time, [before, after])[1] = after
-        times = np.union1d(self.t, list(events))
-        place = np.searchsorted(self.t, times)
-        before = np.zeros((len(times), saved.shape[1]))
-        after = np.zeros((len(times), saved.shape[1]))
-        for k, (time, j) in enumerate(zip(times, place)):
-            first, second = events.get(time, (saved[min(j, len(saved) - 1)],) * 2)
-            before[k], after[k] = first, second
-        return times, before, after
+        """Times (K,), states before and after (K, 2n), of events and of saved steps in order."""
+        events = self._run.nodes
+        at = np.array([time for time, *_ in events])
+        own = ~np.isin(self.t, at)  # a step that ends with an event is saved after it
+        saved, time = np.hstack([self.q, self.v])[own], np.concatenate([self.t[own], at])
+        order = np.argsort(time, kind="stable")
+        before, after = (np.array([*saved, *(one[k] for one in events)])[order] for k in (1, 2))
+        return time[order], before, after
 
     def __repr__(self) -> str:
         return (

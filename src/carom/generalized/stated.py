@@ -1,11 +1,9 @@
-"""`CoordinateContact`, and checks of user-defined functions."""
+"""`CoordinateContact`, and its checks."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
 
 from carom import checks
 from carom.fields import Number, Word, number, word
@@ -46,41 +44,3 @@ def checked_contact(
     if any(name == other.name for other in others):
         raise ValueError(f"name must be unique, got {checks.shown(name)} twice")
     return contact
-
-
-def checked_functions(q: np.ndarray, gap, gradient, tangent) -> int:
-    """Check that the functions of a contact return the right shapes; return the number of tangents."""
-    n = len(q)
-    for what, one in (("gap", gap), ("gap_gradient", gradient), ("tangent", tangent)):
-        checks.function(what, one, optional=what != "gap")
-    answer("gap(q)", gap, (), q)
-    if gradient is not None:
-        answer("gap_gradient(q)", gradient, (n,), q)
-    if tangent is None:
-        return 0
-    rows = checks.call("tangent(q)", tangent, q.copy())
-    rows = checks.real_array("tangent(q)", rows, f"({n},) or (2, {n})")
-    if not np.all(np.isfinite(rows)):
-        raise ValueError(f"tangent(q) must be finite, got {rows.tolist()}")
-    if rows.shape not in ((n,), (1, n), (2, n)):
-        raise ValueError(f"tangent(q) must have shape ({n},) or (2, {n}), got shape {rows.shape}")
-    return rows.size // n
-
-
-def answer(name: str, function: Callable, shape: tuple, *arguments) -> np.ndarray:
-    """Return the result of a function at the start; raise an error for a shape other than `shape`."""
-    given = [np.copy(a) if np.ndim(a) else a for a in arguments]
-    result = checks.real_array(
-        name, checks.call(name, function, *given), "(" + ", ".join(map(str, shape)) + ")"
-    )
-    wrong = result.ndim != len(shape) or any(
-        s not in (None, k) for s, k in zip(shape, result.shape)
-    )
-    if wrong:
-        wanted = ", ".join("k" if s is None else str(s) for s in shape)
-        n = next(len(a) for a in given if np.ndim(a))
-        raise ValueError(
-            f"{name} must have shape ({wanted}{',' * (len(shape) == 1)}), as position has {n} coordinates, "
-            f"got shape {result.shape}"
-        )
-    return checks.finite_array(name, result, shape)

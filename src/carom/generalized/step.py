@@ -5,17 +5,20 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, kernel
-from carom.generalized.autoparallel import correct
 from carom.generalized.layout import ALL_ROWS, HOLONOMIC, N
+from carom.generalized.linear import add_row, copy_row
 from carom.generalized.motion import (
+    POSITION,
+    RATE,
     acceleration,
-    copy_row,
     direction,
-    factor_rows,
     find_metric,
     find_rows,
+    gather,
     react,
     slip_of,
+    solve_metric,
+    terms,
 )
 from carom.model.actions import MODE_STICK
 from carom.status import CONSTRAINTS_LOST, NOT_FINITE
@@ -46,7 +49,19 @@ def take(motion, t, x, h):
     if not math.isfinite(total):
         return NOT_FINITE
     if system.size[ALL_ROWS] > 0 or active.count[0] > 0:
-        return project(system, active, t + h, end, work)
+        code = return_to_surfaces(system, active, t + h, end, work)
+        return project_rates(system, active, t + h, end, work) if code == 0 else code
+    return 0
+
+
+@entry
+def move_freely(motion, x, parts):
+    """Move x = (q, v) for a time of 1 in `parts` steps, for Python; return a status."""
+    for part in range(parts):
+        code = take(motion, part / parts, x, 1.0 / parts)
+        if code != 0:
+            return code
+        copy_row(motion.work.end, x, x.size)
     return 0
 
 
@@ -54,14 +69,12 @@ def take(motion, t, x, h):
 def combine(weight, count, h, x, stages, out):
     """Write x + h sum weight[r] stages[r], r < count; return h sum weight."""
     ahead = 0.0
-    for j in range(x.size):
-        out[j] = x[j]
+    copy_row(x, out, x.size)
     for r in range(count):
         a = h * weight[r]
         ahead += a
         if a != 0.0:
-            for j in range(x.size):
-                out[j] += a * stages[r, j]
+            add_row(a, stages[r], out, x.size)
     return ahead
 
 
@@ -78,84 +91,64 @@ def note_slip_directions(system, active, t, x, work):
 
 
 @kernel
-def place_rows(system, active, x, work):
-    """Write the rows for positions into R = D, and -phi and -gap into `rhs`; return (rows, error).
-
-    The error is the greatest of all rows, each relative to the terms of its row.
-    """
-    n, m, worst = system.size[N], 0, 0.0
-    for r in range(system.size[HOLONOMIC] + active.count[0]):
-        h = r - system.size[HOLONOMIC]
-        row = work.A[r] if h < 0 else work.G[active.contact[h], 0]
-        value = work.phi[r] if h < 0 else work.gap[active.contact[h]]
-        size = 0.0
-        for j in range(n):
-            size += abs(row[j] * x[j])
-        if h < 0:
-            work.row_scale[r] = max(work.row_scale[r], size)
-            size = work.row_scale[r]
-        else:
-            size = max(size, work.gap_scale[active.contact[h]])
-        copy_row(row, work.R[m], n)
-        copy_row(row, work.D[m], n)
-        work.rhs[m] = -value
-        worst = max(worst, abs(value) / size if size > 0.0 else abs(value))
-        m += 1
-    return m, worst
-
-
-@kernel
-def rate_rows(system, active, work):
-    """Write the rows for velocities into R = D, and 0 into `rhs`; return the number of rows."""
-    n, m = system.size[N], 0
-    for r in range(system.size[ALL_ROWS]):
-        copy_row(work.A[r], work.R[m], n)
-        m += 1
-    for i in range(active.count[0]):
-        for r in range(3 if active.mode[i] == MODE_STICK else 1):
-            copy_row(work.G[active.contact[i], r], work.R[m], n)
-            m += 1
+def error_of(system, active, m, x, work):
+    """Return the greatest error of the m rows for coordinates, each relative to the terms of its row."""
+    n, h, worst = system.size[N], system.size[HOLONOMIC], 0.0
     for r in range(m):
-        copy_row(work.R[r], work.D[r], n)
-        work.rhs[r] = 0.0
-    return m
+        size = terms(work.R[r], x, n)
+        if r < h:
+            work.row_scale[r] = size = max(work.row_scale[r], size)
+        else:
+            size = max(size, work.gap_scale[active.contact[r - h]])
+        worst = max(worst, abs(work.rhs[r]) / size if size > 0.0 else abs(work.rhs[r]))
+    return worst
 
 
 @kernel
-def project(system, active, t, x, work):
-    """Project `x` to constraints and persistent contacts: coordinates along autoparallels, then velocities."""
-    n, last = system.size[N], 0.0
+def return_to_surfaces(system, active, t, x, work):
+    """Move the coordinates in `x` to constraints and persistent contacts along autoparallels; return a status.
+
+    Exp_q(xi) is replaced by the first two terms of its series, q + xi - Gamma(xi, xi)/2 (a retraction of
+    second order: Absil, Mahony and Sepulchre 2008, §5.5): xi is the error of a step, and what is left of phi
+    is removed by the next iteration.
+    """
+    n, last, y, xi = system.size[N], 0.0, work.trial, work.a
     for iteration in range(20):
         code = find_metric(system, t, x, work)
         if code != 0:
             return code
         find_rows(system, active, t, x, work)
-        m, error = place_rows(system, active, x, work)
+        m = gather(system, active, POSITION, x, work)
+        error = error_of(system, active, m, x, work)
         if not error > _NONE or (iteration > 0 and error >= 0.5 * last):
             break
         last = error
-        factor_rows(system, m, work)
-        xi = work.a
         for j in range(n):
             xi[j] = 0.0
         react(system, m, xi, work)
-        code = correct(system, t, x, xi, work)
+        copy_row(x, y, n)
+        copy_row(xi, y[n:], n)
+        code = find_metric(system, t, y, work)
         if code != 0:
             return code
-    if not error <= 1e-9:
-        return CONSTRAINTS_LOST
-    m = rate_rows(system, active, work)
-    factor_rows(system, m, work)
-    v = work.a
-    for j in range(n):
-        v[j] = x[n + j]
-    react(system, m, v, work)
-    for j in range(n):
-        x[n + j] = v[j]
-    return 0
+        solve_metric(n, work.L, work.c)
+        add_row(1.0, xi, x, n)
+        add_row(-0.5, work.c, x, n)
+    return 0 if error <= 1e-9 else CONSTRAINTS_LOST
+
+
+@kernel
+def project_rates(system, active, t, x, work):
+    """Project the velocities in `x` to constraints and persistent contacts; return a status."""
+    code = find_metric(system, t, x, work)
+    if code == 0:
+        find_rows(system, active, t, x, work)
+        react(system, gather(system, active, RATE, x, work), x[system.size[N] :], work)
+    return code
 
 
 @entry
-def project_rates(system, active, t, x, work):
-    """Do the same as `project`, for Python."""
-    return project(system, active, t, x, work)
+def project(system, active, t, x, rates, work):
+    """Project coordinates, and if `rates` is set also velocities, for Python; return a status."""
+    code = return_to_surfaces(system, active, t, x, work)
+    return project_rates(system, active, t, x, work) if rates and code == 0 else code

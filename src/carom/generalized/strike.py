@@ -8,6 +8,7 @@ import numpy as np
 
 from carom.generalized.solution import CoordinateImpact
 from carom.impact import layout as o
+from carom.impact.laws import GAINING
 from carom.impact.resolve import resolve
 from carom.status import Status
 
@@ -25,25 +26,22 @@ class Strike:
     def __init__(self, contacts: Contacts):
         self.contacts = contacts
         self.records: list[CoordinateImpact] = []
+        self.blows = np.zeros(len(contacts.law), dtype=np.int64)
+        self.struck = np.zeros(len(contacts.law))  # time of the last impact
         self.room: Any = None  # workspace for several contacts, made when it is first needed
 
-    def all(self, closed: list[int], now: float, jams: int) -> int:
+    def all(self, closed: list[int], jams: int = -1) -> int:
         """Resolve impacts until no closed contact approaches; return a status."""
         here = self.contacts
         for _ in range(BLOWS):
-            here.look()
-            if here.seen.status != 0:
-                return here.seen.status
             approach = [c for c in closed if here.u[c, 0] < -here.still[c]]
             if not approach and jams < 0:
                 return 0
-            if len(closed) == 1:
-                code = self.one(closed[0], now, jams >= 0 and not approach)
-            else:
-                code = self.several(closed, now, jams if not approach else -1)
+            if not self.together(closed, jams if not approach else -1):
+                return Status.IMPACT_FAILED
+            code, jams = here.look(), -1
             if code != 0:
                 return code
-            jams = -1
         return Status.TOO_MANY_IMPACTS
 
     def restitution(self, c: int) -> float:
@@ -52,50 +50,24 @@ class Strike:
         With tolerances it is many impacts in a row, each after a bounce lower than these.
         """
         here, plan = self.contacts, self.contacts.run.plan
-        now = float(here.run.clock[0].now)
-        bounce = -float(here.u[c, 0]) * (now - here.struck[c])
+        bounce = -float(here.u[c, 0]) * (here.run.reached - self.struck[c])
         if plan.order > 0 and bounce > plan.atol + plan.rtol:
-            here.blows[c] = 0
-        here.struck[c] = now
-        e, count = float(here.restitution[c]), float(here.blows[c])
-        here.blows[c] += 1
-        return 0.0 if e < 1.0 and e**count <= SPENT else e
+            self.blows[c] = 0
+        self.struck[c] = here.run.reached
+        e = self.left(c)
+        self.blows[c] += 1
+        return e
 
-    def one(self, c: int, now: float, jams: bool) -> int:
-        """Solve the impact of one contact."""
-        here = self.contacts
-        G = here.seen.G[c]
-        W, u, out = G @ here.P @ G.T, here.u[c].copy(), np.zeros(o.SIZE)
-        W = np.ascontiguousarray(0.5 * (W + W.T))
-        if jams:
-            u[0] = -SEED * np.linalg.norm(u[1:])
-        out[o.STILL] = here.still[c]
-        mu, e, law = float(here.friction[c]), self.restitution(c), int(here.law[c])
-        code = resolve(W, u, mu, e, law, out)
-        if code != o.OK:
-            return Status.IMPACT_FAILED
-        impulse = out[o.IMPULSE : o.IMPULSE + 3].copy()
-        self.apply(G, impulse)
-        after, works = out[o.VELOCITY : o.VELOCITY + 3], out[[o.WORK_C, o.WORK_R, o.FRICTION_LOSS]]
-        wedged = int(out[o.PHASES]) & o.WEDGED != 0
-        self.write(c, now, u, after, impulse, W, e, float(out[o.ENERGY_CHANGE]), works, 1, wedged)
-        return 0
+    def left(self, c: int) -> float:
+        """Return e of a contact, or 0 if its impacts have left hardly any speed."""
+        e = float(self.contacts.restitution[c])
+        return 0.0 if e < 1.0 and e ** float(self.blows[c]) <= SPENT else e
 
-    def several(self, closed: list[int], now: float, jams: int) -> int:
-        """Solve the multiple impact of all closed contacts (mathematics page, part 2)."""
-        from carom.impact.layout import OK
-        from carom.impact.multiple.layout import (
-            MULTIPLE,
-            CornerContacts,
-            MultipleSettings,
-            new_multiple_result,
-            new_multiple_workspace,
-        )
-        from carom.impact.multiple.resolve import resolve_multiple
-
-        here, k = self.contacts, len(closed)
-        options, n = here.run.options, here.run.n
-        G = here.seen.G[closed].reshape(3 * k, n)
+    def together(self, closed: list[int], jams: int) -> bool:
+        """Change the velocities by the impact of closed contacts; return whether it was solved."""
+        here, run, k = self.contacts, self.contacts.run, len(closed)
+        M, v = here.seen.M, run.x[run.n :].copy()
+        G = here.seen.G[closed].reshape(3 * k, run.n)
         W = G @ here.P @ G.T
         W = np.ascontiguousarray(0.5 * (W + W.T))
         u = here.u[closed].copy()
@@ -103,54 +75,53 @@ class Strike:
         if jams >= 0:
             i = closed.index(jams)
             u[i, 0] = -SEED * np.linalg.norm(u[i, 1:])
-        e = np.array([self.restitution(c) for c in closed])
-        settings = MultipleSettings(
-            multiple=MULTIPLE[options.multiple], rtol=options.corner_tolerance,
-            exponent=options.corner_exponent or 1.0,
-        )  # fmt: skip
-        if self.room is None:
-            self.room = new_multiple_workspace(len(here.friction))
-        out = new_multiple_result(k)
-        apart = options.multiple == "sequential"
-        pair = np.arange(k) if apart else np.zeros(k, dtype=np.int64)
-        contacts = CornerContacts(
-            k, 0, W, u.reshape(-1), here.friction[closed], e, here.law[closed], np.ones(k), pair
+        mu, e = here.friction[closed], np.array([self.restitution(c) for c in closed])
+        solve = self.alone if k == 1 else self.several
+        found = solve(W, u, mu, e, closed)
+        if found is None:
+            return False
+        after, p, works, wedged = found
+        run.x[run.n :] += here.P @ (G.T @ p.ravel())
+        run.clock[0].impacts += 0.5 * (run.x[run.n :] - v) @ M @ (run.x[run.n :] + v)
+        for i in np.flatnonzero(np.any(p != 0.0, axis=1)):
+            own, parts = slice(3 * i, 3 * i + 3), [float(one[i]) for one in works]
+            change = parts[0] + parts[1] - parts[2]
+            if here.law[closed[i]] in GAINING and mu[i] > 0.0:
+                run.clock[0].given += max(change, 0.0)
+            here.note("impact", closed[i])
+            self.records.append(CoordinateImpact(
+                run.reached, closed[i], run.x[: run.n].copy(), u[i], after[i], p[i],
+                change, run.user.contacts[closed[i]].impact_law, W[own, own],
+                float(e[i]), float(mu[i]), *parts, together=k, wedged=int(wedged[i]),
+            ))  # fmt: skip
+        return True
+
+    def alone(self, W, u, mu, e, closed):
+        """Return velocity, impulse, works and wedged of an impact of one contact; None without a solution."""
+        out, (c,) = np.zeros(o.SIZE), closed
+        out[o.STILL] = self.contacts.still[c]
+        if resolve(W, u[0].copy(), mu[0], e[0], self.contacts.law[c], out) != o.OK:
+            return None
+        works = out[[o.WORK_C, o.WORK_R, o.FRICTION_LOSS], None]
+        wedged = [int(out[o.PHASES]) & o.WEDGED != 0]
+        return (
+            out[None, o.VELOCITY : o.VELOCITY + 3],
+            out[None, o.IMPULSE : o.IMPULSE + 3],
+            works,
+            wedged,
         )
-        code = resolve_multiple(contacts, settings, self.room, out)
-        if code != OK:
-            return Status.IMPACT_FAILED
-        p = out.impulse.reshape(k, 3)
-        after = out.velocity.reshape(k, 3)
-        self.apply(G, out.impulse)
-        changes = out.compression + out.restitution - out.friction
-        for i, c in enumerate(closed):
-            if np.any(p[i] != 0.0):
-                own, works = (
-                    slice(3 * i, 3 * i + 3),
-                    (out.compression[i], out.restitution[i], out.friction[i]),
-                )
-                self.write(
-                    c, now, u[i], after[i], p[i], W[own, own], float(e[i]), float(changes[i]), works, k,
-                    out.wedged[i] != 0,
-                )  # fmt: skip
-        return 0
 
-    def apply(self, G: np.ndarray, impulse: np.ndarray) -> None:
-        """Change the velocities by impulses along rows."""
-        run = self.contacts.run
-        n, M = run.n, self.contacts.seen.M
-        v = run.x[n:].copy()
-        run.x[n:] += self.contacts.P @ (G.T @ impulse)
-        run.clock[0].impacts += 0.5 * (run.x[n:] - v) @ M @ (run.x[n:] + v)
+    def several(self, W, u, mu, e, closed):
+        """Return the same of the multiple impact of several contacts (mathematics page, part 2)."""
+        from carom.impact.multiple.api import solve
+        from carom.impact.multiple.layout import multiple_settings, new_multiple_workspace
 
-    def write(self, c, now, before, after, impulse, W, e, change, works, together, wedged) -> None:
-        """Store the record of an impact; `works`: of compression, of restitution, lost by friction."""
-        here = self.contacts
-        here.run.counts["impacts"] += 1
-        here.events.append((now, "impact", c))
-        x, law = here.run.x[: here.run.n].copy(), here.run.user.contacts[c].impact_law
-        mu, works = float(here.friction[c]), map(float, works)
-        self.records.append(CoordinateImpact(
-            now, c, x, before, after, impulse, change, law, W, e, mu, *works,
-            together=together, wedged=int(wedged),
-        ))  # fmt: skip
+        here, k = self.contacts, len(closed)
+        if self.room is None:
+            self.room = new_multiple_workspace(len(here.law))
+        settings = multiple_settings(here.run.options, 1.0)
+        code, out = solve(W, u, mu, e, here.law[closed], np.ones(k), settings, self.room)
+        if code != o.OK:
+            return None
+        works = out.compression, out.restitution, out.friction
+        return out.velocity.reshape(k, 3), out.impulse.reshape(k, 3), works, out.wedged

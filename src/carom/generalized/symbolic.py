@@ -27,6 +27,8 @@ def sympy() -> Any:
 class SymbolicModel:
     """Expressions of a system, in symbols of its own: coordinates q, velocities v, time t."""
 
+    kind = "expression"
+
     def __init__(
         self, coordinates, velocities, kinetic_energy, metric, potential, forces, constraints, rates,
         parameters, time,
@@ -104,12 +106,9 @@ class SymbolicModel:
         result = result.subs(list(self.parameters.items()))
         if self.time is not None:
             result = result.subs(self.time, self.t)
-        known = {
-            *(self.q if "q" in allowed else ()),
-            *(self.v if "v" in allowed else ()),
-            *((self.t,) if "t" in allowed else ()),
-        }
-        unknown = sorted(map(str, result.free_symbols - known))
+        symbols = {"t": {self.t}, "q": set(self.q), "v": set(self.v)}
+        unknown = result.free_symbols.difference(*(symbols[a] for a in allowed))
+        unknown = sorted(map(str, unknown))
         if unknown or result.atoms(sp.Derivative):
             what = {"t": "the time", "q": "coordinates", "v": "velocities"}
             raise ValueError(
@@ -139,14 +138,16 @@ class SymbolicModel:
 
     def table(self, name: str, given, n: int) -> list:
         """Return the entries of a square matrix, row by row."""
-        if isinstance(given, self.sp.MatrixBase):
-            rows = given.tolist()
-        else:
-            rows = [list(one) if isinstance(one, (list, tuple)) or getattr(one, "ndim", 0) else [one]
-                    for one in checks.listed(name, given, "rows")]  # fmt: skip
-        if len(rows) != n or any(len(row) != n for row in rows):
-            width = len(rows[0]) if rows else 0
-            raise ValueError(f"{name} must have shape ({n}, {n}), got {(len(rows), width)}")
+        rows = (
+            given.tolist()
+            if isinstance(given, self.sp.MatrixBase)
+            else checks.listed(name, given, "rows")
+        )
+        rows = [checks.listed(name, row, "rows of expressions") for row in rows]
+        if {len(rows), *map(len, rows)} != {n}:
+            raise ValueError(
+                f"{name} must have shape ({n}, {n}), got {(len(rows), *map(len, rows))[:2]}"
+            )
         return [one for row in rows for one in row]
 
     def linear(self, name: str, expression) -> list:
@@ -171,8 +172,10 @@ class SymbolicModel:
         points = 0.1 + 0.8 * np.random.default_rng(0).random((4, len(symbols)))
         return all(abs(f(*point)[0]) <= 1e-9 for point in points)
 
-    def add_contact(self, gap, tangent) -> None:
-        """Store the expressions of a contact."""
+    def add_contact(self, gap, gradient, tangent) -> None:
+        """Store the expressions of a contact; its gradient is derived, not given."""
+        if callable(gap) and not hasattr(gap, "free_symbols"):
+            raise ValueError("gap must be an expression in a system from SymPy, got a function")
         given = () if tangent is None else tangent
         given = tuple(given) if isinstance(given, Sequence) else (given,)
         if len(given) > 2:
@@ -206,25 +209,26 @@ class SymbolicModel:
 
     def row_terms(self) -> list:
         """Return phi, A, (dA/dt) v."""
-        entries = [a for row in self.A for a in row]
-        return [*self.phi, *entries, *(self.bent(row) for row in self.A)]
+        return [*self.phi, *self.with_rates(self.A)]
 
     def contact_terms(self) -> list:
         """Return gaps, G, (dG/dt) v."""
-        rows = [row for _, G in self.contacts for row in G]
-        entries = [a for row in rows for a in row]
-        return [*(rho for rho, _ in self.contacts), *entries, *(self.bent(row) for row in rows)]
+        return [
+            *(rho for rho, _ in self.contacts),
+            *self.with_rates([row for _, G in self.contacts for row in G]),
+        ]
+
+    def with_rates(self, rows: list) -> list:
+        """Return the entries of rows, and (d row/dt) v of each."""
+        speeds = [sum(a * v for a, v in zip(row, self.v)) for row in rows]
+        return [*(a for row in rows for a in row), *map(self.rate, speeds)]
 
     def rate(self, expression):
         """Return the rate of a function of the coordinates, for constant velocities."""
         return sum(self.sp.diff(expression, q) * v for q, v in zip(self.q, self.v))
 
-    def bent(self, row):
-        """Return (d row/dt) v."""
-        return sum(self.rate(a) * v for a, v in zip(row, self.v))
-
-    def addresses(self, functions) -> list[int]:
-        """Return the addresses of the four compiled functions."""
+    def addresses(self, functions) -> tuple[list[int], list]:
+        """Return the addresses of the four compiled functions, which have no parts."""
         result = []
         for name in ("inertia", "loads", "row_terms", "contact_terms"):
             terms = getattr(self, name)()
@@ -234,7 +238,7 @@ class SymbolicModel:
             written = self.write(name, terms)
             sizes = (2 * self.n,), (len(terms),)
             result.append(functions.written(written, *sizes, f"an expression ({name})"))
-        return result
+        return result, []
 
     def write(self, name: str, terms: list):
         """Return ``name(t, x, out)`` as Python code of scalars; common subexpressions are computed once."""

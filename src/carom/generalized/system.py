@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom import arguments, checks
-from carom.generalized.stated import CoordinateContact, answer, checked_contact, checked_functions
+from carom.generalized.stated import CoordinateContact, checked_contact
 
 if TYPE_CHECKING:
     from carom.generalized.evaluate import Evaluation
@@ -89,26 +89,10 @@ class GeneralizedSystem:
             raise ValueError(
                 f"position must have at least one coordinate, got {checks.shown(position)}"
             )
-        for name, of in (("metric_derivative", "metric"), ("potential_gradient", "potential"),
-                         ("constraint_jacobian", "constraint")):  # fmt: skip
-            if given[name] is not None and given[of] is None:
-                raise ValueError(
-                    f"{name} must be left out without {of}, got {checks.shown(given[name])}"
-                )
         v = _rates(velocity, n)
-        answers = {"metric": (n, n), "potential": (), "metric_derivative": (n, n, n)}
-        answers["potential_gradient"] = (n,)
-        h = 0 if constraint is None else answer("constraint(q)", constraint, (None,), q).size
-        k = 0 if rows is None else len(answer("rows(q)", rows, (None, n), q))
-        answers["constraint_jacobian"] = (h, n)
-        for name, shape in answers.items():
-            if given[name] is not None:
-                answer(f"{name}(q)", given[name], shape, q)
-        if force is not None:
-            answer("force(t, q, v)", force, (n,), 0.0, q, v)
         from carom.generalized.functional import FunctionalModel
 
-        self._start(FunctionalModel(n, given, h, k), q, v)
+        self._start(FunctionalModel(q, v, given), q, v)
 
     @classmethod
     @arguments.known
@@ -187,8 +171,7 @@ class GeneralizedSystem:
 
     def set_state(self, position, velocity) -> None:
         """Set the initial coordinates and velocities, each (n,)."""
-        q = checks.finite_array("position", position, (self.coordinates,))
-        self.position, self.velocity = q, _rates(velocity, self.coordinates)
+        self.position, self.velocity = self._at(position), _rates(velocity, self.coordinates)
 
     def _as_it_is(self) -> GeneralizedSystem:
         """Return a copy that does not change when this system gets a contact or another state."""
@@ -245,13 +228,7 @@ class GeneralizedSystem:
             If an argument is invalid, or `friction` is given without `tangent`.
         """
         contact = checked_contact(self._contacts, tangent, restitution, friction, impact_law, name)
-        if hasattr(self._model, "sp"):
-            if callable(gap) and not hasattr(gap, "free_symbols"):
-                raise ValueError("gap must be an expression in a system from SymPy, got a function")
-            self._model.add_contact(gap, tangent)
-        else:
-            count = checked_functions(self.position, gap, gap_gradient, tangent)
-            self._model.add_contact(gap, gap_gradient, tangent, count)
+        self._model.add_contact(gap, gap_gradient, tangent)
         self._made = None
         self._contacts.append(contact)
         return contact
@@ -264,9 +241,13 @@ class GeneralizedSystem:
             self._made = Evaluation(self)
         return self._made
 
+    def _look(self, position):
+        self.evaluation().look(self._at(position))
+        return self.evaluation().work
+
     def metric(self, position) -> np.ndarray:
         """Return M (n, n) at coordinates (n,)."""
-        return self.evaluation().look(self._at(position)).M
+        return self._look(position).M.copy()
 
     def christoffel(self, position) -> np.ndarray:
         r"""Return the affinities :math:`\Gamma^k_{ij}` (n, n, n), k first, at `position` (n,)."""
@@ -274,7 +255,7 @@ class GeneralizedSystem:
 
     def gaps(self, position) -> np.ndarray:
         """Return the gaps (C,) of all contacts at coordinates (n,)."""
-        return self.evaluation().look(self._at(position)).gap.copy()
+        return self._look(position).gap.copy()
 
     def autoparallel(self, position, velocity, parts: int = 100) -> tuple[np.ndarray, np.ndarray]:
         """Return the end (q, v) of the autoparallel from `position` with `velocity`, after a time of 1.

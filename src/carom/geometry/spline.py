@@ -63,7 +63,7 @@ def interpolate(
     empty = t1 == t0
     h = np.where(empty, 1.0, t1 - t0)
     s = np.where(empty, 0.0, (t - t0) / h)
-    x, v = _cubic(s, h, x0, v0, x1, v1)
+    x, v = cubic(s, h, x0, v0, x1, v1)
     Q, W = _rotation(s, h, Q0, rotate_back(Q0, w0), Q1, rotate_back(Q1, w1))
     return x, Q, v, rotate(Q, W)
 
@@ -76,13 +76,13 @@ def _rotation(s, h, Q0, W0, Q1, W1):
     end = between(multiply(Q0, exp(h * carry)), Q1)
     rate0 = W0 - carry
     rate1 = differential.apply_inverse(end, W1 - rotate_back(exp(end), carry))
-    eta, rate = _cubic(s, h, np.zeros_like(end), rate0, end, rate1)
+    eta, rate = cubic(s, h, np.zeros_like(end), rate0, end, rate1)
     turned = exp(eta)
     Q = normalize(multiply(multiply(Q0, exp(s * h * carry)), turned))
     return Q, differential.apply(eta, rate) + rotate_back(turned, carry)
 
 
-def _cubic(s, h, y0, d0, y1, d1):
+def cubic(s, h, y0, d0, y1, d1):
     """Return value and rate, at the fraction s of a step h, of the cubic with these ends and rates.
 
     Both are exactly the given ones at s = 0 and s = 1.

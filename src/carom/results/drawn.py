@@ -1,6 +1,12 @@
-"""`Solution.plot`."""
+"""What the solutions of scenes and of systems in coordinates share: how they ended, energy, `plot`."""
 
 from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from carom.status import Status
 
 KINDS = (
     "overview", "trajectory", "phase", "energy", "impacts", "impact_inside", "hodograph", "contacts",
@@ -15,7 +21,21 @@ WHAT = {
 
 
 class Drawn:
-    """The method of a solution that draws plots; needs ``carom[plot]``."""
+    """Base class of solutions. Its method `plot` needs ``carom[plot]``."""
+
+    status: Status
+    kinetic_energy: Any
+    potential_energy: Any
+
+    @property
+    def success(self) -> bool:
+        """Whether the run reached its end, or an event that ends it, with the required accuracy."""
+        return self.status in (Status.SUCCESS, Status.STOPPED)
+
+    @property
+    def total_energy(self) -> np.ndarray:
+        """Kinetic plus potential energy (T,) [J]."""
+        return self.kinetic_energy + self.potential_energy
 
     def plot(self, kind: str = "overview", what=None, **options):
         """Draw one of the plots of `carom.plots` and return its axes.

@@ -9,6 +9,7 @@ misses it by far less than the replay and a cubic through both states differ.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -49,6 +50,14 @@ class Replays(ABC):
     @abstractmethod
     def cubic(self, i: int, t: float) -> Any:
         """Return the state of the cubic at a time in interval i."""
+
+    def better(self, times: np.ndarray, among: np.ndarray) -> Iterator[int]:
+        """Yield those of some of the times, at which `among` is true, to which a good replay has gone."""
+        t = self.solution.t
+        for k in np.flatnonzero(among):
+            i = min(int(np.searchsorted(t, times[k], side="right")) - 1, len(t) - 2)
+            if self.is_good(i) and self.go(i, float(times[k])):
+                yield k
 
     def is_good(self, i: int) -> bool:
         """Return whether the replay from saved state i ends at the next one, or is better than the cubic."""
@@ -91,14 +100,14 @@ class Replay(Replays):
 
     def improve(self, times: np.ndarray, cubic: np.ndarray, x, Q, v, w) -> None:
         """Replace the states (K, N) of a cubic at times (K,) by states of the replay."""
-        t = self.solution.t
-        for k in np.flatnonzero(cubic.any(axis=1)):
-            i = min(int(np.searchsorted(t, times[k], side="right")) - 1, len(t) - 2)
-            if self.is_good(i) and self.go(i, times[k]):
-                now, own = self.run.now, cubic[k]
-                x[k, own], Q[k, own], v[k, own], w[k, own] = (
-                    now.x[own], now.Q[own], now.v[own], now.w[own],
-                )  # fmt: skip
+        for k in self.better(times, cubic.any(axis=1)):
+            now, own = self.run.now, cubic[k]
+            x[k, own], Q[k, own], v[k, own], w[k, own] = (
+                now.x[own],
+                now.Q[own],
+                now.v[own],
+                now.w[own],
+            )
 
     def saved(self, i: int) -> np.recarray:
         """Return saved state i."""

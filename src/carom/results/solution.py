@@ -202,11 +202,6 @@ class Solution(Portable, Drawn):
         return state_of_body(self, self.scene, name, "solution")
 
     @property
-    def success(self) -> bool:
-        """Whether the run reached its end, or an event that ends it, with the required accuracy."""
-        return self.status in (Status.SUCCESS, Status.STOPPED)
-
-    @property
     def message(self) -> str:
         """How the run ended, in sentences; if it failed, with the time that it reached."""
         finer = settings_of(self.settings, self._run.options).finer
@@ -222,11 +217,6 @@ class Solution(Portable, Drawn):
             names = ", ".join(f"events[{i}]" for i in not_seen)
             more = (f"{names} did not happen.", *more)
         return " ".join((said, *more))
-
-    @property
-    def total_energy(self) -> np.ndarray:
-        """Kinetic plus potential energy (T,) [J]."""
-        return self.kinetic_energy + self.potential_energy
 
     @cached_property
     def _reactions(self) -> np.ndarray:

@@ -7,12 +7,15 @@ and, if tolerances are given, in its own steps (`carom.dynamics.adapt`).
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from carom._compiled.decorators import inlined
 from carom.model.arrays import System
+
+if TYPE_CHECKING:
+    from carom.stepping.settings import Settings
 
 STATES = 200  # default number of saved states after the first
 # longest step of a run with tolerances, relative to the time of a fall through the least size of a body. With
@@ -57,6 +60,18 @@ def make_grid(
         parts = count(save_at, longest)
         interval, save_every = save_at / parts, parts * save_every
     return Grid(interval, count(duration, interval), save_every, *_NONE)
+
+
+def planned_grid(settings: Settings, duration: float, longest: float) -> Grid:
+    """Return the steps that the arguments of a run ask for; `longest` is their step, or limits it.
+
+    Without a step and times to save, 200 states are saved.
+    """
+    at, every = settings.save_at, settings.save_every
+    if settings.step is not None or at is not None:
+        return make_grid(duration, longest, every if settings.step is not None else 1, at)
+    grid = make_grid(duration, longest, 1, duration / STATES)
+    return grid._replace(save_every=grid.save_every * every)
 
 
 def count(whole: float, part: float) -> int:

@@ -130,16 +130,7 @@ def resolve_impacts(
     """
     from carom.impact.laws import NUMBERS
     from carom.impact.layout import AT_ONCE, OK
-    from carom.impact.multiple.layout import (
-        CAPPED,
-        MESSAGES,
-        MULTIPLE,
-        CornerContacts,
-        MultipleSettings,
-        new_multiple_result,
-        new_multiple_workspace,
-    )
-    from carom.impact.multiple.resolve import resolve_multiple
+    from carom.impact.multiple.layout import CAPPED, MESSAGES, MULTIPLE, MultipleSettings
 
     u = checks.finite_array("velocity", velocity, (None, 3), "m/s")
     k = len(u)
@@ -158,12 +149,7 @@ def resolve_impacts(
         rtol=checks.number("rtol", rtol, least=1e-12, most=1e-2),
         exponent=checks.number("exponent", exponent, least=1.0, most=4.0),
     )
-    out = new_multiple_result(k)
-    workspace = new_multiple_workspace(k)
-    velocities = np.ascontiguousarray(u).reshape(-1)
-    pair = np.arange(k) if multiple == "sequential" else np.zeros(k, dtype=np.int64)
-    contacts = CornerContacts(k, 0, W, velocities, mu, e, numbers, kappa, pair)
-    code = resolve_multiple(contacts, settings, workspace, out)
+    code, out = solve(W, np.ascontiguousarray(u), mu, e, numbers, kappa, settings)
     if code != OK:
         raise ValueError(f"the impact could not be solved: {MESSAGES[code]}")
     summary = out.summary[0]
@@ -182,3 +168,20 @@ def resolve_impacts(
         steps=int(summary["steps"]),
         events=int(summary["events"]),
     )
+
+
+def solve(W, u, mu, e, law, kappa, settings, workspace=None):
+    """Solve a multiple impact of contacts (k,) with velocities (k, 3); return the code and the result."""
+    from carom.impact.multiple.layout import (
+        SEQUENTIAL,
+        CornerContacts,
+        new_multiple_result,
+        new_multiple_workspace,
+    )
+    from carom.impact.multiple.resolve import resolve_multiple
+
+    k = len(u)
+    room, out = workspace or new_multiple_workspace(k), new_multiple_result(k)
+    pair = np.arange(k) if settings.multiple == SEQUENTIAL else np.zeros(k, dtype=np.int64)
+    contacts = CornerContacts(k, 0, W, u.reshape(-1), mu, e, law, kappa, pair)
+    return resolve_multiple(contacts, settings, room, out), out

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -10,6 +10,9 @@ from carom._compiled.record_arrays import table
 from carom._compiled.simd import LANES
 from carom.friction.layout import ContactWork, new_contact_work
 from carom.impact.layout import BAD_INPUT, SIZE
+
+if TYPE_CHECKING:
+    from carom.options import Options
 
 SIMULTANEOUS, SEQUENTIAL, BY_NEWTON = 0, 1, 2
 MULTIPLE = {"simultaneous": SIMULTANEOUS, "sequential": SEQUENTIAL, "newton": BY_NEWTON}
@@ -38,6 +41,14 @@ class MultipleSettings(NamedTuple):
     max_events: int = 200  # changes of mode per contact
     max_steps: int = 2000  # per contact
     max_rounds: int = 40  # of the outer iteration of Newton's and Poisson's law
+
+
+def multiple_settings(options: Options, exponent: float = 0.0) -> MultipleSettings:
+    """Return the settings for the options of a run; `exponent` where these give none."""
+    return MultipleSettings(
+        multiple=MULTIPLE[options.multiple], rtol=options.corner_tolerance,
+        exponent=options.corner_exponent or exponent,
+    )  # fmt: skip
 
 
 class CornerContacts(NamedTuple):
