@@ -41,7 +41,7 @@ _ROUND_OFF = 1e-14
 
 
 @unit
-def solve_group(k, work, cones):
+def solve_group(k, work):
     """Resolve the group; the clock gets its marks and the change of energy in a plastic event."""
     clock, least, most = work.clock[0], 1.0, 0.0
     for i in range(k):
@@ -52,7 +52,7 @@ def solve_group(k, work, cones):
         start(k, work)
         for i in range(k):
             work.contact[i].e = work.contact[i].restitution if turn == 0 else least
-        if _sound(k, work, _once(k, work, cones, 0)):
+        if _sound(k, work, _once(k, work, 0)):
             clock.code = AT_ONCE if turn == 0 else AT_ONCE | MISSED
             return
     start(k, work)
@@ -60,7 +60,7 @@ def solve_group(k, work, cones):
         work.contact[i].e = 0.0
     clock.code = PLASTIC
     for turn in range(_ROUNDS):
-        clock.change += _once(k, work, cones, turn)
+        clock.change += _once(k, work, turn)
         least = 0.0
         for i in range(k):
             least = min(least, work.vector[NOW_U, 3 * i])
@@ -109,7 +109,7 @@ def _sound(k, work, change):
 
 
 @kernel
-def _once(k, work, cones, turn):
+def _once(k, work, turn):
     """Solve the contact problem once; from the third turn on without friction. Return the change of energy."""
     n, u, before, impulse = 3 * k, work.vector[NOW_U], work.vector[SCRATCH], work.vector[TRY]
     for i in range(n):
@@ -123,9 +123,9 @@ def _once(k, work, cones, turn):
     heading = work.matrix[FACTOR]  # cones do not use it, but it must be finite
     for i in range(k):
         heading[i, 0], heading[i, 1] = 0.0, 0.0
-    cones.mismatch[ENOUGH] = 0.0
-    allow(cones, k)
-    status, _, _ = solve_cones(k, work.matrix[MASS], u, mu, kind, heading, impulse, cones)
+    work.cones.mismatch[ENOUGH] = 0.0
+    allow(work.cones, k)
+    status, _, _ = solve_cones(k, work.matrix[MASS], u, mu, kind, heading, impulse, work.cones)
     change = _take(k, work, status == SOLVED)
     for i in range(k):
         c = work.contact[i]

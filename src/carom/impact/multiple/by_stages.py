@@ -8,9 +8,10 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.impact.multiple import events, law
 from carom.impact.multiple.by_series import AT_REST
-from carom.impact.multiple.implicit import advance, implicit_step, interpolate
-from carom.impact.multiple.layout import DISC_T, FORCE, IN_DISC, MASS, NEW_D, NEW_U, WHEN, D
-from carom.impact.multiple.motion import friction_now, gather_discs, normal_forces, set_velocity
+from carom.impact.multiple.discs import gather_discs
+from carom.impact.multiple.implicit import advance, implicit_step, interpolate, present_forces
+from carom.impact.multiple.layout import DISC_T, FORCE, IN_DISC, MASS, NEW_D, NEW_U, WHEN
+from carom.impact.multiple.motion import set_velocity
 
 _LEAST_STEP = 1e-9
 _AT_CHANGE = 0.02  # part of the tolerance for steps in which a contact begins or ceases to stick
@@ -30,9 +31,7 @@ def stages_step(k, m, work, rtol, p):
     """Take an implicit step, cut at the first change of mode; return its length and whether a mode changes."""
     clock, when, tolerance = work.clock[0], work.vector[WHEN], 1e-3 * rtol
     h, slow = clock.step, max(AT_REST, 0.01 * rtol)
-    force = work.stage[FORCE]
-    normal_forces(k, work, work.vector[D], p, force[0])
-    friction_now(k, m, work, 1e-7 * h, slow, tolerance / h, force[0])
+    present_forces(k, m, work, h, p, slow, tolerance)
     while True:
         implicit_step(k, m, work, h, p, tolerance)
         clock.steps += 1

@@ -8,19 +8,17 @@ although its direction is stiff (rate mu N W/|u_t|), and no threshold separates 
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.impact.multiple.discs import friction
+from carom.impact.multiple.discs import solve_discs
 from carom.impact.multiple.layout import (
-    DISC_C,
-    DISC_T,
-    DISCS,
     ERROR,
     FORCE,
     IN_DISC,
-    JACOBIAN,
     LANES,
     MASS,
     NEW_D,
@@ -28,7 +26,6 @@ from carom.impact.multiple.layout import (
     NEW_U,
     NOW_P,
     NOW_U,
-    RADIUS,
     S_D,
     S_U,
     SCRATCH,
@@ -36,6 +33,8 @@ from carom.impact.multiple.layout import (
     D,
 )
 from carom.impact.multiple.motion import add_velocity, normal_forces
+
+_MOMENT = 1e-7  # the moment ahead for the forces of an instant, in units of the step
 
 EXPLICIT = np.array([
     [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -96,7 +95,7 @@ def implicit_step(k, m, work, h, p, tolerance):
             u1[i] = u[i]
         add_velocity(n, W, q, u1)
         if m > 0:
-            _friction(k, m, work, GAMMA * h, force[s], u1, tolerance)
+            friction(k, m, work, GAMMA * h, force[s], u1, tolerance)
         for i in range(k):
             a = 3 * i
             rate[s, i] = -u1[a]
@@ -125,24 +124,36 @@ def implicit_step(k, m, work, h, p, tolerance):
 
 
 @kernel
-def _friction(k, m, work, step, force, u, tolerance):
-    """Add friction to `force`, and its effect within `step` to `u`."""
-    slot, vector = work.index[IN_DISC], work.vector
-    c, t = vector[DISC_C], vector[DISC_T]
-    largest = 0.0
+def present_forces(k, m, work, h, p, slow, tolerance):
+    """Write the forces of this instant; `m` discs are gathered.
+
+    For a contact that slips, T = -mu N u_t/|u_t|; for contacts at rest (slower than `slow`), T is the solution
+    of §2.3. Both are limits of the friction for the velocity a moment ahead, as this moment tends to 0.
+    """
+    vector, force, moment = work.vector, work.stage[FORCE, 0], _MOMENT * h
+    u, ahead, q = vector[NOW_U], vector[NEW_U], vector[SCRATCH]
+    normal_forces(k, work, vector[D], p, force)
+    for i in range(k):
+        n = 3 * i
+        slip = math.sqrt(u[n + 1] * u[n + 1] + u[n + 2] * u[n + 2])
+        moves = 0.0 if work.contact[i].sticks == 1 or not slip > slow else 1.0
+        for r in range(3):
+            q[n + r] = moment * force[n + r]
+            ahead[n + r] = u[n + r] if r == 0 else moves * u[n + r]
+    add_velocity(3 * k, work.matrix[MASS], q, ahead)
+    if m > 0:
+        solve_discs(m, work, moment, force, ahead, tolerance * _MOMENT)
+
+
+@kernel
+def friction(k, m, work, step, force, u, tolerance):
+    """Add friction of `m` discs to `force`, and its effect within `step` to `u`."""
+    slot = work.index[IN_DISC]
+    solve_discs(m, work, step, force, u, tolerance)
     for s in range(m):
-        a = 3 * slot[s]
-        vector[RADIUS, s] = work.contact[slot[s]].mu * force[a]
-        c[2 * s] = u[a + 1] / step
-        c[2 * s + 1] = u[a + 2] / step
-        largest = max(largest, abs(c[2 * s]), abs(c[2 * s + 1]))
-    tolerance = tolerance / step + 1e-14 * largest
-    friction(m, work.matrix[DISCS], work.matrix[JACOBIAN], vector, work.index, tolerance)
-    for s in range(m):
-        a = 3 * slot[s]
-        force[a + 1], force[a + 2] = t[2 * s], t[2 * s + 1]
-        x, y = step * t[2 * s], step * t[2 * s + 1]
-        row1, row2 = work.matrix[MASS, a + 1], work.matrix[MASS, a + 2]
+        a = 3 * slot[s] + 1
+        x, y = step * force[a], step * force[a + 1]
+        row1, row2 = work.matrix[MASS, a], work.matrix[MASS, a + 1]
         for i in range(3 * k):
             u[i] += x * row1[i] + y * row2[i]
 

@@ -122,6 +122,7 @@ class PassageWork(NamedTuple):
     columns: np.ndarray
     stage: np.ndarray  # (2, 6, 3K) forces and rates at the stages of an implicit step
     single: np.ndarray  # result of one contact, as `carom.impact.layout` says
+    cones: ContactWork
 
 
 class BlowWork(NamedTuple):
@@ -138,7 +139,6 @@ class MultipleWorkspace(NamedTuple):
     """Workspace for impacts of up to K contacts."""
 
     work: PassageWork
-    cones: ContactWork
     blow: BlowWork
 
 
@@ -232,11 +232,11 @@ def new_multiple_workspace(capacity: int) -> MultipleWorkspace:
         index=np.zeros((11, n), dtype=np.int64), matrix=np.zeros((9, n, n)),
         vector=np.zeros((39, 3 * LANES * blocks)), series=np.zeros((18, ORDERS, blocks, LANES)),
         columns=np.zeros((n, 3 * blocks, LANES)), stage=np.zeros((2, 6, n)),
-        single=np.zeros(SIZE),
+        single=np.zeros(SIZE), cones=new_contact_work(k),
     )  # fmt: skip
     work.clock["left"] = UNLIMITED
     blow = BlowWork(
         member=np.zeros(k, dtype=np.int64), W=np.zeros((n, n)), given=np.zeros((4, n)),
         law=np.zeros((2, k), dtype=np.int64), result=new_multiple_result(k),
     )  # fmt: skip
-    return MultipleWorkspace(work, new_contact_work(k), blow)
+    return MultipleWorkspace(work, blow)

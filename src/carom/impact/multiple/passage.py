@@ -20,7 +20,7 @@ def all_plastic(k, work):
 
 
 @kernel
-def pass_group(k, work, cones, settings, result):
+def pass_group(k, work, settings, result):
     """Resolve the group of `k` contacts in `work`; row U0 has the velocities before, row P gets the impulses.
 
     If `left` of the clock is below 0 at the end, the group was stopped, because it took too many steps.
@@ -28,7 +28,7 @@ def pass_group(k, work, cones, settings, result):
     r.energetic(k, work)
     start(k, work)
     if all_plastic(k, work):
-        at_once(k, work, cones, result)
+        at_once(k, work, result)
         return
     into_lanes(k, work)
     iterates = r.any_targets(k, work)
@@ -40,12 +40,12 @@ def pass_group(k, work, cones, settings, result):
     result.events += work.clock[0].events
     work.clock[0].left -= work.clock[0].steps
     if ended != ENDED and work.clock[0].left >= 0:
-        at_once(k, work, cones, result)
+        at_once(k, work, result)
 
 
 @kernel
-def at_once(k, work, cones, result):
+def at_once(k, work, result):
     """Resolve the group as one contact problem."""
-    solve_group(k, work, cones)
+    solve_group(k, work)
     result.plastic_change += work.clock[0].change
     result.marks |= work.clock[0].code

@@ -169,9 +169,9 @@ def _group(g, contacts, still, by_newton, settings, workspace, out):
     plastic = summary.plastic_change
     summary.plastic_change = 0.0
     if by_newton:
-        at_once(n, work, workspace.cones, summary)
+        at_once(n, work, summary)
     else:
-        pass_group(n, work, workspace.cones, settings, summary)
+        pass_group(n, work, settings, summary)
     energy, index = speed * speed / mass, work.index
     for i in range(contacts.k):
         for a in range(n):
