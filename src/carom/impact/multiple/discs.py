@@ -17,7 +17,9 @@ from carom.friction.strategy import search
 from carom.impact.multiple.law import OPEN
 from carom.impact.multiple.layout import DISC_T, IN_DISC, MASS
 
-_PROXIMAL = 1e-10  # weight of the proximal term where A is singular: w is wrong by less than this part of T
+_PROXIMAL = (
+    1e-10  # weight of the proximal term where A is singular: w is wrong by less than this part of T
+)
 _ITERATIONS = 300  # of a search, where Newton's method alone fails
 
 
@@ -64,7 +66,7 @@ def solve_discs(m, work, step, force, u, tolerance):
             largest = max(largest, abs(bias[n + r]))
         least = min(least, scale)
     cones.mismatch[o.ENOUGH] = least * tolerance / step + 1e-14 * largest
-    newton(cones, m, _PROXIMAL, False)
+    newton(cones, m, _PROXIMAL, True)
     if not cones.mismatch[0] <= cones.mismatch[o.ENOUGH]:
         cones.count[o.BUDGET] = _ITERATIONS
         search(cones, m)

@@ -11,6 +11,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
+from carom.friction.lu import factor, substitute
 from carom.impact.multiple.law import OPEN
 from carom.impact.multiple.layout import (
     FACTOR,
@@ -21,6 +22,7 @@ from carom.impact.multiple.layout import (
     MIDDLE,
     NOW_P,
     NOW_U,
+    PIVOTS,
     S_P,
     S_P1,
     S_P2,
@@ -33,6 +35,12 @@ from carom.impact.multiple.motion import set_velocity
 from carom.impact.multiple.series import stick
 
 _EMPTY = 1e-11  # directions with pivots below this part of the largest are redundant
+_LOADED = (
+    1e-3  # part of the greatest mu N from which a contact takes part in any motion that it can stop
+)
+_UNLOADED = (
+    0.1  # of the greatest mu N, added to all where the loaded contacts alone cannot stop all motion
+)
 _GRIP_SAMPLES = 5
 _MOMENT = 0.3  # the moment ahead, in units of the time of the fastest contact
 
@@ -55,7 +63,7 @@ def gather_stuck(k, work):
 
 @kernel
 def _bearing(z, work, weight):
-    """Write (mu N)^2 of the sticking contacts, relative to the greatest, a moment ahead or at an opening."""
+    """Write D = mu N of the sticking contacts a moment ahead or at an opening, by the greatest; return the least."""
     d, u, slot = work.vector[D], work.vector[NOW_U], work.index[STUCK]
     moment = _MOMENT
     for a in range(z):
@@ -75,53 +83,58 @@ def _bearing(z, work, weight):
         if most > 1e-8 * now * now or turn == 1:
             break
         moment = 0.0  # all open at the same time: use the present forces
+    least = 1.0
     for a in range(z):
-        weight[a] = weight[a] / most if most > 0.0 else 1.0
+        weight[a] = math.sqrt(weight[a] / most) if most > 0.0 else 1.0
+        least = min(least, weight[a])
+    return least
 
 
 @unit
 def find_holding(z, work):
-    """Write H in T = -H a: H = D^2 L (L^T D^2 L)^-1 (L^T L)^-1 L^T, W_ZZ = L L^T by Cholesky with pivots."""
-    n, slot, vector = 2 * z, work.index[STUCK], work.vector
+    """Write H in T = -H a: H = D (D W_ZZ D)^+ D = R R^T, R = D L (L^T L)^-1, by L L^T = D W_ZZ D."""
+    n, vector = 2 * z, work.vector
     L, M, hold = work.matrix[FACTOR], work.matrix[MIDDLE], work.matrix[HOLDING]
-    weight, row = vector[SCALE], vector[STICK_T]
-    rank = _factor(z, slot, work.matrix[MASS], L, vector[LEFT], row)
-    _bearing(z, work, weight)
-    gram(n, rank, L, weight, M)
-    if not cholesky(rank, M):  # the loaded contacts alone cannot stop all motion
+    weight, pivot = vector[SCALE], work.index[PIVOTS]
+    full = 0
+    if not _bearing(z, work, weight) > _LOADED:
         for a in range(z):
-            weight[a] += 0.01
-        gram(n, rank, L, weight, M)
-        cholesky(rank, M)
+            weight[a] = 1.0
+        full = _factor(z, work, L)
+        _bearing(z, work, weight)
+    rank = _factor(z, work, L)
+    if rank < full:  # the loaded contacts alone cannot stop all motion
+        for a in range(z):
+            weight[a] += _UNLOADED
+        rank = _factor(z, work, L)
+    for p in range(rank):
+        for q in range(rank):
+            s = 0.0
+            for a in range(n):
+                s += L[a, p] * L[a, q]
+            M[p, q] = s
+    factor(M, rank, pivot, 0.0)
     for a in range(n):
         for q in range(rank):
-            row[q] = L[a, q] * weight[a // 2]
-        solve_cholesky(rank, M, row)
-        for q in range(rank):
-            hold[a, q] = row[q]
-    for a in range(z):
-        weight[a] = 1.0
-    gram(n, rank, L, weight, M)
-    cholesky(rank, M)
+            L[a, q] *= weight[a // 2]
+        substitute(M, rank, pivot, L[a])
     for a in range(n):
-        solve_cholesky(rank, M, L[a])
-    for a in range(n):
-        for q in range(rank):
-            row[q] = hold[a, q]
-        for b in range(n):
+        for b in range(a + 1):
             s = 0.0
             for q in range(rank):
-                s += row[q] * L[b, q]
-            hold[a, b] = s
+                s += L[a, q] * L[b, q]
+            hold[a, b] = hold[b, a] = s
 
 
 @kernel
-def _factor(z, slot, W, L, left, column):
-    """Write L in W_ZZ = L L^T; return its rank."""
+def _factor(z, work, L):
+    """Write L in D W_ZZ D = L L^T, by Cholesky with pivots; return its rank."""
+    slot, W, weight = work.index[STUCK], work.matrix[MASS], work.vector[SCALE]
+    left, column = work.vector[LEFT], work.vector[STICK_T]
     n, largest, rank = 2 * z, 0.0, 0
     for a in range(n):
         i = 3 * slot[a // 2] + 1 + a % 2
-        left[a] = W[i, i]
+        left[a] = weight[a // 2] * weight[a // 2] * W[i, i]
         largest = max(largest, left[a])
     while rank < n:
         top = 0
@@ -131,9 +144,9 @@ def _factor(z, slot, W, L, left, column):
         if not left[top] > _EMPTY * largest:
             break
         pivot = math.sqrt(left[top])
-        row = W[3 * slot[top // 2] + 1 + top % 2]
+        row, d = W[3 * slot[top // 2] + 1 + top % 2], weight[top // 2]
         for a in range(n):
-            s = row[3 * slot[a // 2] + 1 + a % 2]
+            s = d * weight[a // 2] * row[3 * slot[a // 2] + 1 + a % 2]
             for b in range(rank):
                 s -= L[top, b] * L[a, b]
             column[a] = s / pivot
@@ -143,52 +156,6 @@ def _factor(z, slot, W, L, left, column):
         left[top] = 0.0
         rank += 1
     return rank
-
-
-@kernel
-def gram(n, rank, L, weight, M):
-    """Write the lower triangle of M = L^T D^2 L; each number of `weight` is D^2 of two rows."""
-    for p in range(rank):
-        for q in range(p + 1):
-            s = 0.0
-            for a in range(n):
-                s += L[a, p] * L[a, q] * weight[a // 2]
-            M[p, q] = s
-
-
-@kernel
-def cholesky(n, M):
-    """Factor the lower triangle of M in place; return whether M is positive definite."""
-    largest = 0.0
-    for i in range(n):
-        largest = max(largest, M[i, i])
-    for i in range(n):
-        for j in range(i + 1):
-            s = M[i, j]
-            for c in range(j):
-                s -= M[i, c] * M[j, c]
-            if i == j:
-                if not s > _EMPTY * largest:
-                    return False
-                M[i, i] = math.sqrt(s)
-            else:
-                M[i, j] = s / M[j, j]
-    return True
-
-
-@kernel
-def solve_cholesky(n, M, x):
-    """Solve with the factors M for x, in place."""
-    for i in range(n):
-        s = x[i]
-        for j in range(i):
-            s -= M[i, j] * x[j]
-        x[i] = s / M[i, i]
-    for i in range(n - 1, -1, -1):
-        s = x[i]
-        for j in range(i + 1, n):
-            s -= M[j, i] * x[j]
-        x[i] = s / M[i, i]
 
 
 @kernel
