@@ -139,7 +139,7 @@ def strike_one(model, data, method, c):
     if collide(method, controls, contact, hit, work.history) != layout.OK:
         hit.code = IMPACT_FAILED
         return
-    write_impact(contact, c, state, point, hit, clock, data.records)
+    write_impact(contact, state, point, hit, clock, data.records)
     out, P = hit.out, layout.IMPULSE
     spread(system, point, state, out[P], out[P + 1], out[P + 2], work)
     add_velocity(system, point, work, state)

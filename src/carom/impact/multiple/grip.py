@@ -63,7 +63,7 @@ def gather_stuck(k, work):
 
 @kernel
 def _bearing(z, work, weight):
-    """Write D = mu N of the sticking contacts a moment ahead or at an opening, by the greatest; return the least."""
+    """Write D = mu N of the sticking contacts a moment ahead, relative to the greatest; return the least."""
     d, u, slot = work.vector[D], work.vector[NOW_U], work.index[STUCK]
     moment = _MOMENT
     for a in range(z):
