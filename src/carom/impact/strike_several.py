@@ -8,7 +8,6 @@ from carom._compiled.decorators import by_reference, kernel
 from carom._compiled.units import unit
 from carom.contact.gap import slow, speed_of
 from carom.dynamics.contact_impulse import add_velocity, spread
-from carom.dynamics.several_points import inverse_masses, velocities
 from carom.impact.driven import blocked
 from carom.impact.effective_restitution import count_blow, effective_restitution
 from carom.impact.layout import OK
@@ -75,14 +74,13 @@ def pair_of(i, contacts, closed, all_by_pairs):
 def strike_several(model, data, c, k):
     """Solve the impact of all k closed points; apply their impulses, and write a record for each impulse.
 
-    A point that jams starts with a small speed of approach (mathematics page, §3.6).
+    `group` has their W and velocities. A point that jams starts with a small speed of approach (mathematics page,
+    §3.6).
     """
     system = model.system
     active, state, group, multiple = data.active, data.state, data.group, data.multiple
     work, clock = data.work, data.clocks[0]
     hit, u = work.hit[0], group.v[U]
-    inverse_masses(system, k, group.points[0], state, work, group.m[0])
-    velocities(k, group.points[0], state, u)
     count_blows(model, data, k)
     for i in range(k):
         contact = system.contacts[group.closed[i].contact]
