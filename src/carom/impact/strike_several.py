@@ -74,8 +74,7 @@ def pair_of(i, contacts, closed, all_by_pairs):
 def strike_several(model, data, c, k):
     """Solve the impact of all k closed points; apply their impulses, and write a record for each impulse.
 
-    `group` has their W and velocities. A point that jams starts with a small speed of approach (mathematics page,
-    §3.6).
+    `group` has their W and velocities. A point that jams starts with a small speed of approach (§3.6).
     """
     system = model.system
     active, state, group, multiple = data.active, data.state, data.group, data.multiple

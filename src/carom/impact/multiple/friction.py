@@ -1,8 +1,14 @@
-"""Contacts that stick: the friction that keeps them at rest is linear in all other forces.
+"""Friction in the layer, where the normal forces are known (mathematics page, §2.3).
 
-W_ZZ T = -a has many solutions if contacts are redundant (four corners of a box: rank 3 of 8); all have the same
-effect. The solution of least |D^-1 T| is used, D = diag(mu N) a moment ahead. It loads contacts according to
-mu N, so that a contact leaves its disc only about when no solution fits in the discs.
+*Contacts that stick*: the friction that keeps them at rest is linear in all other forces. W_ZZ T = -a has many
+solutions if contacts are redundant (four corners of a box: rank 3 of 8); all have the same effect. The solution
+of least |D^-1 T| is used, D = diag(mu N) a moment ahead. It loads contacts according to mu N, so that a contact
+leaves its disc only about when no solution fits in the discs.
+
+*All contacts*: min_T T.A T/2 + T.c with |T_i| <= rho_i. A = W_tt is positive semidefinite, and singular if
+contacts are redundant: then w = A T + c at the minimum is unique, but T is not. The problem is convex and
+always has a solution, so there is no jam. It is the contact problem of `carom.friction` for discs of known
+radii.
 """
 
 from __future__ import annotations
@@ -10,30 +16,18 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
+from carom._compiled.simd import LANES
 from carom._compiled.units import unit
+from carom.friction import layout as f
+from carom.friction.cone import in_disc
 from carom.friction.lu import factor, substitute
-from carom.impact.multiple.law import OPEN
-from carom.impact.multiple.layout import (
-    FACTOR,
-    HOLDING,
-    LANES,
-    LEFT,
-    MASS,
-    MIDDLE,
-    NOW_P,
-    NOW_U,
-    PIVOTS,
-    S_P,
-    S_P1,
-    S_P2,
-    SCALE,
-    STICK_T,
-    STUCK,
-    D,
-)
-from carom.impact.multiple.motion import set_velocity
-from carom.impact.multiple.series import stick
+from carom.friction.newton import newton
+from carom.friction.strategy import search
+from carom.impact.multiple import layout as o
+from carom.impact.multiple.layer import set_velocity
+from carom.impact.multiple.normal_law import OPEN
 
+AT_REST = 1e-10  # slip below this velocity, or below 0.1 rtol, has ended
 _EMPTY = 1e-11  # directions with pivots below this part of the largest are redundant
 _LOADED = (
     1e-3  # part of the greatest mu N from which a contact takes part in any motion that it can stop
@@ -43,6 +37,10 @@ _UNLOADED = (
 )
 _GRIP_SAMPLES = 5
 _MOMENT = 0.3  # the moment ahead, in units of the time of the fastest contact
+_PROXIMAL = (
+    1e-10  # weight of the proximal term where A is singular: w is wrong by less than this part of T
+)
+_ITERATIONS = 300  # of a search, where Newton's method alone fails
 
 
 @kernel
@@ -54,7 +52,7 @@ def gather_stuck(k, work):
         if c.mode == OPEN:
             c.sticks = 0
         elif c.sticks == 1 and c.mu > 0.0:
-            work.index[STUCK, z] = i
+            work.index[o.STUCK, z] = i
             z += 1
     if z > 0:
         find_holding(z, work)
@@ -64,7 +62,7 @@ def gather_stuck(k, work):
 @kernel
 def _bearing(z, work, weight):
     """Write D = mu N of the sticking contacts a moment ahead, relative to the greatest; return the least."""
-    d, u, slot = work.vector[D], work.vector[NOW_U], work.index[STUCK]
+    d, u, slot = work.vector[o.D], work.vector[o.NOW_U], work.index[o.STUCK]
     moment = _MOMENT
     for a in range(z):
         i = slot[a]
@@ -94,8 +92,8 @@ def _bearing(z, work, weight):
 def find_holding(z, work):
     """Write H in T = -H a: H = D (D W_ZZ D)^+ D = R R^T, R = D L (L^T L)^-1, by L L^T = D W_ZZ D."""
     n, vector = 2 * z, work.vector
-    L, M, hold = work.matrix[FACTOR], work.matrix[MIDDLE], work.matrix[HOLDING]
-    weight, pivot = vector[SCALE], work.index[PIVOTS]
+    L, M, hold = work.matrix[o.FACTOR], work.matrix[o.MIDDLE], work.matrix[o.HOLDING]
+    weight, pivot = vector[o.SCALE], work.index[o.PIVOTS]
     full = 0
     if not _bearing(z, work, weight) > _LOADED:
         for a in range(z):
@@ -129,8 +127,8 @@ def find_holding(z, work):
 @kernel
 def _factor(z, work, L):
     """Write L in D W_ZZ D = L L^T, by Cholesky with pivots; return its rank."""
-    slot, W, weight = work.index[STUCK], work.matrix[MASS], work.vector[SCALE]
-    left, column = work.vector[LEFT], work.vector[STICK_T]
+    slot, W, weight = work.index[o.STUCK], work.matrix[o.MASS], work.vector[o.SCALE]
+    left, column = work.vector[o.LEFT], work.vector[o.STICK_T]
     n, largest, rank = 2 * z, 0.0, 0
     for a in range(n):
         i = 3 * slot[a // 2] + 1 + a % 2
@@ -161,11 +159,11 @@ def _factor(z, work, L):
 @kernel
 def halt(k, z, work):
     """Bring the sticking contacts to rest: an impulse removes the rest of their velocity."""
-    stick(k, z, work, work.vector[NOW_P], work.vector[NOW_U])
+    stick(k, z, work, work.vector[o.NOW_P], work.vector[o.NOW_U])
     set_velocity(k, work)
     for b in range(z):
-        n = 3 * work.index[STUCK, b]
-        work.vector[NOW_U, n + 1], work.vector[NOW_U, n + 2] = 0.0, 0.0
+        n = 3 * work.index[o.STUCK, b]
+        work.vector[o.NOW_U, n + 1], work.vector[o.NOW_U, n + 2] = 0.0, 0.0
 
 
 @kernel
@@ -174,9 +172,9 @@ def excess(c, i, S, degree, x):
     n, t1, t2 = 0.0, 0.0, 0.0
     b, l = i // LANES, i % LANES
     for j in range(degree, 0, -1):
-        n = n * x + j * S[S_P, j, b, l]
-        t1 = t1 * x + j * S[S_P1, j, b, l]
-        t2 = t2 * x + j * S[S_P2, j, b, l]
+        n = n * x + j * S[o.S_P, j, b, l]
+        t1 = t1 * x + j * S[o.S_P1, j, b, l]
+        t2 = t2 * x + j * S[o.S_P2, j, b, l]
     room = c.mu * max(0.0, n)
     return t1 * t1 + t2 * t2 - room * room * (1.0 + 1e-9) - 1e-20
 
@@ -200,7 +198,7 @@ def first_slip(z, work, degree, end):
     """Return the first x in [0, end] where a contact can no longer stick, or 2 end."""
     first, S = 2.0 * end, work.series
     for b in range(z):
-        i = work.index[STUCK, b]
+        i = work.index[o.STUCK, b]
         c = work.contact[i]
         low = 0.0
         for s in range(_GRIP_SAMPLES):
@@ -212,3 +210,81 @@ def first_slip(z, work, degree, end):
                 break
             low = high
     return first
+
+
+@kernel
+def stick(k, z, work, impulse, velocity):
+    """Add to `impulse` the friction that keeps `z` contacts at rest, and its effect to `velocity`."""
+    hold, slot, t = work.matrix[o.HOLDING], work.index[o.STUCK], work.vector[o.STICK_T]
+    for a in range(2 * z):
+        s, row = 0.0, hold[a]
+        for b in range(z):
+            n = 3 * slot[b]
+            s -= row[2 * b] * velocity[n + 1] + row[2 * b + 1] * velocity[n + 2]
+        t[a] = s
+    for b in range(z):
+        n = 3 * slot[b]
+        x, y = t[2 * b], t[2 * b + 1]
+        impulse[n + 1] += x
+        impulse[n + 2] += y
+        row1, row2 = work.matrix[o.MASS, n + 1], work.matrix[o.MASS, n + 2]
+        for i in range(3 * k):
+            velocity[i] += x * row1[i] + y * row2[i]
+    for b in range(z):
+        n = 3 * slot[b]
+        velocity[n + 1], velocity[n + 2] = 0.0, 0.0
+
+
+@kernel
+def gather_discs(k, work):
+    """List the closed contacts with friction and write their W_tt, scaled; return their number."""
+    slot, cones, m = work.index[o.IN_DISC], work.cones, 0
+    for i in range(k):
+        c = work.contact[i]
+        if c.mode != OPEN and c.mu > 0.0:
+            slot[m] = i
+            disc, trace = cones.contact[m], c.grip / c.mu
+            disc.kind, disc.mu, disc.h2 = f.DISC, 0.0, 0.0
+            disc.scale = math.sqrt(2.0 / trace) if trace > 0.0 else 1.0
+            m += 1
+    for a in range(3 * m):
+        row = cones.W[a]
+        given = work.matrix[o.MASS, 3 * slot[a // 3] + a % 3]
+        for b in range(3 * m):
+            value = given[3 * slot[b // 3] + b % 3] if a % 3 > 0 and b % 3 > 0 else 0.0
+            row[b] = cones.contact[a // 3].scale * value * cones.contact[b // 3].scale
+    cones.count[f.FACTOR_ROWS] = -1
+    return m
+
+
+@kernel
+def solve_discs(m, work, step, force, u, tolerance):
+    """Write the friction of `m` discs with which the velocity without it, `u`, ends a time `step`.
+
+    The radii are mu times the normal forces of `force`, and `tolerance` is for velocities. Friction of the last
+    solve is the first guess.
+    """
+    slot, cones, last = work.index[o.IN_DISC], work.cones, work.vector[o.DISC_T]
+    t, bias, centre = cones.vector[f.ITERATE], cones.vector[f.BIAS], cones.vector[f.CENTRE]
+    least, largest = math.inf, 0.0
+    for s in range(m):
+        n, a, disc = 3 * s, 3 * slot[s], cones.contact[s]
+        scale = disc.scale
+        disc.h1 = work.contact[slot[s]].mu * force[a] / scale
+        t[n], t[n + 1], t[n + 2] = in_disc(disc.h1, last[2 * s] / scale, last[2 * s + 1] / scale)
+        bias[n], bias[n + 1], bias[n + 2] = 0.0, scale * u[a + 1] / step, scale * u[a + 2] / step
+        for r in range(3):
+            centre[n + r] = t[n + r]
+            largest = max(largest, abs(bias[n + r]))
+        least = min(least, scale)
+    cones.mismatch[f.ENOUGH] = least * tolerance / step + 1e-14 * largest
+    newton(cones, m, _PROXIMAL, True)
+    if not cones.mismatch[0] <= cones.mismatch[f.ENOUGH]:
+        cones.count[f.BUDGET] = _ITERATIONS
+        search(cones, m)
+        cones.count[f.FACTOR_ROWS] = -1
+    for s in range(m):
+        a, scale = 3 * slot[s], cones.contact[s].scale
+        _, x, y = in_disc(cones.contact[s].h1, t[3 * s + 1], t[3 * s + 2])
+        force[a + 1], force[a + 2] = scale * x, scale * y
+        last[2 * s], last[2 * s + 1] = force[a + 1], force[a + 2]

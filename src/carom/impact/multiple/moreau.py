@@ -18,20 +18,8 @@ from carom.friction.layout import CONE, ENOUGH, SOLVED
 from carom.friction.solve import solve_cones
 from carom.friction.strategy import allow
 from carom.impact.layout import AT_ONCE, PLASTIC
-from carom.impact.multiple.adaptive import start
-from carom.impact.multiple.layout import (
-    FACTOR,
-    MASS,
-    MISSED,
-    NOW_P,
-    NOW_U,
-    SCRATCH,
-    STACK,
-    TRY,
-    U0,
-    WEIGHT,
-)
-from carom.impact.multiple.motion import set_velocity
+from carom.impact.multiple import layout as o
+from carom.impact.multiple.layer import set_velocity, start
 
 _ROUNDS = 4
 # greatest approach that Newton's law may leave, in units of the speed before, and growth of energy by sum |p u|
@@ -53,7 +41,7 @@ def solve_group(k, work):
         for i in range(k):
             work.contact[i].e = work.contact[i].restitution if turn == 0 else least
         if _sound(k, work, _once(k, work, 0)):
-            clock.code = AT_ONCE if turn == 0 else AT_ONCE | MISSED
+            clock.code = AT_ONCE if turn == 0 else AT_ONCE | o.MISSED
             return
     start(k, work)
     for i in range(k):
@@ -63,7 +51,7 @@ def solve_group(k, work):
         clock.change += _once(k, work, turn)
         least = 0.0
         for i in range(k):
-            least = min(least, work.vector[NOW_U, 3 * i])
+            least = min(least, work.vector[o.NOW_U, 3 * i])
         if least >= -1e-10:
             break
 
@@ -99,10 +87,10 @@ def round_off(n, row, impulse):
 @kernel
 def _sound(k, work, change):
     """Return whether no contact approaches, and the `change` of energy is no rise, both beyond round-off."""
-    u, p, allowed, left = work.vector[NOW_U], work.vector[NOW_P], 0.0, 0.0
+    u, p, allowed, left = work.vector[o.NOW_U], work.vector[o.NOW_P], 0.0, 0.0
     for a in range(3 * k):
-        own = round_off(3 * k, work.matrix[MASS, a], p)
-        allowed += abs(p[a]) * (_GROWTH * abs(work.vector[U0, a]) + own)
+        own = round_off(3 * k, work.matrix[o.MASS, a], p)
+        allowed += abs(p[a]) * (_GROWTH * abs(work.vector[o.U0, a]) + own)
         if a % 3 == 0:
             left = max(left, -u[a] - own)
     return change <= allowed and left <= _LEFT
@@ -111,21 +99,21 @@ def _sound(k, work, change):
 @kernel
 def _once(k, work, turn):
     """Solve the contact problem once; from the third turn on without friction. Return the change of energy."""
-    n, u, before, impulse = 3 * k, work.vector[NOW_U], work.vector[SCRATCH], work.vector[TRY]
+    n, u, before, impulse = 3 * k, work.vector[o.NOW_U], work.vector[o.SCRATCH], work.vector[o.TRY]
     for i in range(n):
         before[i] = u[i]
         impulse[i] = 0.0
-    mu, kind = work.vector[WEIGHT], work.index[STACK]
+    mu, kind = work.vector[o.WEIGHT], work.index[o.STACK]
     for i in range(k):
         u[3 * i] += work.contact[i].e * min(0.0, u[3 * i])
         mu[i] = work.contact[i].mu if turn < 2 else 0.0
         kind[i] = CONE
-    heading = work.matrix[FACTOR]  # cones do not use it, but it must be finite
+    heading = work.matrix[o.FACTOR]  # cones do not use it, but it must be finite
     for i in range(k):
         heading[i, 0], heading[i, 1] = 0.0, 0.0
     work.cones.mismatch[ENOUGH] = 0.0
     allow(work.cones, k)
-    status, _, _ = solve_cones(k, work.matrix[MASS], u, mu, kind, heading, impulse, work.cones)
+    status, _, _ = solve_cones(k, work.matrix[o.MASS], u, mu, kind, heading, impulse, work.cones)
     change = _take(k, work, status == SOLVED)
     for i in range(k):
         c = work.contact[i]
@@ -147,11 +135,11 @@ def _take(k, work, solved):
 
     The energy of a part s is s P.u + s^2 P.W P/2, with u before.
     """
-    before, impulse, slope, curve, part = work.vector[SCRATCH], work.vector[TRY], 0.0, 0.0, 1.0
+    before, impulse, slope, curve, part = work.vector[o.SCRATCH], work.vector[o.TRY], 0.0, 0.0, 1.0
     _add(k, work, 1.0)
     for i in range(3 * k):
         slope += impulse[i] * before[i]
-        curve += impulse[i] * (work.vector[NOW_U, i] - before[i])
+        curve += impulse[i] * (work.vector[o.NOW_U, i] - before[i])
     if not solved and slope + 0.5 * curve > 0.0:
         part = min(1.0, max(0.0, -slope / curve)) if curve > 0.0 else 0.0
         _add(k, work, part - 1.0)
@@ -164,5 +152,5 @@ def _take(k, work, solved):
 def _add(k, work, part):
     """Add a part of the impulse."""
     for i in range(3 * k):
-        work.vector[NOW_P, i] += part * work.vector[TRY, i]
+        work.vector[o.NOW_P, i] += part * work.vector[o.TRY, i]
     set_velocity(k, work)
