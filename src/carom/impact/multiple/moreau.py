@@ -24,14 +24,13 @@ from carom.impact.multiple.layer import set_velocity, start
 _ROUNDS = 4
 # greatest approach that Newton's law may leave, in units of the speed before, and growth of energy by sum |p u|
 _LEFT, _GROWTH = 1e-6, 1e-9
-_MOST = 1e3  # greatest sound velocity after, relative to the greatest velocity before
 _ROUND_OFF = 1e-14
 
 
 @unit
 def solve_group(k, work):
     """Resolve the group; the clock gets its marks and the change of energy in a plastic event."""
-    clock, least, most = work.clock[0], 1.0, 0.0
+    clock, vector, W, least, most = work.clock[0], work.vector, work.matrix[o.MASS], 1.0, 0.0
     for i in range(k):
         least = min(least, work.contact[i].restitution)
         most = max(most, work.contact[i].restitution)
@@ -40,7 +39,8 @@ def solve_group(k, work):
         start(k, work)
         for i in range(k):
             work.contact[i].e = work.contact[i].restitution if turn == 0 else least
-        if _sound(k, work, _once(k, work, 0)):
+        _once(k, work, 0)
+        if sound(W, vector[o.U0], vector[o.NOW_U], vector[o.NOW_P], 1.0, (3 * k, _LEFT, _GROWTH)):
             clock.code = AT_ONCE if turn == 0 else AT_ONCE | o.MISSED
             return
     start(k, work)
@@ -51,25 +51,27 @@ def solve_group(k, work):
         clock.change += _once(k, work, turn)
         least = 0.0
         for i in range(k):
-            least = min(least, work.vector[o.NOW_U, 3 * i])
+            least = min(least, vector[o.NOW_U, 3 * i])
         if least >= -1e-10:
             break
 
 
 @kernel
-def unsound(contacts, scale, out):
-    """Return whether a result is impossible: huge speeds, growing energy, or bodies that still approach."""
-    k, u, P = contacts.k, contacts.u, out.impulse
-    top, gain, bound, left = 0.0, 0.0, 0.0, 0.0
-    for a in range(3 * k):
-        own = round_off(3 * k, contacts.W[a], P)
-        top = max(top, abs(out.velocity[a]))
-        gain += 0.5 * P[a] * (u[a] + out.velocity[a])
-        bound += abs(P[a]) * (1e-6 * scale + own)
+def sound(W, before, after, impulse, scale, limits):
+    """Return whether a result is possible: energy does not grow and no contact approaches, beyond round-off.
+
+    `before` and `after` are velocities, `scale` their unit, and `limits` the number of rows, the greatest
+    approach that is left, and the greatest growth of energy by the sum of |impulse|.
+    """
+    n, left, growth = limits
+    gain, allowed, approach = 0.0, 0.0, 0.0
+    for a in range(n):
+        own = round_off(n, W[a], impulse)
+        gain += 0.5 * impulse[a] * (before[a] + after[a])
+        allowed += abs(impulse[a]) * (growth * scale + own)
         if a % 3 == 0:
-            left = max(left, -out.velocity[a] - own)
-    sound = math.isfinite(gain) and top <= _MOST * scale and left <= 1e-3 * scale
-    return not (sound and gain <= bound)
+            approach = max(approach, -after[a] - own)
+    return math.isfinite(gain) and gain <= allowed and approach <= left * scale
 
 
 @kernel
@@ -82,18 +84,6 @@ def round_off(n, row, impulse):
     for b in range(n):
         total += abs(row[b] * impulse[b])
     return _ROUND_OFF * total
-
-
-@kernel
-def _sound(k, work, change):
-    """Return whether no contact approaches, and the `change` of energy is no rise, both beyond round-off."""
-    u, p, allowed, left = work.vector[o.NOW_U], work.vector[o.NOW_P], 0.0, 0.0
-    for a in range(3 * k):
-        own = round_off(3 * k, work.matrix[o.MASS, a], p)
-        allowed += abs(p[a]) * (_GROWTH * abs(work.vector[o.U0, a]) + own)
-        if a % 3 == 0:
-            left = max(left, -u[a] - own)
-    return change <= allowed and left <= _LEFT
 
 
 @kernel

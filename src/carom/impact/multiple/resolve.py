@@ -17,9 +17,11 @@ from carom.impact.multiple import layout as o
 from carom.impact.multiple.classes import SAME, find_groups, find_pressed, reduce
 from carom.impact.multiple.group import strike_group
 from carom.impact.multiple.layout import CornerContacts
-from carom.impact.multiple.moreau import unsound
+from carom.impact.multiple.moreau import sound
 
 _NOTHING = 1e-15  # changes of velocity below this part of the greatest velocity are round-off
+# greatest approach that a passage may leave, relative to the greatest velocity, and growth of energy by sum |p|
+_APPROACH, _GROWTH = 1e-3, 1e-6
 _TOUCHES = 1e-13  # speeds of approach below this part of the greatest velocity count as zero
 
 
@@ -93,7 +95,12 @@ def _together(contacts, scale, settings, workspace, out):
                 return  # it was stopped: there is no result
         _finish(contacts, out)
         exact = (result.marks & o.EXACT) != 0  # a single contact may gain energy with Newton's law
-        if by_newton or exact or not unsound(contacts, scale, out):
+        limits = (3 * k, _APPROACH, _GROWTH)
+        if (
+            by_newton
+            or exact
+            or sound(contacts.W, contacts.u, out.velocity, out.impulse, scale, limits)
+        ):
             break
         by_newton = True
         result.marks, result.miss, result.plastic_change = 0, 0.0, 0.0
