@@ -16,7 +16,6 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom._compiled.simd import LANES
 from carom._compiled.units import unit
 from carom.friction import layout as f
 from carom.friction.cone import in_disc
@@ -35,7 +34,6 @@ _LOADED = (
 _UNLOADED = (
     0.1  # of the greatest mu N, added to all where the loaded contacts alone cannot stop all motion
 )
-_GRIP_SAMPLES = 5
 _MOMENT = 0.3  # the moment ahead, in units of the time of the fastest contact
 _PROXIMAL = (
     1e-10  # weight of the proximal term where A is singular: w is wrong by less than this part of T
@@ -164,52 +162,6 @@ def halt(k, z, work):
     for b in range(z):
         n = 3 * work.index[o.STUCK, b]
         work.vector[o.NOW_U, n + 1], work.vector[o.NOW_U, n + 2] = 0.0, 0.0
-
-
-@kernel
-def excess(c, i, S, degree, x):
-    """Return |T|^2 - (mu N)^2 of a sticking contact, from the derivative of its impulse at `x`."""
-    n, t1, t2 = 0.0, 0.0, 0.0
-    b, l = i // LANES, i % LANES
-    for j in range(degree, 0, -1):
-        n = n * x + j * S[o.S_P, j, b, l]
-        t1 = t1 * x + j * S[o.S_P1, j, b, l]
-        t2 = t2 * x + j * S[o.S_P2, j, b, l]
-    room = c.mu * max(0.0, n)
-    return t1 * t1 + t2 * t2 - room * room * (1.0 + 1e-9) - 1e-20
-
-
-@kernel
-def _last_hold(c, i, S, degree, low, high, tolerance):
-    """Return the last x between `low` and `high` where a contact still sticks, by bisection."""
-    for _ in range(50):
-        x = 0.5 * (low + high)
-        if excess(c, i, S, degree, x) > 0.0:
-            high = x
-        else:
-            low = x
-        if high - low <= tolerance:
-            break
-    return low
-
-
-@kernel
-def first_slip(z, work, degree, end):
-    """Return the first x in [0, end] where a contact can no longer stick, or 2 end."""
-    first, S = 2.0 * end, work.series
-    for b in range(z):
-        i = work.index[o.STUCK, b]
-        c = work.contact[i]
-        low = 0.0
-        for s in range(_GRIP_SAMPLES):
-            high = end * ((s + 1) / _GRIP_SAMPLES)
-            if excess(c, i, S, degree, high) > 0.0:
-                low = _last_hold(c, i, S, degree, low, high, 1e-12 * end)
-                first = min(first, low)
-                end = min(end, max(low, 1e-300))
-                break
-            low = high
-    return first
 
 
 @kernel

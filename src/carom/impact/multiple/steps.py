@@ -14,7 +14,7 @@ from carom._compiled.units import unit
 from carom.impact.multiple import layout as o
 from carom.impact.multiple import normal_law as law
 from carom.impact.multiple import series as taylor
-from carom.impact.multiple.friction import AT_REST, first_slip, gather_stuck, halt
+from carom.impact.multiple.friction import AT_REST, gather_stuck, halt
 from carom.impact.multiple.layer import APART, branch, drift, set_velocity, wedged
 from carom.impact.multiple.stages import by_stages
 
@@ -26,7 +26,7 @@ _SAFE = 0.01  # of the tolerance, for a series of low order: its last terms do n
 _STIFF = 3000.0  # rate of a slow direction above which stages cost less, per time of the fastest
 _FARTHEST = 4.0  # longest step, in units of the time of the fastest contact
 _FARTHEST_STRETCHED = 40.0
-_SAMPLES = 4
+_SAMPLES = 5
 
 
 @kernel
@@ -113,19 +113,17 @@ def series_step(k, work, rtol):
         degree = most
     first = law.find_changes(k, work, degree, h, when)
     changes, end = first <= h, min(first, h)
-    if z > 0:
-        slip = first_slip(z, work, degree, end)
-        if slip < end:
-            if slip <= 1e-9 or clock.cut == 1:  # only one more series step shares the forces anew
-                clock.cut = 0
-                return -1.0, False
-            clock.cut = 2
-            changes, end = False, slip
-    if clock.cut < 2:
+    slip = first_slip(z, work, degree, end)
+    if slip < end:
+        if slip <= 1e-9 or clock.cut == 1:  # only one more series step shares the forces anew
+            clock.cut = 0
+            return -1.0, False
+        clock.cut, changes, end = 1, False, slip
+    else:
+        clock.cut = 0
         turn = first_turn(k, work, degree, end)
         if turn < end:
             changes, end = False, turn
-    clock.cut = 1 if clock.cut == 2 else 0
     move(k, work, degree, end)
     return end, changes
 
@@ -207,42 +205,70 @@ def move(k, work, degree, x):
 
 
 @inlined
+def first_slip(z, work, degree, end):
+    """Return the first x in [0, end] where one of `z` contacts can no longer stick, or 2 end."""
+    first = 2.0 * end
+    for b in range(z):
+        x = _first_end(work, work.index[o.STUCK, b], True, degree, min(end, first))
+        first = min(first, x)
+    return first
+
+
+@inlined
 def first_turn(k, work, degree, end):
     """Return the first x in [0, end] where slip has turned by a right angle, or 2 end.
 
     When slip along a line passes through u_t = 0, the series do not show it, and continue with friction of the
     wrong sign.
     """
-    S, first, keeps_on = work.series, 2.0 * end, False
+    first, keeps_on = 2.0 * end, False
     for i in range(k):
         if i % LANES == 0:
-            keeps_on = _keeps_on(S, i, degree, end)
-        if keeps_on or not taylor.slips(work.contact[i]):
-            continue
-        low = 0.0
-        for s in range(_SAMPLES):
-            high = end * ((s + 1) / _SAMPLES)
-            if _along(S, i, degree, high) <= 0.0:
-                high = _turn_between(S, i, degree, low, high, 1e-15 * end)
-                first = min(first, high)
-                end = min(end, high)
-                break
-            low = high
+            keeps_on = _keeps_on(work.series, i, degree, min(end, first))
+        if not keeps_on and taylor.slips(work.contact[i]):
+            first = min(first, _first_end(work, i, False, degree, min(end, first)))
     return first
 
 
 @kernel
-def _turn_between(S, i, degree, low, high, tolerance):
-    """Return the x between `low` and `high` where slip has turned by a right angle, by bisection."""
-    for _ in range(60):
-        x = 0.5 * (low + high)
-        if _along(S, i, degree, x) > 0.0:
-            low = x
-        else:
-            high = x
-        if high - low <= tolerance:
-            break
-    return high
+def _first_end(work, i, sticks, degree, end):
+    """Return where in [0, end] contact `i` ceases to stick, or else its slip has turned, or infinity."""
+    low = 0.0
+    for s in range(_SAMPLES):
+        high = end * ((s + 1) / _SAMPLES)
+        if _has_ended(work, i, sticks, degree, high):
+            for _ in range(60):
+                x = 0.5 * (low + high)
+                if _has_ended(work, i, sticks, degree, x):
+                    high = x
+                else:
+                    low = x
+                if high - low <= 1e-15 * end:
+                    break
+            return low if sticks else high
+        low = high
+    return math.inf
+
+
+@kernel
+def _has_ended(work, i, sticks, degree, x):
+    """Return whether contact `i` has ceased to stick at `x`, or else its slip has turned by a right angle."""
+    if sticks:
+        return _excess(work.contact[i], i, work.series, degree, x) > 0.0
+    return _along(work.series, i, degree, x) <= 0.0
+
+
+@kernel
+def _excess(c, i, S, degree, x):
+    """Return |T|^2 - (mu N)^2 of a sticking contact, from the derivative of its impulse at `x`."""
+    n, t1, t2 = 0.0, 0.0, 0.0
+    b, l = i // LANES, i % LANES
+    for j in range(degree, 0, -1):
+        n = n * x + j * S[o.S_P, j, b, l]
+        t1 = t1 * x + j * S[o.S_P1, j, b, l]
+        t2 = t2 * x + j * S[o.S_P2, j, b, l]
+    room = c.mu * max(0.0, n)
+    return t1 * t1 + t2 * t2 - room * room * (1.0 + 1e-9) - 1e-20
 
 
 @kernel
