@@ -36,7 +36,7 @@ def three(values, i):
 
 @kernel
 def write_blow(contact, point, state, blow, clock, records):
-    """Write the row of one impact, except its W, in which all impacts are written."""
+    """Write the row of one impact, except its W: all impacts are written here."""
     row, x = records.impact[clock.struck], state[point.a].x
     row.time, row.contact, row.together = clock.now, contact.number, blow.together
     for r in range(3):
