@@ -20,7 +20,7 @@ from carom.impact.multiple.layout import CornerContacts
 from carom.impact.multiple.moreau import sound
 
 _NOTHING = 1e-15  # changes of velocity below this part of the greatest velocity are round-off
-# greatest approach that a passage may leave, relative to the greatest velocity, and growth of energy by sum |p|
+# greatest approach that a passage may leave, by the greatest velocity, and growth of energy by sum |p u|
 _APPROACH, _GROWTH = 1e-3, 1e-6
 _TOUCHES = 1e-13  # speeds of approach below this part of the greatest velocity count as zero
 
