@@ -21,7 +21,7 @@ from carom.friction import layout as f
 from carom.friction.cone import in_disc
 from carom.friction.lu import factor, substitute
 from carom.friction.newton import newton
-from carom.friction.strategy import search
+from carom.friction.operators import sweep
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.layer import set_velocity
 from carom.impact.multiple.normal_law import OPEN
@@ -38,7 +38,8 @@ _MOMENT = 0.3  # the moment ahead, in units of the time of the fastest contact
 _PROXIMAL = (
     1e-10  # weight of the proximal term where A is singular: w is wrong by less than this part of T
 )
-_ITERATIONS = 300  # of a search, where Newton's method alone fails
+# where Newton's iteration stops between stick and slip it begins again after sweeps: how often, and how many
+_TURNS, _SWEEPS = 10, 5
 
 
 @kernel
@@ -231,10 +232,15 @@ def solve_discs(m, work, step, force, u, tolerance):
         least = min(least, scale)
     cones.mismatch[f.ENOUGH] = least * tolerance / step + 1e-14 * largest
     newton(cones, m, _PROXIMAL, True)
-    if not cones.mismatch[0] <= cones.mismatch[f.ENOUGH]:
-        cones.count[f.BUDGET] = _ITERATIONS
-        search(cones, m)
+    for _ in range(_TURNS):
+        if cones.mismatch[0] <= cones.mismatch[f.ENOUGH]:
+            break
+        for i in range(_SWEEPS):
+            sweep(cones, m, i % 2 == 1)
+        for i in range(3 * m):
+            centre[i] = t[i]
         cones.count[f.FACTOR_ROWS] = -1
+        newton(cones, m, _PROXIMAL, True)
     for s in range(m):
         a, scale = 3 * slot[s], cones.contact[s].scale
         _, x, y = in_disc(cones.contact[s].h1, t[3 * s + 1], t[3 * s + 2])

@@ -26,7 +26,9 @@ OWN_E, LEAST_E, NO_E, NO_FRICTION = range(4)
 # greatest approach that Newton's law may leave, in units of the speed before, and growth of energy by sum |p u|
 _LEFT, _GROWTH = 1e-6, 1e-9
 _ROUND_OFF = 1e-14
-_VISIBLE = 1e-3  # greatest round-off of velocities, by their unit: impulses that cause more are absurd
+_VISIBLE = (
+    1e-3  # greatest round-off of velocities, by their unit: impulses that cause more are absurd
+)
 
 
 @unit
@@ -54,14 +56,14 @@ def sound(W, before, after, impulse, scale, limits):
     """Return whether a result is possible: energy does not grow and no contact approaches, beyond round-off.
 
     `before` and `after` are velocities, `scale` their unit, and `limits` the number of rows, the greatest
-    approach that is left, and the greatest growth of energy by the sum of |impulse velocity|.
+    approach that is left, and the greatest growth of energy by the sum of |impulse| `scale`.
     """
     n, left, growth = limits
     gain, allowed, approach = 0.0, 0.0, 0.0
     for a in range(n):
         own = min(_VISIBLE * scale, round_off(n, W[a], impulse))
         gain += 0.5 * impulse[a] * (before[a] + after[a])
-        allowed += abs(impulse[a]) * (growth * abs(before[a]) + own)
+        allowed += abs(impulse[a]) * (growth * scale + own)
         if a % 3 == 0:
             approach = max(approach, -after[a] - own)
     return math.isfinite(gain) and gain <= allowed and approach <= left * scale
