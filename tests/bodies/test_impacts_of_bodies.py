@@ -115,5 +115,6 @@ def test_a_box_thrown_at_a_box():
         p = 0.5 * s.velocity[:, 0] + 0.8 * s.velocity[:, 1]
         np.testing.assert_allclose(p, p[:1].repeat(len(p), 0), atol=1e-13)
         assert np.all(s.impacts.energy_change <= 1e-15)
-        assert np.max(s.ledger.residual) < 1e-9 * s.total_energy[0]
+        allowed = 1e-9 if s.stats["whole_steps"] == 0 else 1e-6
+        assert np.max(np.abs(s.ledger.residual)) < allowed * s.total_energy[0]
         assert np.min(s.ledger.residual) > -1e-2 * s.total_energy[0]

@@ -33,10 +33,10 @@ FIRST = (
     "carom.impact.strike_several:resolve_group",
     "carom.dynamics.explicit:whole_step",
     "carom.dynamics.acceleration:acceleration",
-    "carom.impact.multiple.adaptive:pass_layer",
+    "carom.impact.multiple.steps:pass_layer",
     "carom.friction.strategy:search",
     "carom.friction.newton:newton",
-    "carom.impact.multiple.one:resolve_single",
+    "carom.impact.multiple.group:resolve_single",
     "carom.dynamics.solve:solve_free",
 )
 

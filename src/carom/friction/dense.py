@@ -62,35 +62,44 @@ def sweep(work, k, backward):
 def factor_newton(work, k, eps):
     """Factor I - D + D (W + eps), and count its rows.
 
-    For an open contact D = 0 and the step is -f: its rows are left out.
+    For an open contact D = 0 and the step is -f, as for the normal impulse of a disc: their rows are left out.
     """
     p, w, active, m = work.vector[o.ITERATE], work.vector[o.RESULTING], work.active, 0
     for i in range(k):
-        n = 3 * i
-        if p[n] - w[n] > 0.0 or work.contact[i].kind == o.STICKING:
-            active[m], active[m + 1], active[m + 2] = n, n + 1, n + 2
-            m += 3
-    e = 1.0 - eps
-    for place in range(0, m, 3):
-        n = active[place]
+        n, kind = 3 * i, work.contact[i].kind
+        if p[n] - w[n] > 0.0 or kind == o.STICKING:
+            if kind != o.DISC:
+                active[m] = n
+                m += 1
+            active[m], active[m + 1] = n + 1, n + 2
+            m += 2
+    e, place = 1.0 - eps, 0
+    while place < m:
+        n = 3 * (active[place] // 3)
         d00, d10, d11, d12, d20, d21, d22 = slope(
             work.contact[n // 3], p[n] - w[n], p[n + 1] - w[n + 1], p[n + 2] - w[n + 2]
         )
         r0, r1, r2 = work.W[n], work.W[n + 1], work.W[n + 2]
-        j0, j1, j2 = work.matrix[place], work.matrix[place + 1], work.matrix[place + 2]
+        if active[place] == n:
+            j0 = work.matrix[place]
+            for q in range(m):
+                j0[q] = d00 * r0[active[q]]
+            j0[place] += 1.0 - e * d00
+            place += 1
+        j1, j2 = work.matrix[place], work.matrix[place + 1]
         for q in range(m):
             j = active[q]
             a, b, c = r0[j], r1[j], r2[j]
-            j0[q] = d00 * a
             j1[q] = d10 * a + d11 * b + d12 * c
             j2[q] = d20 * a + d21 * b + d22 * c
-        j0[place] += 1.0 - e * d00
-        j1[place] -= e * d10
-        j1[place + 1] += 1.0 - e * d11
-        j1[place + 2] -= e * d12
-        j2[place] -= e * d20
-        j2[place + 1] -= e * d21
-        j2[place + 2] += 1.0 - e * d22
+        if place > 0 and active[place - 1] == n:
+            j1[place - 1] -= e * d10
+            j2[place - 1] -= e * d20
+        j1[place] += 1.0 - e * d11
+        j1[place + 1] -= e * d12
+        j2[place] -= e * d21
+        j2[place + 1] += 1.0 - e * d22
+        place += 2
     factor(work.matrix, m, work.pivot, _LEAST_PIVOT)
     work.count[o.FACTOR_ROWS] = m
 
@@ -105,13 +114,12 @@ def solve_newton(work, k):
         step[j] = -f[j]
     for q in range(rows):
         step[work.active[q]] = 0.0
+        rhs[q] = -f[work.active[q]]
     for j in range(3 * k):
         opening = opening or step[j] != 0.0
-    for place in range(0, rows, 3):
-        n = work.active[place]
-        rhs[place], rhs[place + 1], rhs[place + 2] = -f[n], -f[n + 1], -f[n + 2]
-        if not opening:
-            continue
+    place = 0
+    while opening and place < rows:
+        n = 3 * (work.active[place] // 3)
         d00, d10, d11, d12, d20, d21, d22 = slope(
             work.contact[n // 3], p[n] - w[n], p[n + 1] - w[n + 1], p[n + 2] - w[n + 2]
         )
@@ -122,9 +130,12 @@ def solve_newton(work, k):
             s0 += r0[j] * q
             s1 += r1[j] * q
             s2 += r2[j] * q
-        rhs[place] -= d00 * s0
-        rhs[place + 1] -= d10 * s0 + d11 * s1 + d12 * s2
-        rhs[place + 2] -= d20 * s0 + d21 * s1 + d22 * s2
+        if work.active[place] == n:
+            rhs[place] -= d00 * s0
+            place += 1
+        rhs[place] -= d10 * s0 + d11 * s1 + d12 * s2
+        rhs[place + 1] -= d20 * s0 + d21 * s1 + d22 * s2
+        place += 2
     substitute(work.matrix, rows, work.pivot, rhs)
     for q in range(rows):
         step[work.active[q]] = rhs[q]

@@ -14,32 +14,14 @@ from carom import checks
 from carom.impact.api import checked_inverse_mass
 
 
-def flat_coordinate(x, width):
-    """Return s = b ln(x/b) of the normal coordinate x; 0 at entry, -infinity at the boundary."""
-    return width * np.log(np.asarray(x) / width)
-
-
 def normal_coordinate(s, width):
-    """Return x = b exp(s/b), the inverse of `flat_coordinate`."""
+    """Return x = b exp(s/b) of the flat coordinate s = b ln(x/b): 0 at entry, -infinity at the boundary."""
     return width * np.exp(np.asarray(s) / width)
 
 
 def depth_number(penetration):
     """Return l = -ln(1 - delta): the least s in the layer is -b l."""
     return -np.log1p(-np.asarray(penetration))
-
-
-def affinity(x):
-    """Return L^1_11 = -1/x, the only nonzero component of the connection of the layer."""
-    return -1.0 / np.asarray(x)
-
-
-def metric(effective_mass, x, width):
-    """Return the metric at x: the effective mass W^-1 (3, 3) with its first row and column times b/x."""
-    g = np.array(effective_mass, dtype=np.float64)
-    g[0, :] *= width / x
-    g[:, 0] *= width / x
-    return g
 
 
 @dataclass(frozen=True)

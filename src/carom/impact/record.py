@@ -1,37 +1,96 @@
-"""Writing the record of an impact."""
+"""Writing the records of impacts."""
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from carom._compiled.decorators import kernel
 from carom.impact import laws, layout
 from carom.impact.layer import E_MIN
+from carom.impact.workspace import U
 
 _NOT_LAW_A = layout.PHASE_JAM | layout.WEDGED
 
 
+class Blow(NamedTuple):
+    """What is written of the impact of one point. Vectors are in contact axes, normal first."""
+
+    together: int  # points that strike together
+    before: tuple  # velocities
+    after: tuple
+    impulse: tuple
+    compression: float  # works
+    restitution: float
+    friction: float  # loss
+    change: float  # of energy
+    phases: int
+    duration: float
+
+
 @kernel
-def write_impact(contact, c, state, point, hit, clock, records):
-    """Write the row of one impact: its input, and the result of the impact solver or of the layer."""
-    row, x, out = records.impact[clock.struck], state[point.a].x, hit.out
-    row.time = clock.now
-    row.contact, row.together = contact.number, 1
-    for i in range(3):
-        row.point[i], row.normal[i] = x[i] + point.arm_a[i], point.axes[0, i]
-        row.before[i] = hit.u[i]
-        row.after[i] = out[layout.VELOCITY + i]
-        row.impulse[i] = out[layout.IMPULSE + i]
-        for k in range(3):
-            row.W[i, k] = hit.W[i, k]
-    row.energy_change = out[layout.ENERGY_CHANGE]
-    row.compression_work = out[layout.WORK_C]
-    row.restitution_work = out[layout.WORK_R]
-    row.friction_loss = out[layout.FRICTION_LOSS]
-    row.phases = int(out[layout.PHASES])
-    row.duration = layer_time(contact, hit, out)
-    clock.impacts += out[layout.ENERGY_CHANGE]
+def three(values, i):
+    """Return three numbers of an array, from the i-th on."""
+    return values[i], values[i + 1], values[i + 2]
+
+
+@kernel
+def write_blow(contact, point, state, blow, clock, records):
+    """Write the row of one impact, except its W: all impacts are written here."""
+    row, x = records.impact[clock.struck], state[point.a].x
+    row.time, row.contact, row.together = clock.now, contact.number, blow.together
+    for r in range(3):
+        row.point[r], row.normal[r] = x[r] + point.arm_a[r], point.axes[0, r]
+    row.before[0], row.before[1], row.before[2] = blow.before
+    row.after[0], row.after[1], row.after[2] = blow.after
+    row.impulse[0], row.impulse[1], row.impulse[2] = blow.impulse
+    row.compression_work, row.restitution_work = blow.compression, blow.restitution
+    row.friction_loss, row.energy_change = blow.friction, blow.change
+    row.phases, row.duration = blow.phases, blow.duration
     clock.struck += 1
+
+
+@kernel
+def write_impact(contact, state, point, hit, clock, records):
+    """Write the impact of a single point: the result of the impact solver or of the layer."""
+    out = hit.out
+    copy_block(hit.W, 0, records.impact[clock.struck].W)
+    blow = Blow(
+        1, three(hit.u, 0), three(out, layout.VELOCITY), three(out, layout.IMPULSE),
+        out[layout.WORK_C], out[layout.WORK_R], out[layout.FRICTION_LOSS],
+        out[layout.ENERGY_CHANGE], int(out[layout.PHASES]), layer_time(contact, hit, out),
+    )  # fmt: skip
+    write_blow(contact, point, state, blow, clock, records)
+    clock.impacts += blow.change
+
+
+@kernel
+def write_share(contact, i, k, state, group, multiple, clock, records):
+    """Write the share of point i in an impact of k points.
+
+    A loss that its law does not allow, at e = 1 without friction, is no entry of the ledger.
+    """
+    result, n = multiple.result, 3 * i
+    taken, returned, loss = result.compression[i], result.restitution[i], result.friction[i]
+    phases = layout.WEDGED if result.wedged[i] != 0 else 0
+    if multiple.e[i] > 0.0:
+        phases |= result.summary[0].marks & (layout.AT_ONCE | layout.PLASTIC)
+    copy_block(group.m[0], n, records.impact[clock.struck].W)
+    blow = Blow(
+        k, three(group.v[U], n), three(result.velocity, n), three(result.impulse, n), taken,
+        returned, loss, taken + returned - loss, phases, 0.0,
+    )  # fmt: skip
+    write_blow(contact, group.points[0][i], state, blow, clock, records)
+    if not (phases & layout.PLASTIC != 0 and multiple.e[i] == 1.0 and group.mu[i] == 0.0):
+        clock.impacts += blow.change
+
+
+@kernel
+def copy_block(W, n, out):
+    """Copy the block (3, 3) of W from row and column n on."""
+    for r in range(3):
+        for s in range(3):
+            out[r, s] = W[n + r, n + s]
 
 
 @kernel

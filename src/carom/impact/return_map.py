@@ -14,8 +14,8 @@ import math
 from carom._compiled.decorators import kernel
 from carom.contact.gap import strike_point
 from carom.dynamics.contact_impulse import alone, spread
-from carom.dynamics.project import project_position
-from carom.geometry.rotation import exp, multiply, normalize
+from carom.dynamics.explicit import copy_state
+from carom.dynamics.project import project_position, shift
 from carom.kinematics.contact_point import contact_motion, place
 
 
@@ -32,7 +32,8 @@ def return_map(system, contact, state, work, tie, tolerance):
     for iteration in range(100):
         if not (abs(rho) > tolerance and iteration > 0):
             rho, _ = strike_point(contact, system.vertices, state, tie, core)
-            copy_pose(state, origin)
+            for b in range(state.shape[0]):
+                copy_state(state[b], origin[b])
             kappa = 0.0
             if rho >= -tolerance and (iteration > 0 or rho <= tolerance):
                 return iteration
@@ -54,33 +55,14 @@ def return_map(system, contact, state, work, tie, tolerance):
 
 
 @kernel
-def copy_pose(start, end):
-    """Copy positions and attitudes."""
-    for b in range(start.shape[0]):
-        for k in range(3):
-            end[b].x[k] = start[b].x[k]
-        for k in range(4):
-            end[b].Q[k] = start[b].Q[k]
-
-
-@kernel
 def carry(system, point, kappa, origin, state, work):
     """Set `state` to Exp of kappa times the motion of the last solve, from `origin`."""
-    if alone(system, point):
-        move(work.body[point.a].motion, kappa, origin[point.a], state[point.a])
-        if point.b >= 0:
-            move(work.body[point.b].motion, kappa, origin[point.b], state[point.b])
-    else:
-        for b in range(state.shape[0]):
-            move(work.body[b].motion, kappa, origin[b], state[b])
-
-
-@kernel
-def move(xi, kappa, start, end):
-    """Move one body to Exp of kappa xi from `start`."""
-    Q0, Q = start.Q, end.Q
-    for k in range(3):
-        end.x[k] = start.x[k] + kappa * xi[k]
-    r = exp(kappa * xi[3], kappa * xi[4], kappa * xi[5])
-    q = multiply(r[0], r[1], r[2], r[3], Q0[0], Q0[1], Q0[2], Q0[3])
-    Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
+    single = alone(system, point)
+    for b in range(state.shape[0]):
+        if single and b != point.a and b != point.b:
+            continue
+        motion = work.body[b].motion
+        for k in range(6):
+            motion[k] *= kappa
+        copy_state(origin[b], state[b])
+        shift(motion, state[b])

@@ -12,16 +12,18 @@ from carom.contact.groups import label_groups
 from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.dynamics.forces import potential_energy
 from carom.dynamics.project import project_velocity
+from carom.dynamics.several_points import inverse_masses, velocities
 from carom.impact import layout
 from carom.impact.driven import blocked, driven_work
 from carom.impact.effective_restitution import count_blow, effective_restitution
-from carom.impact.equal_contacts import as_one
 from carom.impact.layer import traverse
+from carom.impact.mean_point import as_one
 from carom.impact.record import write_impact
 from carom.impact.resolve import resolve_one
 from carom.impact.return_map import return_map
 from carom.impact.strike_several import strike_several
 from carom.impact.work_mode import restore_work
+from carom.impact.workspace import U
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.controls import LOCATE, WORK
 from carom.model.event_rows import begin_event, end_event
@@ -87,6 +89,9 @@ def strike(model, data, method, c):
             approach = min(approach, u)
     if approach < 0.0 or jams:
         hit.closed = max(k, 2) if jams else k  # after a jam active points are always decided again
+        if k > 1:
+            inverse_masses(system, k, group.points[0], state, work, group.m[0])
+            velocities(k, group.points[0], state, group.v[U])
         single = as_one(system, k, state, group, work)
         if not single and data.multiple.e.shape[0] < k:
             clock.grow, hit.code = FULL_MULTIPLE, GROW
@@ -139,7 +144,7 @@ def strike_one(model, data, method, c):
     if collide(method, controls, contact, hit, work.history) != layout.OK:
         hit.code = IMPACT_FAILED
         return
-    write_impact(contact, c, state, point, hit, clock, data.records)
+    write_impact(contact, state, point, hit, clock, data.records)
     out, P = hit.out, layout.IMPULSE
     spread(system, point, state, out[P], out[P + 1], out[P + 2], work)
     add_velocity(system, point, work, state)

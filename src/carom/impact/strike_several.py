@@ -8,12 +8,12 @@ from carom._compiled.decorators import by_reference, kernel
 from carom._compiled.units import unit
 from carom.contact.gap import slow, speed_of
 from carom.dynamics.contact_impulse import add_velocity, spread
-from carom.dynamics.several_points import inverse_masses, velocities
 from carom.impact.driven import blocked
 from carom.impact.effective_restitution import count_blow, effective_restitution
-from carom.impact.layout import AT_ONCE, OK, PLASTIC, WEDGED
+from carom.impact.layout import OK
 from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSettings
 from carom.impact.multiple.resolve import resolve_contacts
+from carom.impact.record import write_share
 from carom.impact.workspace import U
 from carom.model.allowance import affordable
 from carom.status import BLOCKED, IMPACT_FAILED
@@ -74,14 +74,12 @@ def pair_of(i, contacts, closed, all_by_pairs):
 def strike_several(model, data, c, k):
     """Solve the impact of all k closed points; apply their impulses, and write a record for each impulse.
 
-    A point that jams starts with a small speed of approach (mathematics page, §3.6).
+    `group` has their W and velocities. A point that jams starts with a small speed of approach (§3.6).
     """
     system = model.system
     active, state, group, multiple = data.active, data.state, data.group, data.multiple
     work, clock = data.work, data.clocks[0]
     hit, u = work.hit[0], group.v[U]
-    inverse_masses(system, k, group.points[0], state, work, group.m[0])
-    velocities(k, group.points[0], state, u)
     count_blows(model, data, k)
     for i in range(k):
         contact = system.contacts[group.closed[i].contact]
@@ -115,7 +113,8 @@ def strike_several(model, data, c, k):
     for i in range(k):
         n, t1, t2 = P[3 * i], P[3 * i + 1], P[3 * i + 2]
         if n != 0.0:
-            write_share(system, i, k, state, group, multiple, clock, data.records)
+            contact = system.contacts[group.closed[i].contact]
+            write_share(contact, i, k, state, group, multiple, clock, data.records)
             spread(system, group.points[0][i], state, n, t1, t2, work)
             add_velocity(system, group.points[0][i], work, state)
     most = ROUND_OFF * greatest(3 * k, u)
@@ -160,30 +159,3 @@ def count_blows(model, data, k):
         contact, contact_state, last = system.contacts[c], data.active.contact_states[c], c
         if approach > slow(contact, data.state):
             count_blow(system, model.controls, contact, contact_state, approach, now)
-
-
-@kernel
-def write_share(system, i, k, state, group, multiple, clock, records):
-    """Write the share of point i in an impact of k points.
-
-    A loss that its law does not allow, at e = 1 without friction, is no entry of the ledger.
-    """
-    row, point, result = records.impact[clock.struck], group.points[0][i], multiple.result
-    x, u = state[point.a].x, group.v[U]
-    row.time, row.together = clock.now, k
-    row.contact = system.contacts[group.closed[i].contact].number
-    for r in range(3):
-        row.point[r], row.normal[r] = x[r] + point.arm_a[r], point.axes[0, r]
-        row.before[r], row.after[r] = u[3 * i + r], result.velocity[3 * i + r]
-        row.impulse[r] = result.impulse[3 * i + r]
-        for s in range(3):
-            row.W[r, s] = group.m[0][3 * i + r, 3 * i + s]
-    row.compression_work, row.restitution_work = result.compression[i], result.restitution[i]
-    row.friction_loss = result.friction[i]
-    row.energy_change = result.compression[i] + result.restitution[i] - result.friction[i]
-    row.phases, row.duration = WEDGED if result.wedged[i] != 0 else 0, 0.0
-    if multiple.e[i] > 0.0:
-        row.phases |= result.summary[0].marks & (AT_ONCE | PLASTIC)
-    if not (row.phases & PLASTIC != 0 and multiple.e[i] == 1.0 and group.mu[i] == 0.0):
-        clock.impacts += row.energy_change
-    clock.struck += 1

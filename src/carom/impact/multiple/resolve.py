@@ -1,4 +1,10 @@
-"""An impact at a corner: several contacts are closed, and one or more strike (mathematics page, part 2)."""
+"""An impact at a corner: several contacts are closed, and one or more strike (mathematics page, part 2).
+
+*Blow by blow*: the pair that approaches fastest strikes alone, until none approaches (§2.6). Points of one pair
+of bodies strike together, and so do pairs that approach equally fast, so that symmetric motions stay symmetric.
+The rule is exact for Newton's cradle with e = 1. In general the result depends on the order of the impacts, as
+for all such rules.
+"""
 
 from __future__ import annotations
 
@@ -6,40 +12,16 @@ import math
 
 from carom._compiled.decorators import by_reference, entry, kernel
 from carom.impact import laws
-from carom.impact import layout as one
 from carom.impact.layout import BAD_INPUT, OK, PLASTIC
-from carom.impact.multiple import equal_contacts
-from carom.impact.multiple.at_once import unsound
-from carom.impact.multiple.layout import (
-    ACTING_MU,
-    BLOW_FRICTION,
-    BLOW_RESTITUTION,
-    BLOW_STIFFNESS,
-    BLOW_U,
-    BY_NEWTON,
-    CAPPED,
-    CLASS,
-    CLASS_SIZE,
-    CLEAN,
-    EXACT,
-    FIRST_MEMBER,
-    GROUP,
-    MASS,
-    MEMBER,
-    MISSED,
-    NOT_RESOLVED,
-    NOW_P,
-    REPELLED,
-    SINGLE,
-    TRY,
-    U0,
-    CornerContacts,
-)
-from carom.impact.multiple.one import resolve_single
-from carom.impact.multiple.passage import at_once, pass_group
-from carom.impact.multiple.sequential import choose, strikes_at_once, take
+from carom.impact.multiple import layout as o
+from carom.impact.multiple.classes import SAME, find_groups, find_pressed, reduce
+from carom.impact.multiple.group import strike_group
+from carom.impact.multiple.layout import CornerContacts
+from carom.impact.multiple.moreau import sound
 
 _NOTHING = 1e-15  # changes of velocity below this part of the greatest velocity are round-off
+# greatest approach that a passage may leave, by the greatest velocity, and growth of energy by sum |p u|
+_APPROACH, _GROWTH = 1e-3, 1e-6
 _TOUCHES = 1e-13  # speeds of approach below this part of the greatest velocity count as zero
 
 
@@ -61,7 +43,7 @@ def resolve_contacts(contacts, settings, workspace, out):
         return BAD_INPUT
     _clear(contacts, out)
     blow, count = workspace.blow, 0
-    together = settings.multiple == BY_NEWTON or strikes_at_once(contacts)
+    together = settings.multiple == o.BY_NEWTON or strikes_at_once(contacts)
     while True:
         ends = together or count >= settings.max_events * contacts.k
         m = choose(contacts, ends, _TOUCHES * scale, blow, out)
@@ -69,11 +51,11 @@ def resolve_contacts(contacts, settings, workspace, out):
             break
         if ends and not together:  # the sequence does not end: the rest is plastic
             for a in range(m):
-                blow.given[BLOW_RESTITUTION, a] = 0.0
+                blow.given[o.BLOW_RESTITUTION, a] = 0.0
         part = by_reference(
             CornerContacts(
-                m, contacts.k - m, blow.W, blow.given[BLOW_U], blow.given[BLOW_FRICTION],
-                blow.given[BLOW_RESTITUTION], blow.law[0], blow.given[BLOW_STIFFNESS], blow.law[1],
+                m, contacts.k - m, blow.W, blow.given[o.BLOW_U], blow.given[o.BLOW_FRICTION],
+                blow.given[o.BLOW_RESTITUTION], blow.law[0], blow.given[o.BLOW_STIFFNESS], blow.law[1],
             )
         )  # fmt: skip
         _together(part, scale, settings, workspace, blow.result)
@@ -83,7 +65,7 @@ def resolve_contacts(contacts, settings, workspace, out):
             break
     if count > 1:
         out.summary[0].events += count
-        out.summary[0].marks &= ~EXACT
+        out.summary[0].marks &= ~o.EXACT
     if not together:
         _finish(contacts, out)
     return OK
@@ -95,25 +77,30 @@ def _together(contacts, scale, settings, workspace, out):
     k, still, result = contacts.k, _TOUCHES * scale, out.summary[0]
     _clear(contacts, out)
     work = workspace.work
-    index, clean = work.index, work.matrix[CLEAN]
+    index, clean = work.index, work.matrix[o.CLEAN]
     acting = by_reference(
         CornerContacts(
-            k, contacts.others, clean, contacts.u, work.vector[ACTING_MU],
+            k, contacts.others, clean, contacts.u, work.vector[o.ACTING_MU],
             contacts.restitution, contacts.law, contacts.stiffness, contacts.pair,
         )
     )  # fmt: skip
-    result.classes = equal_contacts.reduce(contacts, acting, scale, index)
-    equal_contacts.find_pressed(acting, still, index)
-    groups = equal_contacts.find_groups(k, result.classes, clean, index)
-    by_newton = settings.multiple == BY_NEWTON
+    result.classes = reduce(contacts, acting, scale, index)
+    find_pressed(acting, still, index)
+    groups = find_groups(k, result.classes, clean, index)
+    by_newton = settings.multiple == o.BY_NEWTON
     while True:
         for g in range(groups):
-            _group(g, acting, still, by_newton, settings, workspace, out)
+            strike_group(g, acting, still, by_newton, settings, workspace, out)
             if work.clock[0].left < 0:
                 return  # it was stopped: there is no result
         _finish(contacts, out)
-        exact = (result.marks & EXACT) != 0  # a single contact may gain energy with Newton's law
-        if by_newton or exact or not unsound(contacts, scale, out):
+        exact = (result.marks & o.EXACT) != 0  # a single contact may gain energy with Newton's law
+        limits = (3 * k, _APPROACH, _GROWTH)
+        if (
+            by_newton
+            or exact
+            or sound(contacts.W, contacts.u, out.velocity, out.impulse, scale, limits)
+        ):
             break
         by_newton = True
         result.marks, result.miss, result.plastic_change = 0, 0.0, 0.0
@@ -154,137 +141,78 @@ def _clear(contacts, out):
 
 
 @kernel
-def _group(g, contacts, still, by_newton, settings, workspace, out):
-    """Resolve the classes of group `g`; write impulses and works of their contacts.
-
-    `by_newton` says that they are one contact problem, without the passage of the layer.
-    """
-    work, summary = workspace.work, out.summary[0]
-    n = _gather(g, contacts, still, summary.classes, work)
-    if n == 0 or (n == 1 and not by_newton and _exactly(contacts, still, work, out) == OK):
-        return
-    mass, speed, rate = _fill(n, contacts, still, settings.exponent, work)
-    if not (mass > 0.0 and rate > 0.0):
-        return
-    plastic = summary.plastic_change
-    summary.plastic_change = 0.0
-    if by_newton:
-        at_once(n, work, workspace.cones, summary)
-    else:
-        pass_group(n, work, workspace.cones, settings, summary)
-    energy, index = speed * speed / mass, work.index
+def strikes_at_once(contacts):
+    """Return whether all contacts belong to one pair, or all e are 0, which is one plastic event."""
+    one, plastic = True, True
     for i in range(contacts.k):
-        for a in range(n):
-            if index[CLASS, i] == index[MEMBER, a]:
-                c, share = work.contact[a], 1.0 / index[CLASS_SIZE, index[MEMBER, a]]
-                for r in range(3):
-                    out.impulse[3 * i + r] = work.vector[NOW_P, 3 * a + r] * share * speed / mass
-                out.compression[i] = -max(0.0, c.absorbed) * share * energy
-                out.restitution[i] = max(0.0, c.returned) * share * energy
-                out.friction[i] = max(0.0, c.loss) * share * energy
-                out.wedged[i] = c.wedged
-    summary.plastic_change = plastic + energy * summary.plastic_change
+        one = one and contacts.pair[i] == contacts.pair[0]
+        plastic = plastic and not contacts.restitution[i] > 0.0
+    return one or plastic
 
 
 @kernel
-def _gather(g, contacts, still, classes, work):
-    """List the classes of group `g` and write W between them; return their number, 0 if none strikes."""
-    index, n, strikes = work.index, 0, False
-    for q in range(classes):
-        if index[GROUP, q] == g:
-            index[MEMBER, n] = q
-            n += 1
-            strikes = strikes or contacts.u[3 * index[FIRST_MEMBER, q]] < -still
-    if not strikes:
-        return 0
-    for a in range(n):
-        for b in range(n):
-            p, q = index[MEMBER, a], index[MEMBER, b]
-            for r in range(3):
-                for s in range(3):
-                    work.matrix[MASS, 3 * a + r, 3 * b + s] = equal_contacts.class_coupling(
-                        contacts.k, contacts.W, index, p, q, r, s
-                    )
-    return n
+def choose(contacts, every, least, blow, out):
+    """Gather the contacts of the next impact; return their number, 0 if none approaches faster than `least`.
 
-
-@kernel
-def _fill(n, contacts, still, exponent, work):
-    """Scale the group and write its contacts; return the scales of W and u, and the scale of the rate."""
-    u, mu, kappa = contacts.u, contacts.friction, contacts.stiffness
-    index, W = work.index, work.matrix[MASS]
-    mass, speed, most, stiff = 0.0, 0.0, 0.0, 0.0
-    for a in range(n):
-        i = index[FIRST_MEMBER, index[MEMBER, a]]
-        mass = max(mass, W[3 * a, 3 * a])
-        speed = max(speed, -u[3 * i])
-        for r in range(3 if mu[i] > 0.0 else 1):
-            most = max(most, abs(u[3 * i + r]))
-        stiff = max(stiff, kappa[i] * index[CLASS_SIZE, index[MEMBER, a]] * W[3 * a, 3 * a])
-    if not (mass > 0.0 and stiff > 0.0):
-        return 0.0, 0.0, 0.0
-    speed = max(speed, 1e-3 * most)
-    for a in range(3 * n):
-        row = W[a]
-        for b in range(3 * n):
-            row[b] /= mass
-    for a in range(n):
-        q = index[MEMBER, a]
-        i = index[FIRST_MEMBER, q]
-        c = work.contact[a]
-        c.mu, c.restitution, c.law = mu[i], contacts.restitution[i], contacts.law[i]
-        c.e, c.members = c.restitution, index[CLASS_SIZE, q]
-        c.root = (kappa[i] * index[CLASS_SIZE, q] * mass / stiff) ** (1.0 / exponent)
-        c.grip = mu[i] * (W[3 * a + 1, 3 * a + 1] + W[3 * a + 2, 3 * a + 2])
-        for r in range(3):
-            work.vector[U0, 3 * a + r] = u[3 * i + r] / speed if r == 0 or mu[i] > 0.0 else 0.0
-        if abs(u[3 * i]) <= still:
-            work.vector[U0, 3 * a] = 0.0
-        c.approach = max(0.0, -work.vector[U0, 3 * a])
-    return mass, speed, stiff
-
-
-@kernel
-def _exactly(contacts, still, work, out):
-    """Resolve a group of one class as one contact; return OK or NOT_RESOLVED.
-
-    If its forces separate other contacts, or it is one impact of a sequence, it returns no more energy than it
-    has absorbed, like each of several contacts. If it separates others and e = 0, the result is NOT_RESOLVED:
-    all of them are one plastic event.
+    They belong to the pair that approaches fastest and to pairs that approach equally fast; if `every`, they
+    are all contacts. `out` has the velocities.
     """
-    index, W, before = work.index, work.matrix[SINGLE], work.vector[TRY]
-    q = index[MEMBER, 0]
-    i = index[FIRST_MEMBER, q]
-    mu, e, law = contacts.friction[i], contacts.restitution[i], contacts.law[i]
-    parts = equal_contacts.parts_others(contacts.k, contacts.W, i, index)
-    if parts and not e > 0.0:
-        return NOT_RESOLVED
-    for r in range(3):
-        before[r] = contacts.u[3 * i + r] if r == 0 or mu > 0.0 else 0.0
-        for s in range(3):
-            W[r, s] = work.matrix[MASS, r, s]
-    single, clock, summary = work.single, work.clock, out.summary[0]
-    single[one.STILL] = still
-    several = parts or contacts.others > 0
-    resolve_single(clock, W, before, mu, e, law, single)
-    if several and clock[0].code == one.OK and single[one.WORK_R] > -single[one.WORK_C]:
-        resolve_single(clock, W, before, mu, 1.0, laws.STRONGE, single)
-        summary.marks |= CAPPED
-    if clock[0].code != one.OK:
-        return NOT_RESOLVED
-    share = 1.0 / index[CLASS_SIZE, q]
-    for j in range(contacts.k):
-        if index[CLASS, j] == q:
-            for r in range(3):
-                out.impulse[3 * j + r] = single[one.IMPULSE + r] * share
-            out.compression[j] = single[one.WORK_C] * share
-            out.restitution[j] = single[one.WORK_R] * share
-            out.friction[j] = single[one.FRICTION_LOSS] * share
-            out.wedged[j] = 1 if int(single[one.PHASES]) & one.WEDGED != 0 else 0
-    if not several:
-        summary.marks |= EXACT
-    summary.steps += int(single[one.STEPS])
-    return OK
+    k, pair, member, u, fastest = contacts.k, contacts.pair, blow.member, out.velocity, 0.0
+    for i in range(k):
+        fastest = max(fastest, -u[3 * i])
+    if not fastest > least:
+        return 0
+    m, equal = 0, (1.0 - SAME) * fastest
+    for i in range(k):
+        strikes = every
+        for j in range(0 if every else k):
+            strikes = strikes or (pair[j] == pair[i] and -u[3 * j] >= equal)
+        if strikes:
+            member[m] = i
+            m += 1
+    for a in range(m):
+        i = member[a]
+        blow.given[o.BLOW_FRICTION, a] = contacts.friction[i]
+        blow.given[o.BLOW_RESTITUTION, a] = contacts.restitution[i]
+        blow.given[o.BLOW_STIFFNESS, a] = contacts.stiffness[i]
+        blow.law[0, a], blow.law[1, a] = contacts.law[i], pair[i]
+        for r in range(3):
+            blow.given[o.BLOW_U, 3 * a + r] = u[3 * i + r]
+            row, whole = blow.W[3 * a + r], contacts.W[3 * i + r]
+            for b in range(m):
+                for s in range(3):
+                    row[3 * b + s] = whole[3 * member[b] + s]
+    return m
+
+
+@kernel
+def take(contacts, m, blow, out):
+    """Add the result of the impact of `m` contacts to the result of all contacts."""
+    member, part, u, W = blow.member, blow.result, out.velocity, contacts.W
+    for a in range(m):
+        i = member[a]
+        out.compression[i] += min(0.0, part.compression[a])
+        out.restitution[i] += max(0.0, part.restitution[a])
+        out.friction[i] += max(0.0, part.friction[a])
+        out.wedged[i] = part.wedged[a]
+        for r in range(3):
+            impulse = part.impulse[3 * a + r]
+            out.impulse[3 * i + r] += impulse
+            if impulse != 0.0 and m < contacts.k:
+                for b in range(3 * contacts.k):
+                    u[b] += impulse * W[b, 3 * i + r]
+    if m == contacts.k:
+        for b in range(3 * m):
+            u[b] = part.velocity[b]
+    result, done = out.summary[0], part.summary[0]
+    result.energy_change += done.energy_change
+    result.plastic_change += done.plastic_change
+    result.miss = max(result.miss, done.miss)
+    result.steps += done.steps
+    result.events += done.events
+    result.rounds += done.rounds
+    result.classes += done.classes
+    result.marks |= done.marks
 
 
 @kernel
@@ -299,7 +227,7 @@ def _finish(contacts, out):
     for i in range(k):
         if not P_[3 * i] * W[3 * i, 3 * i] > _NOTHING * most:
             P_[3 * i], P_[3 * i + 1], P_[3 * i + 2] = 0.0, 0.0, 0.0
-    capped, elastic = (result.marks & EXACT) == 0, _keeps_energy(contacts, out)
+    capped, elastic = (result.marks & o.EXACT) == 0, _keeps_energy(contacts, out)
     for turn in range(2):
         energy, gain = 0.0, 0.0
         for a in range(n):
@@ -315,14 +243,14 @@ def _finish(contacts, out):
             break
         for a in range(n):
             P_[a] *= 1.0 - energy / gain
-        result.marks |= REPELLED
+        result.marks |= o.REPELLED
     close_ledger(k, out)
 
 
 @kernel
 def _keeps_energy(contacts, out):
     """Return whether all contacts with an impulse are elastic and without friction, and no body was trapped."""
-    if (out.summary[0].marks & (PLASTIC | MISSED)) != 0:
+    if (out.summary[0].marks & (PLASTIC | o.MISSED)) != 0:
         return False
     for i in range(contacts.k):
         acts = out.impulse[3 * i] > 0.0

@@ -12,25 +12,18 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.impact import laws
-from carom.impact.multiple.law import E_MIN
-from carom.impact.multiple.layout import (
-    INVERSE,
-    NOW_U,
-    OUT_BEST,
-    OUT_BEST_F,
-    OUT_DF,
-    OUT_DX,
-    OUT_F,
-    OUT_H,
-    OUT_LAST,
-    OUT_NEW,
-    OUT_V,
-    OUT_X,
-)
+from carom.impact.multiple import layout as o
+from carom.impact.multiple.layer import resume, start
+from carom.impact.multiple.normal_law import E_MIN
+from carom.impact.multiple.steps import ENDED, pass_layer
 
 _FARTHEST = 1.5  # greatest |ln(target/reached)| and step that is believed
 _DIFFERING = 3.0  # part of a first step in which contacts differ, if some have no target
 _PARALLEL = 0.01  # squared sine of the least angle between two steps of which both are kept
+_GAIN = 0.8  # a round is a gain if it reduces the greatest miss to this part or less
+_PATIENCE = 4  # rounds without gain until it begins again, damped; after twice as many it ends
+COARSE = 1e-4  # greatest tolerance of a passage; it decreases with the misses
+_NEAR = 0.1  # greatest ln(target/reached) at which the nearest result is used
 
 
 @kernel
@@ -71,7 +64,7 @@ def misses(k, work, out):
         if not has_target(c) or c.wedged == 1:  # no e_* separates a wedged contact
             continue
         target = laws.goal(c.law, c.restitution, c.approach, c.loading, 0.0)
-        reached = work.vector[NOW_U, 3 * i] if c.law in laws.BY_SPEED else c.unloading
+        reached = work.vector[o.NOW_U, 3 * i] if c.law in laws.BY_SPEED else c.unloading
         if not target > 0.0:
             continue
         miss = _FARTHEST
@@ -98,43 +91,43 @@ def begin(k, work, gain):
         m += 1 if has_target(work.contact[i]) else 0
     differing = _DIFFERING if m < k else 1.0
     for i in range(k):
-        work.vector[OUT_X, i], work.vector[OUT_LAST, i] = math.log(work.contact[i].e), 0.0
+        work.vector[o.OUT_X, i], work.vector[o.OUT_LAST, i] = math.log(work.contact[i].e), 0.0
         for j in range(k):
             mean = (1.0 - differing) / m if has_target(work.contact[j]) else 0.0
-            work.matrix[INVERSE, i, j] = -gain * (mean + (differing if i == j else 0.0))
+            work.matrix[o.INVERSE, i, j] = -gain * (mean + (differing if i == j else 0.0))
 
 
 @kernel
 def keep_best(k, work):
     """Save the e_* in use and their misses as the best so far."""
     for i in range(k):
-        work.vector[OUT_BEST, i] = work.vector[OUT_X, i]
-        work.vector[OUT_BEST_F, i] = work.vector[OUT_F, i]
+        work.vector[o.OUT_BEST, i] = work.vector[o.OUT_X, i]
+        work.vector[o.OUT_BEST_F, i] = work.vector[o.OUT_F, i]
 
 
 @kernel
 def back_to_best(k, work):
     """Return to the best e_* so far."""
     for i in range(k):
-        work.vector[OUT_X, i] = work.vector[OUT_BEST, i]
-        work.contact[i].e = math.exp(work.vector[OUT_BEST, i])
-        work.vector[OUT_F, i] = work.vector[OUT_BEST_F, i]
+        work.vector[o.OUT_X, i] = work.vector[o.OUT_BEST, i]
+        work.contact[i].e = math.exp(work.vector[o.OUT_BEST, i])
+        work.vector[o.OUT_F, i] = work.vector[o.OUT_BEST_F, i]
 
 
 @kernel
 def improve(k, work):
     """Step from the misses in row OUT_F: x <- x - J^-1 F, e_* in [e_min, 1]."""
-    o, H = work.vector, work.matrix[INVERSE]
+    v, H = work.vector, work.matrix[o.INVERSE]
     for i in range(k):
         step = 0.0
         for j in range(k):
-            step -= H[i, j] * o[OUT_F, j]
-        if o[OUT_F, i] == 0.0:  # on target, capped, or without a target
+            step -= H[i, j] * v[o.OUT_F, j]
+        if v[o.OUT_F, i] == 0.0:  # on target, capped, or without a target
             step = 0.0
         step = min(_FARTHEST, max(-_FARTHEST, step))
-        x = min(0.0, max(math.log(E_MIN), o[OUT_X, i] + step))
-        o[OUT_DX, i] = x - o[OUT_X, i]
-        o[OUT_X, i] = x
+        x = min(0.0, max(math.log(E_MIN), v[o.OUT_X, i] + step))
+        v[o.OUT_DX, i] = x - v[o.OUT_X, i]
+        v[o.OUT_X, i] = x
         work.contact[i].e = math.exp(x)
 
 
@@ -145,14 +138,14 @@ def learn(k, work):
     H <- H + (s - H y) v^T H / (v^T H y): Broyden's update, with v = s less its part along the step before, for
     which H stays right (Gay and Schnabel 1978).
     """
-    o, H = work.vector, work.matrix[INVERSE]
+    v, H = work.vector, work.matrix[o.INVERSE]
     size, along, before = 0.0, 0.0, 0.0
     for i in range(k):
-        o[OUT_DF, i] = o[OUT_NEW, i] - o[OUT_F, i]
-        o[OUT_F, i] = o[OUT_NEW, i]
-        size += o[OUT_DX, i] * o[OUT_DX, i]
-        along += o[OUT_DX, i] * o[OUT_LAST, i]
-        before += o[OUT_LAST, i] * o[OUT_LAST, i]
+        v[o.OUT_DF, i] = v[o.OUT_NEW, i] - v[o.OUT_F, i]
+        v[o.OUT_F, i] = v[o.OUT_NEW, i]
+        size += v[o.OUT_DX, i] * v[o.OUT_DX, i]
+        along += v[o.OUT_DX, i] * v[o.OUT_LAST, i]
+        before += v[o.OUT_LAST, i] * v[o.OUT_LAST, i]
     share = along / before if before > 0.0 else 0.0
     left = size - share * along
     if not left > _PARALLEL * size:
@@ -161,19 +154,90 @@ def learn(k, work):
     for i in range(k):
         total = 0.0
         for j in range(k):
-            total += H[i, j] * o[OUT_DF, j]
-        o[OUT_H, i] = total
-        o[OUT_V, i] = o[OUT_DX, i] - share * o[OUT_LAST, i]
-        o[OUT_LAST, i] = o[OUT_DX, i]
-        bottom += o[OUT_V, i] * total
+            total += H[i, j] * v[o.OUT_DF, j]
+        v[o.OUT_H, i] = total
+        v[o.OUT_V, i] = v[o.OUT_DX, i] - share * v[o.OUT_LAST, i]
+        v[o.OUT_LAST, i] = v[o.OUT_DX, i]
+        bottom += v[o.OUT_V, i] * total
     if not abs(bottom) > 0.05 * left:
         return
     for j in range(k):
         row = 0.0
         for i in range(k):
-            row += o[OUT_V, i] * H[i, j]
-        o[OUT_NEW, j] = row / bottom
+            row += v[o.OUT_V, i] * H[i, j]
+        v[o.OUT_NEW, j] = row / bottom
     for i in range(k):
-        correction = o[OUT_DX, i] - o[OUT_H, i]
+        correction = v[o.OUT_DX, i] - v[o.OUT_H, i]
         for j in range(k):
-            H[i, j] += correction * o[OUT_NEW, j]
+            H[i, j] += correction * v[o.OUT_NEW, j]
+
+
+@kernel
+def run(k, work, settings, rtol, anew):
+    """Pass the layer with the coefficients e_* as they are; `rtol` holds from the first unloading."""
+    p, most_events = settings.exponent, settings.max_events * k
+    if anew:
+        start(k, work)
+    else:
+        resume(k, work, p)
+    most = settings.max_steps * k
+    pass_layer(k, work, settings.rtol if anew else rtol, rtol, p, most_events, most)
+    return work.clock[0].code
+
+
+@kernel
+def iterate_restitution(k, work, settings, result):
+    """Iterate the energetic coefficients until each contact satisfies its own law.
+
+    If they do not converge (two corners of one rigid edge cannot always both satisfy it), the nearest result is
+    used if it is near enough, otherwise Stronge's law with the same e.
+    """
+    v = work.vector
+    tolerance = max(3.0 * settings.rtol, 1e-10)
+    begin(k, work, 1.0)
+    ended = ENDED
+    worst, capped = misses(k, work, v[o.OUT_F])
+    if not worst > tolerance:  # the first passage was coarse
+        ended = again(k, work, settings, settings.rtol)
+        worst, capped = misses(k, work, v[o.OUT_F])
+    keep_best(k, work)
+    best, stale, rounds = worst, 0, 0
+    while worst > tolerance and rounds < settings.max_rounds and ended == ENDED:
+        improve(k, work)
+        rtol = max(settings.rtol, min(COARSE, 0.01 * worst))
+        ended = again(k, work, settings, rtol)
+        rounds += 1
+        worst, capped = misses(k, work, v[o.OUT_NEW])
+        if not worst > tolerance and rtol > settings.rtol:
+            rtol = settings.rtol
+            ended = again(k, work, settings, rtol)
+            worst, capped = misses(k, work, v[o.OUT_NEW])
+        learn(k, work)
+        stale += 1
+        if worst < best:
+            stale = 0 if worst < _GAIN * best else stale
+            best = worst
+            keep_best(k, work)
+        if stale == _PATIENCE:
+            back_to_best(k, work)
+            begin(k, work, 0.5)
+        elif stale > 2 * _PATIENCE:
+            break
+    result.rounds += rounds
+    if not worst <= tolerance and ended == ENDED:
+        result.marks |= o.MISSED
+        result.miss = max(result.miss, best)
+        if best < _NEAR:
+            back_to_best(k, work)
+        else:
+            energetic(k, work)
+        return again(k, work, settings, settings.rtol)
+    if capped:
+        result.marks |= o.CAPPED
+    return ended
+
+
+@kernel
+def again(k, work, settings, rtol):
+    """Pass the layer with other coefficients, from the first unloading if its state was saved."""
+    return run(k, work, settings, rtol, work.clock[0].branched == 0)

@@ -11,48 +11,26 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom._compiled.simd import add, load, multiply, same, store, subtract
-from carom.impact.multiple.lanes import blocks, product
-from carom.impact.multiple.law import OPEN
-from carom.impact.multiple.layout import (
-    CLOSED,
-    HOLDING,
-    LANES,
-    MASS,
-    NOW_P,
-    NOW_U,
-    ONE_OVER,
-    ORDER_P,
-    ORDER_U,
-    PULL,
-    ROUGH,
-    S_D,
-    S_F,
-    S_FS,
-    S_G,
-    S_LANE,
-    S_LOSS,
-    S_N,
-    S_P,
-    S_P1,
-    S_P2,
-    S_Q,
-    S_R,
-    S_RATE,
-    S_SIGMA,
-    S_U,
-    S_U1,
-    S_U2,
-    SLIPPING,
-    SLOPE,
-    SLOWNESS,
-    STICK_T,
-    STUCK,
-    WEIGHT,
-    D,
-)
+from carom._compiled.lanes import blocks, product
+from carom._compiled.simd import LANES, add, load, multiply, same, store, subtract
+from carom.impact.multiple import layout as o
+from carom.impact.multiple.friction import stick
+from carom.impact.multiple.normal_law import OPEN
 
 _NEAR = 0.3  # a time ahead, for the force of a contact that is closing
+
+
+@kernel
+def into_lanes(k, work):
+    """Copy W of the group, column by column, in the form for the series."""
+    W, columns = work.matrix[o.MASS], work.columns
+    width = columns.shape[1] // 3
+    for j in range(3 * k):
+        for b in range(blocks(k)):
+            for r in range(3):
+                for l in range(LANES):
+                    i = LANES * b + l
+                    columns[j, r * width + b, l] = W[j, 3 * i + r] if i < k else 0.0
 
 
 @kernel
@@ -78,7 +56,7 @@ def likely_force(c, d, u_n):
 def stretch_weights(k, work):
     """Write c_i, the rate at which a contact's own friction can change its slip; return if any matters."""
     stretched = False
-    u, d, weights = work.vector[NOW_U], work.vector[D], work.vector[WEIGHT]
+    u, d, weights = work.vector[o.NOW_U], work.vector[o.D], work.vector[o.WEIGHT]
     for i in range(k):
         weights[i] = 0.0
         c = work.contact[i]
@@ -95,35 +73,35 @@ def stretch_weights(k, work):
 def begin(k, work, stretched):
     """Write order 0 of the series, and the data of each contact; return the number of closed contacts."""
     S, vector, closed = work.series, work.vector, 0
-    lane = S[S_LANE]
+    lane = S[o.S_LANE]
     for b in range(blocks(k)):
         for l in range(LANES):
             i = LANES * b + l
             slope, rest, rough, inverse, fine, r = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
             pull = 0.0
             for s in range(3):
-                S[S_U + s, 0, b, l] = vector[NOW_U, 3 * i + s] if i < k else 0.0
-                S[S_P + s, 0, b, l] = vector[NOW_P, 3 * i + s] if i < k else 0.0
-            S[S_D, 0, b, l] = vector[D, i] if i < k else 0.0
-            S[S_LOSS, 0, b, l] = 0.0
+                S[o.S_U + s, 0, b, l] = vector[o.NOW_U, 3 * i + s] if i < k else 0.0
+                S[o.S_P + s, 0, b, l] = vector[o.NOW_P, 3 * i + s] if i < k else 0.0
+            S[o.S_D, 0, b, l] = vector[o.D, i] if i < k else 0.0
+            S[o.S_LOSS, 0, b, l] = 0.0
             if i < k:
                 c = work.contact[i]
                 if c.mode != OPEN:
                     slope, rest = c.slope, c.rest
-                    work.index[CLOSED, closed] = i
+                    work.index[o.CLOSED, closed] = i
                     closed += 1
                 if slips(c):
-                    x, y = S[S_U1, 0, b, l], S[S_U2, 0, b, l]
+                    x, y = S[o.S_U1, 0, b, l], S[o.S_U2, 0, b, l]
                     r = math.sqrt(x * x + y * y)
-                    rough, inverse, pull = c.mu, 1.0 / r, vector[WEIGHT, i]
+                    rough, inverse, pull = c.mu, 1.0 / r, vector[o.WEIGHT, i]
                     fine = 1.0 / math.sqrt(min(1.0, r))
-            S[S_N, 0, b, l] = slope * (S[S_D, 0, b, l] - rest)
-            S[S_R, 0, b, l] = r
-            S[S_G, 0, b, l] = inverse
-            lane[SLOPE, b, l], lane[ROUGH, b, l], lane[ONE_OVER, b, l] = slope, rough, inverse
-            lane[PULL, b, l], lane[SLOWNESS, b, l] = pull, fine
-        v = lane[ONE_OVER, b]
-        lane[SLIPPING, b, 0] = v[0] + v[1] + v[2] + v[3]
+            S[o.S_N, 0, b, l] = slope * (S[o.S_D, 0, b, l] - rest)
+            S[o.S_R, 0, b, l] = r
+            S[o.S_G, 0, b, l] = inverse
+            lane[o.SLOPE, b, l], lane[o.ROUGH, b, l], lane[o.ONE_OVER, b, l] = slope, rough, inverse
+            lane[o.PULL, b, l], lane[o.SLOWNESS, b, l] = pull, fine
+        v = lane[o.ONE_OVER, b]
+        lane[o.SLIPPING, b, 0] = v[0] + v[1] + v[2] + v[3]
     return closed
 
 
@@ -131,24 +109,24 @@ def begin(k, work, stretched):
 def expand(k, z, closed, work, first, degree, stretched):
     """Write the series of velocity, impulse and depth of orders `first` + 1 to `degree`.
 
-    Orders up to `first` are known; `z` contacts stick (see `grip`).
+    Orders up to `first` are known; `z` contacts stick (see `friction`).
     """
-    S, lane = work.series, work.series[S_LANE]
+    S, lane = work.series, work.series[o.S_LANE]
     line = S.shape[2] * LANES
-    un, u1, u2, d, normal = S[S_U], S[S_U1], S[S_U2], S[S_D], S[S_N]
-    q, sigma = S[S_Q], S[S_SIGMA]
-    f = S[S_FS] if stretched else S[S_F]
+    un, u1, u2, d, normal = S[o.S_U], S[o.S_U1], S[o.S_U2], S[o.S_D], S[o.S_N]
+    q, sigma = S[o.S_Q], S[o.S_SIGMA]
+    f = S[o.S_FS] if stretched else S[o.S_F]
     for n in range(first, degree):
         step = same(1.0 / (n + 1))
         back = same(-1.0 / (n + 1))
         for b in range(blocks(k)):
-            if lane[SLIPPING, b, 0] > 0.0:
+            if lane[o.SLIPPING, b, 0] > 0.0:
                 _forces(line, S, LANES * b, n)
         if stretched:
             _stretch(k, line, S, n)
         for b in range(blocks(k)):
             p = LANES * b
-            i, o = n * line + p, (n + 1) * line + p
+            i, at = n * line + p, (n + 1) * line + p
             force, speed = load(normal, i), load(un, i)
             if stretched:
                 force, speed, grip = same(0.0), same(0.0), same(0.0)
@@ -157,16 +135,16 @@ def expand(k, z, closed, work, first, degree, stretched):
                     rate = load(sigma, m)
                     force = add(force, multiply(load(normal, j), rate))
                     speed = add(speed, multiply(load(un, j), rate))
-                    grip = add(grip, multiply(load(S[S_F], j), rate))
+                    grip = add(grip, multiply(load(S[o.S_F], j), rate))
                     j += line
                     m -= line
                 store(f, i, grip)
             depth = multiply(back, speed)
-            store(S[S_P], o, multiply(step, force))
-            store(d, o, depth)
-            store(normal, o, multiply(load(lane, SLOPE * line + p), depth))
+            store(S[o.S_P], at, multiply(step, force))
+            store(d, at, depth)
+            store(normal, at, multiply(load(lane, o.SLOPE * line + p), depth))
             x, y, heat = same(0.0), same(0.0), same(0.0)
-            if lane[SLIPPING, b, 0] > 0.0:
+            if lane[o.SLIPPING, b, 0] > 0.0:
                 j, m = p, i
                 for _ in range(n + 1):
                     friction = load(f, j)
@@ -175,10 +153,10 @@ def expand(k, z, closed, work, first, degree, stretched):
                     heat = add(heat, multiply(friction, load(q, m)))
                     j += line
                     m -= line
-            store(S[S_P1], o, multiply(back, x))
-            store(S[S_P2], o, multiply(back, y))
-            store(S[S_LOSS], o, multiply(step, heat))
-        _answer(k, closed, line, S, work.columns, work.index[CLOSED], n + 1)
+            store(S[o.S_P1], at, multiply(back, x))
+            store(S[o.S_P2], at, multiply(back, y))
+            store(S[o.S_LOSS], at, multiply(step, heat))
+        _answer(k, closed, line, S, work.columns, work.index[o.CLOSED], n + 1)
         if z > 0:
             _hold(k, z, work, n + 1)
 
@@ -186,11 +164,11 @@ def expand(k, z, closed, work, first, degree, stretched):
 @inlined
 def _forces(line, S, p, n):
     """Write order `n` of |u_t|^2, |u_t| and mu N/|u_t| of the block at `p`; its sums in one loop."""
-    u1, u2, r, f, lane, i = S[S_U1], S[S_U2], S[S_R], S[S_F], S[S_LANE], n * line + p
-    x, y, g = load(u1, p), load(u2, p), load(lane, ONE_OVER * line + p)
-    force = multiply(load(lane, ROUGH * line + p), load(S[S_N], i))
+    u1, u2, r, f, lane, i = S[o.S_U1], S[o.S_U2], S[o.S_R], S[o.S_F], S[o.S_LANE], n * line + p
+    x, y, g = load(u1, p), load(u2, p), load(lane, o.ONE_OVER * line + p)
+    force = multiply(load(lane, o.ROUGH * line + p), load(S[o.S_N], i))
     if n == 0:
-        store(S[S_Q], i, add(multiply(x, x), multiply(y, y)))
+        store(S[o.S_Q], i, add(multiply(x, x), multiply(y, y)))
         store(f, i, multiply(force, g))
         return
     q, rr, rf = same(0.0), same(0.0), same(0.0)
@@ -206,7 +184,7 @@ def _forces(line, S, p, n):
     q = add(q, add(ends, ends))
     speed = multiply(multiply(same(0.5), subtract(q, rr)), g)
     rf = add(rf, multiply(speed, load(f, p)))
-    store(S[S_Q], i, q)
+    store(S[o.S_Q], i, q)
     store(r, i, speed)
     store(f, i, multiply(subtract(force, rf), g))
 
@@ -214,16 +192,22 @@ def _forces(line, S, p, n):
 @kernel
 def _stretch(k, line, S, n):
     """Write order `n` of dtau/dt = 1 + sum c_i/|u_t,i| and of dt/dtau, the same in all lanes."""
-    g, rate, sigma, lane, total = S[S_G], S[S_RATE], S[S_SIGMA], S[S_LANE], 1.0 if n == 0 else 0.0
+    g, rate, sigma, lane, total = (
+        S[o.S_G],
+        S[o.S_RATE],
+        S[o.S_SIGMA],
+        S[o.S_LANE],
+        1.0 if n == 0 else 0.0,
+    )
     for b in range(blocks(k)):
-        if lane[SLIPPING, b, 0] > 0.0:
+        if lane[o.SLIPPING, b, 0] > 0.0:
             p = LANES * b
             if n > 0:
-                s = product(line, S[S_R], p, g, p, 1, n)
-                s = multiply(s, load(lane, ONE_OVER * line + p))
+                s = product(line, S[o.S_R], p, g, p, 1, n)
+                s = multiply(s, load(lane, o.ONE_OVER * line + p))
                 store(g, n * line + p, multiply(same(-1.0), s))
             for l in range(LANES):
-                total += lane[PULL, b, l] * g[n, b, l]
+                total += lane[o.PULL, b, l] * g[n, b, l]
     store(rate, n * line, same(total))
     if n == 0:
         s = same(1.0 / total)
@@ -241,51 +225,28 @@ def _answer(k, closed, line, S, columns, slot, n):
         un, u1, u2 = same(0.0), same(0.0), same(0.0)
         for a in range(closed):
             i = slot[a]
-            o = 3 * i * row + p
+            at = 3 * i * row + p
             for r in range(3):
-                x = same(S[S_P + r, n, i // LANES, i % LANES])
-                un = add(un, multiply(x, load(columns, o)))
-                u1 = add(u1, multiply(x, load(columns, o + line)))
-                u2 = add(u2, multiply(x, load(columns, o + 2 * line)))
-                o += row
-        store(S[S_U], b0 + p, un)
-        store(S[S_U1], b0 + p, u1)
-        store(S[S_U2], b0 + p, u2)
+                x = same(S[o.S_P + r, n, i // LANES, i % LANES])
+                un = add(un, multiply(x, load(columns, at)))
+                u1 = add(u1, multiply(x, load(columns, at + line)))
+                u2 = add(u2, multiply(x, load(columns, at + 2 * line)))
+                at += row
+        store(S[o.S_U], b0 + p, un)
+        store(S[o.S_U1], b0 + p, u1)
+        store(S[o.S_U2], b0 + p, u2)
 
 
 @kernel
 def _hold(k, z, work, n):
     """Add the friction of stick to order `n`."""
-    S, impulse, velocity = work.series, work.vector[ORDER_P], work.vector[ORDER_U]
+    S, impulse, velocity = work.series, work.vector[o.ORDER_P], work.vector[o.ORDER_U]
     for i in range(k):
         for r in range(3):
-            impulse[3 * i + r] = S[S_P + r, n, i // LANES, i % LANES]
-            velocity[3 * i + r] = S[S_U + r, n, i // LANES, i % LANES]
+            impulse[3 * i + r] = S[o.S_P + r, n, i // LANES, i % LANES]
+            velocity[3 * i + r] = S[o.S_U + r, n, i // LANES, i % LANES]
     stick(k, z, work, impulse, velocity)
     for i in range(k):
         for r in range(3):
-            S[S_P + r, n, i // LANES, i % LANES] = impulse[3 * i + r]
-            S[S_U + r, n, i // LANES, i % LANES] = velocity[3 * i + r]
-
-
-@kernel
-def stick(k, z, work, impulse, velocity):
-    """Add to `impulse` the friction that keeps `z` contacts at rest, and its effect to `velocity`."""
-    hold, slot, t = work.matrix[HOLDING], work.index[STUCK], work.vector[STICK_T]
-    for a in range(2 * z):
-        s, row = 0.0, hold[a]
-        for b in range(z):
-            n = 3 * slot[b]
-            s -= row[2 * b] * velocity[n + 1] + row[2 * b + 1] * velocity[n + 2]
-        t[a] = s
-    for b in range(z):
-        n = 3 * slot[b]
-        x, y = t[2 * b], t[2 * b + 1]
-        impulse[n + 1] += x
-        impulse[n + 2] += y
-        row1, row2 = work.matrix[MASS, n + 1], work.matrix[MASS, n + 2]
-        for i in range(3 * k):
-            velocity[i] += x * row1[i] + y * row2[i]
-    for b in range(z):
-        n = 3 * slot[b]
-        velocity[n + 1], velocity[n + 2] = 0.0, 0.0
+            S[o.S_P + r, n, i // LANES, i % LANES] = impulse[3 * i + r]
+            S[o.S_U + r, n, i // LANES, i % LANES] = velocity[3 * i + r]

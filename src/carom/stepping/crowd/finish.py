@@ -9,6 +9,7 @@ from carom.contact.gap import slow
 from carom.dynamics.explicit import copy_state
 from carom.geometry.rotation import norm
 from carom.impact.layout import AT_END
+from carom.impact.record import Blow, three, write_blow
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.model.event_rows import note_event
@@ -71,19 +72,15 @@ def finish(model, data, k, h, fall, residual):
 @kernel
 def write_impact(model, data, i, k, w, pressure, rubbing):
     """Write the row of an impact without duration; k points share the impulses of the step."""
-    end, crowd, clock, records = data.work.trial, data.crowd, data.clocks[0], data.records
-    spot, point = crowd.spots[i], crowd.points[0][i]
-    row, x = records.impact[clock.struck], end[point.a].x
+    crowd, clock, records = data.crowd, data.clocks[0], data.records
+    spot = crowd.spots[i]
+    block_of_point(crowd.problem, i, records.impact[clock.struck].W)
+    blow = Blow(
+        max(2, k), three(spot.before, 0), w, three(spot.impulse, 0), min(0.0, pressure),
+        max(0.0, pressure), -rubbing, pressure + rubbing, AT_END, 0.0,
+    )  # fmt: skip
     contact = model.system.contacts[spot.contact]
-    row.time, row.contact, row.together = clock.now, contact.number, max(2, k)
-    block_of_point(crowd.problem, i, row.W)
-    for a in range(3):
-        row.point[a], row.normal[a] = x[a] + point.arm_a[a], point.axes[0, a]
-        row.before[a], row.after[a], row.impulse[a] = spot.before[a], w[a], spot.impulse[a]
-    row.energy_change = pressure + rubbing
-    row.compression_work, row.restitution_work = min(0.0, pressure), max(0.0, pressure)
-    row.friction_loss, row.duration, row.phases = -rubbing, 0.0, AT_END
-    clock.struck += 1
+    write_blow(contact, crowd.points[0][i], data.work.trial, blow, clock, records)
 
 
 @kernel

@@ -7,8 +7,7 @@ Contact i is lane i % 4 of block i // 4. Lanes without a contact are zero. An ar
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom._compiled.simd import add, load, multiply, same
-from carom.impact.multiple.layout import LANES
+from carom._compiled.simd import LANES, add, load, multiply, same
 
 
 @kernel

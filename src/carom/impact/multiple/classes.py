@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.impact.multiple.layout import CLASS, CLASS_SIZE, FIRST_MEMBER, GROUP, PRESSED, STACK
+from carom.impact.multiple import layout as o
 
 SAME = 1e-11  # smaller relative differences of velocities and inverse masses are round-off
 _NONE = 1e-13  # coupling below this part of the diagonal is round-off
@@ -60,7 +60,7 @@ def clean(given, acting):
 @kernel
 def find_classes(contacts, scale_u, index):
     """Write the class of each contact, and the first member and size of each class; return their number."""
-    k, cls, first, count = contacts.k, index[CLASS], index[FIRST_MEMBER], 0
+    k, cls, first, count = contacts.k, index[o.CLASS], index[o.FIRST_MEMBER], 0
     for i in range(k):
         cls[i] = -1
         for q in range(count):
@@ -79,16 +79,16 @@ def find_classes(contacts, scale_u, index):
         else:
             q += 1
     for q in range(count):
-        index[CLASS_SIZE, q] = 0
+        index[o.CLASS_SIZE, q] = 0
     for i in range(k):
-        index[CLASS_SIZE, cls[i]] += 1
+        index[o.CLASS_SIZE, cls[i]] += 1
     return count
 
 
 @kernel
 def _split(contacts, q, count, index):
     """Move the members of class `q` with another coupling than its first to a class `count`; return if any."""
-    cls, first, found = index[CLASS], index[FIRST_MEMBER], False
+    cls, first, found = index[o.CLASS], index[o.FIRST_MEMBER], False
     for i in range(first[q] + 1, contacts.k):
         if cls[i] == q and not _same_coupling(contacts, count, i, first[q], index):
             if not found:
@@ -111,8 +111,8 @@ def friction_sleeps(contacts, count, index):
         for r in range(1, 3 if contacts.friction[i] > 0.0 else 1):
             row = contacts.W[3 * i + r]
             for q in range(count):
-                tolerance = SAME * _coupling_scale(contacts.W, i, index[FIRST_MEMBER, q])
-                if not abs(_of_class(contacts.k, row, q, index[CLASS])) <= tolerance:
+                tolerance = SAME * _coupling_scale(contacts.W, i, index[o.FIRST_MEMBER, q])
+                if not abs(_of_class(contacts.k, row, q, index[o.CLASS])) <= tolerance:
                     return False
     return True
 
@@ -160,9 +160,9 @@ def _same_kind(contacts, i, j, tolerance):
 @kernel
 def _same_coupling(contacts, count, i, j, index):
     """Return whether contacts i and j are coupled to each class in the same way."""
-    k, W, cls = contacts.k, contacts.W, index[CLASS]
+    k, W, cls = contacts.k, contacts.W, index[o.CLASS]
     for q in range(count):
-        tolerance = SAME * _coupling_scale(W, j, index[FIRST_MEMBER, q])
+        tolerance = SAME * _coupling_scale(W, j, index[o.FIRST_MEMBER, q])
         for r in range(3):
             for s in range(3):
                 difference = _difference(k, W[3 * i + r], W[3 * j + r], s, q, cls[j] == q, cls)
@@ -186,11 +186,11 @@ def class_coupling(k, W, index, p, q, r, s):
     """Return the entry (r, s) of W between classes p and q: sum_ij W_ij / (m_p m_q)."""
     total = 0.0
     for i in range(k):
-        if index[CLASS, i] == p:
+        if index[o.CLASS, i] == p:
             for j in range(k):
-                if index[CLASS, j] == q:
+                if index[o.CLASS, j] == q:
                     total += W[3 * i + r, 3 * j + s]
-    return total / (index[CLASS_SIZE, p] * index[CLASS_SIZE, q])
+    return total / (index[o.CLASS_SIZE, p] * index[o.CLASS_SIZE, q])
 
 
 @kernel
@@ -207,7 +207,7 @@ def coupled(W, i, j):
 def find_pressed(contacts, least, index):
     """Mark the contacts that approach faster than `least`, and those that forces of marked ones can press."""
     k, W, u, mu = contacts.k, contacts.W, contacts.u, contacts.friction
-    pressed, stack, height = index[PRESSED], index[STACK], 0
+    pressed, stack, height = index[o.PRESSED], index[o.STACK], 0
     for i in range(k):
         pressed[i] = 0
         if u[3 * i] < -least:
@@ -231,7 +231,7 @@ def find_pressed(contacts, least, index):
 def parts_others(k, W, i, index):
     """Return whether forces of contact `i` act on contacts that no force presses."""
     for j in range(k):
-        if index[PRESSED, j] == 0 and coupled(W, i, j):
+        if index[o.PRESSED, j] == 0 and coupled(W, i, j):
             return True
     return False
 
@@ -242,12 +242,12 @@ def find_groups(k, count, W, index):
 
     Classes that no force presses belong to no group (-1).
     """
-    group, stack = index[GROUP], index[STACK]
+    group, stack = index[o.GROUP], index[o.STACK]
     for q in range(count):
         group[q] = -1
     groups = 0
     for start in range(count):
-        if group[start] >= 0 or index[PRESSED, index[FIRST_MEMBER, start]] == 0:
+        if group[start] >= 0 or index[o.PRESSED, index[o.FIRST_MEMBER, start]] == 0:
             continue
         group[start] = groups
         stack[0] = start
@@ -261,7 +261,7 @@ def find_groups(k, count, W, index):
 @kernel
 def _push_neighbours(k, W, height, index):
     """Add to the group of the class at `height` of the stack those coupled to it; return the new height."""
-    group, stack, cls, pressed = index[GROUP], index[STACK], index[CLASS], index[PRESSED]
+    group, stack, cls, pressed = index[o.GROUP], index[o.STACK], index[o.CLASS], index[o.PRESSED]
     q = stack[height]
     for i in range(k):
         if cls[i] != q:

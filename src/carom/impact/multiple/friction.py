@@ -1,0 +1,248 @@
+"""Friction in the layer, where the normal forces are known (mathematics page, §2.3).
+
+*Contacts that stick*: the friction that keeps them at rest is linear in all other forces. W_ZZ T = -a has many
+solutions if contacts are redundant (four corners of a box: rank 3 of 8); all have the same effect. The solution
+of least |D^-1 T| is used, D = diag(mu N) a moment ahead. It loads contacts according to mu N, so that a contact
+leaves its disc only about when no solution fits in the discs.
+
+*All contacts*: min_T T.A T/2 + T.c with |T_i| <= rho_i. A = W_tt is positive semidefinite, and singular if
+contacts are redundant: then w = A T + c at the minimum is unique, but T is not. The problem is convex and
+always has a solution, so there is no jam. It is the contact problem of `carom.friction` for discs of known
+radii.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
+from carom.friction import layout as f
+from carom.friction.cone import in_disc
+from carom.friction.lu import factor, substitute
+from carom.friction.newton import newton
+from carom.friction.operators import sweep
+from carom.impact.multiple import layout as o
+from carom.impact.multiple.layer import set_velocity
+from carom.impact.multiple.normal_law import OPEN
+
+AT_REST = 1e-10  # slip below this velocity, or below 0.1 rtol, has ended
+_EMPTY = 1e-11  # directions with pivots below this part of the largest are redundant
+_LOADED = (
+    1e-3  # part of the greatest mu N from which a contact takes part in any motion that it can stop
+)
+_UNLOADED = (
+    0.1  # of the greatest mu N, added to all where the loaded contacts alone cannot stop all motion
+)
+_MOMENT = 0.3  # the moment ahead, in units of the time of the fastest contact
+_PROXIMAL = (
+    1e-10  # weight of the proximal term where A is singular: w is wrong by less than this part of T
+)
+# where Newton's iteration stops between stick and slip it begins again after sweeps: how often, and how many
+_TURNS, _SWEEPS = 10, 5
+
+
+@kernel
+def gather_stuck(k, work):
+    """List the closed contacts that stick and write the matrix of their friction; return their number."""
+    z = 0
+    for i in range(k):
+        c = work.contact[i]
+        if c.mode == OPEN:
+            c.sticks = 0
+        elif c.sticks == 1 and c.mu > 0.0:
+            work.index[o.STUCK, z] = i
+            z += 1
+    if z > 0:
+        find_holding(z, work)
+    return z
+
+
+@kernel
+def _bearing(z, work, weight):
+    """Write D = mu N of the sticking contacts a moment ahead, relative to the greatest; return the least."""
+    d, u, slot = work.vector[o.D], work.vector[o.NOW_U], work.index[o.STUCK]
+    moment = _MOMENT
+    for a in range(z):
+        i = slot[a]
+        c = work.contact[i]
+        if u[3 * i] > 0.0:
+            moment = min(moment, max(0.0, (d[i] - c.rest) / u[3 * i]))
+    for turn in range(2):
+        most, now = 0.0, 0.0
+        for a in range(z):
+            i = slot[a]
+            c = work.contact[i]
+            force = c.mu * max(0.0, c.slope * (d[i] - c.rest - moment * u[3 * i]))
+            weight[a] = force * force
+            most = max(most, weight[a])
+            now = max(now, c.mu * c.slope * (d[i] - c.rest))
+        if most > 1e-8 * now * now or turn == 1:
+            break
+        moment = 0.0  # all open at the same time: use the present forces
+    least = 1.0
+    for a in range(z):
+        weight[a] = math.sqrt(weight[a] / most) if most > 0.0 else 1.0
+        least = min(least, weight[a])
+    return least
+
+
+@unit
+def find_holding(z, work):
+    """Write H in T = -H a: H = D (D W_ZZ D)^+ D = R R^T, R = D L (L^T L)^-1, by L L^T = D W_ZZ D."""
+    n, vector = 2 * z, work.vector
+    L, M, hold = work.matrix[o.FACTOR], work.matrix[o.MIDDLE], work.matrix[o.HOLDING]
+    weight, pivot = vector[o.SCALE], work.index[o.PIVOTS]
+    full = 0
+    if not _bearing(z, work, weight) > _LOADED:
+        for a in range(z):
+            weight[a] = 1.0
+        full = _factor(z, work, L)
+        _bearing(z, work, weight)
+    rank = _factor(z, work, L)
+    if rank < full:  # the loaded contacts alone cannot stop all motion
+        for a in range(z):
+            weight[a] += _UNLOADED
+        rank = _factor(z, work, L)
+    for p in range(rank):
+        for q in range(rank):
+            s = 0.0
+            for a in range(n):
+                s += L[a, p] * L[a, q]
+            M[p, q] = s
+    factor(M, rank, pivot, 0.0)
+    for a in range(n):
+        for q in range(rank):
+            L[a, q] *= weight[a // 2]
+        substitute(M, rank, pivot, L[a])
+    for a in range(n):
+        for b in range(a + 1):
+            s = 0.0
+            for q in range(rank):
+                s += L[a, q] * L[b, q]
+            hold[a, b] = hold[b, a] = s
+
+
+@kernel
+def _factor(z, work, L):
+    """Write L in D W_ZZ D = L L^T, by Cholesky with pivots; return its rank."""
+    slot, W, weight = work.index[o.STUCK], work.matrix[o.MASS], work.vector[o.SCALE]
+    left, column = work.vector[o.LEFT], work.vector[o.STICK_T]
+    n, largest, rank = 2 * z, 0.0, 0
+    for a in range(n):
+        i = 3 * slot[a // 2] + 1 + a % 2
+        left[a] = weight[a // 2] * weight[a // 2] * W[i, i]
+        largest = max(largest, left[a])
+    while rank < n:
+        top = 0
+        for a in range(n):
+            if left[a] > left[top]:
+                top = a
+        if not left[top] > _EMPTY * largest:
+            break
+        pivot = math.sqrt(left[top])
+        row, d = W[3 * slot[top // 2] + 1 + top % 2], weight[top // 2]
+        for a in range(n):
+            s = d * weight[a // 2] * row[3 * slot[a // 2] + 1 + a % 2]
+            for b in range(rank):
+                s -= L[top, b] * L[a, b]
+            column[a] = s / pivot
+        for a in range(n):
+            L[a, rank] = column[a]
+            left[a] -= column[a] * column[a]
+        left[top] = 0.0
+        rank += 1
+    return rank
+
+
+@kernel
+def halt(k, z, work):
+    """Bring the sticking contacts to rest: an impulse removes the rest of their velocity."""
+    stick(k, z, work, work.vector[o.NOW_P], work.vector[o.NOW_U])
+    set_velocity(k, work)
+    for b in range(z):
+        n = 3 * work.index[o.STUCK, b]
+        work.vector[o.NOW_U, n + 1], work.vector[o.NOW_U, n + 2] = 0.0, 0.0
+
+
+@kernel
+def stick(k, z, work, impulse, velocity):
+    """Add to `impulse` the friction that keeps `z` contacts at rest, and its effect to `velocity`."""
+    hold, slot, t = work.matrix[o.HOLDING], work.index[o.STUCK], work.vector[o.STICK_T]
+    for a in range(2 * z):
+        s, row = 0.0, hold[a]
+        for b in range(z):
+            n = 3 * slot[b]
+            s -= row[2 * b] * velocity[n + 1] + row[2 * b + 1] * velocity[n + 2]
+        t[a] = s
+    for b in range(z):
+        n = 3 * slot[b]
+        x, y = t[2 * b], t[2 * b + 1]
+        impulse[n + 1] += x
+        impulse[n + 2] += y
+        row1, row2 = work.matrix[o.MASS, n + 1], work.matrix[o.MASS, n + 2]
+        for i in range(3 * k):
+            velocity[i] += x * row1[i] + y * row2[i]
+    for b in range(z):
+        n = 3 * slot[b]
+        velocity[n + 1], velocity[n + 2] = 0.0, 0.0
+
+
+@kernel
+def gather_discs(k, work):
+    """List the closed contacts with friction and write their W_tt, scaled; return their number."""
+    slot, cones, m = work.index[o.IN_DISC], work.cones, 0
+    for i in range(k):
+        c = work.contact[i]
+        if c.mode != OPEN and c.mu > 0.0:
+            slot[m] = i
+            disc, trace = cones.contact[m], c.grip / c.mu
+            disc.kind, disc.mu, disc.h2 = f.DISC, 0.0, 0.0
+            disc.scale = math.sqrt(2.0 / trace) if trace > 0.0 else 1.0
+            m += 1
+    for a in range(3 * m):
+        row = cones.W[a]
+        given = work.matrix[o.MASS, 3 * slot[a // 3] + a % 3]
+        for b in range(3 * m):
+            value = given[3 * slot[b // 3] + b % 3] if a % 3 > 0 and b % 3 > 0 else 0.0
+            row[b] = cones.contact[a // 3].scale * value * cones.contact[b // 3].scale
+    cones.count[f.FACTOR_ROWS] = -1
+    return m
+
+
+@kernel
+def solve_discs(m, work, step, force, u, tolerance):
+    """Write the friction of `m` discs with which the velocity without it, `u`, ends a time `step`.
+
+    The radii are mu times the normal forces of `force`, and `tolerance` is for velocities. Friction of the last
+    solve is the first guess.
+    """
+    slot, cones, last = work.index[o.IN_DISC], work.cones, work.vector[o.DISC_T]
+    t, bias, centre = cones.vector[f.ITERATE], cones.vector[f.BIAS], cones.vector[f.CENTRE]
+    least, largest = math.inf, 0.0
+    for s in range(m):
+        n, a, disc = 3 * s, 3 * slot[s], cones.contact[s]
+        scale = disc.scale
+        disc.h1 = work.contact[slot[s]].mu * force[a] / scale
+        t[n], t[n + 1], t[n + 2] = in_disc(disc.h1, last[2 * s] / scale, last[2 * s + 1] / scale)
+        bias[n], bias[n + 1], bias[n + 2] = 0.0, scale * u[a + 1] / step, scale * u[a + 2] / step
+        for r in range(3):
+            centre[n + r] = t[n + r]
+            largest = max(largest, abs(bias[n + r]))
+        least = min(least, scale)
+    cones.mismatch[f.ENOUGH] = least * tolerance / step + 1e-14 * largest
+    newton(cones, m, _PROXIMAL, True)
+    for _ in range(_TURNS):
+        if cones.mismatch[0] <= cones.mismatch[f.ENOUGH]:
+            break
+        for i in range(_SWEEPS):
+            sweep(cones, m, i % 2 == 1)
+        for i in range(3 * m):
+            centre[i] = t[i]
+        cones.count[f.FACTOR_ROWS] = -1
+        newton(cones, m, _PROXIMAL, True)
+    for s in range(m):
+        a, scale = 3 * slot[s], cones.contact[s].scale
+        _, x, y = in_disc(cones.contact[s].h1, t[3 * s + 1], t[3 * s + 2])
+        force[a + 1], force[a + 2] = scale * x, scale * y
+        last[2 * s], last[2 * s + 1] = force[a + 1], force[a + 2]

@@ -1,0 +1,108 @@
+"""A group as one contact problem: Coulomb's cones at the velocity after (mathematics page, §2.6).
+
+If all e are 0 this is the plastic event. If the passage of the layer fails or does not end, each contact obeys
+Newton's law, 0 <= p_n _|_ u_n+ + e u_n- >= 0 (Moreau 1988). There is no path, so the order in which contacts
+load and slip is lost. It is the limit of the passage if masses are far apart, because light bodies then stay in
+equilibrium between the slow contacts of heavy ones. If there is no such velocity (a body trapped between two
+walls), or if the energy would rise, the least e is used for all contacts, and then e = 0. Where that is not
+solved either, there is no friction: this problem always has a solution, which never raises the energy.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
+from carom.friction.layout import CONE, ENOUGH
+from carom.friction.solve import solve_cones
+from carom.friction.strategy import allow
+from carom.impact.layout import AT_ONCE, PLASTIC
+from carom.impact.multiple import layout as o
+from carom.impact.multiple.layer import set_velocity, start
+
+#: in turn: each contact with its own e, all with the least, none with any, and then without friction
+OWN_E, LEAST_E, NO_E, NO_FRICTION = range(4)
+# greatest approach that Newton's law may leave, in units of the speed before, and growth of energy by sum |p u|
+_LEFT, _GROWTH = 1e-6, 1e-9
+_ROUND_OFF = 1e-14
+_VISIBLE = (
+    1e-3  # greatest round-off of velocities, by their unit: impulses that cause more are absurd
+)
+
+
+@unit
+def solve_group(k, work):
+    """Resolve the group; the clock gets its marks and the change of energy in a plastic event."""
+    clock, vector, W, least, most = work.clock[0], work.vector, work.matrix[o.MASS], 1.0, 0.0
+    for i in range(k):
+        least = min(least, work.contact[i].restitution)
+        most = max(most, work.contact[i].restitution)
+    for way in range(OWN_E if most > 0.0 else NO_E, NO_FRICTION + 1):
+        start(k, work)
+        for i in range(k):
+            c = work.contact[i]
+            c.e = c.restitution if way == OWN_E else least if way == LEAST_E else 0.0
+        clock.change = _once(k, work, way == NO_FRICTION)
+        clock.code = AT_ONCE if way == OWN_E else AT_ONCE | o.MISSED if way == LEAST_E else PLASTIC
+        if sound(W, vector[o.U0], vector[o.NOW_U], vector[o.NOW_P], 1.0, (3 * k, _LEFT, _GROWTH)):
+            break
+    if clock.code & PLASTIC == 0:
+        clock.change = 0.0
+
+
+@kernel
+def sound(W, before, after, impulse, scale, limits):
+    """Return whether a result is possible: energy does not grow and no contact approaches, beyond round-off.
+
+    `before` and `after` are velocities, `scale` their unit, and `limits` the number of rows, the greatest
+    approach that is left, and the greatest growth of energy by the sum of |impulse| `scale`.
+    """
+    n, left, growth = limits
+    gain, allowed, approach = 0.0, 0.0, 0.0
+    for a in range(n):
+        own = min(_VISIBLE * scale, round_off(n, W[a], impulse))
+        gain += 0.5 * impulse[a] * (before[a] + after[a])
+        allowed += abs(impulse[a]) * (growth * scale + own)
+        if a % 3 == 0:
+            approach = max(approach, -after[a] - own)
+    return math.isfinite(gain) and gain <= allowed and approach <= left * scale
+
+
+@kernel
+def round_off(n, row, impulse):
+    """Return the round-off of the product of a row of W with n impulses.
+
+    It is visible if a light body is between heavy ones, whose great impulses nearly cancel on it.
+    """
+    total = 0.0
+    for b in range(n):
+        total += abs(row[b] * impulse[b])
+    return _ROUND_OFF * total
+
+
+@kernel
+def _once(k, work, smooth):
+    """Solve the contact problem, `smooth` without friction; return the change of energy."""
+    vector, heading, total = work.vector, work.matrix[o.FACTOR], 0.0
+    before, bias, u, impulse = vector[o.U0], vector[o.TRY], vector[o.NOW_U], vector[o.NOW_P]
+    mu, kind = vector[o.WEIGHT], work.index[o.STACK]
+    for i in range(3 * k):
+        bias[i] = before[i]
+    for i in range(k):
+        bias[3 * i] += work.contact[i].e * min(0.0, bias[3 * i])
+        mu[i] = 0.0 if smooth else work.contact[i].mu
+        kind[i], heading[i, 0], heading[i, 1] = CONE, 0.0, 0.0
+    work.cones.mismatch[ENOUGH] = 0.0
+    allow(work.cones, k)
+    solve_cones(k, work.matrix[o.MASS], bias, mu, kind, heading, impulse, work.cones)
+    set_velocity(k, work)
+    for i in range(k):
+        c, a = work.contact[i], 3 * i
+        normal = 0.5 * impulse[a] * (before[a] + u[a])
+        rub = impulse[a + 1] * (before[a + 1] + u[a + 1])
+        rub += impulse[a + 2] * (before[a + 2] + u[a + 2])
+        c.absorbed, c.returned = max(0.0, -normal), max(0.0, normal)
+        c.loss = max(0.0, -0.5 * rub)
+        total += normal + 0.5 * rub
+    return total

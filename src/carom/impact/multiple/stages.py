@@ -1,0 +1,301 @@
+"""A step of order four, implicit in friction, cut at the first change of mode: the pair ARK4(3)6L[2]SA.
+
+C. A. Kennedy and M. H. Carpenter, Applied Numerical Mathematics 44 (2003) 139-181. At each stage the depths,
+and therefore the normal forces, are known, and friction is the convex problem of §2.3 for the velocity at the
+end of the stage. Stick is exact (u_t = 0 at every stage). Slip that begins from rest needs no small steps,
+although its direction is stiff (rate mu N W/|u_t|), and no threshold separates stick from slip.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from carom._compiled.decorators import kernel
+from carom._compiled.simd import LANES
+from carom._compiled.units import unit
+from carom.impact.multiple import layout as o
+from carom.impact.multiple import normal_law as law
+from carom.impact.multiple.friction import AT_REST, gather_discs, solve_discs
+from carom.impact.multiple.layer import add_velocity, set_velocity
+
+_LEAST_STEP = 1e-9
+_AT_CHANGE = 0.02  # part of the tolerance for steps in which a contact begins or ceases to stick
+_MOMENT = 1e-7  # the moment ahead for the forces of an instant, in units of the step
+EXPLICIT = np.array([
+    [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [1 / 2, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [13861 / 62500, 6889 / 62500, 0.0, 0.0, 0.0, 0.0],
+    [-116923316275 / 2393684061468, -2731218467317 / 15368042101831,
+     9408046702089 / 11113171139209, 0.0, 0.0, 0.0],
+    [-451086348788 / 2902428689909, -2682348792572 / 7519795681897,
+     12662868775082 / 11960479115383, 3355817975965 / 11060851509271, 0.0, 0.0],
+    [647845179188 / 3216320057751, 73281519250 / 8382639484533, 552539513391 / 3454668386233,
+     3354512671639 / 8306763924573, 4040 / 17871, 0.0],
+])  # fmt: skip
+GAMMA = 1 / 4
+IMPLICIT = np.array([
+    [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [1 / 4, GAMMA, 0.0, 0.0, 0.0, 0.0],
+    [8611 / 62500, -1743 / 31250, GAMMA, 0.0, 0.0, 0.0],
+    [5012029 / 34652500, -654441 / 2922500, 174375 / 388108, GAMMA, 0.0, 0.0],
+    [15267082809 / 155376265600, -71443401 / 120774400, 730878875 / 902184768,
+     2285395 / 8070912, GAMMA, 0.0],
+    [82889 / 524892, 0.0, 15625 / 83664, 69875 / 102672, -2260 / 8211, GAMMA],
+])  # fmt: skip
+WEIGHTS = IMPLICIT[5].copy()
+#: weights minus those of the embedded method of order three
+DEFECT = WEIGHTS - np.array([
+    4586570599 / 29645900160, 0.0, 178811875 / 945068544, 814220225 / 1159782912,
+    -3700637 / 11593932, 61727 / 225920,
+])  # fmt: skip
+
+
+@unit
+def by_stages(k, work, rtol, p):
+    """Take an implicit step, cut at the first change of mode; the clock gets its length and any change."""
+    m = gather_discs(k, work)
+    work.clock[0].stretched = 0
+    h, changes = stages_step(k, m, work, rtol, p)
+    work.clock[0].length, work.clock[0].changes = h, 1 if changes else 0
+
+
+@kernel
+def stages_step(k, m, work, rtol, p):
+    """Take an implicit step, cut at the first change of mode; return its length and whether a mode changes."""
+    clock, when, tolerance = work.clock[0], work.vector[o.WHEN], 1e-3 * rtol
+    h, slow = clock.step, max(AT_REST, 0.01 * rtol)
+    present_forces(k, m, work, h, p, slow, tolerance)
+    while True:
+        implicit_step(k, m, work, h, p, tolerance)
+        clock.steps += 1
+        allowed = rtol
+        if regime_changes(m, work, slow):
+            allowed *= _AT_CHANGE
+        if not (clock.error > allowed and h > _LEAST_STEP):
+            break
+        h *= max(0.2, 0.9 * (allowed / clock.error) ** 0.25)
+    error = clock.error
+    clock.step = h * (5.0 if error < 1e-3 * rtol else 0.9 * (rtol / error) ** 0.25)
+    clock.step = min(clock.step, 0.5)
+    interpolate(k, work, h)
+    first = law.find_changes(k, work, 5, h, when)
+    changes = first <= h
+    if changes:
+        if first > law.SAME_TIME:
+            h = _land(k, m, work, first, p, tolerance, 0.1 * rtol)
+            for i in range(k):  # times of changes, relative to the new length of the step
+                when[i] -= first - h
+        else:
+            return first, True
+    advance(k, work, h)
+    set_velocity(k, work)
+    set_regime(m, work, slow)
+    return h, changes
+
+
+@kernel
+def _land(k, m, work, h, p, tolerance, residual):
+    """Step to the change of mode near `h`, by Newton's iteration for the length of the step."""
+    when, lead = work.vector[o.WHEN], 0
+    for i in range(k):
+        if when[i] < when[lead]:
+            lead = i
+    c = work.contact[lead]
+    for turn in range(5):
+        implicit_step(k, m, work, h, p, tolerance)
+        work.clock[0].steps += 1
+        d, u_n = work.vector[o.NEW_D, lead], work.vector[o.NEW_U, 3 * lead]
+        if c.mode == law.OPEN:
+            g, rate = d - c.d0, -u_n
+        elif c.mode == law.LOAD:
+            row, force = work.matrix[o.MASS, 3 * lead], work.stage[o.FORCE, 5]
+            g, rate = u_n, 0.0
+            for j in range(3 * k):
+                rate += row[j] * force[j]
+        elif c.rest - d > d - c.d0 - c.most:
+            g, rate = c.rest - d, u_n
+        else:
+            g, rate = d - c.d0 - c.most, -u_n
+        if not abs(g) > residual or turn == 4:
+            break
+        new = h - g / rate
+        if not 0.5 * h < new < 1.5 * h:
+            break
+        h = new
+    return h
+
+
+@kernel
+def _sticks(s, work, slow):
+    """Return 1 if disc `s` ends the step at rest, with friction inside the disc."""
+    t, i = work.vector[o.DISC_T], work.index[o.IN_DISC, s]
+    u, n = work.vector[o.NEW_U], work.stage[o.FORCE, 5, 3 * i]
+    size = math.sqrt(t[2 * s] * t[2 * s] + t[2 * s + 1] * t[2 * s + 1])
+    speed = math.sqrt(u[3 * i + 1] * u[3 * i + 1] + u[3 * i + 2] * u[3 * i + 2])
+    return 1 if size < work.contact[i].mu * n * (1.0 - 1e-9) and speed < slow else 0
+
+
+@kernel
+def regime_changes(m, work, slow):
+    """Return whether a contact begins or ceases to stick in the step: its error estimate is then too small."""
+    for s in range(m):
+        if work.contact[work.index[o.IN_DISC, s]].sticks != _sticks(s, work, slow):
+            return True
+    return False
+
+
+@kernel
+def set_regime(m, work, slow):
+    """Note which contacts stick."""
+    for s in range(m):
+        work.contact[work.index[o.IN_DISC, s]].sticks = _sticks(s, work, slow)
+
+
+@unit
+def implicit_step(k, m, work, h, p, tolerance):
+    """Step from (d, P, u) by `h` to the new state; the clock gets the error.
+
+    ``work.stage[FORCE, 0]`` has the present forces; `m` discs are gathered. `tolerance` is for the tangential
+    velocity in the problem of friction. At the end ``work.stage[FORCE, 5]`` has the forces of the new instant.
+    """
+    n = 3 * k
+    force, rate, W = work.stage[o.FORCE], work.stage[o.STAGE], work.matrix[o.MASS]
+    vector = work.vector
+    u, u1, q = vector[o.NOW_U], vector[o.NEW_U], vector[o.SCRATCH]
+    for i in range(k):
+        rate[0, i] = -u[3 * i]
+        rate[0, k + i] = -(force[0, 3 * i + 1] * u[3 * i + 1] + force[0, 3 * i + 2] * u[3 * i + 2])
+    for s in range(1, 6):
+        d = vector[o.NEW_D]
+        for i in range(k):
+            total = 0.0
+            for j in range(s):
+                total += EXPLICIT[s, j] * rate[j, i]
+            d[i] = vector[o.D, i] + h * total
+        normal_forces(k, work, d, p, force[s])
+        for i in range(n):
+            total = GAMMA * force[s, i]
+            for j in range(s):
+                total += IMPLICIT[s, j] * force[j, i]
+            q[i] = h * total
+            u1[i] = u[i]
+        add_velocity(n, W, q, u1)
+        if m > 0:
+            add_friction(k, m, work, GAMMA * h, force[s], u1, tolerance)
+        for i in range(k):
+            a = 3 * i
+            rate[s, i] = -u1[a]
+            rate[s, k + i] = -(force[s, a + 1] * u1[a + 1] + force[s, a + 2] * u1[a + 2])
+    p0, p1, error = vector[o.NOW_P], vector[o.NEW_P], vector[o.ERROR]
+    for i in range(n):
+        total, wrong = 0.0, 0.0
+        for s in range(6):
+            total += WEIGHTS[s] * force[s, i]
+            wrong += DEFECT[s] * force[s, i]
+        p1[i] = p0[i] + h * total
+        q[i] = h * wrong
+        error[i] = 0.0
+    add_velocity(n, W, q, error)
+    worst = 0.0
+    for i in range(n):
+        worst = max(worst, abs(error[i]))
+    for i in range(k):
+        total, wrong = 0.0, 0.0
+        for s in range(6):
+            total += WEIGHTS[s] * rate[s, i]
+            wrong += DEFECT[s] * rate[s, i]
+        vector[o.NEW_D, i] = vector[o.D, i] + h * total
+        worst = max(worst, h * abs(wrong))
+    work.clock[0].error = worst
+
+
+@kernel
+def present_forces(k, m, work, h, p, slow, tolerance):
+    """Write the forces of this instant; `m` discs are gathered.
+
+    For a contact that slips, T = -mu N u_t/|u_t|; for contacts at rest (slower than `slow`), T is the solution
+    of §2.3. Both are limits of the friction for the velocity a moment ahead, as this moment tends to 0.
+    """
+    vector, force, moment = work.vector, work.stage[o.FORCE, 0], _MOMENT * h
+    u, ahead, q = vector[o.NOW_U], vector[o.NEW_U], vector[o.SCRATCH]
+    normal_forces(k, work, vector[o.D], p, force)
+    for i in range(k):
+        n = 3 * i
+        slip = math.sqrt(u[n + 1] * u[n + 1] + u[n + 2] * u[n + 2])
+        moves = 0.0 if work.contact[i].sticks == 1 or not slip > slow else 1.0
+        for r in range(3):
+            q[n + r] = moment * force[n + r]
+            ahead[n + r] = u[n + r] if r == 0 else moves * u[n + r]
+    add_velocity(3 * k, work.matrix[o.MASS], q, ahead)
+    if m > 0:
+        solve_discs(m, work, moment, force, ahead, tolerance * _MOMENT)
+
+
+@kernel
+def add_friction(k, m, work, step, force, u, tolerance):
+    """Add friction of `m` discs to `force`, and its effect within `step` to `u`."""
+    slot = work.index[o.IN_DISC]
+    solve_discs(m, work, step, force, u, tolerance)
+    for s in range(m):
+        a = 3 * slot[s] + 1
+        x, y = step * force[a], step * force[a + 1]
+        row1, row2 = work.matrix[o.MASS, a], work.matrix[o.MASS, a + 1]
+        for i in range(3 * k):
+            u[i] += x * row1[i] + y * row2[i]
+
+
+@kernel
+def advance(k, work, h):
+    """Make the new state the present one; add the friction loss."""
+    rate, vector = work.stage[o.STAGE], work.vector
+    for i in range(3 * k):
+        vector[o.NOW_P, i] = vector[o.NEW_P, i]
+    for i in range(k):
+        vector[o.D, i] = vector[o.NEW_D, i]
+        loss = 0.0
+        for s in range(6):
+            loss += WEIGHTS[s] * rate[s, k + i]
+        work.contact[i].loss += max(0.0, h * loss)
+
+
+@kernel
+def interpolate(k, work, h):
+    """Write depths as polynomials of degree five in time, and normal velocities as their derivatives.
+
+    Hermite's interpolation uses depth, velocity and acceleration at both ends.
+    """
+    vector, W = work.vector, work.matrix[o.MASS]
+    a0, a1 = vector[o.SCRATCH], vector[o.ERROR]
+    for i in range(3 * k):
+        a0[i] = 0.0
+        a1[i] = 0.0
+    add_velocity(3 * k, W, work.stage[o.FORCE, 0], a0)
+    add_velocity(3 * k, W, work.stage[o.FORCE, 5], a1)
+    d, u = work.series[o.S_D], work.series[o.S_U]
+    for i in range(k):
+        n, b, l = 3 * i, i // LANES, i % LANES
+        y0, v0, w0 = vector[o.D, i], -vector[o.NOW_U, n], -a0[n]
+        y1, v1, w1 = vector[o.NEW_D, i], -vector[o.NEW_U, n], -a1[n]
+        # Differences at the end from the Taylor polynomial at the start, times powers of h.
+        e0 = y1 - y0 - h * (v0 + 0.5 * h * w0)
+        e1 = h * (v1 - v0 - h * w0)
+        e2 = h * h * (w1 - w0)
+        d[0, b, l], d[1, b, l], d[2, b, l] = y0, v0, 0.5 * w0
+        d[3, b, l] = (10.0 * e0 - 4.0 * e1 + 0.5 * e2) / h**3
+        d[4, b, l] = (-15.0 * e0 + 7.0 * e1 - e2) / h**4
+        d[5, b, l] = (6.0 * e0 - 3.0 * e1 + 0.5 * e2) / h**5
+        for j in range(5):
+            u[j, b, l] = -(j + 1) * d[j + 1, b, l]
+        u[5, b, l] = 0.0
+
+
+@kernel
+def normal_forces(k, work, d, p, out):
+    """Write (N, 0, 0) of each contact at depths `d`."""
+    for i in range(k):
+        n = 3 * i
+        out[n] = law.force(work.contact[i], d[i], p)
+        out[n + 1] = 0.0
+        out[n + 2] = 0.0
