@@ -11,7 +11,6 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom.dynamics.energy import kinetic_of
 from carom.geometry.rotation import norm
-from carom.model.allowance import affordable
 from carom.model.arrays import LOOPS
 
 # Allowed loss in a step of several bodies: OF_MOTION of the kinetic energy at its start, plus the lesser of
@@ -42,8 +41,6 @@ SHORTEST, RETRIED = 1e-4, 1e-2
 WILD = 100.0
 # Approximate time for one body in a step without contacts [us], with closed loops and without.
 LOOPS_STEP, OTHER_STEP = 25.0, 0.6
-# A search for impulses: time of an iteration for k points, divided by k^2 [us]; its least number of iterations.
-ITERATION, SOME = 0.3, 100
 
 
 @kernel

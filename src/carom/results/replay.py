@@ -57,7 +57,7 @@ class Replays(ABC):
         for k in np.flatnonzero(among):
             i = min(int(np.searchsorted(t, times[k], side="right")) - 1, len(t) - 2)
             if self.is_good(i) and self.go(i, float(times[k])):
-                yield k
+                yield int(k)
 
     def is_good(self, i: int) -> bool:
         """Return whether the replay from saved state i ends at the next one, or is better than the cubic."""
@@ -100,7 +100,7 @@ class Replay(Replays):
 
     def improve(self, times: np.ndarray, cubic: np.ndarray, x, Q, v, w) -> None:
         """Replace the states (K, N) of a cubic at times (K,) by states of the replay."""
-        for k in self.better(times, cubic.any(axis=1)):
+        for k in self.better(times, np.any(cubic, axis=1)):
             now, own = self.run.now, cubic[k]
             x[k, own], Q[k, own], v[k, own], w[k, own] = (
                 now.x[own],
