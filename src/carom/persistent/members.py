@@ -5,7 +5,7 @@ All step the bodies of a group along one right-hand side (`carom.persistent.rows
 
 explicit    the method of the run, with given modes (`carom.persistent.springs`)
 implicit    L-stable, of order 4: Coulomb's law at the velocity of each stage (`carom.persistent.coulomb_stage`)
-closing     implicit Euler, the stiff method of one stage; with impulses, like Moreau's, where it has no solution
+closing     implicit Euler, the stiff method of one stage; with impulses, like Moreau.s, where it has none
 
 Each returns whether it has made the step. The work of loads, and of friction, is added to `work.result`.
 """
