@@ -23,7 +23,7 @@ from carom.persistent.settle import greatest, settle
 from carom.persistent.sharing import find_idle, share
 from carom.persistent.springs import DEPEND, EPS, PULL, SMALL, compliance_of, moves
 
-STAGE_ITERATIONS, HALVES, AT_ONCE = 40, 6, 3
+STAGE_ITERATIONS, HALVES, TOGETHER = 40, 6, 3
 FITS = 1e-13  # of the accelerations without forces: error of the equations
 EXACT = 1e-6  # of the error: that of the linear equations
 ENOUGH = 1e-9  # the same for an error that no iteration makes less
@@ -62,7 +62,7 @@ def change_loads(k, turn, group):
     for i in range(k):
         if closed[i].turns == 0:
             most, worst = max(most, p[3 * i]), min(worst, p[3 * i])
-    limit = -PULL * most if turn < AT_ONCE else min(worst, -PULL * most)
+    limit = -PULL * most if turn < TOGETHER else min(worst, -PULL * most)
     for i in range(k):
         if closed[i].turns == 0 and closed[i].loaded == 1 and p[3 * i] < 0.0 and p[3 * i] <= limit:
             closed[i].loaded, found = 0, True
