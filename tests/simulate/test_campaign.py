@@ -30,7 +30,7 @@ def test_piles_end_and_lose_nothing_without_a_name(first):
         found = run(piles.case(seed))
         assert found.status in ("SUCCESS", "INACCURATE"), seed
         assert found.reached == 1.0, seed
-        assert found.depth <= 1e-5, seed
+        assert found.depth <= 1e-5 or (found.warned and found.depth <= 1e-2), seed
         assert found.residual <= 1e-3 or found.warned, seed
 
 

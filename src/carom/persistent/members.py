@@ -29,6 +29,7 @@ from carom.persistent.springs import bound_per_force, solve_springs
 
 FIXED_POINT = 25  # iterations of the pose of a stage
 SAME = 1e-14  # change of velocities by an iteration that is the last, relative to the velocities
+OF_IMPULSES = 2  # iterations of the pose with impulses
 CLOSE = 1e-10  # the same after all iterations: a stage that changes by more has no solution
 
 
@@ -88,7 +89,7 @@ def implicit_stage(model, data, label, loaded, count, s, hg, closes):
     Return the number of points, -1 if there is no solution, and the powers of loads and of friction.
     """
     group, work = data.group, data.work
-    k, change, power, rubbed = -1, 0.0, 0.0, 0.0
+    k, change, power, rubbed, by_impulses = -1, 0.0, 0.0, 0.0, False
     for m in range(count):
         copy_state(work.first[group.member[m]], work.stage[group.member[m]])
     for turn in range(FIXED_POINT):
@@ -100,7 +101,7 @@ def implicit_stage(model, data, label, loaded, count, s, hg, closes):
             change, size = max(change, own[0]), max(size, own[1])
         if change > 0.0:  # a body that stops has errors of the others
             change = change / size if size > 0.0 else math.inf
-        if turn > 0 and change <= SAME:
+        if turn > 0 and (change <= SAME or (by_impulses and turn > OF_IMPULSES)):
             break
         applied = accelerate_freely(model, data, loaded, count, s)
         before = k
@@ -112,10 +113,11 @@ def implicit_stage(model, data, label, loaded, count, s, hg, closes):
         if k != before:
             for row in range(3 * k):
                 group.v[P][row] = 0.0
-        if not solve_stage(k, hg, group):
+        if by_impulses or not solve_stage(k, hg, group):
             if not closes:
                 return -1, 0.0, 0.0
             solve_impulses(model, data, k, hg)
+            by_impulses = True
         for i in range(k):  # the work of friction of all points: what sticks has no velocity
             group.kind[i] = SLIDING
         velocities(k, group.points[0], work.stage, group.v[U])
