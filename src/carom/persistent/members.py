@@ -29,7 +29,6 @@ from carom.persistent.springs import bound_per_force, solve_springs
 
 FIXED_POINT = 25  # iterations of the pose of a stage
 SAME = 1e-14  # change of velocities by an iteration that is the last, relative to the velocities
-OF_IMPULSES = 2  # iterations of the pose with impulses
 CLOSE = 1e-10  # the same after all iterations: a stage that changes by more has no solution
 
 
@@ -101,7 +100,7 @@ def implicit_stage(model, data, label, loaded, count, s, hg, closes):
             change, size = max(change, own[0]), max(size, own[1])
         if change > 0.0:  # a body that stops has errors of the others
             change = change / size if size > 0.0 else math.inf
-        if turn > 0 and (change <= SAME or (by_impulses and turn > OF_IMPULSES)):
+        if turn > 0 and change <= SAME:
             break
         applied = accelerate_freely(model, data, loaded, count, s)
         before = k
