@@ -88,7 +88,7 @@ def implicit_stage(model, data, label, loaded, count, s, hg, closes):
     Return the number of points, -1 if there is no solution, and the powers of loads and of friction.
     """
     group, work = data.group, data.work
-    k, change, power, rubbed, by_impulses = -1, 0.0, 0.0, 0.0, False
+    k, change, power, rubbed = -1, 0.0, 0.0, 0.0
     for m in range(count):
         copy_state(work.first[group.member[m]], work.stage[group.member[m]])
     for turn in range(FIXED_POINT):
@@ -112,11 +112,10 @@ def implicit_stage(model, data, label, loaded, count, s, hg, closes):
         if k != before:
             for row in range(3 * k):
                 group.v[P][row] = 0.0
-        if by_impulses or not solve_stage(k, hg, group):
+        if not solve_stage(k, hg, group):
             if not closes:
                 return -1, 0.0, 0.0
             solve_impulses(model, data, k, hg)
-            by_impulses = True
         for i in range(k):  # the work of friction of all points: what sticks has no velocity
             group.kind[i] = SLIDING
         velocities(k, group.points[0], work.stage, group.v[U])
