@@ -3,7 +3,7 @@
     xi = -P G^T lam,   W lam = phi,    phi: the gap of each loaded point, and for a vertex that sticks also the
                                        tangential displacement from its anchor,
 
-repeated until phi is round-off. Redundant rows are left out of the factor.
+repeated until phi is round-off. Rows that depend on others are left out.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from carom.contact.gap import round_off
 from carom.contact.place import place_any
 from carom.dynamics.passed_edges import has_passed
 from carom.dynamics.project import project_position, shift
-from carom.dynamics.several_points import factor, spread_all, substitute, velocities, yields
+from carom.dynamics.several_points import spread_all, substitute, velocities, yields
 from carom.impact.workspace import OLD, P, U
 from carom.kinematics.contact_point import in_axes
 from carom.model.actions import MODE_STICK
 
-DROP = 1e-10  # relative to its row: a smaller pivot is round-off of a redundant row
+DROP = 1e-10  # relative to its row: a smaller pivot is round-off of a row that depends on those before it
 
 
 @kernel
@@ -63,16 +63,49 @@ def given(group, row):
 
 @kernel
 def factor_given(k, group):
-    """Write the given rows and the factor of W for them; return their number."""
-    n, L, rows = 0, group.m[1], group.cone.active
+    """List the given rows that do not depend on each other, write the factor of W for them; return their number.
+
+    The row whose velocity the rows before it determine least comes next: in another order the pivot of a row
+    that nearly depends on them is small, and those after it are its round-off.
+    """
+    n, L, rows, own = 0, group.m[1], group.cone.active, group.v[OLD]
     for i in range(3 * k):
         if given(group, i):
-            rows[n], n = i, n + 1
+            rows[n], own[n], n = i, group.m[0][i, i], n + 1
     for i in range(n):
         for j in range(n):
             L[i, j] = group.m[0][rows[i], rows[j]]
-    factor(n, DROP, L)
+    for j in range(n):
+        best = j
+        for i in range(j + 1, n):
+            if L[i, i] * own[best] > L[best, best] * own[i]:
+                best = i
+        if not L[best, best] > DROP * own[best]:
+            return j
+        exchange_rows(n, j, best, rows, own, L)
+        for i in range(j + 1, n):
+            ratio = L[i, j] / L[j, j]
+            for s in range(j + 1, i + 1):
+                L[i, s] -= ratio * L[s, j]
+        for i in range(j + 1, n):
+            L[i, j] /= L[j, j]
     return n
+
+
+@kernel
+def exchange_rows(n, i, j, rows, own, L):
+    """Exchange rows i < j of a symmetric matrix of which the part below its diagonal is kept."""
+    rows[i], rows[j] = rows[j], rows[i]
+    own[i], own[j] = own[j], own[i]
+    if i == j:
+        return
+    L[i, i], L[j, j] = L[j, j], L[i, i]
+    for s in range(i):
+        L[i, s], L[j, s] = L[j, s], L[i, s]
+    for s in range(i + 1, j):
+        L[s, i], L[j, s] = L[j, s], L[s, i]
+    for s in range(j + 1, n):
+        L[s, i], L[s, j] = L[s, j], L[s, i]
 
 
 @kernel
