@@ -29,10 +29,10 @@ def newton(work, k, eps, patient):
     to pass a kink. Existing factors (work.count[ROWS] >= 0) are tried first.
     """
     p, step, change = work.vector[o.ITERATE], work.vector[o.STEP], work.vector[o.CHANGE]
-    count, limit = 0, work.count[o.LIMIT] if work.count[o.LIMIT] > 0 else _LIMIT
+    count = 0
     size = _arrive(work, k, eps)
     before1, before2, before3 = 0.0, 0.0, 0.0
-    while count < limit and size > work.mismatch[o.ENOUGH]:
+    while count < _LIMIT and size > work.mismatch[o.ENOUGH]:
         count += 1
         chord = work.count[o.FACTOR_ROWS] >= 0
         if not chord:

@@ -85,9 +85,9 @@ def copy(k, p, to):
 
 
 @kernel
-def allow(work, k):
-    """Allow a search about 0.3 s of iterations, but a minimum number in any case."""
-    work.count[o.BUDGET] = max(_ALLOWED, int(_AMOUNT / (k * k)))
+def budget(k):
+    """Return the number of iterations that a search among k contacts may use."""
+    return max(_ALLOWED, int(_AMOUNT / (k * k)))
 
 
 @kernel

@@ -16,7 +16,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction import lu
-from carom.friction.layout import SLIDING
+from carom.friction.layout import SLIDING, STAGES
 from carom.impact.workspace import KEPT, OLD, C, P, U
 from carom.persistent.joint_rows import JOINT, is_driven, radius_of
 from carom.persistent.settle import greatest, settle
@@ -134,6 +134,7 @@ def newton(k, hg, halves, idle, group):
     for _ in range(STAGE_ITERATIONS):
         if size <= enough:
             return True
+        group.cone.count[STAGES] += 1
         for i in range(n):
             for j in range(n):
                 group.cone.W[i, j] = L[i, j]

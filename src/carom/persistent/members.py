@@ -17,8 +17,9 @@ import math
 from carom._compiled.decorators import kernel
 from carom.dynamics.explicit import combine_body, copy_state, node, note_velocity, stages_within
 from carom.dynamics.several_points import velocities
-from carom.friction.layout import BUDGET, CONE, DISC, ENOUGH, NEAR, SLIDING
+from carom.friction.layout import BUDGET, CONE, DISC, ENOUGH, ITERATIONS, NEAR, SLIDING, STAGES
 from carom.friction.solve import solve_cones
+from carom.friction.strategy import budget
 from carom.geometry.rotation import normalize
 from carom.impact.workspace import C, P, U
 from carom.persistent.coulomb_stage import solve_stage
@@ -89,6 +90,7 @@ def implicit_stage(model, data, label, loaded, count, s, hg, closes):
     """
     group, work = data.group, data.work
     k, change, power, rubbed = -1, 0.0, 0.0, 0.0
+    group.cone.count[STAGES] = 0
     for m in range(count):
         copy_state(work.first[group.member[m]], work.stage[group.member[m]])
     for turn in range(FIXED_POINT):
@@ -112,10 +114,13 @@ def implicit_stage(model, data, label, loaded, count, s, hg, closes):
         if k != before:
             for row in range(3 * k):
                 group.v[P][row] = 0.0
-        if not solve_stage(k, hg, group):
+        lost = group.cone.count[STAGES]
+        if (closes and lost >= budget(k)) or not solve_stage(k, hg, group):
             if not closes:
                 return -1, 0.0, 0.0
             solve_impulses(model, data, k, hg)
+        else:
+            group.cone.count[STAGES] = lost
         for i in range(k):  # the work of friction of all points: what sticks has no velocity
             group.kind[i] = SLIDING
         velocities(k, group.points[0], work.stage, group.v[U])
@@ -181,9 +186,10 @@ def closing_member(model, data, label, loaded, count, h):
 @kernel
 def solve_impulses(model, data, k, h):
     """Write forces to P under which Coulomb's law holds with the velocities h W p + U."""
-    group = data.group
+    group, p = data.group, data.group.v[P]
+    count = group.cone.count
     for i in range(3 * k):
-        group.v[P][i] = 0.0
+        p[i] = 0.0
         group.v[C][i] = group.v[U][i]
     turning = False
     for i in range(k):
@@ -192,16 +198,15 @@ def solve_impulses(model, data, k, h):
             group.kind[i], group.heading[i, 0] = DISC, h * group.mu[i]
         elif group.closed[i].turns > 0:
             group.mu[i], turning = 1.0, True
-    group.cone.count[NEAR], group.cone.mismatch[ENOUGH], group.cone.count[BUDGET] = 0, 0.0, 0
+    count[NEAR], group.cone.mismatch[ENOUGH], count[BUDGET] = 0, 0.0, budget(k)
     for _ in range(50 if turning else 1):
         change = bound_turning(model.system, k, group)
-        solve_cones(
-            k, group.m[0], group.v[C], group.mu, group.kind, group.heading, group.v[P], group.cone
-        )
+        solve_cones(k, group.m[0], group.v[C], group.mu, group.kind, group.heading, p, group.cone)
+        count[STAGES] += count[ITERATIONS]
         if turning and not change > 1e-14:
             break
     for i in range(k):
         if 0 < group.closed[i].turns < JOINT:
             group.mu[i] = bound_per_force(model.system, group.points[0][i], group.closed[i])
     for i in range(3 * k):
-        group.v[P][i] /= h
+        p[i] /= h

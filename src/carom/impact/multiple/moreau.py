@@ -14,9 +14,9 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.friction.layout import CONE, ENOUGH
+from carom.friction.layout import BUDGET, CONE, ENOUGH
 from carom.friction.solve import solve_cones
-from carom.friction.strategy import allow
+from carom.friction.strategy import budget
 from carom.impact.layout import AT_ONCE, PLASTIC
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.layer import set_velocity, start
@@ -94,7 +94,7 @@ def _once(k, work, smooth):
         mu[i] = 0.0 if smooth else work.contact[i].mu
         kind[i], heading[i, 0], heading[i, 1] = CONE, 0.0, 0.0
     work.cones.mismatch[ENOUGH] = 0.0
-    allow(work.cones, k)
+    work.cones.count[BUDGET] = budget(k)
     solve_cones(k, work.matrix[o.MASS], bias, mu, kind, heading, impulse, work.cones)
     set_velocity(k, work)
     for i in range(k):
