@@ -115,6 +115,13 @@ def velocity(work, k):
 
 
 @kernel
+def copy(k, p, to):
+    """Copy the impulses of k contacts."""
+    for i in range(3 * k):
+        to[i] = p[i]
+
+
+@kernel
 def largest_impulse(work, k):
     """Return 1 + the greatest scaled impulse: the scale of round-off."""
     most, p = 0.0, work.vector[o.ITERATE]
