@@ -16,12 +16,12 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 
 #: trial steps; searches for nearest points of two solids; steps through impacts of several points, times the
-#: square of their number (entries of W); stages of persistent contact without a solution; products with blocks
-#: of 3x6 or 6x6 numbers in contact problems of a crowd: of a sweep one for each point
+#: cube of their number, as for factors of W; stages of persistent contact without a solution; products with
+#: blocks of 3x6 or 6x6 numbers in contact problems of a crowd: of a sweep one for each point
 TRIALS, SEARCHES, PASSAGES, STAGES, BLOCKS = range(5)
 COUNTS = 5
 #: bound of each kind in a part of a run, and that of trial steps of given length
-PART, OF_STEP = (500.0, 2500.0, 2e4, 5.0, 4e4), 150.0
+PART, OF_STEP = (500.0, 2500.0, 6e5, 5.0, 4e4), 150.0
 PARTS, SAVED = 200.0, 20.0  # least number of parts of a run; parts that may be saved
 # part of the work of an accepted step without an event, of the length that a tolerance permits, that counts
 SMOOTH = 0.1
@@ -74,6 +74,13 @@ def end_count(controls, clock, work):
         done = max(0.0, done - part(controls, kind) * refilled(controls, clock.length))
         for b in range(work.body.shape[0]):
             work.body[b].counts[kind] = done
+
+
+@kernel
+def use_up(controls, clock):
+    """Leave nothing saved to a crowd: the next try to move it event by event has one part."""
+    for kind in range(STAGES):
+        clock.counts[kind] = max(clock.counts[kind], part(controls, kind) * SAVED)
 
 
 @kernel

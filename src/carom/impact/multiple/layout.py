@@ -157,9 +157,9 @@ class MultipleWorkspace(NamedTuple):
 BLOW_U, BLOW_FRICTION, BLOW_RESTITUTION, BLOW_STIFFNESS = range(4)
 
 
-#: rows of `index`: class of a contact, first member of a class, its size, its group, members of a group, a stack,
-#: contacts of the discs, contacts that stick, their rows in the order of pivots, contacts that are closed,
-#: 1 for those that some force can press
+#: rows of `index`: class of a contact, first member of a class, its size, its group, members of a group, a
+#: stack, contacts of the discs, contacts that stick, their rows in the order of pivots, contacts that are
+#: closed, 1 for those that some force can press
 CLASS, FIRST_MEMBER, CLASS_SIZE, GROUP, MEMBER, STACK, IN_DISC, STUCK, ORDER, CLOSED, PRESSED = (
     range(11)
 )

@@ -45,7 +45,7 @@ def answer(system, k, gamma, crowd, work):
     if system.joints.shape[0] > 0:
         spread_impulses(system, k, crowd, work)
         return
-    impart(problem, k)
+    impart(problem, k, problem.vector[o.ITERATE])
     for b in range(work.body.shape[0]):
         for j in range(6):
             work.body[b].motion[j] = gamma * problem.body[b].motion[j]

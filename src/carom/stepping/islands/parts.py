@@ -195,7 +195,7 @@ def bodies_of_present(islands):
 def give_up(controls, islands, clock, work):
     """Give the bodies of the present island time-stepping steps, this and some more; return False if they have.
 
-    With a given step the number doubles with each call in a row: 1, 2, 4, ... 128. With tolerances it is 1.
+    The number doubles with each call in a row: 1, 2, 4, ... 128.
     """
     first, at, new, step = islands.first, islands.plan[0].at, True, clock.step
     for slot in range(first[0, at], first[0, at + 1]):
@@ -207,8 +207,8 @@ def give_up(controls, islands, clock, work):
 
 @kernel
 def give_up_body(controls, clock, memory):
-    """Give a body time-stepping steps: this one and some more, with tolerances this one alone."""
-    memory.whole_for = min(128, max(1, 2 * memory.whole_for)) if controls.order == 0 else 1
+    """Give a body time-stepping steps: this one and some more."""
+    memory.whole_for = min(128, max(1, 2 * memory.whole_for))
     memory.whole_until = clock.step + memory.whole_for
     keep_count(controls, clock, memory)
 
