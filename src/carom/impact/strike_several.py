@@ -15,7 +15,7 @@ from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSet
 from carom.impact.multiple.resolve import resolve_contacts
 from carom.impact.record import write_share
 from carom.impact.workspace import U
-from carom.model.allowance import PASSAGES, left
+from carom.model.allowance import COUNT_PASSAGES, left
 from carom.status import BLOCKED, IMPACT_FAILED
 
 SEED = 1e-7  # speed of approach given to a point that jams, relative to its slip
@@ -96,9 +96,9 @@ def strike_several(model, data, c, k):
         multiple.pair[i] = pair_of(i, system.contacts, group.closed, all_by_pairs)
     passage = multiple.workspace.work.clock[0]
     if model.controls.retry == 1:  # the group can take a time-stepping step instead
-        passage.left = int(max(0.0, left(model.controls, clock, PASSAGES)) / k**3)
+        passage.left = int(max(0.0, left(model.controls, clock, COUNT_PASSAGES)) / k**3)
     resolve_group(k, group.m[0], u, group.mu, multiple)
-    clock.counts[PASSAGES] += k**3 * multiple.result.summary[0].steps
+    clock.counts[COUNT_PASSAGES] += k**3 * multiple.result.summary[0].steps
     clock.since += k * multiple.result.summary[0].steps
     if passage.code != OK or passage.left < 0:
         hit.code = IMPACT_FAILED

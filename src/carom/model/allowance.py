@@ -18,7 +18,7 @@ from carom._compiled.decorators import kernel
 #: trial steps; searches for nearest points of two solids; steps through impacts of several points, times the
 #: cube of their number, as for factors of W; stages of persistent contact without a solution; products with
 #: blocks of 3x6 or 6x6 numbers in contact problems of a crowd: of a sweep one for each point
-TRIALS, SEARCHES, PASSAGES, STAGES, BLOCKS = range(5)
+COUNT_TRIALS, COUNT_SEARCHES, COUNT_PASSAGES, COUNT_STAGES, COUNT_BLOCKS = range(5)
 COUNTS = 5
 #: bound of each kind in a part of a run, and that of trial steps of given length
 PART, OF_STEP = (500.0, 2500.0, 6e5, 5.0, 4e4), 150.0
@@ -37,7 +37,7 @@ def refilled(controls, t):
 @kernel
 def part(controls, kind):
     """Return the bound of a kind in a part of the run."""
-    return OF_STEP if kind == TRIALS and controls.order == 0 else PART[kind]
+    return OF_STEP if kind == COUNT_TRIALS and controls.order == 0 else PART[kind]
 
 
 @kernel
@@ -51,7 +51,7 @@ def overdone(controls, clock):
     """Return whether the present island has done more than it may, and can be moved as a crowd instead."""
     if controls.retry == 0:
         return False
-    for kind in range(STAGES):
+    for kind in range(COUNT_STAGES):
         if left(controls, clock, kind) < 0.0:
             return True
     return False
@@ -79,7 +79,7 @@ def end_count(controls, clock, work):
 @kernel
 def use_up(controls, clock):
     """Leave nothing saved to a crowd: the next try to move it event by event has one part."""
-    for kind in range(STAGES):
+    for kind in range(COUNT_STAGES):
         clock.counts[kind] = max(clock.counts[kind], part(controls, kind) * SAVED)
 
 

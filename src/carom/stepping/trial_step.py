@@ -12,7 +12,7 @@ from carom.dynamics.more_forces import turns_round
 from carom.dynamics.step import step
 from carom.model import records as r
 from carom.model.actions import EVENT_GAP, MODE_SLIP, STRIKE
-from carom.model.allowance import SEARCHES, TRIALS, mark_count, overdone
+from carom.model.allowance import COUNT_SEARCHES, COUNT_TRIALS, mark_count, overdone
 from carom.model.controls import LOCATE
 from carom.persistent.contact_step import contact_step
 from carom.persistent.events import note_first_stops
@@ -131,8 +131,8 @@ def trial_step(model, data, method):
     applied, code = step(method, system, active, now, search.dt, work.trial, work)
     search.applied, search.friction, search.code = applied, 0.0, code
     clock.trials += 1
-    clock.counts[TRIALS] += 1.0
-    clock.counts[SEARCHES] += work.pair.state[0].searches
+    clock.counts[COUNT_TRIALS] += 1.0
+    clock.counts[COUNT_SEARCHES] += work.pair.state[0].searches
     work.pair.state[0].searches = 0
     clock.since += 1.0 + now.shape[0] + active.contact_states.shape[0]
     if overdone(controls, clock):

@@ -92,7 +92,7 @@ def find_holding(z, work):
     """Write H in T = -H a: H = D (D W_ZZ D)^+ D = R R^T, R = D L (L^T L)^-1, by L L^T = D W_ZZ D."""
     n, vector = 2 * z, work.vector
     L, M, hold = work.matrix[o.FACTOR], work.matrix[o.MIDDLE], work.matrix[o.HOLDING]
-    weight, order, full = vector[o.SCALE], work.index[o.ORDER], 0
+    weight, order, full = vector[o.SCALE], work.index[o.PIVOTED], 0
     if not _bearing(z, work, weight) > _LOADED:
         for a in range(z):
             weight[a] = 1.0
@@ -126,7 +126,7 @@ def find_holding(z, work):
 def _factor(z, work, L):
     """Write L in D W_ZZ D = L L^T, with rows in the order of pivots; return the rank."""
     slot, W, weight = work.index[o.STUCK], work.matrix[o.MASS], work.vector[o.SCALE]
-    order, own, n = work.index[o.ORDER], work.vector[o.STICK_T], 2 * z
+    order, own, n = work.index[o.PIVOTED], work.vector[o.STICK_T], 2 * z
     for a in range(n):
         row = W[3 * slot[a // 2] + 1 + a % 2]
         for b in range(a + 1):

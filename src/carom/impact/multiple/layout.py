@@ -160,7 +160,7 @@ BLOW_U, BLOW_FRICTION, BLOW_RESTITUTION, BLOW_STIFFNESS = range(4)
 #: rows of `index`: class of a contact, first member of a class, its size, its group, members of a group, a
 #: stack, contacts of the discs, contacts that stick, their rows in the order of pivots, contacts that are
 #: closed, 1 for those that some force can press
-CLASS, FIRST_MEMBER, CLASS_SIZE, GROUP, MEMBER, STACK, IN_DISC, STUCK, ORDER, CLOSED, PRESSED = (
+CLASS, FIRST_MEMBER, CLASS_SIZE, GROUP, MEMBER, STACK, IN_DISC, STUCK, PIVOTED, CLOSED, PRESSED = (
     range(11)
 )
 #: `matrix`: W of all contacts, cleaned; W of the group, scaled; H of the sticking contacts, and two to find it;

@@ -14,7 +14,7 @@ from carom.dynamics.rotors import add_rates, note_rates
 from carom.friction.layout import ITERATE
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
-from carom.model.allowance import BLOCKS, left
+from carom.model.allowance import COUNT_BLOCKS, left
 from carom.stepping.crowd.free_motion import halfway
 from carom.stepping.crowd.pose import note_drift, pose
 from carom.stepping.crowd.response import answer, write_responses
@@ -57,7 +57,7 @@ def find_impulses(model, data, k, h, fall, patient):
     crowd, work, clock, n = data.crowd, data.work, data.clocks[0], data.state.shape[0]
     pose(system, active, k, h, fall, now, crowd, work)
     tolerance = FINE * controls.rest * fall * h
-    most = left(controls, clock, BLOCKS) if patient else 0.0
+    most = left(controls, clock, COUNT_BLOCKS) if patient else 0.0
     gamma, residual = solve(system, crowd, k, n, tolerance, most, clock)
     answer(system, k, gamma, crowd, work)
     gain_all(crowd, work)

@@ -15,7 +15,7 @@ from carom.friction.layout import ContactWork
 from carom.friction.newton import copy, step
 from carom.friction.residual import residual
 from carom.friction.solve import scale_vectors
-from carom.model.allowance import BLOCKS
+from carom.model.allowance import COUNT_BLOCKS
 from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.sweeps import sweep_until
 
@@ -84,7 +84,7 @@ def solve(system, crowd, k, n, tolerance, left, clock):
             copy(k, kept, p)
     clock.rounds += done
     clock.since += 0.2 * spent
-    clock.counts[BLOCKS] += spent
+    clock.counts[COUNT_BLOCKS] += spent
     return gamma, gamma * least
 
 

@@ -22,7 +22,7 @@ from carom.dynamics.more_forces import note_turns
 from carom.dynamics.project import project_velocity
 from carom.geometry.rotation import norm
 from carom.model import records as r
-from carom.model.allowance import BLOCKS, left
+from carom.model.allowance import COUNT_BLOCKS, left
 from carom.status import NOT_FINITE
 from carom.stepping.crowd.balance import energy_gained, off, slow_down, take_out, take_over
 from carom.stepping.crowd.finish import finish
@@ -82,7 +82,7 @@ def step_crowd(model, data, method):
         dt = min(piece(system, now, controls, clock.length - clock.spent), search.pace)
         while True:
             clock.tries += 1
-            affordable = left(controls, clock, BLOCKS) >= DEAR * data.active.count[0]
+            affordable = left(controls, clock, COUNT_BLOCKS) >= DEAR * data.active.count[0]
             patient = clock.tries <= CAREFUL and affordable
             careful = patient and dt > SHORTEST * controls.interval
             result.code = move_on(model, data, method, dt, patient, careful)
