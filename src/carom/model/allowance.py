@@ -68,19 +68,17 @@ def begin_count(controls, clock, work):
 
 @kernel
 def end_count(controls, clock, work):
-    """Store the counts for the bodies of an island, less what is allowed for the time of the step."""
+    """Store the counts for the bodies of an island, less what is allowed for the time of the step.
+
+    A step as a crowd saves nothing for the next try to move event by event, which has at least one part.
+    """
     for kind in range(COUNTS if controls.retry == 1 else 0):
-        done = min(clock.counts[kind], part(controls, kind) * SAVED)  # a crowd may use any number
-        done = max(0.0, done - part(controls, kind) * refilled(controls, clock.length))
+        done, most = clock.counts[kind], part(controls, kind) * SAVED
+        more = part(controls, kind) * refilled(controls, clock.length)
         for b in range(work.body.shape[0]):
-            work.body[b].counts[kind] = done
-
-
-@kernel
-def use_up(controls, clock):
-    """Leave nothing saved to a crowd: the next try to move it event by event has one part."""
-    for kind in range(COUNT_STAGES):
-        clock.counts[kind] = max(clock.counts[kind], part(controls, kind) * SAVED)
+            whole = kind < COUNT_STAGES and work.body[b].whole_until > clock.step
+            rest = min(done, most - more) if whole else min(done, most) - more
+            work.body[b].counts[kind] = max(0.0, rest)
 
 
 @kernel

@@ -10,7 +10,7 @@ from carom.contact.depth import watch_depth
 from carom.dynamics.known_end import forget_end
 from carom.dynamics.local_scale import local_controls, note_scale
 from carom.model import records as r
-from carom.model.allowance import begin_count, end_count, use_up
+from carom.model.allowance import begin_count, end_count
 from carom.model.controls import LOCATE
 from carom.model.data import Data, Model
 from carom.persistent.active_set import regroup
@@ -173,7 +173,6 @@ def move_island(model, data, method):
     if model.controls.retry == 0 or not parts.is_crowd(system, data.active, step, work):
         parts.recover(system, step, work)
         return advance(model, data, method)
-    use_up(model.controls, data.clocks[0])
     step_crowd(model, data, method)
     code = work.result[0].code
     if code == 0 and left_ball(system, data.state, data.clocks[0].length, work):
