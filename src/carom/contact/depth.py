@@ -13,15 +13,25 @@ from carom.model.arrays import STOP
 
 @kernel
 def watch_depth(system, state, t, work, watch):
-    """Store the largest penetration so far, relative to the size of the (smaller) body, and its time."""
+    """Store the largest penetration so far, and its time."""
+    depth, number = deepest(system, state, work)
+    if depth > watch.depth:
+        watch.depth, watch.deep_at, watch.deep_contact = depth, t, number
+
+
+@kernel
+def deepest(system, state, work):
+    """Return the largest penetration beyond round-off, relative to the (smaller) body, and its contact."""
+    most, number = 0.0, -1
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
         if contact.touches != STOP and apart(system, contact, state, 0.0):
             continue
         depth = -least_gap(system, contact, state, work) - 4.0 * round_off_of_both(contact, state)
         depth /= smaller(contact)
-        if depth > watch.depth:
-            watch.depth, watch.deep_at, watch.deep_contact = depth, t, contact.number
+        if depth > most:
+            most, number = depth, contact.number
+    return most, number
 
 
 @kernel

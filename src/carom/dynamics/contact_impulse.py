@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.dynamics.solve import free_body, solve
-from carom.kinematics.contact_point import contact_motion
 from carom.kinematics.wrench import add_force
 
 
@@ -87,21 +86,6 @@ def clear_wrenches(work):
     """Zero the wrench of each body."""
     for b in range(work.body.shape[0]):
         clear_wrench(work.body[b])
-
-
-@kernel
-def effective_inverse_mass(system, point, state, work, W):
-    """Write W = G P G^T (3, 3) of one point. Columns are responses to unit impulses."""
-    for k in range(3):
-        e0, e1, e2 = 1.0 if k == 0 else 0.0, 1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0
-        spread(system, point, state, e0, e1, e2, work)
-        W[0, k], W[1, k], W[2, k] = contact_motion(point, work)
-    for i in range(3):
-        for k in range(i):
-            m = 0.5 * (W[i, k] + W[k, i])
-            W[i, k], W[k, i] = m, m
-    if point.turns >= 3:  # a stop has no tangents and no friction: any positive values do
-        W[1, 1], W[2, 2] = W[0, 0], W[0, 0]
 
 
 @kernel

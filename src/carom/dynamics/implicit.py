@@ -28,10 +28,9 @@ from carom.dynamics.explicit import (
     forget_bounds,
 )
 from carom.dynamics.forces import applied_wrenches
-from carom.dynamics.project import LOST, project_position, project_velocity
+from carom.dynamics.project import LOST, project_position, project_velocity, shift
 from carom.dynamics.solve import solve
 from carom.dynamics.stiff import along_row, stretch
-from carom.geometry.rotation import exp, multiply, normalize
 from carom.model.arrays import STIFF
 from carom.status import CONSTRAINTS_LOST
 
@@ -91,14 +90,10 @@ def whole_step(system, start, h, end, work):
 def move(start, h, speed, rate, out):
     """Move a body for a time h."""
     copy_state(start, out)
-    Q = out.Q
+    shift(speed, h, out)
     for k in range(3):
-        out.x[k] += h * speed[k]
         out.v[k] += h * rate[k]
         out.w[k] += h * rate[3 + k]
-    r = exp(h * speed[3], h * speed[4], h * speed[5])
-    q = multiply(r[0], r[1], r[2], r[3], Q[0], Q[1], Q[2], Q[3])
-    Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
 
 
 @kernel

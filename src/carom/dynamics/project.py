@@ -11,11 +11,11 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.units import unit
-from carom.dynamics.contact_impulse import clear_wrenches
+from carom.dynamics.contact_impulse import clear_wrenches, gain
 from carom.dynamics.elements import position_error, velocity_error
 from carom.dynamics.rotors import keep_rates
 from carom.dynamics.solve import solve, solve_near
-from carom.geometry.rotation import exp, multiply, normalize
+from carom.geometry.rotation import turn
 from carom.model.parts_of_system import has_joints
 
 ROUND_OFF = 4.4e-16  # two units in the last place
@@ -23,14 +23,11 @@ LOST = 1e-9  # relative to a body: an error of position that cannot be corrected
 
 
 @kernel
-def shift(xi, body):
-    """Move one body by a displacement in world axes: x + xi_x, exp(xi_theta) Q."""
-    Q = body.Q
+def shift(xi, part, body):
+    """Move one body by a part of a displacement in world axes: x + xi_x, exp(xi_theta) Q."""
     for k in range(3):
-        body.x[k] += xi[k]
-    r = exp(xi[3], xi[4], xi[5])
-    q = multiply(r[0], r[1], r[2], r[3], Q[0], Q[1], Q[2], Q[3])
-    Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
+        body.x[k] += part * xi[k]
+    turn(body.Q, part * xi[3], part * xi[4], part * xi[5])
 
 
 @kernel
@@ -73,7 +70,7 @@ def project_position(system, state, near, tolerance, work) -> float:
         else:
             solve(system, state, True, work)
         for b in range(state.shape[0]):
-            shift(work.body[b].motion, state[b])
+            shift(work.body[b].motion, 1.0, state[b])
     return error
 
 
@@ -94,10 +91,7 @@ def project_velocity(system, state, carried, work):
         keep_rates(system, state, work)
     solve(system, state, True, work)
     for b in range(state.shape[0]):
-        v, w, motion = state[b].v, state[b].w, work.body[b].motion
-        for k in range(3):
-            v[k] += motion[k]
-            w[k] += motion[3 + k]
+        gain(work.body[b].motion, state[b])
 
 
 @entry

@@ -143,39 +143,3 @@ def yields(W, i):
     """Return whether an impulse along row i moves its point; if not, W_ii is round-off (planar motion)."""
     n = i - i % 3
     return W[i, i] > ROUND_OFF * (W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2])
-
-
-@kernel
-def factor(n, drop, L):
-    """Turn a matrix (n, n) into its factor L D L^T, L unit below the diagonal and D on it.
-
-    Pivots below `drop` times their diagonal are left out: such a row depends on those before it, and gets no
-    impulse of its own.
-    """
-    for j in range(n):
-        d = L[j, j]
-        most = drop * d
-        for s in range(j):
-            d -= L[j, s] * L[j, s] * L[s, s]
-        kept = d > most
-        L[j, j] = d if kept else 0.0
-        for i in range(j + 1, n):
-            t = L[i, j]
-            for s in range(j):
-                t -= L[i, s] * L[j, s] * L[s, s]
-            L[i, j] = t / d if kept else 0.0
-
-
-@kernel
-def substitute(n, L, x):
-    """Solve L D L^T x = x in place; rows that were left out get 0."""
-    for i in range(n):
-        for s in range(i):
-            x[i] -= L[i, s] * x[s]
-    for i in range(n):
-        x[i] = x[i] / L[i, i] if L[i, i] > 0.0 else 0.0
-    for i in range(n - 1, -1, -1):
-        for s in range(i + 1, n):
-            x[i] -= L[s, i] * x[s]
-        if not L[i, i] > 0.0:
-            x[i] = 0.0

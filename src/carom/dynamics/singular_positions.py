@@ -22,7 +22,7 @@ from carom._compiled.units import unit
 from carom.dynamics.acceleration import accelerations
 from carom.dynamics.loops import dropped_rows
 from carom.dynamics.project import project_position, project_velocity
-from carom.geometry.rotation import exp, multiply
+from carom.geometry.rotation import turn
 from carom.model.arrays import LOOPS
 from carom.model.parts_of_system import has_loops
 from carom.model.workspace import RESTS
@@ -125,12 +125,12 @@ def _sum_rates(system, stage, sums, work, rates, reach, pace):
 @kernel
 def go_on(start, dt, out):
     """Write the pose of a body after a time dt at constant velocity."""
-    x, v, w, p = start.x, start.v, start.w, start.Q
+    x, v, w = start.x, start.v, start.w
     for k in range(3):
         out.x[k], out.v[k], out.w[k] = x[k] + dt * v[k], v[k], w[k]
-    r = exp(dt * w[0], dt * w[1], dt * w[2])
-    Q = out.Q
-    Q[0], Q[1], Q[2], Q[3] = multiply(r[0], r[1], r[2], r[3], p[0], p[1], p[2], p[3])
+    for k in range(4):
+        out.Q[k] = start.Q[k]
+    turn(out.Q, dt * w[0], dt * w[1], dt * w[2])
 
 
 @inlined

@@ -47,7 +47,7 @@ from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.loops import add_reactions, factor, substitute, subtract_rows
 from carom.dynamics.project import project_position, project_velocity
 from carom.dynamics.solve import free_body
-from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
+from carom.geometry.rotation import rotate, rotate_back, turn
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.kinematics.rows import direction
 from carom.kinematics.wrench import add_force
@@ -102,11 +102,10 @@ def first_guess(system, start, h, end, work):
         copy_state(start[b], end[b])
         if work.body[b].status == RESTS:
             continue
-        x, Q, v, w = end[b].x, end[b].Q, end[b].v, end[b].w
+        x, v, w = end[b].x, end[b].v, end[b].w
         for k in range(3):
             x[k] += h * v[k]
-        r = exp(h * w[0], h * w[1], h * w[2])
-        Q[0], Q[1], Q[2], Q[3] = multiply(r[0], r[1], r[2], r[3], Q[0], Q[1], Q[2], Q[3])
+        turn(end[b].Q, h * w[0], h * w[1], h * w[2])
 
 
 @kernel
@@ -121,13 +120,13 @@ def mean_turn(start, end):
 @kernel
 def move_along(start, end, h, out):
     """Write into `out` the pose Exp at `start` of h vbar, vbar the mean velocity of both records."""
-    W = mean_turn(start, end)
-    r = exp(h * W[0], h * W[1], h * W[2])
-    q = start.Q
-    q = multiply(q[0], q[1], q[2], q[3], r[0], r[1], r[2], r[3])
-    out.Q[0], out.Q[1], out.Q[2], out.Q[3] = normalize(q[0], q[1], q[2], q[3])
+    W, q = mean_turn(start, end), start.Q
+    w = rotate(q[0], q[1], q[2], q[3], W[0], W[1], W[2])
     for k in range(3):
         out.x[k] = start.x[k] + 0.5 * h * (start.v[k] + end.v[k])
+    for k in range(4):
+        out.Q[k] = q[k]
+    turn(out.Q, h * w[0], h * w[1], h * w[2])
 
 
 @kernel

@@ -15,7 +15,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.user_functions import call_function
-from carom.geometry.rotation import exp, multiply
+from carom.geometry.rotation import multiply, turn
 from carom.kinematics.rows import mass_row
 
 DISPLACEMENT = 1e-5  # relative to the size of a body
@@ -31,10 +31,10 @@ def read_poses(system, j, state, t, ahead):
         x, Q, v, w, a = state[b].x, state[b].Q, state[b].v, state[b].w, system.bodies[b].axes
         for k in range(3):
             read[i + k] = x[k] + ahead * v[k]
-        r = exp(ahead * w[0], ahead * w[1], ahead * w[2])
-        q = multiply(r[0], r[1], r[2], r[3], Q[0], Q[1], Q[2], Q[3])
-        q = multiply(q[0], q[1], q[2], q[3], a[0], -a[1], -a[2], -a[3])
-        read[i + 3], read[i + 4], read[i + 5], read[i + 6] = q
+        q = read[i + 3 : i + 7]
+        q[0], q[1], q[2], q[3] = Q[0], Q[1], Q[2], Q[3]
+        turn(q, ahead * w[0], ahead * w[1], ahead * w[2])
+        q[0], q[1], q[2], q[3] = multiply(q[0], q[1], q[2], q[3], a[0], -a[1], -a[2], -a[3])
         i += 7
     return user
 

@@ -1,12 +1,14 @@
-"""Alternating directions: slow, but the method comes near a solution where sweeps and Newton do not.
+"""The contact problem by alternating directions: one linear system, then projection onto the friction cones.
 
-With v = w + mu |w_t| e_n the problem is: p in the cone, v in the dual cone, p.v = 0 (de Saxce). It is split
-into x, which satisfies the equations, and z, which lies in the cone; r is the over-relaxation:
+Two copies of the impulses, p without the cones and z in the cones, are made equal by u (scaled):
 
-    (W + sigma) x = v + sigma z - c - mu |v_t| e_n,    z' = P_K(y - v/sigma),  y = r x + (1 - r) z
-    v' = v + sigma (z' - y)
+    (W + rho) p = rho (z - u) - c - s,   z = project(p' + u),   u = u + p' - z,   p' = a p + (1 - a) z,
 
-The order of the contacts has no effect.
+with the projection on the cones, and s = mu |w_t| of the normal rows (de Saxce), w_t = -rho u_t (ADMM: Boyd et
+al. 2011). W + rho is factored once, and an iteration costs little more than a sweep. The order of contacts has
+no effect. The method is slow, but it comes near a solution where sweeps and steps of Newton's method do not: if
+a wall is struck at 3 m/s and bricks are wedged, with impulses a hundred times those of a free impact, these
+leave a residual of .1 m/s, and a thousand iterations of this method 1e-6.
 """
 
 from __future__ import annotations
@@ -14,38 +16,70 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.friction import layout as o
 from carom.friction.cone import nearest, shift
-from carom.friction.newton import velocity
+from carom.friction.newton import copy
 from carom.friction.operators import factor_shifted, solve_shifted
+from carom.friction.residual import residual
 
-_RELAXATION = 1.6
+AHEAD = 1.6  # over-relaxation a
+UNCHECKED_ITERATIONS = 25  # iterations between two checks of the residual
 
 
 @kernel
-def alternate(work, k, sigma, limit):
-    """Iterate `limit` times from p."""
-    x, z = work.vector[o.RHS], work.vector[o.ITERATE]
-    v, c = work.vector[o.CHANGE], work.vector[o.BIAS]
-    factor_shifted(work, k, sigma)
-    velocity(work, k)
-    for i in range(3 * k):
-        v[i] = work.vector[o.RESULTING, i]
+def alternate(work, k, rho, tolerance, at_least, most):
+    """Iterate from the present impulses until the scaled residual is small; return it, and the iterations.
+
+    `at_least` iterations are made, and more, up to `most`, while as many again halve the residual. `rho` is
+    relative to the mean of the diagonal of W. The best impulses are returned.
+    """
+    z, u, best = work.vector[o.ITERATE], work.vector[o.CENTRE], work.vector[o.START_BEST]
+    least, goal, _ = residual(work, k)
+    copy(k, z, best)
+    begin(work, k, rho)
+    factor_shifted(work, k, rho)
+    done, before = 0, least
+    while not least <= max(tolerance, goal) and done < most:
+        if done > 0 and done % at_least == 0:
+            if not least < 0.5 * before:
+                break
+            before = least
+        for _ in range(UNCHECKED_ITERATIONS):
+            iterate(work, k, rho, z, u)
+        done += UNCHECKED_ITERATIONS
+        r, goal, _ = residual(work, k)
+        if r < least:
+            least = r
+            copy(k, z, best)
+    copy(k, best, z)
+    return least, done
+
+
+@kernel
+def begin(work, k, rho):
+    """Write u from the present velocities."""
+    u, w = work.vector[o.CENTRE], work.vector[o.RESULTING]
     for i in range(k):
+        n = 3 * i
         t = work.contact[i]
-        v[3 * i] += shift(t.kind, t.mu, t.h1, t.h2, v[3 * i + 1], v[3 * i + 2])
-    for _ in range(limit):
-        for i in range(3 * k):
-            x[i] = v[i] + sigma * z[i] - c[i]
-        for i in range(k):
-            t, n = work.contact[i], 3 * i
-            x[n] -= shift(t.kind, t.mu, t.h1, t.h2, v[n + 1], v[n + 2])
-        solve_shifted(work, k)
-        for i in range(k):
-            t, n = work.contact[i], 3 * i
-            for j in range(n, n + 3):
-                x[j] = _RELAXATION * x[j] + (1.0 - _RELAXATION) * z[j]
-            z[n], z[n + 1], z[n + 2] = nearest(
-                t.kind, t.mu, t.h1, t.h2,
-                x[n] - v[n] / sigma, x[n + 1] - v[n + 1] / sigma, x[n + 2] - v[n + 2] / sigma,
-            )  # fmt: skip
-            for j in range(n, n + 3):
-                v[j] += sigma * (z[j] - x[j])
+        s = shift(t.kind, t.mu, t.h1, t.h2, w[n + 1], w[n + 2])
+        u[n], u[n + 1], u[n + 2] = -(w[n] + s) / rho, -w[n + 1] / rho, -w[n + 2] / rho
+
+
+@kernel
+def iterate(work, k, rho, z, u):
+    """Make one iteration."""
+    x, c = work.vector[o.RHS], work.vector[o.BIAS]
+    for i in range(k):
+        n, t = 3 * i, work.contact[i]
+        s = rho * shift(t.kind, t.mu, t.h1, t.h2, u[n + 1], u[n + 2])
+        x[n] = rho * (z[n] - u[n]) - c[n] - s
+        x[n + 1] = rho * (z[n + 1] - u[n + 1]) - c[n + 1]
+        x[n + 2] = rho * (z[n + 2] - u[n + 2]) - c[n + 2]
+    solve_shifted(work, k)
+    for i in range(k):
+        n, t = 3 * i, work.contact[i]
+        x0 = AHEAD * x[n] + (1.0 - AHEAD) * z[n] + u[n]
+        x1 = AHEAD * x[n + 1] + (1.0 - AHEAD) * z[n + 1] + u[n + 1]
+        x2 = AHEAD * x[n + 2] + (1.0 - AHEAD) * z[n + 2] + u[n + 2]
+        y0, y1, y2 = nearest(t.kind, t.mu, t.h1, t.h2, x0, x1, x2)
+        z[n], z[n + 1], z[n + 2] = y0, y1, y2
+        u[n], u[n + 1], u[n + 2] = x0 - y0, x1 - y1, x2 - y2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
+from carom.friction.lu import factor, substitute
 
 _LEAST = 1e-14  # pivots smaller than this are replaced by it
 
@@ -16,7 +17,7 @@ def factor_blocks(work):
     for n in range(work.place.shape[0]):
         place = work.place[n]
         diagonal, pivot = block[place.body], work.body[place.body].pivot
-        _factor_diagonal(diagonal, pivot)
+        factor(diagonal, 6, pivot, _LEAST)
         for s in range(place.pair, place.pairs_end):
             _divide(block[below + s], diagonal, pivot)
         for t in range(place.update, place.updates_end):
@@ -41,48 +42,7 @@ def substitute_blocks(work):
         body = work.body[place.body]
         for s in range(place.pair, place.pairs_end):
             _subtract_image(body.motion, block[right + s], work.body[later[s]].motion)
-        _solve_diagonal(block[place.body], body.pivot, body.motion)
-
-
-@kernel
-def _factor_diagonal(A, pivot):
-    for k in range(6):
-        top, row = abs(A[k, k]), k
-        for i in range(k + 1, 6):
-            if abs(A[i, k]) > top:
-                top, row = abs(A[i, k]), i
-        pivot[k] = row
-        if row != k:
-            for j in range(6):
-                t = A[k, j]
-                A[k, j] = A[row, j]
-                A[row, j] = t
-        if not top > _LEAST:
-            A[k, k] = _LEAST if A[k, k] >= 0.0 else -_LEAST
-        inverse = 1.0 / A[k, k]
-        for i in range(k + 1, 6):
-            m = A[i, k] * inverse
-            A[i, k] = m
-            for j in range(k + 1, 6):
-                A[i, j] -= m * A[k, j]
-
-
-@kernel
-def _solve_diagonal(A, pivot, x):
-    """Replace x by A^-1 x."""
-    for k in range(6):
-        row = pivot[k]
-        if row != k:
-            t = x[k]
-            x[k] = x[row]
-            x[row] = t
-    for k in range(6):
-        for i in range(k + 1, 6):
-            x[i] -= A[i, k] * x[k]
-    for k in range(5, -1, -1):
-        x[k] /= A[k, k]
-        for i in range(k):
-            x[i] -= A[i, k] * x[k]
+        substitute(block[place.body], 6, body.pivot, body.motion)
 
 
 @kernel

@@ -12,11 +12,10 @@ _LEAST_PIVOT = 1e-14
 
 
 @kernel
-def multiply(work, k, x, out):
+def add_product(n, W, x, out):
     """Add W x to `out`, column by column; the columns of the symmetric W are its rows."""
-    n = 3 * k
     for j in range(n):
-        q, column = x[j], work.W[j]
+        q, column = x[j], W[j]
         if q != 0.0:
             for i in range(n):
                 out[i] += q * column[i]

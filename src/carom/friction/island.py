@@ -23,18 +23,12 @@ from carom.friction.local import solve_prepared
 @unit
 def multiply(work, k, x, out):
     """Add W x to `out`."""
-    _impart(work, k, x)
+    impart(work, k, x)
     for i in range(k):
         u0, u1, u2 = _pull(work, i)
         out[3 * i] += u0
         out[3 * i + 1] += u1
         out[3 * i + 2] += u2
-
-
-@kernel
-def impart(work, k):
-    """Write the motion that the present impulses cause."""
-    _impart(work, k, work.vector[o.ITERATE])
 
 
 @unit
@@ -83,7 +77,7 @@ def _pull_size(work, i, a):
 def sweep(work, k, backward):
     """Solve each contact in turn, with fixed impulses of the others."""
     p, c = work.vector[o.ITERATE], work.vector[o.BIAS]
-    _impart(work, k, p)
+    impart(work, k, p)
     for place in range(k):
         i = k - 1 - place if backward else place
         n = 3 * i
@@ -210,7 +204,7 @@ def _add_columns(work, link, side):
 
 
 @kernel
-def _impart(work, k, x):
+def impart(work, k, x):
     """Write the motion that impulses x cause."""
     _rest(work)
     for i in range(k):

@@ -28,7 +28,9 @@ def factor(A, n, pivot, least):
                     b[j] -= b[k] * a[j]
         for k in range(first, last):
             for i in range(k + 1, last):
-                subtract(A[k], A[i][k], last, n, A[i])
+                a, b, m = A[k], A[i], A[i, k]
+                for j in range(last, n):
+                    b[j] -= m * a[j]
         if last == first + 4:
             for i in range(last, n):
                 subtract_four(A, first, n, A[i])
@@ -49,14 +51,6 @@ def exchange(A, n, pivot, k):
             t = a[j]
             a[j] = b[j]
             b[j] = t
-
-
-@kernel
-def subtract(a, m, first, last, b):
-    """Subtract m times row a from row b."""
-    if m != 0.0:
-        for j in range(first, last):
-            b[j] -= m * a[j]
 
 
 @kernel

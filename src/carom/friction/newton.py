@@ -68,8 +68,7 @@ def newton(work, k, eps, patient):
 def step(work, k, eps):
     """Make one whole step from p, which is also the centre of the proximal term, and project the result."""
     p, centre, change = work.vector[o.ITERATE], work.vector[o.CENTRE], work.vector[o.STEP]
-    for i in range(3 * k):
-        centre[i] = p[i]
+    copy(k, p, centre)
     _arrive(work, k, eps)
     factor(work, k, eps)
     solve(work, k)
@@ -109,9 +108,15 @@ def _arrive(work, k, eps):
 def velocity(work, k):
     """Write w = W p + c."""
     w, c = work.vector[o.RESULTING], work.vector[o.BIAS]
-    for i in range(3 * k):
-        w[i] = c[i]
+    copy(k, c, w)
     multiply(work, k, work.vector[o.ITERATE], w)
+
+
+@kernel
+def copy(k, p, to):
+    """Copy the impulses of k contacts."""
+    for i in range(3 * k):
+        to[i] = p[i]
 
 
 @kernel

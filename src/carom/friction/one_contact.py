@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import entry, kernel
+from carom._compiled.decorators import kernel
 
 _EMPTY = 1e-13  # of the trace of W_tt: smaller eigenvalues are directions in which nothing moves
 
@@ -23,12 +23,6 @@ def eigenbasis(a11, a12, a22):
     norm = math.sqrt(c * c + s * s)
     middle = 0.5 * (a11 + a22)
     return middle + r, middle - r, c / norm, s / norm
-
-
-@entry
-def one_contact(W, c, mu):
-    """Return (found, p_n, p_1, p_2) that solves w = W p + c in the Coulomb cone; W (3, 3), c (3,)."""
-    return solve_one(upper_triangle(W), (c[0], c[1], c[2]), mu)
 
 
 @kernel

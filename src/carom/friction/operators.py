@@ -15,7 +15,7 @@ from carom.friction.layout import DENSE
 def multiply(work, k, x, out):
     """Add W x to `out`."""
     if work.kind == DENSE:
-        dense.multiply(work, k, x, out)
+        dense.add_product(3 * k, work.W, x, out)
     else:
         island.multiply(work, k, x, out)
 

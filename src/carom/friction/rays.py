@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, kernel
+from carom.friction.one_contact import eigenbasis
 
 # Pivots of B below this part of its trace count as zero (a rail, or a planar problem in space).
 _EMPTY = 1e-13
@@ -54,12 +55,7 @@ def outgoing(a1, a2, b11, b12, b22, mu):
     |(c, s)| <= 1, and -mu (c, s) is the ratio of stick.
     """
     # In the principal axes of B, greater first, each component has only its own round-off, and |e| = 1.
-    half = 0.5 * (b11 - b22)
-    root = math.sqrt(half * half + b12 * b12)
-    b1 = 0.5 * (b11 + b22) + root
-    x, y = (half + root, b12) if half >= 0.0 else (b12, root - half)
-    norm = math.sqrt(x * x + y * y)
-    x, y = (x / norm, y / norm) if norm > 0.0 else (1.0, 0.0)
+    b1, _, x, y = eigenbasis(b11, b12, b22)
     p, q = x * a1 + y * a2, x * a2 - y * a1
     m1, m2 = mu * b1, (mu * max(0.0, (b11 * b22 - b12 * b12) / b1) if b1 > 0.0 else 0.0)
     size = math.sqrt(a1 * a1 + a2 * a2)

@@ -10,8 +10,11 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, kernel
+from carom.friction import layout as o
 from carom.friction.cone import nearest, shift
 from carom.friction.layout import CONE, SLIDING
+from carom.friction.newton import velocity
+from carom.friction.operators import magnitude
 
 RELATIVE, ROUND_OFF = 1e-10, 50.0 * 2.220446049250313e-16
 
@@ -82,3 +85,23 @@ def summary(greatest):
     """Return the result of `measure` for the greatest values of all contacts."""
     worst, velocity, size, penetration, violation, complementarity = greatest
     return worst, RELATIVE * velocity + ROUND_OFF * size, penetration, violation, complementarity
+
+
+@kernel
+def residual(work, k):
+    """Return (residual, goal, tolerance) of p in velocity; the goal is what round-off allows."""
+    velocity(work, k)
+    p, w, c = work.vector[o.ITERATE], work.vector[o.RESULTING], work.vector[o.BIAS]
+    worst, largest = 0.0, 0.0
+    for i in range(k):
+        t, n = work.contact[i], 3 * i
+        x0 = p[n] - w[n] - shift(t.kind, t.mu, t.h1, t.h2, w[n + 1], w[n + 2])
+        y0, y1, y2 = nearest(t.kind, t.mu, t.h1, t.h2, x0, p[n + 1] - w[n + 1], p[n + 2] - w[n + 2])
+        d0, d1, d2 = p[n] - y0, p[n + 1] - y1, p[n + 2] - y2
+        r = math.sqrt(d0 * d0 + d1 * d1 + d2 * d2) / t.scale
+        if not r <= worst and worst == worst:  # NaN replaces any number, and stays
+            worst = r
+        largest = max(largest, max(abs(c[n]), abs(c[n + 1]), abs(c[n + 2])) / t.scale)
+    size = magnitude(work, k)
+    goal = max(1e-14 * largest + 0.08 * ROUND_OFF * size, work.mismatch[o.ENOUGH] * largest)
+    return worst, goal, RELATIVE * largest + ROUND_OFF * size

@@ -8,10 +8,10 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.friction import layout as o
 from carom.friction.alternating import alternate
-from carom.friction.cone import nearest, project, shift
-from carom.friction.newton import largest_impulse, newton, velocity
-from carom.friction.operators import magnitude, sweep
-from carom.friction.residual import RELATIVE, ROUND_OFF
+from carom.friction.cone import project
+from carom.friction.newton import copy, largest_impulse, newton
+from carom.friction.operators import sweep
+from carom.friction.residual import residual
 
 _EPS = 1e-8  # weight of the proximal term
 # its weight where W has an eigenvalue below _EPS in a direction of the solution: each round removes the part
@@ -41,8 +41,9 @@ def search(work, k):
     p, best, given = work.vector[o.ITERATE], work.vector[o.BEST], work.vector[o.GIVEN]
     least, last, cold = math.inf, _STARTS, True
     work.count[o.ITERATIONS] = 0
+    copy(k, p, best)
+    copy(k, p, given)
     for i in range(3 * k):
-        best[i] = given[i] = p[i]
         cold = cold and p[i] == 0.0
     for start in range(_STARTS):
         if start >= last:
@@ -50,8 +51,7 @@ def search(work, k):
         if start == 1:
             if cold:
                 continue
-            for i in range(3 * k):
-                p[i] = given[i]
+            copy(k, given, p)
         elif start > 1:
             _approach(work, k, (start - 2) % 3, (start - 2) // 3)
         r, goal, tolerance = polished(
@@ -59,8 +59,7 @@ def search(work, k):
         )
         if r < least:
             least = r
-            for i in range(3 * k):
-                best[i] = p[i]
+            copy(k, p, best)
         if not r < math.inf:  # overflow: begin again from 0
             for i in range(3 * k):
                 p[i] = 0.0
@@ -73,15 +72,7 @@ def search(work, k):
             break
         if least <= _NEARLY * tolerance:
             last = min(last, start + 1 + _EXTRA)
-    for i in range(3 * k):
-        p[i] = best[i]
-
-
-@kernel
-def copy(k, p, to):
-    """Copy the impulses of k contacts."""
-    for i in range(3 * k):
-        to[i] = p[i]
+    copy(k, best, p)
 
 
 @kernel
@@ -110,7 +101,7 @@ def _approach(work, k, method, again):
             for i in range(3 * k):
                 p[i] = 0.0
         sigma = 0.01 * 10.0 ** ((again + 1) % 3)
-        alternate(work, k, sigma, _ALTERNATIONS)
+        alternate(work, k, sigma, 0.0, _ALTERNATIONS, _ALTERNATIONS)
         work.count[o.ITERATIONS] += _ALTERNATIONS
     else:
         release(work, k, 0.0)
@@ -123,19 +114,17 @@ def release(work, k, enough):
     It ends when the residual is at most `enough`, which may happen before the term is weak.
     """
     p, kept, centre = work.vector[o.ITERATE], work.vector[o.START_BEST], work.vector[o.CENTRE]
-    for i in range(3 * k):
-        kept[i] = p[i]
+    copy(k, p, kept)
     eps = _RELEASE_FROM
     for _ in range(_RELEASES):
         if spent(work):
             break
-        for i in range(3 * k):
-            centre[i] = p[i] = kept[i]
+        copy(k, kept, p)
+        copy(k, kept, centre)
         work.count[o.FACTOR_ROWS] = -1
         newton(work, k, eps, True)
         if work.mismatch[0] < 1e-8:
-            for i in range(3 * k):
-                kept[i] = p[i]
+            copy(k, p, kept)
             eps *= _RELEASE_BY
             if enough > 0.0 and residual(work, k)[0] <= enough:
                 break
@@ -143,8 +132,7 @@ def release(work, k, enough):
             eps /= _RELEASE_BY
         if not 10.0 * _EPS < eps < 10.0 * _RELEASE_FROM:
             break
-    for i in range(3 * k):
-        p[i] = kept[i]
+    copy(k, kept, p)
 
 
 @kernel
@@ -159,8 +147,7 @@ def polished(work, k, least_norm, patient):
         centre[i] = 0.0 if least_norm else p[i]
     least = math.inf
     work.count[o.FACTOR_ROWS] = -1
-    for i in range(3 * k):
-        kept[i] = p[i]
+    copy(k, p, kept)
     goal, tolerance, eps = 0.0, 0.0, _EPS
     for _ in range(_POLISH):
         newton(work, k, eps, patient)
@@ -175,14 +162,11 @@ def polished(work, k, least_norm, patient):
             work.count[o.FACTOR_ROWS] = -1
         if r < least:
             least = r
-            for i in range(3 * k):
-                kept[i] = p[i]
+            copy(k, p, kept)
         if enough:
             break
-        for i in range(3 * k):
-            centre[i] = p[i]
-    for i in range(3 * k):
-        p[i] = kept[i]
+        copy(k, p, centre)
+    copy(k, kept, p)
     return least, goal, tolerance
 
 
@@ -190,23 +174,3 @@ def polished(work, k, least_norm, patient):
 def settled(work, k):
     """Return whether the last equations of Newton's method are solved to round-off."""
     return work.mismatch[0] <= _SETTLED * largest_impulse(work, k)
-
-
-@kernel
-def residual(work, k):
-    """Return (residual, goal, tolerance) of p in velocity; the goal is what round-off allows."""
-    velocity(work, k)
-    p, w, c = work.vector[o.ITERATE], work.vector[o.RESULTING], work.vector[o.BIAS]
-    worst, largest = 0.0, 0.0
-    for i in range(k):
-        t, n = work.contact[i], 3 * i
-        x0 = p[n] - w[n] - shift(t.kind, t.mu, t.h1, t.h2, w[n + 1], w[n + 2])
-        y0, y1, y2 = nearest(t.kind, t.mu, t.h1, t.h2, x0, p[n + 1] - w[n + 1], p[n + 2] - w[n + 2])
-        d0, d1, d2 = p[n] - y0, p[n + 1] - y1, p[n + 2] - y2
-        r = math.sqrt(d0 * d0 + d1 * d1 + d2 * d2) / t.scale
-        if not r <= worst and worst == worst:  # NaN replaces any number, and stays
-            worst = r
-        largest = max(largest, max(abs(c[n]), abs(c[n + 1]), abs(c[n + 2])) / t.scale)
-    size = magnitude(work, k)
-    goal = max(1e-14 * largest + 0.08 * ROUND_OFF * size, work.mismatch[o.ENOUGH] * largest)
-    return worst, goal, RELATIVE * largest + ROUND_OFF * size

@@ -11,8 +11,8 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.user_functions import call_function
-from carom.dynamics.several_points import factor as factor_symmetric
-from carom.dynamics.several_points import substitute as solve_metric
+from carom.friction.ldl import factor as factor_symmetric
+from carom.friction.ldl import substitute as solve_metric
 from carom.generalized.differences import evaluate_parts
 from carom.generalized.layout import (
     ALL_ROWS,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import entry
+from carom._compiled.decorators import entry, inlined
 
 
 @entry
@@ -92,6 +92,14 @@ def exp(ax, ay, az):
         s = math.sin(0.5 * t) / t
         c = math.cos(0.5 * t)
     return c, s * ax, s * ay, s * az
+
+
+@inlined
+def turn(Q, ax, ay, az):
+    """Turn an attitude, (4,), by a rotation vector in world axes: Q <- exp(a) Q."""
+    r = exp(ax, ay, az)
+    q = multiply(r[0], r[1], r[2], r[3], Q[0], Q[1], Q[2], Q[3])
+    Q[0], Q[1], Q[2], Q[3] = renormalize(q[0], q[1], q[2], q[3])
 
 
 @entry

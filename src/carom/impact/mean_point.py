@@ -12,8 +12,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
-from carom.dynamics.contact_impulse import effective_inverse_mass
-from carom.dynamics.several_points import inverse_masses_of_one, of_one_body
+from carom.dynamics.several_points import inverse_masses
 from carom.impact.workspace import U
 from carom.kinematics.contact_point import contact_velocity, copy_point, place
 
@@ -39,10 +38,7 @@ def as_one(system, k, state, group, work):
             for i in range(k):
                 core[r] += closed[i].point[r] / k
         place(contact, core, state, point)
-    if of_one_body(system, 1, work.point):
-        inverse_masses_of_one(system.bodies[point.a], 1, work.point, state, hit.W)
-    else:
-        effective_inverse_mass(system, point, state, work, hit.W)
+    inverse_masses(system, 1, work.point, state, work, hit.W)
     hit.u[0], hit.u[1], hit.u[2] = contact_velocity(point, state)
     return k == 1 or move_alike(k, group.v[U], group.m[0], hit, 10.0 * slow(contact, state))
 

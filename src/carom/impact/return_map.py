@@ -61,8 +61,5 @@ def carry(system, point, kappa, origin, state, work):
     for b in range(state.shape[0]):
         if single and b != point.a and b != point.b:
             continue
-        motion = work.body[b].motion
-        for k in range(6):
-            motion[k] *= kappa
         copy_state(origin[b], state[b])
-        shift(motion, state[b])
+        shift(work.body[b].motion, kappa, state[b])

@@ -15,16 +15,13 @@ from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSet
 from carom.impact.multiple.resolve import resolve_contacts
 from carom.impact.record import write_share
 from carom.impact.workspace import U
-from carom.model.allowance import affordable
+from carom.model.allowance import COUNT_PASSAGES, left
 from carom.status import BLOCKED, IMPACT_FAILED
 
 SEED = 1e-7  # speed of approach given to a point that jams, relative to its slip
 ROUND_OFF = 1e-14  # relative to the greatest speed in a multiple impact
 #: exponents of the normal force: if all points are on round bodies, and otherwise
 HERTZ, LINEAR = 1.5, 1.0
-#: cost per point of a step through the layers [us]: by series, of up to eight points and of many, and with the
-#: many short steps of other exponents
-FEW, MANY, STAGES = 1.0, 30.0, 5.0
 
 
 @unit
@@ -98,14 +95,11 @@ def strike_several(model, data, c, k):
         all_by_pairs = multiple.settings.multiple == SEQUENTIAL
         multiple.pair[i] = pair_of(i, system.contacts, group.closed, all_by_pairs)
     passage = multiple.workspace.work.clock[0]
-    linear = exponent_of(k, multiple) == LINEAR
-    each = k * (min(MANY, max(FEW, (k / 8.0) ** 3)) if linear else STAGES)
     if model.controls.retry == 1:  # the group can take a time-stepping step instead
-        passage.left = int(max(0.0, affordable(model.controls, clock) - clock.effort) / each)
+        passage.left = int(max(0.0, left(model.controls, clock, COUNT_PASSAGES)) / k**3)
     resolve_group(k, group.m[0], u, group.mu, multiple)
-    worked = each * multiple.result.summary[0].steps
-    clock.effort += worked
-    clock.since += worked
+    clock.counts[COUNT_PASSAGES] += k**3 * multiple.result.summary[0].steps
+    clock.since += k * multiple.result.summary[0].steps
     if passage.code != OK or passage.left < 0:
         hit.code = IMPACT_FAILED
         return

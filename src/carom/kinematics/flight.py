@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom.geometry.rotation import exp, multiply, renormalize, rotate, rotate_back
+from carom.geometry.rotation import multiply, renormalize, rotate, rotate_back, turn
 from carom.kinematics.torque_free_top import attitude, begin_top
 from carom.model.workspace import FREE, RESTS
 
@@ -25,12 +25,11 @@ def free_flight(body, g, h, start, end, memory):
         x1[k] = x0[k] + h * (v0[k] + 0.5 * h * g[k])
         v1[k] = v0[k] + h * g[k]
     if body.isotropic == 1:
-        r = exp(h * w0[0], h * w0[1], h * w0[2])
-        q = multiply(r[0], r[1], r[2], r[3], q0[0], q0[1], q0[2], q0[3])
-        q = renormalize(q[0], q[1], q[2], q[3])
-        w = (w0[0], w0[1], w0[2])
-    else:
-        q, w = tumble(body.inertia, h, q0, w0, memory)
+        q1[0], q1[1], q1[2], q1[3] = q0[0], q0[1], q0[2], q0[3]
+        turn(q1, h * w0[0], h * w0[1], h * w0[2])
+        w1[0], w1[1], w1[2] = w0[0], w0[1], w0[2]
+        return
+    q, w = tumble(body.inertia, h, q0, w0, memory)
     q1[0], q1[1], q1[2], q1[3] = q
     w1[0], w1[1], w1[2] = w
 

@@ -1,54 +1,103 @@
-"""Limits of the work of a step: in trial steps with tolerances, otherwise in about [us] for contacts.
+"""Bounds of the work of an island. Work is counted, never timed, so a run is the same on every machine.
 
-With tolerances a limit must not depend on the saved times. A run may use TRIALS trial steps for each part
-1 / PARTS of its duration. Those that it has not used are saved for later, at most those of SAVED_PARTS parts.
-WORK of a contact problem or of a multiple impact counts as one trial step. An accepted step without an event,
-of the length that the tolerance permits, counts only SMOOTH.
+Each island counts five kinds of work (`COUNTS`). In each part of a run it may use so much of each as `PART`
+says; what it has not used is saved, at most for `SAVED` parts. A part is a step of given length, but at least
+1 / PARTS of the duration, because where few states are saved a step takes more work. With tolerances it is
+1 / PARTS of the duration, because a limit must not depend on the saved times; trial steps of a chosen length
+are more than those of given length.
 
-With a given step the limit is a time per step; time that is not used is saved for later steps.
+An island that has used more of the first three gives its step up, and moves as a crowd
+(`stepping.time_loop`). The last two give no step up: they say whether a stage may be tried again, and whether
+the step of a crowd may be cut, or its contact problem be solved with patience.
 """
 
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 
-EACH, SAVED = 1e4, 3e5  # limits of the average step, and of a step after others that took less
-STEPS = 200.0  # of a run, if it has fewer: where few states are saved a step takes more work
-# with tolerances: trial steps of a part of the run, parts of a run, parts that may be saved for later, weight
-# of a step that the tolerance ended, work [us] that counts as a trial step
-TRIALS, PARTS, SAVED_PARTS, SMOOTH, WORK = 1e3, 1e2, 10.0, 0.1, 20.0
-
-
-@kernel
-def affordable(controls, clock):
-    """Return the limit of the work of a step; with `retry`, a step that needs more is given up."""
-    if controls.retry == 0:
-        return SAVED
-    if controls.order > 0:
-        most = SAVED_PARTS * TRIALS + refilled(controls, clock.spent)
-        return WORK * (most - clock.counted)
-    return affordable_whole(controls, clock)
-
-
-@kernel
-def affordable_whole(controls, clock):
-    """Return the limit of the work of a time-stepping step."""
-    return max(of_step(controls), clock.credit) if controls.retry == 1 else SAVED
-
-
-@kernel
-def of_step(controls):
-    """Return the limit of the average step."""
-    return EACH * max(1.0, STEPS * controls.interval / controls.duration)
+#: trial steps; searches for nearest points of two solids; steps through impacts of several points, times the
+#: cube of their number, as for factors of W; stages of persistent contact without a solution; products with
+#: blocks of 3x6 or 6x6 numbers in contact problems of a crowd: of a sweep one for each point
+COUNT_TRIALS, COUNT_SEARCHES, COUNT_PASSAGES, COUNT_STAGES, COUNT_BLOCKS = range(5)
+COUNTS = 5
+#: bound of each kind in a part of a run, and that of trial steps of given length
+PART, OF_STEP = (500.0, 4000.0, 3e6, 5.0, 4e4), 150.0
+PARTS, SAVED = 200.0, 20.0  # least number of parts of a run; parts that may be saved
+# part of the work of an accepted step without an event, of the length that a tolerance permits, that counts
+SMOOTH = 0.1
 
 
 @kernel
 def refilled(controls, t):
-    """Return the number of trial steps that a run with tolerances may use in the time t."""
-    return TRIALS * PARTS * t / controls.duration
+    """Return the number of parts of the run in the time t."""
+    parts = PARTS * t / controls.duration
+    return parts if controls.order > 0 else max(parts, t / controls.interval)
 
 
 @kernel
-def counted(clock):
-    """Return the number of trial steps that an island has used, with the work of its contact problems."""
-    return clock.counted + clock.effort / WORK
+def part(controls, kind):
+    """Return the bound of a kind in a part of the run."""
+    return OF_STEP if kind == COUNT_TRIALS and controls.order == 0 else PART[kind]
+
+
+@kernel
+def left(controls, clock, kind):
+    """Return how much work of a kind the present island may still do up to the present time."""
+    return part(controls, kind) * (SAVED + refilled(controls, clock.spent)) - clock.counts[kind]
+
+
+@kernel
+def overdone(controls, clock):
+    """Return whether the present island has done more than it may, and can be moved as a crowd instead."""
+    if controls.retry == 0:
+        return False
+    for kind in range(COUNT_STAGES):
+        if left(controls, clock, kind) < 0.0:
+            return True
+    return False
+
+
+@kernel
+def begin_count(controls, clock, work):
+    """Set the counts of an island to the greatest of its bodies."""
+    for kind in range(COUNTS if controls.retry == 1 else 0):
+        clock.counts[kind] = 0.0
+        for b in range(work.body.shape[0]):
+            clock.counts[kind] = max(clock.counts[kind], work.body[b].counts[kind])
+
+
+@kernel
+def end_count(controls, clock, work):
+    """Store the counts for the bodies of an island, less what is allowed for the time of the step.
+
+    A step as a crowd saves nothing for the next try to move event by event, which has at least one part.
+    """
+    for kind in range(COUNTS if controls.retry == 1 else 0):
+        done, most = clock.counts[kind], part(controls, kind) * SAVED
+        more = part(controls, kind) * refilled(controls, clock.length)
+        for b in range(work.body.shape[0]):
+            whole = kind < COUNT_STAGES and work.body[b].whole_until > clock.step
+            rest = min(done, most - more) if whole else min(done, most) - more
+            work.body[b].counts[kind] = max(0.0, rest)
+
+
+@kernel
+def keep_count(controls, clock, memory):
+    """Store the counts of a step that is given up for a body."""
+    for kind in range(COUNTS):
+        memory.counts[kind] = min(clock.counts[kind], part(controls, kind) * SAVED + 1.0)
+
+
+@kernel
+def mark_count(clock, search):
+    """Store the counts before a step is proposed."""
+    for kind in range(COUNTS):
+        search.counts[kind] = clock.counts[kind]
+
+
+@kernel
+def smooth_count(clock, search):
+    """Let only a part of the work since then count."""
+    for kind in range(COUNTS):
+        before = search.counts[kind]
+        clock.counts[kind] = before + SMOOTH * (clock.counts[kind] - before)

@@ -9,7 +9,7 @@ import numpy as np
 from carom._compiled.record_arrays import Columns, table
 from carom.collision.layout import new_pair_work, new_points
 from carom.model import workspace
-from carom.model.allowance import SAVED
+from carom.model.allowance import COUNTS
 from carom.model.arrays import STATE, System
 from carom.model.method import ESDIRK
 
@@ -46,18 +46,16 @@ CLOCK = [
     ("cuts", "i8"),
     ("trials", "i8"),
     ("rejected", "i8"),  # trial steps with too large an error
-    ("tries", "i8"),  # trial steps of the present step of an island
+    ("tries", "i8"),  # pieces of the present step of a crowd that were tried
     # `Controls.step` and `Controls.pull` of the present island (`carom.dynamics.local_scale`)
     ("scale", "f8"),
     ("pull", "f8"),
     ("longest", "f8"),  # step of contacts of this island, by the applied forces at that time
     # work [J] that applied forces could do over the allowed error of a position, at that time
     ("able", "f8"),
-    ("counted", "f8"),  # trial steps of an island that count against its limit, with tolerances
-    ("effort", "f8"),  # work for its contact problems and multiple impacts, about [us]
-    ("credit", "f8"),  # work that a step may take, because earlier steps took less
+    ("counts", "f8", COUNTS),  # work of the present island that counts against its bounds
     ("grow", "i8"),  # which arrays must grow before the loop continues
-    ("since", "f8"),  # work since the loop was entered, about [us]
+    ("since", "f8"),  # bodies and points passed since the loop was entered
     ("paused", "i8"),  # 1 if the loop was left in the middle of a trial step
     ("located", "i8"),
     ("holds", "i8"),
@@ -136,7 +134,8 @@ LEFT_BALL = 102  # a body has left the ball that its island gave it
 # impact; contacts, because bodies have come near each other
 FULL_EVENTS, FULL_PAIRS, FULL_SPOTS, FULL_MULTIPLE, NEW_PAIRS = range(5)
 
-LONG = 5e4  # work after which the loop pauses, about [us]
+# value of `clock.since` at which the loop pauses, so that an interrupt is seen: no result depends on it
+LONG = 5e4
 
 
 class Records(NamedTuple):
@@ -153,7 +152,7 @@ class Records(NamedTuple):
 def new_clock() -> np.recarray:
     """Return the clock of a run that has not begun, (1,)."""
     clock = table(CLOCK, 1)
-    clock["still"], clock["credit"] = np.inf, SAVED
+    clock["still"] = np.inf
     return clock
 
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.collision.layout import PairWork
+from carom.model.allowance import COUNTS
 from carom.model.arrays import STATE
 
 #: state of a contact between events
@@ -101,8 +102,7 @@ BODY_WORK = [
     ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
     ("miss", "f8", 3),  # two estimates of the error of a step [m], and their scale
     ("ahead", "f8"),  # with tolerances: length of the next step of its island
-    # trial steps of its island that count against the limit (`carom.model.allowance`)
-    ("counted", "f8"),
+    ("counts", "f8", COUNTS),  # work of its island that counts against its bounds
     ("fits", "f8"),  # length of a step whose error fits the tolerance, by the last step
     ("inverse", "f8", 6),  # inverse inertia, world axes
     ("label", "i8"),  # bodies with the same label move each other, by joints or active contacts
@@ -180,8 +180,7 @@ SEARCH = [
     ("pace", "f8"),  # the longest that may be taken,
     ("sure", "f8"),  # twice the last step in which it was sure that nothing closes,
     ("cuts", "i8"),  # number of times that it was cut,
-    ("effort", "f8"),  # work of the step until it was proposed [us],
-    ("counted", "f8"),  # trial steps that counted until it was proposed,
+    ("counts", "f8", COUNTS),  # work that counted until it was proposed,
     ("again", "i8"),  # whether one was rejected for its error,
     ("code", "i8"),  # of the step without contacts,
     ("applied", "f8"),  # work of loads and of friction in it,

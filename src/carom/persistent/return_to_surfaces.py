@@ -16,7 +16,8 @@ from carom.contact.gap import round_off
 from carom.contact.place import place_any
 from carom.dynamics.passed_edges import has_passed
 from carom.dynamics.project import project_position, shift
-from carom.dynamics.several_points import spread_all, substitute, velocities, yields
+from carom.dynamics.several_points import spread_all, velocities, yields
+from carom.friction.ldl import factor_by_pivots, substitute
 from carom.impact.workspace import OLD, P, U
 from carom.kinematics.contact_point import in_axes
 from carom.model.actions import MODE_STICK
@@ -63,11 +64,7 @@ def given(group, row):
 
 @kernel
 def factor_given(k, group):
-    """List the given rows that do not depend on each other, write the factor of W for them; return their number.
-
-    The row whose velocity the rows before it determine least comes next: in another order the pivot of a row
-    that nearly depends on them is small, and those after it are its round-off.
-    """
+    """List the given rows that do not depend on each other, and write their factor; return their number."""
     n, L, rows, own = 0, group.m[1], group.cone.active, group.v[OLD]
     for i in range(3 * k):
         if given(group, i):
@@ -75,37 +72,7 @@ def factor_given(k, group):
     for i in range(n):
         for j in range(n):
             L[i, j] = group.m[0][rows[i], rows[j]]
-    for j in range(n):
-        best = j
-        for i in range(j + 1, n):
-            if L[i, i] * own[best] > L[best, best] * own[i]:
-                best = i
-        if not L[best, best] > DROP * own[best]:
-            return j
-        exchange_rows(n, j, best, rows, own, L)
-        for i in range(j + 1, n):
-            ratio = L[i, j] / L[j, j]
-            for s in range(j + 1, i + 1):
-                L[i, s] -= ratio * L[s, j]
-        for i in range(j + 1, n):
-            L[i, j] /= L[j, j]
-    return n
-
-
-@kernel
-def exchange_rows(n, i, j, rows, own, L):
-    """Exchange rows i < j of a symmetric matrix of which the part below its diagonal is kept."""
-    rows[i], rows[j] = rows[j], rows[i]
-    own[i], own[j] = own[j], own[i]
-    if i == j:
-        return
-    L[i, i], L[j, j] = L[j, j], L[i, i]
-    for s in range(i):
-        L[i, s], L[j, s] = L[j, s], L[i, s]
-    for s in range(i + 1, j):
-        L[s, i], L[j, s] = L[j, s], L[s, i]
-    for s in range(j + 1, n):
-        L[s, i], L[s, j] = L[s, j], L[s, i]
+    return factor_by_pivots(n, DROP, rows, own, L)
 
 
 @kernel
@@ -134,7 +101,7 @@ def onto_surfaces(system, active, k, count, state, group, work):
         solve_rows(k, n, group, x)
         spread_all(system, k, group.points[0], x, count, group.member, work.stage, work)
         for m in range(count):
-            shift(work.body[group.member[m]].motion, state[group.member[m]])
+            shift(work.body[group.member[m]].motion, 1.0, state[group.member[m]])
         if system.joints.shape[0] > 0:
             project_position(system, state, False, 1e-14, work)
 

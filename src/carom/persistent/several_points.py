@@ -10,8 +10,9 @@ from carom.contact.groups import members
 from carom.dynamics.contact_impulse import add_velocity, alone, spread
 from carom.dynamics.elements import driven_power
 from carom.dynamics.energy import energies
-from carom.dynamics.several_points import factor, inverse_masses, substitute, yields
+from carom.dynamics.several_points import inverse_masses, yields
 from carom.friction.layout import CONE, SLIDING
+from carom.friction.ldl import factor, substitute
 from carom.impact.workspace import OLD, C, P, U
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_SLIP, MODE_STICK

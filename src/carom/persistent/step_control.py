@@ -11,7 +11,6 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom.dynamics.energy import kinetic_of
 from carom.geometry.rotation import norm
-from carom.model.arrays import LOOPS
 
 # Allowed loss in a step of several bodies: OF_MOTION of the kinetic energy at its start, plus the lesser of
 # OF_FALL of the energy that a fall of a whole step gains and OF_SIZE of m g times the size, which does not grow
@@ -39,8 +38,6 @@ SHORTEST, RETRIED = 1e-4, 1e-2
 # grows without bound (near a jam, or as a rim becomes flat) no step is short enough, and a time-stepping step
 # replaces it.
 WILD = 100.0
-# Approximate time for one body in a step without contacts [us], with closed loops and without.
-LOOPS_STEP, OTHER_STEP = 25.0, 0.6
 
 
 @kernel
@@ -137,13 +134,6 @@ def goes_wild(work):
 def next_pace(pace, work):
     """Return the limit for the next step: twice the last limit, unless the loss would be too large."""
     return 2.0 * pace if work.result[0].unnamed <= SURE * CAREFUL else pace
-
-
-@kernel
-def plain_step(system):
-    """Return the approximate time of a step without contacts [us]."""
-    each = LOOPS_STEP if system.solver.kind == LOOPS else OTHER_STEP
-    return system.bodies.shape[0] * each
 
 
 @kernel

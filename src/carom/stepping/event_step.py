@@ -23,7 +23,7 @@ from carom.impact.strike import strike
 from carom.kinematics.contact_point import contact_velocity
 from carom.model import records as r
 from carom.model.actions import EVENT_GAP, NOTHING, PERSIST, STRIKE
-from carom.model.allowance import SMOOTH, affordable
+from carom.model.allowance import overdone, smooth_count
 from carom.model.arrays import STOP
 from carom.model.controls import LOCATE
 from carom.model.workspace import FREE
@@ -72,15 +72,13 @@ def advance(model, data, method) -> int:
 
 @inlined
 def may_go_on(model, data):
-    """Return 0, or the code with which the loop is left: pause, longer arrays, or a too expensive step."""
+    """Return 0, or the code with which the loop is left: pause, longer arrays, or a step with too much work."""
     controls, clock = model.controls, data.clocks[0]
     if clock.since > r.LONG and clock.paused == 0:
         return r.PAUSE
     if full(model.system, data.active, clock, data.records):
         return grow(clock, r.FULL_EVENTS)
-    if clock.in_step > controls.max_impacts or clock.at_once > 1000:
-        return TOO_MANY
-    if controls.retry == 1 and clock.effort > affordable(controls, clock):
+    if clock.in_step > controls.max_impacts or clock.at_once > 1000 or overdone(controls, clock):
         return TOO_MANY
     return 0
 
@@ -137,9 +135,7 @@ def accept_step(model, data):
         turn_modes(model, data)
     if search.found == 0:
         if controls.order > 0 and search.dt < 0.5 * search.pace:
-            clock.tries = 0  # steps for tolerances hardly count
-            clock.effort = search.effort + SMOOTH * (clock.effort - search.effort)
-            clock.counted = search.counted + SMOOTH * (clock.counted - search.counted)
+            smooth_count(clock, search)
         return 0, NOTHING
 
     # its event
@@ -202,12 +198,6 @@ def persist(model, data):
         clock.touched = clock.first_touch
         save_contacts(model.system, data.active, data.state, 0, clock, work, data.records)
     return 0
-
-
-@inlined
-def is_whole(step, work):
-    """Return whether the bodies take this step as a time-stepping (Moreau) step, without event detection."""
-    return work.body[0].whole_until > step
 
 
 @inlined

@@ -10,14 +10,15 @@ from carom.contact.depth import watch_depth
 from carom.dynamics.known_end import forget_end
 from carom.dynamics.local_scale import local_controls, note_scale
 from carom.model import records as r
-from carom.model.allowance import SAVED, of_step
+from carom.model.allowance import begin_count, end_count
 from carom.model.controls import LOCATE
 from carom.model.data import Data, Model
 from carom.persistent.active_set import regroup
 from carom.status import BLOCKED, STEP_TOO_SMALL
+from carom.stepping.crowd.layout import SPOTS
 from carom.stepping.crowd.step import step_crowd
 from carom.stepping.energy_balance import note_whole, watch_step
-from carom.stepping.event_step import NOT_FINITE, advance, is_whole, left_ball
+from carom.stepping.event_step import NOT_FINITE, advance, left_ball
 from carom.stepping.grid import begin_and_length, end_of, is_saved
 from carom.stepping.islands import one_island, parts
 from carom.stepping.islands.plan import READY
@@ -66,16 +67,18 @@ def step_single(model, data, method, start):
     clock = data.clocks[0]
     if start.begun[0] == 0:
         note_scale(model.system, model.controls, data.state, clock, data.work)
+        begin_count(model.controls, clock, data.work)
     one_island.begin_single(model.system, data.active, data.state, data.clocks, data.work, start)
     controls = local_controls(model.controls, clock)
     local = by_reference(Model(model.system, controls))
     code = 0
     while code == 0 and clock.spent < clock.length:
-        code = move_single(local, data, method)
+        code = move_island(local, data, method)
+        if code == 0 and data.crowd.spots.shape[0] >= SPOTS:  # a crowd leaves no groups
+            regroup(model.system, data.active, data.work)
         if code == 0:
-            parts.end_count(controls, clock, data.work)
+            end_count(controls, clock, data.work)
             note_gain(controls, clock, data.watch[0])
-            pay(clock)
     return REPEAT if code != 0 and retry_single(model, data, start, code) else code
 
 
@@ -108,14 +111,14 @@ def step_apart(model, data, method, islands) -> int:
             parts.enter(system, own.active, data.active, own.work, islands, clock.begin, clock)
             clock.first_touch = clock.touched
             note_scale(system, model.controls, state, clock, own.work)
+            begin_count(model.controls, clock, own.work)
         controls = local_controls(model.controls, clock)
         part = by_reference(Model(by_reference(system), controls))
         code = move_island(part, own, method)
         if code == 0:
-            parts.end_count(controls, clock, own.work)
+            end_count(controls, clock, own.work)
             note_gain(controls, clock, data.watch[0])
             parts.leave(own.active, islands)
-            pay(clock)
     return REPEAT if code != 0 and retry_apart(model, data, islands, code) else code
 
 
@@ -129,12 +132,6 @@ def note_gain(controls, clock, watch):
 
 
 @inlined
-def pay(clock):
-    """Subtract the effort of the step from the credit."""
-    clock.credit, clock.effort = max(0.0, clock.credit - clock.effort), 0.0
-
-
-@inlined
 def finish_step(model, data, grid):
     """Set the clock to the end of the step, check the energy balance, and save the state if it is due."""
     system, controls, clock, state = model.system, model.controls, data.clocks[0], data.state
@@ -142,7 +139,6 @@ def finish_step(model, data, grid):
     charge_impacts(clock)
     clock.step += 1
     clock.in_step = 0
-    earn(controls, state, clock, data.work)
     clock.now = end_of(grid, controls.duration, clock.step)
     clock.still = min(clock.still, clock.now) if still(state) else math.inf
     if not finite(state):
@@ -170,35 +166,11 @@ def charge_impacts(clock):
     clock.owed = 0.0
 
 
-@kernel
-def earn(controls, now, clock, work):
-    """Add the credit of one step, unless a body takes it as a time-stepping (Moreau) step."""
-    for b in range(now.shape[0]):
-        if work.body[b].whole_until >= clock.step:
-            return
-    clock.credit = min(SAVED, clock.credit + of_step(controls))
-
-
-@inlined
-def move_single(model, data, method):
-    """Move all bodies to the end of the step: event by event, or in one time-stepping step if that failed."""
-    system, work = model.system, data.work
-    step = data.clocks[0].step
-    whole = model.controls.retry == 1 and parts.is_crowd(system, data.active, step, work)
-    if not whole and not is_whole(step, work):
-        parts.recover(system, step, work)
-        return advance(model, data, method)
-    step_crowd(model, data, method)
-    regroup(system, data.active, work)
-    return work.result[0].code
-
-
 @inlined
 def move_island(model, data, method):
     """Move an island to the end of the step: event by event, or in one time-stepping step if it is a crowd."""
-    system, work = model.system, data.work
-    step = data.clocks[0].step
-    if not parts.is_crowd(system, data.active, step, work):
+    system, work, step = model.system, data.work, data.clocks[0].step
+    if model.controls.retry == 0 or not parts.is_crowd(system, data.active, step, work):
         parts.recover(system, step, work)
         return advance(model, data, method)
     step_crowd(model, data, method)
@@ -226,9 +198,7 @@ def retry_single(model, data, start, code):
     if not one_island.give_up_single(model.controls, clock, data.work):
         return False
     note_whole(model.system, model.controls, clock, code, data.state.shape[0], data.watch[0])
-    spent = clock.effort if model.controls.order == 0 else 0.0
     one_island.forget_single(model.system, data.active, data.state, data.clocks, data.work, start)
-    clock.credit = max(0.0, clock.credit - spent)
     return True
 
 
@@ -249,9 +219,7 @@ def retry_apart(model, data, islands, code):
         if again:
             bodies = parts.bodies_of_present(islands)
             note_whole(model.system, model.controls, clock, code, bodies, data.watch[0])
-    spent = clock.effort if model.controls.order == 0 else 0.0
     parts.forget_step(data.active, data.clocks, islands)
-    clock.credit = max(0.0, clock.credit - spent)
     return again
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import inlined
 from carom.contact.continuous_detection import CLEAR, FLAT_RIM, UNSURE
 from carom.dynamics.adapt import NOTHING_LEFT, allowed_step, plan_next, shorter, step_error
 from carom.dynamics.explicit import CONSTRAINTS_LOST, rubs
@@ -12,12 +12,12 @@ from carom.dynamics.more_forces import turns_round
 from carom.dynamics.step import step
 from carom.model import records as r
 from carom.model.actions import EVENT_GAP, MODE_SLIP, STRIKE
-from carom.model.allowance import affordable
+from carom.model.allowance import COUNT_SEARCHES, COUNT_TRIALS, mark_count, overdone
 from carom.model.controls import LOCATE
 from carom.persistent.contact_step import contact_step
 from carom.persistent.events import note_first_stops
 from carom.persistent.margins import note_due
-from carom.persistent.step_control import plain_step, too_long
+from carom.persistent.step_control import too_long
 from carom.status import NOT_FINITE, STEP_TOO_SMALL, UNSTABLE
 from carom.status import STEP_CUT_TO_NOTHING as STEP_CUT
 from carom.status import TOO_MANY_IMPACTS as TOO_MANY
@@ -32,8 +32,6 @@ from carom.stepping.event_search import (
 )
 from carom.stepping.record import finite
 
-TRIES = 3000  # trial steps after which a step is given up
-SEARCH = 4.0  # approximate time for the distance of two solids of any kind [us]
 ONCE_MORE = -1  # another trial step is needed
 EVENTS_AT_NOW = 20  # events in no time: after so many they wait for the end of a step
 
@@ -59,7 +57,7 @@ def propose_step(model, data):
         search.sure *= 2.0
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
     data.work.result[0].stiff = 0
-    search.effort, search.counted = clock.effort, clock.counted
+    mark_count(clock, search)
     search.eager = 1 if clock.in_moment < EVENTS_AT_NOW else 0
 
 
@@ -133,34 +131,20 @@ def trial_step(model, data, method):
     applied, code = step(method, system, active, now, search.dt, work.trial, work)
     search.applied, search.friction, search.code = applied, 0.0, code
     clock.trials += 1
-    clock.tries += 1
-    clock.counted += 1.0
-    clock.effort += plain_step(system) if system.joints.shape[0] > 0 else 0.0
-    charge_searches(clock, work)
+    clock.counts[COUNT_TRIALS] += 1.0
+    clock.counts[COUNT_SEARCHES] += work.pair.state[0].searches
+    work.pair.state[0].searches = 0
     clock.since += 1.0 + now.shape[0] + active.contact_states.shape[0]
-    retry = controls.retry == 1
-    if retry and controls.order == 0 and clock.tries > TRIES:
-        return TOO_MANY
-    if retry and clock.effort > affordable(controls, clock):
+    if overdone(controls, clock):
         return TOO_MANY
     if (active.count[0] > 0 or rubs(system)) and code == 0:
         contact_step(model, data, method, search.dt)
         if work.result[0].code != 0:  # a stage without a solution: a shorter step may have one
             search.code = work.result[0].code
             return 0
-        if retry and clock.effort > affordable(controls, clock):
-            return TOO_MANY  # some of its rounds were left out
         search.applied += work.result[0].applied
         search.friction += work.result[0].friction
     return 0
-
-
-@kernel
-def charge_searches(clock, work):
-    """Add the time for nearest points of solids since the last trial step to the effort of the step."""
-    pair = work.pair.state[0]
-    clock.effort += SEARCH * pair.searches
-    pair.searches = 0
 
 
 @inlined

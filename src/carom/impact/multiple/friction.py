@@ -19,7 +19,7 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.friction import layout as f
 from carom.friction.cone import in_disc
-from carom.friction.lu import factor, substitute
+from carom.friction.ldl import factor, factor_by_pivots, substitute
 from carom.friction.newton import newton
 from carom.friction.operators import sweep
 from carom.impact.multiple import layout as o
@@ -27,7 +27,7 @@ from carom.impact.multiple.layer import set_velocity
 from carom.impact.multiple.normal_law import OPEN
 
 AT_REST = 1e-10  # slip below this velocity, or below 0.1 rtol, has ended
-_EMPTY = 1e-11  # directions with pivots below this part of the largest are redundant
+_EMPTY = 1e-11  # of its diagonal: a row with a smaller pivot is redundant
 _LOADED = (
     1e-3  # part of the greatest mu N from which a contact takes part in any motion that it can stop
 )
@@ -92,8 +92,7 @@ def find_holding(z, work):
     """Write H in T = -H a: H = D (D W_ZZ D)^+ D = R R^T, R = D L (L^T L)^-1, by L L^T = D W_ZZ D."""
     n, vector = 2 * z, work.vector
     L, M, hold = work.matrix[o.FACTOR], work.matrix[o.MIDDLE], work.matrix[o.HOLDING]
-    weight, pivot = vector[o.SCALE], work.index[o.PIVOTS]
-    full = 0
+    weight, order, full = vector[o.SCALE], work.index[o.PIVOTED], 0
     if not _bearing(z, work, weight) > _LOADED:
         for a in range(z):
             weight[a] = 1.0
@@ -110,48 +109,34 @@ def find_holding(z, work):
             for a in range(n):
                 s += L[a, p] * L[a, q]
             M[p, q] = s
-    factor(M, rank, pivot, 0.0)
+    factor(rank, 0.0, M)
     for a in range(n):
         for q in range(rank):
-            L[a, q] *= weight[a // 2]
-        substitute(M, rank, pivot, L[a])
+            L[a, q] *= weight[order[a] // 2]
+        substitute(rank, M, L[a])
     for a in range(n):
         for b in range(a + 1):
             s = 0.0
             for q in range(rank):
                 s += L[a, q] * L[b, q]
-            hold[a, b] = hold[b, a] = s
+            hold[order[a], order[b]] = hold[order[b], order[a]] = s
 
 
 @kernel
 def _factor(z, work, L):
-    """Write L in D W_ZZ D = L L^T, by Cholesky with pivots; return its rank."""
+    """Write L in D W_ZZ D = L L^T, with rows in the order of pivots; return the rank."""
     slot, W, weight = work.index[o.STUCK], work.matrix[o.MASS], work.vector[o.SCALE]
-    left, column = work.vector[o.LEFT], work.vector[o.STICK_T]
-    n, largest, rank = 2 * z, 0.0, 0
+    order, own, n = work.index[o.PIVOTED], work.vector[o.STICK_T], 2 * z
     for a in range(n):
-        i = 3 * slot[a // 2] + 1 + a % 2
-        left[a] = weight[a // 2] * weight[a // 2] * W[i, i]
-        largest = max(largest, left[a])
-    while rank < n:
-        top = 0
+        row = W[3 * slot[a // 2] + 1 + a % 2]
+        for b in range(a + 1):
+            L[a, b] = weight[a // 2] * weight[b // 2] * row[3 * slot[b // 2] + 1 + b % 2]
+        order[a], own[a] = a, L[a, a]
+    rank = factor_by_pivots(n, _EMPTY, order, own, L)
+    for b in range(rank):
+        root = math.sqrt(L[b, b])
         for a in range(n):
-            if left[a] > left[top]:
-                top = a
-        if not left[top] > _EMPTY * largest:
-            break
-        pivot = math.sqrt(left[top])
-        row, d = W[3 * slot[top // 2] + 1 + top % 2], weight[top // 2]
-        for a in range(n):
-            s = d * weight[a // 2] * row[3 * slot[a // 2] + 1 + a % 2]
-            for b in range(rank):
-                s -= L[top, b] * L[a, b]
-            column[a] = s / pivot
-        for a in range(n):
-            L[a, rank] = column[a]
-            left[a] -= column[a] * column[a]
-        left[top] = 0.0
-        rank += 1
+            L[a, b] = root if a == b else root * L[a, b] if a > b else 0.0
     return rank
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
+from carom.friction.dense import add_product
 from carom.impact.multiple import layout as o
 from carom.impact.multiple import normal_law as law
 
@@ -18,22 +19,12 @@ _FIRST_STEP = 0.05
 
 
 @kernel
-def add_velocity(n, W, impulse, u):
-    """Add W times `impulse` to `u` (W is symmetric: its columns are its rows)."""
-    for j in range(n):
-        q, column = impulse[j], W[j]
-        if q != 0.0:
-            for i in range(n):
-                u[i] += q * column[i]
-
-
-@kernel
 def set_velocity(k, work):
     """Write u = u0 + W P, so that momentum is exact at every step."""
     u, u0 = work.vector[o.NOW_U], work.vector[o.U0]
     for i in range(3 * k):
         u[i] = u0[i]
-    add_velocity(3 * k, work.matrix[o.MASS], work.vector[o.NOW_P], u)
+    add_product(3 * k, work.matrix[o.MASS], work.vector[o.NOW_P], u)
 
 
 @kernel

@@ -157,10 +157,10 @@ class MultipleWorkspace(NamedTuple):
 BLOW_U, BLOW_FRICTION, BLOW_RESTITUTION, BLOW_STIFFNESS = range(4)
 
 
-#: rows of `index`: class of a contact, first member of a class, its size, its group, members of
-#: a group, a stack, contacts of the discs, contacts that stick, pivots, contacts that are closed,
-#: 1 for those that some force can press
-CLASS, FIRST_MEMBER, CLASS_SIZE, GROUP, MEMBER, STACK, IN_DISC, STUCK, PIVOTS, CLOSED, PRESSED = (
+#: rows of `index`: class of a contact, first member of a class, its size, its group, members of a group, a
+#: stack, contacts of the discs, contacts that stick, their rows in the order of pivots, contacts that are
+#: closed, 1 for those that some force can press
+CLASS, FIRST_MEMBER, CLASS_SIZE, GROUP, MEMBER, STACK, IN_DISC, STUCK, PIVOTED, CLOSED, PRESSED = (
     range(11)
 )
 #: `matrix`: W of all contacts, cleaned; W of the group, scaled; H of the sticking contacts, and two to find it;
@@ -171,10 +171,10 @@ U0, NOW_P, NOW_U, NEW_P, NEW_U, D, NEW_D, SAVED_P, SAVED_D, WHEN, SCRATCH, ERROR
 #: at the first unloading: times of the changes of mode; friction where it acts, otherwise 0
 SAVED_WHEN, ACTING_MU = 13, 14
 #: friction of the discs; of the series and of stick; of a new order of the series: impulses and velocities
-DISC_T, WEIGHT, SCALE, LEFT, STICK_T, ORDER_P, ORDER_U = range(15, 22)
+DISC_T, WEIGHT, SCALE, STICK_T, ORDER_P, ORDER_U = range(15, 21)
 #: of the outer iteration: ln e_*, misses, new misses, step, change of misses, a product, best e_*, its misses,
 #: the step before the last, and the direction of the update
-OUT_X, OUT_F, OUT_NEW, OUT_DX, OUT_DF, OUT_H, OUT_BEST, OUT_BEST_F, OUT_LAST, OUT_V = range(22, 32)
+OUT_X, OUT_F, OUT_NEW, OUT_DX, OUT_DF, OUT_H, OUT_BEST, OUT_BEST_F, OUT_LAST, OUT_V = range(21, 31)
 #: first index of `series`: velocity n, t1, t2; impulse n, t1, t2; depth; N; |u_t|^2; |u_t|; mu N/|u_t|, the
 #: same times dt/dtau; 1/|u_t|; friction loss; dtau/dt and dt/dtau; numbers of each contact (rows below)
 S_U, S_U1, S_U2, S_P, S_P1, S_P2, S_D, S_N, S_Q, S_R, S_F, S_FS, S_G, S_LOSS, S_RATE, S_SIGMA = (
@@ -232,7 +232,7 @@ def new_multiple_workspace(capacity: int) -> MultipleWorkspace:
     work = PassageWork(
         contact=table(CONTACT, k), saved=table(CONTACT, k), clock=table(CLOCK, 1),
         index=np.zeros((11, n), dtype=np.int64), matrix=np.zeros((7, n, n)),
-        vector=np.zeros((32, 3 * LANES * blocks)), series=np.zeros((18, ORDERS, blocks, LANES)),
+        vector=np.zeros((31, 3 * LANES * blocks)), series=np.zeros((18, ORDERS, blocks, LANES)),
         columns=np.zeros((n, 3 * blocks, LANES)), stage=np.zeros((2, 6, n)),
         single=np.zeros(SIZE), cones=new_contact_work(k),
     )  # fmt: skip

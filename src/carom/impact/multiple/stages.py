@@ -15,10 +15,11 @@ import numpy as np
 from carom._compiled.decorators import kernel
 from carom._compiled.simd import LANES
 from carom._compiled.units import unit
+from carom.friction.dense import add_product
 from carom.impact.multiple import layout as o
 from carom.impact.multiple import normal_law as law
 from carom.impact.multiple.friction import AT_REST, gather_discs, solve_discs
-from carom.impact.multiple.layer import add_velocity, set_velocity
+from carom.impact.multiple.layer import set_velocity
 
 _LEAST_STEP = 1e-9
 _AT_CHANGE = 0.02  # part of the tolerance for steps in which a contact begins or ceases to stick
@@ -181,7 +182,7 @@ def implicit_step(k, m, work, h, p, tolerance):
                 total += IMPLICIT[s, j] * force[j, i]
             q[i] = h * total
             u1[i] = u[i]
-        add_velocity(n, W, q, u1)
+        add_product(n, W, q, u1)
         if m > 0:
             add_friction(k, m, work, GAMMA * h, force[s], u1, tolerance)
         for i in range(k):
@@ -197,7 +198,7 @@ def implicit_step(k, m, work, h, p, tolerance):
         p1[i] = p0[i] + h * total
         q[i] = h * wrong
         error[i] = 0.0
-    add_velocity(n, W, q, error)
+    add_product(n, W, q, error)
     worst = 0.0
     for i in range(n):
         worst = max(worst, abs(error[i]))
@@ -228,7 +229,7 @@ def present_forces(k, m, work, h, p, slow, tolerance):
         for r in range(3):
             q[n + r] = moment * force[n + r]
             ahead[n + r] = u[n + r] if r == 0 else moves * u[n + r]
-    add_velocity(3 * k, work.matrix[o.MASS], q, ahead)
+    add_product(3 * k, work.matrix[o.MASS], q, ahead)
     if m > 0:
         solve_discs(m, work, moment, force, ahead, tolerance * _MOMENT)
 
@@ -271,8 +272,8 @@ def interpolate(k, work, h):
     for i in range(3 * k):
         a0[i] = 0.0
         a1[i] = 0.0
-    add_velocity(3 * k, W, work.stage[o.FORCE, 0], a0)
-    add_velocity(3 * k, W, work.stage[o.FORCE, 5], a1)
+    add_product(3 * k, W, work.stage[o.FORCE, 0], a0)
+    add_product(3 * k, W, work.stage[o.FORCE, 5], a1)
     d, u = work.series[o.S_D], work.series[o.S_U]
     for i in range(k):
         n, b, l = 3 * i, i // LANES, i % LANES

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
+from carom.dynamics.contact_impulse import gain
 from carom.dynamics.explicit import copy_state, rubs
 from carom.dynamics.forces import applied_wrenches, difference_of_loads
 from carom.dynamics.project import shift
 from carom.dynamics.solve import solve
 from carom.dynamics.step import step
-from carom.geometry.rotation import exp, log, multiply, normalize
+from carom.geometry.rotation import log, multiply, turn
 from carom.kinematics.coordinate import rate
 from carom.kinematics.flight import free_flight
 from carom.persistent.contact_step import contact_step
-from carom.persistent.step_control import plain_step
 from carom.stepping.energy_balance import unbalanced
 
 TOO_LONG = -1  # the piece is too long
@@ -45,7 +45,6 @@ def fly(model, data, method, h, loaded, cut):
             contact_step(model, data, method, h)
             code, search.friction = work.result[0].code, work.result[0].friction
             search.applied += work.result[0].applied
-        clock.effort += plain_step(system)
         for b in range(now.shape[0]):
             copy_state(work.trial[b], crowd.flight[b])
             halfway(now[b], crowd.flight[b], work.middle[b])
@@ -69,9 +68,8 @@ def halfway(start, end, out):
     p, q, Q = start.Q, end.Q, out.Q
     t = multiply(q[0], q[1], q[2], q[3], p[0], -p[1], -p[2], -p[3])
     a = log(t[0], t[1], t[2], t[3])
-    r = exp(0.5 * a[0], 0.5 * a[1], 0.5 * a[2])
-    q = multiply(r[0], r[1], r[2], r[3], p[0], p[1], p[2], p[3])
-    Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
+    Q[0], Q[1], Q[2], Q[3] = p[0], p[1], p[2], p[3]
+    turn(Q, 0.5 * a[0], 0.5 * a[1], 0.5 * a[2])
     for k in range(3):
         out.x[k] = 0.5 * (start.x[k] + end.x[k])
         out.v[k] = 0.5 * (start.v[k] + end.v[k])
@@ -142,11 +140,6 @@ def follow_path(system, h, start, end, crowd, work):
         return False
     solve(system, crowd.flight, False, work)
     for b in range(start.shape[0]):
-        flight, motion = crowd.flight[b], work.body[b].motion
-        for j in range(3):
-            flight.v[j] += motion[j]
-            flight.w[j] += motion[3 + j]
-        for j in range(6):
-            motion[j] *= 0.5 * h
-        shift(motion, flight)
+        gain(work.body[b].motion, crowd.flight[b])
+        shift(work.body[b].motion, 0.5 * h, crowd.flight[b])
     return True

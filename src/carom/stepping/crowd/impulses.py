@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.contact.closed_points import apart
-from carom.contact.depth import least_gap
-from carom.contact.pair_point import smaller
+from carom.dynamics.contact_impulse import gain
 from carom.dynamics.elements import driven_power
 from carom.dynamics.energy import spin_momentum
 from carom.dynamics.explicit import copy_state
@@ -16,8 +14,7 @@ from carom.dynamics.rotors import add_rates, note_rates
 from carom.friction.layout import ITERATE
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
-from carom.model.allowance import affordable_whole
-from carom.model.arrays import STOP
+from carom.model.allowance import COUNT_BLOCKS, left
 from carom.stepping.crowd.free_motion import halfway
 from carom.stepping.crowd.pose import note_drift, pose
 from carom.stepping.crowd.response import answer, write_responses
@@ -60,16 +57,15 @@ def find_impulses(model, data, k, h, fall, patient):
     crowd, work, clock, n = data.crowd, data.work, data.clocks[0], data.state.shape[0]
     pose(system, active, k, h, fall, now, crowd, work)
     tolerance = FINE * controls.rest * fall * h
-    effort = (patient, affordable_whole(controls, clock) - clock.effort)
-    gamma, residual = solve(system, crowd, k, n, tolerance, effort, clock)
+    most = left(controls, clock, COUNT_BLOCKS) if patient else 0.0
+    gamma, residual = solve(system, crowd, k, n, tolerance, most, clock)
     answer(system, k, gamma, crowd, work)
-    gain(crowd, work)
+    gain_all(crowd, work)
     clock.trials += 1
     clock.contact_steps += 1
     clock.since += 10.0 * (k + n)
-    clock.effort += 10.0 * (k + n)
     if n > 1 and bounces_give(k, crowd, work.trial):
-        more = limit_bounces(system, k, n, tolerance, effort, crowd, work, clock)
+        more = limit_bounces(system, k, n, tolerance, most, crowd, work, clock)
         residual = max(residual, more)
     for i in range(k):
         for j in range(3):
@@ -97,7 +93,7 @@ def bounces_give(k, crowd, end):
 
 
 @kernel
-def limit_bounces(system, k, n, tolerance, effort, crowd, work, clock):
+def limit_bounces(system, k, n, tolerance, most, crowd, work, clock):
     """Reduce the restitution of all impacts of the piece by one factor, so that together they add no energy.
 
     The impulses p_0 without restitution lose energy. p = p_0 + s (p_e - p_0) is in the cones, and with it no
@@ -112,9 +108,9 @@ def limit_bounces(system, k, n, tolerance, effort, crowd, work, clock):
         if spot.strikes == 1 and spot.bound + spot.drift[0] > 0.0:
             crowd.c[3 * i] += spot.bound + spot.drift[0]
         spot.after[0], spot.after[1], spot.after[2] = w
-    gamma, residual = solve(system, crowd, k, n, tolerance, effort, clock)
+    gamma, residual = solve(system, crowd, k, n, tolerance, most, clock)
     answer(system, k, gamma, crowd, work)
-    gain(crowd, work)
+    gain_all(crowd, work)
     a, b, c = 0.0, 0.0, 0.0  # coefficients of the work a + b s + c s^2
     for i in range(k):
         u, w = crowd.spots[i].before, contact_velocity(crowd.points[0][i], end)
@@ -132,19 +128,16 @@ def limit_bounces(system, k, n, tolerance, effort, crowd, work, clock):
         p = crowd.p[i] + s * (full[i] - crowd.p[i])
         problem.vector[ITERATE, i] = p / (gamma * problem.contact[i // 3].scale)
     answer(system, k, gamma, crowd, work)
-    gain(crowd, work)
+    gain_all(crowd, work)
     return residual
 
 
 @kernel
-def gain(crowd, work):
+def gain_all(crowd, work):
     """Write the flight with the velocities that the impulses give it to the trial state; positions stay."""
     for b in range(work.trial.shape[0]):
         copy_state(crowd.flight[b], work.trial[b])
-        end, motion = work.trial[b], work.body[b].motion
-        for j in range(3):
-            end.v[j] += motion[j]
-            end.w[j] += motion[3 + j]
+        gain(work.body[b].motion, work.trial[b])
 
 
 @kernel
@@ -161,10 +154,7 @@ def impose(model, data, k, h):
         add_rates(system, crowd.flight, work)
         driven += driven_power(system, crowd.flight, work)  # the work of an impulse
     for b in range(end.shape[0]):
-        motion = work.body[b].motion
-        for j in range(6):
-            motion[j] *= 0.5 * h
-        shift(motion, end[b])
+        shift(work.body[b].motion, 0.5 * h, end[b])
     holds = onto_surfaces(system, k, end.shape[0], end, crowd, work) <= LOST
     respin(system, crowd.flight, end)
     if joined:
@@ -195,22 +185,6 @@ def lift_others(system, k, depth, crowd, work):
     respin(system, work.stage, end)
     project_velocity(system, end, True, work)
     return True, holds
-
-
-@kernel
-def deepest_of_others(system, end, work):
-    """Return the greatest depth of a feature at the end, relative to the size of the smaller body.
-
-    The candidates are on the surface. Another feature of two bodies may be inside, which did not exist at the
-    start, for example a corner that has come over the edge of a face.
-    """
-    deepest = 0.0
-    for c in range(system.contacts.shape[0]):
-        contact = system.contacts[c]
-        if contact.touches == STOP or not apart(system, contact, end, 0.0):
-            gap = least_gap(system, contact, end, work)
-            deepest = max(deepest, -gap / smaller(contact))
-    return deepest
 
 
 @kernel

@@ -15,6 +15,7 @@ import numpy as np
 from carom._compiled.decorators import kernel
 from carom.friction.cone import project
 from carom.friction.layout import ITERATE
+from carom.friction.ldl import factor, substitute
 
 WINDOW = 8  # number of stored differences
 ASTRAY = 2.0  # relative to the last |f|: with more the stored differences are dropped
@@ -88,8 +89,9 @@ def note_end(work, k, mixing):
 def extrapolate(work, k, mixing):
     """Replace the impulses by the combination of least change, projected onto the cones."""
     p, theta, n = work.vector[ITERATE], mixing.theta, 3 * k
-    if mixing.count[0] == 0 or not solve_least(n, mixing):
+    if mixing.count[0] == 0:
         return
+    solve_least(n, mixing)
     for j in range(mixing.count[0]):
         t, H = theta[j], mixing.H[j]
         for i in range(n):
@@ -101,25 +103,14 @@ def extrapolate(work, k, mixing):
 
 @kernel
 def solve_least(n, mixing):
-    """Write the theta that minimizes |f - F theta|, by the factors L D L^T of F F^T; return if it exists."""
+    """Write the theta that minimizes |f - F theta|, by F F^T."""
     L, theta, m = mixing.factor, mixing.theta, mixing.count[0]
     for j in range(m):
         theta[j] = product(n, mixing.F[j], mixing.change)
         for i in range(j, m):
-            t = mixing.gram[i, j] * (1.0 + INDEPENDENT if i == j else 1.0)
-            for s in range(j):
-                t -= L[i, s] * L[j, s] * L[s, s]
-            if i == j and not t > 0.0:
-                return False
-            L[i, j] = t if i == j else t / L[j, j]
-    for i in range(m):
-        for s in range(i):
-            theta[i] -= L[i, s] * theta[s]
-    for i in range(m - 1, -1, -1):
-        theta[i] /= L[i, i]
-        for s in range(i + 1, m):
-            theta[i] -= L[s, i] * theta[s]
-    return True
+            L[i, j] = mixing.gram[i, j] * (1.0 + INDEPENDENT if i == j else 1.0)
+    factor(m, 0.0, L)
+    substitute(m, L, theta)
 
 
 @kernel

@@ -8,13 +8,12 @@ connected to them (`OTHER`): motions that the back end finds for unit impulses. 
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.dynamics.contact_impulse import add_impulse, alone, clear_wrenches
+from carom.dynamics.contact_impulse import add_impulse, alone, clear_wrenches, spread
 from carom.dynamics.solve import solve
 from carom.friction import layout as o
 from carom.friction.island import impart
 from carom.friction.layout import CONE
 from carom.friction.solve import inverse_mass_of, scale_link
-from carom.geometry.rotation import cross, rotate, rotate_back
 
 
 @kernel
@@ -25,13 +24,7 @@ def write_responses(system, first, k, crowd, work):
     for i in range(first, k):
         link, point = problem.link[i], points[i]
         link.body[0], link.body[1], link.others = point.a, point.b, last
-        write_rows(point, link)
-        if alone(system, point):
-            for side in range(2):
-                if link.body[side] >= 0:
-                    answer_alone(system.bodies[link.body[side]], crowd.flight, link, side)
-        else:
-            last = answer_joined(system, point, crowd, link, last, work)
+        last = write_rows(system, point, crowd, link, last, work)
         link.others_end = last
         scale_link(link, problem.contact[i], 0.0, CONE, (0.0, 0.0))
         s = problem.contact[i].scale
@@ -52,7 +45,7 @@ def answer(system, k, gamma, crowd, work):
     if system.joints.shape[0] > 0:
         spread_impulses(system, k, crowd, work)
         return
-    impart(problem, k)
+    impart(problem, k, problem.vector[o.ITERATE])
     for b in range(work.body.shape[0]):
         for j in range(6):
             work.body[b].motion[j] = gamma * problem.body[b].motion[j]
@@ -75,75 +68,25 @@ def block_of_point(problem, i, W):
 
 
 @kernel
-def write_rows(point, link):
-    """Write the rows G of a point for both bodies."""
-    for side in range(2):
-        if link.body[side] < 0:
-            continue
-        sign, arm, G = (
-            (1.0, point.arm_a, link.rows[0]) if side == 0 else (-1.0, point.arm_b, link.rows[1])
-        )
-        for r in range(3):
-            G[r, 0], G[r, 1], G[r, 2], a = row_of(point, sign, r, arm)
-            G[r, 3], G[r, 4], G[r, 5] = a
+def write_rows(system, point, crowd, link, first, work):
+    """Write rows G and responses P G^T of a point: of its bodies, and of all that joints move with them.
 
-
-@kernel
-def row_of(point, sign, r, arm):
-    """Return row r of a point for one body: its linear part and its angular part.
-
-    For rolling and pivoting the angular part is a direction times a length, and the normal row is zero. A stop
-    has only a normal row, which is a torque for a stop of an angle (`turns` = 3).
-    """
-    E, none = point.axes, (0.0, 0.0, 0.0)
-    x, y, z = sign * E[r, 0], sign * E[r, 1], sign * E[r, 2]
-    if point.turns == 0 or (point.turns == 4 and r == 0):
-        return x, y, z, cross(arm[0], arm[1], arm[2], x, y, z)
-    s, rolls = sign * point.length, point.turns == 1
-    if point.turns == 3:
-        t, there = 0, r == 0
-    elif rolls:
-        t, there = r, r > 0
-    else:
-        t, there = 0, point.turns == 2 and r == 1
-    if there:
-        return 0.0, 0.0, 0.0, (s * E[t, 0], s * E[t, 1], s * E[t, 2])
-    return 0.0, 0.0, 0.0, none
-
-
-@kernel
-def answer_alone(body, state, link, side):
-    """Write M^-1 G^T of a body without joints."""
-    q, J, G, Y = state[link.body[side]].Q, body.inertia, link.rows[side], link.response[side]
-    for r in range(3):
-        for j in range(3):
-            Y[j, r] = G[r, j] / body.mass
-        t = rotate_back(q[0], q[1], q[2], q[3], G[r, 3], G[r, 4], G[r, 5])
-        t = rotate(q[0], q[1], q[2], q[3], t[0] / J[0], t[1] / J[1], t[2] / J[2])
-        Y[3, r], Y[4, r], Y[5, r] = t
-
-
-@kernel
-def answer_joined(system, point, crowd, link, first, work):
-    """Write P G^T of both bodies, and of all bodies connected to them by joints; return the end of their rows.
-
-    These rows of `OTHER` begin at `first`.
+    A row is the wrench of a unit impulse, and its response the motion. The others are rows of `OTHER` from
+    `first` on; return their end.
     """
     other, last = crowd.problem.other, first
-    for b in range(system.bodies.shape[0]):
+    for b in range(0 if alone(system, point) else system.bodies.shape[0]):
         if system.bodies[b].isolated == 0 and b != link.body[0] and b != link.body[1]:
             other[last].body = b
             last += 1
     for r in range(3):
-        clear_wrenches(work)
-        add_impulse(
-            point, 1.0 if r == 0 else 0.0, 1.0 if r == 1 else 0.0, 1.0 if r == 2 else 0.0, work
-        )
-        solve(system, crowd.flight, False, work)
+        e0, e1, e2 = 1.0 if r == 0 else 0.0, 1.0 if r == 1 else 0.0, 1.0 if r == 2 else 0.0
+        spread(system, point, crowd.flight, e0, e1, e2, work)
         for side in range(2):
             if link.body[side] >= 0:
+                G, Y, memory = link.rows[side], link.response[side], work.body[link.body[side]]
                 for j in range(6):
-                    link.response[side, j, r] = work.body[link.body[side]].motion[j]
+                    G[r, j], Y[j, r] = memory.wrench[j], memory.motion[j]
         for e in range(first, last):
             for j in range(6):
                 other[e].response[j, r] = work.body[other[e].body].motion[j]

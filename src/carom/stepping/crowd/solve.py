@@ -10,12 +10,13 @@ from __future__ import annotations
 
 from carom._compiled.decorators import by_reference, kernel
 from carom.friction import layout as o
+from carom.friction.alternating import alternate
 from carom.friction.layout import ContactWork
-from carom.friction.newton import step
+from carom.friction.newton import copy, step
+from carom.friction.residual import residual
 from carom.friction.solve import scale_vectors
-from carom.friction.strategy import copy, residual
+from carom.model.allowance import COUNT_BLOCKS
 from carom.stepping.crowd.graph import find_order
-from carom.stepping.crowd.splitting import split_until
 from carom.stepping.crowd.sweeps import sweep_until
 
 FIRST, BETWEEN, ALLOWED = 40, 30, 150  # sweeps: at first; after a step; allowed for all
@@ -27,32 +28,28 @@ HARD = 0.1  # convergence is slow if a turn leaves more than this part of the re
 WRONG = 1e-2  # relative to the largest velocity: more is no result, whatever the cost
 AT_REST = 1e3  # relative to the tolerance: enough for bodies to come to rest; more is no rest
 IDLE = 4  # turns that do not halve the residual until a start from 0, and again until the end
-# cost [us] of a contact in a sweep, of a body connected to it by joints, of factors and of their assembly
-SWEEP, TIE, UPDATE, CONTACT = 0.13, 0.015, 0.1, 0.45
-PATIENT = 4  # factor of the allowed cost if the step can afford it
-# iterations of alternating directions: usual, and most if the step can afford them; their cost in sweeps
-SPLIT, LONG_SPLIT, DEARER = 100, 1000, 1.3
+PATIENT = 4  # factor of the allowed work if the step can afford it
+# iterations of alternating directions: usual, and most if the step can afford them
+SPLIT, LONG_SPLIT = 100, 1000
+RHO = 0.05  # shift of W in them, relative to the mean of its diagonal
 
 
 @kernel
-def solve(system, crowd, k, n, tolerance, effort, clock):
+def solve(system, crowd, k, n, tolerance, left, clock):
     """Solve for the scaled impulses; return their scale, and the residual [m/s].
 
-    `effort` is whether more than the usual work is allowed, and the work [us] that the step can afford.
+    More than the usual work is done while the step has products with blocks `left`: a sweep and an iteration
+    of alternating directions take one for each contact, factors one for each update and four for each contact.
     """
-    patient, left = effort
     work = crowd.problem
     work.count[o.ITERATIONS] = 0
     gamma = scale_vectors(work, k, crowd.c, crowd.p)
-    each = SWEEP * k + TIE * work.link[k - 1].others_end if k > 0 else 0.0
-    most = ALLOWED * each
-    if patient:
-        most = max(most, min(left, PATIENT * most))
+    most = max(ALLOWED * k, min(left, PATIENT * ALLOWED * k))
     speed = greatest_speed(crowd, k) / gamma
     r, goal, done = sweep_until(system, crowd, k, max(tolerance / gamma, PRECISE * speed), FIRST)
     enough, good = max(tolerance / gamma, goal, PRECISE * speed), max(goal, AGREED * speed)
     good = max(good, AT_REST * tolerance / gamma)
-    spent, least, turn, idle = done * each, r, 0, 0
+    spent, least, turn, idle = done * k, r, 0, 0
     p, kept = work.vector[o.ITERATE], work.vector[o.START_BEST]
     copy(k, p, kept)
     while not least <= enough and spent < most and idle < 2 * IDLE:
@@ -62,7 +59,7 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
                 p[i] = 0.0
         spent += newton_step(crowd, k, n, PROXIMAL[turn % 3])
         r, _, more = sweep_until(system, crowd, k, enough, BETWEEN)
-        done, spent, turn = done + more, spent + more * each, turn + 1
+        done, spent, turn = done + more, spent + more * k, turn + 1
         if r < least:
             least = r
             copy(k, p, kept)
@@ -73,10 +70,10 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
     if not least <= good and not has_discs(work, k) and find_order(n, k, crowd):
         wrong = not least <= max(WRONG * speed, AT_REST * tolerance / gamma)
         at_least = LONG_SPLIT if wrong else SPLIT
-        allowed = LONG_SPLIT if wrong or (patient and spent < left) else SPLIT
+        allowed = LONG_SPLIT if wrong or spent < left else SPLIT
         ordered = by_reference(at_hand(crowd, n))
-        least, more = split_until(ordered, k, enough, at_least, allowed)
-        done, spent = done + more, spent + DEARER * more * each
+        least, more = alternate(ordered, k, RHO, enough, at_least, allowed)
+        done, spent = done + more, spent + more * k
         copy(k, p, kept)
     if goal < least <= good:  # one more step for the last digits
         spent += newton_step(crowd, k, n, LAST_DIGITS)
@@ -86,8 +83,8 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
         else:
             copy(k, kept, p)
     clock.rounds += done
-    clock.since += 2.0 * spent
-    clock.effort += spent
+    clock.since += 0.2 * spent
+    clock.counts[COUNT_BLOCKS] += spent
     return gamma, gamma * least
 
 
@@ -112,12 +109,12 @@ def has_discs(work, k):
 
 @kernel
 def newton_step(crowd, k, n, eps):
-    """Make one step of Newton's method, if there is room for it; return its cost [us]."""
+    """Make one step of Newton's method, if there is room for it; return its products with blocks."""
     if not find_order(n, k, crowd):
-        return 0.0
+        return 0
     work, updates = by_reference(at_hand(crowd, n)), crowd.graph.count[2]
     step(work, k, eps)
-    return UPDATE * updates + CONTACT * k + TIE * work.link[k - 1].others_end
+    return updates + 4 * k
 
 
 @kernel

@@ -16,12 +16,13 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
+from carom.contact.depth import deepest
 from carom.dynamics.explicit import CONSTRAINTS_LOST, copy_state
 from carom.dynamics.more_forces import note_turns
 from carom.dynamics.project import project_velocity
 from carom.geometry.rotation import norm
 from carom.model import records as r
-from carom.model.allowance import affordable_whole
+from carom.model.allowance import COUNT_BLOCKS, left
 from carom.status import NOT_FINITE
 from carom.stepping.crowd.balance import energy_gained, off, slow_down, take_out, take_over
 from carom.stepping.crowd.finish import finish
@@ -35,7 +36,6 @@ from carom.stepping.crowd.free_motion import (
     work_on_path,
 )
 from carom.stepping.crowd.impulses import (
-    deepest_of_others,
     find_impulses,
     find_points,
     impose,
@@ -50,7 +50,7 @@ from carom.stepping.record import finite, grow
 FAR, THIN = 0.25, 1.0 / 32.0
 # greatest number of tries with pieces that may be cut; shortest piece, relative to the step
 CAREFUL, SHORTEST = 300, 1e-4
-DEAR = 70.0  # work [us] per active point that a step must still afford if a piece may be cut
+DEAR = 500.0  # products with blocks per active point that a step must still afford if a piece may be cut
 WIDER, WIDEST = 4.0, 16.0  # factors of the search distance after points were missed
 # depth of a feature that was no candidate, relative to the smaller body: beyond SUNK candidates are sought at a
 # larger distance; beyond DEEP the piece is then cut, down to SHORTER of the step
@@ -82,10 +82,8 @@ def step_crowd(model, data, method):
         dt = min(piece(system, now, controls, clock.length - clock.spent), search.pace)
         while True:
             clock.tries += 1
-            expensive = clock.effort + DEAR * data.active.count[0] > affordable_whole(
-                controls, clock
-            )
-            patient = clock.tries <= CAREFUL and not expensive
+            affordable = left(controls, clock, COUNT_BLOCKS) >= DEAR * data.active.count[0]
+            patient = clock.tries <= CAREFUL and affordable
             careful = patient and dt > SHORTEST * controls.interval
             result.code = move_on(model, data, method, dt, patient, careful)
             if result.code == CONSTRAINTS_LOST and dt > SHORTEST * controls.interval:
@@ -208,7 +206,8 @@ def collide(model, data, h, fall, patient, careful):
         driven, holds = impose(model, data, k, h)
         if not holds:
             return CONSTRAINTS_LOST, k, residual, driven
-        sunk = deepest_of_others(system, work.trial, work) if n > 1 else 0.0
+        # candidates are on the surface; another feature may be inside, as a corner that came over an edge
+        sunk = deepest(system, work.trial, work)[0] if n > 1 else 0.0
         times += 1
         if sunk <= SUNK:
             return 0, k, residual, driven

@@ -42,7 +42,7 @@ def onto_surfaces(system, k, count, end, crowd, work):
             break
         lift(system, k, max(tiny, BETTER * deepest), crowd, work)
         for b in range(count):
-            shift(work.body[b].motion, end[b])
+            shift(work.body[b].motion, 1.0, end[b])
         missed = project_position(system, end, True, 1e-14, work)
     return missed
 

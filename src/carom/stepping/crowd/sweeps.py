@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.friction.layout import BEST, ITERATE
+from carom.friction.newton import copy
 from carom.friction.operators import sweep
-from carom.friction.strategy import copy, residual
+from carom.friction.residual import residual
 from carom.stepping.crowd.mixing import extrapolate, forget, note_end, note_start
 
 UNCHECKED_SWEEPS = 10  # sweeps between two checks of the residual

@@ -6,7 +6,7 @@ from carom._compiled.decorators import kernel
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.more_forces import begin_turns, forget_turns
 from carom.persistent.active_set import regroup
-from carom.stepping.islands.parts import begin_count, give_up_body
+from carom.stepping.islands.parts import give_up_body
 
 
 @kernel
@@ -15,8 +15,7 @@ def begin_single(system, active, now, clocks, work, start):
     if start.begun[0] == 1:
         return
     clock = clocks[0]
-    clock.first_touch, clock.tries, clock.effort = 0, 0, 0.0
-    begin_count(clock, work)
+    clock.first_touch, clock.tries = 0, 0
     work.pair.state[0].searches = 0
     clock.before = clock.impacts
     if start.state.shape[0] == 0:  # the step is never repeated in another way

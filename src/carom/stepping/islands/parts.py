@@ -5,7 +5,7 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.dynamics.explicit import copy_state, mark_active
 from carom.kinematics.flight import free_flight
-from carom.model.allowance import SAVED_PARTS, TRIALS, counted, refilled
+from carom.model.allowance import keep_count
 from carom.model.arrays import Solver, System
 from carom.model.workspace import ActiveSet, Work
 from carom.persistent.active_set import regroup
@@ -152,8 +152,7 @@ def enter(part, own, active, work, islands, begin, clock):
         own.count[0] += 1
     regroup(part, own, work)
     clock.spent, clock.in_step, clock.at_once, clock.now = 0.0, 0, 0, begin
-    clock.tries, clock.effort, work.pair.state[0].searches = 0, 0.0, 0
-    begin_count(clock, work)
+    clock.tries, work.pair.state[0].searches = 0, 0
     islands.plan[0].entered = 1
 
 
@@ -186,23 +185,6 @@ def is_crowd(part, active, step, work):
 
 
 @kernel
-def begin_count(clock, work):
-    """Set the number of trial steps that count against the limit of an island: the greatest of its bodies."""
-    clock.counted = 0.0
-    for b in range(work.body.shape[0]):
-        clock.counted = max(clock.counted, work.body[b].counted)
-
-
-@kernel
-def end_count(controls, clock, work):
-    """Store that number for the bodies of an island, less those that are allowed for the time of the step."""
-    left = max(0.0, counted(clock) - refilled(controls, clock.length))
-    left = min(left, SAVED_PARTS * TRIALS)  # a crowd may use any number
-    for b in range(work.body.shape[0]):
-        work.body[b].counted = left
-
-
-@kernel
 def bodies_of_present(islands):
     """Return the number of bodies of the present island."""
     at = islands.plan[0].at
@@ -213,8 +195,7 @@ def bodies_of_present(islands):
 def give_up(controls, islands, clock, work):
     """Give the bodies of the present island time-stepping steps, this and some more; return False if they have.
 
-    With a given step the number doubles with each call in a row: 1, 2, 4, ... 128. With tolerances it is 1,
-    because their trial steps are counted.
+    The number doubles with each call in a row: 1, 2, 4, ... 128.
     """
     first, at, new, step = islands.first, islands.plan[0].at, True, clock.step
     for slot in range(first[0, at], first[0, at + 1]):
@@ -226,10 +207,10 @@ def give_up(controls, islands, clock, work):
 
 @kernel
 def give_up_body(controls, clock, memory):
-    """Give a body time-stepping steps: this one and some more, with tolerances this one alone."""
-    memory.whole_for = min(128, max(1, 2 * memory.whole_for)) if controls.order == 0 else 1
+    """Give a body time-stepping steps: this one and some more."""
+    memory.whole_for = min(128, max(1, 2 * memory.whole_for))
     memory.whole_until = clock.step + memory.whole_for
-    memory.counted = min(counted(clock), SAVED_PARTS * TRIALS + 1.0)
+    keep_count(controls, clock, memory)
 
 
 @kernel
