@@ -40,11 +40,10 @@ from carom.collision.faces import LOWEST, along_edge, normal_of_face
 from carom.collision.features import EDGE, FACE, FIXED, OF_A, OF_B, first_of, second_of
 from carom.collision.layout import CYLINDER, ELLIPSOID
 from carom.collision.support import change_of_support
+from carom.collision.thresholds import PARALLEL
 from carom.geometry.rotation import multiply, rotate, rotate_back
+from carom.geometry.thresholds import RESOLUTION
 from carom.geometry.vectors import cross, dot, plus
-
-PARALLEL = 1e-7  # sine of the angle below which two edges have no common normal
-SHARP = 1e-9  # relative to the smaller solid: shorter radii of curvature count as zero
 
 
 class Core(NamedTuple):
@@ -137,7 +136,7 @@ def _free_normal(a, b, hulls, n, d):
         rate, done = _two_edges(a, b, hulls, n)
         if done:
             return rate
-    sharp = SHARP * min(a.solid.extent, b.solid.extent)
+    sharp = RESOLUTION * min(a.solid.extent, b.solid.extent)
     turn_a, turn_b = cross(a.w, n), cross(b.w, n)
     rate = plus(plus(a.v, -1.0, b.v), 1.0, _bend(a, n, turn_a))
     rate = plus(rate, 1.0, _bend(b, n, turn_b))

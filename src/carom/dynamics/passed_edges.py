@@ -10,11 +10,9 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.collision.features import NOBODY, OF_A
 from carom.collision.layout import BOX, HULL
+from carom.dynamics.thresholds import EDGE_JUMP, JUMP
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
-
-JUMP = 1e-6  # of a component: those of a normal that has turned with its face differ by round-off
-EDGE_JUMP = 1e-3  # the same for edges: those of level faces have normals that differ by 4.5e-5 (`clip.LEVEL`)
 
 
 @kernel

@@ -16,8 +16,7 @@ from carom.friction import layout as o
 from carom.friction.cone import nearest, shift
 from carom.friction.newton import velocity
 from carom.friction.operators import factor_shifted, solve_shifted
-
-_RELAXATION = 1.6
+from carom.friction.thresholds import RELAXATION
 
 
 @kernel
@@ -42,7 +41,7 @@ def alternate(work, k, sigma, limit):
         for i in range(k):
             t, n = work.contact[i], 3 * i
             for j in range(n, n + 3):
-                x[j] = _RELAXATION * x[j] + (1.0 - _RELAXATION) * z[j]
+                x[j] = RELAXATION * x[j] + (1.0 - RELAXATION) * z[j]
             z[n], z[n + 1], z[n + 2] = nearest(
                 t.kind, t.mu, t.h1, t.h2,
                 x[n] - v[n] / sigma, x[n + 1] - v[n + 1] / sigma, x[n + 2] - v[n + 2] / sigma,

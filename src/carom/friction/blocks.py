@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-
-_LEAST = 1e-14  # pivots smaller than this are replaced by it
+from carom.friction.thresholds import LEAST_PIVOT
 
 
 @kernel
@@ -57,8 +56,8 @@ def _factor_diagonal(A, pivot):
                 t = A[k, j]
                 A[k, j] = A[row, j]
                 A[row, j] = t
-        if not top > _LEAST:
-            A[k, k] = _LEAST if A[k, k] >= 0.0 else -_LEAST
+        if not top > LEAST_PIVOT:
+            A[k, k] = LEAST_PIVOT if A[k, k] >= 0.0 else -LEAST_PIVOT
         inverse = 1.0 / A[k, k]
         for i in range(k + 1, 6):
             m = A[i, k] * inverse

@@ -7,27 +7,21 @@ import math
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.friction import layout as o
+from carom.friction import thresholds as limits
 from carom.friction.alternating import alternate
 from carom.friction.cone import nearest, project, shift
 from carom.friction.newton import largest_impulse, newton, velocity
 from carom.friction.operators import magnitude, sweep
-from carom.friction.residual import RELATIVE, ROUND_OFF
+from carom.geometry.thresholds import ROUND_OFF, SUM_ERROR
 
-_EPS = 1e-8  # weight of the proximal term
-# its weight where W has an eigenvalue below _EPS in a direction of the solution: each round removes the part
-# lambda/(lambda + eps) of the bias in that direction
-_LEAST_EPS = 1e-14
 _POLISH = 8  # greatest number of rounds, each with a new proximal centre
 _STARTS = 20  # greatest number of starting points
 _EXTRA = 2  # further starting points if the tolerance is satisfied, but not round-off; or a hundred times that
-_NEARLY = 100.0
-_SETTLED = 1e-12  # relative to the impulses: |f| of equations that are solved
 _FIRST_SWEEPS = 25  # at first; twice as many each time, up to
 _MOST_SWEEPS = 200
 _ALTERNATIONS = 300
-_RELEASE_FROM, _RELEASE_BY = 0.1, 0.3  # weights of the proximal term in a release
 _RELEASES = 60
-_ALLOWED, _AMOUNT = 300, 1e6  # budget of a search: the greater of 300 and 1e6 / k^2 iterations
+_ALLOWED = 300  # budget of a search: the greater of 300 and 1e6 / k^2 iterations
 
 
 @unit
@@ -71,7 +65,7 @@ def search(work, k):
         # where W is singular, round-off in c may be outside its range: then no start has a smaller residual
         if r <= 0.9 * tolerance and settled(work, k):
             break
-        if least <= _NEARLY * tolerance:
+        if least <= limits.ENOUGH_RESIDUAL * tolerance:
             last = min(last, start + 1 + _EXTRA)
     for i in range(3 * k):
         p[i] = best[i]
@@ -87,7 +81,7 @@ def copy(k, p, to):
 @kernel
 def allow(work, k):
     """Allow a search about 0.3 s of iterations, but a minimum number in any case."""
-    work.count[o.BUDGET] = max(_ALLOWED, int(_AMOUNT / (k * k)))
+    work.count[o.BUDGET] = max(_ALLOWED, int(limits.SEARCH_BUDGET / (k * k)))
 
 
 @kernel
@@ -125,7 +119,7 @@ def release(work, k, enough):
     p, kept, centre = work.vector[o.ITERATE], work.vector[o.START_BEST], work.vector[o.CENTRE]
     for i in range(3 * k):
         kept[i] = p[i]
-    eps = _RELEASE_FROM
+    eps = limits.RELEASE_START
     for _ in range(_RELEASES):
         if spent(work):
             break
@@ -136,12 +130,12 @@ def release(work, k, enough):
         if work.mismatch[0] < 1e-8:
             for i in range(3 * k):
                 kept[i] = p[i]
-            eps *= _RELEASE_BY
+            eps *= limits.RELEASE_FACTOR
             if enough > 0.0 and residual(work, k)[0] <= enough:
                 break
         else:
-            eps /= _RELEASE_BY
-        if not 10.0 * _EPS < eps < 10.0 * _RELEASE_FROM:
+            eps /= limits.RELEASE_FACTOR
+        if not 10.0 * limits.PROXIMAL < eps < 10.0 * limits.RELEASE_START:
             break
     for i in range(3 * k):
         p[i] = kept[i]
@@ -161,7 +155,7 @@ def polished(work, k, least_norm, patient):
     work.count[o.FACTOR_ROWS] = -1
     for i in range(3 * k):
         kept[i] = p[i]
-    goal, tolerance, eps = 0.0, 0.0, _EPS
+    goal, tolerance, eps = 0.0, 0.0, limits.PROXIMAL
     for _ in range(_POLISH):
         newton(work, k, eps, patient)
         for i in range(k):
@@ -169,9 +163,9 @@ def polished(work, k, least_norm, patient):
             p[n], p[n + 1], p[n + 2] = project(work.contact[i], p[n], p[n + 1], p[n + 2])
         r, goal, tolerance = residual(work, k)
         slow = not r < 0.5 * least
-        enough = r <= goal or (slow and (r <= tolerance or eps < _EPS)) or spent(work)
+        enough = r <= goal or (slow and (r <= tolerance or eps < limits.PROXIMAL)) or spent(work)
         if slow and not enough:  # a soft direction of W: a light body between heavy ones
-            eps = _LEAST_EPS
+            eps = limits.LEAST_PROXIMAL
             work.count[o.FACTOR_ROWS] = -1
         if r < least:
             least = r
@@ -189,7 +183,7 @@ def polished(work, k, least_norm, patient):
 @kernel
 def settled(work, k):
     """Return whether the last equations of Newton's method are solved to round-off."""
-    return work.mismatch[0] <= _SETTLED * largest_impulse(work, k)
+    return work.mismatch[0] <= ROUND_OFF * largest_impulse(work, k)
 
 
 @kernel
@@ -208,5 +202,5 @@ def residual(work, k):
             worst = r
         largest = max(largest, max(abs(c[n]), abs(c[n + 1]), abs(c[n + 2])) / t.scale)
     size = magnitude(work, k)
-    goal = max(1e-14 * largest + 0.08 * ROUND_OFF * size, work.mismatch[o.ENOUGH] * largest)
-    return worst, goal, RELATIVE * largest + ROUND_OFF * size
+    goal = max(1e-14 * largest + 0.08 * SUM_ERROR * size, work.mismatch[o.ENOUGH] * largest)
+    return worst, goal, limits.RESIDUAL_TOLERANCE * largest + SUM_ERROR * size

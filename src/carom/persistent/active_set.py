@@ -10,10 +10,11 @@ from carom.contact.closed_points import apart, closed_within
 from carom.contact.gap import slow
 from carom.contact.groups import label_groups
 from carom.contact.level import related
-from carom.contact.pair_point import REACH, find_touches, own_point, smaller, touch_rate
+from carom.contact.pair_point import find_touches, own_point, smaller, touch_rate
 from carom.contact.place import place_any
 from carom.contact.place_of_other import on_half_space
 from carom.contact.rim import same_point
+from carom.contact.thresholds import REACH
 from carom.model.parts_of_system import has_solids
 from carom.persistent.step_control import UNSOLVED
 

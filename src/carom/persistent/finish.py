@@ -11,9 +11,10 @@ from carom.contact.gap import slow
 from carom.dynamics.adapt import allowed_error
 from carom.dynamics.explicit import copy_state, note_velocity
 from carom.dynamics.passed_edges import has_passed, note_passed
-from carom.dynamics.project import LOST, project_position, project_velocity
+from carom.dynamics.project import project_position, project_velocity
 from carom.dynamics.several_points import velocities
 from carom.friction.layout import CONE, SLIDING
+from carom.geometry.thresholds import RESOLUTION
 from carom.impact.workspace import OLD, C, P, U
 from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
 from carom.persistent.forces import solve_forces, take_forces, time_to_stop
@@ -36,7 +37,7 @@ def land(model, data, loaded, k, count) -> bool:
     """Bring bodies back to joints and surfaces, velocities to the tangents; return whether the joints close."""
     system, active, group, work = model.system, data.active, data.group, data.work
     end = work.trial
-    if loaded and not (project_position(system, end, True, 1e-14, work) <= LOST):
+    if loaded and not (project_position(system, end, True, 1e-14, work) <= RESOLUTION):
         return False
     show(count, end, group, work)
     place_closed(system, k, end, group, group.points[0], work)

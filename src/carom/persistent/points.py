@@ -20,7 +20,6 @@ from carom._compiled.units import unit
 from carom.contact.closed_points import write_closed
 from carom.contact.continuous_detection_pair import nearest_touch
 from carom.contact.pair_point import (
-    ACTIVE_REACH,
     find_touches,
     list_touches,
     own_point,
@@ -31,6 +30,7 @@ from carom.contact.pair_point import (
 from carom.contact.place import place_any
 from carom.contact.rim import same_point
 from carom.contact.stop import is_active
+from carom.contact.thresholds import ACTIVE_REACH
 from carom.geometry.rotation import cross, rotate_back
 from carom.kinematics.contact_point import copy_point
 from carom.persistent.joint_rows import add_frictions

@@ -13,9 +13,10 @@ from carom._compiled.units import unit
 from carom.contact.closed_points import apart, closed_within
 from carom.contact.continuous_detection import greatest_acceleration
 from carom.contact.gap import gap_and_rate, plane_in_body, slow
-from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
+from carom.contact.pair_point import find_touches, smaller, touch_rate
 from carom.contact.parting import beside_face
 from carom.contact.stop import check_stop
+from carom.contact.thresholds import REACH
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.more_forces import note_turns
 from carom.geometry.rotation import norm

@@ -8,6 +8,7 @@ from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.dynamics.explicit import copy_state
 from carom.geometry.rotation import norm
+from carom.geometry.thresholds import RESOLUTION
 from carom.impact.layout import AT_END
 from carom.impact.record import Blow, three, write_blow
 from carom.kinematics.contact_point import contact_velocity
@@ -17,8 +18,6 @@ from carom.model.records import IMPACT, OPENS, PERSISTS, SLIPS, STICKS
 from carom.persistent.active_set import begin_point
 from carom.persistent.step_control import MANY, POORLY, rest_speed
 from carom.stepping.crowd.response import block_of_point
-
-ASIDE = 1e-9  # of its size: a body at rest that has moved further in a step was pushed
 
 
 @kernel
@@ -181,7 +180,7 @@ def come_to_rest(system, tolerance, count, start, end, crowd):
     for b in range(n):
         g, size = root(parent, b), system.bodies[b].extent
         speed[0, g] = max(speed[0, g], norm(start[b].v) + size * norm(start[b].w))
-        if way(start[b], end[b], size) > ASIDE * size:
+        if way(start[b], end[b], size) > RESOLUTION * size:
             speed[0, g] = math.inf
         speed[1, g] = max(speed[1, g], norm(end[b].v) + size * norm(end[b].w))
     for b in range(n):

@@ -11,10 +11,12 @@ from carom.contact.pair_point import smaller
 from carom.dynamics.elements import driven_power
 from carom.dynamics.energy import spin_momentum
 from carom.dynamics.explicit import copy_state
-from carom.dynamics.project import LOST, project_velocity, shift
+from carom.dynamics.project import project_velocity, shift
 from carom.dynamics.rotors import add_rates, note_rates
 from carom.friction.layout import ITERATE
 from carom.geometry.rotation import rotate, rotate_back
+from carom.geometry.thresholds import RESOLUTION
+from carom.impact.thresholds import REMAINDER
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.allowance import affordable_whole
 from carom.model.arrays import STOP
@@ -24,9 +26,8 @@ from carom.stepping.crowd.response import answer, write_responses
 from carom.stepping.crowd.solve import solve
 from carom.stepping.crowd.spots import gather, gather_sunk, place_all
 from carom.stepping.crowd.surface import onto_surfaces
+from carom.stepping.thresholds import SOLVER_SHARE
 
-FINE = 0.1  # tolerance of the solver, relative to the speed below which bodies rest
-NOTHING = 1e-9  # of the work of all impulses: less counts as zero
 LIFTS = 4  # greatest number of searches for other penetrating features
 
 
@@ -59,7 +60,7 @@ def find_impulses(model, data, k, h, fall, patient):
     system, controls, active, now = model.system, model.controls, data.active, data.state
     crowd, work, clock, n = data.crowd, data.work, data.clocks[0], data.state.shape[0]
     pose(system, active, k, h, fall, now, crowd, work)
-    tolerance = FINE * controls.rest * fall * h
+    tolerance = SOLVER_SHARE * controls.rest * fall * h
     effort = (patient, affordable_whole(controls, clock) - clock.effort)
     gamma, residual = solve(system, crowd, k, n, tolerance, effort, clock)
     answer(system, k, gamma, crowd, work)
@@ -93,7 +94,7 @@ def bounces_give(k, crowd, end):
         one = work_of(i, crowd.p, crowd.spots[i].before, contact_velocity(crowd.points[0][i], end))
         total, size = total + one, size + abs(one)
         strikes = strikes or crowd.spots[i].strikes == 1
-    return strikes and total > NOTHING * size
+    return strikes and total > REMAINDER * size
 
 
 @kernel
@@ -165,7 +166,7 @@ def impose(model, data, k, h):
         for j in range(6):
             motion[j] *= 0.5 * h
         shift(motion, end[b])
-    holds = onto_surfaces(system, k, end.shape[0], end, crowd, work) <= LOST
+    holds = onto_surfaces(system, k, end.shape[0], end, crowd, work) <= RESOLUTION
     respin(system, crowd.flight, end)
     if joined:
         project_velocity(system, end, True, work)
@@ -191,7 +192,7 @@ def lift_others(system, k, depth, crowd, work):
             break
         place_all(system, k, last, end, crowd, crowd.points[0], work)
         write_responses(system, k, last, crowd, work)
-        holds = onto_surfaces(system, last, end.shape[0], end, crowd, work) <= LOST
+        holds = onto_surfaces(system, last, end.shape[0], end, crowd, work) <= RESOLUTION
     respin(system, work.stage, end)
     project_velocity(system, end, True, work)
     return True, holds

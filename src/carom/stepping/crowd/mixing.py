@@ -15,10 +15,9 @@ import numpy as np
 from carom._compiled.decorators import kernel
 from carom.friction.cone import project
 from carom.friction.layout import ITERATE
+from carom.stepping.thresholds import MIXING_GROWTH, MIXING_RIDGE
 
 WINDOW = 8  # number of stored differences
-ASTRAY = 2.0  # relative to the last |f|: with more the stored differences are dropped
-INDEPENDENT = 1e-10  # relative addition to the squares of the columns, which may be dependent
 
 
 class Mixing(NamedTuple):
@@ -74,7 +73,7 @@ def note_end(work, k, mixing):
         F[i], H[i] = f - change[i], p[i] - reached[i]
         change[i], reached[i] = f, p[i]
     size = np.sqrt(size)
-    if known and size <= ASTRAY * mixing.size[0]:
+    if known and size <= MIXING_GROWTH * mixing.size[0]:
         mixing.count[0] = min(mixing.count[0] + 1, WINDOW)
         mixing.count[1] = (at + 1) % WINDOW
         for j in range(mixing.count[0]):
@@ -106,7 +105,7 @@ def solve_least(n, mixing):
     for j in range(m):
         theta[j] = product(n, mixing.F[j], mixing.change)
         for i in range(j, m):
-            t = mixing.gram[i, j] * (1.0 + INDEPENDENT if i == j else 1.0)
+            t = mixing.gram[i, j] * (1.0 + MIXING_RIDGE if i == j else 1.0)
             for s in range(j):
                 t -= L[i, s] * L[j, s] * L[s, s]
             if i == j and not t > 0.0:

@@ -14,18 +14,13 @@ from carom.friction.layout import ContactWork
 from carom.friction.newton import step
 from carom.friction.solve import scale_vectors
 from carom.friction.strategy import copy, residual
+from carom.friction.thresholds import PROXIMAL, RESIDUAL_TOLERANCE
+from carom.stepping import thresholds as limits
 from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.splitting import split_until
 from carom.stepping.crowd.sweeps import sweep_until
 
 FIRST, BETWEEN, ALLOWED = 40, 30, 150  # sweeps: at first; after a step; allowed for all
-# weights of the proximal term, in turn: impulses are often not unique (four corners of a box), and with 1e-8 a
-# step changes the undetermined part arbitrarily
-PROXIMAL, LAST_DIGITS = (1e-2, 1e-3, 1e-4), 1e-8
-PRECISE, AGREED = 1e-10, 1e-8  # residual relative to the largest velocity: goal, and enough if slow
-HARD = 0.1  # convergence is slow if a turn leaves more than this part of the residual
-WRONG = 1e-2  # relative to the largest velocity: more is no result, whatever the cost
-AT_REST = 1e3  # relative to the tolerance: enough for bodies to come to rest; more is no rest
 IDLE = 4  # turns that do not halve the residual until a start from 0, and again until the end
 # cost [us] of a contact in a sweep, of a body connected to it by joints, of factors and of their assembly
 SWEEP, TIE, UPDATE, CONTACT = 0.13, 0.015, 0.1, 0.45
@@ -49,9 +44,14 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
     if patient:
         most = max(most, min(left, PATIENT * most))
     speed = greatest_speed(crowd, k) / gamma
-    r, goal, done = sweep_until(system, crowd, k, max(tolerance / gamma, PRECISE * speed), FIRST)
-    enough, good = max(tolerance / gamma, goal, PRECISE * speed), max(goal, AGREED * speed)
-    good = max(good, AT_REST * tolerance / gamma)
+    r, goal, done = sweep_until(
+        system, crowd, k, max(tolerance / gamma, RESIDUAL_TOLERANCE * speed), FIRST
+    )
+    enough, good = (
+        max(tolerance / gamma, goal, RESIDUAL_TOLERANCE * speed),
+        max(goal, limits.SLOW_RESIDUAL * speed),
+    )
+    good = max(good, limits.REST_RESIDUAL * tolerance / gamma)
     spent, least, turn, idle = done * each, r, 0, 0
     p, kept = work.vector[o.ITERATE], work.vector[o.START_BEST]
     copy(k, p, kept)
@@ -60,18 +60,20 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
         if idle == IDLE and n > 1:  # start from 0: the last impulses may be a poor first guess
             for i in range(3 * k):
                 p[i] = 0.0
-        spent += newton_step(crowd, k, n, PROXIMAL[turn % 3])
+        spent += newton_step(crowd, k, n, limits.PROXIMAL_TURNS[turn % 3])
         r, _, more = sweep_until(system, crowd, k, enough, BETWEEN)
         done, spent, turn = done + more, spent + more * each, turn + 1
         if r < least:
             least = r
             copy(k, p, kept)
-        if least <= good and not least < HARD * before:
+        if least <= good and not least < limits.SLOW_TURN * before:
             break
         idle = 0 if least < 0.5 * before else idle + 1
     copy(k, kept, p)
     if not least <= good and not has_discs(work, k) and find_order(n, k, crowd):
-        wrong = not least <= max(WRONG * speed, AT_REST * tolerance / gamma)
+        wrong = not least <= max(
+            limits.WRONG_RESIDUAL * speed, limits.REST_RESIDUAL * tolerance / gamma
+        )
         at_least = LONG_SPLIT if wrong else SPLIT
         allowed = LONG_SPLIT if wrong or (patient and spent < left) else SPLIT
         ordered = by_reference(at_hand(crowd, n))
@@ -79,7 +81,7 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
         done, spent = done + more, spent + DEARER * more * each
         copy(k, p, kept)
     if goal < least <= good:  # one more step for the last digits
-        spent += newton_step(crowd, k, n, LAST_DIGITS)
+        spent += newton_step(crowd, k, n, PROXIMAL)
         r, _, _ = residual(work, k)
         if r < least:
             least = r

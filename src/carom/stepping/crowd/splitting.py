@@ -17,9 +17,9 @@ from carom.friction import layout as o
 from carom.friction.cone import nearest, shift
 from carom.friction.operators import factor_shifted, solve_shifted
 from carom.friction.strategy import copy, residual
+from carom.friction.thresholds import RELAXATION
+from carom.stepping.thresholds import RHO
 
-RHO = 0.05  # relative to the mean of the diagonal of W
-AHEAD = 1.6  # over-relaxation a
 UNCHECKED_ITERATIONS = 25  # iterations between two checks of the residual
 
 
@@ -76,9 +76,9 @@ def iterate(work, k, z, u):
     solve_shifted(work, k)
     for i in range(k):
         n, t = 3 * i, work.contact[i]
-        x0 = AHEAD * x[n] + (1.0 - AHEAD) * z[n] + u[n]
-        x1 = AHEAD * x[n + 1] + (1.0 - AHEAD) * z[n + 1] + u[n + 1]
-        x2 = AHEAD * x[n + 2] + (1.0 - AHEAD) * z[n + 2] + u[n + 2]
+        x0 = RELAXATION * x[n] + (1.0 - RELAXATION) * z[n] + u[n]
+        x1 = RELAXATION * x[n + 1] + (1.0 - RELAXATION) * z[n + 1] + u[n + 1]
+        x2 = RELAXATION * x[n + 2] + (1.0 - RELAXATION) * z[n + 2] + u[n + 2]
         y0, y1, y2 = nearest(t.kind, t.mu, t.h1, t.h2, x0, x1, x2)
         z[n], z[n + 1], z[n + 2] = y0, y1, y2
         u[n], u[n + 1], u[n + 2] = x0 - y0, x1 - y1, x2 - y2
