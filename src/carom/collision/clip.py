@@ -15,7 +15,7 @@ from carom.collision import features as of
 from carom.collision.faces import corner_part
 from carom.collision.found import known, put, put_parts
 from carom.collision.layout import CYLINDER, MOST_CORNERS
-from carom.collision.thresholds import CROSSING, LEVEL_FACES
+from carom.collision.thresholds import CROSSING, TILT
 from carom.geometry.rotation import cross
 from carom.geometry.thresholds import ROUND_OFF
 
@@ -98,9 +98,7 @@ def _normal(pair, ref, source, k, corners, height):
     one, two = s.side[source, k], s.side[source, (k + corners - 1) % corners]
     i, j = max(one, two), -1 - min(one, two)  # sides of the incident face, of the reference
     angle = math.sqrt(max(0.0, 2.0 + 2.0 * (n[0] * m[0] + n[1] * m[1] + n[2] * m[2])))
-    level = angle <= LEVEL_FACES and angle * abs(height) <= ROUND_OFF * min(
-        pair.a.extent, pair.b.extent
-    )
+    level = angle <= TILT and angle * abs(height) <= ROUND_OFF * min(pair.a.extent, pair.b.extent)
     if level and kind != of.EDGES and (kind == of.VERTEX_A) != (ref == 1):
         return (-m[0], -m[1], -m[2]), 3 - owner
     if level and kind == of.EDGES and min(i, j) >= 0 and not rims:  # sides of a rim are no edges

@@ -51,7 +51,7 @@ def closest(pair):
     size = min(a.extent, b.extent)
     curved = a.kind >= CYLINDER or b.kind >= CYLINDER
     best, (nx, ny, nz), (bx, by, bz), polished = _normal(
-        pair, size, limits.CURVED_ACCURACY if curved else LAST_DIGIT
+        pair, size, limits.CURVED if curved else LAST_DIGIT
     )
     # the normal of a face; of two faces, that of the one on which a vertex of the other solid lies
     owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, curved)

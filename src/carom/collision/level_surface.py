@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.collision.thresholds import PLACE_TOLERANCE
+from carom.collision.thresholds import MARGIN
 from carom.geometry.thresholds import RESOLUTION
 from carom.geometry.vectors import dot
 
@@ -82,7 +82,7 @@ def carries(levels, surface, first, last, q, gap, rounding):
     A point below the plane is carried if the way out through the plane is the shortest: shorter than that
     through the rim, and than that through the back of the solid.
     """
-    room = PLACE_TOLERANCE * surface.tolerance
+    room = MARGIN * surface.tolerance
     i = face_below(levels, first, last, q, room)
     if i < 0:
         return False
@@ -96,7 +96,7 @@ def carries(levels, surface, first, last, q, gap, rounding):
 @kernel
 def continues(levels, surface, q, m):
     """Return whether a face through q continues along m, so that m is no normal of the surface at q."""
-    room = PLACE_TOLERANCE * surface.tolerance
+    room = MARGIN * surface.tolerance
     for i in range(surface.first, surface.last):
         face = levels.faces[i]
         if face_below(levels, i, i + 1, q, room) < 0:

@@ -126,19 +126,14 @@ def allowed_step(left, work):
 @kernel
 def part_of(left, ahead):
     """Return the next step within the time `left`: `ahead`, or half or all of it if 2 `ahead` do not fit."""
-    return (
-        ahead if 2.0 * ahead <= left else 0.5 * left if ahead < limits.REST_OF_STEP * left else left
-    )
+    return ahead if 2.0 * ahead <= left else 0.5 * left if ahead < limits.WHOLE * left else left
 
 
 @kernel
 def shrunk(error, order):
     """Return the factor for the length of a step whose error was too large."""
-    return (
-        max(limits.LEAST_FACTOR, limits.SAFETY * error ** (-1.0 / order))
-        if math.isfinite(error)
-        else limits.LEAST_FACTOR
-    )
+    factor = limits.SAFETY * error ** (-1.0 / order)
+    return factor if factor > limits.SHRINKAGE else limits.SHRINKAGE  # if the error is NaN, too
 
 
 @kernel
@@ -154,16 +149,16 @@ def shorter(dt, error, clock, work):
 @kernel
 def plan(memory, dt, error, again, order, longest):
     """Store in `memory` the length `ahead` of the next step; the others are as in `plan_next`."""
-    factor = limits.LARGEST_FACTOR
+    factor = limits.GROWTH
     if error > 0.0:
-        factor = min(limits.LARGEST_FACTOR, limits.SAFETY * error ** (-1.0 / order))
+        factor = min(limits.GROWTH, limits.SAFETY * error ** (-1.0 / order))
     fits = factor * dt
     trend = fits / memory.fits if memory.fits > fits else 1.0
     memory.fits = fits
-    if factor == limits.LARGEST_FACTOR:
+    if factor == limits.GROWTH:
         ahead = max(memory.ahead, fits)
     else:
-        ahead = min(dt if again else fits, max(limits.LEAST_FACTOR, trend) * fits)
+        ahead = min(dt if again else fits, max(limits.SHRINKAGE, trend) * fits)
     memory.ahead = min(ahead, longest)
 
 

@@ -17,7 +17,7 @@ from carom.dynamics.known_end import keep_end, of_state_alone, recall
 from carom.dynamics.loops import dropped_rows
 from carom.dynamics.project import project_position, project_velocity
 from carom.dynamics.singular_positions import is_singular, pass_round, return_stage, steps
-from carom.dynamics.thresholds import SINGULARITY, STAGE_ROTATION
+from carom.dynamics.thresholds import SINGULARITY, STAGE_TURN
 from carom.geometry.rotation import multiply, normalize
 from carom.geometry.thresholds import RESOLUTION, SMALLEST
 from carom.kinematics.flight import free_flight
@@ -25,7 +25,7 @@ from carom.model.workspace import FREE, HELD, RESTS
 from carom.status import CONSTRAINTS_LOST
 
 EVERY_ROW = 1 << 30  # more rows than any system has
-MOST_PARTS = 100  # of a step, each with at most `STAGE_ROTATION` a stage
+MOST_PARTS = 100  # of a step, each with at most `STAGE_TURN` a stage
 
 
 @inlined
@@ -69,9 +69,7 @@ def whole_step(method, system, active, start, h, end, work):
     for part in range(MOST_PARTS):
         dt = left
         if not estimates and part < MOST_PARTS - 1:
-            dt = min(
-                left, STAGE_ROTATION * stages / max(fastest_spin(system, first, work), SMALLEST)
-            )
+            dt = min(left, STAGE_TURN * stages / max(fastest_spin(system, first, work), SMALLEST))
         result.begin = begin + (h - left)
         with_care(method, system, active, first, dt, end, work)
         applied += result.applied

@@ -11,7 +11,7 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom._compiled.user_functions import call_function
 from carom.dynamics.curve import curve, find_piece
-from carom.dynamics.thresholds import JOINT_ROTATION
+from carom.dynamics.thresholds import ROTATION
 from carom.geometry.rotation import multiply
 from carom.kinematics.coordinate import push, rate, value
 from carom.model.arrays import PRISMATIC
@@ -146,9 +146,6 @@ def turns_round(system, start, end, h) -> bool:
     """Return whether an angle may turn so far in a step that its whole turns are not known."""
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
-        if (
-            c.kind != PRISMATIC
-            and not h * max(abs(rate(c, start)), abs(rate(c, end))) <= JOINT_ROTATION
-        ):
+        if c.kind != PRISMATIC and not h * max(abs(rate(c, start)), abs(rate(c, end))) <= ROTATION:
             return True
     return False

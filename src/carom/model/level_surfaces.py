@@ -2,8 +2,8 @@
 
 Two faces are level if each corner of one is within the tolerance RESOLUTION times the size of the larger solid
 from the plane of the other, and their normals agree. A surface is a set of level faces that are joined: each
-touches another one, with a crack of at most the same tolerance. So a step or a crack above 1e-9 of the size of a solid
-is an obstacle. Solids whose edges are rounded have none: there is a groove between them.
+touches another one, with a crack of at most the same tolerance. So a step or a crack above 1e-9 of the size
+of a solid is an obstacle. Solids whose edges are rounded have none: there is a groove between them.
 
 A body has one row for each surface, as for a half-space whose points count only above the faces
 (`carom.contact.level`). Where the laws of contact differ, each part of a surface with one law has its own row.
