@@ -7,7 +7,7 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom.collision.features import NOBODY, OF_A, OF_B, OF_SUPPORT, edge_part, of_edges
 from carom.collision.found import put, put_parts
-from carom.collision.thresholds import PARALLEL
+from carom.collision.thresholds import LEAST_SINE
 from carom.geometry.thresholds import ROUND_OFF
 
 
@@ -42,7 +42,7 @@ def best_axis(pair):
         for j in range(3):
             m1, m2 = -R[i2, j], R[i1, j]  # components of e_i x a_j along axes i1, i2
             sine = math.sqrt(m1 * m1 + m2 * m2)
-            if sine > PARALLEL:
+            if sine > LEAST_SINE:
                 j1, j2 = (j + 1) % 3, (j + 2) % 3
                 reach = g[i1] * abs(m1) + g[i2] * abs(m2)
                 reach += h[j1] * abs(R[i, j2]) + h[j2] * abs(R[i, j1])

@@ -50,9 +50,8 @@ def closest(pair):
     s, a, b = pair.state, pair.a, pair.b
     size = min(a.extent, b.extent)
     curved = a.kind >= CYLINDER or b.kind >= CYLINDER
-    best, (nx, ny, nz), (bx, by, bz), polished = _normal(
-        pair, size, limits.CURVED if curved else LAST_DIGIT
-    )
+    accuracy = limits.CURVED_ERROR if curved else LAST_DIGIT
+    best, (nx, ny, nz), (bx, by, bz), polished = _normal(pair, size, accuracy)
     # the normal of a face; of two faces, that of the one on which a vertex of the other solid lies
     owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, curved)
     over = curved and owner != NOBODY
@@ -248,16 +247,10 @@ def _climb(pair, accuracy, clear, nx, ny, nz):
     s.shift[0], s.shift[1], s.shift[2] = 0.0, 0.0, 0.0
     best = separation(pair, nx, ny, nz)
     for phase in range(3):
-        gap = clear
-        if phase == 1:
-            gap = -limits.DEPTH_CLEARANCE * best
-            if not limits.LEAST_CLEARANCE * clear < gap < clear:
-                continue
-        if (
-            phase == 2
-            and not limits.LEAST_CLEARANCE * clear < -limits.DEPTH_CLEARANCE * best < clear
-        ):
+        near = -limits.DEPTH_CLEARANCE * best
+        if phase > 0 and not limits.LEAST_CLEARANCE * clear < near < clear:
             continue
+        gap = near if phase == 1 else clear
         for _ in range(CLIMB_ROUNDS):
             move = gap - best
             s.shift[0], s.shift[1], s.shift[2] = move * nx, move * ny, move * nz

@@ -16,7 +16,7 @@ from carom.collision.faces import LOWEST, vertex
 from carom.collision.frame import from_a, to_a
 from carom.collision.layout import CYLINDER
 from carom.collision.support import change_of_support, propose, separation
-from carom.collision.thresholds import PARALLEL, SAME_DIRECTION
+from carom.collision.thresholds import LEAST_SINE, SAME_DIRECTION
 from carom.geometry.thresholds import LAST_DIGIT, RESOLUTION, ROUND_OFF
 from carom.geometry.vectors import cross, dot, minus, plus
 
@@ -57,7 +57,7 @@ def _parallel(s, count, side, e):
     found = 0
     for i in range(count):
         c = dot(s.edge[i], e)
-        if 1.0 - c * c < PARALLEL * PARALLEL:
+        if 1.0 - c * c < LEAST_SINE * LEAST_SINE:
             if s.owner[i] != side:
                 return -1
             found = 1

@@ -19,7 +19,7 @@ from carom.collision.features import (
 )
 from carom.collision.found import known, put, put_parts
 from carom.collision.layout import CYLINDER
-from carom.collision.thresholds import LINE_CONTACT, PARALLEL, SAME_DIRECTION
+from carom.collision.thresholds import LEAST_SINE, LINE_CONTACT, SAME_DIRECTION
 from carom.geometry.thresholds import RESOLUTION
 from carom.geometry.vectors import cross, dot, minus, plus
 
@@ -57,7 +57,7 @@ def nearest(d, u, g, w, h):
     """
     c, n = dot(u, w), cross(u, w)
     across, du, dw = dot(n, n), dot(d, u), dot(d, w)
-    if across > PARALLEL * PARALLEL:
+    if across > LEAST_SINE * LEAST_SINE:
         t = (c * dw - du) / across
     else:
         t = h - dw if c > 0.0 else dw  # here z = dw + c t is at an end

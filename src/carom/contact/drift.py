@@ -40,7 +40,7 @@ from carom.collision.faces import LOWEST, along_edge, normal_of_face
 from carom.collision.features import EDGE, FACE, FIXED, OF_A, OF_B, first_of, second_of
 from carom.collision.layout import CYLINDER, ELLIPSOID
 from carom.collision.support import change_of_support
-from carom.collision.thresholds import PARALLEL
+from carom.collision.thresholds import LEAST_SINE
 from carom.geometry.rotation import multiply, rotate, rotate_back
 from carom.geometry.thresholds import RESOLUTION
 from carom.geometry.vectors import cross, dot, plus
@@ -115,7 +115,7 @@ def _two_edges(a, b, hulls, n):
     e, f = _edge(a, hulls), _edge(b, hulls)
     s = cross(n, e)
     along, other, sine = -dot(n, cross(a.w, e)), -dot(n, cross(b.w, f)), dot(s, f)
-    if not abs(sine) > PARALLEL:
+    if not abs(sine) > LEAST_SINE:
         return n, False
     across = (other - along * dot(e, f)) / sine
     return plus((across * s[0], across * s[1], across * s[2]), along, e), True
@@ -195,7 +195,7 @@ def _follow(lead, other, hulls, n, d, rate, owner):
         e, s = _edge(lead, hulls), cross(n, _edge(other, hulls))
         miss = plus(plus(p, -1.0, step), -1.0, _along_support(other, n, rate))
         sine = dot(s, e)
-        if abs(sine) > PARALLEL:
+        if abs(sine) > LEAST_SINE:
             p = plus(p, -dot(s, miss) / sine, e)
     m = n
     if _kind(other) == FACE and owner != (OF_B if k > 0.0 else OF_A):  # a face, perhaps tilted

@@ -126,7 +126,7 @@ def allowed_step(left, work):
 @kernel
 def part_of(left, ahead):
     """Return the next step within the time `left`: `ahead`, or half or all of it if 2 `ahead` do not fit."""
-    return ahead if 2.0 * ahead <= left else 0.5 * left if ahead < limits.WHOLE * left else left
+    return ahead if 2.0 * ahead <= left else 0.5 * left if ahead < limits.FINISH * left else left
 
 
 @kernel

@@ -6,10 +6,10 @@ SHRINKAGE = 0.2  #: step before: least length of the next step
 GROWTH = 10.0  #: step before: greatest length of the next step
 LOCAL_SHARE = 0.1  #: tolerance of a run: error allowed in a step, because errors of steps add up
 FIRST_STEP = 1e-3  #: a step of the run: length of the first trial step
-WHOLE = 0.99  #: time left: a step longer than this takes all of it
+FINISH = 0.99  #: time left: a step longer than this takes all of it
 LEAST_STEP = 1e-14  #: duration: least length of a step
 #: time in which its load moves a body by its size: of a body in contact: it moves by the square of this
-LOADED = 0.2
+LOAD_STEP = 0.2
 STAGE_TURN = 0.075  #: rad: rotation of a body for each stage of a part of a step (0.3 for `rk4`)
 #: rad: rotation of a joint in a trial step, by the rates at its ends: safely below half a turn
 ROTATION = 1.5
@@ -20,5 +20,6 @@ SINGULAR_TURN = 1e-2  #: rad: bodies turn by this angle to leave a singular posi
 SINGULAR_GROWTH = 3.0  #: angle before: if rows still depend on each other
 LAST_PIVOT = 1e-29  #: diagonal: smaller pivots are round-off of 31 digits
 JUMP = 1e-6  #: 1: change of a normal at an edge: one that has turned with its face differs by round-off
-EDGE_JUMP = 1e-3  #: 1: the same for edges: those of level faces have normals that differ by `TILT`
+#: 1: normals of edges, or of two points of a pair, that differ by less are one (level faces: `TILT`)
+EDGE_JUMP = 1e-3
 DISPLACEMENT = 1e-5  #: size of a body: for differences of the user's functions

@@ -1,7 +1,7 @@
 """The residual of the contact problem for given impulses (mathematics page, §3.2).
 
 The residual of a contact, in units of velocity, is |p - P_K(p - rho (w + s e_n))| / rho, rho = 3 / trace W_ii,
-with s = mu |w_t| (the natural map of de Saxce's form). The tolerance is ``RESIDUAL_TOLERANCE`` times the
+with s = mu |w_t| (the natural map of de Saxce's form). The tolerance is ``RESIDUAL`` times the
 greatest velocity without impulses, plus ``SUM_ERROR`` times the greatest (|W| |p|)_i.
 """
 
@@ -12,7 +12,7 @@ import math
 from carom._compiled.decorators import entry, kernel
 from carom.friction.cone import nearest, shift
 from carom.friction.layout import CONE, SLIDING
-from carom.friction.thresholds import RESIDUAL_TOLERANCE
+from carom.friction.thresholds import RESIDUAL
 from carom.geometry.thresholds import SUM_ERROR
 
 #: greatest values at the start: residual, |c_i|, (|W| |p|)_i, penetration, violation, complementarity
@@ -81,10 +81,4 @@ def with_contact(greatest, cone, scale, p, w):
 def summary(greatest):
     """Return the result of `measure` for the greatest values of all contacts."""
     worst, velocity, size, penetration, violation, complementarity = greatest
-    return (
-        worst,
-        RESIDUAL_TOLERANCE * velocity + SUM_ERROR * size,
-        penetration,
-        violation,
-        complementarity,
-    )
+    return worst, RESIDUAL * velocity + SUM_ERROR * size, penetration, violation, complementarity

@@ -203,4 +203,4 @@ def residual(work, k):
         largest = max(largest, max(abs(c[n]), abs(c[n + 1]), abs(c[n + 2])) / t.scale)
     size = magnitude(work, k)
     goal = max(1e-14 * largest + 0.08 * SUM_ERROR * size, work.mismatch[o.ENOUGH] * largest)
-    return worst, goal, limits.RESIDUAL_TOLERANCE * largest + SUM_ERROR * size
+    return worst, goal, limits.RESIDUAL * largest + SUM_ERROR * size

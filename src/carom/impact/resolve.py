@@ -18,7 +18,7 @@ from carom.impact import laws
 from carom.impact import layout as o
 from carom.impact.slip_step import expand, land, moved, normal_rate
 from carom.impact.taylor import reach
-from carom.impact.thresholds import IMPACT_ROUND_OFF, LONGEST_IMPULSE, REMAINDER, SERIES_ACCURACY
+from carom.impact.thresholds import IMPACT_ERROR, LONGEST_IMPULSE, REMAINDER, SERIES_ACCURACY
 from carom.impact.wedge import drowned, moves_nothing, power_of_two, pushed
 
 _SLIP_STEPS = 2000
@@ -191,7 +191,7 @@ def _straightened(contact, s):
     r = math.sqrt(x * x + y * y)
     c, n = x / r, y / r
     f, g = _turning(m, mu, c, n)
-    if abs(f) <= IMPACT_ROUND_OFF * (abs(m[1]) + abs(m[2]) + mu * (m[3] + m[5])):
+    if abs(f) <= IMPACT_ERROR * (abs(m[1]) + abs(m[2]) + mu * (m[3] + m[5])):
         return Line(_STRAIGHT, -mu * c, -mu * n, g)
     slope = mu * ((m[3] - m[5]) * (c * c - n * n) + 4.0 * m[4] * c * n) - (m[1] * c + m[2] * n)
     near = abs(f) * r <= -1e-14 * slope * contact.size and abs(f) <= -1e-3 * slope

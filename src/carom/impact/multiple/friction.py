@@ -127,7 +127,7 @@ def _factor(z, work, L):
         for a in range(n):
             if left[a] > left[top]:
                 top = a
-        if not left[top] > limits.GROUP_ROUND_OFF * largest:
+        if not left[top] > limits.GROUP_ERROR * largest:
             break
         pivot = math.sqrt(left[top])
         row, d = W[3 * slot[top // 2] + 1 + top % 2], weight[top // 2]

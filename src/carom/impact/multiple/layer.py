@@ -9,9 +9,9 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom.geometry.thresholds import ROUND_OFF
-from carom.impact import thresholds as limits
 from carom.impact.multiple import layout as o
 from carom.impact.multiple import normal_law as law
+from carom.impact.thresholds import GROUP_ERROR, IMPACT_ERROR, INSTANT, LASTING_STEP, LAYER_STEP
 
 
 @kernel
@@ -37,7 +37,7 @@ def set_velocity(k, work):
 def start(k, work):
     """Set the clock and the state at the entry of the layer; velocities before are in U0."""
     clock = work.clock[0]
-    clock.step = limits.FIRST_LAYER_STEP
+    clock.step = LAYER_STEP
     clock.steps, clock.events, clock.idle, clock.branched, clock.stiff = 0, 0, 0, 0, 0
     clock.rest, clock.cut, clock.stretched = 0, 0, 0
     for i in range(3 * k):
@@ -51,9 +51,7 @@ def start(k, work):
         work.vector[o.D, i] = 0.0
     set_velocity(k, work)
     for i in range(k):
-        if (
-            work.vector[o.NOW_U, 3 * i] <= ROUND_OFF
-        ):  # contacts at rest too, as forces may press them
+        if work.vector[o.NOW_U, 3 * i] <= ROUND_OFF:  # at rest too, as forces may press them
             law.close(work.contact[i])
 
 
@@ -96,7 +94,7 @@ def drift(k, work, apart, p):
     u, d = work.vector[o.NOW_U], work.vector[o.D]
     for i in range(k):
         c = work.contact[i]
-        forced = law.force(c, d[i], p) > limits.IMPACT_ROUND_OFF
+        forced = law.force(c, d[i], p) > IMPACT_ERROR
         if c.mode != law.OPEN and (forced or u[3 * i] < -apart):
             return 0
     time = math.inf
@@ -110,7 +108,7 @@ def drift(k, work, apart, p):
         return 1
     for i in range(k):
         c = work.contact[i]
-        near = u[3 * i] < -apart and max(0.0, c.d0 - d[i]) / -u[3 * i] <= time + limits.INSTANT
+        near = u[3 * i] < -apart and max(0.0, c.d0 - d[i]) / -u[3 * i] <= time + INSTANT
         d[i] -= u[3 * i] * time
         if near:
             d[i] = c.d0
@@ -132,13 +130,10 @@ def wedged(k, work, h, p):
     for i in range(k):
         n, active = 3 * i, work.contact[i].mode != law.OPEN
         slip = abs(u[n + 1]) + abs(u[n + 2]) if active and work.contact[i].mu > 0.0 else 0.0
-        if not (
-            slip <= limits.GROUP_ROUND_OFF
-            and (abs(u[n]) if active else -u[n]) <= limits.GROUP_ROUND_OFF
-        ):
+        if not (slip <= GROUP_ERROR and (abs(u[n]) if active else -u[n]) <= GROUP_ERROR):
             clock.rest = 0
             return False
-    clock.rest += 1 if h >= limits.LASTING_STEP and clock.stretched == 0 else 0
+    clock.rest += 1 if h >= LASTING_STEP and clock.stretched == 0 else 0
     if clock.rest < 2:
         return False
     for i in range(k):  # stored energy is lost

@@ -43,7 +43,7 @@ def resolve_contacts(contacts, settings, workspace, out):
     together = settings.multiple == o.BY_NEWTON or strikes_at_once(contacts)
     while True:
         ends = together or count >= settings.max_events * contacts.k
-        m = choose(contacts, ends, limits.IMPACT_ROUND_OFF * scale, blow, out)
+        m = choose(contacts, ends, limits.IMPACT_ERROR * scale, blow, out)
         if m == 0:
             break
         if ends and not together:  # the sequence does not end: the rest is plastic
@@ -71,7 +71,7 @@ def resolve_contacts(contacts, settings, workspace, out):
 @kernel
 def _together(contacts, scale, settings, workspace, out):
     """Resolve an impact of contacts that strike together; `scale` is the greatest velocity of all contacts."""
-    k, still, result = contacts.k, limits.IMPACT_ROUND_OFF * scale, out.summary[0]
+    k, still, result = contacts.k, limits.IMPACT_ERROR * scale, out.summary[0]
     _clear(contacts, out)
     work = workspace.work
     index, clean = work.index, work.matrix[o.CLEAN]
@@ -92,7 +92,7 @@ def _together(contacts, scale, settings, workspace, out):
                 return  # it was stopped: there is no result
         _finish(contacts, out)
         exact = (result.marks & o.EXACT) != 0  # a single contact may gain energy with Newton's law
-        bounds = (3 * k, limits.PASSAGE_APPROACH, limits.ENERGY_BALANCE)
+        bounds = (3 * k, limits.VISIBLE_ERROR, limits.ENERGY_BALANCE)
         if (
             by_newton
             or exact
@@ -159,7 +159,7 @@ def choose(contacts, every, least, blow, out):
         fastest = max(fastest, -u[3 * i])
     if not fastest > least:
         return 0
-    m, equal = 0, (1.0 - limits.GROUP_ROUND_OFF) * fastest
+    m, equal = 0, (1.0 - limits.GROUP_ERROR) * fastest
     for i in range(k):
         strikes = every
         for j in range(0 if every else k):

@@ -51,9 +51,8 @@ def traverse(k, work, rtol, later, p, max_events, max_steps):
         if p == 1.0 and clock.stiff == 0:
             h, changes = series_step(k, work, rtol)
         if h < 0.0:
-            fine = (
-                max(0.1 * rtol, min(rtol, limits.STAGE_ACCURACY)) if p == 1.0 else rtol
-            )  # as accurate as series
+            # as accurate as series
+            fine = max(0.1 * rtol, min(rtol, limits.STAGE_ACCURACY)) if p == 1.0 else rtol
             by_stages(k, work, fine, p)
             h, changes = clock.length, clock.changes == 1
             clock.stiff = clock.stiff - 1 if clock.stiff > 0 else _STIFF_STEPS - 1
@@ -106,9 +105,8 @@ def series_step(k, work, rtol):
         if known == 0 and stretched and _stiff(k, work):
             return -1.0, False
         known = degree
-        h = reach(
-            k, work, degree, stretched, limits.SERIES_SHARE * rtol if degree < most else 0.1 * rtol
-        )
+        share = limits.SERIES_SHARE if degree < most else 0.1
+        h = reach(k, work, degree, stretched, share * rtol)
         if degree == most or law.any_change(k, work, degree, h):
             break
         degree = most
@@ -154,7 +152,7 @@ def _stiff(k, work):
 def reach(k, work, degree, stretched, tolerance):
     """Return the longest step for which the last two terms are within `tolerance`."""
     last, other = _greatest(k, work.series, degree), _greatest(k, work.series, degree - 1)
-    h = math.log(limits.LONGEST_STRETCHED if stretched else limits.LONGEST_STEP)
+    h = math.log(limits.STRETCHED_STEP if stretched else limits.LONGEST_STEP)
     small = math.log(tolerance)
     if last > 0.0:
         h = min(h, (small - math.log(last)) / degree)

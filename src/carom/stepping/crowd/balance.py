@@ -10,7 +10,7 @@ from carom.dynamics.rotors import energy_of_change
 from carom.geometry.rotation import norm
 from carom.kinematics.contact_point import contact_velocity
 from carom.persistent.step_control import lost_by, weigh
-from carom.stepping.thresholds import GROUP_ERROR, GROUP_GAIN
+from carom.stepping.thresholds import CROWD_ERROR, CROWD_GAIN
 
 
 @kernel
@@ -46,7 +46,7 @@ def off(model, data, k, gained):
         w = contact_velocity(crowd.points[0][i], end)
         for j in range(3):
             work += 0.5 * p[j] * (u[j] + w[j])
-    return not (gained <= GROUP_GAIN * size and abs(gained - work) <= GROUP_ERROR * size)
+    return not (gained <= CROWD_GAIN * size and abs(gained - work) <= CROWD_ERROR * size)
 
 
 @kernel

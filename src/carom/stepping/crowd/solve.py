@@ -14,7 +14,7 @@ from carom.friction.layout import ContactWork
 from carom.friction.newton import step
 from carom.friction.solve import scale_vectors
 from carom.friction.strategy import copy, residual
-from carom.friction.thresholds import PROXIMAL, RESIDUAL_TOLERANCE
+from carom.friction.thresholds import CHORD_GAIN, PROXIMAL, RESIDUAL
 from carom.stepping import thresholds as limits
 from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.splitting import split_until
@@ -44,14 +44,10 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
     if patient:
         most = max(most, min(left, PATIENT * most))
     speed = greatest_speed(crowd, k) / gamma
-    r, goal, done = sweep_until(
-        system, crowd, k, max(tolerance / gamma, RESIDUAL_TOLERANCE * speed), FIRST
-    )
-    enough, good = (
-        max(tolerance / gamma, goal, RESIDUAL_TOLERANCE * speed),
-        max(goal, limits.SLOW_RESIDUAL * speed),
-    )
-    good = max(good, limits.REST_RESIDUAL * tolerance / gamma)
+    r, goal, done = sweep_until(system, crowd, k, max(tolerance / gamma, RESIDUAL * speed), FIRST)
+    enough = max(tolerance / gamma, goal, RESIDUAL * speed)
+    rest = limits.REST_RESIDUAL * tolerance / gamma
+    good = max(goal, limits.SLOW_RESIDUAL * speed, rest)
     spent, least, turn, idle = done * each, r, 0, 0
     p, kept = work.vector[o.ITERATE], work.vector[o.START_BEST]
     copy(k, p, kept)
@@ -66,14 +62,12 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
         if r < least:
             least = r
             copy(k, p, kept)
-        if least <= good and not least < limits.SLOW_TURN * before:
+        if least <= good and not least < CHORD_GAIN * before:
             break
         idle = 0 if least < 0.5 * before else idle + 1
     copy(k, kept, p)
     if not least <= good and not has_discs(work, k) and find_order(n, k, crowd):
-        wrong = not least <= max(
-            limits.WRONG_RESIDUAL * speed, limits.REST_RESIDUAL * tolerance / gamma
-        )
+        wrong = not least <= max(limits.WRONG_RESIDUAL * speed, rest)
         at_least = LONG_SPLIT if wrong else SPLIT
         allowed = LONG_SPLIT if wrong or (patient and spent < left) else SPLIT
         ordered = by_reference(at_hand(crowd, n))

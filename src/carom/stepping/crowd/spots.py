@@ -18,10 +18,10 @@ from carom.contact.pair_point import (
 from carom.contact.place_of_other import on_half_space
 from carom.contact.stop import place_stop
 from carom.contact.thresholds import ACTIVE_REACH, REACH
+from carom.dynamics.thresholds import EDGE_JUMP
 from carom.geometry.rotation import norm
 from carom.kinematics.contact_point import contact_velocity, place
 from carom.model.arrays import STOP
-from carom.stepping.thresholds import SAME_NORMAL
 
 
 @kernel
@@ -249,7 +249,7 @@ def share_plane(points, first, last, state):
         for j in range(3):
             turned += abs(point.axes[0, j] - n[j])
             away += n[j] * (point.arm_a[j] - plane.arm_a[j])
-        if turned > SAME_NORMAL or i == nearest:
+        if turned > EDGE_JUMP or i == nearest:
             continue
         for j in range(3):
             point.arm_a[j], point.arm_b[j] = (

@@ -195,11 +195,8 @@ def collide(model, data, h, fall, patient, careful):
         if max(clock.event, clock.struck) + rows > data.records.event.shape[0]:
             return grow(clock, r.FULL_EVENTS), k, 0.0, 0.0
         residual = find_impulses(model, data, k, h, fall, patient)
-        if (
-            careful
-            and residual
-            > limits.RESIDUAL_LIMIT * greatest_speed(crowd, k) + limits.RESIDUAL_LIMIT * fall * h
-        ):
+        poor = limits.RESIDUAL_LIMIT * greatest_speed(crowd, k) + limits.RESIDUAL_LIMIT * fall * h
+        if careful and residual > poor:
             return TOO_LONG, k, residual, 0.0  # a shorter piece is a different problem
         if careful and misses_bounce(system, k, h, fall, crowd):
             return TOO_LONG, k, residual, 0.0
