@@ -200,7 +200,8 @@ def test_a_code_is_declared_once():
 
 #: folders whose thresholds are in their files `thresholds.py` (`tests/test_thresholds.py`)
 NUMERIC = {
-    "geometry", "collision", "model", "kinematics", "contact", "friction", "dynamics", "impact", "stepping",
+    "geometry", "collision", "model", "kinematics", "contact", "friction", "dynamics", "impact",
+    "persistent", "stepping",
 }  # fmt: skip
 #: floats beside them that are no thresholds: of mathematics, of a method, costs of work. It only gets shorter
 OTHER_FLOATS = {
@@ -216,6 +217,7 @@ OTHER_FLOATS = {
         "EACH", "SAVED", "STEPS", "TRIALS", "PARTS", "SAVED_PARTS", "SMOOTH", "WORK"
     },
     "model.records": {"LONG"},
+    "persistent.step_control": {"LOOPS_STEP", "OTHER_STEP"},
     "stepping.crowd.solve": {"SWEEP", "TIE", "UPDATE", "CONTACT", "DEARER"},
     "stepping.crowd.step": {"DEAR"},
     "stepping.trial_step": {"SEARCH"},

@@ -15,7 +15,17 @@ ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "carom"
 PAGE = ROOT / "docs" / "development" / "thresholds.md"
 #: folders in the order of imports
-ROOMS = "geometry", "collision", "model", "contact", "friction", "dynamics", "impact", "stepping"
+ROOMS = (
+    "geometry",
+    "collision",
+    "model",
+    "contact",
+    "friction",
+    "dynamics",
+    "impact",
+    "persistent",
+    "stepping",
+)
 HEAD = """\
 # Thresholds
 

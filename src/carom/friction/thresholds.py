@@ -1,6 +1,5 @@
 """Thresholds of the contact problem: accuracy, proximal terms, effort."""
 
-# fmt: off
 RESIDUAL = 1e-10  #: greatest velocity: residual of a solved contact problem
 ENOUGH_RESIDUAL = 100.0  #: tolerance: from which on few more starting points are tried
 PROXIMAL = 1e-8  #: diagonal of W: weight of the proximal term, which makes redundant impulses unique

@@ -1,6 +1,5 @@
 """Thresholds of geometry, and those of round-off that all rooms share."""
 
-# fmt: off
 EPSILON = 2.220446049250313e-16  #: number: the distance of a double from the next one
 LAST_DIGIT = 1e-15  #: greater term: error of a few operations
 SUM_ERROR = 50.0 * EPSILON  #: sum of the sizes of the terms: error of a sum of some tens of products

@@ -1,10 +1,9 @@
 """Thresholds of impacts: of one contact, of several, and of the layer in which several are integrated."""
 
-# fmt: off
 NO_RESTITUTION = 1e-6  #: 1: below this restitution an impact ends with compression; e^n below is none
 SEED = 1e-10  #: slip: approach given to a point that jams, below `REMAINDER`: it changes no result
 GROUP_SEED = 1e-7  #: slip: the same among several points, above `SLIP_END`
-#: speed or impulse of the impact: less approach counts as zero (round-off, or `SEED`), as does less slip
+#: speed or impulse of the impact: less approach is zero (round-off, or `SEED`), as is less slip
 REMAINDER = 1e-9
 SHORTEST_PART = 1e-9  #: length of a phase or of the layer: shortest step: if it fails, u_t reaches 0 in it
 SERIES_ACCURACY = 1e-14  #: root of |u_t| |u|: last term of the series of slip
@@ -13,11 +12,9 @@ ENERGY_BALANCE = 1e-6  #: energy lost in compression, or sum of |p u|: accuracy 
 GAIN = 1e-9  #: sum of |p u|: the same for Moreau's problem, which is solved without a passage
 APPROACH = 1e-6  #: speed of approach before: greatest that Newton's law may leave in Moreau's problem
 VISIBLE_ERROR = 1e-3  #: greatest velocity: a result with more approach or round-off is wrong
-#: greatest velocity, inverse mass or pivot: smaller ones of several contacts are round-off
-GROUP_ERROR = 1e-11
+GROUP_ERROR = 1e-11  #: greatest velocity, inverse mass, pivot: smaller ones of several contacts are round-off
 IMPACT_ERROR = 1e-13  #: size of the terms: smaller rates, couplings, depths and speeds count as zero
-#: 1: replaces smaller e in the layer, because unloading is 1/e^2 stiffer than loading
-LEAST_RESTITUTION = 0.01
+LEAST_RESTITUTION = 0.01  #: 1: replaces smaller e in the layer: unloading is 1/e^2 stiffer than loading
 INSTANT = 1e-10  #: time of the fastest contact: changes closer in time are simultaneous
 SLIP_END = 1e-10  #: greatest velocity: slower slip, or slip below 0.1 rtol, has ended
 LOADED_PART = 1e-3  #: greatest mu N: from which on a contact takes part in any motion that it can stop

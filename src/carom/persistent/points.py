@@ -34,14 +34,7 @@ from carom.contact.thresholds import ACTIVE_REACH
 from carom.geometry.rotation import cross, rotate_back
 from carom.kinematics.contact_point import copy_point
 from carom.persistent.joint_rows import add_frictions
-
-FACE = (
-    1e-3  # of the smaller body: points of a face that are no higher than that belong to its patch
-)
-#: normals (a sine) and heights (of the size of the body) that differ by less are those of one plane
-LEVEL = 1e-6
-#: distance, of the size of the body, below which two corners are one, and one on a line between others is none
-CORNER = 1e-11
+from carom.persistent.thresholds import CORNER, PATCH_HEIGHT, PLANE_ERROR
 
 
 @kernel
@@ -115,7 +108,7 @@ def on_face(contact, active, i, n, state):
 
     Points on a line, or in other planes, do not tell whether a corner at some distance is closed.
     """
-    q, p, level = state[contact.body].Q, active.points[i].point, LEVEL * smaller(contact)
+    q, p, level = state[contact.body].Q, active.points[i].point, PLANE_ERROR * smaller(contact)
     m, x, y, z, far = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2]), 0.0, 0.0, 0.0, level
     for find_end in (True, False):
         for j in range(active.count[0]):
@@ -141,8 +134,8 @@ def add_face(system, active, c, i, state, k, group, work):
     contact, near = system.contacts[c], math.inf
     count = find_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
     for t in range(count):
-        near = min(near, work.touches[t].gap + FACE * smaller(contact))
-    for t in range(count if near < 2.0 * FACE * smaller(contact) else 0):
+        near = min(near, work.touches[t].gap + PATCH_HEIGHT * smaller(contact))
+    for t in range(count if near < 2.0 * PATCH_HEIGHT * smaller(contact) else 0):
         if work.touches[t].gap <= near:
             k = add_touch(contact, c, work.touches[t], i, state, k, group)
             note_own(system, active, 0, work.touches[t], state, group.closed[k - 1])
@@ -246,7 +239,7 @@ def in_patch(system, p, q):
     for r in range(3):
         across = max(across, abs(n[r] - m[r]))
         height += n[r] * (q.arm_a[r] - p.arm_a[r])
-    return across <= LEVEL and abs(height) <= LEVEL * size
+    return across <= PLANE_ERROR and abs(height) <= PLANE_ERROR * size
 
 
 @kernel

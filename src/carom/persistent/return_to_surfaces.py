@@ -20,8 +20,7 @@ from carom.dynamics.several_points import spread_all, substitute, velocities, yi
 from carom.impact.workspace import OLD, P, U
 from carom.kinematics.contact_point import in_axes
 from carom.model.actions import MODE_STICK
-
-DROP = 1e-10  # relative to its row: a smaller pivot is round-off of a row that depends on those before it
+from carom.persistent.thresholds import DEPENDENCE
 
 
 @kernel
@@ -80,7 +79,7 @@ def factor_given(k, group):
         for i in range(j + 1, n):
             if L[i, i] * own[best] > L[best, best] * own[i]:
                 best = i
-        if not L[best, best] > DROP * own[best]:
+        if not L[best, best] > DEPENDENCE * own[best]:
             return j
         exchange_rows(n, j, best, rows, own, L)
         for i in range(j + 1, n):

@@ -24,7 +24,7 @@ from carom.dynamics.energy import energies
 from carom.geometry.rotation import norm
 from carom.impact import laws
 from carom.model.actions import EVENT_JAM
-from carom.persistent.step_control import CAREFUL
+from carom.persistent.thresholds import CUT_SHARE
 from carom.stepping import thresholds as limits
 
 #: kinds of energy errors: indices in the columns of `WATCH`
@@ -264,7 +264,7 @@ def off_balance(model, data):
     watch.able = max(watch.able, clock.able)
     off, grows = imbalance(system, active, data.state, work.trial, named, clock.now, dt, watch)
     result.unnamed = max(result.unnamed, off)
-    cut = grows or off > (CAREFUL if careful else 1.0)
+    cut = grows or off > (CUT_SHARE if careful else 1.0)
     if (cut and not shortest) or (grows and (jams or search.active == 1)):
         return True, 0
     if search.active == 1 and shortest and not jams:

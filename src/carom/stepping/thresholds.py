@@ -1,6 +1,5 @@
 """Thresholds of stepping: the grid, the balance of energy, islands, and the step of a crowd."""
 
-# fmt: off
 RTOL = 1e-8  #: size and displacement of a body: default tolerance of a run
 TIGHT_RTOL = 1e-9  #: 1: at this tolerance or below, the default is the method of order 8
 SMOOTH_RTOL = 1e-6  #: 1: the same where nothing strikes or sticks
@@ -18,8 +17,7 @@ LIMIT_GROWTH = 4.0  #: limit: by which it grows if the shortest step exceeds it
 START_ROOM = 1e-3  #: size of the body: room of a body that starts from rest: doubled with each repetition
 BALL_SLACK = 1e-6  #: radius: growth of balls, so that balls in contact overlap
 MEETING_STEPS = 8.0  #: steps: contacts are made for bodies that may meet so soon, near their balls
-#: ball of the body: displacement in a piece that is always allowed, however thin the body
-THIN_PART = 1.0 / 32.0
+THIN_PART = 1.0 / 32.0  #: ball of the body: displacement in a piece that is allowed, however thin the body
 SHORTEST_PIECE = 1e-4  #: step: shortest piece
 SEARCH_GROWTH = 4.0  #: search distance: after points were missed
 SEARCH_LIMIT = 16.0  #: first search distance: greatest one

@@ -16,7 +16,8 @@ from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.model.event_rows import note_event
 from carom.model.records import IMPACT, OPENS, PERSISTS, SLIPS, STICKS
 from carom.persistent.active_set import begin_point
-from carom.persistent.step_control import MANY, POORLY, rest_speed
+from carom.persistent.step_control import rest_speed
+from carom.persistent.thresholds import CROWD_REST, FEW_REST
 from carom.stepping.crowd.response import block_of_point
 
 
@@ -26,7 +27,7 @@ def finish(model, data, k, h, fall, residual):
     system, controls = model.system, model.controls
     active, start, end, crowd = data.active, data.state, data.work.trial, data.crowd
     clock, records = data.clocks[0], data.records
-    tolerance = rest_speed(controls, fall * h, residual, k, POORLY)
+    tolerance = rest_speed(controls, fall * h, residual, k, FEW_REST)
     impacts, pressing, rubbing = 0.0, 0.0, 0.0
     for i in range(k):
         spot, point = crowd.spots[i], crowd.points[0][i]
@@ -52,7 +53,7 @@ def finish(model, data, k, h, fall, residual):
     clock.friction += rubbing
     clock.bounces += pressing
     count = list_active(model, data, k, h, tolerance)
-    still = rest_speed(controls, fall * h, residual, k, MANY)
+    still = rest_speed(controls, fall * h, residual, k, CROWD_REST)
     come_to_rest(system, still, count, start, end, crowd)
     for i in range(active.count[0]):
         if active.points[i].touches == 0:
