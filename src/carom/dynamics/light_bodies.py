@@ -1,4 +1,4 @@
-"""Closed loops of bodies whose masses and moments differ by more than `SPREAD`.
+"""Closed loops of bodies whose masses and moments differ by more than `MASS_RATIO`.
 
 A M^-1 A^T is the sum of the compliances of all bodies. Light bodies have large compliances. If a light body is
 between two heavy ones, the compliance of the heavy ones is a small difference of large numbers, a fraction
