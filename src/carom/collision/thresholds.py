@@ -10,7 +10,7 @@ SAME_CLIMB = 0.95  #: cosine of the angle: starts nearer to an earlier climb are
 CURVED_ERROR = 1e-6  #: distance: accuracy of the search for curved cores, which Newton's method then refines
 FACE_NORMAL = 1e-5  #: 1 - cosine of the angle: up to which a normal may be that of a face
 MARGIN = 4.0  #: tolerance of a surface: within which a point counts as on a face or on a rim
-#: cosine of the angle: 8 degrees: of normals of one feature, and of a turn by Newton's method
+#: cosine of the angle: 8 degrees: of normals of one feature; greatest turn by Newton's method
 SAME_DIRECTION = 0.99
 LINE_CONTACT = 1e-5  #: rad: of a normal to the cross-section of a cylinder that touches along a line
 #: cosine of the angle: least between the contact normal and that of a reference face; the separation along

@@ -90,7 +90,7 @@ def greatest_error(weight, h, L, T, b, work):
 @kernel
 def allowed_error(rtol, atol, extent, scale):
     """Return the tolerance for the error of a body in a step [m]."""
-    return limits.LOCAL_SHARE * (atol + rtol * max(extent, scale))
+    return limits.ERROR_SHARE * (atol + rtol * max(extent, scale))
 
 
 @kernel

@@ -3,9 +3,11 @@
 SAFETY = 0.9  #: length whose error would equal the tolerance: length of the next step
 SHRINKAGE = 0.2  #: step before: least length of the next step
 GROWTH = 10.0  #: step before: greatest length of the next step
-LOCAL_SHARE = 0.1  #: tolerance of a run: error allowed in a step, because errors of steps add up
 FIRST_STEP = 1e-3  #: a step of the run: length of the first trial step
 FINISH = 0.99  #: time left: a step longer than this takes all of it
+RTOL = 1e-8  #: size and displacement of a body: default of a run; above it more energy may be lost
+#: error that is allowed: share of it for a step, for friction in a step, for a solver: others are added
+ERROR_SHARE = 0.1
 LEAST_STEP = 1e-14  #: duration: least length of a step
 #: time in which its load moves a body by its size: of a body in contact: it moves by the square
 LOAD_STEP = 0.2
@@ -17,6 +19,6 @@ SINGULARITY = 1e-5  #: diagonal of a row: square of its angle to the rows before
 SINGULAR_TURN = 1e-2  #: rad: bodies turn by this angle to leave a singular position
 SINGULAR_GROWTH = 3.0  #: angle before: if rows still depend on each other
 LAST_PIVOT = 1e-29  #: diagonal: smaller pivots are round-off of 31 digits
-JUMP = 1e-6  #: 1: change of a normal at an edge: one that has turned with its face differs by round-off
+NORMAL_ERROR = 1e-6  #: 1, or size of the body: normals and heights of one plane differ by less, after turns
 EDGE_JUMP = 1e-3  #: 1: normals of edges, or of two points of a pair, that differ by less are one (`TILT`)
 DISPLACEMENT = 1e-5  #: size of a body: for differences of the user's functions

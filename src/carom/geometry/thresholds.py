@@ -9,6 +9,7 @@ ROUND_OFF = 1e-12
 #: size of the body, of a pair the smaller: shorter distances have no reliable direction, smaller radii of
 #: curvature are corners, and smaller errors of position do not matter
 RESOLUTION = 1e-9
+REMAINDER = 1e-9  #: whole: a smaller part is none: of a speed of approach (`SEED`), of slip, of a change
 SMALLEST = 1e-300  #: number: a divisor that may be zero
 UNIT_ERROR = 1e-3  #: 1: error of the length of a given quaternion, or of a unit vector times a matrix
 #: rad: rotation h |Wbar| above which the chart moves along: log is one-to-one below pi, and the true

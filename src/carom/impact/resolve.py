@@ -13,12 +13,12 @@ from typing import NamedTuple
 
 from carom._compiled.decorators import entry, inlined, kernel
 from carom.friction.rays import outgoing, solve_tangential, stick_ratio
-from carom.geometry.thresholds import ROUND_OFF, SUM_ERROR
+from carom.geometry.thresholds import REMAINDER, ROUND_OFF, SUM_ERROR
 from carom.impact import laws
 from carom.impact import layout as o
 from carom.impact.slip_step import expand, land, moved, normal_rate
 from carom.impact.taylor import reach
-from carom.impact.thresholds import IMPACT_ERROR, LONGEST_IMPULSE, REMAINDER, SERIES_ACCURACY
+from carom.impact.thresholds import IMPACT_ERROR, LONGEST_IMPULSE, SERIES_ACCURACY
 from carom.impact.wedge import drowned, moves_nothing, power_of_two, pushed
 
 _SLIP_STEPS = 2000

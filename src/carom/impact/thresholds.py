@@ -3,21 +3,21 @@
 NO_RESTITUTION = 1e-6  #: 1: below this restitution an impact ends with compression; e^n below is none
 SEED = 1e-10  #: slip: approach given to a point that jams, below `REMAINDER`: it changes no result
 GROUP_SEED = 1e-7  #: slip: the same among several points, above `SLIP_END`
-#: speed or impulse of the impact: less approach is zero (round-off, or `SEED`), as is less slip
-REMAINDER = 1e-9
 SHORTEST_PART = 1e-9  #: length of a phase or of the layer: shortest step: if it fails, u_t reaches 0 in it
+VELOCITY_LEFT = 1e-6  #: velocity to be removed: what may be left: of approach by Newton's law, and of others
+#: greatest velocity, mass, pivot or force: smaller ones of several contacts are round-off
+GROUP_ERROR = 1e-11
 SERIES_ACCURACY = 1e-14  #: root of |u_t| |u|: last term of the series of slip
 LONGEST_IMPULSE = 1e6  #: speed of the impact by W_nn: longest step in p: round-off of u grows with p
 ENERGY_BALANCE = 1e-6  #: energy lost in compression, or sum of |p u|: accuracy of the balance of an impact
 GAIN = 1e-9  #: sum of |p u|: the same for Moreau's problem, which is solved without a passage
-APPROACH = 1e-6  #: speed of approach before: greatest that Newton's law may leave in Moreau's problem
 VISIBLE_ERROR = 1e-3  #: greatest velocity: a result with more approach or round-off is wrong
-GROUP_ERROR = 1e-11  #: greatest velocity, inverse mass, pivot: smaller ones of several contacts are round-off
 IMPACT_ERROR = 1e-13  #: size of the terms: smaller rates, couplings, depths and speeds count as zero
 LEAST_RESTITUTION = 0.01  #: 1: replaces smaller e in the layer: unloading is 1/e^2 stiffer than loading
 INSTANT = 1e-10  #: time of the fastest contact: changes closer in time are simultaneous
 SLIP_END = 1e-10  #: greatest velocity: slower slip, or slip below 0.1 rtol, has ended
-LOADED_PART = 1e-3  #: greatest mu N: from which on a contact takes part in any motion that it can stop
+#: greatest mu N: from which on a contact stops a motion; weaker ones hold as if they had it
+LOADED_PART = 1e-3
 UNLOADED_WEIGHT = 0.1  #: greatest mu N: added to all where the loaded contacts alone cannot stop all motion
 LAYER_PROXIMAL = 1e-10  #: diagonal of A: weight of the proximal term where A is singular: w is wrong by less
 MOMENT_AHEAD = 0.3  #: time of the fastest contact: for the force of a contact that is closing

@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.geometry.thresholds import EPSILON, ROUND_OFF, SUM_ERROR
-from carom.impact.thresholds import ENERGY_BALANCE, REMAINDER
+from carom.geometry.thresholds import EPSILON, REMAINDER, ROUND_OFF, SUM_ERROR
+from carom.impact.thresholds import ENERGY_BALANCE
 
 
 @kernel

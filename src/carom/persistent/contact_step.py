@@ -16,13 +16,14 @@ from carom._compiled.units import unit
 from carom.contact.groups import members
 from carom.dynamics.adapt import allowed_error, note_miss
 from carom.dynamics.explicit import CONSTRAINTS_LOST, bound_accelerations_of, rubs, stages_within
+from carom.dynamics.thresholds import ERROR_SHARE
 from carom.model.actions import MODE_OPEN
 from carom.persistent.finish import land, note_modes, review
 from carom.persistent.members import closing_member, explicit_member, implicit_member
 from carom.persistent.rows import beyond_stop
 from carom.persistent.start import first_modes, first_stage
 from carom.persistent.step_control import unnamed
-from carom.persistent.thresholds import ERROR_SHARE, FALLS, STIFF_SLIP
+from carom.persistent.thresholds import FALLS, STIFF_SLIP
 
 STIFF_ORDER, CLOSING_ORDER = 4, 2
 

@@ -17,6 +17,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.friction import lu
 from carom.friction.layout import SLIDING
+from carom.impact.thresholds import GROUP_ERROR
 from carom.impact.workspace import KEPT, OLD, C, P, U
 from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import JOINT, is_driven, radius_of
@@ -60,7 +61,7 @@ def change_loads(k, turn, group):
     for i in range(k):
         if closed[i].turns == 0:
             most, worst = max(most, p[3 * i]), min(worst, p[3 * i])
-    limit = -limits.PULL * most if turn < TOGETHER else min(worst, -limits.PULL * most)
+    limit = -GROUP_ERROR * most if turn < TOGETHER else min(worst, -GROUP_ERROR * most)
     for i in range(k):
         if closed[i].turns == 0 and closed[i].loaded == 1 and p[3 * i] < 0.0 and p[3 * i] <= limit:
             closed[i].loaded, found = 0, True

@@ -13,8 +13,9 @@ from carom.dynamics.explicit import copy_state, note_velocity
 from carom.dynamics.passed_edges import has_passed, note_passed
 from carom.dynamics.project import project_position, project_velocity
 from carom.dynamics.several_points import velocities
+from carom.dynamics.thresholds import ERROR_SHARE
 from carom.friction.layout import CONE, SLIDING
-from carom.geometry.thresholds import RESOLUTION
+from carom.geometry.thresholds import REMAINDER, RESOLUTION
 from carom.impact.workspace import OLD, C, P, U
 from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
 from carom.persistent.forces import solve_forces, take_forces, time_to_stop
@@ -26,7 +27,7 @@ from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, wri
 from carom.persistent.settle import greatest
 from carom.persistent.springs import note_accelerations, solve_springs
 from carom.persistent.step_control import rest_speed
-from carom.persistent.thresholds import ERROR_SHARE, FEW_REST, FRICTION_LIMIT, STOP_TIME
+from carom.persistent.thresholds import FEW_REST, FRICTION_LIMIT
 
 
 @unit
@@ -281,7 +282,7 @@ def stick_where_slip_ends(model, data, k, h, still):
         allowed = ERROR_SHARE * allowed_error(controls.rtol, controls.atol, size, 0.0)
         speed = math.hypot(group.v[U][3 * i + 1], group.v[U][3 * i + 2])
         ends = controls.order > 0 and 0.5 * speed * abs(time_to_stop(i, group)) <= allowed
-        ends = ends and h >= STOP_TIME * first_stop(model.system, active, closed_point)
+        ends = ends and h >= (1.0 - REMAINDER) * first_stop(model.system, active, closed_point)
         if ends or speed <= still:
             closed_point.stays, found = 1, True
     if not found:

@@ -17,13 +17,14 @@ from carom.dynamics.acceleration import accelerate, acceleration
 from carom.dynamics.elements import driven_power
 from carom.dynamics.several_points import accelerations, inverse_masses, spread_all, velocities
 from carom.friction.layout import CONE, SLIDING
+from carom.geometry.thresholds import REMAINDER
 from carom.impact.workspace import C, P, U
 from carom.kinematics.flight import free_rates
 from carom.model.actions import MODE_SLIP
 from carom.persistent.joint_rows import JOINT, PIVOT, drift_of_coordinate, is_driven
 from carom.persistent.points import find_points
 from carom.persistent.springs import bound_per_force
-from carom.persistent.thresholds import SLIP_COSINE, SLOWEST_SLIP, STOPPED_SLIP
+from carom.persistent.thresholds import SLIP_COSINE, STOPPED_SLIP
 
 
 @kernel
@@ -95,7 +96,7 @@ def set_modes(system, active, k, group):
         u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
         slip = math.sqrt(u1 * u1 + u2 * u2)
         if closed_point.own == 0 and closed_point.turns == 0:  # its own velocity decides
-            slips = slip > SLOWEST_SLIP * fastest
+            slips = slip > REMAINDER * fastest
         closed_point.loaded = 1 if closed_point.weight > 0.0 else 0
         group.kind[i] = SLIDING if slips or group.mu[i] == 0.0 else CONE
         group.heading[i, 0], group.heading[i, 1] = d1, d2

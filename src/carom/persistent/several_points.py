@@ -13,6 +13,7 @@ from carom.dynamics.energy import energies
 from carom.dynamics.several_points import factor, inverse_masses, substitute, yields
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import RESOLUTION
+from carom.impact.thresholds import VELOCITY_LEFT
 from carom.impact.workspace import OLD, C, P, U
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_SLIP, MODE_STICK
@@ -28,7 +29,7 @@ from carom.persistent.points import weigh
 from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.settle import greatest
 from carom.persistent.start import first_stage
-from carom.persistent.thresholds import DEPENDENCE, REST_SHARE, VELOCITY_LEFT
+from carom.persistent.thresholds import DEPENDENCE, REST_SHARE
 
 FRICTION_ROUNDS = 60  # of friction with what it does to the normal impulses
 

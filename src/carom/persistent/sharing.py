@@ -14,10 +14,11 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction import lu
+from carom.geometry.thresholds import REMAINDER
 from carom.impact.workspace import KEPT, OLD, P
 from carom.persistent.joint_rows import radius_of
 from carom.persistent.springs import SHARES, compliance_of, grip, soften
-from carom.persistent.thresholds import DISC_EDGE, FREEDOM_ERROR, PROXIMAL_SPRING
+from carom.persistent.thresholds import FREEDOM_ERROR, PROXIMAL_SPRING
 
 SQUARES = 3  # of the projector
 
@@ -97,4 +98,4 @@ def share(k, n, group):
 def sticks(group, i):
     """Return whether the friction of the first guess of a point is within its disc."""
     p = group.v[P]
-    return math.hypot(p[3 * i + 1], p[3 * i + 2]) < (1.0 - DISC_EDGE) * radius_of(group, i)
+    return math.hypot(p[3 * i + 1], p[3 * i + 2]) < (1.0 - REMAINDER) * radius_of(group, i)

@@ -26,7 +26,8 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.friction import lu
 from carom.friction.layout import SLIDING
-from carom.geometry.thresholds import LAST_DIGIT, ROUND_OFF
+from carom.geometry.thresholds import LAST_DIGIT, REMAINDER, ROUND_OFF
+from carom.impact.thresholds import GROUP_ERROR, LOADED_PART
 from carom.impact.workspace import OLD, C, P
 from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import JOINT, is_driven
@@ -139,8 +140,8 @@ def grip(k, group):
     for i in range(k):
         if closed[i].turns == 0 and closed[i].rows == 3 and closed[i].loaded == 1:
             bound = group.mu[i] * group.v[P][3 * i]
-            hold = limits.STICK_COMPLIANCE * base * most / max(bound, limits.LEAST_HOLD * most)
-            changed = changed or abs(hold - closed[i].hold) > limits.COMPLIANCE_CHANGE * hold
+            hold = limits.STICK_COMPLIANCE * base * most / max(bound, LOADED_PART * most)
+            changed = changed or abs(hold - closed[i].hold) > REMAINDER * hold
             closed[i].hold = hold
     return changed
 
@@ -242,7 +243,7 @@ def unload(k, turn, group):
         if closed[i].turns == 0:
             most = max(most, p[3 * i])
     for i in range(k):
-        if closed[i].turns == 0 and closed[i].loaded == 1 and p[3 * i] < -limits.PULL * most:
+        if closed[i].turns == 0 and closed[i].loaded == 1 and p[3 * i] < -GROUP_ERROR * most:
             if turn < k:
                 closed[i].loaded, count = 0, count + 1
             elif p[3 * i] < worst:

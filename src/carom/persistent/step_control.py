@@ -11,6 +11,7 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom.contact.thresholds import SAFE_ROTATION
 from carom.dynamics.energy import kinetic_of
+from carom.dynamics.thresholds import RTOL
 from carom.geometry.rotation import norm
 from carom.model.arrays import LOOPS
 from carom.persistent import thresholds as limits
@@ -100,7 +101,7 @@ def too_long(model, data):
     if shortest:
         return False
     part = limits.CUT_SHARE if search.pace < math.inf else 1.0
-    return not (result.unnamed <= part * max(1.0, controls.rtol / limits.LOSS_RTOL))
+    return not (result.unnamed <= part * max(1.0, controls.rtol / RTOL))
 
 
 @inlined

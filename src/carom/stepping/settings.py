@@ -8,11 +8,12 @@ import numpy as np
 
 from carom import checks
 from carom.dynamics.methods import ADAPTIVE, CARRIES, EXPLICIT, METHODS
+from carom.dynamics.thresholds import RTOL
 from carom.options import Options
 from carom.scene.more_forces import JointFriction, JointInertia
 from carom.scene.remarks import check_location, remarks
 from carom.scene.scene import Scene
-from carom.stepping.thresholds import MOST_STEPS, RTOL, SMOOTH_RTOL, TIGHT_RTOL
+from carom.stepping.thresholds import MOST_STEPS, SMOOTH_RTOL, TIGHT_RTOL
 
 LOCATIONS = ("locate", "project", "work")
 _DEFAULT = Options()

@@ -1,6 +1,5 @@
 """Thresholds of stepping: the grid, the balance of energy, islands, and the step of a crowd."""
 
-RTOL = 1e-8  #: size and displacement of a body: default tolerance of a run
 TIGHT_RTOL = 1e-9  #: 1: at this tolerance or below, the default is the method of order 8
 SMOOTH_RTOL = 1e-6  #: 1: the same where nothing strikes or sticks
 MOST_STEPS = 1e12  #: steps: of a run: times are then known to a thousandth of a step
@@ -18,7 +17,6 @@ START_ROOM = 1e-3  #: size of the body: room of a body that starts from rest: do
 BALL_SLACK = 1e-6  #: radius: growth of balls, so that balls in contact overlap
 MEETING_STEPS = 8.0  #: steps: contacts are made for bodies that may meet so soon, near their balls
 THIN_PART = 1.0 / 32.0  #: ball of the body: displacement in a piece that is allowed, however thin the body
-SHORTEST_PIECE = 1e-4  #: step: shortest piece
 SEARCH_GROWTH = 4.0  #: search distance: after points were missed
 SEARCH_LIMIT = 16.0  #: first search distance: greatest one
 MISSED_DEPTH = 1e-5  #: size of the smaller body: depth of a missed feature, from which on the piece is cut
@@ -26,8 +24,6 @@ MISSED_PIECE = 1.0 / 16.0  #: step: down to which it is cut
 RESIDUAL_LIMIT = 1e-3  #: greatest speed: a piece whose contacts have a greater residual is cut
 SLOW_RESIDUAL = 1e-8  #: greatest velocity: residual that is enough if convergence is slow
 WRONG_RESIDUAL = 1e-2  #: greatest velocity: more is no result, whatever the cost
-REST_RESIDUAL = 1e3  #: tolerance: enough for bodies to come to rest; more is no rest
-SOLVER_SHARE = 0.1  #: speed below which bodies rest: tolerance of the solver
 #: diagonal of W: weights of the proximal term in turn: impulses are often not unique (four corners of a
 #: box), and with 1e-8 a step changes the undetermined part arbitrarily
 PROXIMAL_TURNS = (1e-2, 1e-3, 1e-4)
@@ -37,7 +33,6 @@ MIXING_RIDGE = 1e-10  #: squares of the columns: added to them, as they may be d
 LEAVING_SPEED = 1e-6  #: speed that gravity gives in the step: a slower point does not leave
 CROWD_GAIN = 1e-7  #: kinetic energy plus m g times sizes: greatest gain of energy of a group in a piece
 CROWD_ERROR = 1e-4  #: kinetic energy plus m g times sizes: greatest difference of the gain from the work
-RETURN_DEPTH = 1e-11  #: size of the smaller body: depth allowed after the return to the surface
 RETURN_GAIN = 0.01  #: depth: that a pass leaves: gaps are not linear, so less is no gain
 #: mean of the diagonal of W: least W_nn of a point that returns: with the normal through the axis of a
 #: hinge W_nn is round-off, and 1e-7 m would turn a gear by many teeth

@@ -21,7 +21,7 @@ from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.layout import AT_ONCE, PLASTIC
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.layer import set_velocity, start
-from carom.impact.thresholds import APPROACH, GAIN, VISIBLE_ERROR
+from carom.impact.thresholds import GAIN, VELOCITY_LEFT, VISIBLE_ERROR
 
 #: in turn: each contact with its own e, all with the least, none with any, and then without friction
 OWN_E, LEAST_E, NO_E, NO_FRICTION = range(4)
@@ -41,7 +41,8 @@ def solve_group(k, work):
             c.e = c.restitution if way == OWN_E else least if way == LEAST_E else 0.0
         clock.change = _once(k, work, way == NO_FRICTION)
         clock.code = AT_ONCE if way == OWN_E else AT_ONCE | o.MISSED if way == LEAST_E else PLASTIC
-        if sound(W, vector[o.U0], vector[o.NOW_U], vector[o.NOW_P], 1.0, (3 * k, APPROACH, GAIN)):
+        bounds = (3 * k, VELOCITY_LEFT, GAIN)
+        if sound(W, vector[o.U0], vector[o.NOW_U], vector[o.NOW_P], 1.0, bounds):
             break
     if clock.code & PLASTIC == 0:
         clock.change = 0.0

@@ -13,10 +13,10 @@ from carom.dynamics.energy import spin_momentum
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.project import project_velocity, shift
 from carom.dynamics.rotors import add_rates, note_rates
+from carom.dynamics.thresholds import ERROR_SHARE
 from carom.friction.layout import ITERATE
 from carom.geometry.rotation import rotate, rotate_back
-from carom.geometry.thresholds import RESOLUTION
-from carom.impact.thresholds import REMAINDER
+from carom.geometry.thresholds import REMAINDER, RESOLUTION
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.allowance import affordable_whole
 from carom.model.arrays import STOP
@@ -26,7 +26,6 @@ from carom.stepping.crowd.response import answer, write_responses
 from carom.stepping.crowd.solve import solve
 from carom.stepping.crowd.spots import gather, gather_sunk, place_all
 from carom.stepping.crowd.surface import onto_surfaces
-from carom.stepping.thresholds import SOLVER_SHARE
 
 LIFTS = 4  # greatest number of searches for other penetrating features
 
@@ -60,7 +59,7 @@ def find_impulses(model, data, k, h, fall, patient):
     system, controls, active, now = model.system, model.controls, data.active, data.state
     crowd, work, clock, n = data.crowd, data.work, data.clocks[0], data.state.shape[0]
     pose(system, active, k, h, fall, now, crowd, work)
-    tolerance = SOLVER_SHARE * controls.rest * fall * h
+    tolerance = ERROR_SHARE * controls.rest * fall * h
     effort = (patient, affordable_whole(controls, clock) - clock.effort)
     gamma, residual = solve(system, crowd, k, n, tolerance, effort, clock)
     answer(system, k, gamma, crowd, work)

@@ -15,6 +15,7 @@ from carom.friction.newton import step
 from carom.friction.solve import scale_vectors
 from carom.friction.strategy import copy, residual
 from carom.friction.thresholds import CHORD_GAIN, PROXIMAL, RESIDUAL
+from carom.persistent.thresholds import CROWD_REST
 from carom.stepping import thresholds as limits
 from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.splitting import split_until
@@ -46,7 +47,7 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
     speed = greatest_speed(crowd, k) / gamma
     r, goal, done = sweep_until(system, crowd, k, max(tolerance / gamma, RESIDUAL * speed), FIRST)
     enough = max(tolerance / gamma, goal, RESIDUAL * speed)
-    rest = limits.REST_RESIDUAL * tolerance / gamma
+    rest = CROWD_REST * tolerance / gamma
     good = max(goal, limits.SLOW_RESIDUAL * speed, rest)
     spent, least, turn, idle = done * each, r, 0, 0
     p, kept = work.vector[o.ITERATE], work.vector[o.START_BEST]

@@ -24,6 +24,7 @@ from carom.geometry.rotation import norm
 from carom.geometry.thresholds import RESOLUTION
 from carom.model import records as r
 from carom.model.allowance import affordable_whole
+from carom.persistent.thresholds import SHORTEST_CUT
 from carom.status import NOT_FINITE
 from carom.stepping import thresholds as limits
 from carom.stepping.crowd.balance import energy_gained, off, slow_down, take_out, take_over
@@ -80,9 +81,9 @@ def step_crowd(model, data, method):
                 controls, clock
             )
             patient = clock.tries <= CAREFUL and not expensive
-            careful = patient and dt > limits.SHORTEST_PIECE * controls.interval
+            careful = patient and dt > SHORTEST_CUT * controls.interval
             result.code = move_on(model, data, method, dt, patient, careful)
-            if result.code == CONSTRAINTS_LOST and dt > limits.SHORTEST_PIECE * controls.interval:
+            if result.code == CONSTRAINTS_LOST and dt > SHORTEST_CUT * controls.interval:
                 result.code = TOO_LONG
             if result.code != TOO_LONG:
                 break
@@ -112,7 +113,7 @@ def piece(system, now, controls, left):
             distance += turn * body.ball
             far = max(limits.THIN_PART * far, min(far, SAFE_DISPLACEMENT * thickness(body)))
         parts = max(parts, math.ceil(distance / far))
-    return min(left, max(left / parts, limits.SHORTEST_PIECE * step))
+    return min(left, max(left / parts, SHORTEST_CUT * step))
 
 
 @kernel
@@ -130,7 +131,7 @@ def move_on(model, data, method, h, patient, careful):
     clock, n, end, loaded = data.clocks[0], now.shape[0], work.trial, is_loaded(system)
 
     # the motion without contacts, then the impulses
-    shortest = h <= limits.SHORTEST_PIECE * model.controls.interval
+    shortest = h <= SHORTEST_CUT * model.controls.interval
     code, loads, rubbing = fly(model, data, method, h, loaded, not shortest)
     if code == 0 and loaded and shortest and not finite(crowd.flight):
         code = NOT_FINITE  # a force without a value: no piece is short enough

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.contact.pair_point import smaller
+from carom.contact.thresholds import PLACE_ERROR
 from carom.dynamics.project import project_position, shift
 from carom.stepping.crowd.response import spread_impulses
 from carom.stepping.crowd.spots import place_all
-from carom.stepping.thresholds import IMMOBILITY, RETURN_DEPTH, RETURN_GAIN
+from carom.stepping.thresholds import IMMOBILITY, RETURN_GAIN
 
 # passes; least and greatest number of sweeps of a pass, and number of sweeps times points. To place all points
 # again costs as much as thirty sweeps
@@ -32,8 +33,8 @@ def onto_surfaces(system, k, count, end, crowd, work):
             gap = crowd.points[1][i].gap
             size = smaller(system.contacts[crowd.spots[i].contact])
             moves = crowd.spots[i].turns == 0 and crowd.problem.link[i].local[0] > IMMOBILITY
-            if moves and gap < -RETURN_DEPTH * size:
-                deepest, tiny = max(deepest, -gap), min(tiny, 0.1 * RETURN_DEPTH * size)
+            if moves and gap < -PLACE_ERROR * size:
+                deepest, tiny = max(deepest, -gap), min(tiny, 0.1 * PLACE_ERROR * size)
         if deepest == 0.0:
             break
         lift(system, k, max(tiny, RETURN_GAIN * deepest), crowd, work)
