@@ -20,14 +20,13 @@ from carom.dynamics.several_points import velocities
 from carom.friction.layout import BUDGET, CONE, DISC, ENOUGH, NEAR, SLIDING
 from carom.friction.solve import solve_cones
 from carom.geometry.rotation import normalize
-from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.workspace import C, P, U
 from carom.persistent.coulomb_stage import solve_stage
 from carom.persistent.joint_rows import JOINT
 from carom.persistent.rolling_friction import bound_turning
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
 from carom.persistent.springs import bound_per_force, solve_springs
-from carom.persistent.thresholds import STAGE_CHANGE
+from carom.persistent.thresholds import LAST_CHANGE, STAGE_CHANGE
 
 FIXED_POINT = 25  # iterations of the pose of a stage
 
@@ -100,7 +99,7 @@ def implicit_stage(model, data, label, loaded, count, s, hg, closes):
             change, size = max(change, own[0]), max(size, own[1])
         if change > 0.0:  # a body that stops has errors of the others
             change = change / size if size > 0.0 else math.inf
-        if turn > 0 and change <= SUM_ERROR:
+        if turn > 0 and change <= LAST_CHANGE:
             break
         applied = accelerate_freely(model, data, loaded, count, s)
         before = k

@@ -6,6 +6,7 @@ DEPENDENT_ERROR = 1e-3  #: accelerations without forces: greatest error of rows 
 DEPENDENCE = 1e-10  #: row: a smaller pivot is round-off of a row that depends on those before it
 LINEAR_SHARE = 1e-6  #: error: that of the linear equations of a round
 SETTLED_SHARE = 1e-9  #: error: the same for an error that no iteration makes less
+LAST_CHANGE = 1e-14  #: velocities: change by an iteration that is the last
 STAGE_CHANGE = 1e-10  #: velocities: after all iterations: a stage that changes by more has no solution
 FRICTION_LIMIT = 1.0 - 1e-6  #: greatest friction: less is within the cone; a stage leaves 3e-9 of a line
 #: tolerance: for e = 0: what is thrown up by others and falls back does not bounce, but may be thrown
