@@ -9,7 +9,7 @@ where L is its size (`extent`), V its greatest speed and a its greatest accelera
 rotation at the distance L. So an error of velocity counts as the displacement that it causes while the body
 moves by its own size. A step is accepted if for all bodies
 
-    miss <= LOCAL_SHARE (atol + rtol max(L, h V)),
+    miss <= ERROR_SHARE (atol + rtol max(L, h V)),
 
 a fraction of the tolerance of a run, because errors of steps add up. Order 8 has two estimates: miss = miss_5^2
 / sqrt(miss_5^2 + miss_3^2/100) (Hairer, Norsett and Wanner 1993). Groups in contact have the estimates of

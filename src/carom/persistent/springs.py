@@ -33,7 +33,7 @@ from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import JOINT, is_driven
 from carom.persistent.settle import greatest, settle
 
-SHARES = 6  # relative change of a compliance of stick that is none; rounds until then
+SHARES = 6  # rounds until the compliances of stick are found
 
 
 @kernel
