@@ -196,3 +196,63 @@ def test_a_code_is_declared_once():
     assert len(declared) > 300
     assert {"NOT_FINITE", "EVENT_GAP", "NEW_P", "FEW_PAIRS"} <= set(declared)
     assert {name: where for name, where in declared.items() if len(where) > 1} == {}
+
+
+#: folders whose thresholds are in their files `thresholds.py` (`tests/test_thresholds.py`)
+NUMERIC = {
+    "geometry", "collision", "model", "kinematics", "contact", "friction", "dynamics", "impact",
+    "persistent", "stepping",
+}  # fmt: skip
+#: floats beside them that are no thresholds: of mathematics, of a method, costs of work. It only gets shorter
+OTHER_FLOATS = {
+    "dynamics.double_double": {"SPLITTER"},
+    "dynamics.implicit": {"GAMMA"},
+    "friction.residual": {"NOTHING"},
+    "impact.multiple.stages": {"GAMMA"},
+    "impact.spline": {"_X1", "_X2", "_X3", "_W1", "_W2", "_W3"},
+    "impact.strike_several": {"HERTZ", "LINEAR", "FEW", "MANY", "STAGES"},
+    "kinematics.coordinate": {"TURN"},
+    "kinematics.torque_free_top": {"FAR"},
+    "model.allowance": {
+        "EACH", "SAVED", "STEPS", "TRIALS", "PARTS", "SAVED_PARTS", "SMOOTH", "WORK"
+    },
+    "model.records": {"LONG"},
+    "persistent.step_control": {"LOOPS_STEP", "OTHER_STEP"},
+    "stepping.crowd.solve": {"SWEEP", "TIE", "UPDATE", "CONTACT", "DEARER"},
+    "stepping.crowd.step": {"DEAR"},
+    "stepping.trial_step": {"SEARCH"},
+}  # fmt: skip
+
+
+def is_float(value: ast.AST) -> bool:
+    """Whether an expression is a float, a tuple with one, or computed of them."""
+    if isinstance(value, ast.Constant):
+        return type(value.value) is float
+    if isinstance(value, ast.BinOp) and isinstance(value.op, ast.Div):
+        return True
+    parts = [node for node in ast.iter_child_nodes(value) if isinstance(node, ast.expr)]
+    return isinstance(value, ast.UnaryOp | ast.BinOp | ast.Tuple) and any(map(is_float, parts))
+
+
+def floats(path: Path) -> set[str]:
+    """Names that a module binds to floats: one by one, or in tuples."""
+    found = set()
+    for line in ast.parse(path.read_text()).body:
+        if isinstance(line, ast.Assign):
+            for target in line.targets:
+                pairs = [(target, line.value)]
+                if isinstance(target, ast.Tuple) and isinstance(line.value, ast.Tuple):
+                    pairs = list(zip(target.elts, line.value.elts))
+                found |= {ast.unparse(name) for name, value in pairs if is_float(value)}
+    return found
+
+
+def test_thresholds_are_in_the_files_of_thresholds():
+    """A float beside them is a threshold without a unit and a reason."""
+    found = {
+        module: floats(path)
+        for module, path in modules().items()
+        if module.split(".")[0] in NUMERIC and not module.endswith(".thresholds")
+    }
+    assert {module: names for module, names in found.items() if names} == OTHER_FLOATS
+    assert "ROUND_OFF" in floats(modules()["geometry.thresholds"])

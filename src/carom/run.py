@@ -10,10 +10,11 @@ from carom._compiled.mould import Mould, arrays_of
 from carom._compiled.units import Entries
 from carom._compiled.user_functions import Functions
 from carom.contact.stop import write_stop_gaps
-from carom.dynamics.adapt import FIRST, complete, time_of_bounces
+from carom.dynamics.adapt import complete, time_of_bounces
 from carom.dynamics.methods import EXPLICIT, METHODS, make_method
 from carom.dynamics.project import project_start
 from carom.dynamics.reactions import start_errors, start_speeds
+from carom.dynamics.thresholds import FIRST_STEP
 from carom.impact.multiple.layout import multiple_settings
 from carom.impact.workspace import new_group, new_multiple, no_multiple
 from carom.model import records as r
@@ -32,7 +33,7 @@ from carom.scene.scene import Scene
 from carom.status import Status
 from carom.stepping import record, time_loop
 from carom.stepping.crowd.layout import SPOTS, new_crowd, no_crowd, roomier_crowd
-from carom.stepping.energy_balance import SHARE, new_watch
+from carom.stepping.energy_balance import new_watch
 from carom.stepping.grid import (
     Grid,
     cut_grid,
@@ -50,6 +51,7 @@ from carom.stepping.islands.layout import (
     with_partners,
 )
 from carom.stepping.settings import Settings
+from carom.stepping.thresholds import STEP_SHARE
 
 ROOM_AT_FIRST = 8  # points of an impact for which there is room at first
 LOCATIONS = {"locate": LOCATE, "project": PROJECT, "work": WORK}
@@ -140,10 +142,10 @@ class Run:
         self.crowd = no_crowd()  # made when there is one
         self.multiple = no_multiple(multiple_settings(options))  # and this
         self.clock = r.new_clock()
-        share = SHARE * options.energy_tolerance if self.how.method in EXPLICIT else np.inf
+        share = STEP_SHARE * options.energy_tolerance if self.how.method in EXPLICIT else np.inf
         self.watch = new_watch(options.energy_tolerance, share)
         flies = system.bodies["ballistic"] == 1  # in closed form: any step is good
-        self.work.body["ahead"] = np.where(flies, 1.0, FIRST) * self.grid.interval
+        self.work.body["ahead"] = np.where(flies, 1.0, FIRST_STEP) * self.grid.interval
         if options.project_start and len(system.joints):
             error = project_start(system, self.now, self.work)
             if not error <= options.constraint_tolerance:

@@ -59,4 +59,4 @@ def test_a_pin_in_a_plate():
         gap = nearest_points(pin, poses[0], plate, poses[1]).gap
         assert abs(gap - expected) < 1e-9 * min(
             radius, thick
-        )  # rounding of the places, and DIRECTED
+        )  # rounding of the places, and RESOLUTION

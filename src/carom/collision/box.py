@@ -17,8 +17,7 @@ from carom.collision.features import (
 )
 from carom.collision.found import put, put_parts
 from carom.collision.frame import from_a
-
-TOUCHING = 1e-9  # relative to the size of the cores: a shorter distance has no reliable direction
+from carom.geometry.thresholds import RESOLUTION
 
 
 @inlined
@@ -114,7 +113,7 @@ def segment_box(pair):
     bx, by, bz = clamp(ax, g[0]), clamp(ay, g[1]), clamp(az, g[2])
     nx, ny, nz = ax - bx, ay - by, az - bz
     d = math.sqrt(nx * nx + ny * ny + nz * nz)
-    if not d > TOUCHING * (h + g[0] + g[1] + g[2]):
+    if not d > RESOLUTION * (h + g[0] + g[1] + g[2]):
         _through(pair, u)
         return
     n, gap = (nx / d, ny / d, nz / d), d - (pair.a.radius + pair.b.radius)

@@ -7,9 +7,8 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom.collision.features import NOBODY, OF_A, OF_B, OF_SUPPORT, edge_part, of_edges
 from carom.collision.found import put, put_parts
-
-ROUNDING = 1e-13  # relative to the size: a later axis must be better by more than this to be chosen
-PARALLEL = 1e-7  # sine below which two edges count as parallel, without a common normal
+from carom.collision.thresholds import LEAST_SINE
+from carom.geometry.thresholds import ROUND_OFF
 
 
 @inlined
@@ -30,25 +29,25 @@ def best_axis(pair):
     for i in range(3):
         reach = abs(R[i, 0]) * h[0] + abs(R[i, 1]) * h[1] + abs(R[i, 2]) * h[2]
         gap = abs(p[i]) - g[i] - reach
-        if gap > best + ROUNDING * size:
+        if gap > best + ROUND_OFF * size:
             best, axis = gap, i
     for j in range(3):
         reach = abs(R[0, j]) * g[0] + abs(R[1, j]) * g[1] + abs(R[2, j]) * g[2]
         along = R[0, j] * p[0] + R[1, j] * p[1] + R[2, j] * p[2]
         gap = abs(along) - h[j] - reach
-        if gap > best + ROUNDING * size:
+        if gap > best + ROUND_OFF * size:
             best, axis = gap, 3 + j
     for i in range(3):
         i1, i2 = (i + 1) % 3, (i + 2) % 3
         for j in range(3):
             m1, m2 = -R[i2, j], R[i1, j]  # components of e_i x a_j along axes i1, i2
             sine = math.sqrt(m1 * m1 + m2 * m2)
-            if sine > PARALLEL:
+            if sine > LEAST_SINE:
                 j1, j2 = (j + 1) % 3, (j + 2) % 3
                 reach = g[i1] * abs(m1) + g[i2] * abs(m2)
                 reach += h[j1] * abs(R[i, j2]) + h[j2] * abs(R[i, j1])
                 gap = (abs(m1 * p[i1] + m2 * p[i2]) - reach) / sine
-                if gap > best + ROUNDING * size:
+                if gap > best + ROUND_OFF * size:
                     best, axis = gap, 6 + 3 * i + j
     return best, axis
 

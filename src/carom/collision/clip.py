@@ -15,12 +15,9 @@ from carom.collision import features as of
 from carom.collision.faces import corner_part
 from carom.collision.found import known, put, put_parts
 from carom.collision.layout import CYLINDER, MOST_CORNERS
+from carom.collision.thresholds import CROSSING, TILT
 from carom.geometry.rotation import cross
-
-LEVEL = 4.5e-5  # angle of two faces of which each can be the reference: cosines that differ by 1e-9
-CROSSES = 1e-6  # product of two sides by that of the sizes of the solids, from which on they have a normal
-# tolerance relative to the solid of the reference face: a corner on a side is kept
-ROUNDING = 1e-12
+from carom.geometry.thresholds import ROUND_OFF
 
 
 @inlined
@@ -101,7 +98,7 @@ def _normal(pair, ref, source, k, corners, height):
     one, two = s.side[source, k], s.side[source, (k + corners - 1) % corners]
     i, j = max(one, two), -1 - min(one, two)  # sides of the incident face, of the reference
     angle = math.sqrt(max(0.0, 2.0 + 2.0 * (n[0] * m[0] + n[1] * m[1] + n[2] * m[2])))
-    level = angle <= LEVEL and angle * abs(height) <= ROUNDING * min(pair.a.extent, pair.b.extent)
+    level = angle <= TILT and angle * abs(height) <= ROUND_OFF * min(pair.a.extent, pair.b.extent)
     if level and kind != of.EDGES and (kind == of.VERTEX_A) != (ref == 1):
         return (-m[0], -m[1], -m[2]), 3 - owner
     if level and kind == of.EDGES and min(i, j) >= 0 and not rims:  # sides of a rim are no edges
@@ -110,7 +107,7 @@ def _normal(pair, ref, source, k, corners, height):
         x, y, z = b[0] - a[0], b[1] - a[1], b[2] - a[2]
         x, y, z = cross(x, y, z, d[0] - c[0], d[1] - c[1], d[2] - c[2])
         size = math.copysign(math.sqrt(x * x + y * y + z * z), x * n[0] + y * n[1] + z * n[2])
-        if abs(size) > CROSSES * pair.a.extent * pair.b.extent:
+        if abs(size) > CROSSING * pair.a.extent * pair.b.extent:
             return (x / size, y / size, z / size), of.NOBODY
     return (n[0], n[1], n[2]), owner
 
@@ -126,7 +123,7 @@ def overlap(pair, ref, least, most, count):
     p, source = s.corner[ref, 0], 0
     scale = pair.b.extent if ref == 1 else pair.a.extent
     for j in range(s.count[ref]):
-        corners = _cut(s, ref, source, corners, j, ROUNDING * scale)
+        corners = _cut(s, ref, source, corners, j, ROUND_OFF * scale)
         source = 1 - source
     n = s.normal[ref]
     for k in range(corners):

@@ -13,6 +13,7 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
+from carom.collision import thresholds as limits
 from carom.collision.faces import load_face
 from carom.collision.features import (
     FACE,
@@ -27,26 +28,16 @@ from carom.collision.features import (
     of_vertex_b,
 )
 from carom.collision.found import put, put_parts
-from carom.collision.gjk import EXACT, distance, point_on_b
+from carom.collision.gjk import distance, point_on_b
 from carom.collision.layout import CYLINDER
 from carom.collision.polish import polish
 from carom.collision.support import separation
+from carom.geometry.thresholds import LAST_DIGIT, RESOLUTION, ROUND_OFF
 from carom.geometry.vectors import cross, dot, minus, plus
 
-CLEAR = 1e-3  # relative to the smaller solid: such a distance has a direction exact to round-off
-DIRECTED = 1e-9  # relative to the smaller solid: a shorter distance has no reliable direction
 CLIMBS = 9  # starts of the search for the depth; with more, no sharp hull gave a better result
 CLIMBS_CURVED = 3  # the same for curved cores, where each search takes longer
-ELSEWHERE = 0.95  # cosine of the angle to an earlier climb; nearer starts are not tried
-SLIGHT = 1e-3  # overlap, relative to the usual clearance, to which no other way out is shorter
-NEARER = 30.0  # clearance of the second phase of a climb, relative to the depth
-LEAST = 1e-3  # least clearance, relative to the usual one; a smaller one gives no better direction
 CLIMB_ROUNDS = 30
-ROUGH = 1e-6  # accuracy of the search for curved cores, which Newton's method then refines
-NEARLY = 1e-5  # 1 - cosine of the angle, up to which a normal may be that of a face
-NO_WORSE = (
-    1e-12  # relative to the size: a face's normal is preferred if it is worse by at most this
-)
 
 
 @unit
@@ -59,7 +50,8 @@ def closest(pair):
     s, a, b = pair.state, pair.a, pair.b
     size = min(a.extent, b.extent)
     curved = a.kind >= CYLINDER or b.kind >= CYLINDER
-    best, (nx, ny, nz), (bx, by, bz), polished = _normal(pair, size, ROUGH if curved else EXACT)
+    accuracy = limits.CURVED_ERROR if curved else LAST_DIGIT
+    best, (nx, ny, nz), (bx, by, bz), polished = _normal(pair, size, accuracy)
     # the normal of a face; of two faces, that of the one on which a vertex of the other solid lies
     owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, curved)
     over = curved and owner != NOBODY
@@ -67,7 +59,7 @@ def closest(pair):
         # parallel edges, or a face with the farthest point of the other solid beyond its sides
         owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, False)
         if owner != NOBODY or polished == 0:
-            best, (nx, ny, nz), (bx, by, bz), polished = _normal(pair, size, EXACT)
+            best, (nx, ny, nz), (bx, by, bz), polished = _normal(pair, size, LAST_DIGIT)
             owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, False)
     feature, part_a, part_b = _feature(s), _part(s, 0), _part(s, 1)
     if not curved and (owner != NOBODY or polished == 0):
@@ -122,10 +114,10 @@ def _normal_of_face(pair, n, best, within):
     s, size = pair.state, min(pair.a.extent, pair.b.extent)
     for side in (1, 0):
         f = 1.0 if side == 1 else -1.0
-        if load_face(pair, side, f * n[0], f * n[1], f * n[2]) > 1.0 - NEARLY:
+        if load_face(pair, side, f * n[0], f * n[1], f * n[2]) > 1.0 - limits.FACE_NORMAL:
             m = s.normal[side]
             value = separation(pair, f * m[0], f * m[1], f * m[2])
-            if _over_face(pair, side) if within else value >= best - NO_WORSE * size:
+            if _over_face(pair, side) if within else value >= best - ROUND_OFF * size:
                 owner = OF_B if side == 1 else OF_A
                 return owner, value, f * m[0], f * m[1], f * m[2]
     return NOBODY, best, n[0], n[1], n[2]
@@ -163,14 +155,14 @@ def _foot_on_b(s, owner, best, n):
 @kernel
 def _search(pair, size, accuracy):
     """Return separation and normal of the cores; the last simplex stays, perhaps one of a displaced A."""
-    s, clear = pair.state, CLEAR * size
+    s, clear = pair.state, limits.CLEARANCE * size
     x, y, z = s.p[0], s.p[1], s.p[2]
     if x * x + y * y + z * z == 0.0:
         z = 1.0
     d, nx, ny, nz = distance(pair, accuracy, x, y, z)
     if d > clear:
         return d, nx / d, ny / d, nz / d
-    if d > DIRECTED * size:
+    if d > RESOLUTION * size:
         best, nx, ny, nz = _climb(pair, accuracy, clear, nx / d, ny / d, nz / d)
     else:
         best, nx, ny, nz = _way_out(pair, accuracy, clear)
@@ -235,10 +227,10 @@ def _way_out(pair, accuracy, clear):
         value, x, y, z = _climb(pair, accuracy, clear, first[0], first[1], first[2])
         if value > best:
             best, nx, ny, nz = value, x, y, z
-        if best > -SLIGHT * clear:
+        if best > -limits.LEAST_CLEARANCE * clear:
             break
         for k in range(15):
-            if max(dot(first, start[k]), dot((x, y, z), start[k])) > ELSEWHERE:
+            if max(dot(first, start[k]), dot((x, y, z), start[k])) > limits.SAME_CLIMB:
                 start[k, 3] = -math.inf
     # The best climb is repeated, so that the simplex is that of the result.
     return _climb(pair, accuracy, clear, nx, ny, nz)
@@ -255,13 +247,10 @@ def _climb(pair, accuracy, clear, nx, ny, nz):
     s.shift[0], s.shift[1], s.shift[2] = 0.0, 0.0, 0.0
     best = separation(pair, nx, ny, nz)
     for phase in range(3):
-        gap = clear
-        if phase == 1:
-            gap = -NEARER * best
-            if not LEAST * clear < gap < clear:
-                continue
-        if phase == 2 and not LEAST * clear < -NEARER * best < clear:
+        near = -limits.DEPTH_CLEARANCE * best
+        if phase > 0 and not limits.LEAST_CLEARANCE * clear < near < clear:
             continue
+        gap = near if phase == 1 else clear
         for _ in range(CLIMB_ROUNDS):
             move = gap - best
             s.shift[0], s.shift[1], s.shift[2] = move * nx, move * ny, move * nz

@@ -12,9 +12,8 @@ import math
 from carom._compiled.decorators import kernel
 from carom.collision.simplex import move_corner, nearest_point, reduce_simplex, size_of
 from carom.collision.support import propose
+from carom.geometry.thresholds import SUM_ERROR
 
-EXACT = 1e-15  # gain of a step, relative to the distance, that is only rounding
-INSIDE = 1e-14  # distance, relative to the size of the simplex, that counts as zero
 GJK_STEPS = 100
 
 
@@ -34,7 +33,7 @@ def distance(pair, accuracy, x, y, z):
     v2 = vx * vx + vy * vy + vz * vz
     for _ in range(GJK_STEPS):
         scale = size_of(s)
-        if not v2 > (INSIDE * scale) ** 2:
+        if not v2 > (SUM_ERROR * scale) ** 2:
             return 0.0, 0.0, 0.0, 0.0
         propose(pair, vx, vy, vz)
         w = s.w[4]

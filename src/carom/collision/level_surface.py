@@ -14,10 +14,9 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
+from carom.collision.thresholds import MARGIN
+from carom.geometry.thresholds import RESOLUTION
 from carom.geometry.vectors import dot
-
-ROOM = 4.0  # tolerances of a surface within which a point counts as on a face or on a rim
-ACROSS = 1e-9  # cosine above which a normal points along a face that continues beyond an edge
 
 
 @kernel
@@ -83,7 +82,7 @@ def carries(levels, surface, first, last, q, gap, rounding):
     A point below the plane is carried if the way out through the plane is the shortest: shorter than that
     through the rim, and than that through the back of the solid.
     """
-    room = ROOM * surface.tolerance
+    room = MARGIN * surface.tolerance
     i = face_below(levels, first, last, q, room)
     if i < 0:
         return False
@@ -97,7 +96,7 @@ def carries(levels, surface, first, last, q, gap, rounding):
 @kernel
 def continues(levels, surface, q, m):
     """Return whether a face through q continues along m, so that m is no normal of the surface at q."""
-    room = ROOM * surface.tolerance
+    room = MARGIN * surface.tolerance
     for i in range(surface.first, surface.last):
         face = levels.faces[i]
         if face_below(levels, i, i + 1, q, room) < 0:
@@ -105,6 +104,6 @@ def continues(levels, surface, q, m):
         for k in range(face.first, face.last):
             p = levels.sides[k].corner
             along = m[0] * (p[0] - q[0]) + m[1] * (p[1] - q[1]) + m[2] * (p[2] - q[2])
-            if along > ACROSS * face.reach + room:
+            if along > RESOLUTION * face.reach + room:
                 return True
     return False

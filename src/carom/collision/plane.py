@@ -12,8 +12,7 @@ from carom.collision.found import put, spread
 from carom.collision.layout import BOX, CYLINDER, HULL, SEGMENT
 from carom.collision.support import support
 from carom.geometry.rotation import rotate, rotate_back
-
-UPRIGHT = 1e-12  # sine of the tilt up to which a rim is flat: none of its points is the lowest
+from carom.geometry.thresholds import ROUND_OFF
 
 
 @inlined
@@ -114,9 +113,9 @@ def _rims(a, seen, reach, found):
     ux, uy, uz, height = seen
     r, h = a.half[0], a.half[2]
     across = math.sqrt(ux * ux + uy * uy)
-    tilted = across > UPRIGHT
+    tilted = across > ROUND_OFF
     cx, cy = (-ux / across, -uy / across) if tilted else (-1.0, 0.0)  # towards the lowest point
-    most = height - abs(uz) * h - r * across + reach + 2.0 * UPRIGHT * (r + h)
+    most = height - abs(uz) * h - r * across + reach + 2.0 * ROUND_OFF * (r + h)
     near = 2 * (math.floor(math.atan2(cy, cx) * (2.0 / math.pi) + 0.5) % 4)
     count, lower = 0, 1 if h > 0.0 and uz < 0.0 else 0
     for side in range(2 if h > 0.0 else 1):

@@ -16,14 +16,11 @@ from carom.collision.faces import LOWEST, vertex
 from carom.collision.frame import from_a, to_a
 from carom.collision.layout import CYLINDER
 from carom.collision.support import change_of_support, propose, separation
+from carom.collision.thresholds import LEAST_SINE, SAME_DIRECTION
+from carom.geometry.thresholds import LAST_DIGIT, RESOLUTION, ROUND_OFF
 from carom.geometry.vectors import cross, dot, minus, plus
 
 POLISH_STEPS = 8
-NEAR = 0.99  # cosine of the largest angle by which the method may turn the normal
-ROUNDING = 1e-15  # relative to the smaller solid
-TIE = 1e-12  # relative to the smaller solid: two vertices are as far if they differ by less
-TOWARDS = 1e-9  # angle by which a normal is turned so that the farthest point is the chosen end of an edge
-STRAIGHT = 1e-6  # sine below which two edges count as parallel
 
 
 @kernel
@@ -60,7 +57,7 @@ def _parallel(s, count, side, e):
     found = 0
     for i in range(count):
         c = dot(s.edge[i], e)
-        if 1.0 - c * c < STRAIGHT * STRAIGHT:
+        if 1.0 - c * c < LEAST_SINE * LEAST_SINE:
             if s.owner[i] != side:
                 return -1
             found = 1
@@ -158,7 +155,7 @@ def polish(pair, nx, ny, nz):
     start = (nx, ny, nz)
     for _ in range(3):
         value, x, y, z = _refine(pair, edges, best, start)
-        if not dot((x, y, z), (nx, ny, nz)) > NEAR:  # or there is none
+        if not dot((x, y, z), (nx, ny, nz)) > SAME_DIRECTION:  # or there is none
             break
         k, end, sense = _passed_end(pair, edges)
         if k < 0:
@@ -181,7 +178,7 @@ def _refine(pair, edges, best, n):
         x, y, z = _iterate(pair, edges, (x, y, z))
     value = separation(pair, x, y, z)
     _keep_vertices(pair, (x, y, z))
-    if not value >= best - ROUNDING * min(pair.a.extent, pair.b.extent):
+    if not value >= best - LAST_DIGIT * min(pair.a.extent, pair.b.extent):
         return best, 0.0, 0.0, 0.0
     _points(s, edges, value, x, y, z)
     return value, x, y, z
@@ -191,7 +188,7 @@ def _refine(pair, edges, best, n):
 def _passed_end(pair, edges):
     """Return an edge whose point is beyond an end, the corner of the end and the sense to it; -1 if none is."""
     s = pair.state
-    tie = TIE * min(pair.a.extent, pair.b.extent)
+    tie = ROUND_OFF * min(pair.a.extent, pair.b.extent)
     for k in range(edges):
         side, e = s.owner[k], s.edge[k]
         p = s.on_a[4] if side == 0 else s.on_b[4]
@@ -228,7 +225,7 @@ def _corner(pair, side, number):
 def _end_of_edge(s, edges, k, end, sense, n):
     """Let an end of edge k be the corner of its solid; return the count of other edges, and a normal near n."""
     side, e = s.owner[k], s.edge[k]
-    start = plus(n, -sense * TOWARDS if side == 0 else sense * TOWARDS, e)
+    start = plus(n, -sense * RESOLUTION if side == 0 else sense * RESOLUTION, e)
     for m in range(s.points):
         s.ids[m, side] = end
     if k == 0 and edges == 2:
@@ -244,7 +241,7 @@ def _keep_vertices(pair, n):
     All ends of an edge, and all corners of a face, are as far if n is perpendicular to it.
     """
     s = pair.state
-    tie = TIE * min(pair.a.extent, pair.b.extent)
+    tie = ROUND_OFF * min(pair.a.extent, pair.b.extent)
     for side in range(2):
         i, there = s.ids[0, side], False
         for k in range(s.points):

@@ -19,12 +19,9 @@ from carom.collision.features import (
 )
 from carom.collision.found import known, put, put_parts
 from carom.collision.layout import CYLINDER
+from carom.collision.thresholds import LEAST_SINE, LINE_CONTACT, SAME_DIRECTION
+from carom.geometry.thresholds import RESOLUTION
 from carom.geometry.vectors import cross, dot, minus, plus
-
-PARALLEL = 1e-14  # square of the sine below which two segments count as parallel
-TOUCHING = 1e-9  # relative to the lengths: a shorter distance has no reliable direction
-TILT = 1e-5  # greatest angle of a normal to the cross-section of a cylinder for which it touches along a line
-BESIDE = 0.99  # least cosine between the normal of an end and that of the nearest points
 
 
 @kernel
@@ -60,7 +57,7 @@ def nearest(d, u, g, w, h):
     """
     c, n = dot(u, w), cross(u, w)
     across, du, dw = dot(n, n), dot(d, u), dot(d, w)
-    if across > PARALLEL:
+    if across > LEAST_SINE * LEAST_SINE:
         t = (c * dw - du) / across
     else:
         t = h - dw if c > 0.0 else dw  # here z = dw + c t is at an end
@@ -115,7 +112,7 @@ def ends_of_line(pair, ends_a, ends_b, least, most, count):
     du, dw = dot(d, u), dot(d, w)
     # at s from where axes cross with the sine e the normal is tilted by s e^2/(sum of the radii): there the end
     # of a line of a mantle, found from its axis, is no point of the cylinder
-    if round_a + round_b > 0.0 and (1.0 - c * c) * max(g, h) > TILT * radii:
+    if round_a + round_b > 0.0 and (1.0 - c * c) * max(g, h) > LINE_CONTACT * radii:
         return count
     first = found[0].normal
     for end in range(4):
@@ -135,11 +132,11 @@ def ends_of_line(pair, ends_a, ends_b, least, most, count):
         n = minus(on_a, on_b)
         size = math.sqrt(dot(n, n))
         gap, owner = size - radii, NOBODY
-        if size > TOUCHING * (g + h):
+        if size > RESOLUTION * (g + h):
             n = n[0] / size, n[1] / size, n[2] / size
         else:  # sharp edges that touch: their distance has no direction
             n, owner = (first[0], first[1], first[2]), found[0].owner
-        beside = n[0] * first[0] + n[1] * first[1] + n[2] * first[2] > BESIDE
+        beside = n[0] * first[0] + n[1] * first[1] + n[2] * first[2] > SAME_DIRECTION
         if not (inside and beside and least <= gap <= most):
             continue
         on_a, on_b = plus(on_a, -round_a, n), plus(on_b, round_b, n)

@@ -21,12 +21,8 @@ from carom.collision.layout import BOX, CYLINDER, POINT, SEGMENT, Pair
 from carom.collision.round import point_point, point_segment, segment_segment
 from carom.collision.segments import ends_of_line
 from carom.collision.support import separation
-
-ROUNDING = 1e-12  # relative to the smaller solid
-#: least cosine between the contact normal and the normal of a reference face; the separation along the latter
-#: must also be at least the least gap minus `reach`
-ALIGNED = 0.7
-ON_FACE = 1.0 - 1e-12  # cosine from which on the contact normal is that of the face
+from carom.collision.thresholds import FACING
+from carom.geometry.thresholds import ROUND_OFF
 
 
 @entry
@@ -108,13 +104,13 @@ def _manifold(pair, reach):
     s, a, b, found = pair.state, pair.a, pair.b, pair.found
     n = found[0].normal
     nx, ny, nz, least = n[0], n[1], n[2], found[0].gap
-    tolerance = ROUNDING * min(a.extent, b.extent)
+    tolerance = ROUND_OFF * min(a.extent, b.extent)
     on_a = load_face(pair, 0, -nx, -ny, -nz)
     on_b = load_face(pair, 1, nx, ny, nz)
     if s.count[0] < 2 or s.count[1] < 2:
         return 1
     most, count = least + reach, 1
-    if max(on_a, on_b) > ALIGNED:
+    if max(on_a, on_b) > FACING:
         ref = 1 if on_b + 1e-9 >= on_a else 0
         m, f = s.normal[ref], 2.0 * ref - 1.0
         apart = separation(pair, f * m[0], f * m[1], f * m[2])
@@ -127,7 +123,7 @@ def _manifold(pair, reach):
             if mantle:
                 load_face(pair, inc, -f * nx, -f * ny, -f * nz)
     rims = (a.kind == CYLINDER and s.count[0] > 2) or (b.kind == CYLINDER and s.count[1] > 2)
-    if not (rims or max(on_a, on_b) > ON_FACE):  # the sides of a rim's polygon are no edges
+    if not (rims or max(on_a, on_b) > 1.0 - ROUND_OFF):  # the sides of a rim's polygon are no edges
         ends_a, ends_b = _lowest_side(s, 0, nx, ny, nz), _lowest_side(s, 1, -nx, -ny, -nz)
         before = count
         count = ends_of_line(pair, ends_a, ends_b, least - tolerance, most, count)

@@ -6,17 +6,15 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.gap import along_normal, gap_and_rate, plane_in_body, round_off
 from carom.contact.groups import unite
-from carom.contact.pair_point import REACH, find_touches, own_point, smaller, write_touch
+from carom.contact.pair_point import find_touches, own_point, smaller, write_touch
 from carom.contact.parting import beside_face
 from carom.contact.place import place_any
 from carom.contact.place_of_other import centre_of_other, centres_of_balls, on_half_space
-from carom.contact.rim import OTHER_SIDE, closed_rim, most_of_rim, way_round
+from carom.contact.rim import closed_rim, most_of_rim, way_round
 from carom.contact.stop import is_active, place_stop
+from carom.contact.thresholds import REACH, RIM_DISTANCE, RIM_TIME
 from carom.kinematics.contact_point import place
 from carom.model.arrays import STOP
-
-#: fraction of the step within which a rim that turns flat counts as flat
-RIM_TIME = 1.0 / 64.0
 
 
 @kernel
@@ -160,7 +158,7 @@ def is_same_point(system, active_point, point, state) -> bool:
     """Return whether a closed point with the feature of an active one is the same point."""
     contact, r, n = system.contacts[active_point.contact], point.arm_a, point.axes[0]
     moved = way_round(system, contact, n, (r[0], r[1], r[2]), active_point.point, state)
-    return moved < OTHER_SIDE
+    return moved < RIM_DISTANCE
 
 
 @kernel

@@ -17,13 +17,13 @@ import math
 
 from carom._compiled.decorators import inlined
 from carom.contact.gap import along_normal, gap_and_rate, plane_in_body, round_off
+from carom.geometry.thresholds import RESOLUTION
 from carom.kinematics.flight import point_bound
 from carom.model.workspace import FREE, RESTS
 
 #: verdicts on a step: no touch; a point is inside at the end; undecided because the step is too long; a rim in
 #: persistent contact on one side passes the flat position
 CLEAR, BELOW, UNSURE, FLAT_RIM = range(4)
-MISSED = 1e-9  # relative to the body: if no more can be missed, the cubic decides in any flight
 
 
 @inlined
@@ -83,7 +83,7 @@ def passage(system, controls, active, c, start, h, work):
     verdict, first, flies = CLEAR, h, work.body[contact.body].status == FREE
     tiny = max(controls.gap * contact.extent, round_off(contact, end))
     sag = 0.125 * a * h * h  # bound of the distance of a path from its chord
-    smooth = not flies or sag <= MISSED * contact.extent
+    smooth = not flies or sag <= RESOLUTION * contact.extent
     before, after = plane_in_body(contact, start), plane_in_body(contact, end)
     for i in range(contact.first, contact.last):
         z0, rate0 = gap_and_rate(before, system.vertices[i])
@@ -96,7 +96,7 @@ def passage(system, controls, active, c, start, h, work):
         first = min(first, t0)
         if not (z1 >= -tiny):
             # a touching point may be leaving, or other bodies may push it in by no more than may be missed
-            pushed = not flies and z1 >= -MISSED * contact.extent
+            pushed = not flies and z1 >= -RESOLUTION * contact.extent
             if not (z0 <= tiny and (pushed or (z0 < -tiny and z1 >= z0))):
                 verdict = BELOW
         elif (

@@ -12,12 +12,12 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.contact.closed_points import RIM_TIME, round_off_of_both
+from carom.contact import thresholds as limits
+from carom.contact.closed_points import round_off_of_both
 from carom.contact.continuous_detection import (
     BELOW,
     CLEAR,
     FLAT_RIM,
-    MISSED,
     UNSURE,
     ball_clears,
     cubic_clears,
@@ -26,15 +26,13 @@ from carom.contact.continuous_detection import (
 )
 from carom.contact.gap import slow
 from carom.contact.level import related
-from carom.contact.pair_point import REACH, find_touches, list_touches, smaller, touch_rate
+from carom.contact.pair_point import find_touches, list_touches, smaller, touch_rate
 from carom.contact.parting import stays_beside_face, time_apart
 from carom.contact.place_of_other import centre_of_other, centres_of_balls, on_half_space
-from carom.contact.rim import OTHER_SIDE, SMOOTH, closed_rim, longest_way, same_point
+from carom.contact.rim import closed_rim, longest_way, same_point
+from carom.geometry.thresholds import RESOLUTION
 from carom.kinematics.flight import relative_bound
 from carom.model.workspace import FREE, RESTS
-
-SHORT = 0.25  # displacement relative to the smaller body within which none passes through the other
-TURN = 0.5  # rotation in a step [rad] up to which points that are nearest at both ends are so in between
 
 
 @kernel
@@ -89,7 +87,7 @@ def nearest_touch(work, count):
 @kernel
 def flat_rim_strikes(system, contact, state, time, work):
     """Return whether a point of a rim that counts as flat approaches the other body."""
-    count = find_touches(system, contact, state, REACH * smaller(contact), work)
+    count = find_touches(system, contact, state, limits.REACH * smaller(contact), work)
     near = closed_rim(system, contact, work.touches[0].normal, state, time) if count > 0 else 0.0
     for i in range(count):
         touch = work.touches[i]
@@ -101,7 +99,7 @@ def flat_rim_strikes(system, contact, state, time, work):
 @unit
 def lowest_pair(system, contact, c, active, state, work) -> tuple[float, float]:
     """Return the least gap of two solids, over points that are not active, and its rate."""
-    count = find_touches(system, contact, state, REACH * smaller(contact), work)
+    count = find_touches(system, contact, state, limits.REACH * smaller(contact), work)
     return lowest_open(system, contact, c, count, active, state, work)
 
 
@@ -132,7 +130,7 @@ def passage_pair(system, controls, active, c, start, h, work) -> tuple[int, floa
     large arc.
     """
     contact, end, leaving = system.contacts[c], work.trial, active.contact_states[c].leaving
-    longest = RIM_TIME * controls.step
+    longest = limits.RIM_TIME * controls.step
     bounds, clear = far_apart(system, contact, start, end, h, work)
     if clear:
         return CLEAR, h
@@ -141,14 +139,14 @@ def passage_pair(system, controls, active, c, start, h, work) -> tuple[int, floa
     if contact.other >= 0:
         flies = flies and work.body[contact.other].status == FREE
     sag = 0.125 * bounds[1] * h * h
-    short = way_past(contact, start, end, h) <= SHORT * smaller(contact)
-    little = short and h * (bounds[3] + bounds[5]) <= TURN
-    smooth = short and (not flies or sag <= MISSED * smaller(contact))
+    short = way_past(contact, start, end, h) <= limits.SAFE_DISPLACEMENT * smaller(contact)
+    little = short and h * (bounds[3] + bounds[5]) <= limits.SAFE_ROTATION
+    smooth = short and (not flies or sag <= RESOLUTION * smaller(contact))
     smooth = smooth or (little and controls.order > 0 and is_integrated(system, contact))
     tiny = 4.0 * max(controls.gap * smaller(contact), round_off_of_both(contact, end))
     if not touching and stays_beside_face(system, contact, start, end, smooth, tiny, bounds, h):
         return CLEAR, h
-    count = find_touches(system, contact, end, REACH * smaller(contact), work)
+    count = find_touches(system, contact, end, limits.REACH * smaller(contact), work)
     if count == 0:
         hidden = touching or contact.surface > 0
         return (CLEAR, h) if hidden else passage_hidden(system, contact, start, bounds, h, work)
@@ -156,19 +154,19 @@ def passage_pair(system, controls, active, c, start, h, work) -> tuple[int, floa
     nearest = nearest_touch(work, count)
     if touching:
         moved = longest_way(system, contact, c, count, active, end, work)
-        if moved > SMOOTH and h > longest:
+        if moved > limits.RIM_STEP and h > longest:
             return UNSURE, 0.0
-        if moved > SMOOTH:
+        if moved > limits.RIM_STEP:
             if flat_rim_strikes(system, contact, start, longest, work):
                 return FLAT_RIM, 0.0
-            if moved > OTHER_SIDE and h > 0.1 * longest:
+            if moved > limits.RIM_DISTANCE and h > 0.1 * longest:
                 return UNSURE, 0.0
-            find_touches(system, contact, end, REACH * smaller(contact), work)
-    if not least >= -(tiny if not touching else MISSED * smaller(contact)):
+            find_touches(system, contact, end, limits.REACH * smaller(contact), work)
+    if not least >= -(tiny if not touching else RESOLUTION * smaller(contact)):
         before, _ = lowest_pair(system, contact, c, active, start, work)
         if before <= tiny:  # they touch already: they separate, or others push them
             if (before < -tiny and least >= before) or (
-                not flies and least >= -MISSED * smaller(contact)
+                not flies and least >= -RESOLUTION * smaller(contact)
             ):
                 return CLEAR, h
         return BELOW, 0.0
@@ -236,8 +234,8 @@ def passage_hidden(system, contact, start, bounds, h, work):
     last = time_apart(system, contact, nearest_touch(work, count), -1.0, end, bounds, h)
     count = list_touches(system, contact, start, 0.0, work)
     first = time_apart(system, contact, nearest_touch(work, count), 1.0, start, bounds, h)
-    bends = 0.125 * bounds[1] * h * h > MISSED * smaller(contact)
-    bends = bends or way_past(contact, start, end, h) > SHORT * smaller(contact)
+    bends = 0.125 * bounds[1] * h * h > RESOLUTION * smaller(contact)
+    bends = bends or way_past(contact, start, end, h) > limits.SAFE_DISPLACEMENT * smaller(contact)
     return (UNSURE, first) if first + last < h * (1.0 - 1e-12) and bends else (CLEAR, first)
 
 

@@ -40,11 +40,10 @@ from carom.collision.faces import LOWEST, along_edge, normal_of_face
 from carom.collision.features import EDGE, FACE, FIXED, OF_A, OF_B, first_of, second_of
 from carom.collision.layout import CYLINDER, ELLIPSOID
 from carom.collision.support import change_of_support
+from carom.collision.thresholds import LEAST_SINE
 from carom.geometry.rotation import multiply, rotate, rotate_back
+from carom.geometry.thresholds import RESOLUTION
 from carom.geometry.vectors import cross, dot, plus
-
-PARALLEL = 1e-7  # sine of the angle below which two edges have no common normal
-SHARP = 1e-9  # relative to the smaller solid: shorter radii of curvature count as zero
 
 
 class Core(NamedTuple):
@@ -116,7 +115,7 @@ def _two_edges(a, b, hulls, n):
     e, f = _edge(a, hulls), _edge(b, hulls)
     s = cross(n, e)
     along, other, sine = -dot(n, cross(a.w, e)), -dot(n, cross(b.w, f)), dot(s, f)
-    if not abs(sine) > PARALLEL:
+    if not abs(sine) > LEAST_SINE:
         return n, False
     across = (other - along * dot(e, f)) / sine
     return plus((across * s[0], across * s[1], across * s[2]), along, e), True
@@ -137,7 +136,7 @@ def _free_normal(a, b, hulls, n, d):
         rate, done = _two_edges(a, b, hulls, n)
         if done:
             return rate
-    sharp = SHARP * min(a.solid.extent, b.solid.extent)
+    sharp = RESOLUTION * min(a.solid.extent, b.solid.extent)
     turn_a, turn_b = cross(a.w, n), cross(b.w, n)
     rate = plus(plus(a.v, -1.0, b.v), 1.0, _bend(a, n, turn_a))
     rate = plus(rate, 1.0, _bend(b, n, turn_b))
@@ -196,7 +195,7 @@ def _follow(lead, other, hulls, n, d, rate, owner):
         e, s = _edge(lead, hulls), cross(n, _edge(other, hulls))
         miss = plus(plus(p, -1.0, step), -1.0, _along_support(other, n, rate))
         sine = dot(s, e)
-        if abs(sine) > PARALLEL:
+        if abs(sine) > LEAST_SINE:
             p = plus(p, -dot(s, miss) / sine, e)
     m = n
     if _kind(other) == FACE and owner != (OF_B if k > 0.0 else OF_A):  # a face, perhaps tilted

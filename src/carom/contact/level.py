@@ -13,7 +13,6 @@ from carom._compiled.units import unit
 from carom.collision.features import VERTEX_A
 from carom.collision.layout import BOX, CYLINDER, ELLIPSOID
 from carom.collision.level_surface import (
-    ROOM,
     carries,
     continues,
     distance_from_rim,
@@ -21,11 +20,10 @@ from carom.collision.level_surface import (
     height,
     nearest_face,
 )
+from carom.collision.thresholds import MARGIN
+from carom.contact.thresholds import BACK_SIDE, DEPTH
 from carom.geometry.rotation import rotate_back
-
-ON_PLANE = 1.0 - 1e-12  # cosine from which on a normal is that of the plane
-INTO = 8.0  # distance at which a normal is looked along, by the tolerance of a place on a surface
-BACK = -0.5  # cosine to the normal of a surface below which a contact is with the back of a solid
+from carom.geometry.thresholds import ROUND_OFF
 
 
 @unit
@@ -63,7 +61,7 @@ def on_surface(system, contact, touch):
     rounding = rounding_of(system.solids[contact.solid])
     if not carries(levels, surface, first, last, q, touch.gap, rounding):
         return False
-    face = levels.faces[face_below(levels, first, last, q, ROOM * surface.tolerance)]
+    face = levels.faces[face_below(levels, first, last, q, MARGIN * surface.tolerance)]
     for k in range(face.first_own, face.last_own):
         s = levels.own[k]
         if s != own and hides(system, contact, s, touch):
@@ -75,7 +73,7 @@ def on_surface(system, contact, touch):
 def solid_left(system, contact, touch):
     """Return the static solid nearest to a point of the row of a surface that is not above it, else -1."""
     levels, surface, q = system.levels, system.levels.surfaces[contact.surface - 1], touch.on_b
-    room = ROOM * surface.tolerance
+    room = MARGIN * surface.tolerance
     if face_below(levels, surface.first, surface.last, q, room) >= 0:
         return -1
     return levels.faces[nearest_face(levels, contact.first_level, contact.last_level, q)].solid
@@ -89,8 +87,8 @@ def solid_beyond(system, contact, point, state):
     levels, surface = system.levels, system.levels.surfaces[contact.surface - 1]
     n, e, x, r = point.axes[0], surface.normal, state[contact.body].x, point.arm_a
     q = (x[0] + r[0], x[1] + r[1], x[2] + r[2])
-    if n[0] * e[0] + n[1] * e[1] + n[2] * e[2] > ON_PLANE:
-        if face_below(levels, surface.first, surface.last, q, ROOM * surface.tolerance) >= 0:
+    if n[0] * e[0] + n[1] * e[1] + n[2] * e[2] > 1.0 - ROUND_OFF:
+        if face_below(levels, surface.first, surface.last, q, MARGIN * surface.tolerance) >= 0:
             return -1
     return levels.faces[nearest_face(levels, contact.first_level, contact.last_level, q)].solid
 
@@ -119,16 +117,16 @@ def hides(system, contact, s, touch):
     It does if the row of the surface has the point, or if the whole surface has no such normal there.
     """
     levels, surface, q, m = system.levels, system.levels.surfaces[s], touch.on_b, touch.normal
-    room, n = ROOM * surface.tolerance, surface.normal
+    room, n = MARGIN * surface.tolerance, surface.normal
     along, above = n[0] * m[0] + n[1] * m[1] + n[2] * m[2], height(surface, q)
-    if above > room or along < BACK:
+    if above > room or along < BACK_SIDE:
         return False
     if above < -room:
         return buried(system, surface, q, m, above)
     below = face_below(levels, surface.first, surface.last, q, room)
     if below < 0:
         return False
-    flat = along > ON_PLANE
+    flat = along > 1.0 - ROUND_OFF
     if flat and touch.feature >> 60 in (0, VERTEX_A):
         rounding = rounding_of(system.solids[contact.solid])
         return carries(levels, surface, surface.first, surface.last, q, touch.gap, rounding)
@@ -146,8 +144,8 @@ def buried(system, surface, q, m, above):
 
     The point must be in the upper half of that solid: below it, a side may be bare.
     """
-    levels, room = system.levels, ROOM * surface.tolerance
-    p = (q[0] + INTO * room * m[0], q[1] + INTO * room * m[1], q[2] + INTO * room * m[2])
+    levels, room = system.levels, MARGIN * surface.tolerance
+    p = q[0] + DEPTH * room * m[0], q[1] + DEPTH * room * m[1], q[2] + DEPTH * room * m[2]
     for i in range(surface.first, surface.last):
         face, d2 = levels.faces[i], 0.0
         for k in range(3):

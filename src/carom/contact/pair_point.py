@@ -14,16 +14,15 @@ from carom.collision.layout import Placed, Plane
 from carom.collision.plane import plane_unit
 from carom.collision.touch import touch_unit
 from carom.contact.drift import drift_of_solids
-from carom.contact.level import ON_PLANE, keep_real_touches, solid_beyond, solid_left
+from carom.contact.level import keep_real_touches, solid_beyond, solid_left
 from carom.contact.place_of_other import on_half_space
 from carom.contact.rim import same_point
 from carom.contact.roll import roll_on_plane
+from carom.contact.thresholds import ACTIVE_REACH
 from carom.geometry.rotation import rotate, rotate_back
+from carom.geometry.thresholds import ROUND_OFF
 from carom.kinematics.wrench import point_velocity
 from carom.model.workspace import STATIC
-
-REACH = 1e-3  # relative to the smaller body: points are listed up to this above the least gap
-ACTIVE_REACH = 0.2  # the same for active points, which stay active in the iterations of a step
 
 
 @kernel
@@ -97,7 +96,7 @@ def write_touch(contact, touch, state, point):
             point.arm_b[k] = touch.on_b[k] - state[contact.other].x[k]
         elif contact.static == 1:
             point.arm_b[k] = touch.on_b[k]
-    beyond = contact.surface > 0 and not n[0] * e[0] + n[1] * e[1] + n[2] * e[2] > ON_PLANE
+    beyond = contact.surface > 0 and not n[0] * e[0] + n[1] * e[1] + n[2] * e[2] > 1.0 - ROUND_OFF
     if beyond or not on_half_space(contact):
         tangents(n[0], n[1], n[2], point.axes)
         return

@@ -13,11 +13,8 @@ import math
 from carom._compiled.decorators import kernel
 from carom.collision.layout import CYLINDER
 from carom.contact.place_of_other import on_half_space
+from carom.contact.thresholds import FLAT_RIM, RIM_DISTANCE
 from carom.geometry.rotation import rotate, rotate_back
-
-FLAT = 0.2  # sine of the tilt below which a rim is nearly flat
-OTHER_SIDE = 1.5  # squared displacement, relative to r, from which on it is a different point
-SMOOTH = 0.03  # the same, up to which a step may follow the point: 10 degrees
 
 
 @kernel
@@ -40,7 +37,7 @@ def flat_rim(system, contact, n, state):
         solid = system.solids[contact.solid if side == 0 else contact.other_solid]
         if solid.kind == CYLINDER:
             x, y, z = in_solid(solid, contact, side, state, n)
-            if 1.0 - z * z < FLAT * FLAT:
+            if 1.0 - z * z < FLAT_RIM * FLAT_RIM:
                 return solid.half[0], math.sqrt(x * x + y * y)  # exact for a small tilt, too
     return 0.0, 0.0
 
@@ -68,7 +65,7 @@ def way_to(system, contact, touch, p, state):
 @kernel
 def same_point(system, contact, touch, feature, p, state):
     """Return whether a found point is the point with this feature that was at p (body axes)."""
-    return touch.feature == feature and way_to(system, contact, touch, p, state) < OTHER_SIDE
+    return touch.feature == feature and way_to(system, contact, touch, p, state) < RIM_DISTANCE
 
 
 @kernel

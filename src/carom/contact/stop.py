@@ -9,9 +9,10 @@ from __future__ import annotations
 
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.units import unit
-from carom.contact.continuous_detection import BELOW, CLEAR, MISSED, UNSURE, cubic_clears
+from carom.contact.continuous_detection import BELOW, CLEAR, UNSURE, cubic_clears
 from carom.contact.gap import round_off, slow
 from carom.contact.pair_point import tangents
+from carom.geometry.thresholds import RESOLUTION
 from carom.kinematics.contact_point import contact_velocity
 from carom.kinematics.coordinate import drift, value
 from carom.kinematics.joints import arm, axis, parent_arm
@@ -85,7 +86,7 @@ def passage_stop(system, controls, active, c, start, h, work):
     z1, rate1 = stop_gap(system, contact, end, work)
     tiny = max(controls.gap * contact.extent, round_off(contact, end))
     if not (z1 >= -tiny):
-        slightly = z1 >= -MISSED * contact.extent
+        slightly = z1 >= -RESOLUTION * contact.extent
         if z0 <= tiny and (slightly or (z0 < -tiny and z1 >= z0)):
             return CLEAR, 0.0
         return BELOW, 2.0 * safe_time(z0, rate0, z1, rate1, h, tiny)

@@ -7,12 +7,14 @@ import math
 import numpy as np
 
 from carom import checks
-from carom.dynamics.adapt import FIRST, time_of_bounces
+from carom.dynamics.adapt import time_of_bounces
+from carom.dynamics.thresholds import FIRST_STEP
+from carom.geometry.thresholds import ROUND_OFF
 from carom.model import records as r
 from carom.run import Run
 from carom.status import Status
-from carom.stepping.grid import ALIKE, Grid, count, longest_step
-from carom.stepping.settings import MOST_STEPS
+from carom.stepping.grid import Grid, count, longest_step
+from carom.stepping.thresholds import MOST_STEPS
 
 BLOCK = 1024  # steps for which there is room at first
 PART = 65536  # rows for which room is made at a time
@@ -60,7 +62,7 @@ class Endless(Run):
             most = MOST_STEPS * step
             duration = checks.number("duration", duration, above=0.0, most=most, unit="s")
             steps = round(duration / step)
-            if steps < 1 or abs(steps * step - duration) > 1e3 * ALIKE * duration:
+            if steps < 1 or abs(steps * step - duration) > 1e3 * ROUND_OFF * duration:
                 raise ValueError(
                     f"duration must be a whole multiple of the step of {step:g} s, got {duration!r}"
                 )
@@ -102,7 +104,7 @@ class Endless(Run):
         self.grid = self.grid._replace(interval=piece)
         if self.asked == 1:
             flies = system.bodies["ballistic"] == 1
-            self.work.body["ahead"] = np.where(flies, 1.0, FIRST) * piece
+            self.work.body["ahead"] = np.where(flies, 1.0, FIRST_STEP) * piece
 
     def make_ends(self, until: int) -> None:
         """Make the list of the ends of steps longer where it is too short."""

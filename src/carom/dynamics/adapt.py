@@ -9,7 +9,7 @@ where L is its size (`extent`), V its greatest speed and a its greatest accelera
 rotation at the distance L. So an error of velocity counts as the displacement that it causes while the body
 moves by its own size. A step is accepted if for all bodies
 
-    miss <= LOCAL (atol + rtol max(L, h V)),
+    miss <= ERROR_SHARE (atol + rtol max(L, h V)),
 
 a fraction of the tolerance of a run, because errors of steps add up. Order 8 has two estimates: miss = miss_5^2
 / sqrt(miss_5^2 + miss_3^2/100) (Hairer, Norsett and Wanner 1993). Groups in contact have the estimates of
@@ -25,13 +25,8 @@ import math
 import numpy as np
 
 from carom._compiled.decorators import kernel
+from carom.dynamics import thresholds as limits
 from carom.geometry.rotation import norm
-
-SAFETY, LEAST, MOST = 0.9, 0.2, 10.0
-LOCAL = 0.1
-FIRST = 1e-3  # length of the first trial step, relative to a step of the run
-NEARLY = 0.99  # of the time left: a step longer than this takes all of it
-NOTHING_LEFT = 1e-14  # least length of a step, relative to the duration
 
 
 @kernel
@@ -95,7 +90,7 @@ def greatest_error(weight, h, L, T, b, work):
 @kernel
 def allowed_error(rtol, atol, extent, scale):
     """Return the tolerance for the error of a body in a step [m]."""
-    return LOCAL * (atol + rtol * max(extent, scale))
+    return limits.ERROR_SHARE * (atol + rtol * max(extent, scale))
 
 
 @kernel
@@ -131,13 +126,14 @@ def allowed_step(left, work):
 @kernel
 def part_of(left, ahead):
     """Return the next step within the time `left`: `ahead`, or half or all of it if 2 `ahead` do not fit."""
-    return ahead if 2.0 * ahead <= left else 0.5 * left if ahead < NEARLY * left else left
+    return ahead if 2.0 * ahead <= left else 0.5 * left if ahead < limits.FINISH * left else left
 
 
 @kernel
 def shrunk(error, order):
     """Return the factor for the length of a step whose error was too large."""
-    return max(LEAST, SAFETY * error ** (-1.0 / order)) if math.isfinite(error) else LEAST
+    factor = limits.SAFETY * error ** (-1.0 / order)
+    return factor if factor > limits.SHRINKAGE else limits.SHRINKAGE  # if the error is NaN, too
 
 
 @kernel
@@ -153,16 +149,16 @@ def shorter(dt, error, clock, work):
 @kernel
 def plan(memory, dt, error, again, order, longest):
     """Store in `memory` the length `ahead` of the next step; the others are as in `plan_next`."""
-    factor = MOST
+    factor = limits.GROWTH
     if error > 0.0:
-        factor = min(MOST, SAFETY * error ** (-1.0 / order))
+        factor = min(limits.GROWTH, limits.SAFETY * error ** (-1.0 / order))
     fits = factor * dt
     trend = fits / memory.fits if memory.fits > fits else 1.0
     memory.fits = fits
-    if factor == MOST:
+    if factor == limits.GROWTH:
         ahead = max(memory.ahead, fits)
     else:
-        ahead = min(dt if again else fits, max(LEAST, trend) * fits)
+        ahead = min(dt if again else fits, max(limits.SHRINKAGE, trend) * fits)
     memory.ahead = min(ahead, longest)
 
 

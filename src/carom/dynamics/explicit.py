@@ -15,16 +15,17 @@ from carom.dynamics.acceleration import accelerations
 from carom.dynamics.adapt import forget_misses, note_misses
 from carom.dynamics.known_end import keep_end, of_state_alone, recall
 from carom.dynamics.loops import dropped_rows
-from carom.dynamics.project import LOST, project_position, project_velocity
-from carom.dynamics.singular_positions import SINGULAR, is_singular, pass_round, return_stage, steps
+from carom.dynamics.project import project_position, project_velocity
+from carom.dynamics.singular_positions import is_singular, pass_round, return_stage, steps
+from carom.dynamics.thresholds import SINGULARITY, STAGE_TURN
 from carom.geometry.rotation import multiply, normalize
+from carom.geometry.thresholds import RESOLUTION, SMALLEST
 from carom.kinematics.flight import free_flight
 from carom.model.workspace import FREE, HELD, RESTS
 from carom.status import CONSTRAINTS_LOST
 
 EVERY_ROW = 1 << 30  # more rows than any system has
-#: rotation of a body [rad] for each stage of a part of a step (0.3 for `rk4`), and greatest number of parts
-TURN, MOST_PARTS, TINY = 0.075, 100, 1e-300
+MOST_PARTS = 100  # of a step, each with at most `STAGE_TURN` a stage
 
 
 @inlined
@@ -68,7 +69,7 @@ def whole_step(method, system, active, start, h, end, work):
     for part in range(MOST_PARTS):
         dt = left
         if not estimates and part < MOST_PARTS - 1:
-            dt = min(left, TURN * stages / max(fastest_spin(system, first, work), TINY))
+            dt = min(left, STAGE_TURN * stages / max(fastest_spin(system, first, work), SMALLEST))
         result.begin = begin + (h - left)
         with_care(method, system, active, first, dt, end, work)
         applied += result.applied
@@ -185,7 +186,7 @@ def constrained_step(tableau, system, active, start, care, h, end, work):
             applied += h * weight[0] * work.result[0].power
             continue
         accelerations(system, stage, work, work.stages[s])
-        dropped = dropped_rows(system, SINGULAR)
+        dropped = dropped_rows(system, SINGULARITY)
         least, most = min(least, dropped), max(most, dropped)
         if care:
             pass_round(system, stage, end, work, work.stages[s])
@@ -218,7 +219,7 @@ def return_to_joints(system, state, end, work):
     for b in range(state.shape[0]):
         if not steps(system, b, work):
             copy_state(end[b], state[b])
-    if not (project_position(system, state, True, 1e-14, work) <= LOST):
+    if not (project_position(system, state, True, 1e-14, work) <= RESOLUTION):
         return False
     project_velocity(system, state, False, work)
     return True

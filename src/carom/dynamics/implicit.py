@@ -28,9 +28,10 @@ from carom.dynamics.explicit import (
     forget_bounds,
 )
 from carom.dynamics.forces import applied_wrenches
-from carom.dynamics.project import LOST, project_position, project_velocity, shift
+from carom.dynamics.project import project_position, project_velocity, shift
 from carom.dynamics.solve import solve
 from carom.dynamics.stiff import along_row, stretch
+from carom.geometry.thresholds import RESOLUTION
 from carom.model.arrays import STIFF
 from carom.status import CONSTRAINTS_LOST
 
@@ -80,7 +81,7 @@ def whole_step(system, start, h, end, work):
         move(start[b], h, second.speed, second.rate, end[b])
     forget_bounds(work)
     bound_accelerations(work, 2)
-    if not (project_position(system, end, False, 1e-14, work) <= LOST):
+    if not (project_position(system, end, False, 1e-14, work) <= RESOLUTION):
         result.code = CONSTRAINTS_LOST
     project_velocity(system, end, False, work)
     result.applied = 0.5 * h * power + damper_work(system, start, h, end)

@@ -1,4 +1,4 @@
-"""Closed loops of bodies whose masses and moments differ by more than `SPREAD`.
+"""Closed loops of bodies whose masses and moments differ by more than `MASS_RATIO`.
 
 A M^-1 A^T is the sum of the compliances of all bodies. Light bodies have large compliances. If a light body is
 between two heavy ones, the compliance of the heavy ones is a small difference of large numbers, a fraction
@@ -23,9 +23,8 @@ from carom._compiled.decorators import kernel
 from carom.dynamics.double_double import add, add_product, inverse_root, multiply, subtract_product
 from carom.dynamics.elements import build_rows, row_target
 from carom.dynamics.loops import eliminate, forget_pose, gather
+from carom.dynamics.thresholds import LAST_PIVOT
 from carom.geometry.rotation import rotate, rotate_back
-
-LEAST = 1e-29  # of a diagonal: smaller pivots are round-off of 31 digits
 
 
 @kernel
@@ -150,7 +149,7 @@ def factor_block(high, low, row, root, rest, n):
     """
     for k in range(n):
         d, e = high[k, k], low[k, k]
-        least = LEAST * d
+        least = LAST_PIVOT * d
         for s in range(k):
             d, e = subtract_product(d, e, high[k, s], low[k, s], high[k, s], low[k, s])
         root[k], rest[k] = 0.0, 0.0

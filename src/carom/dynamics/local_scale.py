@@ -17,12 +17,9 @@ from carom._compiled.units import unit
 from carom.dynamics.energy import kinetic_energy
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.solve import solve
+from carom.dynamics.thresholds import LOAD_STEP
 from carom.geometry.rotation import norm, rotate_back
 from carom.model.controls import Controls
-
-#: longest step of a body that is in contact and loaded, relative to the time in which its load would move it by
-#: its own size: without contacts it would then move by PUSHED^2 of this size, and pass through nothing
-PUSHED = 0.2
 
 
 @kernel
@@ -38,7 +35,7 @@ def note_scale(system, controls, state, clock, work):
     if clock.pull > 0.0:
         clock.scale = math.sqrt(length / clock.pull)
         if clock.able > 0.0:
-            clock.longest = PUSHED * math.sqrt(2.0 * size / clock.pull)
+            clock.longest = LOAD_STEP * math.sqrt(2.0 * size / clock.pull)
         return
     speed = greatest_speed(system, state)
     if speed > 0.0:

@@ -6,13 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from carom.dynamics.thresholds import PARTICIPATION, RANK
 from carom.geometry import quaternion
 from carom.model.arrays import INERTIA, RELATION
 from carom.options import Options
 from carom.scene.remarks import remarks
-
-DEPENDENT = 1e-8  # relative to the largest singular value of rows of length 1
-TAKES_PART = 1e-6  # least component of a row that takes part, in a vector of length 1
 
 
 @dataclass(frozen=True)
@@ -158,7 +156,7 @@ def _dependent(A, owner, system) -> tuple[int, np.ndarray]:
     matrix = A[rows].reshape(len(rows), -1)
     matrix = matrix / np.linalg.norm(matrix, axis=1, keepdims=True)
     left, size, _ = np.linalg.svd(matrix)
-    rank = int(np.sum(size > DEPENDENT * size[0]))
-    part = np.linalg.norm(left[:, rank:], axis=1) > TAKES_PART
+    rank = int(np.sum(size > RANK * size[0]))
+    part = np.linalg.norm(left[:, rank:], axis=1) > PARTICIPATION
     involved[owner[rows[part]]] = True
     return len(rows) - rank, involved

@@ -11,12 +11,11 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom._compiled.user_functions import call_function
 from carom.dynamics.curve import curve, find_piece
+from carom.dynamics.thresholds import ROTATION
 from carom.geometry.rotation import multiply
 from carom.kinematics.coordinate import push, rate, value
 from carom.model.arrays import PRISMATIC
 from carom.model.parts_of_system import has_relations
-
-FAR = 1.5  # rotation [rad] in a trial step, by the rates at its ends: safely below half a turn
 
 
 @kernel
@@ -147,6 +146,6 @@ def turns_round(system, start, end, h) -> bool:
     """Return whether an angle may turn so far in a step that its whole turns are not known."""
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
-        if c.kind != PRISMATIC and not h * max(abs(rate(c, start)), abs(rate(c, end))) <= FAR:
+        if c.kind != PRISMATIC and not h * max(abs(rate(c, start)), abs(rate(c, end))) <= ROTATION:
             return True
     return False

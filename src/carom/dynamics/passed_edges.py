@@ -10,11 +10,9 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.collision.features import NOBODY, OF_A
 from carom.collision.layout import BOX, HULL
+from carom.dynamics.thresholds import EDGE_JUMP, NORMAL_ERROR
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
-
-JUMP = 1e-6  # of a component: those of a normal that has turned with its face differ by round-off
-EDGE_JUMP = 1e-3  # the same for edges: those of level faces have normals that differ by 4.5e-5 (`clip.LEVEL`)
 
 
 @kernel
@@ -33,7 +31,7 @@ def note_passed(system, active, k, group, start, end):
         if closed_point.turns > 0 or closed_point.own == 0:
             continue
         active_point = active.points[closed_point.active]
-        contact, least = system.contacts[active_point.contact], JUMP
+        contact, least = system.contacts[active_point.contact], NORMAL_ERROR
         jumps = active_point.touches == 1 and active_point.owner != NOBODY
         if jumps and point.owner == NOBODY:
             jumps, least = are_sharp(system, contact), EDGE_JUMP

@@ -16,10 +16,8 @@ from carom.dynamics.elements import position_error, velocity_error
 from carom.dynamics.rotors import keep_rates
 from carom.dynamics.solve import solve, solve_near
 from carom.geometry.rotation import turn
+from carom.geometry.thresholds import EPSILON
 from carom.model.parts_of_system import has_joints
-
-ROUND_OFF = 4.4e-16  # two units in the last place
-LOST = 1e-9  # relative to a body: an error of position that cannot be corrected
 
 
 @kernel
@@ -40,7 +38,7 @@ def largest_position_error(system, state, work):
     for j in range(system.joints.shape[0]):
         bias, child = work.joint[j].bias, system.joints[j].child
         size, x = 1.0 / system.bodies[child].extent, state[child].x
-        near = ROUND_OFF * (abs(x[0]) + abs(x[1]) + abs(x[2]))
+        near = 2.0 * EPSILON * (abs(x[0]) + abs(x[1]) + abs(x[2]))
         position_error(system, j, state, work)
         for k in range(6):
             e = abs(bias[k]) if k < 3 else (abs(bias[k]) - near) * size

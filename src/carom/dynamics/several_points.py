@@ -6,6 +6,7 @@ from carom._compiled.decorators import kernel
 from carom.dynamics.contact_impulse import acts, add_impulse, alone, clear_wrenches, spread
 from carom.dynamics.solve import free_body, solve
 from carom.geometry.rotation import cross
+from carom.geometry.thresholds import ROUND_OFF
 from carom.kinematics.contact_point import (
     contact_acceleration,
     contact_motion,
@@ -13,8 +14,6 @@ from carom.kinematics.contact_point import (
     in_axes,
 )
 from carom.kinematics.rows import inverse_inertia, symmetric_times
-
-ROUND_OFF = 1e-12  # of the trace of W of one point
 
 
 @kernel

@@ -22,14 +22,14 @@ from carom._compiled.units import unit
 from carom.dynamics.acceleration import accelerations
 from carom.dynamics.loops import dropped_rows
 from carom.dynamics.project import project_position, project_velocity
+from carom.dynamics.thresholds import SINGULAR_GROWTH, SINGULAR_TURN, SINGULARITY
 from carom.geometry.rotation import turn
 from carom.model.arrays import LOOPS
 from carom.model.parts_of_system import has_loops
 from carom.model.workspace import RESTS
 
-SINGULAR = 1e-5  # relative to a row's diagonal: the square of the angle to the rows before it
 # bodies turn by this angle in the time T; if rows still depend on each other, by more
-NEAR, FARTHER, LONGER_TIMES = 1e-2, 3.0, 2
+LONGER_TIMES = 2  # greatest number of tries with larger angles
 
 
 @kernel
@@ -60,15 +60,15 @@ def pass_round(system, stage, sums, work, rates):
     `sums` is workspace: the velocities of the bodies that step. If all positions on the path are singular, the
     accelerations do not change.
     """
-    dropped, usual, result = dropped_rows(system, SINGULAR), system.solver.usual, work.result[0]
+    dropped, usual, result = dropped_rows(system, SINGULARITY), system.solver.usual, work.result[0]
     if dropped <= usual[0]:
         return
-    pace, time, reach = turning_pace(system, stage), result.time, NEAR
+    pace, time, reach = turning_pace(system, stage), result.time, SINGULAR_TURN
     for _ in range(LONGER_TIMES if pace > 0.0 else 0):
         power, most = _sum_rates(system, stage, sums, work, rates, reach, pace)
         result.time = time
         if most > usual[0]:
-            reach *= FARTHER
+            reach *= SINGULAR_GROWTH
             continue
         for b in range(stage.shape[0]):
             if steps(system, b, work):
@@ -111,7 +111,7 @@ def _sum_rates(system, stage, sums, work, rates, reach, pace):
         work.result[0].time = time + ahead
         return_stage(system, work.middle, work)
         accelerations(system, work.middle, work, rates)
-        most = max(most, dropped_rows(system, SINGULAR))
+        most = max(most, dropped_rows(system, SINGULARITY))
         power += share * work.result[0].power
         for b in range(stage.shape[0]):
             if steps(system, b, work):

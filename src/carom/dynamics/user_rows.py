@@ -15,10 +15,9 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.user_functions import call_function
+from carom.dynamics.thresholds import DISPLACEMENT
 from carom.geometry.rotation import multiply, turn
 from carom.kinematics.rows import mass_row
-
-DISPLACEMENT = 1e-5  # relative to the size of a body
 
 
 @kernel

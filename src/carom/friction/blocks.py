@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.friction.lu import factor, substitute
-
-_LEAST = 1e-14  # pivots smaller than this are replaced by it
+from carom.friction.thresholds import LEAST_PIVOT
 
 
 @kernel
@@ -17,7 +16,7 @@ def factor_blocks(work):
     for n in range(work.place.shape[0]):
         place = work.place[n]
         diagonal, pivot = block[place.body], work.body[place.body].pivot
-        factor(diagonal, 6, pivot, _LEAST)
+        factor(diagonal, 6, pivot, LEAST_PIVOT)
         for s in range(place.pair, place.pairs_end):
             _divide(block[below + s], diagonal, pivot)
         for t in range(place.update, place.updates_end):

@@ -7,8 +7,7 @@ from carom.friction import layout as o
 from carom.friction.cone import slope
 from carom.friction.local import solve_local
 from carom.friction.lu import factor, substitute
-
-_LEAST_PIVOT = 1e-14
+from carom.friction.thresholds import LEAST_PIVOT
 
 
 @kernel
@@ -99,7 +98,7 @@ def factor_newton(work, k, eps):
         j2[place] -= e * d21
         j2[place + 1] += 1.0 - e * d22
         place += 2
-    factor(work.matrix, m, work.pivot, _LEAST_PIVOT)
+    factor(work.matrix, m, work.pivot, LEAST_PIVOT)
     work.count[o.FACTOR_ROWS] = m
 
 

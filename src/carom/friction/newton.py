@@ -14,11 +14,9 @@ from carom._compiled.units import unit
 from carom.friction import layout as o
 from carom.friction.cone import project
 from carom.friction.operators import factor, multiply, solve
+from carom.friction.thresholds import CHORD_GAIN, NEWTON_FLOOR, SHORTEST_SEARCH
 
 _LIMIT = 100
-_FLOOR = 1e-13  # an |f| below this part of 1 + |p| is enough, unless a step still halves it
-_SHORTEST = 1e-3  # shortest step of the line search
-_CHORD = 0.1  # factors are used again if the last step reduced f to this part or less
 
 
 @unit
@@ -47,18 +45,18 @@ def newton(work, k, eps, patient):
             t = _search(work, k, bound)
             if t == 0.0:
                 break
-        elif not _mismatch(work, k, t) < _CHORD * size:
+        elif not _mismatch(work, k, t) < CHORD_GAIN * size:
             work.count[o.FACTOR_ROWS] = -1
-            if size < _FLOOR * largest_impulse(work, k):
+            if size < NEWTON_FLOOR * largest_impulse(work, k):
                 break
             continue
         for i in range(3 * k):
             p[i] += t * step[i]
         before1, before2, before3 = size, before1, before2
         size = _arrive(work, k, eps)
-        if size < _FLOOR * largest_impulse(work, k) and not size < 0.5 * before1:
+        if size < NEWTON_FLOOR * largest_impulse(work, k) and not size < 0.5 * before1:
             break
-        if not size < _CHORD * before1:
+        if not size < CHORD_GAIN * before1:
             work.count[o.FACTOR_ROWS] = -1
     work.count[o.ITERATIONS] += count
     work.mismatch[0] = size
@@ -84,7 +82,7 @@ def step(work, k, eps):
 def _search(work, k, bound):
     """Return the first of t = 1, 1/2, ... with |f| well below the bound; else the best, 0 if none is below."""
     t, best_t, best = 1.0, 0.0, bound
-    while t >= _SHORTEST:
+    while t >= SHORTEST_SEARCH:
         trial = _mismatch(work, k, t)
         if trial < best:
             best_t, best = t, trial

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-
-_EMPTY = 1e-13  # of the trace of W_tt: smaller eigenvalues are directions in which nothing moves
+from carom.geometry.thresholds import ROUND_OFF
 
 
 @kernel
@@ -54,7 +53,7 @@ def basis_of(W):
         return 0.0, 0.0, 1.0, 0.0
     a11, a12, a22 = w11 - wn1 * wn1 / wnn, w12 - wn1 * wn2 / wnn, w22 - wn2 * wn2 / wnn
     d1, d2, c, s = eigenbasis(a11, a12, a22)
-    least = _EMPTY * (w11 + w22)
+    least = ROUND_OFF * (w11 + w22)
     return d1 if d1 > least else 0.0, d2 if d2 > least else 0.0, c, s
 
 

@@ -10,9 +10,7 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 from carom.friction.one_contact import eigenbasis
-
-# Pivots of B below this part of its trace count as zero (a rail, or a planar problem in space).
-_EMPTY = 1e-13
+from carom.geometry.thresholds import ROUND_OFF
 
 
 @kernel
@@ -25,13 +23,13 @@ def solve_tangential(b11, b12, b22, x, y):
     if b11 >= b22:
         ratio = b12 / b11
         left = b22 - ratio * b12
-        if left > _EMPTY * trace:
+        if left > ROUND_OFF * trace:
             second = (y - ratio * x) / left
             return (x - b12 * second) / b11, second
     else:
         ratio = b12 / b22
         left = b11 - ratio * b12
-        if left > _EMPTY * trace:
+        if left > ROUND_OFF * trace:
             first = (x - ratio * y) / left
             return first, (y - b12 * first) / b22
     # Rank one: B = trace d d^T, B^+ = B / trace^2.

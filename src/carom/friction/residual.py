@@ -1,8 +1,8 @@
 """The residual of the contact problem for given impulses (mathematics page, §3.2).
 
 The residual of a contact, in units of velocity, is |p - P_K(p - rho (w + s e_n))| / rho, rho = 3 / trace W_ii,
-with s = mu |w_t| (the natural map of de Saxce's form). The tolerance is ``RELATIVE`` times the greatest
-velocity without impulses, plus ``ROUND_OFF`` times the greatest (|W| |p|)_i.
+with s = mu |w_t| (the natural map of de Saxce's form). The tolerance is ``RESIDUAL`` times the greatest
+velocity without impulses, plus ``SUM_ERROR`` times the greatest (|W| |p|)_i.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from carom.friction.cone import nearest, shift
 from carom.friction.layout import CONE, SLIDING
 from carom.friction.newton import velocity
 from carom.friction.operators import magnitude
-
-RELATIVE, ROUND_OFF = 1e-10, 50.0 * 2.220446049250313e-16
+from carom.friction.thresholds import RESIDUAL
+from carom.geometry.thresholds import SUM_ERROR
 
 #: greatest values at the start: residual, |c_i|, (|W| |p|)_i, penetration, violation, complementarity
 NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -84,7 +84,7 @@ def with_contact(greatest, cone, scale, p, w):
 def summary(greatest):
     """Return the result of `measure` for the greatest values of all contacts."""
     worst, velocity, size, penetration, violation, complementarity = greatest
-    return worst, RELATIVE * velocity + ROUND_OFF * size, penetration, violation, complementarity
+    return worst, RESIDUAL * velocity + SUM_ERROR * size, penetration, violation, complementarity
 
 
 @kernel
@@ -103,5 +103,5 @@ def residual(work, k):
             worst = r
         largest = max(largest, max(abs(c[n]), abs(c[n + 1]), abs(c[n + 2])) / t.scale)
     size = magnitude(work, k)
-    goal = max(1e-14 * largest + 0.08 * ROUND_OFF * size, work.mismatch[o.ENOUGH] * largest)
-    return worst, goal, RELATIVE * largest + ROUND_OFF * size
+    goal = max(1e-14 * largest + 0.08 * SUM_ERROR * size, work.mismatch[o.ENOUGH] * largest)
+    return worst, goal, RESIDUAL * largest + SUM_ERROR * size

@@ -7,27 +7,22 @@ import math
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.friction import layout as o
+from carom.friction import thresholds as limits
 from carom.friction.alternating import alternate
 from carom.friction.cone import project
 from carom.friction.newton import copy, largest_impulse, newton
 from carom.friction.operators import sweep
 from carom.friction.residual import residual
+from carom.geometry.thresholds import ROUND_OFF
 
-_EPS = 1e-8  # weight of the proximal term
-# its weight where W has an eigenvalue below _EPS in a direction of the solution: each round removes the part
-# lambda/(lambda + eps) of the bias in that direction
-_LEAST_EPS = 1e-14
 _POLISH = 8  # greatest number of rounds, each with a new proximal centre
 _STARTS = 20  # greatest number of starting points
 _EXTRA = 2  # further starting points if the tolerance is satisfied, but not round-off; or a hundred times that
-_NEARLY = 100.0
-_SETTLED = 1e-12  # relative to the impulses: |f| of equations that are solved
 _FIRST_SWEEPS = 25  # at first; twice as many each time, up to
 _MOST_SWEEPS = 200
 _ALTERNATIONS = 300
-_RELEASE_FROM, _RELEASE_BY = 0.1, 0.3  # weights of the proximal term in a release
 _RELEASES = 60
-_ALLOWED, _AMOUNT = 300, 1e6  # budget of a search: the greater of 300 and 1e6 / k^2 iterations
+_ALLOWED = 300  # budget of a search: the greater of 300 and SEARCH_BUDGET / k^2 iterations
 
 
 @unit
@@ -70,7 +65,7 @@ def search(work, k):
         # where W is singular, round-off in c may be outside its range: then no start has a smaller residual
         if r <= 0.9 * tolerance and settled(work, k):
             break
-        if least <= _NEARLY * tolerance:
+        if least <= limits.ENOUGH_RESIDUAL * tolerance:
             last = min(last, start + 1 + _EXTRA)
     copy(k, best, p)
 
@@ -78,7 +73,7 @@ def search(work, k):
 @kernel
 def budget(k):
     """Return the number of iterations that a search among k contacts may use."""
-    return max(_ALLOWED, int(_AMOUNT / (k * k)))
+    return max(_ALLOWED, int(limits.SEARCH_BUDGET / (k * k)))
 
 
 @kernel
@@ -115,7 +110,7 @@ def release(work, k, enough):
     """
     p, kept, centre = work.vector[o.ITERATE], work.vector[o.START_BEST], work.vector[o.CENTRE]
     copy(k, p, kept)
-    eps = _RELEASE_FROM
+    eps = limits.RELEASE_START
     for _ in range(_RELEASES):
         if spent(work):
             break
@@ -125,12 +120,12 @@ def release(work, k, enough):
         newton(work, k, eps, True)
         if work.mismatch[0] < 1e-8:
             copy(k, p, kept)
-            eps *= _RELEASE_BY
+            eps *= limits.RELEASE_FACTOR
             if enough > 0.0 and residual(work, k)[0] <= enough:
                 break
         else:
-            eps /= _RELEASE_BY
-        if not 10.0 * _EPS < eps < 10.0 * _RELEASE_FROM:
+            eps /= limits.RELEASE_FACTOR
+        if not 10.0 * limits.PROXIMAL < eps < 10.0 * limits.RELEASE_START:
             break
     copy(k, kept, p)
 
@@ -148,7 +143,7 @@ def polished(work, k, least_norm, patient):
     least = math.inf
     work.count[o.FACTOR_ROWS] = -1
     copy(k, p, kept)
-    goal, tolerance, eps = 0.0, 0.0, _EPS
+    goal, tolerance, eps = 0.0, 0.0, limits.PROXIMAL
     for _ in range(_POLISH):
         newton(work, k, eps, patient)
         for i in range(k):
@@ -156,9 +151,9 @@ def polished(work, k, least_norm, patient):
             p[n], p[n + 1], p[n + 2] = project(work.contact[i], p[n], p[n + 1], p[n + 2])
         r, goal, tolerance = residual(work, k)
         slow = not r < 0.5 * least
-        enough = r <= goal or (slow and (r <= tolerance or eps < _EPS)) or spent(work)
+        enough = r <= goal or (slow and (r <= tolerance or eps < limits.PROXIMAL)) or spent(work)
         if slow and not enough:  # a soft direction of W: a light body between heavy ones
-            eps = _LEAST_EPS
+            eps = limits.LEAST_PROXIMAL
             work.count[o.FACTOR_ROWS] = -1
         if r < least:
             least = r
@@ -173,4 +168,4 @@ def polished(work, k, least_norm, patient):
 @kernel
 def settled(work, k):
     """Return whether the last equations of Newton's method are solved to round-off."""
-    return work.mismatch[0] <= _SETTLED * largest_impulse(work, k)
+    return work.mismatch[0] <= ROUND_OFF * largest_impulse(work, k)

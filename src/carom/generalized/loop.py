@@ -14,8 +14,9 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, kernel
-from carom.dynamics.adapt import NOTHING_LEFT, allowed_error, of_two, part_of, shrunk
+from carom.dynamics.adapt import allowed_error, of_two, part_of, shrunk
 from carom.dynamics.adapt import plan as plan_ahead
+from carom.dynamics.thresholds import LEAST_STEP
 from carom.generalized.events import locate
 from carom.generalized.layout import CALL_LOADS, EVENT, N
 from carom.generalized.linear import copy_row, dot
@@ -83,7 +84,7 @@ def take_accurately(motion, x, left, plan, c):
         if error <= 1.0:
             plan_ahead(c, part, error, again, plan.order, plan.step)
             return part, 0
-        if not part > NOTHING_LEFT * plan.duration:
+        if not part > LEAST_STEP * plan.duration:
             return part, code if code != 0 else STEP_TOO_SMALL
         again = True
         c.rejected += 1

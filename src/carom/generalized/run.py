@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.dynamics.adapt import FIRST
 from carom.dynamics.methods import METHODS, make_method
+from carom.dynamics.thresholds import FIRST_STEP
 from carom.generalized.contacts import Contacts
 from carom.generalized.evaluate import Evaluation
 from carom.generalized.layout import (  # fmt: skip
@@ -72,7 +72,7 @@ class GeneralizedRun:
         self.x = x.copy()
         self.clock = table(CLOCK, 1)
         self.clock["now"] = begin
-        self.clock["ahead"] = FIRST * grid.interval
+        self.clock["ahead"] = FIRST_STEP * grid.interval
         rows = grid.rows + 2
         self.series, self.states = table(SERIES, rows), np.zeros((rows, 2 * n))
         self.record = Record(self.clock, self.series, self.states)

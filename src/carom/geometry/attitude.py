@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from carom import checks
 from carom.arguments import known
 from carom.geometry import quaternion
+from carom.geometry.thresholds import UNIT_ERROR
 from carom.status import MistakeWarning
 
 if TYPE_CHECKING:
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
 
     Orientation = ArrayLike | Rotation
 
-#: largest error of the length of a quaternion, or of a unit vector times a matrix, that counts as rounding
-ROUNDED = 1e-3
 KINDS = "a unit quaternion (w, x, y, z), a (3, 3) rotation matrix or a SciPy Rotation"
 
 
@@ -143,7 +142,7 @@ def attitude(name: str, value) -> np.ndarray:
             )
     q = checks.finite_array(name, quaternions(name, value), (4,))
     length = float(np.linalg.norm(q))
-    if not abs(length - 1.0) <= ROUNDED:
+    if not abs(length - 1.0) <= UNIT_ERROR:
         raise ValueError(
             f"{name} must be a unit quaternion (w, x, y, z), got {checks.shown(value)} of length {length:.9g}; "
             "the scalar w comes first, SciPy's as_quat() has it last: give the SciPy Rotation itself"
@@ -179,7 +178,7 @@ def _from_matrices(name: str, value) -> np.ndarray:
         raise ValueError(f"{name} must be finite, got {checks.shown(value)}")
     left, size, right = np.linalg.svd(matrices)
     defect = float(np.max(np.abs(size - 1.0), initial=0.0))
-    if not defect <= ROUNDED:
+    if not defect <= UNIT_ERROR:
         raise ValueError(
             f"{name} must be a rotation matrix, whose columns are unit vectors at right angles, got "
             f"{checks.shown(value)}"

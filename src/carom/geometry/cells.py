@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.geometry.thresholds import ROUND_OFF
+
 FEW_POINTS = 24  # points that are compared without cells
-ROUNDING = 1e-12  # relative to the greatest coordinate: a smaller excess does not count
 #: weights of the corners of a cell in the directions whose farthest points are compared with the others
 SEEN = np.array(
     [(1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1), (1, 1, 1, 1),
@@ -62,7 +63,7 @@ def _candidates(points, across, cell, member) -> np.ndarray:
     first = np.flatnonzero(np.diff(cell, prepend=-1))
     of = np.cumsum(np.diff(cell, prepend=-1) > 0) - 1
     along = np.einsum("kci,ki->kc", _corners(across)[cell], points[member])
-    limit = along + ROUNDING * np.max(np.abs(points))
+    limit = along + ROUND_OFF * np.max(np.abs(points))
     beaten = np.zeros(len(cell), dtype=bool)
     for weight in SEEN:
         value = along @ weight

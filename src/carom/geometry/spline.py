@@ -18,13 +18,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from carom.geometry import differential
 from carom.geometry.quaternion import between, exp, multiply, normalize, rotate, rotate_back, shaped
+from carom.geometry.thresholds import CHART_ANGLE
 
 Array = NDArray[np.float64]
 State = tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike]
-
-#: rotation h |Wbar| [rad] above which the chart moves along; log is one-to-one below pi, and the true rotation
-#: may differ from the predicted one
-CARRIED_ABOVE = 2.0
 
 
 def interpolate(
@@ -71,7 +68,7 @@ def interpolate(
 def _rotation(s, h, Q0, W0, Q1, W1):
     """Return rotations and body angular velocities on the cubic in the chart."""
     mean = 0.5 * (W0 + W1)
-    far = h * np.linalg.norm(mean, axis=-1, keepdims=True) > CARRIED_ABOVE
+    far = h * np.linalg.norm(mean, axis=-1, keepdims=True) > CHART_ANGLE
     carry = np.where(far, mean, 0.0)
     end = between(multiply(Q0, exp(h * carry)), Q1)
     rate0 = W0 - carry

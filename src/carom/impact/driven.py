@@ -11,10 +11,9 @@ from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.dynamics.rotors import work_of_change
 from carom.geometry.rotation import rotate_back
+from carom.impact.thresholds import IMPACT_ERROR
 from carom.model.arrays import LOOPS
 from carom.model.parts_of_system import has_relation_rows
-
-ROUND_OFF = 1e-13
 
 
 @unit(where=has_relation_rows, otherwise=0.0)
@@ -44,7 +43,7 @@ def _blocked(system, point, inverse_mass):
     free = 1.0 / system.bodies[point.a].mass
     if point.b >= 0:
         free += 1.0 / system.bodies[point.b].mass
-    return inverse_mass <= ROUND_OFF * free
+    return inverse_mass <= IMPACT_ERROR * free
 
 
 @inlined

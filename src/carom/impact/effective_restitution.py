@@ -10,9 +10,8 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.geometry.rotation import norm
-
-SPENT = 1e-6  # e^n below this is negligible
-ROUND_OFF = 1e-12  # of the size of a body: lower bounces are not resolved in any run
+from carom.geometry.thresholds import ROUND_OFF
+from carom.impact.thresholds import NO_RESTITUTION
 
 
 @kernel
@@ -29,4 +28,4 @@ def count_blow(system, controls, contact, contact_state, approach, now):
 def effective_restitution(contact, contact_state):
     """Return the restitution of a contact for the impact that was counted last."""
     e, before = contact.restitution, contact_state.blows - 1.0
-    return 0.0 if e < 1.0 and before > 0.0 and e**before <= SPENT else e
+    return 0.0 if e < 1.0 and before > 0.0 and e**before <= NO_RESTITUTION else e

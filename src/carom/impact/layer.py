@@ -18,16 +18,16 @@ from typing import NamedTuple
 
 from carom._compiled.decorators import entry, kernel
 from carom.friction.rays import outgoing, stick_ratio
+from carom.geometry.thresholds import ROUND_OFF
 from carom.impact import laws
 from carom.impact import layout as o
 from carom.impact.phase import Friction, Span, ratio, replay, run, shoot
 from carom.impact.phase import write as write_knot
 from carom.impact.resolve import resolve_one, write
 from carom.impact.spline import Contact, force
+from carom.impact.thresholds import NO_RESTITUTION
 
-_AT_REST = 1e-12  # as in `resolve`
 _DOUBLINGS = 8  # of the steps, if a phase was not solved
-E_MIN = 1e-6  # below this restitution the impact ends with compression: T_r = T_c/e
 
 
 class Passage(NamedTuple):
@@ -82,7 +82,7 @@ def _friction(given):
     m, mu, (u0, u1, u2) = given.m, given.mu, given.u
     if not mu > 0.0:
         return Friction(True, 0.0, 0.0), False
-    at_rest = not math.sqrt(u1 * u1 + u2 * u2) > _AT_REST * math.sqrt(u0 * u0 + u1 * u1 + u2 * u2)
+    at_rest = not math.sqrt(u1 * u1 + u2 * u2) > ROUND_OFF * math.sqrt(u0 * u0 + u1 * u1 + u2 * u2)
     t1, t2 = stick_ratio(m[1], m[2], m[3], m[4], m[5])
     if math.sqrt(t1 * t1 + t2 * t2) <= mu:
         return Friction(at_rest, t1, t2), True
@@ -113,7 +113,7 @@ def _pass(given, history, out):
 
     # Restitution, which the law ends.
     friction = Friction(fixed, friction.t1, friction.t2)
-    if e >= E_MIN and not (given.wedged and out[o.IMPULSE] <= out[o.P_C]):
+    if e >= NO_RESTITUTION and not (given.wedged and out[o.IMPULSE] <= out[o.P_C]):
         first, before = row, state
         accel *= e * e
         goal = laws.goal(given.law, e, v0, C[0], work_c)
@@ -128,7 +128,7 @@ def _pass(given, history, out):
         work_r, lost = _works(given, before, state, total)
         loss += lost
         P = (C[0] + total[3], C[1] + total[4], C[2] + total[5])
-        if given.wedged and not work_r > _AT_REST * -work_c:
+        if given.wedged and not work_r > ROUND_OFF * -work_c:
             row = first  # an impulse that moves nothing takes no time
         else:
             factor = 1.0 if timed else work_r / depth

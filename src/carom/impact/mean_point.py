@@ -13,10 +13,9 @@ import math
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.dynamics.several_points import inverse_masses
+from carom.geometry.thresholds import ROUND_OFF
 from carom.impact.workspace import U
 from carom.kinematics.contact_point import contact_velocity, copy_point, place
-
-SAME = 1e-12  # relative to W_nn: round-off of a difference of two velocities
 
 
 @kernel
@@ -49,7 +48,7 @@ def move_alike(k, u, all_W, hit, still):
     for a in range(3 * k):
         if not abs(u[a] - hit.u[a % 3]) <= still:
             return False
-    W, tiny = hit.W, SAME * hit.W[0, 0]
+    W, tiny = hit.W, ROUND_OFF * hit.W[0, 0]
     # impulses to compare: along the normal; then along both tangents, or, in the plane, along slip only
     if not answers_alike(k, all_W, W, (1.0, 0.0, 0.0)):
         return False
@@ -78,6 +77,6 @@ def answers_alike(k, all_W, W, impulse):
             for j in range(k):
                 shared += all_W[a, 3 * j + r] / k
             difference += (shared - W[a % 3, r]) * impulse[r]
-        if not abs(difference) <= SAME * W[0, 0]:
+        if not abs(difference) <= ROUND_OFF * W[0, 0]:
             return False
     return True

@@ -13,11 +13,11 @@ from carom._compiled.decorators import kernel
 from carom.friction.rays import solve_tangential
 from carom.impact import laws
 from carom.impact.spline import Step, force, quadratures, slip_ratio, solve_slip
+from carom.impact.thresholds import SHORTEST_PART
 
 # Columns of `history`, one row for each knot: time, s, velocity, tangential displacement, force after the knot.
 COLUMNS = 10
 
-_SHORTEST = 1e-9  # of the length of a phase: if so short a step of slip fails, u_t reaches 0 in it
 _MAX_STEPS = 10000  # in a phase, beyond the requested number
 
 
@@ -84,7 +84,7 @@ def run(contact, span, friction, history, row):
                     return 0, state, friction.fixed, total, row
                 place = (total[0], total[1], total[2])
                 row = write(history, row, q, state, place, (normal, t1, t2))
-                shortest = _SHORTEST * length
+                shortest = SHORTEST_PART * length
                 ok, d, to_rest, state, total = _advance(
                     contact, friction, state, total, whole, to_rest, shortest
                 )

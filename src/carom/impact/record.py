@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from carom._compiled.decorators import kernel
 from carom.impact import laws, layout
-from carom.impact.layer import E_MIN
+from carom.impact.thresholds import NO_RESTITUTION
 from carom.impact.workspace import U
 
 _NOT_LAW_A = layout.PHASE_JAM | layout.WEDGED
@@ -103,7 +103,7 @@ def layer_time(contact, hit, out):
     depth = -contact.width * math.log1p(-contact.penetration)
     if contact.law == laws.NEWTON and (int(out[layout.PHASES]) & _NOT_LAW_A) == 0:
         e = hit.restitution
-        return 2.0 * depth / -hit.u[0] * (1.0 + (1.0 / e if e >= E_MIN else 0.0))
+        return 2.0 * depth / -hit.u[0] * (1.0 + (1.0 / e if e >= NO_RESTITUTION else 0.0))
     compression, p_c = out[layout.WORK_C], out[layout.P_C]
     restitution, p_r = out[layout.WORK_R], out[layout.IMPULSE] - out[layout.P_C]
     time = 0.0

@@ -13,18 +13,14 @@ from typing import NamedTuple
 
 from carom._compiled.decorators import entry, inlined, kernel
 from carom.friction.rays import outgoing, solve_tangential, stick_ratio
+from carom.geometry.thresholds import REMAINDER, ROUND_OFF, SUM_ERROR
 from carom.impact import laws
 from carom.impact import layout as o
 from carom.impact.slip_step import expand, land, moved, normal_rate
 from carom.impact.taylor import reach
+from carom.impact.thresholds import IMPACT_ERROR, LONGEST_IMPULSE, SERIES_ACCURACY
 from carom.impact.wedge import drowned, moves_nothing, power_of_two, pushed
 
-_ACCURACY = 1e-14  # last term of the series of slip, relative to the root of |u_t| |u|
-_AT_REST = 1e-12  # slip is over below this part of the speed of impact
-_ON_RAY = 1e-13  # the direction of slip is constant if it turns slower than this (relative)
-_ROUND_OFF = 4e-15
-_LEFT = 1e-9  # greatest impulse that removes the slip that remains, relative to the impulse of the impact
-_FARTHEST = 1e6  # longest step in p, in units of size / W_nn: round-off of u grows with p
 _SLIP_STEPS = 2000
 
 # The contact slips along a curve or along a line (in the plane of u_t), or it sticks.
@@ -115,7 +111,7 @@ def _follow(contact, u, e, law):
     compression (p, P_1, P_2, loss, work; the state is relative to them), and p and u_n where slip first
     stopped.
     """
-    mu, at_rest = contact.mu, _AT_REST * contact.size
+    mu, at_rest = contact.mu, ROUND_OFF * contact.size
     s, before = (u[1], u[2], u[0], 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0)
     phase, line, slip_end = _COMPRESSION, _CURVE, (-1.0, 0.0)
     phases, steps, stopped = 0, 0, not math.sqrt(u[1] * u[1] + u[2] * u[2]) > at_rest
@@ -195,7 +191,7 @@ def _straightened(contact, s):
     r = math.sqrt(x * x + y * y)
     c, n = x / r, y / r
     f, g = _turning(m, mu, c, n)
-    if abs(f) <= _ON_RAY * (abs(m[1]) + abs(m[2]) + mu * (m[3] + m[5])):
+    if abs(f) <= IMPACT_ERROR * (abs(m[1]) + abs(m[2]) + mu * (m[3] + m[5])):
         return Line(_STRAIGHT, -mu * c, -mu * n, g)
     slope = mu * ((m[3] - m[5]) * (c * c - n * n) + 4.0 * m[4] * c * n) - (m[1] * c + m[2] * n)
     near = abs(f) * r <= -1e-14 * slope * contact.size and abs(f) <= -1e-3 * slope
@@ -225,18 +221,18 @@ def _along_curve(contact, phase, s):
     r, k = normal_rate(m, mu, s)
     marks = o.PHASE_JAM if k <= 0.0 else 0
     t = expand(m, mu, s)
-    h = reach(t[0], t[1], _ACCURACY * math.sqrt(size * r))
+    h = reach(t[0], t[1], SERIES_ACCURACY * math.sqrt(size * r))
     # With hardly any friction the series reaches far: step little beyond the end expected from here.
     unit = size / m[0]
     left = laws.remaining(law, goal, s[2], s[3], s[7])
-    end = min(laws.straight(law, left, s[2], k), _FARTHEST * unit) if k > 0.0 else 0.0
+    end = min(laws.straight(law, left, s[2], k), LONGEST_IMPULSE * unit) if k > 0.0 else 0.0
     h = min(h, 4.0 * max(end, unit) / r)
     new = moved(m, mu, s, t, h)
     if laws.remaining(law, goal, new[2], new[3], new[7]) <= 0.0:
         return land(m, mu, law, goal, s, new, t, h), _AT_GOAL, marks
     if phase.restitution and drowned(m, new[3], new[4], new[5], phase.taken):
         return new, _CAUGHT, marks | o.WEDGED
-    slips = math.sqrt(new[0] * new[0] + new[1] * new[1]) > 1e-3 * _AT_REST * size
+    slips = math.sqrt(new[0] * new[0] + new[1] * new[1]) > 1e-3 * ROUND_OFF * size
     return new, _WITHIN if slips else _AT_STOP, marks
 
 
@@ -262,7 +258,7 @@ def _along_line(contact, phase, line, s):
         marks, ended = o.WEDGED if phase.restitution else 0, _CAUGHT
     elif k <= 0.0 and line.mode == _STRAIGHT:
         marks = o.PHASE_JAM
-    if line.mode == _STICK and not abs(f1) + abs(f2) > _ROUND_OFF * (abs(m[1]) + abs(m[2])):
+    if line.mode == _STICK and not abs(f1) + abs(f2) > SUM_ERROR * (abs(m[1]) + abs(m[2])):
         f1, f2 = 0.0, 0.0  # otherwise W_tt is so nearly singular that stick leaves some creep
 
     # Slip may end before the phase.
@@ -293,7 +289,7 @@ def _without_slip(m, s, size):
     This u_t is round-off, and so is the impulse, unless W_tt is nearly singular: then u_t stays.
     """
     d1, d2 = solve_tangential(m[3], m[4], m[5], s[0], s[1])
-    if not abs(d1) + abs(d2) <= _LEFT * size:
+    if not abs(d1) + abs(d2) <= REMAINDER * size:
         return s
     return (0.0, 0.0, s[2], s[3], s[4] - d1, s[5] - d2, s[6], s[7])
 

@@ -22,6 +22,7 @@ from carom.impact.record import write_impact
 from carom.impact.resolve import resolve_one
 from carom.impact.return_map import return_map
 from carom.impact.strike_several import strike_several
+from carom.impact.thresholds import SEED
 from carom.impact.work_mode import restore_work
 from carom.impact.workspace import U
 from carom.kinematics.contact_point import contact_velocity
@@ -30,8 +31,6 @@ from carom.model.event_rows import begin_event, end_event
 from carom.model.method import THREE_FIELD
 from carom.model.records import FULL_MULTIPLE, GROW, IMPACT, JAMS
 from carom.status import BLOCKED, IMPACT_FAILED, RETURN_MAP_FAILED, TOO_MANY_POINTS
-
-SEED = 1e-10  # speed of approach given to a point that jams, as a part of its slip; it changes no result
 
 
 @kernel

@@ -8,18 +8,18 @@ from carom._compiled.decorators import by_reference, kernel
 from carom._compiled.units import unit
 from carom.contact.gap import slow, speed_of
 from carom.dynamics.contact_impulse import add_velocity, spread
+from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.driven import blocked
 from carom.impact.effective_restitution import count_blow, effective_restitution
 from carom.impact.layout import OK
 from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSettings
 from carom.impact.multiple.resolve import resolve_contacts
 from carom.impact.record import write_share
+from carom.impact.thresholds import GROUP_SEED
 from carom.impact.workspace import U
 from carom.model.allowance import COUNT_PASSAGES, left
 from carom.status import BLOCKED, IMPACT_FAILED
 
-SEED = 1e-7  # speed of approach given to a point that jams, relative to its slip
-ROUND_OFF = 1e-14  # relative to the greatest speed in a multiple impact
 #: exponents of the normal force: if all points are on round bodies, and otherwise
 HERTZ, LINEAR = 1.5, 1.0
 
@@ -88,7 +88,7 @@ def strike_several(model, data, c, k):
         j, contact_state = group.closed[i].active, active.contact_states[group.closed[i].contact]
         group.mu[i], multiple.e[i] = contact.friction, effective_restitution(contact, contact_state)
         if j >= 0 and active.points[j].jams == 1:
-            u[3 * i] -= SEED * math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2)
+            u[3 * i] -= GROUP_SEED * math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2)
             group.mu[i] = contact.friction_held
         multiple.law[i], multiple.kappa[i] = contact.law, contact.stiffness
         multiple.ball_like[i] = contact.ball_like
@@ -111,7 +111,7 @@ def strike_several(model, data, c, k):
             write_share(contact, i, k, state, group, multiple, clock, data.records)
             spread(system, group.points[0][i], state, n, t1, t2, work)
             add_velocity(system, group.points[0][i], work, state)
-    most = ROUND_OFF * greatest(3 * k, u)
+    most = SUM_ERROR * greatest(3 * k, u)
     for i in range(k):
         stop_round_off(system, group.points[0][i].a, most, state)
         stop_round_off(system, group.points[0][i].b, most, state)

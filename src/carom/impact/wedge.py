@@ -10,17 +10,8 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-
-#: a sum of products counts as zero below this part of the products: their errors are about 1e-15, so a larger
-#: sum is known to one part in a thousand
-_ROUND_OFF = 1e-12
-_OF_W = 1e-14
-_LAST_DIGIT = 2.2e-16
-_BALANCE = (
-    1e-6  # accuracy of the energy balance of an impact, relative to the energy lost in compression
-)
-#: a speed of approach below this part of the speed of impact counts as zero: round-off, or the seed of a jam
-_PUSHED = 1e-9
+from carom.geometry.thresholds import EPSILON, REMAINDER, ROUND_OFF, SUM_ERROR
+from carom.impact.thresholds import ENERGY_BALANCE
 
 
 @kernel
@@ -33,10 +24,10 @@ def moves_nothing(m, t1, t2, k, grow):
     terms = m[0] + 2.0 * (abs(a1) + abs(a2) + abs(b)) + m[3] * t1 * t1 + m[5] * t2 * t2
     # W itself may be a difference; its errors are then round-off of its greatest entry.
     own = max(m[0], m[3], m[5]) * min(1.0, (abs(a1) + abs(a2)) / m[0]) if grow == 0.0 else 0.0
-    if not abs(k) > _ROUND_OFF * terms + _OF_W * own:
+    if not abs(k) > ROUND_OFF * terms + SUM_ERROR * own:
         k = 0.0
     sides = abs(m[1]) + abs(m[2]) + (m[3] + m[5]) * math.sqrt(t1 * t1 + t2 * t2)
-    return k <= 0.0 and grow >= -_ROUND_OFF * sides
+    return k <= 0.0 and grow >= -ROUND_OFF * sides
 
 
 @kernel
@@ -49,13 +40,13 @@ def drowned(m, p, p1, p2, energy):
     p, p1, p2 = abs(p), abs(p1), abs(p2)
     both = m[0] * p * p + m[3] * p1 * p1 + m[5] * p2 * p2
     both += 2.0 * (abs(m[1]) * p * p1 + abs(m[2]) * p * p2 + abs(m[4]) * p1 * p2)
-    return not _LAST_DIGIT * both <= _BALANCE * energy
+    return not EPSILON * both <= ENERGY_BALANCE * energy
 
 
 @kernel
 def pushed(u_n, size, still):
     """Return whether a wedged pair approaches faster than `still`, so that no impulse stops it."""
-    return not u_n >= -max(_PUSHED * size, still)
+    return not u_n >= -max(REMAINDER * size, still)
 
 
 @kernel

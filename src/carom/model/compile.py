@@ -18,6 +18,7 @@ from carom.model.more_forces import MoreForces, Pieces
 from carom.model.placement import Placement
 from carom.model.relations import Coordinates, Elements
 from carom.model.stops import with_stops
+from carom.model.thresholds import LARGEST_MASS_RATIO, MASS_RATIO
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, joined_tables, some_pairs
 from carom.scene.forces import Bushing, CurveSpring, Force, Spring, Torque
@@ -178,16 +179,16 @@ def _joints(scene, moments, placement, elements, options, loops):
     else:
         mass = np.array([b.mass for b in scene.bodies])
         ratio, light, heavy = solvers.spread(touching, mass, moments, _extents(scene, joints))
-        if ratio > solvers.LIMIT and not loops:
+        if ratio > LARGEST_MASS_RATIO and not loops:
             names = scene.bodies[light].name, scene.bodies[heavy].name
             raise ValueError(
                 f"masses, or moments over the squares of sizes, of bodies {names[0]!r} and {names[1]!r}, which "
-                f"closed loops join, must not differ by more than {solvers.LIMIT:g} times, "
+                f"closed loops join, must not differ by more than {LARGEST_MASS_RATIO:g} times, "
                 f"got {ratio:.3g} times"
             )
         solver = solvers.loop_solver(
             touching, options.drop_tolerance, 0 if elements.touching else count,
-            count if ratio > solvers.SPREAD else 0,
+            count if ratio > MASS_RATIO else 0,
         )  # fmt: skip
     return joints, flipped, solver
 

@@ -1,9 +1,9 @@
 """Find the level surfaces of the static solids of a scene, and make the rows of contacts that stand for them.
 
-Two faces are level if each corner of one is within the tolerance LEVEL times the size of the larger solid from
-the plane of the other, and their normals agree. A surface is a set of level faces that are joined: each touches
-another one, with a crack of at most the same tolerance. So a step or a crack above 1e-9 of the size of a solid
-is an obstacle. Solids whose edges are rounded have none: there is a groove between them.
+Two faces are level if each corner of one is within the tolerance RESOLUTION times the size of the larger solid
+from the plane of the other, and their normals agree. A surface is a set of level faces that are joined: each
+touches another one, with a crack of at most the same tolerance. So a step or a crack above 1e-9 of the size
+of a solid is an obstacle. Solids whose edges are rounded have none: there is a groove between them.
 
 A body has one row for each surface, as for a half-space whose points count only above the faces
 (`carom.contact.level`). Where the laws of contact differ, each part of a surface with one law has its own row.
@@ -29,13 +29,13 @@ from carom.collision.level_layout import (
 )
 from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes
+from carom.geometry.thresholds import RESOLUTION
 from carom.model.arrays import CONTACT
 from carom.model.graph import Sets
 from carom.scene.all_pairs import PairTable
 from carom.scene.pieces import Piece
 from carom.scene.scene import Scene
 
-LEVEL = 1e-9  # relative to the size of the larger solid: a smaller difference of heights is none
 #: corners of the faces of a box, numbered as in `carom.scene.pieces.SIGNS`, counter-clockwise from outside
 BOX_RINGS = (
     (0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3),
@@ -162,7 +162,7 @@ def _near(faces: list[Face], facing: float) -> Iterator[tuple[int, int]]:
     low, high = (centres[:, 0] - reaches)[order], (centres[:, 0] + reaches)[order]
     for at, i in enumerate(order.tolist()):
         face = faces[i]
-        tolerance = LEVEL * np.maximum(sizes, face.size).max()
+        tolerance = RESOLUTION * np.maximum(sizes, face.size).max()
         end = np.searchsorted(low, high[at] + tolerance, side="right")
         others = order[at + 1 : end]
         apart = centres[others] - face.centre
@@ -178,7 +178,7 @@ def _bare(faces: list[Face]) -> list[Face]:
     hidden = set()
     for i, j in _near(faces, -1.0):
         a, b = faces[i], faces[j]
-        tolerance = LEVEL * max(a.size, b.size)
+        tolerance = RESOLUTION * max(a.size, b.size)
         if _level(a, b):
             for k, one, other in ((i, a, b), (j, b, a)):
                 if np.min(one.corners @ other.inward.T - other.levels) >= -tolerance:
@@ -202,14 +202,14 @@ def _joined(faces: list[Face], laws: list) -> list[list[int]]:
 
 def _level(a: Face, b: Face) -> bool:
     """Return whether two faces are in one plane."""
-    tolerance = LEVEL * max(a.size, b.size)
+    tolerance = RESOLUTION * max(a.size, b.size)
     above = np.abs((b.corners - a.centre) @ a.normal), np.abs((a.corners - b.centre) @ b.normal)
     return bool(max(above[0].max(), above[1].max()) <= tolerance)
 
 
 def _touch(a: Face, b: Face) -> bool:
     """Return whether two faces in one plane touch: no side separates them by more than the tolerance."""
-    tolerance = LEVEL * max(a.size, b.size)
+    tolerance = RESOLUTION * max(a.size, b.size)
     for one, other in ((a, b), (b, a)):
         inside = other.corners @ one.inward.T - one.levels
         if np.any(inside.max(axis=0) < -tolerance):
@@ -219,7 +219,7 @@ def _touch(a: Face, b: Face) -> bool:
 
 def _rims(faces: list[Face]) -> tuple[float, np.ndarray]:
     """Return the tolerance of a surface, and the parts (E, 2, 3) of edges beyond which no face continues."""
-    tolerance = LEVEL * max(face.size for face in faces)
+    tolerance = RESOLUTION * max(face.size for face in faces)
     centres = np.array([face.centre for face in faces])
     reaches = np.array([face.reach for face in faces])
     rims, alone = [], _edges_of_one(faces, tolerance)

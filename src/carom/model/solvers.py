@@ -10,10 +10,6 @@ from carom._compiled.record_arrays import table
 from carom.model.arrays import FOREST, HEAD, LINK, LOOPS, NO_JOINTS, ROW, SIDE, WIDTH, Solver
 from carom.model.graph import Sets, elimination
 
-#: ratio of masses from which on A M^-1 A^T loses too many digits (`carom.dynamics.light_bodies`)
-SPREAD = 1e5
-LIMIT = 1e24  # ratio of masses from which on even 31 digits are lost
-
 
 @cache
 def no_joints() -> Solver:

@@ -10,12 +10,13 @@ from carom.contact.closed_points import apart, closed_within
 from carom.contact.gap import slow
 from carom.contact.groups import label_groups
 from carom.contact.level import related
-from carom.contact.pair_point import REACH, find_touches, own_point, smaller, touch_rate
+from carom.contact.pair_point import find_touches, own_point, smaller, touch_rate
 from carom.contact.place import place_any
 from carom.contact.place_of_other import on_half_space
 from carom.contact.rim import same_point
+from carom.contact.thresholds import REACH
 from carom.model.parts_of_system import has_solids
-from carom.persistent.step_control import UNSOLVED
+from carom.persistent.thresholds import CUT_RESIDUAL
 
 
 @kernel
@@ -187,7 +188,7 @@ def replace_points(system, controls, active, c, mode, state, work):
         return
     plane = on_half_space(contact)
     if not plane:
-        still = max(still, UNSOLVED * controls.step * controls.pull)
+        still = max(still, CUT_RESIDUAL * controls.step * controls.pull)
     for t in range(find_touches(system, contact, state, REACH * smaller(contact), work)):
         touch = work.touches[t]
         free = active.count[0] < active.points.shape[0]

@@ -18,10 +18,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.contact.pair_point import smaller
-
-# of the tolerance, for e = 0: what others throw up and falls back does not bounce, but may be thrown again (an
-# elbow that strikes a box on a floor), and each throw changes velocities by its own
-PLASTIC = 1e-4
+from carom.persistent.thresholds import PLASTIC_SPEED
 
 
 @kernel
@@ -31,7 +28,7 @@ def horizon_of(contact, controls, g, horizon):
         return horizon
     tolerance = controls.atol + controls.rtol * smaller(contact)
     if contact.restitution == 0.0:
-        tolerance *= PLASTIC
+        tolerance *= PLASTIC_SPEED
     return math.sqrt(8.0 * tolerance / g) if g > 0.0 else 0.0
 
 

@@ -16,21 +16,16 @@ from carom._compiled.units import unit
 from carom.contact.groups import members
 from carom.dynamics.adapt import allowed_error, note_miss
 from carom.dynamics.explicit import CONSTRAINTS_LOST, bound_accelerations_of, rubs, stages_within
+from carom.dynamics.thresholds import ERROR_SHARE
 from carom.model.actions import MODE_OPEN
 from carom.persistent.finish import land, note_modes, review
 from carom.persistent.members import closing_member, explicit_member, implicit_member
 from carom.persistent.rows import beyond_stop
 from carom.persistent.start import first_modes, first_stage
 from carom.persistent.step_control import unnamed
+from carom.persistent.thresholds import FALLS, STIFF_SLIP
 
-#: change of slip by friction in a step, relative to its speed, above which its direction is stiff
-STIFF = 1.5
-#: of the allowed error: what friction may move a body in a closing step
-CLOSE = 0.1
 STIFF_ORDER, CLOSING_ORDER = 4, 2
-#: falls of a body through its size: for longer an error of its velocity does not count. What moves slower is at
-#: rest but for round-off
-FALLS = 100.0
 
 
 @unit
@@ -76,7 +71,7 @@ def step_group(model, data, method, label, h):
     clock.contact_steps += 1
     clock.since += 5.0 * k * stages_within(method)
     order = controls.order
-    if h * rate <= STIFF and not (result.stiff == 1 and work.search[0].again == 1):
+    if h * rate <= STIFF_SLIP and not (result.stiff == 1 and work.search[0].again == 1):
         result.applied = had + h * method.b[0] * applied
         result.friction = rubbed + h * method.b[0] * friction
         k, s = explicit_member(model, data, method, label, loaded, count, h), method.b.size
@@ -142,7 +137,7 @@ def closing_size(system, controls, count, group):
     least = math.inf
     for m in range(count):
         size = system.bodies[group.member[m]].extent
-        least = min(least, CLOSE * allowed_error(controls.rtol, controls.atol, size, 0.0))
+        least = min(least, ERROR_SHARE * allowed_error(controls.rtol, controls.atol, size, 0.0))
     return least
 
 

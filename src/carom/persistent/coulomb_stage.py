@@ -17,16 +17,15 @@ import math
 from carom._compiled.decorators import kernel
 from carom.friction import lu
 from carom.friction.layout import SLIDING, STAGES
+from carom.impact.thresholds import GROUP_ERROR
 from carom.impact.workspace import KEPT, OLD, C, P, U
+from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import JOINT, is_driven, radius_of
 from carom.persistent.settle import greatest, settle
 from carom.persistent.sharing import find_idle, share
-from carom.persistent.springs import DEPEND, EPS, PULL, SMALL, compliance_of, moves
+from carom.persistent.springs import compliance_of, moves
 
 STAGE_ITERATIONS, HALVES, TOGETHER = 40, 6, 3
-FITS = 1e-13  # of the accelerations without forces: error of the equations
-EXACT = 1e-6  # of the error: that of the linear equations
-ENOUGH = 1e-9  # the same for an error that no iteration makes less
 
 
 @kernel
@@ -62,7 +61,7 @@ def change_loads(k, turn, group):
     for i in range(k):
         if closed[i].turns == 0:
             most, worst = max(most, p[3 * i]), min(worst, p[3 * i])
-    limit = -PULL * most if turn < TOGETHER else min(worst, -PULL * most)
+    limit = -GROUP_ERROR * most if turn < TOGETHER else min(worst, -GROUP_ERROR * most)
     for i in range(k):
         if closed[i].turns == 0 and closed[i].loaded == 1 and p[3 * i] < 0.0 and p[3 * i] <= limit:
             closed[i].loaded, found = 0, True
@@ -70,7 +69,7 @@ def change_loads(k, turn, group):
                 p[row] = 0.0
     for i in range(0 if found else k):
         if closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0:
-            if product(k, 3 * i, group) + group.v[C][3 * i] < -ENOUGH * push:
+            if product(k, 3 * i, group) + group.v[C][3 * i] < -limits.SETTLED_SHARE * push:
                 closed[i].loaded = 1
                 return True
     return found
@@ -129,7 +128,7 @@ def newton(k, hg, halves, idle, group):
     push, slip = largest(k, group), 0.0
     for i in range(k):
         slip = max(slip, max(abs(group.v[U][3 * i + 1]), abs(group.v[U][3 * i + 2])))
-    enough = FITS * push + (1e-15 * slip / hg if hg > 0.0 else 0.0)
+    enough = limits.EQUATION_ERROR * push + (1e-15 * slip / hg if hg > 0.0 else 0.0)
     size = write_equations(k, n, hg, idle, group)
     for _ in range(STAGE_ITERATIONS):
         if size <= enough:
@@ -138,11 +137,11 @@ def newton(k, hg, halves, idle, group):
         for i in range(n):
             for j in range(n):
                 group.cone.W[i, j] = L[i, j]
-            L[i, i] += EPS * compliance_of(group, rows[i])
+            L[i, i] += limits.PROXIMAL_SPRING * compliance_of(group, rows[i])
             x[i], kept[i] = -x[i], p[rows[i]]
         lu.factor(L, n, group.cone.pivot, 0.0)
-        asked, force = 0.01 * max(enough, EXACT * size), greatest(3 * k, p)
-        rest = settle(n, 0.0, asked, SMALL * push, force, group.cone, group.m[1], x)
+        asked, force = 0.01 * max(enough, limits.LINEAR_SHARE * size), greatest(3 * k, p)
+        rest = settle(n, 0.0, asked, limits.FORCE_ERROR * push, force, group.cone, group.m[1], x)
         part, best = 1.0, size
         for _ in range(halves):
             for i in range(n):
@@ -153,11 +152,13 @@ def newton(k, hg, halves, idle, group):
             part *= 0.5
         if not size < math.inf:
             return False
-        if size >= 0.9 * best and size <= ENOUGH * push + 1e3 * enough:
+        if size >= 0.9 * best and size <= limits.SETTLED_SHARE * push + 1e3 * enough:
             return True
-        if rest > asked and size <= 2.0 * rest <= DEPEND * push:  # rows that depend on others
+        if (
+            rest > asked and size <= 2.0 * rest <= limits.DEPENDENT_ERROR * push
+        ):  # rows that depend on others
             return True
-    return size <= ENOUGH * push
+    return size <= limits.SETTLED_SHARE * push
 
 
 @kernel

@@ -18,7 +18,8 @@ from carom.model.actions import (
     MODE_OPEN,
     MODE_SLIP,
 )
-from carom.persistent.jam import JAMMED, yields
+from carom.persistent.jam import yields
+from carom.persistent.thresholds import JAM_MARGIN
 
 
 @kernel
@@ -35,7 +36,7 @@ def contact_event_value(system, active_point, kind):
 def jam_margin(system, active_point):
     """Return k of a point that slips along its heading, above that at which it counts as jammed."""
     d, mu = active_point.heading, system.contacts[active_point.contact].friction_held
-    return yields(active_point.W, mu, d[0], d[1]) - JAMMED * active_point.W[0, 0]
+    return yields(active_point.W, mu, d[0], d[1]) - JAM_MARGIN * active_point.W[0, 0]
 
 
 @inlined

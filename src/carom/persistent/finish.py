@@ -11,9 +11,11 @@ from carom.contact.gap import slow
 from carom.dynamics.adapt import allowed_error
 from carom.dynamics.explicit import copy_state, note_velocity
 from carom.dynamics.passed_edges import has_passed, note_passed
-from carom.dynamics.project import LOST, project_position, project_velocity
+from carom.dynamics.project import project_position, project_velocity
 from carom.dynamics.several_points import velocities
+from carom.dynamics.thresholds import ERROR_SHARE
 from carom.friction.layout import CONE, SLIDING
+from carom.geometry.thresholds import REMAINDER, RESOLUTION
 from carom.impact.workspace import OLD, C, P, U
 from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
 from carom.persistent.forces import solve_forces, take_forces, time_to_stop
@@ -24,11 +26,8 @@ from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
 from carom.persistent.settle import greatest
 from carom.persistent.springs import note_accelerations, solve_springs
-from carom.persistent.step_control import POORLY, rest_speed
-
-REST = 0.1  # of the error of a step: slip that ends within so little has ended
-ON_CONE = 1.0 - 1e-6  # of the greatest friction: less is within it; a stage leaves 3e-9 of a line
-NEARLY = 1.0 - 1e-9  # of the time to a stop: a step that long has gone to it
+from carom.persistent.step_control import rest_speed
+from carom.persistent.thresholds import FEW_REST, FRICTION_LIMIT
 
 
 @unit
@@ -36,7 +35,7 @@ def land(model, data, loaded, k, count) -> bool:
     """Bring bodies back to joints and surfaces, velocities to the tangents; return whether the joints close."""
     system, active, group, work = model.system, data.active, data.group, data.work
     end = work.trial
-    if loaded and not (project_position(system, end, True, 1e-14, work) <= LOST):
+    if loaded and not (project_position(system, end, True, 1e-14, work) <= RESOLUTION):
         return False
     show(count, end, group, work)
     place_closed(system, k, end, group, group.points[0], work)
@@ -84,7 +83,7 @@ def note_modes(model, data, k, h):
         slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
         force = math.hypot(p[3 * i + 1], p[3 * i + 2])
         bare = closed_point.turns == 0 and closed_point.loaded == 0  # round-off is no friction left
-        free = bare or not force < ON_CONE * radius_of(group, i)
+        free = bare or not force < FRICTION_LIMIT * radius_of(group, i)
         full = slip > still and (free or slip > 2.0 * braked(i, h, group))
         full = full or turns_back(i, h, group)
         group.kind[i] = SLIDING if group.mu[i] == 0.0 or full else CONE
@@ -144,7 +143,7 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
     if given and not same:
         return False
     gain = h * push
-    tolerance = rest_speed(controls, gain, work.result[0].residual, k, POORLY)
+    tolerance = rest_speed(controls, gain, work.result[0].residual, k, FEW_REST)
     lasts, found = solve_end(model, data, loaded, k, count, s, tolerance * controls.step / h, h)
     located = greatest_push(k, group)
     for i in range(active.count[0]):
@@ -280,10 +279,10 @@ def stick_where_slip_ends(model, data, k, h, still):
         if turns_back(i, h, group):
             continue
         size = model.system.bodies[group.points[0][i].a].extent
-        allowed = REST * allowed_error(controls.rtol, controls.atol, size, 0.0)
+        allowed = ERROR_SHARE * allowed_error(controls.rtol, controls.atol, size, 0.0)
         speed = math.hypot(group.v[U][3 * i + 1], group.v[U][3 * i + 2])
         ends = controls.order > 0 and 0.5 * speed * abs(time_to_stop(i, group)) <= allowed
-        ends = ends and h >= NEARLY * first_stop(model.system, active, closed_point)
+        ends = ends and h >= (1.0 - REMAINDER) * first_stop(model.system, active, closed_point)
         if ends or speed <= still:
             closed_point.stays, found = 1, True
     if not found:

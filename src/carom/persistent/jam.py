@@ -6,7 +6,7 @@ While a point slips along e its force is N (1, -mu e), and its normal accelerati
 
 If k > 0, N = -a_n/k. If k <= 0 and a_n < 0, no force is enough, and slip ends in an impact without collision;
 if k <= 0 and a_n >= 0, the point opens. While slip approaches k = 0 with a_n < 0, the force grows without
-bound, which no step can follow: the point jams a little earlier, at k = `JAMMED` W_nn.
+bound, which no step can follow: the point jams a little earlier, at k = `JAM_MARGIN` W_nn.
 """
 
 from __future__ import annotations
@@ -15,8 +15,6 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction.layout import SLIDING
-
-JAMMED = 1e-6
 
 
 @kernel

@@ -12,16 +12,15 @@ from carom.contact.closed_points import write_closed
 from carom.contact.pair_point import tangents
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.solve import free_body
+from carom.geometry.thresholds import ROUND_OFF
 from carom.impact.workspace import P
 from carom.kinematics.coordinate import drift, motion_along, push, speeds_of
 from carom.kinematics.joints import arm, axis, parent_arm
 from carom.model.arrays import PRISMATIC
+from carom.persistent.thresholds import MOTOR_COMPLIANCE
 
 JOINT = 5  # `turns` of such an entry, and of its point if the coordinate is a displacement
 PIVOT = 2  # of its point if it is an angle
-# of the effect of a force without joints: with less, joints and motors leave no freedom
-DRIVEN = 1e-13
-STILL = 1e-12  # of the speeds of both sides: a smaller rate is zero
 
 
 @kernel
@@ -45,7 +44,7 @@ def _add_frictions(system, state, k, group, work) -> int:
         closed_point.turns, closed_point.active, closed_point.parent = JOINT, i, -1
         closed_point.own, closed_point.weight = 1, 1.0
         place_coordinate(c, state, point)
-        closed_point.spring = DRIVEN * response_alone(system, c, state, work)
+        closed_point.spring = MOTOR_COMPLIANCE * response_alone(system, c, state, work)
         group.mu[k] = relations.frictions[i].bound
         k += 1
     return k
@@ -109,6 +108,6 @@ def radius_of(group, i):
 def mode_of_joint(system, i, u, still, state):
     """Return the way (1 or -1) of the slip u of friction i, or 0 if it is slower than `still`, or round-off."""
     c = system.relations.coordinates[system.relations.frictions[i].coordinate]
-    if abs(u) <= max(still, STILL * speeds_of(system, c, state)):
+    if abs(u) <= max(still, ROUND_OFF * speeds_of(system, c, state)):
         return 0
     return 1 if u > 0.0 else -1

@@ -16,10 +16,7 @@ from carom._compiled.decorators import kernel
 from carom.impact.workspace import OLD, C, P
 from carom.model.actions import EVENT_JAM, EVENT_SEPARATE, MODE_OPEN, MODE_SLIP, MODE_STICK
 from carom.persistent.settle import greatest
-
-LEAST = 1e-5  # least margin before an event
-NONE = 1e-7  # accelerations below this part count as zero: those of two bodies have errors of 1e-9
-NEAR = 1e-6  # an event is located to this part of the acceleration
+from carom.persistent.thresholds import EVENT_ERROR, EVENT_MARGIN, NO_MARGIN
 
 
 @kernel
@@ -45,24 +42,24 @@ def set_margins(active_point, i, push, group):
         return
     q, W, p, a = 3 * i, group.m[0], group.v[P], group.v[OLD]
     if active_point.next == MODE_OPEN:
-        active_point.lift = -max(a[q] / push, 2.0 * NEAR)
+        active_point.lift = -max(a[q] / push, 2.0 * EVENT_ERROR)
         return
     if active_point.several == 0:  # its force is unique: both are continuous
         active_point.lift = p[q] * W[q, q] / push if p[q] > 0.0 else -a[q] / push
-    elif p[q] <= 0.0 and a[q] > NONE * push:
+    elif p[q] <= 0.0 and a[q] > NO_MARGIN * push:
         active_point.lift = -a[q] / push
     else:
-        active_point.lift = max(p[q] * W[q, q] / push, LEAST)
+        active_point.lift = max(p[q] * W[q, q] / push, EVENT_MARGIN)
     if active_point.mode == MODE_STICK:
         gain = math.sqrt(a[q + 1] ** 2 + a[q + 2] ** 2) / push
         if active_point.next == MODE_SLIP:
-            active_point.grip = -max(gain, 2.0 * NEAR)
-        elif gain > NONE:
+            active_point.grip = -max(gain, 2.0 * EVENT_ERROR)
+        elif gain > NO_MARGIN:
             active_point.grip = -gain
         else:
             left = group.mu[i] * p[q] - math.sqrt(p[q + 1] ** 2 + p[q + 2] ** 2)
             grip = left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push
-            active_point.grip = grip if active_point.several == 0 else max(grip, LEAST)
+            active_point.grip = grip if active_point.several == 0 else max(grip, EVENT_MARGIN)
 
 
 @kernel
@@ -88,7 +85,7 @@ def switch_due(active, search):
         return False
     for i in range(active.count[0]):
         active_point = active.points[i]
-        near = active_point.due == 1 and margin(active_point, search.kind) <= 2.0 * LEAST
+        near = active_point.due == 1 and margin(active_point, search.kind) <= 2.0 * EVENT_MARGIN
         if near or i == search.contact:
             active_point.next = MODE_OPEN if search.kind == EVENT_SEPARATE else MODE_SLIP
         active_point.due = 0

@@ -27,10 +27,9 @@ from carom.persistent.joint_rows import JOINT
 from carom.persistent.rolling_friction import bound_turning
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
 from carom.persistent.springs import bound_per_force, solve_springs
+from carom.persistent.thresholds import LAST_CHANGE, STAGE_CHANGE
 
 FIXED_POINT = 25  # iterations of the pose of a stage
-SAME = 1e-14  # change of velocities by an iteration that is the last, relative to the velocities
-CLOSE = 1e-10  # the same after all iterations: a stage that changes by more has no solution
 
 
 @kernel
@@ -102,7 +101,7 @@ def implicit_stage(model, data, label, loaded, count, s, hg, closes):
             change, size = max(change, own[0]), max(size, own[1])
         if change > 0.0:  # a body that stops has errors of the others
             change = change / size if size > 0.0 else math.inf
-        if turn > 0 and change <= SAME:
+        if turn > 0 and change <= LAST_CHANGE:
             break
         applied = accelerate_freely(model, data, loaded, count, s)
         before = k
@@ -126,7 +125,7 @@ def implicit_stage(model, data, label, loaded, count, s, hg, closes):
         velocities(k, group.points[0], work.stage, group.v[U])
         driven, rubbed = push_bodies(model, data, loaded, k, count, s)
         power = applied + driven
-    if model.controls.order > 0 and not closes and not change <= CLOSE:
+    if model.controls.order > 0 and not closes and not change <= STAGE_CHANGE:
         return -1, 0.0, 0.0
     return k, power, rubbed
 

@@ -8,7 +8,8 @@ from carom.model.actions import MODE_OPEN, MODE_STICK, NOTHING
 from carom.model.event_rows import begin_event, end_event
 from carom.persistent.active_set import deactivate, refresh_pairs, regroup, set_anchor
 from carom.persistent.events import jam_margin
-from carom.persistent.jam import JAMMED, note_jam, presses
+from carom.persistent.jam import note_jam, presses
+from carom.persistent.thresholds import JAM_MARGIN
 
 
 @kernel
@@ -18,7 +19,7 @@ def jam_point(model, data, i):
     active, now, work, clock = data.active, data.state, data.work, data.clocks[0]
     records = data.records
     active_point = active.points[i]
-    k = jam_margin(system, active_point) + JAMMED * active_point.W[0, 0]
+    k = jam_margin(system, active_point) + JAM_MARGIN * active_point.W[0, 0]
     if presses(active_point, k):
         note_jam(active, active_point)
         return NOTHING

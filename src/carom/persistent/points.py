@@ -20,7 +20,6 @@ from carom._compiled.units import unit
 from carom.contact.closed_points import write_closed
 from carom.contact.continuous_detection_pair import nearest_touch
 from carom.contact.pair_point import (
-    ACTIVE_REACH,
     find_touches,
     list_touches,
     own_point,
@@ -31,17 +30,11 @@ from carom.contact.pair_point import (
 from carom.contact.place import place_any
 from carom.contact.rim import same_point
 from carom.contact.stop import is_active
+from carom.contact.thresholds import ACTIVE_REACH, PLACE_ERROR, REACH
+from carom.dynamics.thresholds import NORMAL_ERROR
 from carom.geometry.rotation import cross, rotate_back
 from carom.kinematics.contact_point import copy_point
 from carom.persistent.joint_rows import add_frictions
-
-FACE = (
-    1e-3  # of the smaller body: points of a face that are no higher than that belong to its patch
-)
-#: normals (a sine) and heights (of the size of the body) that differ by less are those of one plane
-LEVEL = 1e-6
-#: distance, of the size of the body, below which two corners are one, and one on a line between others is none
-CORNER = 1e-11
 
 
 @kernel
@@ -115,7 +108,7 @@ def on_face(contact, active, i, n, state):
 
     Points on a line, or in other planes, do not tell whether a corner at some distance is closed.
     """
-    q, p, level = state[contact.body].Q, active.points[i].point, LEVEL * smaller(contact)
+    q, p, level = state[contact.body].Q, active.points[i].point, NORMAL_ERROR * smaller(contact)
     m, x, y, z, far = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2]), 0.0, 0.0, 0.0, level
     for find_end in (True, False):
         for j in range(active.count[0]):
@@ -141,8 +134,8 @@ def add_face(system, active, c, i, state, k, group, work):
     contact, near = system.contacts[c], math.inf
     count = find_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
     for t in range(count):
-        near = min(near, work.touches[t].gap + FACE * smaller(contact))
-    for t in range(count if near < 2.0 * FACE * smaller(contact) else 0):
+        near = min(near, work.touches[t].gap + REACH * smaller(contact))
+    for t in range(count if near < 2.0 * REACH * smaller(contact) else 0):
         if work.touches[t].gap <= near:
             k = add_touch(contact, c, work.touches[t], i, state, k, group)
             note_own(system, active, 0, work.touches[t], state, group.closed[k - 1])
@@ -246,7 +239,7 @@ def in_patch(system, p, q):
     for r in range(3):
         across = max(across, abs(n[r] - m[r]))
         height += n[r] * (q.arm_a[r] - p.arm_a[r])
-    return across <= LEVEL and abs(height) <= LEVEL * size
+    return across <= NORMAL_ERROR and abs(height) <= NORMAL_ERROR * size
 
 
 @kernel
@@ -260,7 +253,7 @@ def weigh_patch(system, first, k, group):
                 closed[j].weight, closed[j].patch = 0.0, first
                 x, y = in_plane(points[first], points[j])
                 a, b = in_plane(points[first], points[start])
-                if x < a - CORNER * size or (x < a + CORNER * size and y < b):
+                if x < a - PLACE_ERROR * size or (x < a + PLACE_ERROR * size and y < b):
                     start = j
     here = start
     for _ in range(k):
@@ -302,13 +295,13 @@ def next_corner(size, first, here, k, group):
         x, y = in_plane(points[first], points[j])
         x, y = x - x0, y - y0
         d = math.sqrt(x * x + y * y)
-        if d <= CORNER * size:  # the same corner
+        if d <= PLACE_ERROR * size:  # the same corner
             continue
         if best >= 0:
             turn = bx * y - by * x  # below 0: to the right of the side
-            if turn > CORNER * size * length:
+            if turn > PLACE_ERROR * size * length:
                 continue
-            if turn >= -CORNER * size * length and d <= length:
+            if turn >= -PLACE_ERROR * size * length and d <= length:
                 continue
         best, length, bx, by = j, d, x, y
     return best, length

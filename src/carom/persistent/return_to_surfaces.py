@@ -21,8 +21,7 @@ from carom.friction.ldl import factor_by_pivots, substitute
 from carom.impact.workspace import OLD, P, U
 from carom.kinematics.contact_point import in_axes
 from carom.model.actions import MODE_STICK
-
-DROP = 1e-10  # relative to its row: a smaller pivot is round-off of a row that depends on those before it
+from carom.persistent.thresholds import DEPENDENCE
 
 
 @kernel
@@ -72,7 +71,7 @@ def factor_given(k, group):
     for i in range(n):
         for j in range(n):
             L[i, j] = group.m[0][rows[i], rows[j]]
-    return factor_by_pivots(n, DROP, rows, own, L)
+    return factor_by_pivots(n, DEPENDENCE, rows, own, L)
 
 
 @kernel

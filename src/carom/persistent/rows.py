@@ -17,17 +17,14 @@ from carom.dynamics.acceleration import accelerate, acceleration
 from carom.dynamics.elements import driven_power
 from carom.dynamics.several_points import accelerations, inverse_masses, spread_all, velocities
 from carom.friction.layout import CONE, SLIDING
+from carom.geometry.thresholds import REMAINDER
 from carom.impact.workspace import C, P, U
 from carom.kinematics.flight import free_rates
 from carom.model.actions import MODE_SLIP
 from carom.persistent.joint_rows import JOINT, PIVOT, drift_of_coordinate, is_driven
 from carom.persistent.points import find_points
 from carom.persistent.springs import bound_per_force
-
-# least cosine between the directions of slip in a step; part of the slip at its start below which a direction
-# is that of the start: a slip that stops at the end of a step
-SAME_WAY, STOPS = 0.5, 1e-3
-SLOWEST = 1e-9  # of the greatest slip of a group: a corner that slips slower sticks
+from carom.persistent.thresholds import SLIP_COSINE, STOPPED_SLIP
 
 
 @kernel
@@ -99,7 +96,7 @@ def set_modes(system, active, k, group):
         u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
         slip = math.sqrt(u1 * u1 + u2 * u2)
         if closed_point.own == 0 and closed_point.turns == 0:  # its own velocity decides
-            slips = slip > SLOWEST * fastest
+            slips = slip > REMAINDER * fastest
         closed_point.loaded = 1 if closed_point.weight > 0.0 else 0
         group.kind[i] = SLIDING if slips or group.mu[i] == 0.0 else CONE
         group.heading[i, 0], group.heading[i, 1] = d1, d2
@@ -110,9 +107,9 @@ def set_modes(system, active, k, group):
             continue
         if not slips or group.mu[i] == 0.0:
             continue
-        if closed_point.own == 1 and not slip > STOPS * speed:
+        if closed_point.own == 1 and not slip > STOPPED_SLIP * speed:
             continue
-        if closed_point.own == 1 and not u1 * d1 + u2 * d2 > SAME_WAY * slip:
+        if closed_point.own == 1 and not u1 * d1 + u2 * d2 > SLIP_COSINE * slip:
             same = False
         if slip > 0.0:
             group.heading[i, 0], group.heading[i, 1] = u1 / slip, u2 / slip

@@ -6,8 +6,8 @@ each z made of what the present error r asks for. They are taken in the combinat
 conjugate residuals; Eisenstat, Elman and Schultz 1983), so that slow ones, of a heavy body on a light one, do
 not add up by their number. Where rows depend on each other and do not fit, each z has the same part that
 changes nothing, and grows like 1/eps: it is removed, and the error stays. The same holds for rows that fit only
-by a multiple `LARGEST` of z: they differ by the error of a stage (two ends of links that touch a box at the
-joint between them), and forces that large are those of the error, not of the contact.
+by a multiple `MULTIPLE` of z: they differ by the error of a stage (two ends of links that touch a box
+at the joint between them), and forces that large are those of the error, not of the contact.
 """
 
 from __future__ import annotations
@@ -16,10 +16,9 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction import lu
+from carom.persistent.thresholds import MULTIPLE, REMOVED
 
 CORRECTIONS = 30
-LARGEST = 1e4  # multiple of a correction: 1e6 kg on 1 kg take 140
-REMOVES = 1e-3  # of an error: a correction that removes less leaves it as that of rows that depend on others
 
 
 @kernel
@@ -49,7 +48,7 @@ def settle(n, held, enough, small, force, cone, Z, r):
                 z[i], q[i] = z[i] - c * Z[2 * j, i], q[i] - c * Z[2 * j + 1, i]
         length, whole = math.sqrt(dot(n, q, q)), dot(n, r, r)
         along = dot(n, q, r) / length if length > 0.0 else 0.0
-        removes = along * along > REMOVES * REMOVES * whole and abs(along) <= LARGEST * length
+        removes = along * along > REMOVED * REMOVED * whole and abs(along) <= MULTIPLE * length
         removes = removes and not (size <= small and abs(along) * greatest(n, z) > length * force)
         if not removes:
             correct(n, cone, r, z)

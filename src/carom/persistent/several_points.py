@@ -13,6 +13,8 @@ from carom.dynamics.energy import energies
 from carom.dynamics.several_points import inverse_masses, yields
 from carom.friction.layout import CONE, SLIDING
 from carom.friction.ldl import factor, substitute
+from carom.geometry.thresholds import RESOLUTION
+from carom.impact.thresholds import VELOCITY_LEFT
 from carom.impact.workspace import OLD, C, P, U
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_SLIP, MODE_STICK
@@ -28,11 +30,8 @@ from carom.persistent.points import weigh
 from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.settle import greatest
 from carom.persistent.start import first_stage
+from carom.persistent.thresholds import DEPENDENCE, REST_SHARE
 
-LAID = 1e-9  # of the size of a body: the gap of a point that is on its surface
-DROP = 1e-10  # of a pivot, relative to its row
-LITTLE = 1e-4  # of the speed: what may be taken for round-off of rest
-VELOCITY_LEFT = 1e-6  # of the greatest velocity to be removed: what may be left of others
 FRICTION_ROUNDS = 60  # of friction with what it does to the normal impulses
 
 
@@ -192,7 +191,7 @@ def end_bounces(model, data, k, label, horizon):
     still = 1e-12 * speed
     for i in range(3 * k):
         still = max(still, controls.rest * controls.step * abs(group.v[C][i]))
-    still = min(still, LITTLE * speed)
+    still = min(still, REST_SHARE * speed)
     for i in range(k):
         contact = system.contacts[group.closed[i].contact]
         end = horizon_of(contact, controls, -group.v[C][3 * i], horizon)
@@ -244,7 +243,7 @@ def find_pull(k, friction, group):
         for j in range(n):
             both = stops(group, i) and stops(group, j)
             L[i, j] = group.m[0][i, j] if both else 1.0 if i == j else 0.0
-    factor(n, DROP, L)
+    factor(n, DEPENDENCE, L)
     first = 0.0
     for with_friction in range(friction, -1, -1):
         for i in range(n):
@@ -391,7 +390,7 @@ def lay_down(model, data, k, label):
     for i in range(k):
         if group.closed[i].turns == 0 and group.v[P][3 * i] > 0.0:
             size = system.contacts[group.closed[i].contact].extent
-            off = off or abs(group.points[0][i].gap) > LAID * size
+            off = off or abs(group.points[0][i].gap) > RESOLUTION * size
     if not off:
         return
     kinetic, potential, _ = energies(system, state, clock.now)

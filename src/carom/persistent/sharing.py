@@ -14,13 +14,13 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction import lu
+from carom.geometry.thresholds import REMAINDER
 from carom.impact.workspace import KEPT, OLD, P
 from carom.persistent.joint_rows import radius_of
-from carom.persistent.springs import EPS, SHARES, compliance_of, grip, soften
+from carom.persistent.springs import SHARES, compliance_of, grip, soften
+from carom.persistent.thresholds import FREEDOM_ERROR, PROXIMAL_SPRING
 
 SQUARES = 3  # of the projector
-CLEAR = 1e-6  # of its trace, which counts what moves nothing: with masses far apart it is no whole number
-ON_DISC = 1e-9  # of the radius of a disc: less is within it
 
 
 @kernel
@@ -37,11 +37,11 @@ def find_idle(k, group):
     for i in range(n):
         for j in range(n):
             L[i, j] = W[3 * rows[i], 3 * rows[j]]
-        L[i, i] += EPS * closed[rows[i]].spring
+        L[i, i] += PROXIMAL_SPRING * closed[rows[i]].spring
     lu.factor(L, n, group.cone.pivot, 0.0)
     for j in range(n):
         for i in range(n):
-            x[i] = EPS * closed[rows[j]].spring if i == j else 0.0
+            x[i] = PROXIMAL_SPRING * closed[rows[j]].spring if i == j else 0.0
         lu.substitute(L, n, group.cone.pivot, x)
         for i in range(n):
             Y[rows[i], rows[j]] = x[i]
@@ -58,7 +58,7 @@ def find_idle(k, group):
     total = 0.0
     for i in range(n):
         total += Y[rows[i], rows[i]]
-    return size if total > 0.5 and abs(total - round(total)) < CLEAR else 0.0
+    return size if total > 0.5 and abs(total - round(total)) < FREEDOM_ERROR else 0.0
 
 
 @kernel
@@ -85,7 +85,7 @@ def share(k, n, group):
             x[i] = kept[i]
             for j in range(m):
                 L[i, j] = W[int(chosen[i]), int(chosen[j])]
-            L[i, i] += EPS * compliance_of(group, int(chosen[i]))
+            L[i, i] += PROXIMAL_SPRING * compliance_of(group, int(chosen[i]))
         lu.factor(L, m, group.cone.pivot, 0.0)
         lu.substitute(L, m, group.cone.pivot, x)
         for i in range(m):
@@ -98,4 +98,4 @@ def share(k, n, group):
 def sticks(group, i):
     """Return whether the friction of the first guess of a point is within its disc."""
     p = group.v[P]
-    return math.hypot(p[3 * i + 1], p[3 * i + 2]) < (1.0 - ON_DISC) * radius_of(group, i)
+    return math.hypot(p[3 * i + 1], p[3 * i + 2]) < (1.0 - REMAINDER) * radius_of(group, i)

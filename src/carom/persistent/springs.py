@@ -26,21 +26,14 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.friction import lu
 from carom.friction.layout import SLIDING
+from carom.geometry.thresholds import LAST_DIGIT, REMAINDER, ROUND_OFF
+from carom.impact.thresholds import GROUP_ERROR, LOADED_PART
 from carom.impact.workspace import OLD, C, P
+from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import JOINT, is_driven
 from carom.persistent.settle import greatest, settle
 
-EPS = 1e-5
-SOFT = 1e2  # compliance of stick over that of pressing: what others hold already needs no friction
-WEAKEST = 1e-3  # of the greatest mu N: a point holds as if it had that at least
-SAME, SHARES = 1e-9, 6  # relative change of a compliance of stick that is none; rounds until then
-DEPEND = 1e-3  # of the accelerations without forces: greatest error of such rows
-FITS = 1e-13  # of the accelerations without forces: error of the rows
-PULL = 1e-11  # of the greatest normal force: less is round-off of zero
-GIVES = 1e-6  # of the displacements of springs: their error
-ROUND_OFF = 1e-15  # of the acceleration by a force
-SMALL = 1e-5  # of the accelerations without forces: an error that asks for no greater forces
-DEEPER = 1e-12  # of the accelerations without forces, of a point whose spring is unloaded
+SHARES = 6  # rounds until the compliances of stick are found
 
 
 @kernel
@@ -110,7 +103,7 @@ def factor_rows(k, group):
     for i in range(n):
         for j in range(n):
             L[i, j] = A[i, j] = response(k, group, rows[i], rows[j])
-        L[i, i] += EPS * compliance_of(group, rows[i])
+        L[i, i] += limits.PROXIMAL_SPRING * compliance_of(group, rows[i])
     lu.factor(L, n, group.cone.pivot, 0.0)
     return n
 
@@ -129,7 +122,7 @@ def compliance_of(group, row):
 def soften(k, group):
     """Let all stick hold alike."""
     for i in range(k):
-        group.closed[i].hold = SOFT * group.closed[i].spring
+        group.closed[i].hold = limits.STICK_COMPLIANCE * group.closed[i].spring
 
 
 @kernel
@@ -147,8 +140,8 @@ def grip(k, group):
     for i in range(k):
         if closed[i].turns == 0 and closed[i].rows == 3 and closed[i].loaded == 1:
             bound = group.mu[i] * group.v[P][3 * i]
-            hold = SOFT * base * most / max(bound, WEAKEST * most)
-            changed = changed or abs(hold - closed[i].hold) > SAME * hold
+            hold = limits.STICK_COMPLIANCE * base * most / max(bound, LOADED_PART * most)
+            changed = changed or abs(hold - closed[i].hold) > REMAINDER * hold
             closed[i].hold = hold
     return changed
 
@@ -202,8 +195,9 @@ def first_forces(k, n, turn, push, group):
         add_force(k, group, rows[i], x[i])
     for i in range(n):
         x[i] = -acceleration_of(k, rows[i], group)
-    enough, small, force = FITS * push, SMALL * push, greatest(3 * k, p)
-    if not settle(n, 1.0, enough, small, force, group.cone, group.m[1], x) <= DEPEND * push:
+    enough, small = limits.EQUATION_ERROR * push, limits.FORCE_ERROR * push
+    left = settle(n, 1.0, enough, small, greatest(3 * k, p), group.cone, group.m[1], x)
+    if not left <= limits.DEPENDENT_ERROR * push:
         return -1
     for i in range(n):
         add_force(k, group, rows[i], group.cone.vector[0, i])
@@ -228,14 +222,15 @@ def load(k, n, push, group):
     for i in range(n):
         x[i] = compliance_of(group, rows[i]) * p[rows[i]]
         most, force = max(most, abs(x[i])), max(force, abs(p[rows[i]]))
-    settle(n, 0.0, GIVES * most, 0.0, 0.0, group.cone, group.m[1], x)
+    settle(n, 0.0, limits.SPRING_ERROR * most, 0.0, 0.0, group.cone, group.m[1], x)
     for i in range(k):
         row = 3 * i
         if closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0:
             a = acceleration_of(k, row, group)
             for j in range(n):
-                a -= EPS * response(k, group, row, rows[j]) * group.cone.vector[0, j]
-            if a < -max(DEEPER * push, ROUND_OFF * force * group.m[0][row, row]):
+                soft = limits.PROXIMAL_SPRING * response(k, group, row, rows[j])
+                a -= soft * group.cone.vector[0, j]
+            if a < -max(ROUND_OFF * push, LAST_DIGIT * force * group.m[0][row, row]):
                 closed[i].loaded, count = 1, count + 1
     return count
 
@@ -248,7 +243,7 @@ def unload(k, turn, group):
         if closed[i].turns == 0:
             most = max(most, p[3 * i])
     for i in range(k):
-        if closed[i].turns == 0 and closed[i].loaded == 1 and p[3 * i] < -PULL * most:
+        if closed[i].turns == 0 and closed[i].loaded == 1 and p[3 * i] < -GROUP_ERROR * most:
             if turn < k:
                 closed[i].loaded, count = 0, count + 1
             elif p[3 * i] < worst:

@@ -9,35 +9,11 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
+from carom.contact.thresholds import SAFE_ROTATION
 from carom.dynamics.energy import kinetic_of
+from carom.dynamics.thresholds import RTOL
 from carom.geometry.rotation import norm
-
-# Allowed loss in a step of several bodies: OF_MOTION of the kinetic energy at its start, plus the lesser of
-# OF_FALL of the energy that a fall of a whole step gains and OF_SIZE of m g times the size, which does not grow
-# with the step. Once a step is cut, only CAREFUL of this is allowed.
-OF_MOTION, OF_FALL, OF_SIZE = 1e-6, 1e-2, 1e-7
-# For a body that hardly moves, m g times the size is replaced by MUCH times the energy that it exchanges in the
-# step plus LEAST of m g times the size, which is far above round-off.
-MUCH, LEAST = 1e3, 1e-4
-CAREFUL = 0.01
-SURE = 1.0 / 8.0  # of the allowed loss: with less, the next step is twice as long
-# Allowed loss of one body, relative to its kinetic energy plus m g times its size.
-OF_ONE = 2e-8
-# Tolerance of a run above which more may be lost, in proportion.
-TIGHT = 1e-8
-# Greatest rotation in a step [rad]: the methods are useful below one radian.
-TURN = 0.5
-# Residual of contacts, relative to the speed that gravity gives in a step: above UNSOLVED a step is cut, and at
-# last replaced by a time-stepping step; if there is none, the run stops above USELESS.
-UNSOLVED, USELESS = 0.01, 10.0
-# Greatest speed of rest from a residual, relative to the tolerance of rest: of a few bodies, and of a crowd.
-POORLY, MANY = 10.0, 1e3
-# Least length of a step, relative to the whole step, that is cut for its loss, and for want of a solution.
-SHORTEST, RETRIED = 1e-4, 1e-2
-# If the loss of a shortest step is so many times the allowed one, its length is not the reason: where a force
-# grows without bound (near a jam, or as a rim becomes flat) no step is short enough, and a time-stepping step
-# replaces it.
-WILD = 100.0
+from carom.persistent import thresholds as limits
 
 
 @kernel
@@ -58,28 +34,28 @@ def may_lose(system, b, start, part):
 
 @kernel
 def weigh(system, b, start, end):
-    """Return the weight of a body times its size, or less if the body hardly moves (see MUCH and LEAST)."""
+    """Return the weight of a body times its size, or less if the body hardly moves."""
     body, g, fallen = system.bodies[b], system.gravity, 0.0
     for k in range(3):
         fallen += body.mass * g[k] * (end[b].x[k] - start[b].x[k])
     size = body.mass * norm(g) * body.extent
     turned = kinetic_of(body, start[b]) + kinetic_of(body, end[b]) + abs(fallen)
-    return min(size, MUCH * turned + LEAST * size)
+    return min(size, limits.EXCHANGE_FACTOR * turned + limits.LEAST_WEIGHT * size)
 
 
 @kernel
 def unnamed(system, controls, start, end, friction, count, member):
     """Return the change of energy in the step besides the work of friction, relative to the allowed loss."""
     lost, may = friction, 0.0
-    fall = 0.5 * OF_FALL * (controls.step * norm(system.gravity)) ** 2
+    fall = 0.5 * limits.FALL_LOSS * (controls.step * norm(system.gravity)) ** 2
     for m in range(count):
         b = member[m]
         body = system.bodies[b]
         lost += lost_by(system, b, start, end)
-        may += OF_MOTION * kinetic_of(body, start[b])
-        may += min(body.mass * fall, OF_SIZE * weigh(system, b, start, end))
+        may += limits.MOTION_LOSS * kinetic_of(body, start[b])
+        may += min(body.mass * fall, limits.SIZE_LOSS * weigh(system, b, start, end))
     if count == 1:
-        may = may_lose(system, member[0], start, OF_ONE)
+        may = may_lose(system, member[0], start, limits.BODY_LOSS)
     return abs(lost) / may if may > 0.0 else 0.0
 
 
@@ -91,7 +67,7 @@ def turns_far(active, start, end, dt):
         if (
             active_point.rest == 0
             and not dt * max(norm(start[active_point.body].w), norm(end[active_point.body].w))
-            <= TURN
+            <= SAFE_ROTATION
         ):
             return True
     return False
@@ -112,28 +88,28 @@ def too_long(model, data):
     end, dt = work.trial, search.dt
     if active.count[0] == 0:
         return False
-    if dt > RETRIED * controls.step and unsolved(controls, work, UNSOLVED):
+    if dt > limits.SHORTEST_RETRY * controls.step and unsolved(controls, work, limits.CUT_RESIDUAL):
         return True
-    shortest = dt <= SHORTEST * controls.step
+    shortest = dt <= limits.SHORTEST_CUT * controls.step
     if controls.order == 0 and not shortest and turns_far(active, start, end, dt):
         return True
     result = work.result[0]
     if shortest:
         return False
-    part = CAREFUL if search.pace < math.inf else 1.0
-    return not (result.unnamed <= part * max(1.0, controls.rtol / TIGHT))
+    part = limits.CUT_SHARE if search.pace < math.inf else 1.0
+    return not (result.unnamed <= part * max(1.0, controls.rtol / RTOL))
 
 
 @inlined
 def goes_wild(work):
     """Return whether a group loses too much energy even in a step that must not be cut further."""
-    return work.result[0].unnamed > WILD
+    return work.result[0].unnamed > limits.LOSS_LIMIT
 
 
 @inlined
 def next_pace(pace, work):
     """Return the limit for the next step: twice the last limit, unless the loss would be too large."""
-    return 2.0 * pace if work.result[0].unnamed <= SURE * CAREFUL else pace
+    return 2.0 * pace if work.result[0].unnamed <= limits.GROWTH_SHARE * limits.CUT_SHARE else pace
 
 
 @kernel

@@ -8,15 +8,8 @@ import numpy as np
 
 from carom.model.contact_rows import touching_pairs
 from carom.results.ledger import Ledger
-from carom.stepping.energy_balance import (
-    ALL,
-    BOUNCES,
-    FRICTION,
-    IMPACTS,
-    RESIDUAL,
-    ROUND_OFF,
-    new_watch,
-)
+from carom.stepping.energy_balance import ALL, BOUNCES, FRICTION, IMPACTS, RESIDUAL, new_watch
+from carom.stepping.thresholds import ENERGY_ROUND_OFF
 
 if TYPE_CHECKING:
     from carom.results.solution import Solution
@@ -63,7 +56,7 @@ def beyond(i: int, watch: np.record | np.ndarray, times: float = 1.0):
 def allowed(watch: np.record | np.ndarray | dict, times: float = INACCURATE):
     """Return `times` the energy errors that the tolerance allows [J]."""
     most = (watch["tolerance"] * watch["exchanged"] + watch["able"]) * times
-    return most + ROUND_OFF * watch["size"]
+    return most + ENERGY_ROUND_OFF * watch["size"]
 
 
 def inaccurate(watch: np.record | np.ndarray):
@@ -180,7 +173,7 @@ def energy_error(watch: np.ndarray) -> np.ndarray:
     amount, of = np.abs(watch["amount"][..., ALL]), watch["exchanged"]
     with np.errstate(divide="ignore", invalid="ignore"):
         error = np.where(of > 0.0, amount / of, np.inf)
-    return np.where(amount <= ROUND_OFF * watch["size"], 0.0, error)
+    return np.where(amount <= ENERGY_ROUND_OFF * watch["size"], 0.0, error)
 
 
 def taken_whole(stats: dict) -> tuple[str, ...]:

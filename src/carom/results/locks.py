@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.dynamics.mobility import DEPENDENT, dense_rows, mass_matrix
+from carom.dynamics.mobility import dense_rows, mass_matrix
+from carom.dynamics.thresholds import RANK
 from carom.model.compile import compile_scene
 from carom.model.records import new_work
 from carom.options import Options
@@ -35,7 +36,7 @@ def locked(run, status: Status) -> str:
     if sum(compiled.system.joints.rows) > MOST_ROWS:
         return ""
     size, _, owner = decomposed(compiled.system, compiled.start, 0.0)
-    rank = int(np.sum(size > DEPENDENT * size[0]))
+    rank = int(np.sum(size > RANK * size[0]))
     now, left, _ = decomposed(compiled.system, run.now, run.reached)
     if not now[rank - 1] < SINGULAR * size[rank - 1]:
         return ""

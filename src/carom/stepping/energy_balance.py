@@ -24,18 +24,12 @@ from carom.dynamics.energy import energies
 from carom.geometry.rotation import norm
 from carom.impact import laws
 from carom.model.actions import EVENT_JAM
-from carom.persistent.step_control import CAREFUL
+from carom.persistent.thresholds import CUT_SHARE
+from carom.stepping import thresholds as limits
 
 #: kinds of energy errors: indices in the columns of `WATCH`
 RESIDUAL, IMPACTS, FRICTION, BOUNCES, ALL = range(5)
-ROUND_OFF = 1e-13
-# a step that gains more than GAIN of the energy that it exchanges is cut, but not below SHORTEST of a whole
-# step; after IN_A_ROW shortest steps that still gain the run ends
-GAIN, SHORTEST, IN_A_ROW = 0.25, 1.0 / 1024.0, 3
-# allowed energy error of a step of an explicit method, as a part of `Options.energy_tolerance`: if it is
-# greater, the step is cut. OF_ACTIVE times as much is allowed with active points, because the order is lower.
-# If the shortest step exceeds the limit, the limit grows by the factor WIDER
-SHARE, OF_ACTIVE, WIDER = 1e-3, 10.0, 4.0
+IN_A_ROW = 3  # after so many shortest steps that still gain energy the run ends
 
 FEW = 10  # bodies: a time-stepping step of so few is named in the warnings; of more it is that of a crowd
 
@@ -150,14 +144,14 @@ def watch_step(system, now, clock, records, watch):
 
 @kernel
 def size_of_stillness(system, h):
-    """Return ROUND_OFF sum of m (L/h)^2: its round-off is the energy of moving by the round-off of L in a step.
+    """Return the round-off of sum m (L/h)^2: the energy of moving by the round-off of L in a step.
 
     Where nothing moves, all energies are of that size.
     """
     size = 0.0
     for b in range(system.bodies.shape[0]):
         size += system.bodies[b].mass * (system.bodies[b].extent / h) ** 2
-    return ROUND_OFF * size
+    return limits.ENERGY_ROUND_OFF * size
 
 
 @kernel
@@ -225,7 +219,7 @@ def speeds_known(system, state, h):
     total = 0.0
     for b in range(state.shape[0]):
         body = system.bodies[b]
-        speed = ROUND_OFF * (norm(state[b].x) + body.extent) / h
+        speed = limits.ENERGY_ROUND_OFF * (norm(state[b].x) + body.extent) / h
         total += body.mass * speed * speed
     return total
 
@@ -242,10 +236,10 @@ def unbalanced(system, active, start, end, named, t, h, watch):
     after, high, size = energies(system, end, t + h)
     gain = after + high - before - low - named
     exchanged = before + after + abs(high - low) + abs(named)
-    known = ROUND_OFF * size + speeds_known(system, end, h) + watch.able
+    known = limits.ENERGY_ROUND_OFF * size + speeds_known(system, end, h) + watch.able
     tolerated = watch.tolerance * watch.exchanged + known
-    grows = not (gain <= GAIN * exchanged + tolerated)
-    share = watch.share * (OF_ACTIVE if active.count[0] > 0 else 1.0)
+    grows = not (gain <= limits.ENERGY_GAIN * exchanged + tolerated)
+    share = watch.share * (limits.ACTIVE_SHARE if active.count[0] > 0 else 1.0)
     may = share * max(watch.exchanged, exchanged) + known
     if not abs(gain) < math.inf:
         return math.inf, grows
@@ -263,19 +257,19 @@ def off_balance(model, data):
     system, controls, active, work = model.system, model.controls, data.active, data.work
     result, search, clock, watch = work.result[0], work.search[0], data.clocks[0], data.watch[0]
     dt, named = search.dt, search.applied + search.friction
-    shortest, careful = dt <= SHORTEST * controls.step, search.pace < math.inf
+    shortest, careful = dt <= limits.SHORTEST_STEP * controls.step, search.pace < math.inf
     jams = search.active == 1 and search.kind == EVENT_JAM
     if active.count[0] == 0:
         result.unnamed = 0.0
     watch.able = max(watch.able, clock.able)
     off, grows = imbalance(system, active, data.state, work.trial, named, clock.now, dt, watch)
     result.unnamed = max(result.unnamed, off)
-    cut = grows or off > (CAREFUL if careful else 1.0)
+    cut = grows or off > (CUT_SHARE if careful else 1.0)
     if (cut and not shortest) or (grows and (jams or search.active == 1)):
         return True, 0
     if search.active == 1 and shortest and not jams:
         return False, 0
     if off > 1.0:
-        watch.share *= WIDER
+        watch.share *= limits.LIMIT_GROWTH
     watch.gains = watch.gains + 1 if grows else 0
     return False, watch.gains

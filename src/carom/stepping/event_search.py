@@ -21,7 +21,7 @@ from carom.contact.stop import passage_stop, stop_gap
 from carom.model.actions import EVENT_GAP, EVENT_JAM
 from carom.model.arrays import STOP
 from carom.persistent.events import contact_event_value, find_contact_event
-from carom.persistent.margins import LEAST, NEAR
+from carom.persistent.thresholds import EVENT_ERROR, EVENT_MARGIN
 
 NEWTON_STEPS = 6  # steps to the root of a cubic from a near start
 
@@ -65,7 +65,7 @@ def event_value(system, controls, active, search, state, work):
         search.tolerance = 4.0 * max(search.tolerance, round_off_of_both(contact, state))
         return lowest_pair(system, contact, search.contact, active, state, work)
     if search.kind != EVENT_JAM and active.points[search.contact].several == 1:
-        search.tolerance = NEAR
+        search.tolerance = EVENT_ERROR
     return contact_event_value(system, active.points[search.contact], search.kind), 0.0
 
 
@@ -145,7 +145,7 @@ def next_trial(search):
             t = search.t - search.f / search.rate
     else:
         low, high = search.low, search.high
-        if search.tolerance == NEAR and search.f_low <= LEAST:  # only the sign is known
+        if search.tolerance == EVENT_ERROR and search.f_low <= EVENT_MARGIN:  # only the sign
             return 0.5 * (low + high)
         t = (low * search.f_high - high * search.f_low) / (search.f_high - search.f_low)
     if not (search.low < t < search.high):

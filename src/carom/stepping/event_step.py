@@ -13,9 +13,10 @@ from carom._compiled.units import unit
 from carom.contact.closed_points import apart, closed_within
 from carom.contact.continuous_detection import greatest_acceleration
 from carom.contact.gap import gap_and_rate, plane_in_body, slow
-from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
+from carom.contact.pair_point import find_touches, smaller, touch_rate
 from carom.contact.parting import beside_face
 from carom.contact.stop import check_stop
+from carom.contact.thresholds import REACH
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.more_forces import note_turns
 from carom.geometry.rotation import norm
@@ -32,7 +33,8 @@ from carom.persistent.bounces import horizon_of
 from carom.persistent.lifecycle import activate_contact
 from carom.persistent.margins import switch_due
 from carom.persistent.modes import jam_point, turn_modes
-from carom.persistent.step_control import UNSOLVED, USELESS, goes_wild, next_pace, unsolved
+from carom.persistent.step_control import goes_wild, next_pace, unsolved
+from carom.persistent.thresholds import CUT_RESIDUAL, STOP_RESIDUAL
 from carom.status import NO_CONVERGENCE, NOT_FINITE
 from carom.status import TOO_MANY_IMPACTS as TOO_MANY
 from carom.stepping.record import finite, grow, save_contacts
@@ -114,7 +116,7 @@ def accept_step(model, data):
     active, now, clock, search = data.active, data.state, data.clocks[0], data.work.search[0]
 
     # if a time-stepping step is possible, it replaces this one; otherwise the run accepts larger residuals
-    bearable = UNSOLVED if controls.retry == 1 else USELESS
+    bearable = CUT_RESIDUAL if controls.retry == 1 else STOP_RESIDUAL
     if active.count[0] > 0 and unsolved(controls, work, bearable):
         return NO_CONVERGENCE, NOTHING
     if active.count[0] > 0 and controls.retry == 1 and goes_wild(work):

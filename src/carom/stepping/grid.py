@@ -12,18 +12,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from carom._compiled.decorators import inlined
+from carom.geometry.thresholds import ROUND_OFF
 from carom.model.arrays import System
+from carom.stepping.thresholds import FALL_OF_ONE, FALL_OF_SEVERAL, LONGEST_PART, STEPS_BY_SPEED
 
 if TYPE_CHECKING:
     from carom.stepping.settings import Settings
 
 STATES = 200  # default number of saved states after the first
-# longest step of a run with tolerances, relative to the time of a fall through the least size of a body. With
-# several bodies it is short, because nearness is checked once a step; one body has no neighbours
-ONE_BODY, SEVERAL_BODIES = 4.0, 0.03
-PART = 0.1  # of a run with contacts: its longest step
-ALIKE = 1e-12  # relative error allowed when a duration is a whole number of spacings
-FEW = 1e4  # greatest number of steps by speed in a scene without gravity
 
 
 class Grid(NamedTuple):
@@ -76,7 +72,7 @@ def planned_grid(settings: Settings, duration: float, longest: float) -> Grid:
 
 def count(whole: float, part: float) -> int:
     """Return the number of parts of a whole, if the last part may be shorter."""
-    return max(1, math.ceil(whole / part * (1.0 - ALIKE)))
+    return max(1, math.ceil(whole / part * (1.0 - ROUND_OFF)))
 
 
 def _grid_of_times(times: np.ndarray, duration: float, longest: float) -> Grid:
@@ -139,19 +135,19 @@ def longest_step(
     """
     if most is not None or not (system.contacts.size or more):
         return min(duration, most or duration)
-    longest = PART * duration
+    longest = LONGEST_PART * duration
     extent = system.bodies.extent
     size = float(np.min(extent if more else extent[system.contacts.body]))
     several, g = len(system.bodies) > 1, float(np.linalg.norm(system.gravity))
     if g > 0.0:
-        part = SEVERAL_BODIES if several else ONE_BODY
+        part = FALL_OF_SEVERAL if several else FALL_OF_ONE
         return min(longest, part * math.sqrt(2.0 * size / g))
     speed = float(
         np.max(np.linalg.norm(start.v, axis=-1) + extent * np.linalg.norm(start.w, axis=-1))
     )
     if not several or speed == 0.0:
         return longest
-    return min(longest, max(0.5 * size / speed, duration / FEW))
+    return min(longest, max(0.5 * size / speed, duration / STEPS_BY_SPEED))
 
 
 def part_of_grid(grid: Grid, begin: float, end: float) -> Grid:

@@ -8,16 +8,14 @@ import numpy as np
 
 from carom import checks
 from carom.dynamics.methods import ADAPTIVE, CARRIES, EXPLICIT, METHODS
+from carom.dynamics.thresholds import RTOL
 from carom.options import Options
 from carom.scene.more_forces import JointFriction, JointInertia
 from carom.scene.remarks import check_location, remarks
 from carom.scene.scene import Scene
+from carom.stepping.thresholds import MOST_STEPS, SMOOTH_RTOL, TIGHT_RTOL
 
 LOCATIONS = ("locate", "project", "work")
-RTOL = 1e-8  # default
-# at these tolerances or below the default is the method of order 8: SMOOTH where nothing strikes or sticks
-TIGHT, SMOOTH = 1e-9, 1e-6
-MOST_STEPS = 1e12
 _DEFAULT = Options()
 
 
@@ -122,7 +120,7 @@ def default_method(h: float | None, rtol: float, scene) -> str:
     """Return the method of a run that names none: where no event cuts its steps order 8 costs the least."""
     if h is not None:
         return "rk4"
-    return "rk8" if rtol <= (SMOOTH if is_smooth(scene) else TIGHT) else "rk5"
+    return "rk8" if rtol <= (SMOOTH_RTOL if is_smooth(scene) else TIGHT_RTOL) else "rk5"
 
 
 def is_smooth(scene) -> bool:

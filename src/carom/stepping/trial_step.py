@@ -6,10 +6,11 @@ import math
 
 from carom._compiled.decorators import inlined
 from carom.contact.continuous_detection import CLEAR, FLAT_RIM, UNSURE
-from carom.dynamics.adapt import NOTHING_LEFT, allowed_step, plan_next, shorter, step_error
+from carom.dynamics.adapt import allowed_step, plan_next, shorter, step_error
 from carom.dynamics.explicit import CONSTRAINTS_LOST, rubs
 from carom.dynamics.more_forces import turns_round
 from carom.dynamics.step import step
+from carom.dynamics.thresholds import LEAST_STEP
 from carom.model import records as r
 from carom.model.actions import EVENT_GAP, MODE_SLIP, STRIKE
 from carom.model.allowance import COUNT_SEARCHES, COUNT_TRIALS, mark_count, overdone
@@ -21,7 +22,7 @@ from carom.persistent.step_control import too_long
 from carom.status import NOT_FINITE, STEP_TOO_SMALL, UNSTABLE
 from carom.status import STEP_CUT_TO_NOTHING as STEP_CUT
 from carom.status import TOO_MANY_IMPACTS as TOO_MANY
-from carom.stepping.energy_balance import IN_A_ROW, SHORTEST, off_balance
+from carom.stepping.energy_balance import IN_A_ROW, off_balance
 from carom.stepping.event_search import (
     begin_search,
     detect_event,
@@ -31,6 +32,7 @@ from carom.stepping.event_search import (
     update_bracket,
 )
 from carom.stepping.record import finite
+from carom.stepping.thresholds import SHORTEST_STEP
 
 ONCE_MORE = -1  # another trial step is needed
 EVENTS_AT_NOW = 20  # events in no time: after so many they wait for the end of a step
@@ -161,11 +163,11 @@ def fits(model, data):
             if may_err(system, data.active):
                 plan_next(dt, error, search.again == 1, controls, work)
             return 0
-        if not dt > NOTHING_LEFT * controls.duration:
+        if not dt > LEAST_STEP * controls.duration:
             return code if code != 0 else STEP_TOO_SMALL
         search.dt, search.again = shorter(dt, error, clock, work), 1
         return ONCE_MORE
-    if code == CONSTRAINTS_LOST and dt > SHORTEST * controls.step:
+    if code == CONSTRAINTS_LOST and dt > SHORTEST_STEP * controls.step:
         search.active = 0
         clock.cuts += 1
         search.dt = 0.5 * dt
@@ -196,7 +198,7 @@ def event_within(model, data):
 
     # is the energy error too large?
     loses = too_long(model, data)
-    if search.active == 0 and search.dt > SHORTEST * controls.step:
+    if search.active == 0 and search.dt > SHORTEST_STEP * controls.step:
         loses = loses or turns_round(system, now, work.trial, search.dt)
     if not loses and (controls.order == 0 or active.count[0] > 0):
         loses, gains = off_balance(model, data)

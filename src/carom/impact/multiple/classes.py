@@ -17,9 +17,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.impact.multiple import layout as o
-
-SAME = 1e-11  # smaller relative differences of velocities and inverse masses are round-off
-_NONE = 1e-13  # coupling below this part of the diagonal is round-off
+from carom.impact.thresholds import GROUP_ERROR, IMPACT_ERROR
 
 
 @kernel
@@ -51,7 +49,7 @@ def clean(given, acting):
         for b in range(3 * k):
             value = 0.5 * (row[b] + W[b, a])
             if not (rough and (b % 3 == 0 or mu[b // 3] > 0.0)) or (
-                a != b and value * value <= _NONE * _NONE * abs(row[a] * W[b, b])
+                a != b and value * value <= IMPACT_ERROR * IMPACT_ERROR * abs(row[a] * W[b, b])
             ):
                 value = 0.0
             new[b] = value
@@ -64,7 +62,7 @@ def find_classes(contacts, scale_u, index):
     for i in range(k):
         cls[i] = -1
         for q in range(count):
-            if _same_kind(contacts, i, first[q], SAME * scale_u):
+            if _same_kind(contacts, i, first[q], GROUP_ERROR * scale_u):
                 cls[i] = q
                 break
         if cls[i] < 0:
@@ -111,7 +109,7 @@ def friction_sleeps(contacts, count, index):
         for r in range(1, 3 if contacts.friction[i] > 0.0 else 1):
             row = contacts.W[3 * i + r]
             for q in range(count):
-                tolerance = SAME * _coupling_scale(contacts.W, i, index[o.FIRST_MEMBER, q])
+                tolerance = GROUP_ERROR * _coupling_scale(contacts.W, i, index[o.FIRST_MEMBER, q])
                 if not abs(_of_class(contacts.k, row, q, index[o.CLASS])) <= tolerance:
                     return False
     return True
@@ -141,7 +139,7 @@ def nothing_slips(contacts, scale_u):
     u = contacts.u
     for i in range(contacts.k):
         slip = abs(u[3 * i + 1]) + abs(u[3 * i + 2])
-        if contacts.friction[i] > 0.0 and not slip <= SAME * scale_u:
+        if contacts.friction[i] > 0.0 and not slip <= GROUP_ERROR * scale_u:
             return False
     return True
 
@@ -162,7 +160,7 @@ def _same_coupling(contacts, count, i, j, index):
     """Return whether contacts i and j are coupled to each class in the same way."""
     k, W, cls = contacts.k, contacts.W, index[o.CLASS]
     for q in range(count):
-        tolerance = SAME * _coupling_scale(W, j, index[o.FIRST_MEMBER, q])
+        tolerance = GROUP_ERROR * _coupling_scale(W, j, index[o.FIRST_MEMBER, q])
         for r in range(3):
             for s in range(3):
                 difference = _difference(k, W[3 * i + r], W[3 * j + r], s, q, cls[j] == q, cls)

@@ -22,22 +22,11 @@ from carom.friction.cone import in_disc
 from carom.friction.ldl import factor, factor_by_pivots, substitute
 from carom.friction.newton import newton
 from carom.friction.operators import sweep
+from carom.impact import thresholds as limits
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.layer import set_velocity
 from carom.impact.multiple.normal_law import OPEN
 
-AT_REST = 1e-10  # slip below this velocity, or below 0.1 rtol, has ended
-_EMPTY = 1e-11  # of its diagonal: a row with a smaller pivot is redundant
-_LOADED = (
-    1e-3  # part of the greatest mu N from which a contact takes part in any motion that it can stop
-)
-_UNLOADED = (
-    0.1  # of the greatest mu N, added to all where the loaded contacts alone cannot stop all motion
-)
-_MOMENT = 0.3  # the moment ahead, in units of the time of the fastest contact
-_PROXIMAL = (
-    1e-10  # weight of the proximal term where A is singular: w is wrong by less than this part of T
-)
 # where Newton's iteration stops between stick and slip it begins again after sweeps: how often, and how many
 _TURNS, _SWEEPS = 10, 5
 
@@ -62,7 +51,7 @@ def gather_stuck(k, work):
 def _bearing(z, work, weight):
     """Write D = mu N of the sticking contacts a moment ahead, relative to the greatest; return the least."""
     d, u, slot = work.vector[o.D], work.vector[o.NOW_U], work.index[o.STUCK]
-    moment = _MOMENT
+    moment = limits.MOMENT_AHEAD
     for a in range(z):
         i = slot[a]
         c = work.contact[i]
@@ -93,7 +82,7 @@ def find_holding(z, work):
     n, vector = 2 * z, work.vector
     L, M, hold = work.matrix[o.FACTOR], work.matrix[o.MIDDLE], work.matrix[o.HOLDING]
     weight, order, full = vector[o.SCALE], work.index[o.PIVOTED], 0
-    if not _bearing(z, work, weight) > _LOADED:
+    if not _bearing(z, work, weight) > limits.LOADED_PART:
         for a in range(z):
             weight[a] = 1.0
         full = _factor(z, work, L)
@@ -101,7 +90,7 @@ def find_holding(z, work):
     rank = _factor(z, work, L)
     if rank < full:  # the loaded contacts alone cannot stop all motion
         for a in range(z):
-            weight[a] += _UNLOADED
+            weight[a] += limits.UNLOADED_WEIGHT
         rank = _factor(z, work, L)
     for p in range(rank):
         for q in range(rank):
@@ -132,7 +121,7 @@ def _factor(z, work, L):
         for b in range(a + 1):
             L[a, b] = weight[a // 2] * weight[b // 2] * row[3 * slot[b // 2] + 1 + b % 2]
         order[a], own[a] = a, L[a, a]
-    rank = factor_by_pivots(n, _EMPTY, order, own, L)
+    rank = factor_by_pivots(n, limits.GROUP_ERROR, order, own, L)
     for b in range(rank):
         root = math.sqrt(L[b, b])
         for a in range(n):
@@ -216,7 +205,7 @@ def solve_discs(m, work, step, force, u, tolerance):
             largest = max(largest, abs(bias[n + r]))
         least = min(least, scale)
     cones.mismatch[f.ENOUGH] = least * tolerance / step + 1e-14 * largest
-    newton(cones, m, _PROXIMAL, True)
+    newton(cones, m, limits.LAYER_PROXIMAL, True)
     for _ in range(_TURNS):
         if cones.mismatch[0] <= cones.mismatch[f.ENOUGH]:
             break
@@ -225,7 +214,7 @@ def solve_discs(m, work, step, force, u, tolerance):
         for i in range(3 * m):
             centre[i] = t[i]
         cones.count[f.FACTOR_ROWS] = -1
-        newton(cones, m, _PROXIMAL, True)
+        newton(cones, m, limits.LAYER_PROXIMAL, True)
     for s in range(m):
         a, scale = 3 * slot[s], cones.contact[s].scale
         _, x, y = in_disc(cones.contact[s].h1, t[3 * s + 1], t[3 * s + 2])

@@ -10,16 +10,11 @@ from carom.impact.multiple import layout as o
 from carom.impact.multiple.classes import class_coupling, parts_others
 from carom.impact.multiple.layer import start
 from carom.impact.multiple.moreau import solve_group
-from carom.impact.multiple.restitution import (
-    COARSE,
-    any_targets,
-    energetic,
-    iterate_restitution,
-    run,
-)
+from carom.impact.multiple.restitution import any_targets, energetic, iterate_restitution, run
 from carom.impact.multiple.series import into_lanes
 from carom.impact.multiple.steps import ENDED
 from carom.impact.resolve import resolve_one
+from carom.impact.thresholds import COARSE_TOLERANCE
 
 
 @kernel
@@ -178,7 +173,7 @@ def pass_group(k, work, settings, result):
         return
     into_lanes(k, work)
     iterates = any_targets(k, work)
-    rtol = max(settings.rtol, COARSE) if iterates else settings.rtol
+    rtol = max(settings.rtol, COARSE_TOLERANCE) if iterates else settings.rtol
     ended = run(k, work, settings, rtol, True)
     if iterates and ended == ENDED:
         ended = iterate_restitution(k, work, settings, result)

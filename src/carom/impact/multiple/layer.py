@@ -9,13 +9,10 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom.friction.dense import add_product
+from carom.geometry.thresholds import ROUND_OFF
 from carom.impact.multiple import layout as o
 from carom.impact.multiple import normal_law as law
-
-APART = 1e-12  # speeds of approach below this part of the scale, or below 1e-4 rtol, count as zero
-WEDGED = 1e-11  # greatest velocity of a group that is wedged at rest
-_LASTING = 0.01
-_FIRST_STEP = 0.05
+from carom.impact.thresholds import GROUP_ERROR, IMPACT_ERROR, INSTANT, LASTING_STEP, LAYER_STEP
 
 
 @kernel
@@ -31,7 +28,7 @@ def set_velocity(k, work):
 def start(k, work):
     """Set the clock and the state at the entry of the layer; velocities before are in U0."""
     clock = work.clock[0]
-    clock.step = _FIRST_STEP
+    clock.step = LAYER_STEP
     clock.steps, clock.events, clock.idle, clock.branched, clock.stiff = 0, 0, 0, 0, 0
     clock.rest, clock.cut, clock.stretched = 0, 0, 0
     for i in range(3 * k):
@@ -45,7 +42,9 @@ def start(k, work):
         work.vector[o.D, i] = 0.0
     set_velocity(k, work)
     for i in range(k):
-        if work.vector[o.NOW_U, 3 * i] <= APART:  # contacts at rest too, as forces may press them
+        if (
+            work.vector[o.NOW_U, 3 * i] <= ROUND_OFF
+        ):  # contacts at rest too, as forces may press them
             law.close(work.contact[i])
 
 
@@ -88,7 +87,7 @@ def drift(k, work, apart, p):
     u, d = work.vector[o.NOW_U], work.vector[o.D]
     for i in range(k):
         c = work.contact[i]
-        forced = law.force(c, d[i], p) > law.ROUND_OFF
+        forced = law.force(c, d[i], p) > IMPACT_ERROR
         if c.mode != law.OPEN and (forced or u[3 * i] < -apart):
             return 0
     time = math.inf
@@ -102,7 +101,7 @@ def drift(k, work, apart, p):
         return 1
     for i in range(k):
         c = work.contact[i]
-        near = u[3 * i] < -apart and max(0.0, c.d0 - d[i]) / -u[3 * i] <= time + law.SAME_TIME
+        near = u[3 * i] < -apart and max(0.0, c.d0 - d[i]) / -u[3 * i] <= time + INSTANT
         d[i] -= u[3 * i] * time
         if near:
             d[i] = c.d0
@@ -124,10 +123,10 @@ def wedged(k, work, h, p):
     for i in range(k):
         n, active = 3 * i, work.contact[i].mode != law.OPEN
         slip = abs(u[n + 1]) + abs(u[n + 2]) if active and work.contact[i].mu > 0.0 else 0.0
-        if not (slip <= WEDGED and (abs(u[n]) if active else -u[n]) <= WEDGED):
+        if not (slip <= GROUP_ERROR and (abs(u[n]) if active else -u[n]) <= GROUP_ERROR):
             clock.rest = 0
             return False
-    clock.rest += 1 if h >= _LASTING and clock.stretched == 0 else 0
+    clock.rest += 1 if h >= LASTING_STEP and clock.stretched == 0 else 0
     if clock.rest < 2:
         return False
     for i in range(k):  # stored energy is lost

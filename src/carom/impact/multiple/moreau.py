@@ -17,18 +17,14 @@ from carom._compiled.units import unit
 from carom.friction.layout import BUDGET, CONE, ENOUGH
 from carom.friction.solve import solve_cones
 from carom.friction.strategy import budget
+from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.layout import AT_ONCE, PLASTIC
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.layer import set_velocity, start
+from carom.impact.thresholds import GAIN, VELOCITY_LEFT, VISIBLE_ERROR
 
 #: in turn: each contact with its own e, all with the least, none with any, and then without friction
 OWN_E, LEAST_E, NO_E, NO_FRICTION = range(4)
-# greatest approach that Newton's law may leave, in units of the speed before, and growth of energy by sum |p u|
-_LEFT, _GROWTH = 1e-6, 1e-9
-_ROUND_OFF = 1e-14
-_VISIBLE = (
-    1e-3  # greatest round-off of velocities, by their unit: impulses that cause more are absurd
-)
 
 
 @unit
@@ -45,7 +41,9 @@ def solve_group(k, work):
             c.e = c.restitution if way == OWN_E else least if way == LEAST_E else 0.0
         clock.change = _once(k, work, way == NO_FRICTION)
         clock.code = AT_ONCE if way == OWN_E else AT_ONCE | o.MISSED if way == LEAST_E else PLASTIC
-        if sound(W, vector[o.U0], vector[o.NOW_U], vector[o.NOW_P], 1.0, (3 * k, _LEFT, _GROWTH)):
+        if sound(
+            W, vector[o.U0], vector[o.NOW_U], vector[o.NOW_P], 1.0, (3 * k, VELOCITY_LEFT, GAIN)
+        ):
             break
     if clock.code & PLASTIC == 0:
         clock.change = 0.0
@@ -61,7 +59,7 @@ def sound(W, before, after, impulse, scale, limits):
     n, left, growth = limits
     gain, allowed, approach = 0.0, 0.0, 0.0
     for a in range(n):
-        own = min(_VISIBLE * scale, round_off(n, W[a], impulse))
+        own = min(VISIBLE_ERROR * scale, round_off(n, W[a], impulse))
         gain += 0.5 * impulse[a] * (before[a] + after[a])
         allowed += abs(impulse[a]) * (growth * scale + own)
         if a % 3 == 0:
@@ -78,7 +76,7 @@ def round_off(n, row, impulse):
     total = 0.0
     for b in range(n):
         total += abs(row[b] * impulse[b])
-    return _ROUND_OFF * total
+    return SUM_ERROR * total
 
 
 @kernel

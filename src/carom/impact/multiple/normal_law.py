@@ -17,11 +17,9 @@ from carom._compiled.decorators import inlined, kernel
 from carom._compiled.lanes import blocks, value_and_slope, values
 from carom._compiled.simd import LANES, store
 from carom.impact.multiple import layout as o
+from carom.impact.thresholds import IMPACT_ERROR
 
 OPEN, LOAD, UNLOAD = 0, 1, 2
-E_MIN = 0.01  # replaces smaller e, because unloading is 1/e^2 stiffer than loading
-ROUND_OFF = 1e-13  # relative to the scales of velocity and depth
-SAME_TIME = 1e-10  # changes closer than this in time are simultaneous
 _EVENT_SAMPLES = 5
 
 
@@ -123,7 +121,7 @@ def any_change(k, work, degree, x):
     d, u = work.series[o.S_AT, o.AT_D], work.series[o.S_AT, o.AT_U]
     for i in range(k):
         b, l = i // LANES, i % LANES
-        if gauge(work.contact[i], d[b, l], u[b, l]) > ROUND_OFF:
+        if gauge(work.contact[i], d[b, l], u[b, l]) > IMPACT_ERROR:
             return True
     return False
 
@@ -143,7 +141,7 @@ def find_changes(k, work, degree, end, when):
         if any_change(k, work, degree, x):
             for i in range(k):
                 c, b, l = work.contact[i], i // LANES, i % LANES
-                if gauge(c, d[b, l], u[b, l]) > ROUND_OFF:
+                if gauge(c, d[b, l], u[b, l]) > IMPACT_ERROR:
                     over = c.rest - d[b, l] > d[b, l] - c.d0 - c.most
                     when[i] = _root(c, i, over, work.series, degree, a, x)
                     first = min(first, when[i])
@@ -160,13 +158,13 @@ def _gauge_and_slope(c, i, over, series, degree, x):
     """
     if c.mode == LOAD:
         s, slope = value_and_slope(series[o.S_U], i, degree, x)
-        return s - ROUND_OFF, slope
+        return s - IMPACT_ERROR, slope
     s, slope = value_and_slope(series[o.S_D], i, degree, x)
     if c.mode == OPEN:
-        return s - c.d0 - ROUND_OFF, slope
+        return s - c.d0 - IMPACT_ERROR, slope
     if over:
-        return c.rest - s - ROUND_OFF, -slope
-    return s - c.d0 - c.most - ROUND_OFF, slope
+        return c.rest - s - IMPACT_ERROR, -slope
+    return s - c.d0 - c.most - IMPACT_ERROR, slope
 
 
 @kernel
@@ -178,7 +176,7 @@ def _root(c, i, over, series, degree, a, b):
     x, width = b, b - a
     for _ in range(90):
         g, slope = _gauge_and_slope(c, i, over, series, degree, x)
-        if abs(g) <= 1e-3 * ROUND_OFF:
+        if abs(g) <= 1e-3 * IMPACT_ERROR:
             return x
         if g > 0.0:
             b = x
@@ -210,7 +208,7 @@ def change_modes(k, work, when, latest, p, one_only):
         if c.mode == OPEN:
             close(c)
         elif c.mode == LOAD:
-            if d - c.d0 > ROUND_OFF:
+            if d - c.d0 > IMPACT_ERROR:
                 unload(c, d, p_n)
             else:
                 release(c, d, p_n, p)
@@ -228,6 +226,6 @@ def would_unload(k, work, when, latest):
     """Return whether one of the contacts with ``when <= latest`` ends its loading."""
     for i in range(k):
         c = work.contact[i]
-        if when[i] <= latest and c.mode == LOAD and work.vector[o.D, i] - c.d0 > ROUND_OFF:
+        if when[i] <= latest and c.mode == LOAD and work.vector[o.D, i] - c.d0 > IMPACT_ERROR:
             return True
     return False

@@ -11,18 +11,15 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import by_reference, entry, kernel
+from carom.geometry.thresholds import LAST_DIGIT
 from carom.impact import laws
+from carom.impact import thresholds as limits
 from carom.impact.layout import BAD_INPUT, OK, PLASTIC
 from carom.impact.multiple import layout as o
-from carom.impact.multiple.classes import SAME, find_groups, find_pressed, reduce
+from carom.impact.multiple.classes import find_groups, find_pressed, reduce
 from carom.impact.multiple.group import strike_group
 from carom.impact.multiple.layout import CornerContacts
 from carom.impact.multiple.moreau import sound
-
-_NOTHING = 1e-15  # changes of velocity below this part of the greatest velocity are round-off
-# greatest approach that a passage may leave, by the greatest velocity, and growth of energy by sum |p u|
-_APPROACH, _GROWTH = 1e-3, 1e-6
-_TOUCHES = 1e-13  # speeds of approach below this part of the greatest velocity count as zero
 
 
 @entry
@@ -46,7 +43,7 @@ def resolve_contacts(contacts, settings, workspace, out):
     together = settings.multiple == o.BY_NEWTON or strikes_at_once(contacts)
     while True:
         ends = together or count >= settings.max_events * contacts.k
-        m = choose(contacts, ends, _TOUCHES * scale, blow, out)
+        m = choose(contacts, ends, limits.IMPACT_ERROR * scale, blow, out)
         if m == 0:
             break
         if ends and not together:  # the sequence does not end: the rest is plastic
@@ -74,7 +71,7 @@ def resolve_contacts(contacts, settings, workspace, out):
 @kernel
 def _together(contacts, scale, settings, workspace, out):
     """Resolve an impact of contacts that strike together; `scale` is the greatest velocity of all contacts."""
-    k, still, result = contacts.k, _TOUCHES * scale, out.summary[0]
+    k, still, result = contacts.k, limits.IMPACT_ERROR * scale, out.summary[0]
     _clear(contacts, out)
     work = workspace.work
     index, clean = work.index, work.matrix[o.CLEAN]
@@ -95,11 +92,11 @@ def _together(contacts, scale, settings, workspace, out):
                 return  # it was stopped: there is no result
         _finish(contacts, out)
         exact = (result.marks & o.EXACT) != 0  # a single contact may gain energy with Newton's law
-        limits = (3 * k, _APPROACH, _GROWTH)
+        bounds = (3 * k, limits.VISIBLE_ERROR, limits.ENERGY_BALANCE)
         if (
             by_newton
             or exact
-            or sound(contacts.W, contacts.u, out.velocity, out.impulse, scale, limits)
+            or sound(contacts.W, contacts.u, out.velocity, out.impulse, scale, bounds)
         ):
             break
         by_newton = True
@@ -162,7 +159,7 @@ def choose(contacts, every, least, blow, out):
         fastest = max(fastest, -u[3 * i])
     if not fastest > least:
         return 0
-    m, equal = 0, (1.0 - SAME) * fastest
+    m, equal = 0, (1.0 - limits.GROUP_ERROR) * fastest
     for i in range(k):
         strikes = every
         for j in range(0 if every else k):
@@ -225,7 +222,7 @@ def _finish(contacts, out):
     for a in range(n):
         most = max(most, abs(u[a]))
     for i in range(k):
-        if not P_[3 * i] * W[3 * i, 3 * i] > _NOTHING * most:
+        if not P_[3 * i] * W[3 * i, 3 * i] > LAST_DIGIT * most:
             P_[3 * i], P_[3 * i + 1], P_[3 * i + 2] = 0.0, 0.0, 0.0
     capped, elastic = (result.marks & o.EXACT) == 0, _keeps_energy(contacts, out)
     for turn in range(2):

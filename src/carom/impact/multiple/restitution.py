@@ -12,18 +12,12 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.impact import laws
+from carom.impact import thresholds as limits
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.layer import resume, start
-from carom.impact.multiple.normal_law import E_MIN
 from carom.impact.multiple.steps import ENDED, pass_layer
 
-_FARTHEST = 1.5  # greatest |ln(target/reached)| and step that is believed
-_DIFFERING = 3.0  # part of a first step in which contacts differ, if some have no target
-_PARALLEL = 0.01  # squared sine of the least angle between two steps of which both are kept
-_GAIN = 0.8  # a round is a gain if it reduces the greatest miss to this part or less
 _PATIENCE = 4  # rounds without gain until it begins again, damped; after twice as many it ends
-COARSE = 1e-4  # greatest tolerance of a passage; it decreases with the misses
-_NEAR = 0.1  # greatest ln(target/reached) at which the nearest result is used
 
 
 @kernel
@@ -34,7 +28,7 @@ def energetic(k, work):
         e = c.restitution
         if c.law in laws.BY_WORK:
             e = math.sqrt(laws.goal(c.law, e, 0.0, 0.0, -1.0))
-        c.e = min(1.0, max(E_MIN, e))
+        c.e = min(1.0, max(limits.LEAST_RESTITUTION, e))
 
 
 @kernel
@@ -67,13 +61,13 @@ def misses(k, work, out):
         reached = work.vector[o.NOW_U, 3 * i] if c.law in laws.BY_SPEED else c.unloading
         if not target > 0.0:
             continue
-        miss = _FARTHEST
-        if reached > target * math.exp(-_FARTHEST):
-            miss = max(-_FARTHEST, math.log(target / reached))
+        miss = limits.LARGEST_CORRECTION
+        if reached > target * math.exp(-limits.LARGEST_CORRECTION):
+            miss = max(-limits.LARGEST_CORRECTION, math.log(target / reached))
         if c.e >= 1.0 - 1e-12 and miss > 0.0:
             capped = True
             miss = 0.0
-        elif c.e <= E_MIN * (1.0 + 1e-12) and miss < 0.0:
+        elif c.e <= limits.LEAST_RESTITUTION * (1.0 + 1e-12) and miss < 0.0:
             miss = 0.0
         out[i] = miss
         worst = max(worst, abs(miss))
@@ -89,7 +83,7 @@ def begin(k, work, gain):
     m = 0
     for i in range(k):
         m += 1 if has_target(work.contact[i]) else 0
-    differing = _DIFFERING if m < k else 1.0
+    differing = limits.FIRST_DIFFERENCE if m < k else 1.0
     for i in range(k):
         work.vector[o.OUT_X, i], work.vector[o.OUT_LAST, i] = math.log(work.contact[i].e), 0.0
         for j in range(k):
@@ -124,8 +118,8 @@ def improve(k, work):
             step -= H[i, j] * v[o.OUT_F, j]
         if v[o.OUT_F, i] == 0.0:  # on target, capped, or without a target
             step = 0.0
-        step = min(_FARTHEST, max(-_FARTHEST, step))
-        x = min(0.0, max(math.log(E_MIN), v[o.OUT_X, i] + step))
+        step = min(limits.LARGEST_CORRECTION, max(-limits.LARGEST_CORRECTION, step))
+        x = min(0.0, max(math.log(limits.LEAST_RESTITUTION), v[o.OUT_X, i] + step))
         v[o.OUT_DX, i] = x - v[o.OUT_X, i]
         v[o.OUT_X, i] = x
         work.contact[i].e = math.exp(x)
@@ -148,7 +142,7 @@ def learn(k, work):
         before += v[o.OUT_LAST, i] * v[o.OUT_LAST, i]
     share = along / before if before > 0.0 else 0.0
     left = size - share * along
-    if not left > _PARALLEL * size:
+    if not left > limits.PARALLEL_STEPS * size:
         share, left = 0.0, size
     bottom = 0.0
     for i in range(k):
@@ -204,7 +198,7 @@ def iterate_restitution(k, work, settings, result):
     best, stale, rounds = worst, 0, 0
     while worst > tolerance and rounds < settings.max_rounds and ended == ENDED:
         improve(k, work)
-        rtol = max(settings.rtol, min(COARSE, 0.01 * worst))
+        rtol = max(settings.rtol, min(limits.COARSE_TOLERANCE, 0.01 * worst))
         ended = again(k, work, settings, rtol)
         rounds += 1
         worst, capped = misses(k, work, v[o.OUT_NEW])
@@ -215,7 +209,7 @@ def iterate_restitution(k, work, settings, result):
         learn(k, work)
         stale += 1
         if worst < best:
-            stale = 0 if worst < _GAIN * best else stale
+            stale = 0 if worst < limits.ROUND_GAIN * best else stale
             best = worst
             keep_best(k, work)
         if stale == _PATIENCE:
@@ -227,7 +221,7 @@ def iterate_restitution(k, work, settings, result):
     if not worst <= tolerance and ended == ENDED:
         result.marks |= o.MISSED
         result.miss = max(result.miss, best)
-        if best < _NEAR:
+        if best < limits.NEAREST_RESULT:
             back_to_best(k, work)
         else:
             energetic(k, work)

@@ -16,8 +16,7 @@ from carom._compiled.simd import LANES, add, load, multiply, same, store, subtra
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.friction import stick
 from carom.impact.multiple.normal_law import OPEN
-
-_NEAR = 0.3  # a time ahead, for the force of a contact that is closing
+from carom.impact.thresholds import MOMENT_AHEAD
 
 
 @kernel
@@ -49,7 +48,7 @@ def slips(c):
 def likely_force(c, d, u_n):
     """Return the normal force of contact `c`, or a bound for a moment later if its depth still grows."""
     force = c.slope * (d - c.rest)
-    return max(force, max(0.0, force) + _NEAR * c.slope * max(0.0, -u_n))
+    return max(force, max(0.0, force) + MOMENT_AHEAD * c.slope * max(0.0, -u_n))
 
 
 @inlined

@@ -18,12 +18,10 @@ from carom._compiled.units import unit
 from carom.friction.dense import add_product
 from carom.impact.multiple import layout as o
 from carom.impact.multiple import normal_law as law
-from carom.impact.multiple.friction import AT_REST, gather_discs, solve_discs
+from carom.impact.multiple.friction import gather_discs, solve_discs
 from carom.impact.multiple.layer import set_velocity
+from carom.impact.thresholds import CHANGE_TOLERANCE, INSTANT, INSTANT_STEP, SHORTEST_PART, SLIP_END
 
-_LEAST_STEP = 1e-9
-_AT_CHANGE = 0.02  # part of the tolerance for steps in which a contact begins or ceases to stick
-_MOMENT = 1e-7  # the moment ahead for the forces of an instant, in units of the step
 EXPLICIT = np.array([
     [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     [1 / 2, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -66,15 +64,15 @@ def by_stages(k, work, rtol, p):
 def stages_step(k, m, work, rtol, p):
     """Take an implicit step, cut at the first change of mode; return its length and whether a mode changes."""
     clock, when, tolerance = work.clock[0], work.vector[o.WHEN], 1e-3 * rtol
-    h, slow = clock.step, max(AT_REST, 0.01 * rtol)
+    h, slow = clock.step, max(SLIP_END, 0.01 * rtol)
     present_forces(k, m, work, h, p, slow, tolerance)
     while True:
         implicit_step(k, m, work, h, p, tolerance)
         clock.steps += 1
         allowed = rtol
         if regime_changes(m, work, slow):
-            allowed *= _AT_CHANGE
-        if not (clock.error > allowed and h > _LEAST_STEP):
+            allowed *= CHANGE_TOLERANCE
+        if not (clock.error > allowed and h > SHORTEST_PART):
             break
         h *= max(0.2, 0.9 * (allowed / clock.error) ** 0.25)
     error = clock.error
@@ -84,7 +82,7 @@ def stages_step(k, m, work, rtol, p):
     first = law.find_changes(k, work, 5, h, when)
     changes = first <= h
     if changes:
-        if first > law.SAME_TIME:
+        if first > INSTANT:
             h = _land(k, m, work, first, p, tolerance, 0.1 * rtol)
             for i in range(k):  # times of changes, relative to the new length of the step
                 when[i] -= first - h
@@ -219,7 +217,7 @@ def present_forces(k, m, work, h, p, slow, tolerance):
     For a contact that slips, T = -mu N u_t/|u_t|; for contacts at rest (slower than `slow`), T is the solution
     of §2.3. Both are limits of the friction for the velocity a moment ahead, as this moment tends to 0.
     """
-    vector, force, moment = work.vector, work.stage[o.FORCE, 0], _MOMENT * h
+    vector, force, moment = work.vector, work.stage[o.FORCE, 0], INSTANT_STEP * h
     u, ahead, q = vector[o.NOW_U], vector[o.NEW_U], vector[o.SCRATCH]
     normal_forces(k, work, vector[o.D], p, force)
     for i in range(k):
@@ -231,7 +229,7 @@ def present_forces(k, m, work, h, p, slow, tolerance):
             ahead[n + r] = u[n + r] if r == 0 else moves * u[n + r]
     add_product(3 * k, work.matrix[o.MASS], q, ahead)
     if m > 0:
-        solve_discs(m, work, moment, force, ahead, tolerance * _MOMENT)
+        solve_discs(m, work, moment, force, ahead, tolerance * INSTANT_STEP)
 
 
 @kernel

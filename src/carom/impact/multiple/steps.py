@@ -11,21 +11,18 @@ from carom._compiled.decorators import inlined, kernel
 from carom._compiled.lanes import blocks, values
 from carom._compiled.simd import LANES, add, greatest, larger, load, multiply, same, store, subtract
 from carom._compiled.units import unit
+from carom.geometry.thresholds import ROUND_OFF
+from carom.impact import thresholds as limits
 from carom.impact.multiple import layout as o
 from carom.impact.multiple import normal_law as law
 from carom.impact.multiple import series as taylor
-from carom.impact.multiple.friction import AT_REST, gather_stuck, halt
-from carom.impact.multiple.layer import APART, branch, drift, set_velocity, wedged
+from carom.impact.multiple.friction import gather_stuck, halt
+from carom.impact.multiple.layer import branch, drift, set_velocity, wedged
 from carom.impact.multiple.stages import by_stages
 
 ENDED, TRAPPED = 0, 1
-_FINE = 1e-10  # least useful tolerance of steps by stages (order four)
 _STIFF_STEPS = 2  # steps by stages before series are tried again
 _FEWER = 2  # orders of the series that are left out if it reaches a change of mode without them
-_SAFE = 0.01  # of the tolerance, for a series of low order: its last terms do not bound the error
-_STIFF = 3000.0  # rate of a slow direction above which stages cost less, per time of the fastest
-_FARTHEST = 4.0  # longest step, in units of the time of the fastest contact
-_FARTHEST_STRETCHED = 40.0
 _SAMPLES = 5
 
 
@@ -40,7 +37,7 @@ def traverse(k, work, rtol, later, p, max_events, max_steps):
     set_velocity(k, work)
     first_events, first_steps, h = clock.events, clock.steps, 0.0
     while True:
-        if drift(k, work, max(APART, 1e-4 * rtol), p) == 1 or wedged(k, work, h, p):
+        if drift(k, work, max(ROUND_OFF, 1e-4 * rtol), p) == 1 or wedged(k, work, h, p):
             set_velocity(k, work)
             return ENDED
         if (
@@ -54,13 +51,14 @@ def traverse(k, work, rtol, later, p, max_events, max_steps):
         if p == 1.0 and clock.stiff == 0:
             h, changes = series_step(k, work, rtol)
         if h < 0.0:
-            fine = max(0.1 * rtol, min(rtol, _FINE)) if p == 1.0 else rtol  # as accurate as series
+            # as accurate as series
+            fine = max(0.1 * rtol, min(rtol, limits.STAGE_ACCURACY)) if p == 1.0 else rtol
             by_stages(k, work, fine, p)
             h, changes = clock.length, clock.changes == 1
             clock.stiff = clock.stiff - 1 if clock.stiff > 0 else _STIFF_STEPS - 1
         if changes:
-            latest = h + law.SAME_TIME
-            clock.idle = clock.idle + 1 if h <= law.SAME_TIME else 0
+            latest = h + limits.INSTANT
+            clock.idle = clock.idle + 1 if h <= limits.INSTANT else 0
             if clock.branched == 0 and law.would_unload(k, work, when, latest):
                 branch(k, work, latest)
                 rtol = later
@@ -81,7 +79,7 @@ def series_step(k, work, rtol):
     The length is -1 if the step has to be taken by stages.
     """
     clock, when, u = work.clock[0], work.vector[o.WHEN], work.vector[o.NOW_U]
-    least = max(AT_REST, 0.1 * rtol)
+    least = max(limits.SLIP_END, 0.1 * rtol)
     captured = False
     for i in range(k):
         c = work.contact[i]
@@ -107,7 +105,8 @@ def series_step(k, work, rtol):
         if known == 0 and stretched and _stiff(k, work):
             return -1.0, False
         known = degree
-        h = reach(k, work, degree, stretched, _SAFE * rtol if degree < most else 0.1 * rtol)
+        share = limits.SERIES_SHARE if degree < most else 0.1
+        h = reach(k, work, degree, stretched, share * rtol)
         if degree == most or law.any_change(k, work, degree, h):
             break
         degree = most
@@ -142,7 +141,7 @@ def _stiff(k, work):
         x, y = S[o.S_U1, 0, b, l], S[o.S_U2, 0, b, l]
         r2 = x * x + y * y
         c = weights[i]
-        if c * c > _STIFF * _STIFF * r2:
+        if c * c > limits.STIFFNESS * limits.STIFFNESS * r2:
             growth = (x * S[o.S_U1, 1, b, l] + y * S[o.S_U2, 1, b, l]) / S[o.S_SIGMA, 0, 0, 0]
             if growth > -0.1 * c * math.sqrt(r2):
                 return True
@@ -153,7 +152,7 @@ def _stiff(k, work):
 def reach(k, work, degree, stretched, tolerance):
     """Return the longest step for which the last two terms are within `tolerance`."""
     last, other = _greatest(k, work.series, degree), _greatest(k, work.series, degree - 1)
-    h = math.log(_FARTHEST_STRETCHED if stretched else _FARTHEST)
+    h = math.log(limits.STRETCHED_STEP if stretched else limits.LONGEST_STEP)
     small = math.log(tolerance)
     if last > 0.0:
         h = min(h, (small - math.log(last)) / degree)

@@ -10,10 +10,7 @@ from carom.dynamics.rotors import energy_of_change
 from carom.geometry.rotation import norm
 from carom.kinematics.contact_point import contact_velocity
 from carom.persistent.step_control import lost_by, weigh
-
-# greatest gain of energy of a group in a piece, and greatest difference from the work of its impulses, relative
-# to the kinetic energy plus m g times the size of its bodies
-GAINS, OFF = 1e-7, 1e-4
+from carom.stepping.thresholds import CROWD_ERROR, CROWD_GAIN
 
 
 @kernel
@@ -49,7 +46,7 @@ def off(model, data, k, gained):
         w = contact_velocity(crowd.points[0][i], end)
         for j in range(3):
             work += 0.5 * p[j] * (u[j] + w[j])
-    return not (gained <= GAINS * size and abs(gained - work) <= OFF * size)
+    return not (gained <= CROWD_GAIN * size and abs(gained - work) <= CROWD_ERROR * size)
 
 
 @kernel

@@ -8,6 +8,7 @@ from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.dynamics.explicit import copy_state
 from carom.geometry.rotation import norm
+from carom.geometry.thresholds import RESOLUTION
 from carom.impact.layout import AT_END
 from carom.impact.record import Blow, three, write_blow
 from carom.kinematics.contact_point import contact_velocity
@@ -15,10 +16,9 @@ from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.model.event_rows import note_event
 from carom.model.records import IMPACT, OPENS, PERSISTS, SLIPS, STICKS
 from carom.persistent.active_set import begin_point
-from carom.persistent.step_control import MANY, POORLY, rest_speed
+from carom.persistent.step_control import rest_speed
+from carom.persistent.thresholds import CROWD_REST, FEW_REST
 from carom.stepping.crowd.response import block_of_point
-
-ASIDE = 1e-9  # of its size: a body at rest that has moved further in a step was pushed
 
 
 @kernel
@@ -27,7 +27,7 @@ def finish(model, data, k, h, fall, residual):
     system, controls = model.system, model.controls
     active, start, end, crowd = data.active, data.state, data.work.trial, data.crowd
     clock, records = data.clocks[0], data.records
-    tolerance = rest_speed(controls, fall * h, residual, k, POORLY)
+    tolerance = rest_speed(controls, fall * h, residual, k, FEW_REST)
     impacts, pressing, rubbing = 0.0, 0.0, 0.0
     for i in range(k):
         spot, point = crowd.spots[i], crowd.points[0][i]
@@ -53,7 +53,7 @@ def finish(model, data, k, h, fall, residual):
     clock.friction += rubbing
     clock.bounces += pressing
     count = list_active(model, data, k, h, tolerance)
-    still = rest_speed(controls, fall * h, residual, k, MANY)
+    still = rest_speed(controls, fall * h, residual, k, CROWD_REST)
     come_to_rest(system, still, count, start, end, crowd)
     for i in range(active.count[0]):
         if active.points[i].touches == 0:
@@ -181,7 +181,7 @@ def come_to_rest(system, tolerance, count, start, end, crowd):
     for b in range(n):
         g, size = root(parent, b), system.bodies[b].extent
         speed[0, g] = max(speed[0, g], norm(start[b].v) + size * norm(start[b].w))
-        if way(start[b], end[b], size) > ASIDE * size:
+        if way(start[b], end[b], size) > RESOLUTION * size:
             speed[0, g] = math.inf
         speed[1, g] = max(speed[1, g], norm(end[b].v) + size * norm(end[b].w))
     for b in range(n):

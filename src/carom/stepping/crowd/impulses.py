@@ -9,10 +9,12 @@ from carom.dynamics.contact_impulse import gain
 from carom.dynamics.elements import driven_power
 from carom.dynamics.energy import spin_momentum
 from carom.dynamics.explicit import copy_state
-from carom.dynamics.project import LOST, project_velocity, shift
+from carom.dynamics.project import project_velocity, shift
 from carom.dynamics.rotors import add_rates, note_rates
+from carom.dynamics.thresholds import ERROR_SHARE
 from carom.friction.layout import ITERATE
 from carom.geometry.rotation import rotate, rotate_back
+from carom.geometry.thresholds import REMAINDER, RESOLUTION
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.allowance import COUNT_BLOCKS, left
 from carom.stepping.crowd.free_motion import halfway
@@ -22,8 +24,6 @@ from carom.stepping.crowd.solve import solve
 from carom.stepping.crowd.spots import gather, gather_sunk, place_all
 from carom.stepping.crowd.surface import onto_surfaces
 
-FINE = 0.1  # tolerance of the solver, relative to the speed below which bodies rest
-NOTHING = 1e-9  # of the work of all impulses: less counts as zero
 LIFTS = 4  # greatest number of searches for other penetrating features
 
 
@@ -56,7 +56,7 @@ def find_impulses(model, data, k, h, fall, patient):
     system, controls, active, now = model.system, model.controls, data.active, data.state
     crowd, work, clock, n = data.crowd, data.work, data.clocks[0], data.state.shape[0]
     pose(system, active, k, h, fall, now, crowd, work)
-    tolerance = FINE * controls.rest * fall * h
+    tolerance = ERROR_SHARE * controls.rest * fall * h
     most = left(controls, clock, COUNT_BLOCKS) if patient else 0.0
     gamma, residual = solve(system, crowd, k, n, tolerance, most, clock)
     answer(system, k, gamma, crowd, work)
@@ -89,7 +89,7 @@ def bounces_give(k, crowd, end):
         one = work_of(i, crowd.p, crowd.spots[i].before, contact_velocity(crowd.points[0][i], end))
         total, size = total + one, size + abs(one)
         strikes = strikes or crowd.spots[i].strikes == 1
-    return strikes and total > NOTHING * size
+    return strikes and total > REMAINDER * size
 
 
 @kernel
@@ -155,7 +155,7 @@ def impose(model, data, k, h):
         driven += driven_power(system, crowd.flight, work)  # the work of an impulse
     for b in range(end.shape[0]):
         shift(work.body[b].motion, 0.5 * h, end[b])
-    holds = onto_surfaces(system, k, end.shape[0], end, crowd, work) <= LOST
+    holds = onto_surfaces(system, k, end.shape[0], end, crowd, work) <= RESOLUTION
     respin(system, crowd.flight, end)
     if joined:
         project_velocity(system, end, True, work)
@@ -181,7 +181,7 @@ def lift_others(system, k, depth, crowd, work):
             break
         place_all(system, k, last, end, crowd, crowd.points[0], work)
         write_responses(system, k, last, crowd, work)
-        holds = onto_surfaces(system, last, end.shape[0], end, crowd, work) <= LOST
+        holds = onto_surfaces(system, last, end.shape[0], end, crowd, work) <= RESOLUTION
     respin(system, work.stage, end)
     project_velocity(system, end, True, work)
     return True, holds

@@ -16,10 +16,9 @@ from carom._compiled.decorators import kernel
 from carom.friction.cone import project
 from carom.friction.layout import ITERATE
 from carom.friction.ldl import factor, substitute
+from carom.stepping.thresholds import MIXING_GROWTH, MIXING_RIDGE
 
 WINDOW = 8  # number of stored differences
-ASTRAY = 2.0  # relative to the last |f|: with more the stored differences are dropped
-INDEPENDENT = 1e-10  # relative addition to the squares of the columns, which may be dependent
 
 
 class Mixing(NamedTuple):
@@ -75,7 +74,7 @@ def note_end(work, k, mixing):
         F[i], H[i] = f - change[i], p[i] - reached[i]
         change[i], reached[i] = f, p[i]
     size = np.sqrt(size)
-    if known and size <= ASTRAY * mixing.size[0]:
+    if known and size <= MIXING_GROWTH * mixing.size[0]:
         mixing.count[0] = min(mixing.count[0] + 1, WINDOW)
         mixing.count[1] = (at + 1) % WINDOW
         for j in range(mixing.count[0]):
@@ -108,7 +107,7 @@ def solve_least(n, mixing):
     for j in range(m):
         theta[j] = product(n, mixing.F[j], mixing.change)
         for i in range(j, m):
-            L[i, j] = mixing.gram[i, j] * (1.0 + INDEPENDENT if i == j else 1.0)
+            L[i, j] = mixing.gram[i, j] * (1.0 + MIXING_RIDGE if i == j else 1.0)
     factor(m, 0.0, L)
     substitute(m, L, theta)
 

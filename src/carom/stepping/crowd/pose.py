@@ -7,8 +7,7 @@ from carom.friction.layout import CONE, DISC
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_STICK
 from carom.stepping.crowd.response import write_responses
-
-LEAVES = 1e-6  # of the speed that gravity gives in the step: a slower point does not leave
+from carom.stepping.thresholds import LEAVING_SPEED
 
 
 @kernel
@@ -81,7 +80,7 @@ def set_bound(spot, contact, h, fall):
     spot.bound, spot.strikes = 0.0, 0
     if spot.gap > 0.0 and spot.left > 0.0:
         spot.bound = min(-spot.gap / h, -u)
-    elif u > LEAVES * fall * h + contact.still:
+    elif u > LEAVING_SPEED * fall * h + contact.still:
         spot.bound = -u
     elif 2.0 * e * -u > (1.0 - e) * fall * h + contact.still:
         spot.bound, spot.strikes = -e * u, 1

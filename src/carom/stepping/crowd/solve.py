@@ -15,18 +15,14 @@ from carom.friction.layout import ContactWork
 from carom.friction.newton import copy, step
 from carom.friction.residual import residual
 from carom.friction.solve import scale_vectors
+from carom.friction.thresholds import CHORD_GAIN, PROXIMAL, RESIDUAL
 from carom.model.allowance import COUNT_BLOCKS
+from carom.persistent.thresholds import CROWD_REST
+from carom.stepping import thresholds as limits
 from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.sweeps import sweep_until
 
 FIRST, BETWEEN, ALLOWED = 40, 30, 150  # sweeps: at first; after a step; allowed for all
-# weights of the proximal term, in turn: impulses are often not unique (four corners of a box), and with 1e-8 a
-# step changes the undetermined part arbitrarily
-PROXIMAL, LAST_DIGITS = (1e-2, 1e-3, 1e-4), 1e-8
-PRECISE, AGREED = 1e-10, 1e-8  # residual relative to the largest velocity: goal, and enough if slow
-HARD = 0.1  # convergence is slow if a turn leaves more than this part of the residual
-WRONG = 1e-2  # relative to the largest velocity: more is no result, whatever the cost
-AT_REST = 1e3  # relative to the tolerance: enough for bodies to come to rest; more is no rest
 IDLE = 4  # turns that do not halve the residual until a start from 0, and again until the end
 PATIENT = 4  # factor of the allowed work if the step can afford it
 # iterations of alternating directions: usual, and most if the step can afford them
@@ -46,9 +42,12 @@ def solve(system, crowd, k, n, tolerance, left, clock):
     gamma = scale_vectors(work, k, crowd.c, crowd.p)
     most = max(ALLOWED * k, min(left, PATIENT * ALLOWED * k))
     speed = greatest_speed(crowd, k) / gamma
-    r, goal, done = sweep_until(system, crowd, k, max(tolerance / gamma, PRECISE * speed), FIRST)
-    enough, good = max(tolerance / gamma, goal, PRECISE * speed), max(goal, AGREED * speed)
-    good = max(good, AT_REST * tolerance / gamma)
+    r, goal, done = sweep_until(system, crowd, k, max(tolerance / gamma, RESIDUAL * speed), FIRST)
+    enough, good = (
+        max(tolerance / gamma, goal, RESIDUAL * speed),
+        max(goal, limits.SLOW_RESIDUAL * speed),
+    )
+    good = max(good, CROWD_REST * tolerance / gamma)
     spent, least, turn, idle = done * k, r, 0, 0
     p, kept = work.vector[o.ITERATE], work.vector[o.START_BEST]
     copy(k, p, kept)
@@ -57,18 +56,18 @@ def solve(system, crowd, k, n, tolerance, left, clock):
         if idle == IDLE and n > 1:  # start from 0: the last impulses may be a poor first guess
             for i in range(3 * k):
                 p[i] = 0.0
-        spent += newton_step(crowd, k, n, PROXIMAL[turn % 3])
+        spent += newton_step(crowd, k, n, limits.PROXIMAL_TURNS[turn % 3])
         r, _, more = sweep_until(system, crowd, k, enough, BETWEEN)
         done, spent, turn = done + more, spent + more * k, turn + 1
         if r < least:
             least = r
             copy(k, p, kept)
-        if least <= good and not least < HARD * before:
+        if least <= good and not least < CHORD_GAIN * before:
             break
         idle = 0 if least < 0.5 * before else idle + 1
     copy(k, kept, p)
     if not least <= good and not has_discs(work, k) and find_order(n, k, crowd):
-        wrong = not least <= max(WRONG * speed, AT_REST * tolerance / gamma)
+        wrong = not least <= max(limits.WRONG_RESIDUAL * speed, CROWD_REST * tolerance / gamma)
         at_least = LONG_SPLIT if wrong else SPLIT
         allowed = LONG_SPLIT if wrong or spent < left else SPLIT
         ordered = by_reference(at_hand(crowd, n))
@@ -76,7 +75,7 @@ def solve(system, crowd, k, n, tolerance, left, clock):
         done, spent = done + more, spent + more * k
         copy(k, p, kept)
     if goal < least <= good:  # one more step for the last digits
-        spent += newton_step(crowd, k, n, LAST_DIGITS)
+        spent += newton_step(crowd, k, n, PROXIMAL)
         r, _, _ = residual(work, k)
         if r < least:
             least = r

@@ -8,8 +8,6 @@ from carom._compiled.decorators import kernel
 from carom.contact.closed_points import apart
 from carom.contact.depth import least_gap
 from carom.contact.pair_point import (
-    ACTIVE_REACH,
-    REACH,
     find_touches,
     list_touches,
     own_point,
@@ -19,11 +17,11 @@ from carom.contact.pair_point import (
 )
 from carom.contact.place_of_other import on_half_space
 from carom.contact.stop import place_stop
+from carom.contact.thresholds import ACTIVE_REACH, REACH
+from carom.dynamics.thresholds import EDGE_JUMP
 from carom.geometry.rotation import norm
 from carom.kinematics.contact_point import contact_velocity, place
 from carom.model.arrays import STOP
-
-PARALLEL = 1e-3  # normals of two points of a pair that differ by less are made equal
 
 
 @kernel
@@ -251,7 +249,7 @@ def share_plane(points, first, last, state):
         for j in range(3):
             turned += abs(point.axes[0, j] - n[j])
             away += n[j] * (point.arm_a[j] - plane.arm_a[j])
-        if turned > PARALLEL or i == nearest:
+        if turned > EDGE_JUMP or i == nearest:
             continue
         for j in range(3):
             point.arm_a[j], point.arm_b[j] = (

@@ -17,13 +17,17 @@ import math
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.depth import deepest
+from carom.contact.thresholds import SAFE_DISPLACEMENT
 from carom.dynamics.explicit import CONSTRAINTS_LOST, copy_state
 from carom.dynamics.more_forces import note_turns
 from carom.dynamics.project import project_velocity
 from carom.geometry.rotation import norm
+from carom.geometry.thresholds import RESOLUTION
 from carom.model import records as r
 from carom.model.allowance import COUNT_BLOCKS, left
+from carom.persistent.thresholds import SHORTEST_CUT
 from carom.status import NOT_FINITE
+from carom.stepping import thresholds as limits
 from carom.stepping.crowd.balance import energy_gained, off, slow_down, take_out, take_over
 from carom.stepping.crowd.finish import finish
 from carom.stepping.crowd.free_motion import (
@@ -45,17 +49,9 @@ from carom.stepping.crowd.layout import SPOTS
 from carom.stepping.crowd.solve import greatest_speed
 from carom.stepping.record import finite, grow
 
-# greatest displacement of a body in a piece of the step, relative to its ball, and rotation of a single body
-# [rad]. Several bodies also move at most FAR of their thickness, but THIN of the first limit is always allowed
-FAR, THIN = 0.25, 1.0 / 32.0
 # greatest number of tries with pieces that may be cut; shortest piece, relative to the step
-CAREFUL, SHORTEST = 300, 1e-4
+CAREFUL = 300  # greatest number of tries with pieces that may be cut
 DEAR = 500.0  # products with blocks per active point that a step must still afford if a piece may be cut
-WIDER, WIDEST = 4.0, 16.0  # factors of the search distance after points were missed
-# depth of a feature that was no candidate, relative to the smaller body: beyond SUNK candidates are sought at a
-# larger distance; beyond DEEP the piece is then cut, down to SHORTER of the step
-SUNK, DEEP, SHORTER = 1e-9, 1e-5, 1.0 / 16.0
-POOR = 1e-3  # greatest residual of contacts, relative to the greatest speed
 AGAIN = 16  # greatest number of searches for points: a row of bodies pushes one more each time
 ALONE = 16  # number of pieces of a step of a single body, which are cheap
 
@@ -84,9 +80,9 @@ def step_crowd(model, data, method):
             clock.tries += 1
             affordable = left(controls, clock, COUNT_BLOCKS) >= DEAR * data.active.count[0]
             patient = clock.tries <= CAREFUL and affordable
-            careful = patient and dt > SHORTEST * controls.interval
+            careful = patient and dt > SHORTEST_CUT * controls.interval
             result.code = move_on(model, data, method, dt, patient, careful)
-            if result.code == CONSTRAINTS_LOST and dt > SHORTEST * controls.interval:
+            if result.code == CONSTRAINTS_LOST and dt > SHORTEST_CUT * controls.interval:
                 result.code = TOO_LONG
             if result.code != TOO_LONG:
                 break
@@ -109,14 +105,14 @@ def piece(system, now, controls, left):
         body, turn = system.bodies[b], norm(now[b].w) * left
         if not body.ball > 0.0:  # the body has no shape
             continue
-        distance, far = (norm(now[b].v) + g * left) * left, FAR * body.ball
+        distance, far = (norm(now[b].v) + g * left) * left, SAFE_DISPLACEMENT * body.ball
         if n == 1:
-            parts = max(parts, math.ceil(turn / FAR))
+            parts = max(parts, math.ceil(turn / SAFE_DISPLACEMENT))
         else:
             distance += turn * body.ball
-            far = max(THIN * far, min(far, FAR * thickness(body)))
+            far = max(limits.THIN_PART * far, min(far, SAFE_DISPLACEMENT * thickness(body)))
         parts = max(parts, math.ceil(distance / far))
-    return min(left, max(left / parts, SHORTEST * step))
+    return min(left, max(left / parts, SHORTEST_CUT * step))
 
 
 @kernel
@@ -134,7 +130,7 @@ def move_on(model, data, method, h, patient, careful):
     clock, n, end, loaded = data.clocks[0], now.shape[0], work.trial, is_loaded(system)
 
     # the motion without contacts, then the impulses
-    shortest = h <= SHORTEST * model.controls.interval
+    shortest = h <= SHORTEST_CUT * model.controls.interval
     code, loads, rubbing = fly(model, data, method, h, loaded, not shortest)
     if code == 0 and loaded and shortest and not finite(crowd.flight):
         code = NOT_FINITE  # a force without a value: no piece is short enough
@@ -199,7 +195,11 @@ def collide(model, data, h, fall, patient, careful):
         if max(clock.event, clock.struck) + rows > data.records.event.shape[0]:
             return grow(clock, r.FULL_EVENTS), k, 0.0, 0.0
         residual = find_impulses(model, data, k, h, fall, patient)
-        if careful and residual > POOR * greatest_speed(crowd, k) + POOR * fall * h:
+        if (
+            careful
+            and residual
+            > limits.RESIDUAL_LIMIT * greatest_speed(crowd, k) + limits.RESIDUAL_LIMIT * fall * h
+        ):
             return TOO_LONG, k, residual, 0.0  # a shorter piece is a different problem
         if careful and misses_bounce(system, k, h, fall, crowd):
             return TOO_LONG, k, residual, 0.0
@@ -209,16 +209,16 @@ def collide(model, data, h, fall, patient, careful):
         # candidates are on the surface; another feature may be inside, as a corner that came over an edge
         sunk = deepest(system, work.trial, work)[0] if n > 1 else 0.0
         times += 1
-        if sunk <= SUNK:
+        if sunk <= RESOLUTION:
             return 0, k, residual, driven
-        if times >= AGAIN or (wide == WIDEST and k == before):
-            if sunk > DEEP and h > SHORTER * model.controls.interval:
+        if times >= AGAIN or (wide == limits.SEARCH_LIMIT and k == before):
+            if sunk > limits.MISSED_DEPTH and h > limits.MISSED_PIECE * model.controls.interval:
                 return TOO_LONG, k, residual, driven
-            room, holds = lift_others(system, k, SUNK, crowd, work)
+            room, holds = lift_others(system, k, RESOLUTION, crowd, work)
             if not room:
                 return grow(clock, r.FULL_SPOTS), k, residual, driven
             return 0 if holds else CONSTRAINTS_LOST, k, residual, driven
-        wide, before = min(WIDEST, wide * WIDER), k
+        wide, before = min(limits.SEARCH_LIMIT, wide * limits.SEARCH_GROWTH), k
 
 
 @kernel

@@ -8,18 +8,15 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.contact.pair_point import smaller
+from carom.contact.thresholds import PLACE_ERROR
 from carom.dynamics.project import project_position, shift
 from carom.stepping.crowd.response import spread_impulses
 from carom.stepping.crowd.spots import place_all
+from carom.stepping.thresholds import IMMOBILITY, RETURN_GAIN
 
-TINY = 1e-11  # allowed depth, relative to the smaller body
 # passes; least and greatest number of sweeps of a pass, and number of sweeps times points. To place all points
 # again costs as much as thirty sweeps
 SURFACE_PASSES, SWEEPS, SURFACE_WORK = 8, (100, 1000), 20000
-BETTER = 0.01  # part of the depth that a pass leaves: gaps are not linear, so less is no gain
-# least W_nn, as a part of the mean of the diagonal, of a point that returns: with the normal through the axis
-# of a hinge W_nn is round-off, and 1e-7 m would turn a gear by many teeth
-IMMOBILE = 1e-6
 
 
 @kernel
@@ -35,12 +32,12 @@ def onto_surfaces(system, k, count, end, crowd, work):
         for i in range(k):
             gap = crowd.points[1][i].gap
             size = smaller(system.contacts[crowd.spots[i].contact])
-            moves = crowd.spots[i].turns == 0 and crowd.problem.link[i].local[0] > IMMOBILE
-            if moves and gap < -TINY * size:
-                deepest, tiny = max(deepest, -gap), min(tiny, 0.1 * TINY * size)
+            moves = crowd.spots[i].turns == 0 and crowd.problem.link[i].local[0] > IMMOBILITY
+            if moves and gap < -PLACE_ERROR * size:
+                deepest, tiny = max(deepest, -gap), min(tiny, 0.1 * PLACE_ERROR * size)
         if deepest == 0.0:
             break
-        lift(system, k, max(tiny, BETTER * deepest), crowd, work)
+        lift(system, k, max(tiny, RETURN_GAIN * deepest), crowd, work)
         for b in range(count):
             shift(work.body[b].motion, 1.0, end[b])
         missed = project_position(system, end, True, 1e-14, work)
@@ -60,7 +57,7 @@ def lift(system, k, tolerance, crowd, work):
         change = 0.0
         for place in range(k):
             i = place if turn % 2 == 0 else k - 1 - place
-            if crowd.spots[i].turns == 0 and problem.link[i].local[0] > IMMOBILE:
+            if crowd.spots[i].turns == 0 and problem.link[i].local[0] > IMMOBILITY:
                 gap = crowd.points[1][i].gap
                 change = max(change, lift_one(problem, i, gap, lam))
         if change <= tolerance:

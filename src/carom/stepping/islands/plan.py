@@ -16,14 +16,9 @@ from carom.model import records as r
 from carom.model.workspace import FREE, RESTS
 from carom.stepping.islands.layout import ASLEEP, FLIES, IN_ISLAND
 from carom.stepping.islands.order import sort_contacts, sort_pairs
+from carom.stepping.thresholds import BALL_SLACK, MEETING_STEPS, START_ROOM
 
-# room of a body that starts from rest and has left its ball, relative to its size: doubled with each repetition
-START = 1e-3
-SLACK = 1e-6  # relative growth of balls, so that balls in contact overlap
 READY = -1  # no array must grow
-# contacts are made for bodies that may meet within AHEAD more steps, but only within a distance of WIDE times
-# their balls
-AHEAD, WIDE = 8.0, 1.0
 
 
 @kernel
@@ -61,7 +56,7 @@ def seek(system, active, now, length, work, islands):
             m.awake, m.speed = 1, m.speed + memory.bound[0] * length
         memory.room = m.awake * plan.widen * (m.speed + fall * length) * length
         if not m.speed + fall * length > 0.0:  # it starts from rest, with a force of unknown size
-            memory.room = m.awake * (plan.widen - 1.0) * START * system.bodies[b].extent
+            memory.room = m.awake * (plan.widen - 1.0) * START_ROOM * system.bodies[b].extent
         for k in range(3):
             memory.home[k] = now[b].x[k]
             islands.centre[b, k] = now[b].x[k]
@@ -76,7 +71,7 @@ def seek(system, active, now, length, work, islands):
             if turn > 0 and whole.awake == 1 and whole.bodies > 1:
                 room = 2.0 * plan.widen * (whole.speed + fall * length) * length
                 memory.room = max(memory.room, room)
-            islands.radius[b] = (1.0 + SLACK) * ball + memory.room if ball > 0.0 else -1.0
+            islands.radius[b] = (1.0 + BALL_SLACK) * ball + memory.room if ball > 0.0 else -1.0
         plan.pairs = sweep(islands.centre, islands.radius, islands.pair[0], islands.sweep)
         if plan.pairs > islands.pair.shape[1]:
             return r.FULL_PAIRS
@@ -114,7 +109,7 @@ def note_new(system, work, islands):
     plan, pair = islands.plan[0], islands.pair[0]
     for b in range(system.bodies.shape[0]):
         if islands.radius[b] > 0.0:
-            islands.radius[b] += min(AHEAD * work.body[b].room, WIDE * system.bodies[b].ball)
+            islands.radius[b] += min(MEETING_STEPS * work.body[b].room, system.bodies[b].ball)
     plan.pairs = sweep(islands.centre, islands.radius, pair, islands.sweep)
     if plan.pairs > pair.shape[0]:
         return r.FULL_PAIRS
@@ -167,10 +162,10 @@ def near_plane(system, c, now, work):
     """Return whether a body may reach a half-space or a static body in the step."""
     contact, x = system.contacts[c], now[system.contacts[c].body].x
     if contact.static == 1:
-        y, reach = contact.centre, (1.0 + SLACK) * (contact.extent + contact.other_extent)
+        y, reach = contact.centre, (1.0 + BALL_SLACK) * (contact.extent + contact.other_extent)
         reach += work.body[contact.body].room
         return (x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2 <= reach * reach
-    reach = contact.extent * (1.0 + SLACK) + contact.radius + work.body[contact.body].room
+    reach = contact.extent * (1.0 + BALL_SLACK) + contact.radius + work.body[contact.body].room
     return along_normal(contact, x) - contact.offset <= reach
 
 

@@ -10,7 +10,7 @@ from itertools import product
 import numpy as np
 
 from carom.fields import keep
-from carom.geometry.attitude import ROUNDED
+from carom.geometry.thresholds import UNIT_ERROR
 from carom.scene.bodies import Body
 from carom.scene.contacts import Contact, check_overlap, far, place
 from carom.scene.scene import Scene
@@ -54,7 +54,7 @@ def _find(scene: Scene, name: str, values: np.ndarray) -> Target:
         _shaped(name, values, (STATE_FIELDS[field],))
         if field == "orientation":
             length = np.linalg.norm(values, axis=1)
-            _all(name, np.abs(length - 1.0) <= ROUNDED, values, "unit quaternions (w, x, y, z)")
+            _all(name, np.abs(length - 1.0) <= UNIT_ERROR, values, "unit quaternions (w, x, y, z)")
     elif field == "inertia":
         if values.shape[1:] not in ((3,), (3, 3)):
             raise ValueError(

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 from carom import checks
 from carom.fields import keep
 from carom.geometry import quaternion
-from carom.geometry.attitude import ROUNDED, quaternions
+from carom.geometry.attitude import quaternions
+from carom.geometry.thresholds import UNIT_ERROR
 
 
 class State(NamedTuple):
@@ -119,7 +120,7 @@ def poses(name: str, value: ArrayLike, n: int, components: int) -> np.ndarray:
 def unit(name: str, q: np.ndarray) -> np.ndarray:
     """Return recorded quaternions (..., 4), normalised; refuse an error of their length above 1e-3."""
     length = np.linalg.norm(q, axis=-1)
-    if not np.all(np.abs(length - 1.0) <= ROUNDED):
+    if not np.all(np.abs(length - 1.0) <= UNIT_ERROR):
         k = np.unravel_index(np.argmax(np.abs(length - 1.0)), length.shape)
         raise ValueError(
             f"{name} must be unit quaternions (w, x, y, z), got {q[k].tolist()} of length {length[k]:.6g} "

@@ -1,0 +1,18 @@
+"""Thresholds of collision: directions, faces and the search for the shortest way out of an overlap."""
+
+LEAST_SINE = 1e-7  #: sine of the angle: edges with less have no common normal: it would be known to 1e-9
+TILT = 4.5e-5  #: rad: angle of two faces of which each can be the reference: cosines that differ by 1e-9
+CROSSING = 1e-6  #: product of the sizes of the solids: smaller products of two sides give no normal
+CLEARANCE = 1e-3  #: size of the smaller solid: such a distance has a direction exact to round-off
+LEAST_CLEARANCE = 1e-3  #: `CLEARANCE`: less gives no better direction; of less overlap no way out is shorter
+DEPTH_CLEARANCE = 30.0  #: depth: clearance of the second phase of a climb
+SAME_CLIMB = 0.95  #: cosine of the angle: starts nearer to an earlier climb are not tried
+CURVED_ERROR = 1e-6  #: distance: accuracy of the search for curved cores, which Newton's method then refines
+FACE_NORMAL = 1e-5  #: 1 - cosine of the angle: up to which a normal may be that of a face
+MARGIN = 4.0  #: tolerance of a surface: within which a point counts as on a face or on a rim
+#: cosine of the angle: 8 degrees: of normals of one feature; greatest turn by Newton's method
+SAME_DIRECTION = 0.99
+LINE_CONTACT = 1e-5  #: rad: of a normal to the cross-section of a cylinder that touches along a line
+#: cosine of the angle: least between the contact normal and that of a reference face; the separation along
+#: the latter must also be at least the least gap minus `reach`
+FACING = 0.7

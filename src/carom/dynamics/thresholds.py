@@ -1,0 +1,24 @@
+"""Thresholds of dynamics: lengths of steps, dependent rows, edges that are passed."""
+
+SAFETY = 0.9  #: length whose error would equal the tolerance: length of the next step
+SHRINKAGE = 0.2  #: step before: least length of the next step
+GROWTH = 10.0  #: step before: greatest length of the next step
+FIRST_STEP = 1e-3  #: a step of the run: length of the first trial step
+FINISH = 0.99  #: time left: a step longer than this takes all of it
+RTOL = 1e-8  #: size and displacement of a body: default of a run; above it more energy may be lost
+#: error that is allowed: share of it for a step, for friction in a step, for a solver: others are added
+ERROR_SHARE = 0.1
+LEAST_STEP = 1e-14  #: duration: least length of a step
+#: time in which its load moves a body by its size: of a body in contact: it moves by the square
+LOAD_STEP = 0.2
+STAGE_TURN = 0.075  #: rad: rotation of a body for each stage of a part of a step (0.3 for `rk4`)
+ROTATION = 1.5  #: rad: of a joint in a trial step, by the rates at its ends: safely below half a turn
+RANK = 1e-8  #: largest singular value of rows of length 1: smaller ones are those of dependent rows
+PARTICIPATION = 1e-6  #: a vector of length 1: least component of a row that takes part in a dependence
+SINGULARITY = 1e-5  #: diagonal of a row: square of its angle to the rows before it: it depends on them
+SINGULAR_TURN = 1e-2  #: rad: bodies turn by this angle to leave a singular position
+SINGULAR_GROWTH = 3.0  #: angle before: if rows still depend on each other
+LAST_PIVOT = 1e-29  #: diagonal: smaller pivots are round-off of 31 digits
+NORMAL_ERROR = 1e-6  #: 1, or size of the body: normals and heights of one plane differ by less, after turns
+EDGE_JUMP = 1e-3  #: 1: normals of edges, or of two points of a pair, that differ by less are one (`TILT`)
+DISPLACEMENT = 1e-5  #: size of a body: for differences of the user's functions

@@ -1,0 +1,16 @@
+"""Thresholds of the contact problem: accuracy, proximal terms, effort."""
+
+RESIDUAL = 1e-10  #: greatest velocity: residual of a solved contact problem
+ENOUGH_RESIDUAL = 100.0  #: tolerance: from which on few more starting points are tried
+PROXIMAL = 1e-8  #: diagonal of W: weight of the proximal term, which makes redundant impulses unique
+#: diagonal of W: its weight where W has an eigenvalue below `PROXIMAL` in a direction of the solution:
+#: each round removes the part lambda/(lambda + eps) of the bias in that direction
+LEAST_PROXIMAL = 1e-14
+RELEASE_START = 0.1  #: diagonal of W: first weight of the proximal term in a release
+RELEASE_FACTOR = 0.3  #: weight before: by which it decreases after a round that converges
+NEWTON_FLOOR = 1e-13  #: 1 + |p|: a smaller |f| is enough, unless a step still halves it
+SHORTEST_SEARCH = 1e-3  #: step of Newton's method: shortest step of the line search
+CHORD_GAIN = 0.1  #: |f| before: a step that leaves more converges slowly; otherwise factors are used again
+LEAST_PIVOT = 1e-14  #: scaled diagonal of W: smaller pivots are replaced by it
+RELAXATION = 1.6  #: step of the iteration: over-relaxation (1.5 to 1.8: Boyd et al. 2011)
+SEARCH_BUDGET = 1e6  #: iterations times the square of the number of contacts: effort of a search

@@ -1,0 +1,4 @@
+"""Thresholds of the model: masses that need more digits than a double has."""
+
+MASS_RATIO = 1e5  #: 1: ratio of masses from which on A M^-1 A^T loses too many digits (`light_bodies`)
+LARGEST_MASS_RATIO = 1e24  #: 1: ratio of masses from which on even 31 digits are lost

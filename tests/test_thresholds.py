@@ -1,0 +1,45 @@
+"""Each threshold is stated once, with its unit and its reason, is used, and is on the page."""
+
+import ast
+import importlib
+import runpy
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from test_architecture import ROOT, modules
+
+TOOL = runpy.run_path(str(Path(__file__).parents[1] / "tools" / "thresholds.py"))
+ROOMS = TOOL["ROOMS"]
+
+
+def test_the_page_is_that_of_the_files():
+    """If this fails: python tools/thresholds.py."""
+    assert TOOL["PAGE"].read_text(encoding="utf-8") == TOOL["page"]()
+    assert {p.parent.name for p in ROOT.glob("*/thresholds.py")} == set(ROOMS)
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_a_threshold_has_a_unit_and_a_reason(room):
+    stated = TOOL["thresholds"](room)[1]
+    module = importlib.import_module(f"carom.{room}.thresholds")
+    assert {row.name for row in stated} == {name for name in vars(module) if name.isupper()}
+    assert not [row.name for row in stated if not row.unit or not row.reason]
+
+
+def test_no_name_stands_for_two_thresholds():
+    names = Counter(row.name for room in ROOMS for row in TOOL["thresholds"](room)[1])
+    assert not [name for name, times in names.items() if times > 1]
+
+
+def test_each_threshold_is_used():
+    """By its name, or as an attribute of the module."""
+    used = set()
+    for path in modules().values():
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
+                used.add(node.id)
+            elif isinstance(node, ast.Attribute):
+                used.add(node.attr)
+    assert not {row.name for room in ROOMS for row in TOOL["thresholds"](room)[1]} - used
