@@ -176,7 +176,7 @@ def test_slip_that_turns():
         np.testing.assert_allclose(run.v[-1, :2], exact, rtol=0, atol=most)
 
 
-@pytest.mark.filterwarnings("ignore:Energy error")  # the steps are coarse
+@pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")  # the steps are coarse
 @pytest.mark.parametrize("wind", [1.2, 2.0])
 @pytest.mark.parametrize("across", [0.02, 0.1])
 def test_slip_that_turns_back(wind, across):

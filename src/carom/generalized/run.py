@@ -26,7 +26,7 @@ from carom.generalized.step import project
 from carom.model.kept import Kept
 from carom.model.records import PAUSE
 from carom.status import SUCCESS, Status
-from carom.stepping.grid import STATES, planned_grid
+from carom.stepping.grid import STATES, part_of_grid, planned_grid
 
 if TYPE_CHECKING:
     from carom.generalized.system import GeneralizedSystem
@@ -84,6 +84,12 @@ class GeneralizedRun:
             self.check_start()
         self.code = self.contacts.resolve(0, -1)
         self.save_now()
+
+    def again(self, begin: float, x: np.ndarray, end: float) -> GeneralizedRun:
+        """Return a run between two times that starts at a state (q, v) of this one."""
+        run = GeneralizedRun(self.user, self.how, (begin, x))
+        run.plan = self.plan._replace(grid=part_of_grid(self.plan.grid, begin, end))
+        return run
 
     def check_start(self) -> None:
         """Raise an error if the start violates constraints or contacts; `project_start` projects velocities."""
