@@ -92,6 +92,7 @@ class Work(NamedTuple):
     row_scale: np.ndarray  # (h,) greatest sum |A_j q_j|
     gap_scale: np.ndarray  # (C,) the same of the gaps, or the greatest gap
     point: np.ndarray  # (n,) of differences
+    axis: np.ndarray  # (n,) 0, or one axis
     sample: np.ndarray  # results there
     slope: np.ndarray  # (n, m) derivatives of m results
     search: np.recarray  # (1,) SEARCH, of an event
@@ -166,7 +167,7 @@ def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> W
         "L": (n, n), "a": n, "R": (m, n), "D": (m, n), "Z": (m, n), "K": (m, m), "inverse": m, "rhs": m,
         "stages": (stages, 2 * n), "trial": 2 * n, "end": 2 * n, "row_scale": holonomic,
         "gap_scale": contacts, "margin": (NO_EVENT, contacts), "nothing": (NO_EVENT, contacts),
-        "before": (NO_EVENT, contacts), "point": n, "sample": most, "slope": n * most, "spent": 2,
+        "before": (NO_EVENT, contacts), "point": n, "axis": n, "sample": most, "slope": n * most, "spent": 2,
     }  # fmt: skip
     own = {name: np.zeros(shape) for name, shape in shapes.items()}
     return Work(**results, **own, search=table(SEARCH, 1))

@@ -26,9 +26,9 @@ from carom.model.records import PAUSE
 from carom.status import STEP_TOO_SMALL, SUCCESS
 from carom.stepping.grid import end_of, is_saved
 
-# Tangents of the greatest angle by which slip turns in a given step (15 degrees: of steps of .02 to .2 s of pucks
-# and sleds none is off by more than 1e-3 m; 3e-3 m with 30 degrees, 1e-2 m with 60), and of that by which it may
-# miss the opposite direction where it stops: a stop is located.
+# Tangents of the greatest angle by which slip turns in a given step (15 degrees: of steps of .02 to .2 s of
+# pucks and sleds none is off by more than 1e-3 m; 3e-3 m with 30 degrees, 1e-2 m with 60), and of that by which
+# it may miss the opposite direction where it stops: a stop is located.
 TURN, STOPS = 0.268, 0.01
 SHORTEST = 2.0**-12  # of a given step: it is halved no further
 LONG = 20_000  # trial steps, times the square of the number of coordinates, after which the loop pauses

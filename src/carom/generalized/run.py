@@ -79,7 +79,7 @@ class GeneralizedRun:
         self.nodes: list[tuple[float, np.ndarray, np.ndarray]] = []  # time, state before, after
         self.contacts = Contacts(self)
         self.reason = ""  # of a failure, beyond its status
-        self.located, self.at_once, self.last, self.in_step = 0, 0, -1.0, -1
+        self.located, self.at_once, self.last = 0, 0, -1.0
         if start is None:
             self.check_start()
         self.code = self.contacts.resolve(0, -1)
@@ -203,10 +203,6 @@ class GeneralizedRun:
         """Handle the event at which the loop has stopped; return a status."""
         clock = self.clock[0]
         self.located += 1
-        if clock.step != self.in_step:
-            self.in_step = int(clock.step)
-            if self.plan.order == 0:
-                self.contacts.strike.blows[:] = 0
         near = clock.now - self.last <= 1e-12 * self.plan.step
         self.at_once = self.at_once + 1 if near else 0
         self.last = float(clock.now)
