@@ -91,7 +91,7 @@ class Contacts:
         struck, self.marked = (index, -1) if kind == a.EVENT_GAP else (-1, index)
         parts = (one[:k].copy() for one in (active.mode, active.heading, active.force))
         self.kind, self.was = kind, dict(zip(self.active(), zip(*parts)))
-        code = (self.return_to(struck) if struck >= 0 else 0) or self.look()
+        code = self.look()
         if code != 0:
             return code
         closed = self.closed(struck)
@@ -107,17 +107,6 @@ class Contacts:
         """Project the state to constraints and active contacts; return a status."""
         run = self.run
         return project(run.system, run.active, run.reached, run.x, True, run.work)
-
-    def return_to(self, contact: int) -> int:
-        """Remove round-off of the gap of a contact from the located state; return a status."""
-        run, active = self.run, self.run.active
-        k = int(active.count[0])
-        active.contact[k], active.mode[k], active.count[0] = contact, a.MODE_SLIP, k + 1
-        code = project(run.system, active, run.reached, run.x, False, run.work)
-        active.count[0] = k
-        if code == 0 and (run.system.size[ALL_ROWS] > 0 or k > 0):
-            code = self.project()
-        return Status.RETURN_MAP_FAILED if code == Status.CONSTRAINTS_LOST else code
 
     def note_changes(self) -> None:
         """Write the events of contacts whose mode has changed."""

@@ -29,6 +29,7 @@ from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.status import NOT_FINITE, SINGULAR_METRIC
 
 POSITION, RATE, ACCELERATION = range(3)  # what the rows must give
+LEAST = 1e-9  # of the unit of a coordinate, its size for tolerances: in the origin errors are not relative to 0
 SINGULAR = 1e-15  # of the diagonal: a pivot of the metric that is round-off
 
 
@@ -80,10 +81,10 @@ def find_contacts(system, t, x, work):
 
 @kernel
 def terms(row, x, n):
-    """Return sum |row_j x_j|."""
+    """Return sum |row_j x_j|, with coordinates of at least `LEAST`."""
     total = 0.0
     for j in range(n):
-        total += abs(row[j] * x[j])
+        total += abs(row[j]) * max(abs(x[j]), LEAST)
     return total
 
 
