@@ -14,7 +14,6 @@ import numpy as np
 
 from carom.friction.layout import CONE, SLIDING, SOLVED, new_contact_work
 from carom.friction.solve import solve_cones
-from carom.generalized.layout import ALL_ROWS, TOUCHES
 from carom.generalized.step import project
 from carom.generalized.strike import Strike, rows_of
 from carom.impact.laws import NUMBERS
@@ -85,7 +84,7 @@ class Contacts:
     def resolve(self, kind: int, index: int) -> int:
         """Handle the located event (kind 0: the start of the run); return a status."""
         run, active = self.run, self.run.active
-        if run.system.size[TOUCHES] == 0:
+        if run.system.contacts == 0:
             return 0
         before, k = run.x.copy(), active.count[0]
         struck, self.marked = (index, -1) if kind == a.EVENT_GAP else (-1, index)

@@ -14,21 +14,7 @@ import numpy as np
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom._compiled.user_functions import call_function
-from carom.generalized.layout import (
-    ALL_ROWS,
-    CALL_INERTIA,
-    CALL_LOADS,
-    CALL_ROWS,
-    HOLONOMIC,
-    OF_CONSTRAINT,
-    OF_CONTACT,
-    OF_FORCE,
-    OF_METRIC,
-    OF_POTENTIAL,
-    OF_ROWS,
-    TOUCHES,
-    N,
-)
+from carom.generalized import layout as o
 from carom.generalized.linear import copy_row, dot
 
 STEP = float(np.finfo(float).eps ** 0.2)
@@ -49,20 +35,20 @@ def evaluate_parts(system, which, t, x, work):
 
     Those of the coordinates get a copy of them, `work.point`.
     """
-    n, h, k, C = system.size[N], system.size[HOLONOMIC], system.size[ALL_ROWS], system.size[TOUCHES]
+    n, h, k, C = system.n, system.holonomic, system.rows, system.contacts
     copy_row(x, work.point, n)
-    if which == CALL_INERTIA:
+    if which == o.CALL_INERTIA:
         evaluate_inertia(system, t, x, work)
-    elif which == CALL_LOADS:
+    elif which == o.CALL_LOADS:
         evaluate_loads(system, t, x, work)
-    elif which == CALL_ROWS:
+    elif which == o.CALL_ROWS:
         out, rates = work.rows[h:], work.rows[h + k * n :]
-        evaluate_rows(system.part[OF_CONSTRAINT], t, x, work.rows, out, rates, work)
-        evaluate_rows(system.part[OF_ROWS], t, x, work.rows, out[h * n :], rates[h:], work)
+        evaluate_rows(system.part[o.OF_CONSTRAINT], t, x, work.rows, out, rates, work)
+        evaluate_rows(system.part[o.OF_ROWS], t, x, work.rows, out[h * n :], rates[h:], work)
     else:
         for c in range(C):
             values, out = work.contacts[c:], work.contacts[C + 3 * n * c :]
-            rates, part = work.contacts[C + 3 * n * C + 3 * c :], OF_CONTACT + 2 * c
+            rates, part = work.contacts[C + 3 * n * C + 3 * c :], o.OF_CONTACT + 2 * c
             evaluate_rows(system.part[part], t, x, values, out, rates, work)
             evaluate_rows(system.part[part + 1], t, x, values, out[n:], rates[1:], work)
 
@@ -70,7 +56,7 @@ def evaluate_parts(system, which, t, x, work):
 @kernel
 def evaluate_inertia(system, t, x, work):
     """Write M and Gamma_kij v_i v_j."""
-    n, out, part, dM = system.size[N], work.inertia, system.part[OF_METRIC], work.slope
+    n, out, part, dM = system.n, work.inertia, system.part[o.OF_METRIC], work.slope
     call_function(part[0], t, work.point, out)
     find_slope(part, t, x, n, work)
     for i in range(n):
@@ -84,8 +70,8 @@ def evaluate_inertia(system, t, x, work):
 @kernel
 def evaluate_loads(system, t, x, work):
     """Write V, Q - dV, Q v."""
-    n, out = system.size[N], work.loads
-    potential, force = system.part[OF_POTENTIAL], system.part[OF_FORCE]
+    n, out = system.n, work.loads
+    potential, force = system.part[o.OF_POTENTIAL], system.part[o.OF_FORCE]
     for j in range(n + 2):
         out[j] = 0.0
     if force[0] != 0:

@@ -39,12 +39,9 @@ class Evaluation:
         self.functions = Functions()
         addresses, parts = model.addresses(self.functions)
         self.system = Coordinates(
-            np.array(addresses, dtype=np.int64),
-            np.array(parts, dtype=np.int64).reshape(-1, 3),
-            np.array([n, model.holonomic, model.rows, C], dtype=np.int64),
-            np.array([one.friction for one in contacts]),
-            drop,
-        )
+            np.array(addresses, dtype=np.int64), np.array(parts, dtype=np.int64).reshape(-1, 3),
+            n, model.holonomic, model.rows, C, np.array([one.friction for one in contacts]), drop,
+        )  # fmt: skip
         self.work = new_work(n, model.holonomic, model.rows, C, STAGES)
         self.none_active = new_active_set(C)
 
@@ -79,12 +76,13 @@ class Evaluation:
 
     def autoparallel(self, q, v, parts):
         """Return the end (q, v) of an autoparallel: the motion without loads, constraints and contacts."""
-        x, none = np.concatenate([q, v]), new_active_set(0)
-        address, size = self.system.address * [1, 0, 0, 0], self.system.size * [1, 0, 0, 0]
-        part, work = self.system.part.copy(), new_work(self.n, 0, 0, 0, STAGES)
+        x, part = np.concatenate([q, v]), self.system.part.copy()
         part[OF_METRIC + 1 :] = 0
-        free = Coordinates(address, part, size, np.zeros(0), 0.0)
-        code = move_freely(Motion(free, make_method("rk4", Options()), none, work), x, parts)
+        free = self.system._replace(
+            address=self.system.address * [1, 0, 0, 0], part=part, holonomic=0, rows=0, contacts=0
+        )
+        work, method = new_work(self.n, 0, 0, 0, STAGES), make_method("rk4", Options())
+        code = move_freely(Motion(free, method, new_active_set(0), work), x, parts)
         self.failed()
         if code != 0:
             raise ValueError(f"the autoparallel could not be integrated: {Status(code).message}")

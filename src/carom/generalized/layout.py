@@ -26,22 +26,20 @@ CALL_CONTACTS = 3  #: gap (C,), G (C, 3, n), (dG/dt) v (C, 3)
 # contact.
 OF_METRIC, OF_POTENTIAL, OF_FORCE, OF_CONSTRAINT, OF_ROWS, OF_CONTACT = range(6)
 
-# The four sizes, by their place in `Coordinates.size`.
-N, HOLONOMIC, ALL_ROWS, TOUCHES = range(4)
-
 # An event ended a call of the loop; other codes are `carom.model.records.PAUSE`, and those of `carom.status`.
 EVENT = 100
 
 
 class Coordinates(NamedTuple):
-    """A system: addresses of its functions, sizes, friction of its contacts."""
+    """A system: its functions, sizes, and friction of its contacts."""
 
-    address: (
-        np.ndarray
-    )  # (4,) int64; 0 for a function that the system does not have, or that has parts
+    address: np.ndarray  # (4,) int64; 0 for a function that the system lacks, or that has parts
     # (P, 3) int64 addresses of a function and of its derivative, 0 for none, and the number of results
     part: np.ndarray
-    size: np.ndarray  # (4,) int64
+    n: int  # coordinates
+    holonomic: int  # constraints phi
+    rows: int  # of all constraints
+    contacts: int
     friction: np.ndarray  # (C,)
     drop: float  # a row is left out if its pivot is below this part of its diagonal
 
@@ -85,10 +83,9 @@ class Work(NamedTuple):
     stages: np.ndarray  # (S, 2n)
     trial: np.ndarray  # (2n,)
     end: np.ndarray  # (2n,)
-    # (NO_EVENT, C) by kind of event: its function, what is round-off of it, the function at the start of a step
-    margin: np.ndarray
-    nothing: np.ndarray
-    before: np.ndarray
+    margin: np.ndarray  # (NO_EVENT, C) the function of each kind of event
+    nothing: np.ndarray  # (NO_EVENT, C) what is round-off of it
+    before: np.ndarray  # (2, C) gaps and their rates at the start of a step
     row_scale: np.ndarray  # (h,) greatest sum |A_j q_j|
     gap_scale: np.ndarray  # (C,) the same of the gaps, or the greatest gap
     point: np.ndarray  # (n,) of differences
@@ -167,7 +164,7 @@ def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> W
         "L": (n, n), "a": n, "R": (m, n), "D": (m, n), "Z": (m, n), "K": (m, m), "inverse": m, "rhs": m,
         "stages": (stages, 2 * n), "trial": 2 * n, "end": 2 * n, "row_scale": holonomic,
         "gap_scale": contacts, "margin": (NO_EVENT, contacts), "nothing": (NO_EVENT, contacts),
-        "before": (NO_EVENT, contacts), "point": n, "axis": n, "sample": most, "slope": n * most, "spent": 2,
+        "before": (2, contacts), "point": n, "axis": n, "sample": most, "slope": n * most, "spent": 2,
     }  # fmt: skip
     own = {name: np.zeros(shape) for name, shape in shapes.items()}
     return Work(**results, **own, search=table(SEARCH, 1))

@@ -16,12 +16,12 @@ import math
 from carom._compiled.decorators import entry, kernel
 from carom.dynamics.adapt import NOTHING_LEFT, allowed_error, of_two, part_of, shrunk
 from carom.dynamics.adapt import plan as plan_ahead
+from carom.generalized import layout as o
 from carom.generalized.events import locate
-from carom.generalized.layout import CALL_LOADS, EVENT, N
 from carom.generalized.linear import copy_row, dot
 from carom.generalized.motion import evaluate, find_metric
 from carom.generalized.step import take
-from carom.model.actions import MODE_SLIP, NO_EVENT
+from carom.model import actions as a
 from carom.model.records import PAUSE
 from carom.status import STEP_TOO_SMALL, SUCCESS
 from carom.stepping.grid import end_of, is_saved
@@ -36,13 +36,13 @@ LONG = 20_000  # trial steps, times the square of the number of coordinates, aft
 
 @entry
 def time_loop(motion, x, plan, until, record):
-    """Continue to step number `until`; return SUCCESS, EVENT (the clock has its kind) or a status of failure.
+    """Continue to step number `until`; return SUCCESS, o.EVENT (the clock has its kind) or a status of failure.
 
     Return PAUSE after much work, so that Ctrl-C is noticed.
     """
     system, work = motion.system, motion.work
     c = record.clock[0]
-    most = c.trials + LONG // (system.size[N] * system.size[N]) + 1
+    most = c.trials + LONG // (system.n * system.n) + 1
     while c.step < until:
         if c.trials > most:
             return PAUSE
@@ -58,10 +58,10 @@ def time_loop(motion, x, plan, until, record):
             copy_row(work.end, x, x.size)
             c.loads += work.spent[0]
             c.friction += work.spent[1]
-            if kind != NO_EVENT:
+            if kind != a.NO_EVENT:
                 c.now += s
                 c.kind, c.index = kind, index
-                return EVENT
+                return o.EVENT
             if part < left:
                 c.now += part
                 continue
@@ -105,10 +105,10 @@ def turns(motion):
     The slips are those of the velocities of all stages, in the rows at the end: where friction turns a slow
     slip faster than the step follows, that of a stage is far off.
     """
-    active, work, n = motion.active, motion.work, motion.system.size[N]
+    active, work, n = motion.active, motion.work, motion.system.n
     for i in range(active.count[0]):
         c = active.contact[i]
-        if active.mode[i] != MODE_SLIP or not motion.system.friction[c] > 0.0:
+        if active.mode[i] != a.MODE_SLIP or not motion.system.friction[c] > 0.0:
             continue
         e1, e2 = active.heading[i, 0], active.heading[i, 1]
         for s in range(1, motion.method.b.size + 1):
@@ -123,7 +123,7 @@ def turns(motion):
 @kernel
 def step_error(motion, h, plan):
     """Return the greatest error of the step h whose stages are in the workspace; up to 1 it is accepted."""
-    E, stages, n = motion.method.E, motion.work.stages, motion.system.size[N]
+    E, stages, n = motion.method.E, motion.work.stages, motion.system.n
     first, second = 0.0, 0.0
     for i in range(n):
         pace, speed = 0.0, 0.0
@@ -146,10 +146,10 @@ def step_error(motion, h, plan):
 @kernel
 def save(system, x, record, work):
     """Write the state and its energies into the next row."""
-    clock, n = record.clock[0], system.size[N]
+    clock, n = record.clock[0], system.n
     row, total = record.series[clock.saved], 0.0
     find_metric(system, clock.now, x, work)
-    evaluate(system, CALL_LOADS, clock.now, x, work.loads, work)
+    evaluate(system, o.CALL_LOADS, clock.now, x, work.loads, work)
     for i in range(n):
         total += x[n + i] * dot(work.M[i], x[n:], n)
     row.t, row.kinetic, row.potential = clock.now, 0.5 * total, work.loads[0]

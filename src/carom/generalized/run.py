@@ -63,10 +63,12 @@ class GeneralizedRun:
         self.made: Evaluation = made if same else Evaluation(system, options.drop_tolerance)
         self.made.functions.forget()
         self.system = self.made.system
-        n, h, k, C = (int(one) for one in self.system.size)
-        self.n = n
+        made = self.system
+        n = self.n = made.n
         self.method = make_method(settings.method, options, settings.adapts)
-        self.active, self.work = new_active_set(C), new_work(n, h, k, C, len(self.method.b))
+        self.active = new_active_set(made.contacts)
+        sizes = n, made.holonomic, made.rows, made.contacts
+        self.work = new_work(*sizes, len(self.method.b))
         self.motion = Motion(self.system, self.method, self.active, self.work)
         begin, x = start or (0.0, np.concatenate([system.position, system.velocity]))
         self.x = x.copy()
