@@ -116,19 +116,14 @@ class Plan(NamedTuple):
     atol: float
 
 
-#: progress of a run
+#: progress of a run, of which a copy is kept for each saved state: time, counts, energies and works
 CLOCK = [
-    ("now", "f8"), ("step", "i8"), ("saved", "i8"), ("loads", "f8"), ("friction", "f8"),
-    ("impacts", "f8"), ("bounces", "f8"), ("given", "f8"), ("kind", "i8"), ("index", "i8"), ("trials", "i8"),
+    ("now", "f8"), ("step", "i8"), ("saved", "i8"), ("kind", "i8"), ("index", "i8"), ("trials", "i8"),
+    ("kinetic", "f8"), ("potential", "f8"), ("loads", "f8"), ("impacts", "f8"), ("friction", "f8"),
+    ("bounces", "f8"),
+    ("given", "f8"),  # energy that impacts have added where their law allows it (V8)
     # the next step by tolerances, the length that fitted them last, number of steps with too large an error
     ("ahead", "f8"), ("fits", "f8"), ("rejected", "i8"),
-]  # fmt: skip
-
-#: data of a saved state besides the state itself
-SERIES = [
-    ("t", "f8"), ("kinetic", "f8"), ("potential", "f8"), ("loads", "f8"), ("impacts", "f8"),
-    ("friction", "f8"), ("bounces", "f8"),
-    ("given", "f8"),  # energy that impacts have added where their law allows it (V8)
 ]  # fmt: skip
 
 
@@ -136,7 +131,7 @@ class Record(NamedTuple):
     """The clock of a run and the states that it has saved."""
 
     clock: np.recarray  # (1,) CLOCK
-    series: np.recarray  # (rows,) SERIES
+    series: np.recarray  # (rows,) CLOCK
     states: np.ndarray  # (rows, 2n)
 
 

@@ -14,7 +14,6 @@ from carom.generalized.evaluate import Evaluation
 from carom.generalized.layout import (  # fmt: skip
     CLOCK,
     EVENT,
-    SERIES,
     Motion,
     Plan,
     Record,
@@ -76,7 +75,7 @@ class GeneralizedRun:
         self.clock["now"] = begin
         self.clock["ahead"] = FIRST * grid.interval
         rows = grid.rows + 2
-        self.series, self.states = table(SERIES, rows), np.zeros((rows, 2 * n))
+        self.series, self.states = table(CLOCK, rows), np.zeros((rows, 2 * n))
         self.record = Record(self.clock, self.series, self.states)
         self.nodes: list[tuple[float, np.ndarray, np.ndarray]] = []  # time, state before, after
         self.contacts = Contacts(self)
@@ -217,6 +216,6 @@ class GeneralizedRun:
         from carom.generalized.solution import GeneralizedSolution
 
         clock = self.clock[0]
-        if status is not Status.SUCCESS and clock.now > self.series.t[clock.saved - 1]:
+        if status is not Status.SUCCESS and clock.now > self.series.now[clock.saved - 1]:
             self.save_now()
         return GeneralizedSolution._from_run(self, status)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -116,19 +116,18 @@ class GeneralizedSolution(Drawn):
     def _from_run(cls, run: GeneralizedRun, status: Status) -> GeneralizedSolution:
         """Make the solution from the records of a run."""
         from carom._compiled.user_functions import Fault, returned
-        from carom.generalized.layout import SERIES
         from carom.results.accuracy import inaccurate, sentences, watched
 
         saved, n = int(run.clock[0].saved), run.n
-        columns: Any = {name: np.array(run.series[name][:saved]) for name, _ in SERIES}
-        given, states = columns.pop("given"), run.states[:saved].copy()
-        t, ledger, said = columns.pop("t"), Ledger(**columns), ()
+        series: Any = run.series[:saved].copy()
+        ledger = Ledger(**{one.name: np.array(series[one.name]) for one in fields(Ledger)})
+        t, states, said = np.array(series.now), run.states[:saved].copy(), ()
         energies = np.column_stack([ledger.kinetic, ledger.potential])
         if len(bad := np.argwhere(~np.isfinite(energies))):
             k, which = bad[0]
             name = f"The {run.user._model.kind} {('metric', 'potential')[which]!r}"
             said = (f"{Fault(name, float(t[k]), states[k], returned(energies[k]))}.",)
-        watch = watched(t, ledger, given, run.options.energy_tolerance)
+        watch = watched(t, ledger, series.given, run.options.energy_tolerance)
         watch["size"] = max(watch.size, run.contacts.light)
         warnings = (*said, *sentences(watch, run.how.finer))
         if status is Status.SUCCESS and inaccurate(watch):
