@@ -14,6 +14,7 @@ import numpy as np
 
 from carom.friction.layout import CONE, SLIDING, SOLVED, new_contact_work
 from carom.friction.solve import solve_cones
+from carom.generalized.layout import copied
 from carom.generalized.step import project
 from carom.generalized.strike import Strike, rows_of
 from carom.impact.laws import NUMBERS
@@ -99,7 +100,7 @@ class Contacts:
             code = self.set_active(self.chosen(closed, struck), closed)
         if code == 0:
             self.note_changes()
-            run.nodes.append((run.reached, before, run.x.copy()))
+            run.nodes.append((run.reached, before, run.x.copy(), copied(active)))
         return code
 
     def project(self) -> int:

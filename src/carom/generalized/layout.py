@@ -142,6 +142,11 @@ def new_active_set(contacts: int) -> ActiveSet:
     return ActiveSet(count, contact, row, mode, *vectors, np.zeros(contacts))
 
 
+def copied(active: ActiveSet) -> ActiveSet:
+    """Return a copy of an active set."""
+    return ActiveSet(*(one.copy() for one in active))
+
+
 def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> Work:
     """Return workspace for a system of these sizes and a method with this number of stages."""
     m, most = rows + 3 * contacts, max(n, rows, 2) * n

@@ -14,9 +14,11 @@ from carom.generalized.evaluate import Evaluation
 from carom.generalized.layout import (  # fmt: skip
     CLOCK,
     EVENT,
+    ActiveSet,
     Motion,
     Plan,
     Record,
+    copied,
     new_active_set,
     new_work,
 )
@@ -37,12 +39,13 @@ EVENTS_AT_ONCE = 200  # events at one instant
 class GeneralizedRun:
     """A run of a `GeneralizedSystem`: state, records and workspace.
 
-    It begins at the initial state of the system, or at `start`: a time, and the state (q, v) of a run at this
-    time.
+    It begins at the initial state of the system, or at `start`: a time, and the state (q, v) and the active
+    contacts of a run at this time.
     """
 
     def __init__(
-        self, system: GeneralizedSystem, settings: Settings, start: tuple[float, np.ndarray] | None = None
+        self, system: GeneralizedSystem, settings: Settings,
+        start: tuple[float, np.ndarray, ActiveSet] | None = None,
     ):  # fmt: skip
         options = settings.options
         made = system.evaluation()
@@ -65,30 +68,32 @@ class GeneralizedRun:
         made = self.system
         n = self.n = made.n
         self.method = make_method(settings.method, options, settings.adapts)
-        self.active = new_active_set(made.contacts)
         sizes = n, made.holonomic, made.rows, made.contacts
         self.work = new_work(*sizes, len(self.method.b))
+        x = np.concatenate([system.position, system.velocity])
+        begin, x, active = start or (0.0, x, new_active_set(made.contacts))
+        self.x, self.active = x.copy(), copied(active)
         self.motion = Motion(self.system, self.method, self.active, self.work)
-        begin, x = start or (0.0, np.concatenate([system.position, system.velocity]))
-        self.x = x.copy()
         self.clock = table(CLOCK, 1)
         self.clock["now"] = begin
         self.clock["ahead"] = FIRST * grid.interval
         rows = grid.rows + 2
         self.series, self.states = table(CLOCK, rows), np.zeros((rows, 2 * n))
         self.record = Record(self.clock, self.series, self.states)
-        self.nodes: list[tuple[float, np.ndarray, np.ndarray]] = []  # time, state before, after
+        # of the events: time, state before and after, active contacts
+        self.nodes: list[tuple[float, np.ndarray, np.ndarray, ActiveSet]] = []
         self.contacts = Contacts(self)
         self.reason = ""  # of a failure, beyond its status
         self.located, self.at_once, self.last = 0, 0, -1.0
+        self.code = 0
         if start is None:
             self.check_start()
-        self.code = self.contacts.resolve(0, -1)
-        self.save_now()
+            self.code = self.contacts.resolve(0, -1)
+            self.save_now()
 
-    def again(self, begin: float, x: np.ndarray, end: float) -> GeneralizedRun:
+    def again(self, begin: float, x: np.ndarray, active: ActiveSet, end: float) -> GeneralizedRun:
         """Return a run between two times that starts at a state (q, v) of this one."""
-        run = GeneralizedRun(self.user, self.how, (begin, x))
+        run = GeneralizedRun(self.user, self.how, (begin, x, active))
         run.plan = self.plan._replace(grid=part_of_grid(self.plan.grid, begin, end))
         return run
 

@@ -188,14 +188,14 @@ class GeneralizedSolution(Drawn):
 
     def _state(self, time: float, left: bool) -> np.ndarray:
         """Return the state (q, v) at a time, before or after an event at this time."""
-        at, before, after = self._nodes
+        at, before, after, active = self._nodes
         k = max(int(np.searchsorted(at, time, side="left" if left else "right")) - 1, 0)
         last = min(k + 1, len(at) - 1)
         if time == at[k]:
             return after[k]
         if time > at[last] - ROUND_OFF * self.t[-1]:
             return before[last]
-        run = self._run.again(float(at[k]), after[k], time)
+        run = self._run.again(float(at[k]), after[k], active[k], time)
         if run.go_on(run.steps) is Status.SUCCESS:
             return run.x
         h = at[last] - at[k]  # the end of a run that failed
@@ -204,14 +204,16 @@ class GeneralizedSolution(Drawn):
 
     @cached_property
     def _nodes(self):
-        """Times (K,), states before and after (K, 2n), of events and of saved steps in order."""
+        """Times (K,), states before and after (K, 2n), active contacts, of events and saved steps in order."""
         events = self._run.nodes
         at = np.array([time for time, *_ in events])
         own = ~np.isin(self.t, at)  # a step that ends with an event is saved after it
         saved, time = np.hstack([self.q, self.v])[own], np.concatenate([self.t[own], at])
         order = np.argsort(time, kind="stable")
         before, after = (np.array([*saved, *(one[k] for one in events)])[order] for k in (1, 2))
-        return time[order], before, after
+        active = [*(one[3] for one in events), self._run.active]
+        since = np.searchsorted(at, time[order], side="right") - 1  # the last event
+        return time[order], before, after, [active[k] for k in since]
 
     def __repr__(self) -> str:
         return (
