@@ -8,14 +8,7 @@ import numpy as np
 
 from carom._compiled.user_functions import Functions
 from carom.dynamics.methods import make_method
-from carom.generalized.layout import (
-    OF_METRIC,
-    ActiveSet,
-    Coordinates,
-    Motion,
-    new_active_set,
-    new_work,
-)
+from carom.generalized import layout as o
 from carom.generalized.motion import look
 from carom.generalized.step import move_freely
 from carom.options import Options
@@ -38,16 +31,16 @@ class Evaluation:
         self.n = n
         self.functions = Functions()
         addresses, parts = model.addresses(self.functions)
-        self.system = Coordinates(
+        self.system = o.Coordinates(
             np.array(addresses, dtype=np.int64), np.array(parts, dtype=np.int64).reshape(-1, 3),
             n, model.holonomic, model.rows, C, np.array([one.friction for one in contacts]), drop,
         )  # fmt: skip
-        self.work = new_work(n, model.holonomic, model.rows, C, STAGES)
-        self.none_active = new_active_set(C)
+        self.work = o.new_work(self.system, STAGES)
+        self.none_active = o.new_active_set(C)
 
-    def compute(self, x, t: float, active: ActiveSet | None = None) -> int:
-        """Compute all quantities at a state (q, v); they are in `work`. Return a status."""
-        code = look(self.system, self.none_active if active is None else active, t, x, self.work)
+    def compute(self, x, t: float) -> int:
+        """Compute all quantities at a state (q, v) without active contacts, into `work`; return a status."""
+        code = look(self.system, self.none_active, t, x, self.work)
         return Status.FUNCTION_FAILED if self.functions.failed is not None else code
 
     def look(self, x, t: float = 0.0) -> int:
@@ -77,12 +70,12 @@ class Evaluation:
     def autoparallel(self, q, v, parts):
         """Return the end (q, v) of an autoparallel: the motion without loads, constraints and contacts."""
         x, part = np.concatenate([q, v]), self.system.part.copy()
-        part[OF_METRIC + 1 :] = 0
+        part[o.OF_METRIC + 1 :] = 0
         free = self.system._replace(
             address=self.system.address * [1, 0, 0, 0], part=part, holonomic=0, rows=0, contacts=0
         )
-        work, method = new_work(self.n, 0, 0, 0, STAGES), make_method("rk4", Options())
-        code = move_freely(Motion(free, method, new_active_set(0), work), x, parts)
+        work, method = o.new_work(free, STAGES), make_method("rk4", Options())
+        code = move_freely(o.Motion(free, method, o.new_active_set(0), work), x, parts)
         self.failed()
         if code != 0:
             raise ValueError(f"the autoparallel could not be integrated: {Status(code).message}")

@@ -147,8 +147,9 @@ def copied(active: ActiveSet) -> ActiveSet:
     return ActiveSet(*(one.copy() for one in active))
 
 
-def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> Work:
-    """Return workspace for a system of these sizes and a method with this number of stages."""
+def new_work(system: Coordinates, stages: int) -> Work:
+    """Return workspace for a system and a method with this number of stages."""
+    n, holonomic, rows, contacts = system.n, system.holonomic, system.rows, system.contacts
     m, most = rows + 3 * contacts, max(n, rows, 2) * n
     k, g = holonomic + rows * n, contacts * (1 + 3 * n)
     inertia, loads = np.zeros(n * n + n), np.zeros(n + 2)

@@ -9,19 +9,9 @@ import numpy as np
 from carom._compiled.record_arrays import table
 from carom.dynamics.adapt import FIRST
 from carom.dynamics.methods import METHODS, make_method
+from carom.generalized import layout as o
 from carom.generalized.contacts import Contacts
 from carom.generalized.evaluate import Evaluation
-from carom.generalized.layout import (  # fmt: skip
-    CLOCK,
-    EVENT,
-    ActiveSet,
-    Motion,
-    Plan,
-    Record,
-    copied,
-    new_active_set,
-    new_work,
-)
 from carom.generalized.loop import save_now, time_loop
 from carom.generalized.step import project
 from carom.model.kept import Kept
@@ -45,7 +35,7 @@ class GeneralizedRun:
 
     def __init__(
         self, system: GeneralizedSystem, settings: Settings,
-        start: tuple[float, np.ndarray, ActiveSet] | None = None,
+        start: tuple[float, np.ndarray, o.ActiveSet] | None = None,
     ):  # fmt: skip
         options = settings.options
         made = system.evaluation()
@@ -57,7 +47,7 @@ class GeneralizedRun:
         grid = planned_grid(settings, settings.duration, longest)
         order = METHODS[settings.method].order if settings.adapts else 0
         atol = settings.rtol if settings.atol is None else settings.atol
-        self.plan = Plan(settings.duration, grid.interval, grid, order, settings.rtol, atol)
+        self.plan = o.Plan(settings.duration, grid.interval, grid, order, settings.rtol, atol)
         self.settings = {**settings.as_dict(), "options": options.as_dict()}
         if settings.adapts:
             self.settings["atol"] = atol
@@ -65,23 +55,21 @@ class GeneralizedRun:
         self.made: Evaluation = made if same else Evaluation(system, options.drop_tolerance)
         self.made.functions.forget()
         self.system = self.made.system
-        made = self.system
-        n = self.n = made.n
+        n = self.n = self.system.n
         self.method = make_method(settings.method, options, settings.adapts)
-        sizes = n, made.holonomic, made.rows, made.contacts
-        self.work = new_work(*sizes, len(self.method.b))
+        self.work = o.new_work(self.system, len(self.method.b))
         x = np.concatenate([system.position, system.velocity])
-        begin, x, active = start or (0.0, x, new_active_set(made.contacts))
-        self.x, self.active = x.copy(), copied(active)
-        self.motion = Motion(self.system, self.method, self.active, self.work)
-        self.clock = table(CLOCK, 1)
+        begin, x, active = start or (0.0, x, o.new_active_set(self.system.contacts))
+        self.x, self.active = x.copy(), o.copied(active)
+        self.motion = o.Motion(self.system, self.method, self.active, self.work)
+        self.clock = table(o.CLOCK, 1)
         self.clock["now"] = begin
         self.clock["ahead"] = FIRST * grid.interval
         rows = grid.rows + 2
-        self.series, self.states = table(CLOCK, rows), np.zeros((rows, 2 * n))
-        self.record = Record(self.clock, self.series, self.states)
+        self.series, self.states = table(o.CLOCK, rows), np.zeros((rows, 2 * n))
+        self.record = o.Record(self.clock, self.series, self.states)
         # of the events: time, state before and after, active contacts
-        self.nodes: list[tuple[float, np.ndarray, np.ndarray, ActiveSet]] = []
+        self.nodes: list[tuple[float, np.ndarray, np.ndarray, o.ActiveSet]] = []
         self.contacts = Contacts(self)
         self.reason = ""  # of a failure, beyond its status
         self.located, self.at_once, self.last = 0, 0, -1.0
@@ -91,7 +79,7 @@ class GeneralizedRun:
             self.code = self.contacts.resolve(0, -1)
             self.save_now()
 
-    def again(self, begin: float, x: np.ndarray, active: ActiveSet, end: float) -> GeneralizedRun:
+    def again(self, begin: float, x: np.ndarray, active: o.ActiveSet, end: float) -> GeneralizedRun:
         """Return a run between two times that starts at a state (q, v) of this one."""
         run = GeneralizedRun(self.user, self.how, (begin, x, active))
         run.plan = self.plan._replace(grid=part_of_grid(self.plan.grid, begin, end))
@@ -160,7 +148,7 @@ class GeneralizedRun:
         """Continue until step number `until`, or a failure."""
         while self.code == 0:
             self.code = time_loop(self.motion, self.x, self.plan, int(until), self.record)
-            if self.code == EVENT:
+            if self.code == o.EVENT:
                 self.code = self.event()
             elif self.code == PAUSE and self.failure is None:
                 self.code = 0  # Python raises Ctrl-C here
