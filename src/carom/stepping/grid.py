@@ -160,9 +160,9 @@ def part_of_grid(grid: Grid, begin: float, end: float) -> Grid:
         inside = np.searchsorted(grid.ends, begin, "right"), np.searchsorted(grid.ends, end, "left")
         between = grid.ends[inside[0] : inside[1]]
     else:
-        first = math.floor(begin / grid.interval * (1.0 + 1e-12)) + 1
-        between = np.arange(first, math.ceil(end / grid.interval)) * grid.interval
-        between = between[between < end]
+        number = np.arange(count(begin, grid.interval), math.ceil(end / grid.interval))
+        between = number * grid.interval
+        between = between[(between > begin) & (between < end)]
     ends = np.concatenate([[begin], between, [end]])
     saves = np.zeros(len(ends), dtype=np.int64)
     return Grid(float(np.max(np.diff(ends))), len(ends) - 1, 0, ends, saves)
