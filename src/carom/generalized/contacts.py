@@ -91,7 +91,7 @@ class Contacts:
         struck, self.marked = (index, -1) if kind == a.EVENT_GAP else (-1, index)
         parts = (one[:k].copy() for one in (active.mode, active.heading, active.force))
         self.kind, self.was = kind, dict(zip(self.active(), zip(*parts)))
-        code = self.look()
+        code = (self.return_to(struck) if struck >= 0 else 0) or self.look()
         if code != 0:
             return code
         closed = self.closed(struck)
@@ -107,6 +107,20 @@ class Contacts:
         """Project the state to constraints and active contacts; return a status."""
         run = self.run
         return project(run.system, run.active, run.reached, run.x, True, run.work)
+
+    def return_to(self, contact: int) -> int:
+        """Remove round-off of the gap of a contact from the located state; return a status.
+
+        An approach of round-off would close it again at once.
+        """
+        run, active = self.run, self.run.active
+        k = int(active.count[0])
+        active.contact[k], active.mode[k], active.count[0] = contact, a.MODE_SLIP, k + 1
+        code = project(run.system, active, run.reached, run.x, False, run.work)
+        active.count[0] = k
+        if code == 0 and (run.system.rows > 0 or k > 0):
+            code = self.project()
+        return Status.RETURN_MAP_FAILED if code == Status.CONSTRAINTS_LOST else code
 
     def note_changes(self) -> None:
         """Write the events of contacts whose mode has changed."""
@@ -185,9 +199,12 @@ class Contacts:
         """Activate contacts: remove their normal velocities, and slip that has stopped; return a status."""
         run, active, M, k = self.run, self.run.active, self.seen.M.copy(), len(chosen)
         stop = np.where(self.friction > 0.0, 10.0 * self.still, -1.0)
-        if self.kind == a.EVENT_REVERSE:  # speed that friction removes in a thousandth of a step
-            c = self.marked
-            brake = self.friction[c] * abs(self.was[c][2][0]) * float(self.W_ii[c, 1:].sum())
+        if (
+            self.kind == a.EVENT_REVERSE
+        ):  # speed that all friction removes in a thousandth of a step
+            c, held = self.marked, self.was.items()
+            friction = sum(self.friction[b] * abs(force[0]) for b, (_, _, force) in held)
+            brake = friction * float(self.W_ii[c, 1:].sum())
             stop[c] = max(stop[c], 1e-3 * run.moment(brake) * brake)
         v = run.x[run.n :].copy()
         active.count[0], active.contact[:k], active.heading[:k] = k, chosen, 0.0
@@ -205,14 +222,15 @@ class Contacts:
         return along[chosen] / np.maximum(np.linalg.norm(along[chosen], axis=1), 1e-300)[:, None]
 
     def write_held(self, chosen: list[int], p: np.ndarray, heading: np.ndarray) -> None:
-        """Write forces p (k, 3) of active contacts, and whether each sticks."""
-        active, was = self.run.active, self.was
+        """Write forces p (k, 3) of active contacts, and whether each sticks; so does what others hold alone."""
+        active, was, nothing = self.run.active, self.was, 1e-12 * np.max(p[:, 0])
         for i, c in enumerate(chosen):
             active.mode[i], active.force[i], active.heading[i] = a.MODE_SLIP, p[i], heading[i]
             if heading[i].any() or not self.friction[c] > 0.0:
                 continue
             pull, most = float(np.linalg.norm(p[i, 1:])), self.friction[c] * p[i, 0]
-            if pull <= most * (1.0 - 1e-10) or (c in was and was[c][0] == a.MODE_STICK):
+            within = pull <= max(most * (1.0 - 1e-10), nothing)
+            if within or (c in was and was[c][0] == a.MODE_STICK):
                 active.mode[i] = a.MODE_STICK
             elif pull > 0.0:
                 active.heading[i] = -p[i, 1:] / pull

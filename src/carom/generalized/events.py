@@ -21,7 +21,7 @@ from carom.status import NOT_FINITE
 from carom.stepping.event_search import begin_search, next_trial, update_bracket
 
 ROUND_OFF = 1e-15  # of the gap's own terms
-CONE_ROUND_OFF = 1e-12  # of the normal force, which is a result of elimination
+CONE_ROUND_OFF = 1e-12  # of the greatest normal force, which is a result of elimination
 TRIALS = 200  # of a search: the bracket is then round-off of its length
 EARLIER = 20  # events that may lie before the first one that was found
 
@@ -45,6 +45,9 @@ def find_margins(motion, t):
             return NOT_FINITE
     if active.count[0] > 0:
         _, _, code = acceleration(system, active, t, end, work, work.trial)
+    most = 0.0
+    for i in range(active.count[0]):
+        most = max(most, abs(active.force[i, 0]))
     for i in range(active.count[0]):
         c, force, mu = active.contact[i], active.force[i], system.friction[active.contact[i]]
         margin[a.EVENT_GAP, c], margin[a.EVENT_RATE, c] = math.inf, math.inf
@@ -52,7 +55,7 @@ def find_margins(motion, t):
         if active.mode[i] == a.MODE_STICK:
             pull = math.sqrt(force[1] * force[1] + force[2] * force[2])
             margin[a.EVENT_CONE, c] = mu * force[0] - pull
-            work.nothing[a.EVENT_CONE, c] = CONE_ROUND_OFF * abs(force[0])
+            work.nothing[a.EVENT_CONE, c] = CONE_ROUND_OFF * most
         elif mu > 0.0:
             u1, u2 = slip_of(system, active, i, end, work)
             margin[a.EVENT_REVERSE, c] = u1 * active.heading[i, 0] + u2 * active.heading[i, 1]
