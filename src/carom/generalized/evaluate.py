@@ -26,17 +26,15 @@ class Evaluation:
     """Compiled functions of a system and workspace to call them with."""
 
     def __init__(self, system: GeneralizedSystem, drop: float = 1e-8):
-        model, contacts = system._model, system.contacts
-        n, C = system.coordinates, len(contacts)
-        self.n = n
-        self.functions = Functions()
-        addresses, parts = model.addresses(self.functions)
-        self.system = o.Coordinates(
-            np.array(addresses, dtype=np.int64), np.array(parts, dtype=np.int64).reshape(-1, 3),
-            n, model.holonomic, model.rows, C, np.array([one.friction for one in contacts]), drop,
-        )  # fmt: skip
+        model, friction = system._model, np.array([one.friction for one in system.contacts])
+        self.n, self.functions = model.n, Functions()
+        addresses, parts = (
+            np.array(one, dtype=np.int64) for one in model.addresses(self.functions)
+        )
+        sizes = model.n, model.holonomic, model.rows, len(friction)
+        self.system = o.Coordinates(addresses, parts.reshape(-1, 3), *sizes, friction, drop)
         self.work = o.new_work(self.system, STAGES)
-        self.none_active = o.new_active_set(C)
+        self.none_active = o.new_active_set(len(friction))
 
     def compute(self, x, t: float) -> int:
         """Compute all quantities at a state (q, v) without active contacts, into `work`; return a status."""

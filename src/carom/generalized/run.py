@@ -65,8 +65,8 @@ class GeneralizedRun:
         self.clock = table(o.CLOCK, 1)
         self.clock["now"] = begin
         self.clock["ahead"] = FIRST * grid.interval
-        rows = grid.rows + 2
-        self.series, self.states = table(o.CLOCK, rows), np.zeros((rows, 2 * n))
+        self.series = table(o.CLOCK, grid.rows + 2)
+        self.states = np.zeros((grid.rows + 2, 2 * n))
         self.record = o.Record(self.clock, self.series, self.states)
         # of the events: time, state before and after, active contacts
         self.nodes: list[tuple[float, np.ndarray, np.ndarray, o.ActiveSet]] = []
