@@ -119,7 +119,7 @@ class GeneralizedSolution(Drawn):
         from carom.results.accuracy import inaccurate, sentences, watched
 
         saved, n = int(run.clock[0].saved), run.n
-        series: Any = run.series[:saved].copy()
+        series: Any = run.series[:saved]
         ledger = Ledger(**{one.name: np.array(series[one.name]) for one in fields(Ledger)})
         t, states, said = np.array(series.now), run.states[:saved].copy(), ()
         energies = np.column_stack([ledger.kinetic, ledger.potential])
