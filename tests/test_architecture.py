@@ -36,7 +36,7 @@ HUNDREDS = {
     "results": 26, "generalized": 27, "io": 49, "control": 8, "studies": 52, "visual": 40, "baselines": 8,
     "paper": 15, "bench": 10, "cli": 18,
 }  # fmt: skip
-MOST_LINES = 65300
+MOST_LINES = 65200
 
 
 @cache
