@@ -170,10 +170,27 @@ def test_slip_that_turns():
         return 0.5 * start * w**-0.5 * (1 + w * w)
 
     time, _ = quad(lambda s: speed(s) / (force * np.sin(s)), angle, np.pi / 2, epsabs=1e-13)
-    for step, most in ((0.02, 1e-4), (2e-3, 1e-8)):
+    for step, most in ((0.3, 1e-3), (0.02, 1e-4), (2e-3, 1e-8)):
         run = carom.simulate(system, time, step=step)
         exact = speed(angle) * np.array([np.sin(angle), np.cos(angle)])
         np.testing.assert_allclose(run.v[-1, :2], exact, rtol=0, atol=most)
+
+
+@pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")  # the steps are coarse
+@pytest.mark.parametrize("wind", [1.2, 2.0])
+@pytest.mark.parametrize("across", [0.02, 0.1])
+def test_slip_that_turns_back(wind, across):
+    # A head wind stops a puck, but for its slow motion across, and blows it back: in a small part of a step.
+    q, v = symbols("x y z")
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.eye(3), potential=G * q[2], forces=[-wind * 0.3 * G, 0, 0],
+        position=[0, 0, 0], velocity=[1, across, 0],
+    )  # fmt: skip
+    system.add_contact(q[2], tangent=v[:2], restitution=0.0, friction=0.3)
+    exact = carom.simulate(system, 0.6, rtol=1e-10)
+    for step in (0.2, 0.1, 0.05):
+        run = carom.simulate(system, 0.6, step=step)
+        np.testing.assert_allclose(run.q[-1], exact.q[-1], rtol=0, atol=1e-3)
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.15])
@@ -222,3 +239,26 @@ def test_table_stands_in_the_origin(how):
     run = carom.simulate(system, 1.0, **how)
     np.testing.assert_allclose(run.q, 0.0, atol=1e-15)
     assert len(run.impacts) == 0
+
+
+@pytest.mark.parametrize(("seed", "how"), [(5, dict(step=0.01)), (13, dict(rtol=1e-8))])
+def test_table_slides_to_rest(seed, how):
+    # Three legs carry it; the fourth has a force of round-off, and neither slips nor turns back by itself.
+    draw = np.random.default_rng(1000 + seed).uniform
+    q, v = symbols("z a b x y")
+    start = [draw(0.05, 0.3), draw(-0.03, 0.03), draw(-0.03, 0.03), 0, 0]
+    velocity = [0, draw(-0.3, 0.3), draw(-0.3, 0.3), draw(-1, 1), draw(-1, 1)]
+    third, friction = sp.Rational(1, 3), draw(0, 0.6)
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.diag(1, third, third, 1, 1), potential=G * q[0], position=start,
+        velocity=velocity,
+    )  # fmt: skip
+    slip = [v[3] + v[2] / 5, v[4] - v[1] / 5]
+    for x, y in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
+        system.add_contact(
+            q[0] + x * q[1] + y * q[2], tangent=slip, restitution=draw(0, 0.8), friction=friction,
+            impact_law=("newton", "poisson", "stronge")[seed % 3],
+        )  # fmt: skip
+    run = carom.simulate(system, 1.2, **how)
+    np.testing.assert_allclose(run.v[-1], 0.0, atol=1e-12)
+    assert np.max(np.abs(run.ledger.residual)) < 1e-9

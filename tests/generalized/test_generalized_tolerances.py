@@ -63,3 +63,14 @@ def test_states_between_saved_ones(name):
     q, v = few.evaluate(times)
     assert np.abs(q - whole.q[1:-1:7]).max() < 1e-9
     assert np.abs(v - whole.v[1:-1:7]).max() < 1e-7
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_states_between_saved_ones_of_a_given_step(name):
+    """They are those of the run: it is stepped again from the last event, with its active contacts."""
+    make, duration = CASES[name]
+    whole, few = (carom.simulate(make(), duration, step=0.01, save_every=n) for n in (1, 20))
+    times = whole.t[1:-1:7]
+    q, v = few.evaluate(times)
+    np.testing.assert_allclose(q, whole.q[1:-1:7], rtol=0, atol=1e-14)
+    np.testing.assert_allclose(v, whole.v[1:-1:7], rtol=0, atol=1e-13)

@@ -1,7 +1,9 @@
 """Events of contacts: impacts, new active contacts, stick, slip and opening.
 
 They are handled at one state, in NumPy arrays; the kernels for scenes of bodies solve the impact and the
-contact problem.
+contact problem. With P = M^-1 less its part along the constraints, and rows (n, t1, t2) of all contacts,
+
+    u = G v,    W = G P G^T,    du/dt = W p + c,    c = G a + (dG/dt) v,    a without forces of contacts.
 """
 
 from __future__ import annotations
@@ -10,18 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.friction.layout import CONE, SLIDING, SOLVED, new_contact_work
+from carom.friction.solve import solve_cones
+from carom.generalized.layout import copied
 from carom.generalized.step import project
-from carom.generalized.strike import Strike
+from carom.generalized.strike import Strike, rows_of
 from carom.impact.laws import NUMBERS
-from carom.model.actions import (
-    EVENT_CONE,
-    EVENT_GAP,
-    EVENT_JAM,
-    EVENT_REVERSE,
-    EVENT_SEPARATE,
-    MODE_SLIP,
-    MODE_STICK,
-)
+from carom.model import actions as a
 from carom.status import Status
 
 if TYPE_CHECKING:
@@ -54,10 +51,7 @@ class Contacts:
     # --- quantities of the state ---------------------------------------------------------------
 
     def look(self) -> int:
-        """Evaluate the state without forces of contacts; return a status.
-
-        Compute P, the relative velocities u (C, 3), the speeds that count as 0 (C,), and the acceleration.
-        """
+        """Evaluate the state without forces of contacts, and the speeds that count as 0; return a status."""
         run, seen, v = self.run, self.seen, self.run.x[self.run.n :]
         code = run.made.compute(run.x, run.reached)
         P = np.linalg.inv(seen.M)
@@ -66,19 +60,18 @@ class Contacts:
         if len(seen.A):
             Y = P @ seen.A.T
             P = P - Y @ np.linalg.pinv(seen.A @ Y, rcond=run.system.drop, hermitian=True) @ Y.T
-        self.P, self.free = 0.5 * (P + P.T), seen.a.copy()
-        self.u = seen.G @ v
+        self.G, self.P = seen.G.reshape(-1, run.n).copy(), 0.5 * (P + P.T)
+        W = self.G @ self.P @ self.G.T
+        self.W, self.c = 0.5 * (W + W.T), self.G @ seen.a + seen.G_rate.ravel()
+        self.u, self.free = (self.G @ v).reshape(-1, 3), seen.a.copy()
         self.slip = np.linalg.norm(self.u[:, 1:], axis=1)
-        self.W_ii = np.einsum("cin,nm,cim->ci", seen.G, self.P, seen.G)
+        self.W_ii = np.diag(self.W).reshape(-1, 3)
         size = np.sqrt(np.maximum(self.W_ii.sum(axis=1), 0.0))
-        speed = size * max(np.sqrt(max(v @ seen.M @ v, 0.0)), push)
-        self.still = STILL * speed
-        # at rest in the origin a gap has no terms, but a step has a length
-        np.maximum(run.work.gap_scale, speed * run.plan.step, out=run.work.gap_scale)
+        self.still = STILL * size * max(np.sqrt(max(v @ seen.M @ v, 0.0)), push)
         return code
 
     def active(self) -> list[int]:
-        """Return the contacts that are active."""
+        """Return the active contacts."""
         return self.run.active.contact[: self.run.active.count[0]].tolist()
 
     def closed(self, struck: int) -> list[int]:
@@ -92,26 +85,22 @@ class Contacts:
     def resolve(self, kind: int, index: int) -> int:
         """Handle the located event (kind 0: the start of the run); return a status."""
         run, active = self.run, self.run.active
-        if run.system.size[3] == 0:
+        if run.system.contacts == 0:
             return 0
-        before = run.x.copy()
-        struck = index if kind == EVENT_GAP else -1
-        self.kind, self.marked = kind, -1 if kind == EVENT_GAP else index
-        parts = (
-            one[: active.count[0]].copy() for one in (active.mode, active.heading, active.force)
-        )
-        self.was = dict(zip(self.active(), zip(*parts)))
-        code = self.return_to(struck) if struck >= 0 else 0
-        if code == 0:
-            code = self.look()
-        if code == 0:
-            closed = self.closed(struck)
-            code = self.strike.all(closed, self.marked if kind == EVENT_JAM else -1)
+        before, k = run.x.copy(), active.count[0]
+        struck, self.marked = (index, -1) if kind == a.EVENT_GAP else (-1, index)
+        parts = (one[:k].copy() for one in (active.mode, active.heading, active.force))
+        self.kind, self.was = kind, dict(zip(self.active(), zip(*parts)))
+        code = (self.return_to(struck) if struck >= 0 else 0) or self.look()
+        if code != 0:
+            return code
+        closed = self.closed(struck)
+        code = self.strike.all(closed, self.marked if kind == a.EVENT_JAM else -1)
         if code == 0 and run.options.hold:
             code = self.set_active(self.chosen(closed, struck), closed)
         if code == 0:
             self.note_changes()
-            run.nodes.append((run.reached, before, run.x.copy()))
+            run.nodes.append((run.reached, before, run.x.copy(), copied(active)))
         return code
 
     def project(self) -> int:
@@ -120,13 +109,16 @@ class Contacts:
         return project(run.system, run.active, run.reached, run.x, True, run.work)
 
     def return_to(self, contact: int) -> int:
-        """Remove round-off of the gap of a contact from the located state; return a status."""
+        """Remove round-off of the gap of a contact from the located state; return a status.
+
+        An approach of round-off would close it again at once.
+        """
         run, active = self.run, self.run.active
         k = int(active.count[0])
-        active.contact[k], active.mode[k], active.count[0] = contact, MODE_SLIP, k + 1
+        active.contact[k], active.mode[k], active.count[0] = contact, a.MODE_SLIP, k + 1
         code = project(run.system, active, run.reached, run.x, False, run.work)
         active.count[0] = k
-        if code == 0 and (run.system.size[2] > 0 or k > 0):
+        if code == 0 and (run.system.rows > 0 or k > 0):
             code = self.project()
         return Status.RETURN_MAP_FAILED if code == Status.CONSTRAINTS_LOST else code
 
@@ -139,27 +131,21 @@ class Contacts:
             elif c not in self.was:
                 self.note("held", c)
             elif modes[c] != self.was[c][0]:
-                self.note("sticks" if modes[c] == MODE_STICK else "slips", c)
-            elif c == self.marked and self.kind == EVENT_REVERSE:
+                self.note("sticks" if modes[c] == a.MODE_STICK else "slips", c)
+            elif c == self.marked and self.kind == a.EVENT_REVERSE:
                 self.note("slips", c)
 
     # --- persistent contacts ----------------------------------------------------------------------
 
-    def activate(self, chosen: list[int], stick=()) -> None:
-        """Make contacts active: those in `stick` stick, the others slip without friction."""
-        active, k = self.run.active, len(chosen)
-        active.count[0], active.contact[:k], active.heading[:k] = k, chosen, 0.0
-        active.mode[:k] = [MODE_STICK if c in stick else MODE_SLIP for c in chosen]
-
     def chosen(self, closed: list[int], struck: int) -> list[int]:
         """Return the closed contacts that stay active or become active."""
-        run, seen, size = self.run, self.seen, self.free @ self.seen.M @ self.free
-        gone = self.marked if self.kind == EVENT_SEPARATE else -1
+        W, size = self.W, self.free @ self.seen.M @ self.free
+        gone = self.marked if self.kind == a.EVENT_SEPARATE else -1
         kept = [c for c in self.active() if c != gone and not self.u[c, 0] > 10.0 * self.still[c]]
         for c in sorted(set(closed) - {gone} - set(kept), key=lambda c: abs(self.u[c, 0])):
-            self.activate(kept)
-            run.made.compute(run.x, run.reached, run.active)
-            draw = -(seen.G[c, 0] @ seen.a + seen.G_rate[c, 0])
+            normal = 3 * np.array(kept, dtype=int)  # others keep their normal velocities
+            press = np.linalg.pinv(W[np.ix_(normal, normal)], rcond=self.run.system.drop)
+            draw = W[3 * c, normal] @ press @ self.c[normal] - self.c[3 * c]
             # a contact that others keep closed (the fourth leg of a table) was located by round-off
             least = -1e-9 if c == struck and kept else 1e-12
             if draw > least * np.sqrt(size * self.W_ii[c, 0]) and self.stays(c, draw):
@@ -168,22 +154,13 @@ class Contacts:
 
     def stays(self, c: int, draw: float) -> bool:
         """Return whether the bounces of a contact with the acceleration `draw` end within a step."""
-        u, e = (
-            float(self.u[c, 0]),
-            self.strike.left(c) if self.strike.blows[c] else self.restitution[c],
-        )
-        if not u >= -10.0 * self.still[c]:
-            return False
-        return u <= self.still[c] or (
-            e < 1.0 and 2.0 * u < draw * (1.0 - e) * self.run.moment(draw)
-        )
+        u, still = float(self.u[c, 0]), self.still[c]
+        e = self.strike.left(c)
+        ends = e < 1.0 and 2.0 * u < draw * (1.0 - e) * self.run.moment(draw)
+        return -10.0 * still <= u and (u <= still or ends)
 
     def set_active(self, chosen: list[int], closed: list[int]) -> int:
         """Make `chosen` active: find stick or slip of each from the accelerations; return a status."""
-        from carom.friction.layout import CONE, SLIDING, SOLVED, new_contact_work
-        from carom.friction.solve import solve_cones
-
-        run, seen = self.run, self.seen
         if self.cones is None:
             self.cones = new_contact_work(len(self.friction))
         for _ in range(CONTACT_ROUNDS):
@@ -195,10 +172,9 @@ class Contacts:
             if driven:  # by the change of the others
                 chosen = chosen + driven
                 continue
-            G = seen.G[chosen].reshape(3 * k, run.n)
-            W = G @ self.P @ G.T
-            c0 = G @ self.free + seen.G_rate[chosen].reshape(3 * k)
-            mu, p, heading = self.friction[chosen], np.zeros(3 * k), self.headings(chosen)
+            rows = rows_of(chosen)
+            W, c0, mu = self.W[np.ix_(rows, rows)], self.c[rows], self.friction[chosen]
+            p, heading = np.zeros(3 * k), self.headings(chosen)
             kinds = np.where(heading.any(axis=1), SLIDING, CONE)
             status, _, _ = solve_cones(k, W, c0, mu, kinds, heading, p, self.cones)
             if status != SOLVED:
@@ -221,36 +197,41 @@ class Contacts:
 
     def take_out(self, chosen: list[int]) -> int:
         """Activate contacts: remove their normal velocities, and slip that has stopped; return a status."""
-        run, n, M = self.run, self.run.n, self.seen.M.copy()
+        run, active, M, k = self.run, self.run.active, self.seen.M.copy(), len(chosen)
         stop = np.where(self.friction > 0.0, 10.0 * self.still, -1.0)
-        if self.kind == EVENT_REVERSE:  # speed that friction removes in a thousandth of a step
-            c = self.marked
-            brake = self.friction[c] * abs(self.was[c][2][0]) * float(self.W_ii[c, 1:].sum())
+        if (
+            self.kind == a.EVENT_REVERSE
+        ):  # speed that all friction removes in a thousandth of a step
+            c, held = self.marked, self.was.items()
+            friction = sum(self.friction[b] * abs(force[0]) for b, (_, _, force) in held)
+            brake = friction * float(self.W_ii[c, 1:].sum())
             stop[c] = max(stop[c], 1e-3 * run.moment(brake) * brake)
-        v = run.x[n:].copy()
-        self.activate(chosen, np.flatnonzero(self.slip <= stop))
+        v = run.x[run.n :].copy()
+        active.count[0], active.contact[:k], active.heading[:k] = k, chosen, 0.0
+        active.mode[:k] = np.where((self.slip <= stop)[chosen], a.MODE_STICK, a.MODE_SLIP)
         code = self.project() if chosen else 0
-        run.clock[0].bounces += 0.5 * (run.x[n:] - v) @ M @ (run.x[n:] + v)
+        run.clock[0].bounces += 0.5 * (run.x[run.n :] - v) @ M @ (run.x[run.n :] + v)
         return code or self.look()
 
     def headings(self, chosen: list[int]) -> np.ndarray:
         """Return the directions of slip (k, 2); 0 for a contact that is free to stick or slip."""
         along = np.where((self.slip > 10.0 * self.still)[:, None], self.u[:, 1:], 0.0)
-        if self.kind == EVENT_CONE and not along[self.marked].any():
+        if self.kind == a.EVENT_CONE and not along[self.marked].any():
             along[self.marked] = -self.was[self.marked][2][1:]  # stick has just ended
         along[self.friction == 0.0] = 0.0
         return along[chosen] / np.maximum(np.linalg.norm(along[chosen], axis=1), 1e-300)[:, None]
 
     def write_held(self, chosen: list[int], p: np.ndarray, heading: np.ndarray) -> None:
-        """Write forces p (k, 3) of active contacts, and whether each sticks."""
-        active, was = self.run.active, self.was
+        """Write forces p (k, 3) of active contacts, and whether each sticks; so does what others hold alone."""
+        active, was, nothing = self.run.active, self.was, 1e-12 * np.max(p[:, 0])
         for i, c in enumerate(chosen):
-            active.mode[i], active.force[i], active.heading[i] = MODE_SLIP, p[i], heading[i]
+            active.mode[i], active.force[i], active.heading[i] = a.MODE_SLIP, p[i], heading[i]
             if heading[i].any() or not self.friction[c] > 0.0:
                 continue
             pull, most = float(np.linalg.norm(p[i, 1:])), self.friction[c] * p[i, 0]
-            if pull <= most * (1.0 - 1e-10) or (c in was and was[c][0] == MODE_STICK):
-                active.mode[i] = MODE_STICK
+            within = pull <= max(most * (1.0 - 1e-10), nothing)
+            if within or (c in was and was[c][0] == a.MODE_STICK):
+                active.mode[i] = a.MODE_STICK
             elif pull > 0.0:
                 active.heading[i] = -p[i, 1:] / pull
             elif c in was:

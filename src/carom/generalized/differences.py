@@ -14,22 +14,8 @@ import numpy as np
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom._compiled.user_functions import call_function
-from carom.generalized.layout import (
-    ALL_ROWS,
-    CALL_INERTIA,
-    CALL_LOADS,
-    CALL_ROWS,
-    HOLONOMIC,
-    OF_CONSTRAINT,
-    OF_CONTACT,
-    OF_FORCE,
-    OF_METRIC,
-    OF_POTENTIAL,
-    OF_ROWS,
-    TOUCHES,
-    N,
-)
-from carom.generalized.linear import copy_row
+from carom.generalized import layout as o
+from carom.generalized.linear import copy_row, dot
 
 STEP = float(np.finfo(float).eps ** 0.2)
 STEP_TWICE = float(np.finfo(float).eps ** (1.0 / 6.0))
@@ -49,20 +35,20 @@ def evaluate_parts(system, which, t, x, work):
 
     Those of the coordinates get a copy of them, `work.point`.
     """
-    n, h, k, C = system.size[N], system.size[HOLONOMIC], system.size[ALL_ROWS], system.size[TOUCHES]
+    n, h, k, C = system.n, system.holonomic, system.rows, system.contacts
     copy_row(x, work.point, n)
-    if which == CALL_INERTIA:
+    if which == o.CALL_INERTIA:
         evaluate_inertia(system, t, x, work)
-    elif which == CALL_LOADS:
+    elif which == o.CALL_LOADS:
         evaluate_loads(system, t, x, work)
-    elif which == CALL_ROWS:
+    elif which == o.CALL_ROWS:
         out, rates = work.rows[h:], work.rows[h + k * n :]
-        evaluate_rows(system.part[OF_CONSTRAINT], t, x, work.rows, out, rates, work)
-        evaluate_rows(system.part[OF_ROWS], t, x, work.rows, out[h * n :], rates[h:], work)
+        evaluate_rows(system.part[o.OF_CONSTRAINT], t, x, work.rows, out, rates, work)
+        evaluate_rows(system.part[o.OF_ROWS], t, x, work.rows, out[h * n :], rates[h:], work)
     else:
         for c in range(C):
             values, out = work.contacts[c:], work.contacts[C + 3 * n * c :]
-            rates, part = work.contacts[C + 3 * n * C + 3 * c :], OF_CONTACT + 2 * c
+            rates, part = work.contacts[C + 3 * n * C + 3 * c :], o.OF_CONTACT + 2 * c
             evaluate_rows(system.part[part], t, x, values, out, rates, work)
             evaluate_rows(system.part[part + 1], t, x, values, out[n:], rates[1:], work)
 
@@ -70,7 +56,7 @@ def evaluate_parts(system, which, t, x, work):
 @kernel
 def evaluate_inertia(system, t, x, work):
     """Write M and Gamma_kij v_i v_j."""
-    n, out, part, dM = system.size[N], work.inertia, system.part[OF_METRIC], work.slope
+    n, out, part, dM = system.n, work.inertia, system.part[o.OF_METRIC], work.slope
     call_function(part[0], t, work.point, out)
     find_slope(part, t, x, n, work)
     for i in range(n):
@@ -84,12 +70,8 @@ def evaluate_inertia(system, t, x, work):
 @kernel
 def evaluate_loads(system, t, x, work):
     """Write V, Q - dV, Q v."""
-    n, out, potential, force = (
-        system.size[N],
-        work.loads,
-        system.part[OF_POTENTIAL],
-        system.part[OF_FORCE],
-    )
+    n, out = system.n, work.loads
+    potential, force = system.part[o.OF_POTENTIAL], system.part[o.OF_FORCE]
     for j in range(n + 2):
         out[j] = 0.0
     if force[0] != 0:
@@ -106,59 +88,59 @@ def evaluate_loads(system, t, x, work):
 @kernel
 def evaluate_rows(part, t, x, values, out, rates, work):
     """Write values, rows A and (dA/dt) v of a function and its derivative; of rows alone, the last two."""
-    n, m = x.size // 2, part[2]
+    n, m, v = work.point.size, part[2], x[work.point.size :]
     if part[0] != 0:
         call_function(part[0], t, work.point, values)
     if part[1] != 0:
         call_function(part[1], t, work.point, out)
-        differ_along(part[1], m, n, t, x, rates, work)
+        differ(part[1], m * n, t, x, v, along(x, STEP), _FIRST, work.slope, work)
+        for i in range(m):
+            rates[i] = dot(work.slope[i * n :], v, n)
     elif part[0] != 0:
         find_slope(part, t, x, n, work)
         for i in range(m):
             for j in range(n):
                 out[i * n + j] = work.slope[j * m + i]
-        differ_along(part[0], m, 0, t, x, rates, work)
+        h = along(x, STEP_TWICE)
+        differ(part[0], m, t, x, v, h, _SECOND, rates, work)
+        for i in range(m if h > 0.0 else 0):
+            rates[i] /= h
 
 
 @kernel
 def find_slope(part, t, x, n, work):
     """Write the derivatives (n, m) of a function of the coordinates into `work.slope`."""
-    q, y, out, m = work.point, work.sample, work.slope, part[2]
     if part[1] != 0:
-        call_function(part[1], t, q, out)
+        call_function(part[1], t, work.point, work.slope)
         return
+    axis = work.axis
     for k in range(n):
-        for i in range(m):
-            out[k * m + i] = 0.0
+        axis[k] = 1.0
         h = STEP * max(1.0, abs(x[k]))
-        for s in (-2, -1, 1, 2):
-            q[k] = x[k] + s * h
-            call_function(part[0], t, q, y)
-            for i in range(m):
-                out[k * m + i] += _FIRST[s + 2] / h * y[i]
-        q[k] = x[k]
+        differ(part[0], part[2], t, x, axis, h, _FIRST, work.slope[k * part[2] :], work)
+        axis[k] = 0.0
 
 
 @kernel
-def differ_along(address, m, n, t, x, out, work):
-    """Write the second derivatives (m,) of a function along v; of rows (m, n), if n > 0, (d rows/dt) v."""
-    q, y, size = work.point, work.sample, x.size // 2
-    speed, extent = 0.0, 1.0
-    for j in range(size):
-        speed, extent = max(speed, abs(x[size + j])), max(extent, abs(x[j]))
-    # of the time in which the velocities change coordinates by their own size, at least by 1
-    h = (STEP if n > 0 else STEP_TWICE) * extent / speed if speed > 0.0 else 0.0
+def along(x, part):
+    """Return a step along v: a part of the time in which v changes coordinates by their size, at least by 1."""
+    n, speed, extent = x.size // 2, 0.0, 1.0
+    for j in range(n):
+        speed, extent = max(speed, abs(x[n + j])), max(extent, abs(x[j]))
+    return part * extent / speed if speed > 0.0 else 0.0
+
+
+@kernel
+def differ(address, m, t, x, way, h, weight, out, work):
+    """Write sum_s weight_s f_i(q + s h way) / h for the m results of a function; 0 for h = 0."""
+    q, y, n = work.point, work.sample, work.point.size
     for i in range(m):
         out[i] = 0.0
     for s in range(-2, 3 if h > 0.0 else -2):
-        if n > 0 and s == 0:
-            continue
-        for j in range(size):
-            q[j] = x[j] + s * h * x[size + j]
-        call_function(address, t, q, y)
-        for i in range(m):
+        if weight[s + 2] != 0.0:
             for j in range(n):
-                out[i] += _FIRST[s + 2] / h * y[i * n + j] * x[size + j]
-            if n == 0:
-                out[i] += _SECOND[s + 2] / (h * h) * y[i]
-    copy_row(x, q, size)
+                q[j] = x[j] + s * h * way[j]
+            call_function(address, t, q, y)
+            for i in range(m):
+                out[i] += weight[s + 2] / h * y[i]
+    copy_row(x, q, n)

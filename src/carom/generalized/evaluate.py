@@ -8,14 +8,7 @@ import numpy as np
 
 from carom._compiled.user_functions import Functions
 from carom.dynamics.methods import make_method
-from carom.generalized.layout import (
-    OF_METRIC,
-    ActiveSet,
-    Coordinates,
-    Motion,
-    new_active_set,
-    new_work,
-)
+from carom.generalized import layout as o
 from carom.generalized.motion import look
 from carom.generalized.step import move_freely
 from carom.options import Options
@@ -33,24 +26,19 @@ class Evaluation:
     """Compiled functions of a system and workspace to call them with."""
 
     def __init__(self, system: GeneralizedSystem, drop: float = 1e-8):
-        model, contacts = system._model, system.contacts
-        n, C = system.coordinates, len(contacts)
-        self.n = n
-        self.functions = Functions()
-        addresses, parts = model.addresses(self.functions)
-        self.system = Coordinates(
-            np.array(addresses, dtype=np.int64),
-            np.array(parts, dtype=np.int64).reshape(-1, 3),
-            np.array([n, model.holonomic, model.rows, C], dtype=np.int64),
-            np.array([one.friction for one in contacts]),
-            drop,
+        model, friction = system._model, np.array([one.friction for one in system.contacts])
+        self.n, self.functions = model.n, Functions()
+        addresses, parts = (
+            np.array(one, dtype=np.int64) for one in model.addresses(self.functions)
         )
-        self.work = new_work(n, model.holonomic, model.rows, C, STAGES)
-        self.none_active = new_active_set(C)
+        sizes = model.n, model.holonomic, model.rows, len(friction)
+        self.system = o.Coordinates(addresses, parts.reshape(-1, 3), *sizes, friction, drop)
+        self.work = o.new_work(self.system, STAGES)
+        self.none_active = o.new_active_set(len(friction))
 
-    def compute(self, x, t: float, active: ActiveSet | None = None) -> int:
-        """Compute all quantities at a state (q, v); they are in `work`. Return a status."""
-        code = look(self.system, self.none_active if active is None else active, t, x, self.work)
+    def compute(self, x, t: float) -> int:
+        """Compute all quantities at a state (q, v) without active contacts, into `work`; return a status."""
+        code = look(self.system, self.none_active, t, x, self.work)
         return Status.FUNCTION_FAILED if self.functions.failed is not None else code
 
     def look(self, x, t: float = 0.0) -> int:
@@ -79,12 +67,13 @@ class Evaluation:
 
     def autoparallel(self, q, v, parts):
         """Return the end (q, v) of an autoparallel: the motion without loads, constraints and contacts."""
-        x, none = np.concatenate([q, v]), new_active_set(0)
-        address, size = self.system.address * [1, 0, 0, 0], self.system.size * [1, 0, 0, 0]
-        part, work = self.system.part.copy(), new_work(self.n, 0, 0, 0, STAGES)
-        part[OF_METRIC + 1 :] = 0
-        free = Coordinates(address, part, size, np.zeros(0), 0.0)
-        code = move_freely(Motion(free, make_method("rk4", Options()), none, work), x, parts)
+        x, part = np.concatenate([q, v]), self.system.part.copy()
+        part[o.OF_METRIC + 1 :] = 0
+        free = self.system._replace(
+            address=self.system.address * [1, 0, 0, 0], part=part, holonomic=0, rows=0, contacts=0
+        )
+        work, method = o.new_work(free, STAGES), make_method("rk4", Options())
+        code = move_freely(o.Motion(free, method, o.new_active_set(0), work), x, parts)
         self.failed()
         if code != 0:
             raise ValueError(f"the autoparallel could not be integrated: {Status(code).message}")

@@ -13,44 +13,17 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.generalized.layout import TOUCHES, N
-from carom.generalized.linear import copy_row, dot
+from carom.generalized.linear import dot
 from carom.generalized.motion import acceleration, find_contacts, slip_of
 from carom.generalized.step import take
-from carom.model.actions import (
-    EVENT_CONE,
-    EVENT_GAP,
-    EVENT_JAM,
-    EVENT_RATE,
-    EVENT_REVERSE,
-    EVENT_SEPARATE,
-    MODE_STICK,
-    NO_EVENT,
-)
+from carom.model import actions as a
 from carom.status import NOT_FINITE
 from carom.stepping.event_search import begin_search, next_trial, update_bracket
 
 ROUND_OFF = 1e-15  # of the gap's own terms
-CONE_ROUND_OFF = 1e-12  # of the normal force, which is a result of elimination
+CONE_ROUND_OFF = 1e-12  # of the greatest normal force, which is a result of elimination
 TRIALS = 200  # of a search: the bracket is then round-off of its length
 EARLIER = 20  # events that may lie before the first one that was found
-
-
-@kernel
-def find_gaps(system, t, x, work):
-    """Evaluate the event functions of open contacts at `x`; return whether all gaps are finite."""
-    margin, finite = work.margin, True
-    find_contacts(system, t, x, work)
-    for c in range(system.size[TOUCHES]):
-        finite = finite and math.isfinite(work.gap[c])
-        for kind in range(NO_EVENT):
-            margin[kind, c], work.nothing[kind, c] = math.inf, 0.0
-        margin[EVENT_GAP, c], work.nothing[EVENT_GAP, c] = (
-            work.gap[c],
-            ROUND_OFF * work.gap_scale[c],
-        )
-        margin[EVENT_RATE, c] = -dot(work.G[c, 0], x[system.size[N] :], system.size[N])
-    return finite
 
 
 @kernel
@@ -60,40 +33,44 @@ def find_margins(motion, t):
     They are infinite for contacts that are not in their mode.
     """
     system, active, work = motion.system, motion.active, motion.work
-    margin = work.margin
-    if not find_gaps(system, t, work.end, work):
-        return NOT_FINITE
-    if active.count[0] == 0:
-        return 0
-    _, _, code = acceleration(system, active, t, work.end, work, work.trial)
+    margin, end, code = work.margin, work.end, 0
+    find_contacts(system, t, end, work)
+    for c in range(system.contacts):
+        for kind in range(a.NO_EVENT):
+            margin[kind, c], work.nothing[kind, c] = math.inf, 0.0
+        margin[a.EVENT_GAP, c] = work.gap[c]
+        work.nothing[a.EVENT_GAP, c] = ROUND_OFF * work.gap_scale[c]
+        margin[a.EVENT_RATE, c] = -dot(work.G[c, 0], end[system.n :], system.n)
+        if not math.isfinite(work.gap[c]):
+            return NOT_FINITE
+    if active.count[0] > 0:
+        _, _, code = acceleration(system, active, t, end, work, work.trial)
+    most = 0.0
     for i in range(active.count[0]):
-        c, force = active.contact[i], active.force[i]
-        mu = system.friction[c]
-        margin[EVENT_GAP, c], margin[EVENT_RATE, c], margin[EVENT_SEPARATE, c] = (
-            math.inf,
-            math.inf,
-            force[0],
-        )
-        if active.mode[i] == MODE_STICK:
-            margin[EVENT_CONE, c] = mu * force[0] - math.sqrt(
-                force[1] * force[1] + force[2] * force[2]
-            )
-            work.nothing[EVENT_CONE, c] = CONE_ROUND_OFF * abs(force[0])
+        most = max(most, abs(active.force[i, 0]))
+    for i in range(active.count[0]):
+        c, force, mu = active.contact[i], active.force[i], system.friction[active.contact[i]]
+        margin[a.EVENT_GAP, c], margin[a.EVENT_RATE, c] = math.inf, math.inf
+        margin[a.EVENT_SEPARATE, c] = force[0]
+        if active.mode[i] == a.MODE_STICK:
+            pull = math.sqrt(force[1] * force[1] + force[2] * force[2])
+            margin[a.EVENT_CONE, c] = mu * force[0] - pull
+            work.nothing[a.EVENT_CONE, c] = CONE_ROUND_OFF * most
         elif mu > 0.0:
-            u1, u2 = slip_of(system, active, i, work.end, work)
-            margin[EVENT_REVERSE, c] = u1 * active.heading[i, 0] + u2 * active.heading[i, 1]
-            margin[EVENT_JAM, c] = active.yields[i]
+            u1, u2 = slip_of(system, active, i, end, work)
+            margin[a.EVENT_REVERSE, c] = u1 * active.heading[i, 0] + u2 * active.heading[i, 1]
+            margin[a.EVENT_JAM, c] = active.yields[i]
     return code
 
 
 @kernel
 def first_violated(system, work):
     """Return (kind, contact) of an event function that is below zero, (NO_EVENT, -1) if none is."""
-    for kind in (EVENT_GAP, EVENT_REVERSE, EVENT_JAM, EVENT_SEPARATE, EVENT_CONE):
-        for c in range(system.size[TOUCHES]):
+    for kind in (a.EVENT_GAP, a.EVENT_REVERSE, a.EVENT_JAM, a.EVENT_SEPARATE, a.EVENT_CONE):
+        for c in range(system.contacts):
             if not work.margin[kind, c] >= -work.nothing[kind, c]:
                 return kind, c
-    return NO_EVENT, -1
+    return a.NO_EVENT, -1
 
 
 @kernel
@@ -103,15 +80,16 @@ def dips(system, h, work):
     The cubic with the gaps and rates at both ends decides: its least value is below a tenth of the depth of the
     dip.
     """
-    for c in range(system.size[TOUCHES]):
-        g0, r0 = work.before[EVENT_GAP, c], -h * work.before[EVENT_RATE, c]
-        g1, r1 = work.margin[EVENT_GAP, c], -h * work.margin[EVENT_RATE, c]
+    for c in range(system.contacts):
+        g0, r0 = work.before[0, c], h * work.before[1, c]
+        g1, r1 = work.margin[a.EVENT_GAP, c], -h * work.margin[a.EVENT_RATE, c]
         if not r0 < 0.0 < r1:
             continue
-        a, b = 2.0 * (g0 - g1) + r0 + r1, 3.0 * (g1 - g0) - 2.0 * r0 - r1
-        root = math.sqrt(max(b * b - 3.0 * a * r0, 0.0))  # of 3 a s^2 + 2 b s + r0
-        s = -r0 / (b + root) if b > 0.0 else (root - b) / (3.0 * a)
-        least = g0 + s * (r0 + s * (b + s * a))
+        third, second = 2.0 * (g0 - g1) + r0 + r1, 3.0 * (g1 - g0) - 2.0 * r0 - r1
+        root = math.sqrt(max(second * second - 3.0 * third * r0, 0.0))
+        # of 3 third s^2 + 2 second s + r0
+        s = -r0 / (second + root) if second > 0.0 else (root - second) / (3.0 * third)
+        least = g0 + s * (r0 + s * (second + s * third))
         if least <= 0.1 * (min(g0, g1) - least):
             return c
     return -1
@@ -125,12 +103,12 @@ def find_root(motion, kind, c, t, x, high):
     """
     work, search, s = motion.work, motion.work.search[0], high
     begin_search(search, kind, c, 0.0, high)
-    if kind == EVENT_GAP:
-        search.f, search.rate = work.before[EVENT_GAP, c], -work.before[EVENT_RATE, c]
+    if kind == a.EVENT_GAP:
+        search.f, search.rate = work.before[0, c], work.before[1, c]
     for _ in range(TRIALS):
         if work.nothing[kind, c] > 0.0:
             search.tolerance = work.nothing[kind, c]
-        rate = -work.margin[EVENT_RATE, c] if kind == EVENT_GAP else 0.0
+        rate = -work.margin[a.EVENT_RATE, c] if kind == a.EVENT_GAP else 0.0
         found = update_bracket(search, s, work.margin[kind, c], rate)
         if found != 0:
             return s, 0 if found > 0 else NOT_FINITE
@@ -152,30 +130,31 @@ def state_at(motion, t, x, s):
 def locate(motion, t, x, h):
     """Find the first event in the step h from `x`, whose end is known; return (s, kind, contact, status).
 
-    The end is then the state at s. Without an event, the kind is NO_EVENT and s = h.
+    The end is then the state at s. Without an event, the kind is a.NO_EVENT and s = h.
     """
     system, work, s = motion.system, motion.work, h
-    find_gaps(system, t, x, work)
-    for kind in (EVENT_GAP, EVENT_RATE):
-        copy_row(work.margin[kind], work.before[kind], system.size[TOUCHES])
+    find_contacts(system, t, x, work)
+    for c in range(system.contacts):
+        work.before[0, c] = work.gap[c]
+        work.before[1, c] = dot(work.G[c, 0], x[system.n :], system.n)
     code = find_margins(motion, t + h)
     if code != 0:
-        return h, NO_EVENT, -1, code
+        return h, a.NO_EVENT, -1, code
     kind, c = first_violated(system, work)
-    if kind == NO_EVENT:
+    if kind == a.NO_EVENT:
         c = dips(system, h, work)
         if c < 0:
-            return h, NO_EVENT, -1, 0
-        s, code = find_root(motion, EVENT_RATE, c, t, x, h)
-        if code != 0 or work.margin[EVENT_GAP, c] >= -work.nothing[EVENT_GAP, c]:
-            return h, NO_EVENT, -1, max(code, state_at(motion, t, x, h))
-        kind = EVENT_GAP
+            return h, a.NO_EVENT, -1, 0
+        s, code = find_root(motion, a.EVENT_RATE, c, t, x, h)
+        if code != 0 or work.margin[a.EVENT_GAP, c] >= -work.nothing[a.EVENT_GAP, c]:
+            return h, a.NO_EVENT, -1, max(code, state_at(motion, t, x, h))
+        kind = a.EVENT_GAP
     for _ in range(EARLIER):
         s, code = find_root(motion, kind, c, t, x, s)
         if code != 0:
             break
         other, b = first_violated(system, work)
-        if other == NO_EVENT or (other == kind and b == c):
+        if other == a.NO_EVENT or (other == kind and b == c):
             break
         kind, c = other, b
     return s, kind, c, code

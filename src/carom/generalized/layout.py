@@ -26,22 +26,20 @@ CALL_CONTACTS = 3  #: gap (C,), G (C, 3, n), (dG/dt) v (C, 3)
 # contact.
 OF_METRIC, OF_POTENTIAL, OF_FORCE, OF_CONSTRAINT, OF_ROWS, OF_CONTACT = range(6)
 
-# The four sizes, by their place in `Coordinates.size`.
-N, HOLONOMIC, ALL_ROWS, TOUCHES = range(4)
-
 # An event ended a call of the loop; other codes are `carom.model.records.PAUSE`, and those of `carom.status`.
 EVENT = 100
 
 
 class Coordinates(NamedTuple):
-    """A system: addresses of its functions, sizes, friction of its contacts."""
+    """A system: its functions, sizes, and friction of its contacts."""
 
-    address: (
-        np.ndarray
-    )  # (4,) int64; 0 for a function that the system does not have, or that has parts
+    address: np.ndarray  # (4,) int64; 0 for a function that the system lacks, or that has parts
     # (P, 3) int64 addresses of a function and of its derivative, 0 for none, and the number of results
     part: np.ndarray
-    size: np.ndarray  # (4,) int64
+    n: int  # coordinates
+    holonomic: int  # constraints phi
+    rows: int  # of all constraints
+    contacts: int
     friction: np.ndarray  # (C,)
     drop: float  # a row is left out if its pivot is below this part of its diagonal
 
@@ -85,13 +83,13 @@ class Work(NamedTuple):
     stages: np.ndarray  # (S, 2n)
     trial: np.ndarray  # (2n,)
     end: np.ndarray  # (2n,)
-    # (NO_EVENT, C) by kind of event: its function, what is round-off of it, the function at the start of a step
-    margin: np.ndarray
-    nothing: np.ndarray
-    before: np.ndarray
+    margin: np.ndarray  # (NO_EVENT, C) the function of each kind of event
+    nothing: np.ndarray  # (NO_EVENT, C) what is round-off of it
+    before: np.ndarray  # (2, C) gaps and their rates at the start of a step
     row_scale: np.ndarray  # (h,) greatest sum |A_j q_j|
     gap_scale: np.ndarray  # (C,) the same of the gaps, or the greatest gap
     point: np.ndarray  # (n,) of differences
+    axis: np.ndarray  # (n,) 0, or one axis
     sample: np.ndarray  # results there
     slope: np.ndarray  # (n, m) derivatives of m results
     search: np.recarray  # (1,) SEARCH, of an event
@@ -118,19 +116,14 @@ class Plan(NamedTuple):
     atol: float
 
 
-#: progress of a run
+#: progress of a run, of which a copy is kept for each saved state: time, counts, energies and works
 CLOCK = [
-    ("now", "f8"), ("step", "i8"), ("saved", "i8"), ("loads", "f8"), ("friction", "f8"),
-    ("impacts", "f8"), ("bounces", "f8"), ("given", "f8"), ("kind", "i8"), ("index", "i8"), ("trials", "i8"),
+    ("now", "f8"), ("step", "i8"), ("saved", "i8"), ("kind", "i8"), ("index", "i8"), ("trials", "i8"),
+    ("kinetic", "f8"), ("potential", "f8"), ("loads", "f8"), ("impacts", "f8"), ("friction", "f8"),
+    ("bounces", "f8"),
+    ("given", "f8"),  # energy that impacts have added where their law allows it (V8)
     # the next step by tolerances, the length that fitted them last, number of steps with too large an error
     ("ahead", "f8"), ("fits", "f8"), ("rejected", "i8"),
-]  # fmt: skip
-
-#: data of a saved state besides the state itself
-SERIES = [
-    ("t", "f8"), ("kinetic", "f8"), ("potential", "f8"), ("loads", "f8"), ("impacts", "f8"),
-    ("friction", "f8"), ("bounces", "f8"),
-    ("given", "f8"),  # energy that impacts have added where their law allows it (V8)
 ]  # fmt: skip
 
 
@@ -138,7 +131,7 @@ class Record(NamedTuple):
     """The clock of a run and the states that it has saved."""
 
     clock: np.recarray  # (1,) CLOCK
-    series: np.recarray  # (rows,) SERIES
+    series: np.recarray  # (rows,) CLOCK
     states: np.ndarray  # (rows, 2n)
 
 
@@ -149,8 +142,14 @@ def new_active_set(contacts: int) -> ActiveSet:
     return ActiveSet(count, contact, row, mode, *vectors, np.zeros(contacts))
 
 
-def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> Work:
-    """Return workspace for a system of these sizes and a method with this number of stages."""
+def copied(active: ActiveSet) -> ActiveSet:
+    """Return a copy of an active set."""
+    return ActiveSet(*(one.copy() for one in active))
+
+
+def new_work(system: Coordinates, stages: int) -> Work:
+    """Return workspace for a system and a method with this number of stages."""
+    n, holonomic, rows, contacts = system.n, system.holonomic, system.rows, system.contacts
     m, most = rows + 3 * contacts, max(n, rows, 2) * n
     k, g = holonomic + rows * n, contacts * (1 + 3 * n)
     inertia, loads = np.zeros(n * n + n), np.zeros(n + 2)
@@ -166,7 +165,7 @@ def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> W
         "L": (n, n), "a": n, "R": (m, n), "D": (m, n), "Z": (m, n), "K": (m, m), "inverse": m, "rhs": m,
         "stages": (stages, 2 * n), "trial": 2 * n, "end": 2 * n, "row_scale": holonomic,
         "gap_scale": contacts, "margin": (NO_EVENT, contacts), "nothing": (NO_EVENT, contacts),
-        "before": (NO_EVENT, contacts), "point": n, "sample": most, "slope": n * most, "spent": 2,
+        "before": (2, contacts), "point": n, "axis": n, "sample": most, "slope": n * most, "spent": 2,
     }  # fmt: skip
     own = {name: np.zeros(shape) for name, shape in shapes.items()}
     return Work(**results, **own, search=table(SEARCH, 1))

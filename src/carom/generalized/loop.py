@@ -17,28 +17,33 @@ from carom._compiled.decorators import entry, kernel
 from carom.dynamics.adapt import allowed_error, of_two, part_of, shrunk
 from carom.dynamics.adapt import plan as plan_ahead
 from carom.dynamics.thresholds import LEAST_STEP
+from carom.generalized import layout as o
 from carom.generalized.events import locate
-from carom.generalized.layout import CALL_LOADS, EVENT, N
 from carom.generalized.linear import copy_row, dot
 from carom.generalized.motion import evaluate, find_metric
 from carom.generalized.step import take
-from carom.model.actions import NO_EVENT
+from carom.model import actions as a
 from carom.model.records import PAUSE
 from carom.status import STEP_TOO_SMALL, SUCCESS
 from carom.stepping.grid import end_of, is_saved
 
+# Tangents of the greatest angle by which slip turns in a given step (15 degrees: of steps of .02 to .2 s of
+# pucks and sleds none is off by more than 1e-3 m; 3e-3 m with 30 degrees, 1e-2 m with 60), and of that by which
+# it may miss the opposite direction where it stops: a stop is located.
+TURN, STOPS = 0.268, 0.01
+SHORTEST = 2.0**-12  # of a given step: it is halved no further
 LONG = 20_000  # trial steps, times the square of the number of coordinates, after which the loop pauses
 
 
 @entry
 def time_loop(motion, x, plan, until, record):
-    """Continue to step number `until`; return SUCCESS, EVENT (the clock has its kind) or a status of failure.
+    """Continue to step number `until`; return SUCCESS, o.EVENT (the clock has its kind) or a status of failure.
 
     Return PAUSE after much work, so that Ctrl-C is noticed.
     """
     system, work = motion.system, motion.work
     c = record.clock[0]
-    most = c.trials + LONG // (system.size[N] * system.size[N]) + 1
+    most = c.trials + LONG // (system.n * system.n) + 1
     while c.step < until:
         if c.trials > most:
             return PAUSE
@@ -54,10 +59,10 @@ def time_loop(motion, x, plan, until, record):
             copy_row(work.end, x, x.size)
             c.loads += work.spent[0]
             c.friction += work.spent[1]
-            if kind != NO_EVENT:
+            if kind != a.NO_EVENT:
                 c.now += s
                 c.kind, c.index = kind, index
-                return EVENT
+                return o.EVENT
             if part < left:
                 c.now += part
                 continue
@@ -70,7 +75,7 @@ def time_loop(motion, x, plan, until, record):
 
 @kernel
 def take_accurately(motion, x, left, plan, c):
-    """Take all of the time `left`, or a step whose estimated error is within the tolerances.
+    """Take a step whose estimated error is within the tolerances; without these, one in which no slip turns.
 
     Return its length and a status.
     """
@@ -79,7 +84,10 @@ def take_accurately(motion, x, left, plan, c):
         code = take(motion, c.now, x, part)
         c.trials += 1
         if plan.order == 0:
-            return part, code
+            if code != 0 or part <= SHORTEST * plan.step or not turns(motion):
+                return part, code
+            part *= 0.5
+            continue
         error = math.inf if code != 0 else step_error(motion, part, plan)
         if error <= 1.0:
             plan_ahead(c, part, error, again, plan.order, plan.step)
@@ -92,9 +100,31 @@ def take_accurately(motion, x, left, plan, c):
 
 
 @kernel
+def turns(motion):
+    """Return whether a slip turns by more than an angle in the step that was taken, and does not only stop.
+
+    The slips are those of the velocities of all stages, in the rows at the end: where friction turns a slow
+    slip faster than the step follows, that of a stage is far off.
+    """
+    active, work, n = motion.active, motion.work, motion.system.n
+    for i in range(active.count[0]):
+        c = active.contact[i]
+        if active.mode[i] != a.MODE_SLIP or not motion.system.friction[c] > 0.0:
+            continue
+        e1, e2 = active.heading[i, 0], active.heading[i, 1]
+        for s in range(1, motion.method.b.size + 1):
+            v = work.stages[s] if s < motion.method.b.size else work.end[n:]
+            u1, u2 = dot(work.G[c, 1], v, n), dot(work.G[c, 2], v, n)
+            along, across = u1 * e1 + u2 * e2, abs(u1 * e2 - u2 * e1)
+            if across > (TURN * along if along > 0.0 else STOPS * abs(along)):
+                return True
+    return False
+
+
+@kernel
 def step_error(motion, h, plan):
     """Return the greatest error of the step h whose stages are in the workspace; up to 1 it is accepted."""
-    E, stages, n = motion.method.E, motion.work.stages, motion.system.size[N]
+    E, stages, n = motion.method.E, motion.work.stages, motion.system.n
     first, second = 0.0, 0.0
     for i in range(n):
         pace, speed = 0.0, 0.0
@@ -117,15 +147,13 @@ def step_error(motion, h, plan):
 @kernel
 def save(system, x, record, work):
     """Write the state and its energies into the next row."""
-    clock, n = record.clock[0], system.size[N]
-    row, total = record.series[clock.saved], 0.0
+    clock, n, total = record.clock[0], system.n, 0.0
     find_metric(system, clock.now, x, work)
-    evaluate(system, CALL_LOADS, clock.now, x, work.loads, work)
+    evaluate(system, o.CALL_LOADS, clock.now, x, work.loads, work)
     for i in range(n):
         total += x[n + i] * dot(work.M[i], x[n:], n)
-    row.t, row.kinetic, row.potential = clock.now, 0.5 * total, work.loads[0]
-    row.loads, row.impacts = clock.loads, clock.impacts
-    row.friction, row.bounces, row.given = clock.friction, clock.bounces, clock.given
+    clock.kinetic, clock.potential = 0.5 * total, work.loads[0]
+    record.series[clock.saved] = clock
     copy_row(x, record.states[clock.saved], x.size)
     clock.saved += 1
 

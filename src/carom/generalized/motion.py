@@ -13,22 +13,14 @@ from carom._compiled.decorators import entry, kernel
 from carom._compiled.user_functions import call_function
 from carom.friction.ldl import factor as factor_symmetric
 from carom.friction.ldl import substitute as solve_metric
+from carom.generalized import layout as o
 from carom.generalized.differences import evaluate_parts
-from carom.generalized.layout import (
-    ALL_ROWS,
-    CALL_CONTACTS,
-    CALL_INERTIA,
-    CALL_LOADS,
-    CALL_ROWS,
-    HOLONOMIC,
-    TOUCHES,
-    N,
-)
 from carom.generalized.linear import add_row, copy_row, dot, factor, substitute
-from carom.model.actions import MODE_SLIP, MODE_STICK
+from carom.model import actions as a
 from carom.status import NOT_FINITE, SINGULAR_METRIC
 
 POSITION, RATE, ACCELERATION = range(3)  # what the rows must give
+LEAST = 1e-9  # of the unit of a coordinate, its size for tolerances: in the origin errors are not relative to 0
 SINGULAR = 1e-15  # of the diagonal: a pivot of the metric that is round-off
 
 
@@ -44,8 +36,8 @@ def evaluate(system, which, t, x, out, work):
 @kernel
 def find_metric(system, t, x, work):
     """Compute M, its factor and Gamma(v, v) at the state `x`; return a status."""
-    evaluate(system, CALL_INERTIA, t, x, work.inertia, work)
-    n, total = system.size[N], 0.0
+    evaluate(system, o.CALL_INERTIA, t, x, work.inertia, work)
+    n, total = system.n, 0.0
     for i in range(n):
         copy_row(work.M[i], work.L[i], n)
     factor_symmetric(n, SINGULAR, work.L)
@@ -60,37 +52,37 @@ def find_metric(system, t, x, work):
 @kernel
 def find_rows(system, active, t, x, work):
     """Compute constraint rows, and contacts if any is active."""
-    if system.size[ALL_ROWS] > 0:
-        evaluate(system, CALL_ROWS, t, x, work.rows, work)
+    if system.rows > 0:
+        evaluate(system, o.CALL_ROWS, t, x, work.rows, work)
     if active.count[0] > 0:
-        evaluate(system, CALL_CONTACTS, t, x, work.contacts, work)
+        evaluate(system, o.CALL_CONTACTS, t, x, work.contacts, work)
 
 
 @kernel
 def find_contacts(system, t, x, work):
     """Compute gaps and contact rows, and the size of the terms of each gap."""
-    if system.size[TOUCHES] == 0:
+    if system.contacts == 0:
         return
-    evaluate(system, CALL_CONTACTS, t, x, work.contacts, work)
-    for c in range(system.size[TOUCHES]):
-        size = max(abs(work.gap[c]), terms(work.G[c, 0], x, system.size[N]))
+    evaluate(system, o.CALL_CONTACTS, t, x, work.contacts, work)
+    for c in range(system.contacts):
+        size = max(abs(work.gap[c]), terms(work.G[c, 0], x, system.n))
         if math.isfinite(size):
             work.gap_scale[c] = max(work.gap_scale[c], size)
 
 
 @kernel
 def terms(row, x, n):
-    """Return sum |row_j x_j|."""
+    """Return sum |row_j x_j|, with coordinates of at least `LEAST`."""
     total = 0.0
     for j in range(n):
-        total += abs(row[j] * x[j])
+        total += abs(row[j]) * max(abs(x[j]), LEAST)
     return total
 
 
 @kernel
 def slip_of(system, active, i, x, work):
     """Return the slip (u_1, u_2) of persistent contact i; rows must be those of `x`."""
-    n, rows = system.size[N], work.G[active.contact[i]]
+    n, rows = system.n, work.G[active.contact[i]]
     return dot(rows[1], x[n:], n), dot(rows[2], x[n:], n)
 
 
@@ -110,14 +102,14 @@ def gather(system, active, what, x, work):
 
     Return the number of rows.
     """
-    n, m = system.size[N], system.size[HOLONOMIC if what == POSITION else ALL_ROWS]
+    n, m = system.n, (system.holonomic if what == POSITION else system.rows)
     for r in range(m):
         copy_row(work.A[r], work.R[r], n)
         work.rhs[r] = -work.phi[r] if what == POSITION else -work.A_rate[r]
     for i in range(active.count[0]):
         c = active.contact[i]
         active.row[i] = m
-        for r in range(3 if active.mode[i] == MODE_STICK and what != POSITION else 1):
+        for r in range(3 if active.mode[i] == a.MODE_STICK and what != POSITION else 1):
             copy_row(work.G[c, r], work.R[m], n)
             work.rhs[m] = -work.gap[c] if what == POSITION else -work.G_rate[c, r]
             m += 1
@@ -128,7 +120,7 @@ def gather(system, active, what, x, work):
     for i in range(active.count[0] if what == ACCELERATION else 0):
         c = active.contact[i]
         mu = system.friction[c]
-        if active.mode[i] == MODE_SLIP and mu > 0.0:
+        if active.mode[i] == a.MODE_SLIP and mu > 0.0:
             u1, u2 = slip_of(system, active, i, x, work)
             e1, e2 = direction(active, i, u1, u2)
             add_row(-mu * e1, work.G[c, 1], work.D[active.row[i]], n)
@@ -142,7 +134,7 @@ def react(system, m, out, work):
 
     With Z = M^-1 D^T and K = R Z they are the solution of K lam = rhs - R out.
     """
-    n = system.size[N]
+    n = system.n
     for r in range(m):
         copy_row(work.D[r], work.Z[r], n)
         solve_metric(n, work.L, work.Z[r])
@@ -162,15 +154,15 @@ def acceleration(system, active, t, x, work, rate):
 
     Forces of persistent contacts go to `active.force`.
     """
-    n, a, friction = system.size[N], work.a, 0.0
+    n, a, friction = system.n, work.a, 0.0
     code = find_metric(system, t, x, work)
     if code != 0:
         return 0.0, 0.0, code
-    evaluate(system, CALL_LOADS, t, x, work.loads, work)
+    evaluate(system, o.CALL_LOADS, t, x, work.loads, work)
     copy_row(work.load, a, n)
     add_row(-1.0, work.c, a, n)
     solve_metric(n, work.L, a)
-    if system.size[ALL_ROWS] > 0 or active.count[0] > 0:
+    if system.rows > 0 or active.count[0] > 0:
         find_rows(system, active, t, x, work)
         react(system, gather(system, active, ACCELERATION, x, work), a, work)
         friction = note_forces(system, active, x, work)
@@ -187,7 +179,7 @@ def note_forces(system, active, x, work):
         force, mu, m = active.force[i], system.friction[active.contact[i]], active.row[i]
         force[0] = work.rhs[m]
         active.yields[i] = work.K[m, m]
-        if active.mode[i] == MODE_STICK:
+        if active.mode[i] == a.MODE_STICK:
             force[1], force[2] = work.rhs[m + 1], work.rhs[m + 2]
         else:
             u1, u2 = slip_of(system, active, i, x, work)

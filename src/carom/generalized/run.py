@@ -9,24 +9,15 @@ import numpy as np
 from carom._compiled.record_arrays import table
 from carom.dynamics.methods import METHODS, make_method
 from carom.dynamics.thresholds import FIRST_STEP
+from carom.generalized import layout as o
 from carom.generalized.contacts import Contacts
 from carom.generalized.evaluate import Evaluation
-from carom.generalized.layout import (  # fmt: skip
-    CLOCK,
-    EVENT,
-    SERIES,
-    Motion,
-    Plan,
-    Record,
-    new_active_set,
-    new_work,
-)
 from carom.generalized.loop import save_now, time_loop
 from carom.generalized.step import project
 from carom.model.kept import Kept
 from carom.model.records import PAUSE
 from carom.status import SUCCESS, Status
-from carom.stepping.grid import STATES, planned_grid
+from carom.stepping.grid import STATES, part_of_grid, planned_grid
 
 if TYPE_CHECKING:
     from carom.generalized.system import GeneralizedSystem
@@ -38,12 +29,13 @@ EVENTS_AT_ONCE = 200  # events at one instant
 class GeneralizedRun:
     """A run of a `GeneralizedSystem`: state, records and workspace.
 
-    It begins at the initial state of the system, or at `start`: a time, and the state (q, v) of a run at this
-    time.
+    It begins at the initial state of the system, or at `start`: a time, and the state (q, v) and the active
+    contacts of a run at this time.
     """
 
     def __init__(
-        self, system: GeneralizedSystem, settings: Settings, start: tuple[float, np.ndarray] | None = None
+        self, system: GeneralizedSystem, settings: Settings,
+        start: tuple[float, np.ndarray, o.ActiveSet] | None = None,
     ):  # fmt: skip
         options = settings.options
         made = system.evaluation()
@@ -55,7 +47,7 @@ class GeneralizedRun:
         grid = planned_grid(settings, settings.duration, longest)
         order = METHODS[settings.method].order if settings.adapts else 0
         atol = settings.rtol if settings.atol is None else settings.atol
-        self.plan = Plan(settings.duration, grid.interval, grid, order, settings.rtol, atol)
+        self.plan = o.Plan(settings.duration, grid.interval, grid, order, settings.rtol, atol)
         self.settings = {**settings.as_dict(), "options": options.as_dict()}
         if settings.adapts:
             self.settings["atol"] = atol
@@ -63,27 +55,35 @@ class GeneralizedRun:
         self.made: Evaluation = made if same else Evaluation(system, options.drop_tolerance)
         self.made.functions.forget()
         self.system = self.made.system
-        n, h, k, C = (int(one) for one in self.system.size)
-        self.n = n
+        n = self.n = self.system.n
         self.method = make_method(settings.method, options, settings.adapts)
-        self.active, self.work = new_active_set(C), new_work(n, h, k, C, len(self.method.b))
-        self.motion = Motion(self.system, self.method, self.active, self.work)
-        begin, x = start or (0.0, np.concatenate([system.position, system.velocity]))
-        self.x = x.copy()
-        self.clock = table(CLOCK, 1)
+        self.work = o.new_work(self.system, len(self.method.b))
+        x = np.concatenate([system.position, system.velocity])
+        begin, x, active = start or (0.0, x, o.new_active_set(self.system.contacts))
+        self.x, self.active = x.copy(), o.copied(active)
+        self.motion = o.Motion(self.system, self.method, self.active, self.work)
+        self.clock = table(o.CLOCK, 1)
         self.clock["now"] = begin
         self.clock["ahead"] = FIRST_STEP * grid.interval
-        rows = grid.rows + 2
-        self.series, self.states = table(SERIES, rows), np.zeros((rows, 2 * n))
-        self.record = Record(self.clock, self.series, self.states)
-        self.nodes: list[tuple[float, np.ndarray, np.ndarray]] = []  # time, state before, after
+        self.series = table(o.CLOCK, grid.rows + 2)
+        self.states = np.zeros((grid.rows + 2, 2 * n))
+        self.record = o.Record(self.clock, self.series, self.states)
+        # of the events: time, state before and after, active contacts
+        self.nodes: list[tuple[float, np.ndarray, np.ndarray, o.ActiveSet]] = []
         self.contacts = Contacts(self)
         self.reason = ""  # of a failure, beyond its status
-        self.located, self.at_once, self.last, self.in_step = 0, 0, -1.0, -1
+        self.located, self.at_once, self.last = 0, 0, -1.0
+        self.code = 0
         if start is None:
             self.check_start()
-        self.code = self.contacts.resolve(0, -1)
-        self.save_now()
+            self.code = self.contacts.resolve(0, -1)
+            self.save_now()
+
+    def again(self, begin: float, x: np.ndarray, active: o.ActiveSet, end: float) -> GeneralizedRun:
+        """Return a run between two times that starts at a state (q, v) of this one."""
+        run = GeneralizedRun(self.user, self.how, (begin, x, active))
+        run.plan = self.plan._replace(grid=part_of_grid(self.plan.grid, begin, end))
+        return run
 
     def check_start(self) -> None:
         """Raise an error if the start violates constraints or contacts; `project_start` projects velocities."""
@@ -148,7 +148,7 @@ class GeneralizedRun:
         """Continue until step number `until`, or a failure."""
         while self.code == 0:
             self.code = time_loop(self.motion, self.x, self.plan, int(until), self.record)
-            if self.code == EVENT:
+            if self.code == o.EVENT:
                 self.code = self.event()
             elif self.code == PAUSE and self.failure is None:
                 self.code = 0  # Python raises Ctrl-C here
@@ -197,10 +197,6 @@ class GeneralizedRun:
         """Handle the event at which the loop has stopped; return a status."""
         clock = self.clock[0]
         self.located += 1
-        if clock.step != self.in_step:
-            self.in_step = int(clock.step)
-            if self.plan.order == 0:
-                self.contacts.strike.blows[:] = 0
         near = clock.now - self.last <= 1e-12 * self.plan.step
         self.at_once = self.at_once + 1 if near else 0
         self.last = float(clock.now)
@@ -213,6 +209,6 @@ class GeneralizedRun:
         from carom.generalized.solution import GeneralizedSolution
 
         clock = self.clock[0]
-        if status is not Status.SUCCESS and clock.now > self.series.t[clock.saved - 1]:
+        if status is not Status.SUCCESS and clock.now > self.series.now[clock.saved - 1]:
             self.save_now()
         return GeneralizedSolution._from_run(self, status)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from carom import checks
 from carom.geometry.spline import cubic
-from carom.results.dense_output import NEAR
 from carom.results.drawn import Drawn
 from carom.results.endings import message
 from carom.results.event_tables import EventTable
@@ -21,6 +20,9 @@ from carom.status import Status
 if TYPE_CHECKING:
     from carom.generalized.run import GeneralizedRun
     from carom.generalized.system import GeneralizedSystem
+
+
+ROUND_OFF = 1e-14  # of the time: that near to an event, it is not known on which side of it
 
 
 class CoordinateImpact(NamedTuple):
@@ -114,19 +116,18 @@ class GeneralizedSolution(Drawn):
     def _from_run(cls, run: GeneralizedRun, status: Status) -> GeneralizedSolution:
         """Make the solution from the records of a run."""
         from carom._compiled.user_functions import Fault, returned
-        from carom.generalized.layout import SERIES
         from carom.results.accuracy import inaccurate, sentences, watched
 
         saved, n = int(run.clock[0].saved), run.n
-        columns: Any = {name: np.array(run.series[name][:saved]) for name, _ in SERIES}
-        given, states = columns.pop("given"), run.states[:saved].copy()
-        t, ledger, said = columns.pop("t"), Ledger(**columns), ()
+        series: Any = run.series[:saved]
+        ledger = Ledger(**{one.name: np.array(series[one.name]) for one in fields(Ledger)})
+        t, states, said = np.array(series.now), run.states[:saved].copy(), ()
         energies = np.column_stack([ledger.kinetic, ledger.potential])
         if len(bad := np.argwhere(~np.isfinite(energies))):
             k, which = bad[0]
             name = f"The {run.user._model.kind} {('metric', 'potential')[which]!r}"
             said = (f"{Fault(name, float(t[k]), states[k], returned(energies[k]))}.",)
-        watch = watched(t, ledger, given, run.options.energy_tolerance)
+        watch = watched(t, ledger, series.given, run.options.energy_tolerance)
         watch["size"] = max(watch.size, run.contacts.light)
         warnings = (*said, *sentences(watch, run.how.finer))
         if status is Status.SUCCESS and inaccurate(watch):
@@ -160,9 +161,7 @@ class GeneralizedSolution(Drawn):
     def evaluate(self, t, side: str = "right") -> tuple[np.ndarray, np.ndarray]:
         """Return (q, v) at times between saved ones, with the accuracy of the run.
 
-        The motion is stepped again from the saved state before. If this misses the next saved state (by more
-        than ten times the tolerances and a tenth of its difference from a cubic), a cubic between saved states
-        and events is used: the error is then of order 4 in their distance for q, and of order 3 for v.
+        The motion is stepped again from the saved state or the event before.
 
         Parameters
         ----------
@@ -183,42 +182,38 @@ class GeneralizedSolution(Drawn):
         """
         checks.choice("side", side, ("right", "left"))
         times = checks.times("t", t, self.t[0], self.t[-1])
-        q, v, inside = self._cubic(times, side)
-        for k in self._replay.better(times, inside):
-            q[k], v[k] = np.split(self._replay.state, 2)
+        states = np.array([self._state(float(time), side == "left") for time in times])
+        q, v = np.split(states.reshape(-1, 2 * self.q.shape[1]), 2, axis=1)
         return (q[0], v[0]) if np.ndim(t) == 0 else (q, v)
 
-    @cached_property
-    def _replay(self):
-        from carom.generalized.replay import Replay
-
-        return Replay(self)
-
-    def _cubic(self, times: np.ndarray, side: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return (q, v) at times (K,) by a cubic between saved states and events, and which are not near."""
-        at, before, after = self._nodes
-        i = np.searchsorted(at, times, side="left" if side == "left" else "right") - 1
-        i = np.clip(i, 0, max(len(at) - 2, 0))
-        k = np.minimum(i + 1, len(at) - 1)
-        n, h = self.q.shape[1], np.maximum(at[k] - at[i], 1e-300)[:, None]
-        start, end = np.split(after[i], [n], axis=1), np.split(before[k], [n], axis=1)
-        q, v = cubic((times - at[i])[:, None] / h, h, *start, *end)
-        last = times == at[-1]
-        if side == "right" and np.any(last):
-            v[last] = after[-1, n:]
-        margin = NEAR * (at[k] - at[i])
-        return q, v, (times - at[i] > margin) & (at[k] - times > margin)
+    def _state(self, time: float, left: bool) -> np.ndarray:
+        """Return the state (q, v) at a time, before or after an event at this time."""
+        at, before, after, active = self._nodes
+        k = max(int(np.searchsorted(at, time, side="left" if left else "right")) - 1, 0)
+        last = min(k + 1, len(at) - 1)
+        if time == at[k]:
+            return after[k]
+        if time > at[last] - ROUND_OFF * self.t[-1]:
+            return before[last]
+        run = self._run.again(float(at[k]), after[k], active[k], time)
+        if run.go_on(run.steps) is Status.SUCCESS:
+            return run.x
+        h = at[last] - at[k]  # the end of a run that failed
+        start, end = np.split(after[k], 2), np.split(before[last], 2)
+        return np.concatenate(cubic((time - at[k]) / h, h, *start, *end))
 
     @cached_property
     def _nodes(self):
-        """Times (K,), states before and after (K, 2n), of events and of saved steps in order."""
+        """Times (K,), states before and after (K, 2n), active contacts, of events and saved steps in order."""
         events = self._run.nodes
         at = np.array([time for time, *_ in events])
         own = ~np.isin(self.t, at)  # a step that ends with an event is saved after it
         saved, time = np.hstack([self.q, self.v])[own], np.concatenate([self.t[own], at])
         order = np.argsort(time, kind="stable")
         before, after = (np.array([*saved, *(one[k] for one in events)])[order] for k in (1, 2))
-        return time[order], before, after
+        active = [*(one[3] for one in events), self._run.active]
+        since = np.searchsorted(at, time[order], side="right") - 1  # the last event
+        return time[order], before, after, [active[k] for k in since]
 
     def __repr__(self) -> str:
         return (

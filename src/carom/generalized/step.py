@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, kernel
-from carom.generalized.layout import ALL_ROWS, HOLONOMIC, N
 from carom.generalized.linear import add_row, copy_row
 from carom.generalized.motion import (
     POSITION,
@@ -20,7 +19,7 @@ from carom.generalized.motion import (
     solve_metric,
     terms,
 )
-from carom.model.actions import MODE_STICK
+from carom.model import actions as a
 from carom.status import CONSTRAINTS_LOST, NOT_FINITE
 
 _NONE = 4e-16  # relative to the terms of a row: its error cannot be smaller
@@ -31,7 +30,7 @@ def take(motion, t, x, h):
     """Write the state a time h after `x` into `work.end`; return a status. Store the works in `work.spent`."""
     system, method, active, work = motion.system, motion.method, motion.active, motion.work
     end = work.end
-    n, stages = system.size[N], method.b.size
+    n, stages = system.n, method.b.size
     note_slip_directions(system, active, t, x, work)
     loads, friction = 0.0, 0.0
     for s in range(stages):
@@ -48,7 +47,7 @@ def take(motion, t, x, h):
         total += end[j]
     if not math.isfinite(total):
         return NOT_FINITE
-    if system.size[ALL_ROWS] > 0 or active.count[0] > 0:
+    if system.rows > 0 or active.count[0] > 0:
         code = return_to_surfaces(system, active, t + h, end, work)
         return project_rates(system, active, t + h, end, work) if code == 0 else code
     return 0
@@ -85,7 +84,7 @@ def note_slip_directions(system, active, t, x, work):
         return
     find_rows(system, active, t, x, work)
     for i in range(active.count[0]):
-        if active.mode[i] != MODE_STICK:
+        if active.mode[i] != a.MODE_STICK:
             u1, u2 = slip_of(system, active, i, x, work)
             active.heading[i, 0], active.heading[i, 1] = direction(active, i, u1, u2)
 
@@ -93,7 +92,7 @@ def note_slip_directions(system, active, t, x, work):
 @kernel
 def error_of(system, active, m, x, work):
     """Return the greatest error of the m rows for coordinates, each relative to the terms of its row."""
-    n, h, worst = system.size[N], system.size[HOLONOMIC], 0.0
+    n, h, worst = system.n, system.holonomic, 0.0
     for r in range(m):
         size = terms(work.R[r], x, n)
         if r < h:
@@ -112,7 +111,7 @@ def return_to_surfaces(system, active, t, x, work):
     second order: Absil, Mahony and Sepulchre 2008, §5.5): xi is the error of a step, and what is left of phi
     is removed by the next iteration.
     """
-    n, last, y, xi = system.size[N], 0.0, work.trial, work.a
+    n, last, y, xi = system.n, 0.0, work.trial, work.a
     for iteration in range(20):
         code = find_metric(system, t, x, work)
         if code != 0:
@@ -143,7 +142,7 @@ def project_rates(system, active, t, x, work):
     code = find_metric(system, t, x, work)
     if code == 0:
         find_rows(system, active, t, x, work)
-        react(system, gather(system, active, RATE, x, work), x[system.size[N] :], work)
+        react(system, gather(system, active, RATE, x, work), x[system.n :], work)
     return code
 
 

@@ -15,15 +15,6 @@ import numpy as np
 from carom import checks
 
 
-def sympy() -> Any:
-    """Return the module, or raise an error with the command that installs it."""
-    try:
-        import sympy
-    except ImportError:
-        raise checks.missing_package("GeneralizedSystem.from_sympy", "sympy", "sympy") from None
-    return sympy
-
-
 class SymbolicModel:
     """Expressions of a system, in symbols of its own: coordinates q, velocities v, time t."""
 
@@ -33,7 +24,8 @@ class SymbolicModel:
         self, coordinates, velocities, kinetic_energy, metric, potential, forces, constraints, rates,
         parameters, time,
     ):  # fmt: skip
-        sp = self.sp = sympy()
+        sp: Any = checks.need("sympy", "GeneralizedSystem.from_sympy", "sympy")
+        self.sp = sp
         self.coordinates = self.symbols("coordinates", coordinates)
         n = self.n = len(self.coordinates)
         if n == 0:
@@ -41,11 +33,9 @@ class SymbolicModel:
         functions = all(isinstance(q, sp.core.function.AppliedUndef) for q in self.coordinates)
         if velocities is None and functions:
             velocities = [q.diff(q.args[0]) for q in self.coordinates]
-        self.velocities = [] if velocities is None else self.symbols("velocities", velocities)
-        if velocities is not None and len(self.velocities) != n:
-            raise ValueError(
-                f"velocities must be {n}, one for each coordinate, got {checks.shown(velocities)}"
-            )
+        self.velocities = []
+        if velocities is not None:
+            self.velocities = self.symbols("velocities", self.each("velocities", velocities))
         if not (parameters is None or isinstance(parameters, Mapping)):
             raise ValueError(
                 f"parameters must be a mapping from symbols to numbers, got {checks.shown(parameters)}"
@@ -63,37 +53,28 @@ class SymbolicModel:
         self.q = sp.symbols(f"q:{n}", real=True, cls=sp.Dummy)
         self.v = sp.symbols(f"v:{n}", real=True, cls=sp.Dummy)
         self.t = sp.Dummy("t", real=True)
-        q, v = list(self.q), list(self.v)
-
         if (kinetic_energy is None) == (metric is None):
             raise ValueError("kinetic_energy or metric must be given, and not both")
         if metric is None:
             T = self.take("kinetic_energy", kinetic_energy, "qv")
-            self.M = sp.hessian(T, v)
-            rest = T - sum(self.M[i, j] * v[i] * v[j] for i in range(n) for j in range(n)) / 2
-            if self.M.has(*v) or not self.is_zero(rest):
-                raise ValueError(
-                    "kinetic_energy must be a quadratic form of the velocities (without terms of degree 0 "
-                    f"or 1), got {checks.shown(kinetic_energy)}"
-                )
+            otherwise = "a quadratic form of the velocities (without terms of degree 0 or 1)"
+            self.M = self.form(
+                T, 2, f"kinetic_energy must be {otherwise}, got {checks.shown(kinetic_energy)}"
+            )
         else:
             entries = self.table("metric", metric, n)
             self.M = sp.Matrix(n, n, [self.take("metric", one, "q") for one in entries])
             if not all(self.is_zero(one) for one in self.M - self.M.T):
                 raise ValueError(f"metric must be symmetric, got {checks.shown(metric)}")
         self.V = self.take("potential", potential, "q")
-        given = [0] * n if forces is None else checks.listed("forces", forces, "expressions")
-        if len(given) != n:
-            raise ValueError(
-                f"forces must be {n}, one for each coordinate, got {checks.shown(forces)}"
-            )
+        given = [0] * n if forces is None else self.each("forces", forces)
         self.forces = [self.take("forces", one, "tqv") for one in given]
         constraints = checks.listed("constraints", constraints, "expressions")
         self.phi = [self.take("constraints", one, "q") for one in constraints]
         rates = checks.listed("rates", rates, "expressions")
         speeds = [self.linear("rates", one) for one in rates]
         self.holonomic = len(self.phi)
-        self.A = [[sp.diff(one, x) for x in q] for one in self.phi] + speeds
+        self.A = [*map(self.gradient, self.phi), *speeds]
         self.rows = len(self.A)
         self.contacts: list[tuple[Any, list]] = []
 
@@ -136,31 +117,42 @@ class SymbolicModel:
             raise ValueError(f"{name} must be symbols, each once, got {checks.shown(given)}")
         return found
 
+    def each(self, name: str, given) -> list:
+        """Return the members of a sequence that has one for each coordinate."""
+        members = checks.listed(name, given, "expressions")
+        if len(members) != self.n:
+            raise ValueError(
+                f"{name} must be {self.n}, one for each coordinate, got {checks.shown(given)}"
+            )
+        return members
+
     def table(self, name: str, given, n: int) -> list:
         """Return the entries of a square matrix, row by row."""
-        rows = (
-            given.tolist()
-            if isinstance(given, self.sp.MatrixBase)
-            else checks.listed(name, given, "rows")
-        )
+        given = given.tolist() if isinstance(given, self.sp.MatrixBase) else given
+        rows = checks.listed(name, given, "rows")
         rows = [checks.listed(name, row, "rows of expressions") for row in rows]
-        if {len(rows), *map(len, rows)} != {n}:
-            raise ValueError(
-                f"{name} must have shape ({n}, {n}), got {(len(rows), *map(len, rows))[:2]}"
-            )
+        shape = len(rows), *map(len, rows)
+        if set(shape) != {n}:
+            raise ValueError(f"{name} must have shape ({n}, {n}), got {shape[:2]}")
         return [one for row in rows for one in row]
+
+    def form(self, expression, degree: int, otherwise: str) -> Any:
+        """Return the derivatives of this degree by the velocities, if the expression is a form of this degree.
+
+        Then they do not have velocities, and its first ones times the velocities are `degree` times itself.
+        """
+        slope = self.sp.Matrix([expression]).jacobian(self.v)
+        rest = degree * expression - sum(a * v for a, v in zip(slope, self.v))
+        result = slope if degree == 1 else slope.jacobian(self.v)
+        if result.has(*self.v) or not self.is_zero(rest):
+            raise ValueError(otherwise)
+        return result
 
     def linear(self, name: str, expression) -> list:
         """Return the row of an expression that is linear in the velocities."""
+        otherwise = f"{name} must be linear in the velocities, without a term of degree 0, got "
         taken = self.take(name, expression, "qv")
-        row = [self.sp.diff(taken, v) for v in self.v]
-        rest = taken - sum(a * v for a, v in zip(row, self.v))
-        if any(a.has(*self.v) for a in row) or not self.is_zero(rest):
-            raise ValueError(
-                f"{name} must be linear in the velocities, without a term of degree 0, got "
-                f"{checks.shown(expression)}"
-            )
-        return row
+        return list(self.form(taken, 1, f"{otherwise}{checks.shown(expression)}"))
 
     def is_zero(self, expression) -> bool:
         """Return whether an expression is zero, by its form or at some points."""
@@ -176,13 +168,12 @@ class SymbolicModel:
         """Store the expressions of a contact; its gradient is derived, not given."""
         if callable(gap) and not hasattr(gap, "free_symbols"):
             raise ValueError("gap must be an expression in a system from SymPy, got a function")
-        given = () if tangent is None else tangent
-        given = tuple(given) if isinstance(given, Sequence) else (given,)
+        given = [] if tangent is None else tangent if isinstance(tangent, Sequence) else [tangent]
         if len(given) > 2:
             raise ValueError(f"tangent must be one or two expressions, got {len(given)}")
         rho = self.take("gap", gap, "q")
         rows = [self.linear("tangent", one) for one in given]
-        normal = [self.sp.diff(rho, q) for q in self.q]
+        normal = self.gradient(rho)
         if all(one == 0 for one in normal):
             raise ValueError(f"gap must depend on the coordinates, got {checks.shown(gap)}")
         empty = [[self.sp.Integer(0)] * self.n] * (2 - len(rows))
@@ -190,21 +181,19 @@ class SymbolicModel:
 
     def metric_at(self, q) -> np.ndarray:
         """Return M (n, n) at numbers."""
-        return np.array(
-            self.sp.lambdify(self.q, self.M.tolist(), "math")(*map(float, q)), dtype=float
-        )
+        M = self.sp.lambdify(self.q, self.M.tolist(), "math")
+        return np.array(M(*map(float, q)), dtype=float)
 
     def inertia(self) -> list:
         """Return M and Gamma_kij v_i v_j = (dM/dt v)_k - d_k (v M v) / 2."""
-        sp = self.sp
-        momentum = list(self.M * sp.Matrix(list(self.v)))
+        momentum = list(self.M * self.sp.Matrix(self.v))
         twice = sum(p * w for p, w in zip(momentum, self.v))
-        bend = [self.rate(p) - sp.diff(twice, q) / 2 for p, q in zip(momentum, self.q)]
+        bend = [self.rate(p) - one / 2 for p, one in zip(momentum, self.gradient(twice))]
         return [*self.M, *bend]
 
     def loads(self) -> list:
         """Return V, Q - dV, Q v."""
-        total = [f - self.sp.diff(self.V, q) for f, q in zip(self.forces, self.q)]
+        total = [f - slope for f, slope in zip(self.forces, self.gradient(self.V))]
         return [self.V, *total, sum(f * v for f, v in zip(self.forces, self.v))]
 
     def row_terms(self) -> list:
@@ -225,19 +214,22 @@ class SymbolicModel:
 
     def rate(self, expression):
         """Return the rate of a function of the coordinates, for constant velocities."""
-        return sum(self.sp.diff(expression, q) * v for q, v in zip(self.q, self.v))
+        return sum(slope * v for slope, v in zip(self.gradient(expression), self.v))
+
+    def gradient(self, expression) -> list:
+        """Return the derivatives of an expression by the coordinates."""
+        return [self.sp.diff(expression, q) for q in self.q]
 
     def addresses(self, functions) -> tuple[list[int], list]:
         """Return the addresses of the four compiled functions, which have no parts."""
         result = []
         for name in ("inertia", "loads", "row_terms", "contact_terms"):
-            terms = getattr(self, name)()
-            if not terms:
-                result.append(0)
-                continue
-            written = self.write(name, terms)
-            sizes = (2 * self.n,), (len(terms),)
-            result.append(functions.written(written, *sizes, f"an expression ({name})"))
+            terms, at = getattr(self, name)(), 0
+            if terms:
+                sizes = (2 * self.n,), (len(terms),)
+                code = self.write(name, terms)
+                at = functions.written(code, *sizes, f"an expression ({name})")
+            result.append(at)
         return result, []
 
     def write(self, name: str, terms: list):

@@ -76,11 +76,11 @@ class GeneralizedSystem:
         potential_gradient: Callable | None = None,
         constraint_jacobian: Callable | None = None,
     ):
-        given = {
-            "metric": metric, "potential": potential, "force": force, "constraint": constraint,
-            "rows": rows, "metric_derivative": metric_derivative,
-            "potential_gradient": potential_gradient, "constraint_jacobian": constraint_jacobian,
-        }  # fmt: skip
+        given = dict(
+            metric=metric, potential=potential, force=force, constraint=constraint, rows=rows,
+            metric_derivative=metric_derivative, potential_gradient=potential_gradient,
+            constraint_jacobian=constraint_jacobian,
+        )  # fmt: skip
         for name, one in given.items():
             checks.function(name, one, optional=name != "metric")
         q = checks.finite_array("position", position, (None,))
@@ -89,7 +89,7 @@ class GeneralizedSystem:
             raise ValueError(
                 f"position must have at least one coordinate, got {checks.shown(position)}"
             )
-        v = _rates(velocity, n)
+        v = checks.finite_array("velocity", velocity, (n,))
         from carom.generalized.functional import FunctionalModel
 
         self._start(FunctionalModel(q, v, given), q, v)
@@ -153,7 +153,7 @@ class GeneralizedSystem:
             parameters, time,
         )  # fmt: skip
         q = checks.finite_array("position", position, (model.n,))
-        v = _rates(velocity, model.n)
+        v = checks.finite_array("velocity", velocity, (model.n,))
         system = cls.__new__(cls)
         system._start(model, q, v)
         return system
@@ -171,7 +171,8 @@ class GeneralizedSystem:
 
     def set_state(self, position, velocity) -> None:
         """Set the initial coordinates and velocities, each (n,)."""
-        self.position, self.velocity = self._at(position), _rates(velocity, self.coordinates)
+        self.position = self._at(position)
+        self.velocity = checks.finite_array("velocity", velocity, (self.coordinates,))
 
     def _as_it_is(self) -> GeneralizedSystem:
         """Return a copy that does not change when this system gets a contact or another state."""
@@ -307,13 +308,3 @@ class GeneralizedSystem:
             f"<GeneralizedSystem: {self.coordinates} coordinates, {self._model.rows} constraints, "
             f"{len(self._contacts)} contacts>"
         )
-
-
-def _rates(velocity, n: int) -> np.ndarray:
-    """Return the velocities (n,) of n coordinates."""
-    v = checks.finite_array("velocity", velocity, (None,))
-    if len(v) != n:
-        raise ValueError(
-            f"velocity must have shape ({n},), as position has {n} coordinates, got shape {v.shape}"
-        )
-    return v

@@ -8,9 +8,8 @@ misses it by far less than the replay and a cubic through both states differ.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,27 +28,38 @@ RTOL = 1e-8  # tolerance for a run with a given step
 BETTER = 0.1  # allowed greater miss, relative to the difference from the cubic at the middle
 
 
-class Replays(ABC):
-    """The motion between the saved states of a solution, and which intervals a replay fits."""
+class Replay:
+    """A run of the scene of a solution that can start at any saved state, and which intervals it fits."""
 
-    solution: Any
-    arrives: dict[int, bool]  # by interval: whether its replay is used
+    def __init__(self, solution: Solution):
+        from carom.run import Run
+        from carom.stepping.settings import settings_of
 
-    @abstractmethod
-    def go(self, i: int, until: float) -> bool:
-        """Continue from saved state i to a time; return whether it was reached."""
+        known = solution._run
+        written = r.trimmed(known.records, known.clock)
+        self.solution, self.states = solution, written.state
+        self.run = Run(solution.scene, settings_of(solution.settings, known.options))
+        self.grid = self.run.grid
+        relations = self.run.compiled.system.relations
+        self.turns = np.zeros((len(written.state), len(relations.coordinates)))
+        if self.turns.size:
+            saved_turns(self.run.compiled.system, written.series.t, written.state, self.turns)
+        self.first = Snapshot(self.run)
+        self.size = self.run.bodies["extent"]
+        rtol, atol = self.run.tolerances or (RTOL, RTOL * float(np.min(self.size)))
+        self.allowed = FACTOR * (atol + rtol * self.size)
+        self.arrives: dict[int, bool] = {}  # by interval: whether its replay is used
 
-    @abstractmethod
-    def misses(self, i: int, there) -> float:
-        """Return the distance of the replay from a state within interval i, relative to the allowed one."""
-
-    @abstractmethod
-    def saved(self, i: int) -> Any:
-        """Return saved state i."""
-
-    @abstractmethod
-    def cubic(self, i: int, t: float) -> Any:
-        """Return the state of the cubic at a time in interval i."""
+    def improve(self, times: np.ndarray, cubic: np.ndarray, x, Q, v, w) -> None:
+        """Replace the states (K, N) of a cubic at times (K,) by states of the replay."""
+        for k in self.better(times, np.any(cubic, axis=1)):
+            now, own = self.run.now, cubic[k]
+            x[k, own], Q[k, own], v[k, own], w[k, own] = (
+                now.x[own],
+                now.Q[own],
+                now.v[own],
+                now.w[own],
+            )
 
     def better(self, times: np.ndarray, among: np.ndarray) -> Iterator[int]:
         """Yield those of some of the times, at which `among` is true, to which a good replay has gone."""
@@ -74,40 +84,6 @@ class Replays(ABC):
             return True
         middle = 0.5 * float(sum(self.solution.t[i : i + 2]))
         return self.go(i, middle) and miss <= BETTER * self.misses(i, self.cubic(i, middle))
-
-
-class Replay(Replays):
-    """A run of the scene of a solution that can start at any saved state."""
-
-    def __init__(self, solution: Solution):
-        from carom.run import Run
-        from carom.stepping.settings import settings_of
-
-        known = solution._run
-        written = r.trimmed(known.records, known.clock)
-        self.solution, self.states = solution, written.state
-        self.run = Run(solution.scene, settings_of(solution.settings, known.options))
-        self.grid = self.run.grid
-        relations = self.run.compiled.system.relations
-        self.turns = np.zeros((len(written.state), len(relations.coordinates)))
-        if self.turns.size:
-            saved_turns(self.run.compiled.system, written.series.t, written.state, self.turns)
-        self.first = Snapshot(self.run)
-        self.size = self.run.bodies["extent"]
-        rtol, atol = self.run.tolerances or (RTOL, RTOL * float(np.min(self.size)))
-        self.allowed = FACTOR * (atol + rtol * self.size)
-        self.arrives = {}
-
-    def improve(self, times: np.ndarray, cubic: np.ndarray, x, Q, v, w) -> None:
-        """Replace the states (K, N) of a cubic at times (K,) by states of the replay."""
-        for k in self.better(times, np.any(cubic, axis=1)):
-            now, own = self.run.now, cubic[k]
-            x[k, own], Q[k, own], v[k, own], w[k, own] = (
-                now.x[own],
-                now.Q[own],
-                now.v[own],
-                now.w[own],
-            )
 
     def saved(self, i: int) -> np.recarray:
         """Return saved state i."""

@@ -151,14 +151,14 @@ def longest_step(
 
 
 def part_of_grid(grid: Grid, begin: float, end: float) -> Grid:
-    """Return the steps from `begin`, the end of a step, to a time `end`; none of their states is saved."""
+    """Return the steps from a time `begin` to a time `end`; none of their states is saved."""
     if len(grid.ends):
         inside = np.searchsorted(grid.ends, begin, "right"), np.searchsorted(grid.ends, end, "left")
         between = grid.ends[inside[0] : inside[1]]
     else:
-        first = round(begin / grid.interval) + 1
-        between = np.arange(first, math.ceil(end / grid.interval)) * grid.interval
-        between = between[between < end]
+        number = np.arange(count(begin, grid.interval), math.ceil(end / grid.interval))
+        between = number * grid.interval
+        between = between[(between > begin) & (between < end)]
     ends = np.concatenate([[begin], between, [end]])
     saves = np.zeros(len(ends), dtype=np.int64)
     return Grid(float(np.max(np.diff(ends))), len(ends) - 1, 0, ends, saves)
