@@ -47,7 +47,8 @@ def sides_of(joint: Joint) -> Sides:
     frames = (None, None) if joint.frames is None else joint.frames
     parts = zip((joint.parent, joint.child), frames, points)
     axes = [_numbers(d.coordinate_frame(k)[:, 0]) for k in range(len(d.coordinates))]
-    return Sides(d, *(_side(*part) for part in parts), axes)
+    parent, child = (_side(*part) for part in parts)
+    return Sides(d, parent, child, axes)
 
 
 def _side(body, frame, point) -> Side:

@@ -10,7 +10,8 @@ from functools import partial
 import numpy as np
 
 from carom import arguments, checks
-from carom.io.run_to_end import interruption, reporter
+from carom.io.progress import Bar, reporter
+from carom.io.run_to_end import interruption
 from carom.options import Options
 from carom.scene.scene import Scene
 from carom.status import MistakeWarning
@@ -167,16 +168,15 @@ def ensemble(
     done = (
         np.zeros(count, dtype=bool) if store is None else store.read().outcomes["status"] != PENDING
     )
-    report = reporter(progress, count, "run")
+    report = reporter(progress, "runs")
     stopped = None
     try:
         _go(plan, inputs, done, chunk, executor, workers, store, parts, report)
     except KeyboardInterrupt as error:
         stopped = error
     finally:
-        close = getattr(report, "close", None)
-        if close is not None:
-            close()
+        if isinstance(report, Bar):
+            report.close()
     if store is not None:
         whole, about = store.read(), store.about
     else:
