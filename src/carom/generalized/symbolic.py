@@ -17,11 +17,7 @@ from carom import checks
 
 def sympy() -> Any:
     """Return the module, or raise an error with the command that installs it."""
-    try:
-        import sympy
-    except ImportError:
-        raise checks.missing_package("GeneralizedSystem.from_sympy", "sympy", "sympy") from None
-    return sympy
+    return checks.need("sympy", "GeneralizedSystem.from_sympy", "sympy")
 
 
 class SymbolicModel:

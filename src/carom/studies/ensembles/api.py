@@ -190,16 +190,14 @@ def ensemble(
 
 
 def _plan(scene, settings: Settings, inputs: dict[str, np.ndarray], observe):
-    from carom.studies.ensembles.plan import Plan
+    from carom.studies.ensembles.plan import Plan, plain
     from carom.studies.ensembles.targets import find_targets
 
     if isinstance(scene, Scene):
         check_scene(scene, settings)
         scene = scene._as_it_is()
         return Plan(scene, settings, find_targets(scene, inputs), len(scene.bodies), observe)
-    values = {name: array[0] for name, array in inputs.items()}
-    plain = {name: float(v) if np.ndim(v) == 0 else v for name, v in values.items()}
-    first = checks.call("scene", lambda: scene(**plain))
+    first = checks.call("scene", lambda: scene(**plain(inputs, 0)))
     checks.instance("the result of the function scene", first, (Scene,))
     return Plan(scene, settings, [], len(first.bodies), observe)
 

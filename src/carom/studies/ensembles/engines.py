@@ -35,7 +35,6 @@ def check_engine(executor) -> None:
 def engine(executor, workers: int | None):
     """Yield (submit, wait for the first result, number of parts to submit at once)."""
     if isinstance(executor, str):
-        checks.choice("executor", executor, NAMES)
         count = workers or os.cpu_count() or 1
         if executor == "serial":
             yield _at_once, 1
@@ -55,10 +54,8 @@ def engine(executor, workers: int | None):
         pool = executor.get_executor(pure=False)
         cores = max(1, sum(executor.ncores().values()))
         yield pool.submit, 2 * (workers or cores)
-    elif hasattr(executor, "submit"):
-        yield executor.submit, 2 * (workers or os.cpu_count() or 1)
     else:
-        check_engine(executor)
+        yield executor.submit, 2 * (workers or os.cpu_count() or 1)
 
 
 def _at_once(function, *arguments) -> futures.Future:

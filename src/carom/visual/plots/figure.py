@@ -71,11 +71,7 @@ def drawing_mosaic(rows, size, heights) -> Iterator[Any]:
 
 def pyplot() -> Any:
     """Return matplotlib.pyplot, or raise an error with the command that installs it."""
-    try:
-        import matplotlib.pyplot as plt
-    except ImportError:
-        raise checks.missing_package("a plot", "matplotlib", "plot") from None
-    return plt
+    return checks.need("matplotlib.pyplot", "a plot", "plot")
 
 
 def is_bodies(solution) -> bool:
