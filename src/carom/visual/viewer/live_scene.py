@@ -7,7 +7,7 @@ import numpy as np
 from carom.visual.bodies import JOINT, colours_of
 from carom.visual.viewer.frames import poses_at
 from carom.visual.viewer.planes import grid_lines, round_length
-from carom.visual.viewer.show import COLOURS, FORCE, IMPULSE, Show
+from carom.visual.viewer.show import FORCE, IMPULSE, Show
 
 PATHS = 20  # bodies whose paths are drawn
 SHADE = (236, 240, 243)
@@ -93,7 +93,7 @@ class LiveScene:
     def _part(self, k: int, part, x: np.ndarray, Q: np.ndarray):
         if part.look == "static":
             x, Q = np.zeros((1, 3)), np.array([[1.0, 0, 0, 0]])
-        colours = [_rgb(one) for one in colours_of(part, self.show.solution.scene, COLOURS)]
+        colours = [_rgb(one) for one in colours_of(part, self.show.solution.scene)]
         return self.stage.add_batched_meshes_simple(
             f"/bodies/{k}", part.vertices.astype(np.float32), part.triangles.astype(np.uint32),
             Q[part.bodies], x[part.bodies], batched_colors=np.array(colours, dtype=np.uint8),
