@@ -7,7 +7,7 @@ with its worker is submitted again; its results do not depend on the worker.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from concurrent import futures
 from contextlib import contextmanager
 from itertools import islice
@@ -88,7 +88,8 @@ def each(
                 yield from _all(tasks, function, submit, most, running)
             except BaseException:
                 stop()
-                _cancel(running)
+                for future in running:
+                    future.cancel()
                 raise
     except (KeyboardInterrupt, GeneratorExit):
         mine = running if isinstance(executor, str) else ()
@@ -126,12 +127,6 @@ def _outcome(future: futures.Future) -> tuple[object, Exception | None]:
         return future.result(), None
     except Exception as error:
         return None, error
-
-
-def _cancel(running: Iterable[futures.Future]) -> None:
-    """Cancel all tasks that have not started."""
-    for future in running:
-        future.cancel()
 
 
 def _lost(error: Exception) -> bool:

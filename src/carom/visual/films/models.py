@@ -78,7 +78,7 @@ def split(model: Model, longest: float) -> Model:
 
 def rgb(colour: str) -> np.ndarray:
     """Return red, green and blue from 0 to 1 of "#rrggbb"."""
-    return np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)]) / 255.0
+    return np.array([*bytes.fromhex(colour[1:])]) / 255.0
 
 
 def model_of(part: Part) -> Model:
