@@ -14,6 +14,7 @@ import pytest
 
 import carom
 from carom.cli import CTRL_C, EXIT_OK, FAILED, USAGE, app, extras, main, scenes, show, warmup
+from carom.io.progress import Bar
 
 DIE = """
 import carom
@@ -202,7 +203,7 @@ def test_interrupted_simulate_keeps_the_run_and_resumes(made, capsys, monkeypatc
 
     command = ["simulate", str(made / "die.py"), "-d", "0.2"]
     with monkeypatch.context() as patch:
-        patch.setattr(show.Progress, "__call__", stop)
+        patch.setattr(Bar, "__call__", stop)
         assert main([*command, "-o", str(out)]) == CTRL_C
     said = one_line(capsys)
     assert f"carom simulate --resume {out}" in said

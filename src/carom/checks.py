@@ -318,28 +318,24 @@ def _text(value) -> str:
     return ", a string" if isinstance(value, str) and value.strip("+-. ")[:1].isdigit() else ""
 
 
-def missing_package(what: str, package: str, extra: str) -> ModuleNotFoundError:
-    """Return the error for an optional package that is not installed; its last line installs it."""
-    message = (
-        f'{what} needs the package {package}; install it with\n\n    pip install "carom[{extra}]"\n'
-    )
-    return ModuleNotFoundError(message, name=package.split(".")[0])
-
-
-def need(package: str, what: str, extra: str) -> Any:
-    """Return an optional package of an `extra` of carom, which `what` needs.
+def need(module: str, what: str, extra: str, package: str = "") -> Any:
+    """Return a module of an optional `package` of an `extra` of carom, which `what` needs.
 
     Raises
     ------
     ImportError
-        If it is not installed; the message has the command that installs it.
+        If it is not installed; the last line of the message has the command that installs it.
     """
     try:
-        return importlib.import_module(package)
+        return importlib.import_module(module)
     except ImportError as error:
-        if error.name is not None and error.name.split(".")[0] != package:
+        top = module.split(".")[0]
+        if error.name is not None and error.name.split(".")[0] != top:
             raise  # it is there, and lacks something itself
-        raise missing_package(what, package, extra) from None
+        message = f"{what} needs the package {package or top}; install it with"
+        raise ModuleNotFoundError(
+            f'{message}\n\n    pip install "carom[{extra}]"\n', name=top
+        ) from None
 
 
 def _shape(shape) -> str:

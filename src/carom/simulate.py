@@ -124,9 +124,8 @@ def simulate(
         value that is 0 at the start is no event. See `Solution.t_events`, `Solution.state_events`. (How to:
         stop a run, or control it.)
     progress : bool or callable, optional
-        True shows a progress bar (from tqdm if it is installed, otherwise plain text); False shows none. By
-        default it appears on a terminal and in a notebook after 2 s. A function is called
-        with (number of steps done, total number of steps).
+        True shows a progress bar; False shows none. By default it appears on a terminal and in a notebook after
+        2 s. A function is called with (number of steps done, total number of steps).
     options : Options, optional
         Tolerances, boundary layer, and limits of the run.
     throw : bool

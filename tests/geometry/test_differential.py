@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 from scipy.linalg import expm, logm
 
 from carom.geometry import differential, quaternion
+from carom.studies.gradient.body import hat
 
 
 @cache
@@ -99,7 +100,7 @@ def test_differential_against_matrix_logarithm(a, b):
     # W = d/ds log(R(a)^T R(a + s b)) at s = 0, by central differences of order 4: with s = 1e-3
     # the truncation is s^4/30 times a fifth derivative of order one, round-off eps/s = 2e-13.
     def turn(s):
-        skew = np.real(logm(expm(-differential.hat(a)) @ expm(differential.hat(a + s * b))))
+        skew = np.real(logm(expm(-hat(a)) @ expm(hat(a + s * b))))
         return np.array([skew[2, 1], skew[0, 2], skew[1, 0]])
 
     s = 1e-3
@@ -111,4 +112,4 @@ def test_shapes_broadcast():
     a = np.zeros((7, 1, 3))
     assert differential.apply(a, np.ones((2, 3))).shape == (7, 2, 3)
     assert differential.matrix(a).shape == (7, 1, 3, 3)
-    assert_allclose(differential.hat([1, 2, 3]) @ [4, 5, 6], np.cross([1, 2, 3], [4, 5, 6]))
+    assert_allclose(hat([1, 2, 3]) @ [4, 5, 6], np.cross([1, 2, 3], [4, 5, 6]))

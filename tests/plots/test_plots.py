@@ -53,6 +53,16 @@ def test_plot_takes_what_is_drawn_as_its_second_argument(swung):
         swung.plot("energy", "rod")
 
 
+def test_a_rolling_disc_without_a_shape_has_the_outline_of_films():
+    scene = carom.Scene()
+    wheel = scene.add_body(mass=1.0, inertia=(0.01, 0.02, 0.01), position=(0, 0, 0.2))
+    scene.add_joint(carom.joints.RollingDisc(0.2, (0, 1, 0)), carom.GROUND, wheel)
+    ax = plots.trajectory(carom.simulate(scene, 0.1, step=0.05), outlines=[0.0], plane="xz")
+    (drawn,) = ax.collections
+    ends = np.concatenate(drawn.get_segments()) - (0.0, 0.2)
+    assert abs(np.linalg.norm(ends, axis=1) - 0.2).max() < 1e-12  # corners of a polygon
+
+
 def test_outlines_are_the_silhouette(thrown):
     # The die starts with its axes along those of the world: from the side it is a square.
     ax = plots.trajectory(thrown, outlines=[0.0], plane="xz")

@@ -233,11 +233,8 @@ def test_a_large_number_is_none_that_is_not_finite():
     assert run.status is not Status.FUNCTION_FAILED
 
 
-def test_what_costs_is_counted_and_shown(capsys, monkeypatch):
+def test_what_costs_is_counted_and_shown(capsys):
     # Two balls that bounce: the one with e = .9 strikes more often in the same time.
-    import sys
-
-    monkeypatch.setitem(sys.modules, "tqdm", None)
     scene = carom.Scene()
     floor = scene.add_half_space((0, 0, 0), (0, 0, 1), name="floor")
     for x, e, name in ((0, 0.1, "dull"), (5, 0.9, "lively")):

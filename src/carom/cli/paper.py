@@ -58,7 +58,7 @@ def run(
     start = time.perf_counter()
     chosen = [*(figures or []), *(figure or [])] or None
     total = parts(chosen)
-    with show.progress("paper", total) as bar:
+    with show.progress("paper") as bar:
         begun = iter(range(total + 1))
 
         def tell(name: str) -> None:

@@ -56,19 +56,10 @@ def functions(scene) -> dict[str, Callable]:
     """Return the user-defined functions of a scene, by their names in a result file."""
     from carom.io.files.scene_data import Encoder
 
-    class Collector(Encoder):
-        def __init__(self):
-            super().__init__()
-            self.found: dict[str, Callable] = {}
-
-        def function(self, value: Any, where: str) -> dict:
-            self.found[where] = value
-            return super().function(value, where)
-
-    collector = Collector()
+    encoder = Encoder()
     for part in scene._parts:
-        collector.part(part)
-    return collector.found
+        encoder.part(part)
+    return encoder.functions
 
 
 def _model(path: Path, given: dict[str, Any]):

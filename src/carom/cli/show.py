@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import Any
+
+from carom.io.progress import Bar
 
 #: width in a pipe or a file: rows are not cut
 WIDE = 200
@@ -54,36 +55,6 @@ def plain(value: Any) -> Any:
     return value if value is None or isinstance(value, (bool, int, float, str)) else str(value)
 
 
-class Progress:
-    """A progress bar on stderr, as a function of (done, total); `tell` prints the present task."""
-
-    def __init__(self, bar=None, task=None):
-        self.bar, self.task = bar, task
-
-    def __call__(self, done: float, total: float) -> None:
-        """Update the bar."""
-        if self.bar is not None:
-            self.bar.update(self.task, completed=done, total=total)
-
-    def tell(self, what: str) -> None:
-        """Print a line about the present task."""
-        if self.bar is not None:
-            self.bar.update(self.task, description=what)
-
-
-@contextmanager
-def progress(what: str, total: float | None = None) -> Iterator[Progress]:
-    """Show a bar with the fraction done, elapsed and remaining time; nothing if stderr is not a terminal."""
-    if not sys.stderr.isatty():
-        yield Progress()
-        return
-    from rich import progress as rich
-    from rich.console import Console
-
-    columns = (
-        rich.TextColumn("{task.description}", markup=False), rich.BarColumn(bar_width=None),
-        rich.TaskProgressColumn(), rich.TimeElapsedColumn(), "left", rich.TimeRemainingColumn(),
-    )  # fmt: skip
-    screen = Console(stderr=True)
-    with rich.Progress(*columns, console=screen, transient=True) as bar:
-        yield Progress(bar, bar.add_task(what, total=total))
+def progress(what: str) -> Bar:
+    """Return a bar with elapsed and remaining time, which is hidden if stderr is not a terminal."""
+    return Bar(what, hidden=not sys.stderr.isatty())

@@ -63,7 +63,7 @@ def compile_all(workers: int | None = None) -> list[dict]:
 
     workers = min(workers or os.cpu_count() or 1, len(TOGETHER))
     total, rows, asked = len(work()), [], set()
-    with show.progress("compile", total) as bar:
+    with show.progress("compile") as bar:
         context = multiprocessing.get_context("spawn")
         with ProcessPoolExecutor(workers, mp_context=context, initializer=do_without) as pool:
             for done in as_completed([pool.submit(compile_kinds, kinds) for kinds in TOGETHER]):

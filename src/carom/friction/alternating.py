@@ -19,8 +19,8 @@ from carom.friction.cone import nearest, shift
 from carom.friction.newton import copy
 from carom.friction.operators import factor_shifted, solve_shifted
 from carom.friction.residual import residual
+from carom.friction.thresholds import RELAXATION
 
-AHEAD = 1.6  # over-relaxation a
 UNCHECKED_ITERATIONS = 25  # iterations between two checks of the residual
 
 
@@ -77,9 +77,8 @@ def iterate(work, k, rho, z, u):
     solve_shifted(work, k)
     for i in range(k):
         n, t = 3 * i, work.contact[i]
-        x0 = AHEAD * x[n] + (1.0 - AHEAD) * z[n] + u[n]
-        x1 = AHEAD * x[n + 1] + (1.0 - AHEAD) * z[n + 1] + u[n + 1]
-        x2 = AHEAD * x[n + 2] + (1.0 - AHEAD) * z[n + 2] + u[n + 2]
-        y0, y1, y2 = nearest(t.kind, t.mu, t.h1, t.h2, x0, x1, x2)
-        z[n], z[n + 1], z[n + 2] = y0, y1, y2
-        u[n], u[n + 1], u[n + 2] = x0 - y0, x1 - y1, x2 - y2
+        x0 = z[n] + u[n] + RELAXATION * (x[n] - z[n])
+        x1 = z[n + 1] + u[n + 1] + RELAXATION * (x[n + 1] - z[n + 1])
+        x2 = z[n + 2] + u[n + 2] + RELAXATION * (x[n + 2] - z[n + 2])
+        z[n], z[n + 1], z[n + 2] = y = nearest(t.kind, t.mu, t.h1, t.h2, x0, x1, x2)
+        u[n], u[n + 1], u[n + 2] = x0 - y[0], x1 - y[1], x2 - y[2]

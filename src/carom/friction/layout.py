@@ -52,7 +52,7 @@ VECTORS = 11
 # Places in `count`, the numbers of a search.
 ITERATIONS = 0
 FACTOR_ROWS = 1  # rows of the present factors, -1 if there are none
-STAGES = 3  # iterations of stages of a closing step that failed, and for impulses in their place
+OF_STAGES = 3  # iterations of stages of a closing step that failed, and for impulses in their place
 BUDGET = 4  # approximate greatest number of iterations of a search; 0: no limit
 NEAR = 2  # 1: seek the solution near the start, not the one of least norm
 

@@ -22,7 +22,6 @@ _FIRST_SWEEPS = 25  # at first; twice as many each time, up to
 _MOST_SWEEPS = 200
 _ALTERNATIONS = 300
 _RELEASES = 60
-_ALLOWED = 300  # budget of a search: the greater of 300 and SEARCH_BUDGET / k^2 iterations
 
 
 @unit
@@ -73,7 +72,7 @@ def search(work, k):
 @kernel
 def budget(k):
     """Return the number of iterations that a search among k contacts may use."""
-    return max(_ALLOWED, int(limits.SEARCH_BUDGET / (k * k)))
+    return max(300, int(limits.SEARCH_BUDGET / (k * k)))
 
 
 @kernel

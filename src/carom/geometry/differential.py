@@ -19,14 +19,6 @@ from carom.geometry.quaternion import shaped
 Array = NDArray[np.float64]
 
 
-def hat(a: ArrayLike) -> Array:
-    """Return the skew matrices (..., 3, 3) with ``hat(a) b = a x b``, of vectors a (..., 3)."""
-    a = shaped("a", a, 3)
-    result = np.zeros((*a.shape, 3))
-    result[..., 2, 1], result[..., 0, 2], result[..., 1, 0] = a[..., 0], a[..., 1], a[..., 2]
-    return result - np.swapaxes(result, -1, -2)
-
-
 def apply(a: ArrayLike, b: ArrayLike) -> Array:
     """Return T(a) b, shape (..., 3): the body angular velocity for the rate b of the rotation vector a.
 

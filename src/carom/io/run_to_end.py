@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 import warnings
-from collections.abc import Callable
 from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from carom import checks
+from carom.io.progress import PATIENCE, Bar, reporter
 from carom.status import AccuracyWarning, Remark, SimulationError, Status
 
 if TYPE_CHECKING:
@@ -17,7 +15,6 @@ if TYPE_CHECKING:
 
 CHUNKS = 100  # reports of a run
 CALLER = 4  # frames up: `finish`, `simulate` or `resume`, its guard, and who called it
-PATIENCE = 2.0  # seconds until a bar appears by itself
 LOOKS = 4  # parts in the time between two savings, about
 
 
@@ -27,12 +24,11 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
     With `throw` a run that was interrupted raises `KeyboardInterrupt`, with the same attribute `solution`.
     """
     total = run.steps
-    report = reporter(progress, total, "step")
-    if isinstance(report, _Shown):
+    report, late, wish = reporter(progress, "steps"), False, None
+    if isinstance(report, Bar):
         from carom.results.costs import costs
 
-        report.costs = partial(costs, run)
-    late, wish = isinstance(report, _Late), None
+        report.costs, late = partial(costs, run), report.patience > 0.0
     if keeper is not None:
         wish = keeper.interval / LOOKS
     elif late:
@@ -51,9 +47,8 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
     except KeyboardInterrupt as error:
         status, stopped = Status.INTERRUPTED, error
     finally:
-        close = getattr(report, "close", None)
-        if close is not None:
-            close()
+        if isinstance(report, Bar):
+            report.close()
     if status is Status.INTERRUPTED:
         run.go_back()
     if keeper is not None:
@@ -95,89 +90,3 @@ def goals(done, total: int, most: int, wish: float | None):
             took = perf_counter() - begin
             part = min(most, 2 * part) if took < 0.5 * wish else part
             part = max(1, part // 2) if took > wish else part
-
-
-class _Shown:
-    """Progress that is shown, with what has cost time so far."""
-
-    costs: Callable[[], str] = staticmethod(lambda: "")
-
-    def __call__(self, done: float, total: float) -> None:
-        """Show it; nothing by default."""
-
-
-class _Text(_Shown):
-    """Progress as plain text: one line, written over."""
-
-    def __init__(self, unit: str):
-        self.unit, self.width = unit, 0
-
-    def __call__(self, done: float, total: float) -> None:
-        more = self.costs()
-        said = f"{self.unit} {done:g} of {total:g}{more and ': '}{more}".ljust(self.width)
-        self.width = len(said.rstrip())
-        print(f"\r{said}", end="", file=sys.stderr, flush=True)
-
-    def close(self) -> None:
-        print(file=sys.stderr)
-
-
-class _Bar(_Shown):
-    """A tqdm bar as a progress function."""
-
-    def __init__(self, total: float, unit: str):
-        from tqdm import tqdm
-
-        self.bar = tqdm(total=total, unit=unit)
-
-    def __call__(self, done: float, total: float) -> None:
-        self.bar.set_postfix_str(self.costs(), refresh=False)
-        self.bar.update(done - self.bar.n)
-
-    def close(self) -> None:
-        self.bar.close()
-
-
-def _shown(total: float, unit: str):
-    try:
-        return _Bar(total, unit)
-    except ImportError:  # tqdm belongs to extras
-        return _Text(unit)
-
-
-class _Late(_Shown):
-    """A bar that appears when a run has taken longer than `PATIENCE`."""
-
-    def __init__(self, total: float, unit: str):
-        self.what, self.begin, self.bar = (total, unit), perf_counter(), None
-
-    def __call__(self, done: float, total: float) -> None:
-        if self.bar is None and perf_counter() - self.begin > PATIENCE and done < total:
-            self.bar = _shown(*self.what)
-            self.bar.costs = self.costs
-        if self.bar is not None:
-            self.bar(done, total)
-
-    def close(self) -> None:
-        if self.bar is not None:
-            self.bar.close()
-
-
-def is_watched() -> bool:
-    """Return whether somebody reads stderr as it is written: a terminal, or a notebook."""
-    if getattr(sys.stderr, "closed", True):
-        return False
-    return sys.stderr.isatty() or type(sys.stderr).__module__.startswith("ipykernel")
-
-
-def reporter(progress, total: float, unit: str):
-    """Return a function of (done, total) that shows progress, or None."""
-    if progress is None and is_watched():
-        return _Late(total, unit)
-    if progress is None or progress is False:
-        return None
-    if progress is True:
-        return _shown(total, unit)
-    if callable(progress):
-        return lambda done, total: checks.call("progress", progress, done, total)
-    raise TypeError(f"progress must be True, False or a function, got {checks.shown(progress)}")

@@ -1,14 +1,14 @@
 """Bounds of the work of an island. Work is counted, never timed, so a run is the same on every machine.
 
-Each island counts five kinds of work (`COUNTS`). In each part of a run it may use so much of each as `PART`
+Each island counts four kinds of work (`COUNTS`). In each part of a run it may use so much of each as `PART`
 says; what it has not used is saved, at most for `SAVED` parts. A part is a step of given length, but at least
 1 / PARTS of the duration, because where few states are saved a step takes more work. With tolerances it is
 1 / PARTS of the duration, because a limit must not depend on the saved times; trial steps of a chosen length
 are more than those of given length.
 
 An island that has used more of the first three gives its step up, and moves as a crowd
-(`stepping.time_loop`). The last two give no step up: they say whether a stage may be tried again, and whether
-the step of a crowd may be cut, or its contact problem be solved with patience.
+(`stepping.time_loop`). The last gives no step up: it says whether the step of a crowd may be cut, or its
+contact problem be solved with patience.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 
 #: trial steps; searches for nearest points of two solids; steps through impacts of several points, times the
-#: cube of their number, as for factors of W; stages of persistent contact without a solution; products with
-#: blocks of 3x6 or 6x6 numbers in contact problems of a crowd: of a sweep one for each point
-COUNT_TRIALS, COUNT_SEARCHES, COUNT_PASSAGES, COUNT_STAGES, COUNT_BLOCKS = range(5)
-COUNTS = 5
+#: cube of their number, as for factors of W; products with blocks
+#: of 3x6 or 6x6 numbers in contact problems of a crowd: of a sweep one for each point
+COUNT_TRIALS, COUNT_SEARCHES, COUNT_PASSAGES, COUNT_BLOCKS = range(4)
+COUNTS = 4
 #: bound of each kind in a part of a run, and that of trial steps of given length
-PART, OF_STEP = (500.0, 4000.0, 3e6, 5.0, 4e4), 150.0
+PART, OF_STEP = (500.0, 4000.0, 3e6, 4e4), 150.0
 PARTS, SAVED = 200.0, 20.0  # least number of parts of a run; parts that may be saved
 # part of the work of an accepted step without an event, of the length that a tolerance permits, that counts
 SMOOTH = 0.1
@@ -51,7 +51,7 @@ def overdone(controls, clock):
     """Return whether the present island has done more than it may, and can be moved as a crowd instead."""
     if controls.retry == 0:
         return False
-    for kind in range(COUNT_STAGES):
+    for kind in range(COUNT_BLOCKS):
         if left(controls, clock, kind) < 0.0:
             return True
     return False
@@ -76,7 +76,7 @@ def end_count(controls, clock, work):
         done, most = clock.counts[kind], part(controls, kind) * SAVED
         more = part(controls, kind) * refilled(controls, clock.length)
         for b in range(work.body.shape[0]):
-            whole = kind < COUNT_STAGES and work.body[b].whole_until > clock.step
+            whole = kind < COUNT_BLOCKS and work.body[b].whole_until > clock.step
             rest = min(done, most - more) if whole else min(done, most) - more
             work.body[b].counts[kind] = max(0.0, rest)
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from carom.paper.figure import page, texts
+
 TITLE = "A Novel Time-Stepping Method for Multibody Systems with Frictional Impacts"
 
 
@@ -13,10 +15,7 @@ _SILENT = "its text, as far as we know it, does not speak of this curve; the cho
 
 def names() -> tuple[str, ...]:
     """Return the names of all figures."""
-    return (
-        "fig2a", "fig2b", "fig3a", "fig3b", "fig4a", "fig4b", "fig4c", "fig4d", "fig5a", "fig5b",
-        "fig6a", "fig6b", "real_impacts",
-    )  # fmt: skip
+    return tuple(texts())
 
 
 def figures() -> dict:
@@ -76,7 +75,6 @@ def parts(wanted: Sequence[str] | None = None) -> int:
 
 def _index(known: dict) -> str:
     import carom
-    from carom.paper.figure import page
 
     pieces = [page("index", title=TITLE, version=carom.__version__)]
     for figure in known.values():

@@ -1,26 +1,49 @@
-"""The definition of a figure of the paper: a function that draws it, and its texts; pages and their tables."""
+"""A figure of the paper: a function that draws it, and its text; pages and their tables."""
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable
+from functools import cache
 from importlib.resources import files
 from typing import Any, NamedTuple
 
 
 class FigureOfPaper(NamedTuple):
-    """One figure. `draw` returns a matplotlib figure; `seen` returns sentences with its computed numbers."""
+    """One figure. `draw` returns a matplotlib figure, `numbers` the numbers in its text, by name."""
 
     name: str
-    caption: str
-    paper: str
     draw: Callable[[], Any]
-    seen: Callable[[], str]
+    numbers: Callable[[], dict[str, Any]] = dict
+
+    @property
+    def caption(self) -> str:
+        """Its caption."""
+        return texts()[self.name]["caption"]
+
+    @property
+    def paper(self) -> str:
+        """What the paper says about it; "" if nothing."""
+        return texts()[self.name]["paper"]
+
+    def seen(self) -> str:
+        """Return sentences with its computed numbers."""
+        return texts()[self.name]["seen"].format(**self.numbers())
+
+
+@cache
+def texts() -> dict[str, dict[str, str]]:
+    """Return the texts of all figures, by name, in their order."""
+    return tomllib.loads(_read("figures.toml"))
 
 
 def page(name: str, **values: object) -> str:
     """Return a page: its text in `pages`, with values in their places."""
-    text = (files("carom.paper") / "pages" / f"{name}.md").read_text(encoding="utf-8")
-    return text.format(**values)
+    return _read(f"{name}.md").format(**values)
+
+
+def _read(name: str) -> str:
+    return (files("carom.paper") / "pages" / name).read_text(encoding="utf-8")
 
 
 def table(head, body) -> str:

@@ -147,80 +147,24 @@ def _forces() -> str:
     )
 
 
-_THROW = (
-    "Die, planar (section 4.2): edge 0.02 m, 0.016 kg, from z = 0.3 m with v = (0.5, 0, -0.5) "
-    "m/s and w = (0, 10, 0) rad/s, e = 0.5, delta = 0.2, mu = 0.05 and 0.20: "
-)
+def _both(of, **more) -> dict:
+    """Return a quantity for both friction coefficients."""
+    low, high = map(of, FRICTIONS)
+    return {"low": low, "high": high, **more}
+
 
 FIGURES = (
+    FigureOfPaper("fig4a", _trajectory, lambda: _both(_impacts)),
     FigureOfPaper(
-        "fig4a",
-        _THROW
-        + "path of the centre and outlines of the die in the plane of motion. Left: the throw, "
-        "outlines every 0.03 s up to the first impact. Right: the bounces from there on (black "
-        "outlines and dots: impacts).",
-        "Example 2, mu = 0.05 and mu = 0.20.",
-        _trajectory,
-        lambda: (
-            f"Impacts at t = {_impacts(0.05)} s (mu = 0.05) and {_impacts(0.2)} s (mu = 0.20). "
-            "With the larger friction the die turns back after its first impact."
-        ),
+        "fig4b", lambda: _history(2, 0, "$v_x$ [m/s]"), lambda: _both(lambda mu: _after(mu)[0])
     ),
     FigureOfPaper(
-        "fig4b",
-        _THROW
-        + "horizontal velocity of the centre against time (the same up to the first impact).",
-        "The horizontal velocity reverses for mu = 0.20.",
-        lambda: _history(2, 0, "$v_x$ [m/s]"),
-        lambda: (
-            f"After the first impact v_x = {_after(0.05)[0]:+.9f} m/s for mu = 0.05 and "
-            f"{_after(0.2)[0]:+.9f} m/s for mu = 0.20: it reverses, as the paper says."
-        ),
+        "fig4c", lambda: _history(2, 2, "$v_z$ [m/s]"), lambda: _both(lambda mu: _after(mu)[2])
     ),
     FigureOfPaper(
-        "fig4c",
-        _THROW + "vertical velocity of the centre against time.",
-        "",
-        lambda: _history(2, 2, "$v_z$ [m/s]"),
-        lambda: (
-            f"After the first impact v_z = {_after(0.05)[2]:.9f} m/s (mu = 0.05) and "
-            f"{_after(0.2)[2]:.9f} m/s (mu = 0.20). e relates the velocities of the edge that "
-            "strikes, not of the centre."
-        ),
+        "fig4d", lambda: _history(3, 1, r"$\omega_y$ [rad/s]"),
+        lambda: _both(lambda mu: _after(mu)[4], agreement=_agreement()),
     ),
-    FigureOfPaper(
-        "fig4d",
-        _THROW + "angular velocity against time.",
-        "",
-        lambda: _history(3, 1, r"$\omega_y$ [rad/s]"),
-        lambda: (
-            f"From 10 rad/s to {_after(0.05)[4]:.6f} (mu = 0.05) and {_after(0.2)[4]:.6f} rad/s "
-            f"(mu = 0.20). All velocities agree with Routh's closed form to {_agreement():.0e}."
-        ),
-    ),
-    FigureOfPaper(
-        "fig5a",
-        "Inside the first impact of the planar die: normal coordinate and normal velocity of the "
-        "edge against time, two spline steps; dotted: end of compression. Both frictions give "
-        "the same curves.",
-        "delta is the greatest penetration, e the ratio of normal velocities.",
-        _normal,
-        lambda: (
-            "Both frictions share the normal motion: the layer prescribes it. Restitution lasts "
-            "1/e = 2 times as long as compression."
-        ),
-    ),
-    FigureOfPaper(
-        "fig5b",
-        "Inside the first impact of the planar die: slip velocity of the edge, and normal and "
-        "friction forces, against time. (Forces grow as 1/b; here b is 1e-5 of the size of the "
-        "die.)",
-        "",
-        _tangential,
-        lambda: (
-            "Slip keeps its direction, so forces are constant in each phase and T = -mu N. In "
-            f"compression N = {_forces()}: friction couples into the normal direction. The slip "
-            "grows, because the normal impulse itself drives the edge forward."
-        ),
-    ),
-)
+    FigureOfPaper("fig5a", _normal),
+    FigureOfPaper("fig5b", _tangential, lambda: {"forces": _forces()}),
+)  # fmt: skip

@@ -29,19 +29,18 @@ def sphere(restitution: float) -> carom.Scene:
     return scene
 
 
-def die(friction: float, kind: str) -> carom.Scene:
-    """Section 4.2: a thrown die, turning in the plane or in space."""
-    scene = carom.Scene(gravity=(0, 0, -GRAVITY))
+def die(
+    height: float = 0.3, velocity=(0.5, 0, -0.5), spin=SPINS["planar"], *, friction=0.2,
+    restitution=DIE_E, inertia=None, gravity=GRAVITY, law="newton",
+) -> carom.Scene:  # fmt: skip
+    """Section 4.2: a die, thrown above a table."""
+    scene = carom.Scene(gravity=(0, 0, -gravity))
     ground = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1), name="ground")
     cube = scene.add_body(
-        shape=carom.Box(EDGE, EDGE, EDGE),
-        mass=MASS,
-        position=(0, 0, 0.3),
-        velocity=(0.5, 0, -0.5),
-        angular_velocity=SPINS[kind],
-        name="die",
-    )
-    scene.add_contact(cube, ground, restitution=DIE_E, friction=friction)
+        carom.Box(EDGE, EDGE, EDGE), mass=MASS, inertia=inertia, position=(0, 0, height),
+        velocity=velocity, angular_velocity=spin, name="die",
+    )  # fmt: skip
+    scene.add_contact(cube, ground, restitution=restitution, friction=friction, impact_law=law)
     return scene
 
 
@@ -59,7 +58,7 @@ def die_run(
 ) -> carom.Solution:
     """Run the die, for 0.45 s by default: before it comes to rest on several corners at once."""
     options = carom.Options(penetration=DIE_DELTA, layer_steps=layer_steps)
-    scene = die(friction, kind)
+    scene = die(spin=SPINS[kind], friction=friction)
     return carom.simulate(scene, duration, step=STEP, method=method, options=options)
 
 

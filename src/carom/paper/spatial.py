@@ -132,34 +132,12 @@ def _limit() -> float:
     return critical_friction(die_run(FRICTIONS[0], "spatial").impacts[0].inverse_mass)
 
 
+def _numbers() -> dict:
+    """Return the numbers of the text of Fig. 6b."""
+    return {"limit": _limit(), "two": _error(2), "sixteen": _error(16), "fine": _error(64)}
+
+
 FIGURES = (
-    FigureOfPaper(
-        "fig6a",
-        "Die, spatial (section 4.2): as the planar one, but w = (10, 10, 0) rad/s. Path of the "
-        "centre and outlines of the die. Left: the throw, outlines every 0.03 s up to the first "
-        "impact (black). Right: from the first impact (black) on, seen from the side and from "
-        "above, outlines at t = 0.24, 0.32, 0.40 s.",
-        "Example 2, mu = 0.05 and mu = 0.20, in space.",
-        _trajectory,
-        lambda: (
-            f"The first impact does not turn the centre round: another corner strikes {_second()} "
-            "later. The die leaves the plane y = 0 sideways."
-        ),
-    ),
-    FigureOfPaper(
-        "fig6b",
-        "Die, spatial. Left: slip velocity of the corner during the first impact (hodograph) for "
-        "mu = 0.05 and 0.20, and, to compare, mu = 0.60, with the invariant directions of slip "
-        "(dashed: outgoing, dotted: incoming; by the symmetry of this impact the same for both "
-        "mu of the paper). Right: angular velocity in world axes against time, in the same colours.",
-        "",
-        _hodograph,
-        lambda: (
-            "Slip bends towards the outgoing invariant direction. The friction that can hold the "
-            f"corner is {_limit():.6f}: for both mu of the paper slip goes on, for 0.60 it stops "
-            "and the corner sticks. Because slip turns, two spline steps are no longer exact: "
-            f"greatest error of velocity after the first impact {_error(2):.0e} m/s with 2 steps, "
-            f"{_error(16):.0e} with 16, {_error(64):.0e} with 64."
-        ),
-    ),
+    FigureOfPaper("fig6a", _trajectory, lambda: {"second": _second()}),
+    FigureOfPaper("fig6b", _hodograph, _numbers),
 )

@@ -16,7 +16,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction import lu
-from carom.friction.layout import SLIDING, STAGES
+from carom.friction.layout import OF_STAGES, SLIDING
 from carom.impact.thresholds import GROUP_ERROR
 from carom.impact.workspace import KEPT, OLD, C, P, U
 from carom.persistent import thresholds as limits
@@ -133,7 +133,7 @@ def newton(k, hg, halves, idle, group):
     for _ in range(STAGE_ITERATIONS):
         if size <= enough:
             return True
-        group.cone.count[STAGES] += 1
+        group.cone.count[OF_STAGES] += 1
         for i in range(n):
             for j in range(n):
                 group.cone.W[i, j] = L[i, j]

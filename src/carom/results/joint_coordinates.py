@@ -1,8 +1,13 @@
-"""Coordinates of joints from a finished run: the motion of the child relative to the parent."""
+"""Coordinates of joints: the motion of the child relative to the parent, at one time or at many.
+
+Vectors and quaternions are tuples of components: numbers at one time, because arrays would take ten times as
+long in a control loop, and arrays (T,) for the times of a run.
+"""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,51 +16,125 @@ from carom.geometry import quaternion
 from carom.scene import joints as j
 from carom.scene.joints import Joint
 
-
-def joint_coordinates(solution, joint) -> tuple[np.ndarray, np.ndarray]:
-    """Return coordinates and rates (T, n) of a joint; see `Solution.joint_coordinates`."""
-    motion = Motion(
-        solution.t, solution.position, solution.orientation, solution.velocity,
-        solution.angular_velocity,
-    )  # fmt: skip
-    return coordinates_of(motion, of_scene(solution.scene, joint))
+TURN = 2.0 * math.pi
+Vector = tuple[Any, Any, Any]
+Quaternion = tuple[Any, Any, Any, Any]
 
 
-class Motion(NamedTuple):
-    """A motion at T times, with the orientations of the scene's body axes."""
+class Side(NamedTuple):
+    """A side of a joint: a vector e of its definition is turn e turn* in its body, the anchor at `anchor`."""
 
-    t: np.ndarray
-    position: np.ndarray
-    orientation: np.ndarray
-    velocity: np.ndarray
-    angular_velocity: np.ndarray
+    body: int  # -1 for the ground
+    turn: Quaternion
+    anchor: Vector
 
 
-def coordinates_of(motion: Motion, joint: Joint) -> tuple[np.ndarray, np.ndarray]:
-    """Return coordinates and rates (T, n) of a joint of the scene in a motion."""
-    d, sides = joint.definition, _Sides(motion, joint)
+class Sides(NamedTuple):
+    """A joint of a scene, prepared."""
+
+    definition: j.JointDefinition
+    parent: Side
+    child: Side
+    axes: list[Vector]  # of its coordinates, in the definition
+
+
+def sides_of(joint: Joint) -> Sides:
+    """Return a prepared joint. It is defined in the world at the start, or in frames of both bodies."""
+    d = joint.definition
+    points = (joint.anchor(),) * 2
     if isinstance(d, j.Distance):
-        columns = [sides.length(d.anchor_parent, d.anchor_child)]
-    elif isinstance(d, j.Spherical):
-        return sides.ball()
-    elif isinstance(d, j.Universal):
-        columns = sides.cross(d.axis_parent, d.axis_child)
+        points = d.anchor_parent, d.anchor_child
+    frames = (None, None) if joint.frames is None else joint.frames
+    parts = zip((joint.parent, joint.child), frames, points)
+    axes = [_numbers(d.coordinate_frame(k)[:, 0]) for k in range(len(d.coordinates))]
+    parent, child = (_side(*part) for part in parts)
+    return Sides(d, parent, child, axes)
+
+
+def _side(body, frame, point) -> Side:
+    if frame is not None:
+        offset, turn = (_numbers(part) for part in frame)
+    elif body.index < 0:
+        offset, turn = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)
     else:
-        columns = _columns(sides, joint)
-    q = np.stack([a for a, _ in columns], axis=1) if columns else np.zeros((len(motion.t), 0))
-    return q, np.stack([b for _, b in columns], axis=1) if columns else q.copy()
+        turn = conjugate(_numbers(body.orientation))
+        x, y, z = rotate(turn, _numbers(body.position))
+        offset = -x, -y, -z
+    return Side(body.index, turn, add(rotate(turn, _numbers(point)), offset))
 
 
-def _columns(sides, joint):
-    """Return pairs (coordinate, rate) of a joint whose axes are fixed in the parent."""
-    d, anchor, columns = joint.definition, joint.anchor(), []
+def _numbers(array) -> tuple:
+    return tuple(np.asarray(array, dtype=float).tolist())
+
+
+def coordinates(joint: Sides, states, t: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Return coordinates and rates of a joint, (T, n) at times t, or (n,) with angles from -pi to pi.
+
+    `states` have position, orientation, velocity and angular velocity (T, N, ...), or (N, ...) of one time.
+    """
+    d, atan2 = joint.definition, math.atan2 if t is None else np.arctan2
+    p, c = (_placed(side, states) for side in (joint.parent, joint.child))
+    relative, spin = multiply(conjugate(p.turn), c.turn), subtract(c.spin, p.spin)
+    if isinstance(d, j.Spherical):
+        turned = quaternion.log(np.array(relative).T)
+        return turned, np.array(rotate(conjugate(p.turn), spin)).T
+    gap = subtract(add(c.position, c.arm), add(p.position, p.arm))
+    speed = subtract(add(c.velocity, cross(c.spin, c.arm)), add(p.velocity, cross(p.spin, p.arm)))
+    if isinstance(d, j.Distance):
+        length = np.sqrt(dot(gap, gap))
+        pairs = [(length, dot(gap, speed) / length)]
+    elif isinstance(d, j.Universal):
+        pairs = _of_cross(d, relative, (p.turn, c.turn), spin, atan2)
+    else:
+        speed = subtract(speed, cross(p.spin, gap))  # relative to the rotating parent
+        pairs = []
+        for kind, axis in zip(d.coordinates, joint.axes):
+            along = rotate(p.turn, axis)
+            if kind == "turn":
+                angle = 2.0 * atan2(dot(relative[1:], axis), relative[0])
+                pairs.append((angle, dot(along, spin)))
+            else:
+                pairs.append((dot(along, gap), dot(along, speed)))
     for k, kind in enumerate(d.coordinates):
-        axis = d.coordinate_frame(k)[:, 0]
-        columns.append(sides.turn(axis) if kind == "turn" else sides.slide(anchor, axis))
+        if kind == "turn":
+            angle, rate = pairs[k]
+            counted = angle - TURN * round(angle / TURN) if t is None else unwrapped(angle, rate, t)
+            pairs[k] = counted, rate
     if isinstance(d, j.Screw):  # the displacement gives the angle with all whole turns
-        (_, rate), (along, speed) = columns
-        return [(along / d.scale(), rate), (along, speed)]
-    return columns
+        pairs[0] = pairs[1][0] / d.scale(), pairs[0][1]
+    none = np.zeros((0,) if t is None else (len(t), 0))
+    q, rates = (np.array(column).T for column in zip(*pairs)) if pairs else (none, none.copy())
+    return q, rates
+
+
+def _of_cross(d: j.Universal, relative: Quaternion, turns, spin: Vector, atan2) -> list[tuple]:
+    """Return the angles of Rot(first, q1) Rot(second, q2), the relative rotation of the child."""
+    first, second = _numbers(d.axis_parent), _numbers(d.axis_child)
+    third = cross(first, second)
+    one, two, three = (rotate(relative, axis) for axis in (first, second, third))
+    angles = atan2(dot(third, two), dot(second, two)), atan2(dot(first, three), dot(first, one))
+    axes = (rotate(turn, axis) for turn, axis in zip(turns, (first, second)))
+    return [(angle, dot(axis, spin)) for angle, axis in zip(angles, axes)]
+
+
+class _Placed(NamedTuple):
+    """The state of a side, in world axes."""
+
+    turn: Quaternion  # from the axes of the definition
+    arm: Vector  # from the mass centre to the anchor
+    position: Vector
+    velocity: Vector
+    spin: Vector
+
+
+def _placed(side: Side, states) -> _Placed:
+    if side.body < 0:
+        none = 0.0, 0.0, 0.0
+        return _Placed(side.turn, side.anchor, none, none, none)
+    moves = states.orientation, states.position, states.velocity, states.angular_velocity
+    k = side.body
+    Q, x, v, w = (a[k].tolist() if a.ndim == 2 else tuple(a[:, k].T) for a in moves)
+    return _Placed(multiply(Q, side.turn), rotate(Q, side.anchor), x, v, w)
 
 
 def of_scene(scene, joint) -> Joint:
@@ -73,95 +152,51 @@ def of_scene(scene, joint) -> Joint:
     return joint
 
 
-class _Side(NamedTuple):
-    """One side of a joint at T times: a point p of the joint's definition is at x + R p + offset."""
-
-    turn: np.ndarray  # (T, 4) R as a quaternion, from the axes of the definition to the world
-    offset: np.ndarray  # (T, 3)
-    position: np.ndarray  # (T, 3) x, the mass centre
-    velocity: np.ndarray
-    spin: np.ndarray
-
-    def arm(self, point) -> np.ndarray:
-        """Return the arm (T, 3) from the centre to a point of the definition."""
-        return quaternion.rotate(self.turn, point) + self.offset
-
-
-def _side(motion, body, frame) -> _Side:
-    """Return a side of a joint, which is defined in the world at the start, or in a frame of the body."""
-    k, zero = body.index, np.zeros((len(motion.t), 3))
-    same = np.tile([1.0, 0.0, 0.0, 0.0], (len(zero), 1))
-    Q = same if k < 0 else motion.orientation[:, k]
-    x, v, w = (
-        zero if k < 0 else a[:, k]
-        for a in (motion.position, motion.velocity, motion.angular_velocity)
-    )
-    if frame is not None:
-        position, orientation = frame
-        return _Side(
-            quaternion.multiply(Q, np.broadcast_to(orientation, Q.shape)),
-            quaternion.rotate(Q, position), x, v, w,
-        )  # fmt: skip
-    if k < 0:
-        return _Side(Q, zero, x, v, w)
-    turn = quaternion.multiply(Q, quaternion.conjugate(body.orientation))
-    return _Side(turn, -quaternion.rotate(turn, body.position), x, v, w)
-
-
-class _Sides:
-    """Both sides of a joint over the run, and their relative rotation, in world axes."""
-
-    def __init__(self, motion, joint):
-        self.t = motion.t
-        frames = (None, None) if joint.frames is None else joint.frames
-        self.parent = _side(motion, joint.parent, frames[0])
-        self.child = _side(motion, joint.child, frames[1])
-        self.relative = quaternion.multiply(quaternion.conjugate(self.parent.turn), self.child.turn)
-        self.spin = self.child.spin - self.parent.spin
-
-    def across(self, start, end):
-        """Return the vector (T, 3) from a point of the parent to a point of the child, and its velocity."""
-        p, c = self.parent, self.child
-        rp, rc = p.arm(start), c.arm(end)
-        gap = c.position + rc - p.position - rp
-        return gap, c.velocity + np.cross(c.spin, rc) - p.velocity - np.cross(p.spin, rp)
-
-    def slide(self, anchor, direction):
-        e = quaternion.rotate(self.parent.turn, direction)
-        gap, speed = self.across(anchor, anchor)
-        # relative to the rotating parent: without w_p x gap
-        speed = speed - np.cross(self.parent.spin, gap)
-        return np.sum(e * gap, axis=1), np.sum(e * speed, axis=1)
-
-    def length(self, start, end):
-        gap, speed = self.across(start, end)
-        length = np.linalg.norm(gap, axis=1)
-        return length, np.sum(gap * speed, axis=1) / length
-
-    def turn(self, axis):
-        q, e = self.relative, quaternion.rotate(self.parent.turn, axis)
-        rate = np.sum(e * self.spin, axis=1)
-        return unwrapped(2.0 * np.arctan2(q[:, 1:] @ axis, q[:, 0]), rate, self.t), rate
-
-    def cross(self, first, second):
-        """Return the angles of Rot(first, q1) Rot(second, q2), the relative rotation of the child."""
-        frame = np.stack([first, second, np.cross(first, second)], axis=1)
-        C = frame.T @ quaternion.matrix(self.relative) @ frame
-        angles = np.arctan2(C[:, 2, 1], C[:, 1, 1]), np.arctan2(C[:, 0, 2], C[:, 0, 0])
-        axes = (
-            quaternion.rotate(self.parent.turn, first),
-            quaternion.rotate(self.child.turn, second),
-        )
-        rates = [np.sum(e * self.spin, axis=1) for e in axes]
-        return [(unwrapped(a, r, self.t), r) for a, r in zip(angles, rates)]
-
-    def ball(self):
-        rate = quaternion.rotate_back(self.parent.turn, self.spin)
-        return quaternion.log(self.relative), rate
-
-
 def unwrapped(angle: np.ndarray, rate: np.ndarray, t: np.ndarray) -> np.ndarray:
     """Return angles (T,) with whole turns, counted with the mean rates between saved times."""
     ahead = 0.5 * (rate[1:] + rate[:-1]) * np.diff(t) - np.diff(angle)
-    turns = np.cumsum(np.round(ahead / (2.0 * np.pi)))
-    return angle + 2.0 * np.pi * np.concatenate([[0.0], turns])
+    turns = np.cumsum(np.round(ahead / TURN))
+    return angle + TURN * np.concatenate([[0.0], turns])
+
+
+def add(a, b):
+    """Return a + b."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def subtract(a, b):
+    """Return a - b."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def dot(a, b):
+    """Return a . b."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a, b):
+    """Return a x b."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def conjugate(q):
+    """Return the inverse of a unit quaternion."""
+    return q[0], -q[1], -q[2], -q[3]
+
+
+def multiply(p, q):
+    """Return the product of two quaternions."""
+    return (
+        p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
+        p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+        p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
+        p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0],
+    )
+
+
+def rotate(q, v):
+    """Return a vector rotated by a unit quaternion."""
+    t = cross(q[1:], v)
+    t = 2.0 * t[0], 2.0 * t[1], 2.0 * t[2]
+    u = cross(q[1:], t)
+    return v[0] + q[0] * t[0] + u[0], v[1] + q[0] * t[1] + u[1], v[2] + q[0] * t[2] + u[2]

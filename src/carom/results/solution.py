@@ -282,9 +282,9 @@ class Solution(Portable, Drawn):
         TypeError, ValueError
             If `joint` is not a joint, or belongs to another scene.
         """
-        from carom.results.joint_coordinates import joint_coordinates
+        from carom.results.joint_coordinates import coordinates, of_scene, sides_of
 
-        return joint_coordinates(self, joint)
+        return coordinates(sides_of(of_scene(self.scene, joint)), self, self.t)
 
     @cached_property
     def constraint_errors(self) -> tuple[np.ndarray, np.ndarray]:

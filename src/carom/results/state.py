@@ -10,8 +10,7 @@ import numpy as np
 from carom import arguments, checks
 from carom.geometry import quaternion
 from carom.model.arrays import STATE
-from carom.results.joint_coordinates import Motion, coordinates_of, of_scene
-from carom.results.joint_now import Quick, coordinates, quick
+from carom.results.joint_coordinates import Sides, coordinates, of_scene, sides_of
 from carom.scene.bodies import Body
 
 if TYPE_CHECKING:
@@ -53,7 +52,7 @@ class SystemState:
         Energies of the whole system [J].
     """
 
-    def __init__(self, run, joints: dict[int, Quick | None] | None = None):
+    def __init__(self, run, joints: dict[int, Sides] | None = None):
         self._joints = {} if joints is None else joints  # joints prepared so far
         clock, rows = run.clock, run.now.view(np.ndarray).copy()
         rows.flags.writeable = False
@@ -119,14 +118,8 @@ class SystemState:
         """
         joint = of_scene(self._scene, joint)
         if joint.index not in self._joints:
-            self._joints[joint.index] = quick(joint)
-        made = self._joints[joint.index]
-        if made is not None:
-            return coordinates(made, self)
-        at_once = self.position, self.orientation, self.velocity, self.angular_velocity
-        motion = Motion(np.array([self.t]), *(a[None] for a in at_once))
-        q, rate = coordinates_of(motion, joint)
-        return q[0], rate[0]
+            self._joints[joint.index] = sides_of(joint)
+        return coordinates(self._joints[joint.index], self)
 
     def __repr__(self) -> str:
         return f"<SystemState: {len(self._rows)} bodies at t = {self.t:.9g} s>"

@@ -24,6 +24,8 @@ Surface = tuple[np.ndarray, np.ndarray]
 
 STILL = 0.02  # fraction of the greatest displacement, or a rotation [rad], up to which a body counts as resting
 PIN = 0.15  # of the size of a body: a pin is no thicker
+#: Okabe and Ito's colours, told apart by colour-blind eyes; their vermilion and blue are for arrows
+COLOURS = ("#56B4E9", "#E69F00", "#009E73", "#F0E442", "#CC79A7", "#999999")
 JOINT, STATIC = "#5b6873", "#c3ccd4"
 ROD = 0.012  # radius of rods of bodies without a shape, as a fraction of the size of the region
 
@@ -65,16 +67,16 @@ class Outline(NamedTuple):
         return max(float(np.linalg.norm(point)) for point in self.points) + self.size
 
 
-def colour_of(body: Body, palette) -> str:
-    """Return the colour of a body, ``#rrggbb``: its own, or one of a palette by its number."""
-    return body.color or palette[body.index % len(palette)]
+def colour_of(body: Body) -> str:
+    """Return the colour of a body, ``#rrggbb``: its own, or one of `COLOURS` by its number."""
+    return body.color or COLOURS[body.index % len(COLOURS)]
 
 
-def colours_of(part: Part, scene, palette) -> list[str]:
+def colours_of(part: Part, scene) -> list[str]:
     """Return the colour of a part on each of its bodies."""
     if part.look in ("joint", "static"):
         return [JOINT if part.look == "joint" else STATIC] * len(part.bodies)
-    own = [colour_of(scene.bodies[b], palette) for b in part.bodies]
+    own = [colour_of(scene.bodies[b]) for b in part.bodies]
     return [pip_colour(one) for one in own] if part.look == "pip" else own
 
 

@@ -18,7 +18,7 @@ SIDES = 20  # of the polygon of a pip
 
 def pip_colour(colour: str) -> str:
     """Return the colour of pips: dark on light dice, light on dark ones."""
-    red, green, blue = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
+    red, green, blue = bytes.fromhex(colour[1:])
     return DARK if 0.299 * red + 0.587 * green + 0.114 * blue > 110 else LIGHT
 
 

@@ -5,32 +5,16 @@ from __future__ import annotations
 import math
 
 from carom.bench.problems.task import Task, carom_task, solref
+from carom.paper.runs import GRAVITY, MASS
+from carom.paper.runs import die as scene
 
 NAME, TITLE = "planar_die", "Planar die, one impact with friction"
 ERROR = "error of its centre at 0.3 s [m]"
 METHODS, STEPS, PEER_STEPS = ("rk4",), (1e-2, 1e-3, 1e-4), (1e-3, 1e-4, 1e-5)
-MASS, EDGE, GRAVITY, DURATION = 0.016, 0.02, 9.81, 0.6
-END = 0.3  # s, after the first impact, before the second
+DURATION, END = 0.6, 0.3  # s, after the first impact, before the second
 FIRST = 0.196210991904  # s
 # m/s, (v_x, v_z) after it: Routh's impulse in closed form
 AFTER = -0.104880400901, 0.599572173967
-
-
-def scene(
-    height: float = 0.3, velocity=(0.5, 0, -0.5), spin=(0, 10, 0), *, friction=0.2,
-    restitution=0.5, inertia=None, gravity=GRAVITY, law="newton",
-):  # fmt: skip
-    """Return the die above a table."""
-    import carom
-
-    made = carom.Scene(gravity=(0, 0, -gravity))
-    table = made.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
-    die = made.add_body(
-        carom.Box(EDGE, EDGE, EDGE), mass=MASS, inertia=inertia, position=(0, 0, height),
-        velocity=velocity, angular_velocity=spin,
-    )  # fmt: skip
-    made.add_contact(die, table, restitution=restitution, friction=friction, impact_law=law)
-    return made
 
 
 def centre() -> tuple[float, float]:

@@ -2,39 +2,28 @@
 
 from __future__ import annotations
 
-import math
-
 from carom.bench.problems.task import Task, carom_task, solref
+from carom.paper.runs import DROP, GRAVITY, sphere
 
 NAME, TITLE = "sphere", "Bouncing ball, e = 1, 60 s"
 ERROR = "error of its height at the end [m]"
 METHODS, STEPS, PEER_STEPS = ("rk4",), (1e-2, 1e-3, 1e-4), (1e-3, 3e-4, 1e-4)
-RADIUS, DROP, GRAVITY, DURATION = 0.1, 0.4, 9.81, 60.0
-
-
-def scene():
-    """Return the ball above a floor."""
-    import carom
-
-    made = carom.Scene(gravity=(0, 0, -GRAVITY))
-    floor = made.add_half_space((0, 0, 0), (0, 0, 1))
-    ball = made.add_body(carom.Sphere(RADIUS), mass=1.0, position=(0, 0, RADIUS + DROP))
-    made.add_contact(ball, floor, restitution=1.0, friction=0.0)
-    return made
+RADIUS, DURATION = 0.1, 60.0
 
 
 def height(t: float) -> float:
-    """Return the height of the centre: parabolas of the period 2 sqrt(2 h/g), highest at t = 0."""
-    half = math.sqrt(2.0 * DROP / GRAVITY)
-    since = (t + half) % (2.0 * half) - half  # the time since the last apex
-    return RADIUS + DROP - 0.5 * GRAVITY * since * since
+    """Return the height of the centre."""
+    from carom.paper.references import Bounce
+
+    return RADIUS + float(Bounce(1.0).motion(t)[0])
 
 
 def ours(step: float, method: str = "rk4", duration: float = DURATION) -> Task:
     """Return the work of carom."""
     return carom_task(
-        scene(), duration, step, method, lambda run: abs(run.position[-1, 0, 2] - height(duration))
-    )
+        sphere(1.0), duration, step, method,
+        lambda run: abs(run.position[-1, 0, 2] - height(duration)),
+    )  # fmt: skip
 
 
 def mujoco(module, step: float, duration: float = DURATION) -> Task:

@@ -67,11 +67,11 @@ class MissingFunction:
 
 
 class Encoder:
-    """Values as JSON; collects the shapes that bodies share, and the functions that are left out."""
+    """Values as JSON; collects the shapes that bodies share, and the functions that are left out, by name."""
 
     def __init__(self):
         self.shapes: list = []
-        self.functions: list[str] = []
+        self.functions: dict[str, Callable] = {}
         self._place: dict[int, int] = {}
 
     def part(self, part) -> dict:
@@ -100,7 +100,7 @@ class Encoder:
             curve: Any = value
             return {"polynomial": _array(curve.c), "breaks": _array(curve.x)}
         if callable(value):
-            self.functions.append(where)
+            self.functions[where] = value
             return self.function(value, where)
         raise TypeError(f"{where or 'a value'} cannot be written to a file, got {value!r}")
 

@@ -32,7 +32,7 @@ def scene_to_text(scene: Scene, encoder: Encoder | None = None) -> str:
         "combine": pairs._rules,
         "contact_values": encoder.value(pairs._values),
         "all_pairs": pairs.default is not None,
-        "functions": encoder.functions,
+        "functions": list(encoder.functions),
     }
     if encoder.functions:
         data["note"] = NOTE

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
 from carom import checks
-from carom.io.files.layout import BODIES, ENERGIES, LABELS, USER_EVENT, Variable
+from carom.io.files.layout import BODIES, ENERGIES, LABELS, USER_EVENT, Variable, table_variables
 from carom.results.state import SystemState
 
 DIM = "user_event"
+FIELD = {"time": "t"}  # of a state, where it has another name
 
 
 def user_events(solution) -> list[Variable]:
@@ -18,27 +20,19 @@ def user_events(solution) -> list[Variable]:
     if solution.state_events is None:
         return []
     states = [(k, state) for k, some in enumerate(solution.state_events) for state in some]
-    columns = {
-        "index": [k for k, _ in states],
-        "time": [state.t for _, state in states],
-        **{
-            name: [getattr(state, name) for _, state in states]
-            for name in USER_EVENT
-            if name not in ("index", "time")
-        },
-    }
     sizes = {name: len(labels) for name, (labels, _) in LABELS.items()}
     sizes["body"] = len(solution.scene.bodies)
-    return [
-        Variable(
-            f"{DIM}_{name}", (DIM, *dims),
-            np.array(columns[name], "i8" if name == "index" else "f8").reshape(
-                len(states), *(sizes[dim] for dim in dims)
-            ),
-            units, meaning,
+    table = SimpleNamespace()
+    for name, (dims, _, _) in USER_EVENT.items():
+        column = [
+            k if name == "index" else getattr(state, FIELD.get(name, name)) for k, state in states
+        ]
+        kind, shape = (
+            "i8" if name == "index" else "f8",
+            (len(states), *(sizes[dim] for dim in dims)),
         )
-        for name, (dims, units, meaning) in USER_EVENT.items()
-    ]  # fmt: skip
+        setattr(table, name, np.array(column, kind).reshape(shape))
+    return table_variables(DIM, DIM, USER_EVENT, table)
 
 
 def index_of(solution) -> dict[str, Any] | None:

@@ -14,6 +14,8 @@ from carom.scene.joints import Joint
 from carom.scene.scene import Scene
 from carom.scene.shapes.convex import Convex
 
+UNTURNED = (1.0, 0.0, 0.0, 0.0)
+
 
 class Names:
     """Names for the parts of a scene, where they are unique; in a model a body and a joint may share one."""
@@ -80,6 +82,16 @@ class Build:
         part = self.bodies[body]
         assert isinstance(part, Body)
         return part
+
+    def light_link(
+        self, name: str, mass: float, moment: float, position, motion, orientation=UNTURNED
+    ):
+        """Add a body between two joints of one, so light that it does not count, with a `motion` (6,)."""
+        return self.scene.add_body(
+            mass=self.light * mass, inertia=(self.light * moment,) * 3, position=position,
+            orientation=orientation, velocity=motion[:3], angular_velocity=motion[3:],
+            name=self.names.new(f"{name}:link", "body"),
+        )  # fmt: skip
 
     def carrier(self, body: int) -> Body | Ground:
         """Return the body of the scene that a body of the model is a part of."""

@@ -118,8 +118,7 @@ def _light_link(build: Build, link: Link, last: int, later: list[int]) -> Body:
     slides = model.jnt_type[last] == need_mujoco().mjtJoint.mjJNT_SLIDE
     centre = body if slides else data.xanchor[last]
     arm2 = float(np.sum((body - centre) ** 2))
-    mass = build.light * (link.mass + armature)
-    moment = build.light * (np.trace(link.inertia) / 3.0 + link.mass * arm2 + armature)
+    moment = np.trace(link.inertia) / 3.0 + link.mass * arm2 + armature
     dofs = [d for d in range(model.nv) if model.dof_jntid[d] in later]
     motion = point_velocity(model, data, link.body, centre, without=dofs)
     build.report.add(
@@ -127,15 +126,8 @@ def _light_link(build: Build, link: Link, last: int, later: list[int]) -> Body:
         "is followed by another joint in the same body, and a scene has no massless bodies",
         f"a link of {build.light:g} of the body's mass and inertia is between the two",
     )
-    return build.scene.add_body(
-        mass=mass,
-        inertia=(moment, moment, moment),
-        position=centre,
-        orientation=data.xquat[link.body],
-        velocity=motion[:3],
-        angular_velocity=motion[3:],
-        name=build.names.new(f"{joint}:link", "body"),
-    )
+    turned = data.xquat[link.body]
+    return build.light_link(joint, link.mass + armature, moment, centre, motion, turned)
 
 
 def _add(build: Build, group: Group, parent: Body | Ground, child) -> None:

@@ -62,18 +62,13 @@ def drive(build: Build, link: Link, motions) -> None:
         name, axis = f"{link.name}:{COORDINATES[k]}", np.eye(3)[k % 3]
         carried = child
         if place + 1 < len(motions):
-            carried = _light_link(build, link, name, motions[: place + 1], origin)
+            start, moment = (
+                first_velocity(motions[: place + 1], np.zeros(3)),
+                np.trace(link.inertia),
+            )
+            carried = build.light_link(name, link.mass, moment / 3.0, origin, start)
         kind = joints.Prismatic(axis, origin) if k < 3 else joints.Revolute(origin, axis)
         joint = build.scene.add_joint(kind, parent, carried, name=build.names.new(name, "joint"))
         driver = constraints.Driver(joint, motion=motion)
         build.scene.add_constraint(driver, name=build.names.new(f"{name}:driver", "constraint"))
         parent = carried
-
-
-def _light_link(build: Build, link: Link, name: str, motions, origin) -> Body:
-    """Add a body between two joints of a mocap body."""
-    start, moment = first_velocity(motions, np.zeros(3)), build.light * np.trace(link.inertia) / 3.0
-    return build.scene.add_body(
-        mass=build.light * link.mass, inertia=(moment,) * 3, position=origin,
-        velocity=start[:3], angular_velocity=start[3:], name=build.names.new(f"{name}:link", "body"),
-    )  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from carom import checks
@@ -54,9 +54,6 @@ class Report(Sequence[Entry]):
 
     def __len__(self) -> int:
         return len(self._entries)
-
-    def __iter__(self) -> Iterator[Entry]:
-        return iter(self._entries)
 
     def of(self, element: str) -> list[Entry]:
         """Return the entries whose element contains this text: a name, or a kind such as ``"actuator"``."""

@@ -197,9 +197,6 @@ def _pieces(points, triangles, centroid, convex, parts) -> tuple[Piece, ...]:
 
 def _decomposed(points, triangles) -> list:
     """Return the corners of approximate convex parts by CoACD (Wei et al., SIGGRAPH 2022)."""
-    try:
-        import coacd  # pyright: ignore[reportMissingImports]
-    except ImportError:
-        raise checks.missing_package('parts="coacd"', "coacd", "shapes") from None
+    coacd = checks.need("coacd", 'parts="coacd"', "shapes")
     coacd.set_log_level("error")
     return [vertices for vertices, _ in coacd.run_coacd(coacd.Mesh(points, triangles), seed=0)]

@@ -27,7 +27,6 @@ IDLE = 4  # turns that do not halve the residual until a start from 0, and again
 PATIENT = 4  # factor of the allowed work if the step can afford it
 # iterations of alternating directions: usual, and most if the step can afford them
 SPLIT, LONG_SPLIT = 100, 1000
-RHO = 0.05  # shift of W in them, relative to the mean of its diagonal
 
 
 @kernel
@@ -71,7 +70,7 @@ def solve(system, crowd, k, n, tolerance, left, clock):
         at_least = LONG_SPLIT if wrong else SPLIT
         allowed = LONG_SPLIT if wrong or spent < left else SPLIT
         ordered = by_reference(at_hand(crowd, n))
-        least, more = alternate(ordered, k, RHO, enough, at_least, allowed)
+        least, more = alternate(ordered, k, limits.RHO, enough, at_least, allowed)
         done, spent = done + more, spent + more * k
         copy(k, p, kept)
     if goal < least <= good:  # one more step for the last digits

@@ -10,7 +10,8 @@ from functools import partial
 import numpy as np
 
 from carom import arguments, checks
-from carom.io.run_to_end import interruption, reporter
+from carom.io.progress import Bar, reporter
+from carom.io.run_to_end import interruption
 from carom.options import Options
 from carom.scene.scene import Scene
 from carom.status import MistakeWarning
@@ -167,16 +168,15 @@ def ensemble(
     done = (
         np.zeros(count, dtype=bool) if store is None else store.read().outcomes["status"] != PENDING
     )
-    report = reporter(progress, count, "run")
+    report = reporter(progress, "runs")
     stopped = None
     try:
         _go(plan, inputs, done, chunk, executor, workers, store, parts, report)
     except KeyboardInterrupt as error:
         stopped = error
     finally:
-        close = getattr(report, "close", None)
-        if close is not None:
-            close()
+        if isinstance(report, Bar):
+            report.close()
     if store is not None:
         whole, about = store.read(), store.about
     else:
@@ -190,16 +190,14 @@ def ensemble(
 
 
 def _plan(scene, settings: Settings, inputs: dict[str, np.ndarray], observe):
-    from carom.studies.ensembles.plan import Plan
+    from carom.studies.ensembles.plan import Plan, plain
     from carom.studies.ensembles.targets import find_targets
 
     if isinstance(scene, Scene):
         check_scene(scene, settings)
         scene = scene._as_it_is()
         return Plan(scene, settings, find_targets(scene, inputs), len(scene.bodies), observe)
-    values = {name: array[0] for name, array in inputs.items()}
-    plain = {name: float(v) if np.ndim(v) == 0 else v for name, v in values.items()}
-    first = checks.call("scene", lambda: scene(**plain))
+    first = checks.call("scene", lambda: scene(**plain(inputs, 0)))
     checks.instance("the result of the function scene", first, (Scene,))
     return Plan(scene, settings, [], len(first.bodies), observe)
 

@@ -7,7 +7,7 @@ with its worker is submitted again; its results do not depend on the worker.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from concurrent import futures
 from contextlib import contextmanager
 from itertools import islice
@@ -35,7 +35,6 @@ def check_engine(executor) -> None:
 def engine(executor, workers: int | None):
     """Yield (submit, wait for the first result, number of parts to submit at once)."""
     if isinstance(executor, str):
-        checks.choice("executor", executor, NAMES)
         count = workers or os.cpu_count() or 1
         if executor == "serial":
             yield _at_once, 1
@@ -55,10 +54,8 @@ def engine(executor, workers: int | None):
         pool = executor.get_executor(pure=False)
         cores = max(1, sum(executor.ncores().values()))
         yield pool.submit, 2 * (workers or cores)
-    elif hasattr(executor, "submit"):
-        yield executor.submit, 2 * (workers or os.cpu_count() or 1)
     else:
-        check_engine(executor)
+        yield executor.submit, 2 * (workers or os.cpu_count() or 1)
 
 
 def _at_once(function, *arguments) -> futures.Future:
@@ -91,7 +88,8 @@ def each(
                 yield from _all(tasks, function, submit, most, running)
             except BaseException:
                 stop()
-                _cancel(running)
+                for future in running:
+                    future.cancel()
                 raise
     except (KeyboardInterrupt, GeneratorExit):
         mine = running if isinstance(executor, str) else ()
@@ -129,12 +127,6 @@ def _outcome(future: futures.Future) -> tuple[object, Exception | None]:
         return future.result(), None
     except Exception as error:
         return None, error
-
-
-def _cancel(running: Iterable[futures.Future]) -> None:
-    """Cancel all tasks that have not started."""
-    for future in running:
-        future.cancel()
 
 
 def _lost(error: Exception) -> bool:

@@ -6,7 +6,7 @@ import threading
 import uuid
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -159,7 +159,7 @@ def join(parts: Iterable[Part], runs: int, bodies: int) -> Part:
 def begin(plan: Plan, values: dict[str, np.ndarray], k: int) -> Run:
     """Return a run that is ready to start with the values of run k of a part."""
     if not isinstance(plan.scene, Scene):
-        scene = plan.scene(**{name: _plain(rows[k]) for name, rows in values.items()})
+        scene = plan.scene(**plain(values, k))
         if not isinstance(scene, Scene):
             raise TypeError(f"scene must return a carom.Scene, got {type(scene).__name__}")
         if len(scene.bodies) != plan.bodies:
@@ -173,5 +173,7 @@ def begin(plan: Plan, values: dict[str, np.ndarray], k: int) -> Run:
     return _here.again.start(values, k)
 
 
-def _plain(value):
-    return float(value) if np.ndim(value) == 0 else np.array(value)
+def plain(values: dict[str, np.ndarray], k: int) -> dict[str, Any]:
+    """Return the values of run k, as a function that makes its scene gets them."""
+    one = {name: np.array(rows[k]) for name, rows in values.items()}
+    return {name: value if value.ndim else float(value) for name, value in one.items()}

@@ -109,6 +109,7 @@ class Ensemble:
         """
         from carom.scene.scene import Scene
         from carom.simulate import simulate
+        from carom.studies.ensembles.plan import plain
         from carom.studies.ensembles.targets import changed
 
         run = checks.integer("run", run, least=0, most=len(self) - 1)
@@ -118,20 +119,17 @@ class Ensemble:
                 "solution needs the scene, but an ensemble from disk has none; call carom.ensemble with the "
                 "same arguments and the same save"
             )
-        values = {name: array[run] for name, array in self.inputs.items()}
         if isinstance(plan.scene, Scene):
+            values = {name: array[run] for name, array in self.inputs.items()}
             scene = changed(plan.scene, plan.targets, values)
         else:
-            scene = plan.scene(**{k: float(v) if np.ndim(v) == 0 else v for k, v in values.items()})
+            scene = plan.scene(**plain(self.inputs, run))
         how = plan.settings._replace(save_every=1)
         return simulate(scene, **how.as_dict(), options=how.options, throw=False)
 
     def to_xarray(self):
         """Return the ensemble as an `xarray.Dataset` with the dimension `run`."""
-        try:
-            import xarray
-        except ImportError as error:
-            raise checks.missing_package("to_xarray", "xarray", "ensemble") from error
+        xarray = checks.need("xarray", "to_xarray", "ensemble")
         units = {
             "t": "s", "rest_time": "s", "first_impact": "s", "position": "m", "velocity": "m/s",
             "angular_velocity": "rad/s", "kinetic_energy": "J", "impact_loss": "J",

@@ -28,12 +28,8 @@ MARKS = "parts"
 OWN = (NEW, "zarr.json", "inputs", "outcomes", "observed", MARKS)
 
 
-def _zarr():
-    try:
-        import zarr
-    except ImportError as error:
-        raise checks.missing_package("save", "zarr", "ensemble") from error
-    return zarr
+def _zarr() -> Any:
+    return checks.need("zarr", "save", "ensemble")
 
 
 def is_begun(path: Path) -> bool:

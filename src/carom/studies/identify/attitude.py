@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from carom.geometry import quaternion
+from carom.model.compile import principal
+from carom.scene.bodies import inertia_matrix
 
 FIT_ITERATIONS = 50
 DIFFERENCE = 1e-5  # [rad], for difference quotients
@@ -12,9 +14,8 @@ DIFFERENCE = 1e-5  # [rad], for difference quotients
 
 def fit_attitude(t, q, inertia=None) -> dict:
     """Return the fields of a `FreeFlight` about rotation: of quaternions q (n, 4) at times t (n,), t[0] = 0."""
-    moments, axes = principal_axes(inertia)
-    spin = constant_spin if moments is None else _torque_free(moments)
-    to_principal = np.array([1.0, 0.0, 0.0, 0.0]) if axes is None else axes
+    moments, to_principal = principal(np.eye(3) if inertia is None else inertia_matrix(inertia))
+    spin = constant_spin if np.ptp(moments) == 0.0 else _torque_free(moments)
     q = quaternion.multiply(q, to_principal)
     # unknowns: a rotation of R0 about the world axes, and the rotation w t[-1] in the whole flight
     R0, turn = q[0], _first_guess(t, q) * t[-1]
@@ -67,21 +68,6 @@ def _first_guess(t, q) -> np.ndarray:
     """
     steps = quaternion.log(quaternion.multiply(q[1:], quaternion.conjugate(q[:-1])))
     return np.median(steps / np.diff(t)[:, None], axis=0)
-
-
-def principal_axes(inertia):
-    """Return principal moments (3,) and quaternion principal to body axes; (None, None) if w is constant."""
-    if inertia is None:
-        return None, None
-    from carom.scene.bodies import inertia_matrix
-
-    matrix = inertia_matrix(inertia)
-    moments, axes = np.linalg.eigh(matrix)
-    if np.ptp(moments) <= 1e-13 * moments[-1]:
-        return None, None
-    if np.linalg.det(axes) < 0.0:
-        axes[:, 0] *= -1.0
-    return moments, quaternion.from_matrix(axes)
 
 
 def _torque_free(moments):

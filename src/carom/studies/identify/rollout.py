@@ -14,8 +14,6 @@ from carom.options import Options
 from carom.scene.scene import Scene
 from carom.studies.identify.recording import Recording, checked_recordings
 
-UNIFORM = 1e-6  # of the sampling time: smaller differences are rounding of recorded times
-
 
 class RollOut(NamedTuple):
     """Simulated poses of the N recorded bodies at the n times of a recording."""
@@ -39,8 +37,8 @@ def roll_out(
     recording : Recording
         The recorded motion, for its times and its initial state.
     step : float, optional
-        Longest time step [s]. If the sampling time is constant, the step is shortened so that a whole number of
-        steps makes one sampling time. Default: a quarter of the mean sampling time.
+        Longest time step [s]; the steps between two samples are equal.
+        Default: a quarter of the mean sampling time.
     options : Options, optional
         As for `simulate`.
 
@@ -62,20 +60,15 @@ def roll_out(
         step = checks.number("step", step, above=0.0, unit="s")
     since = recording.t - recording.t[0]
     n, length = since.size, float(since[-1])
-    sampling = length / (n - 1)
-    longest = 0.25 * sampling if step is None else step
+    longest = 0.25 * length / (n - 1) if step is None else step
     checks.steps(length, longest, 1e12)
-    uniform = np.max(np.abs(since - sampling * np.arange(n))) <= UNIFORM * sampling
-    parts = int(np.ceil(sampling / longest * (1.0 - 1e-9))) if uniform else 1
-    used = sampling / parts if uniform else longest
     solution = simulate(
-        scene, length, step=used, save_every=parts, options=options, throw=False
+        scene, length, step=longest, save_at=since, options=options, throw=False
     )  # fmt: skip
     count = recording.position.shape[1]
-    if uniform and solution.status.ended:
-        x, q = solution.position, solution.orientation
-    else:
-        x, q, *_ = solution.evaluate(np.minimum(since, solution.t[-1]))
+    # After the end of a run that failed: its last state.
+    row = np.minimum(np.arange(n), len(solution.t) - 1)
+    x, q = solution.position[row], solution.orientation[row]
     speed = max(
         np.max(np.abs(solution.velocity[-1])), np.max(np.abs(solution.angular_velocity[-1]))
     )

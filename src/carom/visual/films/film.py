@@ -115,12 +115,9 @@ def frame_times(begin: float, end: float, fps: float, speed: float) -> np.ndarra
 
 
 def _write_mp4(path: Path, pictures, fps: float) -> None:
-    try:
-        import imageio.v2 as imageio
-        import imageio_ffmpeg  # noqa: F401
-    except ImportError:
+    for module in ("imageio_ffmpeg", "imageio.v2"):
         what = "a film in MP4 (one in .gif does not)"
-        raise checks.missing_package(what, "imageio-ffmpeg", "film") from None
+        imageio = checks.need(module, what, "film", "imageio-ffmpeg")
     with imageio.get_writer(
         path, format="FFMPEG", fps=fps, codec="libx264", pixelformat="yuv420p", macro_block_size=2,  # pyright: ignore
         output_params=["-crf", "18", "-preset", "medium", "-movflags", "+faststart"],

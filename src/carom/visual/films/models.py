@@ -9,9 +9,7 @@ import numpy as np
 from carom.scene.shapes.convex import Convex
 from carom.scene.shapes.revolved import Disc
 from carom.visual.bodies import Part, colours_of, parts_of
-from carom.visual.plots import style
 
-COLOURS = (style.BLUE, style.ORANGE, style.GREEN, style.RED, style.PURPLE, style.SKY)
 MOST_TRIANGLES = 20_000  # triangles of a body, from which on large ones are not split any more
 SHARP = np.cos(np.radians(35.0))  # of the angle from which an edge is one
 FACET = np.cos(np.radians(1.0))  # the same of a polyhedron, whose faces are all flat
@@ -43,7 +41,7 @@ def models(scene, length: float) -> tuple[Model, np.ndarray]:
     for part in parts_of(scene, length, fineness):
         model = split(model_of(part), length)
         pale = model.colours
-        for b, name in zip(part.bodies, colours_of(part, scene, COLOURS)):
+        for b, name in zip(part.bodies, colours_of(part, scene)):
             colour = rgb(name)
             made.append(model._replace(colours=colour + pale * (1.0 - colour)))
             owner += [b] * len(pale)
@@ -80,7 +78,7 @@ def split(model: Model, longest: float) -> Model:
 
 def rgb(colour: str) -> np.ndarray:
     """Return red, green and blue from 0 to 1 of "#rrggbb"."""
-    return np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)]) / 255.0
+    return np.array([*bytes.fromhex(colour[1:])]) / 255.0
 
 
 def model_of(part: Part) -> Model:

@@ -243,11 +243,9 @@ def checked_size(size) -> tuple[int, int]:
 
 def pillow() -> tuple[Any, Any, Any]:
     """Return the parts of Pillow that are used, or raise an error that says how to install it."""
-    try:
-        from PIL import Image, ImageDraw, ImageFont
-    except ImportError:
-        raise checks.missing_package("a film or a still", "pillow", "film") from None
-    return Image, ImageDraw, ImageFont
+    parts = ("PIL.Image", "PIL.ImageDraw", "PIL.ImageFont")
+    image, draw, font = (checks.need(part, "a film or a still", "film", "pillow") for part in parts)
+    return image, draw, font
 
 
 def _steps(apart, directions, spacing: float) -> np.ndarray:

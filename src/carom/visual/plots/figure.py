@@ -60,22 +60,9 @@ def drawing(
             raise
 
 
-@contextmanager
-def drawing_mosaic(rows, size, heights) -> Iterator[Any]:
-    """Within this context matplotlib draws in the style of the plots; the axes of a new figure by name."""
-    plt = pyplot()
-    with style.style():
-        figure = plt.figure(figsize=size, layout="constrained")
-        yield figure.subplot_mosaic(rows, height_ratios=heights)
-
-
 def pyplot() -> Any:
     """Return matplotlib.pyplot, or raise an error with the command that installs it."""
-    try:
-        import matplotlib.pyplot as plt
-    except ImportError:
-        raise checks.missing_package("a plot", "matplotlib", "plot") from None
-    return plt
+    return checks.need("matplotlib.pyplot", "a plot", "plot")
 
 
 def is_bodies(solution) -> bool:

@@ -42,7 +42,10 @@ def overview(solution) -> dict:
     if below:
         rows.append([below[0], below[-1]])
         heights.append(1.2 if not touched else 0.8 + 0.16 * min(CONTACTS_DRAWN, touching(solution)))
-    with figure.drawing_mosaic(rows, (style.PAGE, sum(heights)), heights) as axes:
+    plt = figure.pyplot()
+    with style.style():
+        new = plt.figure(figsize=(style.PAGE, sum(heights)), layout="constrained")
+        axes = new.subplot_mosaic(rows, height_ratios=heights)
         if whole:
             trajectory(solution, ax=axes["motion"])
         else:

@@ -7,6 +7,7 @@ import numpy as np
 from carom import checks
 from carom.arguments import known
 from carom.geometry import quaternion
+from carom.visual.bodies import outline_of, parts_of
 from carom.visual.plots import figure, style
 
 GROUND = "#ececec"
@@ -59,26 +60,33 @@ def trajectory(
     axes = _plane(plane, solution, x[:, [b.index for b in chosen]])
     seen, times = list(axes), _times(outlines, solution)
     wide, high = np.ptp(x[:, [b.index for b in chosen]][..., seen].reshape(-1, 2), axis=0)
+    scene, parts, colours = solution.scene, [], {}
+    if len(times) or scene.statics:
+        size = max(outline_of(scene, body).radius for body in scene.bodies)
+        parts = parts_of(scene, 0.5 * float(np.hypot(wide, high)) + size, 48)
     inches = np.clip(2.8 * high / max(wide, 1e-300), 1.0, 3.4) + 0.6  # nearly as the axes are to be
     with figure.drawing(ax, 1, (style.COLUMN, inches)) as drawn:
         many = len(chosen) > 12
         for body, (colour, line) in zip(chosen, figure.colours()):
+            colours[body.index] = colour = body.color or colour
             path = x[:, body.index][:, seen]
             drawn.plot(*path.T, line, color=colour, lw=0.6 if many else 1.2, label=body.name)
             drawn.plot(*path[0], "s", color=colour, ms=2 if many else 3.5)
             struck = np.isin(t, _impact_times(solution, body))
             drawn.plot(*path[struck].T, "o", color=colour, ms=1.5 if many else 2.5)
-            if body.shape is not None:
-                _outlines(drawn, solution, body, times, seen, colour)
+        for part in parts:
+            for b in colours.keys() & set(part.bodies) if part.look != "pip" else ():
+                _outlines(drawn, solution, part, b, times, seen, colours[b])
         drawn.set(xlabel=f"${'xyz'[axes[0]]}$ [m]", ylabel=f"${'xyz'[axes[1]]}$ [m]")
         drawn.set_aspect("equal", adjustable="datalim")
         drawn.margins(0.08)
         drawn.autoscale_view()
         if ground:
-            for half_space in solution.scene.half_spaces:
+            for half_space in scene.half_spaces:
                 _ground(drawn, half_space, seen)
-            for solid in solution.scene.statics:
-                _static(drawn, solid, seen)
+            for part in parts:
+                if part.look == "static":
+                    _static(drawn, part, seen)
         figure.legend(drawn, loc="best")
     return drawn
 
@@ -127,19 +135,15 @@ def _times(outlines, solution) -> np.ndarray:
     return times
 
 
-def _outlines(axes, solution, body, times, seen, colour) -> None:
-    """Draw the edges between faces that are turned to the viewer and faces that are not."""
+def _outlines(axes, solution, part, b: int, times, seen, colour) -> None:
+    """Draw the edges of a part of body b between faces that are turned to the viewer and faces that are not."""
     from matplotlib.collections import LineCollection
 
-    from carom.visual.surfaces import surface
-
-    if not len(times):
-        return
-    vertices, triangles = surface(body.shape, 48)
+    vertices, triangles = part.vertices, part.triangles
     sides = {(int(f[k]), int(f[k - 2])): n for n, f in enumerate(triangles) for k in range(3)}
     pairs = np.array([(a, b, n, sides[b, a]) for (a, b), n in sides.items() if a < b])
     x, Q, _, _ = solution._curve(times)
-    for place, turn in zip(x[:, body.index], Q[:, body.index]):
+    for place, turn in zip(x[:, b], Q[:, b]):
         flat = (place + quaternion.rotate(turn, vertices))[:, seen]
         a, b, c = (flat[triangles[:, k]] for k in range(3))
         (p, q), (r, s) = (b - a).T, (c - a).T
@@ -150,16 +154,16 @@ def _outlines(axes, solution, body, times, seen, colour) -> None:
         )
 
 
-def _static(axes, solid, seen) -> None:
+def _static(axes, part, seen) -> None:
     """Draw a static body as the ground: the shadow of all its triangles."""
     from matplotlib.collections import PolyCollection
 
-    from carom.visual.surfaces import surface
-
-    vertices, triangles = surface(solid.shape, 24)
-    flat = (solid.position + quaternion.rotate(solid.orientation, vertices))[:, seen]
     shadow = PolyCollection(
-        list(flat[triangles]), facecolor=GROUND, edgecolor=GROUND, lw=0.5, zorder=0
+        list(part.vertices[:, seen][part.triangles]),
+        facecolor=GROUND,
+        edgecolor=GROUND,
+        lw=0.5,
+        zorder=0,
     )
     axes.add_collection(shadow, autolim=False)  # as of the ground, the view is that of the motion
 

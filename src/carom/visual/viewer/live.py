@@ -23,13 +23,8 @@ FADE = 0.35  # time for which an impact is shown [s of real time]
 
 def need_viser() -> None:
     """Raise an error with the command that installs viser, if it is missing."""
-    try:
-        import viser  # noqa: F401
-    except ImportError as error:
-        if error.name is not None and error.name.split(".")[0] != "viser":
-            raise  # viser is installed, but a package that it needs is missing
-        what = 'a live view (not a page: carom.view(solution, export="run.html"))'
-        raise checks.missing_package(what, "viser", "view") from None
+    what = 'a live view (not a page: carom.view(solution, export="run.html"))'
+    checks.need("viser", what, "view")
 
 
 class LiveView:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.scene.shapes import Sphere
 from carom.visual.bodies import JOINT, colours_of
+from carom.visual.surfaces import surface
 from carom.visual.viewer.frames import poses_at
 from carom.visual.viewer.planes import grid_lines, round_length
-from carom.visual.viewer.show import COLOURS, FORCE, IMPULSE, Show
+from carom.visual.viewer.show import FORCE, IMPULSE, Show
 
 PATHS = 20  # bodies whose paths are drawn
 SHADE = (236, 240, 243)
@@ -93,7 +95,7 @@ class LiveScene:
     def _part(self, k: int, part, x: np.ndarray, Q: np.ndarray):
         if part.look == "static":
             x, Q = np.zeros((1, 3)), np.array([[1.0, 0, 0, 0]])
-        colours = [_rgb(one) for one in colours_of(part, self.show.solution.scene, COLOURS)]
+        colours = [_rgb(one) for one in colours_of(part, self.show.solution.scene)]
         return self.stage.add_batched_meshes_simple(
             f"/bodies/{k}", part.vertices.astype(np.float32), part.triangles.astype(np.uint32),
             Q[part.bodies], x[part.bodies], batched_colors=np.array(colours, dtype=np.uint8),
@@ -136,9 +138,10 @@ class LiveScene:
         )
 
     def _marks(self, points: np.ndarray):
-        ball = 0.009 * self.radius
+        vertices, triangles = surface(Sphere(0.009 * self.radius), 4)  # an octahedron
         return self.stage.add_batched_meshes_simple(
-            "/marks", ball * OCTAHEDRON, FACES, np.tile([1.0, 0, 0, 0], (len(points), 1)), points,
+            "/marks", vertices.astype(np.float32), triangles.astype(np.uint32),
+            np.tile([1.0, 0, 0, 0], (len(points), 1)), points,
             batched_colors=_rgb(JOINT), lod="off", cast_shadow=False,
         )  # fmt: skip
 
@@ -158,15 +161,6 @@ class LiveScene:
         scale = longest / np.maximum(sizes[seen], greatest)  # a few beyond the greatest are cut
         ends = start[seen] + scale[:, None] * vectors[seen]
         handle.points = np.stack([start[seen], ends], axis=1).astype(np.float32)
-
-
-OCTAHEDRON = np.array(
-    [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=np.float32
-)
-FACES = np.array(
-    [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]],
-    dtype=np.uint32,
-)
 
 
 def _rgb(colour: str) -> tuple[int, int, int]:

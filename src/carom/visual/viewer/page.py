@@ -16,7 +16,7 @@ from carom import checks
 from carom.visual.bodies import colour_of
 from carom.visual.dice import pip_colour
 from carom.visual.viewer.pack import Packer, header_text
-from carom.visual.viewer.show import COLOURS, FORCE, IMPULSE, Show, body_number, playing_speed
+from carom.visual.viewer.show import FORCE, IMPULSE, Show, body_number, playing_speed
 from carom.visual.viewer.strikes import Inside, insides_of
 
 SCRIPTS = (
@@ -75,7 +75,7 @@ def page_text(show: Show, follow: str | None = None, speed: float | None = None)
 def header(show: Show, packer: Packer) -> dict:
     """Return the header of the page, and put its arrays into `packer`."""
     solution, frames, place = show.solution, show.frames, show.place
-    colours = [colour_of(body, COLOURS) for body in solution.scene.bodies]
+    colours = [colour_of(body) for body in solution.scene.bodies]
     return {
         "title": show.title,
         "note": "; ".join(show.left_out),

@@ -14,8 +14,6 @@ from carom.results.solution import Solution
 from carom.visual import bodies
 from carom.visual.viewer import frames, planes, strikes
 
-#: Okabe and Ito's colours, told apart by colour-blind eyes; their vermilion and blue are for arrows
-COLOURS = ("#56B4E9", "#E69F00", "#009E73", "#F0E442", "#CC79A7", "#999999")
 IMPULSE, FORCE = "#D55E00", "#0072B2"
 
 
