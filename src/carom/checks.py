@@ -326,10 +326,11 @@ def need(module: str, what: str, extra: str, package: str = "") -> Any:
     ImportError
         If it is not installed; the last line of the message has the command that installs it.
     """
+    top = module.split(".")[0]
     try:
+        importlib.import_module(top)
         return importlib.import_module(module)
     except ImportError as error:
-        top = module.split(".")[0]
         if error.name is not None and error.name.split(".")[0] != top:
             raise  # it is there, and lacks something itself
         message = f"{what} needs the package {package or top}; install it with"

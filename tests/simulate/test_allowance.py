@@ -5,8 +5,8 @@ import pytest
 
 from carom._compiled.decorators import entry
 from carom.model.allowance import (
+    COUNT_BLOCKS,
     COUNT_SEARCHES,
-    COUNT_STAGES,
     COUNT_TRIALS,
     COUNTS,
     OF_STEP,
@@ -42,9 +42,8 @@ def too_much(controls, clocks):
 def after(clock, spent=0.0, **counts):
     clock["spent"], clock["counts"] = spent, 0.0
     for name, number in counts.items():
-        clock["counts"][
-            0, {"trials": COUNT_TRIALS, "searches": COUNT_SEARCHES, "stages": COUNT_STAGES}[name]
-        ] = number
+        kind = {"trials": COUNT_TRIALS, "searches": COUNT_SEARCHES, "blocks": COUNT_BLOCKS}[name]
+        clock["counts"][0, kind] = number
     return clock
 
 
@@ -56,7 +55,7 @@ def test_a_step_may_use_what_was_saved_and_its_own_part():
     assert too_much(controls(), after(clock, 1e-3, trials=at_end + 1.0))
     assert too_much(controls(), after(clock, searches=SAVED * PART[COUNT_SEARCHES] + 1.0))
     assert not too_much(controls(retry=0), after(clock, trials=1e9))
-    assert not too_much(controls(), after(clock, stages=1e9))  # gives no step up
+    assert not too_much(controls(), after(clock, blocks=1e9))  # gives no step up
 
 
 def test_with_tolerances_the_bound_does_not_depend_on_saved_times():

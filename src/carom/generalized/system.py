@@ -84,12 +84,11 @@ class GeneralizedSystem:
         for name, one in given.items():
             checks.function(name, one, optional=name != "metric")
         q = checks.finite_array("position", position, (None,))
-        n = len(q)
-        if n == 0:
+        v = checks.finite_array("velocity", velocity, (None,))
+        if not len(q) == len(v) > 0:
             raise ValueError(
-                f"position must have at least one coordinate, got {checks.shown(position)}"
+                f"position and velocity must have one length, at least 1, got {len(q)} and {len(v)}"
             )
-        v = checks.finite_array("velocity", velocity, (n,))
         from carom.generalized.functional import FunctionalModel
 
         self._start(FunctionalModel(q, v, given), q, v)
