@@ -18,7 +18,7 @@ from carom.dynamics.passed_edges import has_passed
 from carom.dynamics.project import project_position, shift
 from carom.dynamics.several_points import spread_all, velocities, yields
 from carom.friction.ldl import factor_by_pivots, substitute
-from carom.impact.workspace import OLD, P, U
+from carom.impact.workspace import KEPT, P, U
 from carom.kinematics.contact_point import in_axes
 from carom.model.actions import MODE_STICK
 from carom.persistent.thresholds import DEPENDENCE
@@ -63,12 +63,20 @@ def given(group, row):
 
 @kernel
 def factor_given(k, group):
-    """List the given rows that do not depend on each other, and write their factor; return their number."""
-    n, L, rows, own = 0, group.m[1], group.cone.active, group.v[OLD]
+    """List the given rows, and factor W for them; return their number."""
+    n = 0
     for i in range(3 * k):
         if given(group, i):
-            rows[n], own[n], n = i, group.m[0][i, i], n + 1
+            group.cone.active[n], n = i, n + 1
+    return factor_rows(n, group)
+
+
+@kernel
+def factor_rows(n, group):
+    """Factor W for n rows of a list, from which those that depend on others go; return the number left."""
+    L, rows, own = group.m[1], group.cone.active, group.v[KEPT]
     for i in range(n):
+        own[i] = group.m[0][rows[i], rows[i]]
         for j in range(n):
             L[i, j] = group.m[0][rows[i], rows[j]]
     return factor_by_pivots(n, DEPENDENCE, rows, own, L)
@@ -76,8 +84,8 @@ def factor_given(k, group):
 
 @kernel
 def solve_rows(k, n, group, x):
-    """Replace x, in the given rows, by the impulses that remove it; zero the others."""
-    rows, y = group.cone.active, group.v[OLD]
+    """Replace x, in the n rows, by the impulses that remove it; zero the others."""
+    rows, y = group.cone.active, group.v[KEPT]
     for i in range(n):
         y[i] = -x[rows[i]]
     substitute(n, group.m[1], y)

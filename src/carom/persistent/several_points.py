@@ -12,7 +12,6 @@ from carom.dynamics.elements import driven_power
 from carom.dynamics.energy import energies
 from carom.dynamics.several_points import inverse_masses, yields
 from carom.friction.layout import CONE, SLIDING
-from carom.friction.ldl import factor, substitute
 from carom.geometry.thresholds import RESOLUTION
 from carom.impact.thresholds import VELOCITY_LEFT
 from carom.impact.workspace import OLD, C, P, U
@@ -27,10 +26,10 @@ from carom.persistent.forces import pose_forces, solve_forces, take_forces, time
 from carom.persistent.jam import jams_among, note_jam
 from carom.persistent.joint_rows import JOINT, add_frictions
 from carom.persistent.points import weigh
-from carom.persistent.return_to_surfaces import onto_surfaces
+from carom.persistent.return_to_surfaces import factor_rows, onto_surfaces, solve_rows
 from carom.persistent.settle import greatest
 from carom.persistent.start import first_stage
-from carom.persistent.thresholds import DEPENDENCE, REST_SHARE
+from carom.persistent.thresholds import REST_SHARE
 
 FRICTION_ROUNDS = 60  # of friction with what it does to the normal impulses
 
@@ -238,19 +237,17 @@ def work_of_pull(k, group):
 @kernel
 def find_pull(k, friction, group):
     """Write the impulses that remove the velocities into `old`: with friction (1) if iterations converge."""
-    n, L, x, last = 3 * k, group.m[1], group.v[OLD], group.v[P]
+    n, m, x, last, first = 3 * k, 0, group.v[OLD], group.v[P], 0.0
     for i in range(n):
-        for j in range(n):
-            both = stops(group, i) and stops(group, j)
-            L[i, j] = group.m[0][i, j] if both else 1.0 if i == j else 0.0
-    factor(n, DEPENDENCE, L)
-    first = 0.0
+        if stops(group, i):
+            group.cone.active[m], m = i, m + 1
+    m = factor_rows(m, group)
     for with_friction in range(friction, -1, -1):
         for i in range(n):
             last[i] = 0.0
         before = math.inf
         for turn in range(FRICTION_ROUNDS):
-            change, largest = pull_once(k, with_friction, group)
+            change, largest = pull_once(k, m, with_friction, group)
             for i in range(n):
                 last[i] = x[i]
             first = largest if turn == 0 else first  # without friction
@@ -262,8 +259,8 @@ def find_pull(k, friction, group):
 
 
 @kernel
-def pull_once(k, with_friction, group):
-    """Solve for the impulses with the friction of the last iteration; return their change and size."""
+def pull_once(k, m, with_friction, group):
+    """Solve m rows for the impulses with the friction of the last iteration; return their change and size."""
     n, W, x, last = 3 * k, group.m[0], group.v[OLD], group.v[P]
     for i in range(k):  # friction of the points that slip
         slides = with_friction == 1 and group.closed[i].stays == 1 and group.closed[i].stopped == 0
@@ -273,12 +270,10 @@ def pull_once(k, with_friction, group):
                 rubs = slides and yields(W, q)
                 last[q] = -group.mu[i] * group.heading[i, r] * last[3 * i] if rubs else 0.0
     for i in range(n):
-        x[i] = 0.0
-        if stops(group, i):
-            x[i] = -group.v[U][i]
-            for j in range(n):
-                x[i] -= W[i, j] * last[j] if not stops(group, j) else 0.0
-    substitute(n, group.m[1], x)
+        x[i] = group.v[U][i] if stops(group, i) else 0.0
+        for j in range(n):
+            x[i] += W[i, j] * last[j] if stops(group, i) and not stops(group, j) else 0.0
+    solve_rows(k, m, group, x)
     change, largest = 0.0, 0.0
     for i in range(n):
         if stops(group, i):
