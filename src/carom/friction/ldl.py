@@ -28,9 +28,9 @@ def factor(n, drop, L):
 
 @kernel
 def factor_by_pivots(n, drop, rows, own, L):
-    """Factor as `factor` does, by pivots: exchange the numbers `rows` and the diagonal `own`; return the rank.
+    """Factor as `factor` does, by pivots: exchange the numbers `rows` and the sizes `own`; return the rank.
 
-    The row that those before it determine least, in parts of its diagonal, comes next: in another order the
+    The row that those before it determine least, in parts of its size, comes next: in another order the
     pivot of a row that nearly depends on them is small, and those after it are its round-off. The leading part
     of L (n, n), of this rank, is the factor; rows below it are those of L for the rows that are left out.
     """

@@ -94,3 +94,21 @@ def test_painleve_by_the_layer():
         np.tile(ROD, (2, 2)), [u, u], 1.6, 0.5, "stronge", stiffness=(1, 3), rtol=1e-10
     )
     np.testing.assert_allclose(both.velocity_after[0], exact.velocity_after, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(1, 8))
+def test_round_off_across_a_plane_is_no_direction(seed):
+    """W of joined bodies that move in a plane has 1e-16 beside its rows, and 1e-32 on its diagonal across it."""
+    random = np.random.default_rng(seed)
+    G = np.zeros((9, 5))
+    for i in range(3):
+        G[3 * i : 3 * i + 2] = random.normal(size=(2, 5))
+    W = G @ G.T
+    u = np.zeros((3, 3))
+    u[:, 0], u[:, 1] = [-1.0, 0.0, 0.0], [0.3, 0.0, 0.1]
+    across = np.zeros((9, 9))
+    across[2::3] = 1e-16 * random.normal(size=(3, 9))
+    across[2::3, 2::3] = 5e-33 * np.eye(3)
+    exact = resolve_impacts(W, u, 0.5, 0.3, "poisson")
+    noisy = resolve_impacts(W + across + across.T, u, 0.5, 0.3, "poisson")
+    np.testing.assert_allclose(noisy.impulse, exact.impulse, rtol=0, atol=1e-7)
