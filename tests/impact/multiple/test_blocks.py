@@ -98,7 +98,7 @@ def test_painleve_by_the_layer():
 
 @pytest.mark.parametrize("seed", range(1, 8))
 def test_round_off_across_a_plane_is_no_direction(seed):
-    """W of joined bodies that move in a plane has 1e-16 beside its rows, and 1e-32 on its diagonal across it."""
+    """W of joined bodies that move in a plane is round-off across it: 1e-16, and 1e-32 on the diagonal."""
     random = np.random.default_rng(seed)
     G = np.zeros((9, 5))
     for i in range(3):
