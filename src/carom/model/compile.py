@@ -105,7 +105,7 @@ def principal(inertia: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = inertia.tolist()
     scale = max(xx, yy, zz)
     if scale - min(xx, yy, zz) <= 1e-13 * scale:
-        diagonal[:] = diagonal.mean()
+        diagonal[:] = diagonal.sum() / 3.0
     if max(map(abs, (xy, xz, yx, yz, zx, zy))) <= 1e-15 * scale:
         return diagonal, np.array([1.0, 0.0, 0.0, 0.0])
     moments, axes = np.linalg.eigh(inertia)
@@ -132,7 +132,7 @@ def _start(scene):
 def attitudes(orientation: np.ndarray, to_principal: np.ndarray) -> np.ndarray:
     """Return the quaternions (N, 4) from principal axes to the world of bodies with these orientations."""
     Q = quaternion.multiply(orientation, to_principal)
-    return Q / np.linalg.norm(Q, axis=1, keepdims=True)
+    return Q / np.sqrt(np.add.reduce(Q * Q, axis=1, keepdims=True))
 
 
 def _joints(scene, moments, placement, elements, options, loops):
@@ -315,7 +315,7 @@ def _bodies(scene, moments, joints, elements, springs, loads, bushings, more):
     ballistic[more.named] = 0
     bodies["mass"] = [b.mass for b in scene.bodies]
     bodies["inertia"], bodies["extent"], bodies["ball"] = moments, _extents(scene, joints), ball
-    bodies["isotropic"] = moments.max(axis=1) == moments.min(axis=1)
+    bodies["isotropic"] = (moments[:, 1:] == moments[:, :1]).all(axis=1)
     bodies["isolated"], bodies["ballistic"] = isolated, ballistic
     bodies["number"] = number
     bodies["component"] = np.where(isolated == 1, number, len(bodies))

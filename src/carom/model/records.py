@@ -236,12 +236,12 @@ def with_room(records: Records, saved: int, rows: int = 1) -> Records:
 
 def trimmed(records: Records, clock: np.recarray) -> Records:
     """Return copies of the rows that were written."""
-    return Records(*(rows.copy().view(Columns) for rows in written(records, clock)))
+    return Records(*(rows.copy() for rows in written(records, clock)))
 
 
 def written(records: Records, clock: np.recarray) -> Records:
     """Return views of the rows that were written; a run that continues may write to them."""
-    return Records(*(rows[:end].view(Columns) for rows, end in zip(records, _ends(clock))))
+    return Records(*(rows[:end] for rows, end in zip(records, _ends(clock))))
 
 
 def _ends(clock: np.recarray) -> tuple[int, ...]:

@@ -70,9 +70,10 @@ class Registry:
 
     def parts(self, kind: type) -> tuple:
         """Return all parts of a `kind`, in the order added."""
-        if kind not in self.derived:
-            self.derived[kind] = tuple(self._kinds.get(kind, ()))
-        return self.derived[kind]
+        found = self.derived.get(kind)
+        if found is None:
+            found = self.derived[kind] = tuple(self._kinds.get(kind, ()))
+        return found
 
     def __iter__(self) -> Iterator:
         """Go through all parts, in the order added."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from carom.geometry.frames import length
 from carom.scene.all_pairs import meeting
 from carom.scene.bodies import Body, HalfSpace
 from carom.scene.constraints import coordinate_kind
@@ -29,6 +30,9 @@ def _of_untouched(scene: Scene) -> list[str]:
     if not (scene.fixed or scene.contacts):
         return []
     touched = _touched(scene)
+    free = [b for b in scene.bodies if not touched[b.index]]
+    if not free:
+        return []
     attached = {id(part) for joint in scene.joints for part in (joint.parent, joint.child)}
     attached |= {id(part) for constraint in scene.constraints for part in constraint.parts}
     for force in scene.forces:
@@ -36,7 +40,7 @@ def _of_untouched(scene: Scene) -> list[str]:
         if not isinstance(force.definition, (Force, Torque)):
             attached |= {id(part) for part in (force.parent, force.child)}
             attached |= {id(part) for part in getattr(force.definition, "bodies", ())}
-    free = [b for b in scene.bodies if not touched[b.index] and id(b) not in attached]
+    free = [b for b in free if id(b) not in attached]
     if not free:
         return []
     bare = [b for b in free if b.shape is None]
@@ -81,11 +85,11 @@ def _of_gravity(scene: Scene) -> list[str]:
     planes, gravity = scene.half_spaces, scene.gravity
     if not planes or scene.statics or scene.joints or scene.constraints or scene.forces:
         return []
-    normals = np.array([plane.normal for plane in planes])
-    away = normals @ gravity > 0.5 * np.linalg.norm(gravity)
-    velocities = np.array([body.velocity for body in scene.bodies]).reshape(-1, 3)
-    if not away.all() or (velocities @ normals.T < 0.0).any():  # thrown at a ceiling
+    much, normals = 0.5 * length(gravity), [plane.normal for plane in planes]
+    if not all(normal @ gravity > much for normal in normals):
         return []
+    if any(body.velocity @ normal < 0.0 for body in scene.bodies for normal in normals):
+        return []  # thrown at a ceiling
     down = tuple((0.0 - gravity).tolist())
     return [
         f"Gravity {tuple(gravity.tolist())} points away from {_names(planes)}: bodies do not fall onto it. "
