@@ -65,9 +65,11 @@ def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool =
     rolls = pairs.body[which.number[flat & curved]]
     place, solids, hulls = _solids(scene, every, rolls, to_principal)
     _place_statics(scene, single, solids, place)
-    own = _own_vertices(which, flat & ~curved)
-    vertices = np.concatenate([grounded.vertices[own], single.vertices])
-    surfaces = Surfaces(grounded, single, len(own), place)
+    # a vertex carries a contact, so each row with a half-space has its own
+    ranges = (which.core[end][flat & ~curved].tolist() for end in ("first", "last"))
+    own = [grounded.vertices[first:last] for first, last in zip(*ranges)]
+    vertices = np.concatenate([*own, single.vertices])
+    surfaces = Surfaces(grounded, single, len(vertices) - len(single.vertices), place)
     rows = _rows(scene, options, pairs, which, surfaces)
     rows, levels = with_level_rows(rows, *find_levels(scene, pairs, place))
     return Contacts(rows, vertices, solids, hulls, levels, known, surfaces, later)
@@ -172,12 +174,6 @@ def _write_shapes(rows: np.recarray, which: Rows) -> None:
     rows["part"] = np.maximum(core["several"], other["several"])
     rows["extent"], rows["other_extent"] = core["extent"], other["extent"]
     rows["radius"], rows["core"] = core["radius"] + other["radius"], core["reach"]
-
-
-def _own_vertices(which: Rows, flat: np.ndarray) -> np.ndarray:
-    """Return the vertices of the rows with half-spaces: a vertex carries a contact, so each row has its own."""
-    count = flat * (which.core["last"] - which.core["first"])
-    return (which.core["first"] + count - count.cumsum()).repeat(count) + np.arange(count.sum())
 
 
 def _write_ranges(rows: np.recarray, which: Rows, shared: int) -> None:

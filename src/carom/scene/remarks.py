@@ -10,7 +10,7 @@ import numpy as np
 
 from carom.geometry.frames import length
 from carom.scene.all_pairs import meeting
-from carom.scene.bodies import Body, HalfSpace
+from carom.scene.bodies import HalfSpace
 from carom.scene.constraints import coordinate_kind
 from carom.scene.forces import Force, Torque
 
@@ -30,7 +30,7 @@ def _of_untouched(scene: Scene) -> list[str]:
     if not (scene.fixed or scene.contacts):
         return []
     touched = _touched(scene)
-    free = [b for b in scene.bodies if not touched[b.index]]
+    free = [b for b in scene.bodies if b not in touched]
     if not free:
         return []
     attached = {id(part) for joint in scene.joints for part in (joint.parent, joint.child)}
@@ -51,17 +51,13 @@ def _of_untouched(scene: Scene) -> list[str]:
     ]
 
 
-def _touched(scene: Scene) -> np.ndarray:
-    """Return which bodies (N,) have a contact of their own or by default."""
-    touched = np.zeros(len(scene.bodies), dtype=bool)
-    for contact in scene.contacts:
-        touched[
-            [part.index for part in (contact.body, contact.other) if isinstance(part, Body)]
-        ] = True
+def _touched(scene: Scene) -> set:
+    """Return the parts that have a contact of their own or by default."""
+    touched: set = {part for one in scene.contacts for part in (one.body, one.other)}
     found = scene._pairs.defaults(scene.bodies, scene.fixed)
     if found is not None:
-        touched[found.grounded.body] = True
-        touched |= meeting(found)
+        some = np.union1d(found.grounded.body, np.flatnonzero(meeting(found)))
+        touched.update(scene.bodies[b] for b in some)
     return touched
 
 
