@@ -178,7 +178,7 @@ def _joints(scene, moments, placement, elements, options, loops):
         solver = solvers.tree_solver(joints, order, carrier, rotor)
     else:
         mass = np.array([b.mass for b in scene.bodies])
-        ratio, light, heavy = solvers.spread(touching, mass, moments, _extents(scene, joints))
+        ratio, light, heavy = solvers.spread(touching, mass, moments, _extents(elements.sizes, joints))
         if ratio > LARGEST_MASS_RATIO and not loops:
             names = scene.bodies[light].name, scene.bodies[heavy].name
             raise ValueError(
@@ -284,12 +284,12 @@ def start_sizes(scene) -> np.ndarray:
     )
 
 
-def _extents(scene, joints) -> np.ndarray:
+def _extents(sizes: np.ndarray, joints) -> np.ndarray:
     """Return a length (N,) of each body: the largest of the size of its shape and the arms of its joints.
 
     Without a shape its radius of gyration counts: a joint may be at its mass centre, or nearly so.
     """
-    size = start_sizes(scene)
+    size = sizes.copy()
     for side in ("parent", "child") if len(joints) else ():
         sides, anchors = joints[side], joints[f"{side}_anchor"]
         inside = sides >= 0
@@ -314,7 +314,7 @@ def _bodies(scene, moments, joints, elements, springs, loads, bushings, more):
             ballistic[loaded[loaded >= 0]] = 0
     ballistic[more.named] = 0
     bodies["mass"] = [b.mass for b in scene.bodies]
-    bodies["inertia"], bodies["extent"], bodies["ball"] = moments, _extents(scene, joints), ball
+    bodies["inertia"], bodies["extent"], bodies["ball"] = moments, _extents(elements.sizes, joints), ball
     bodies["isotropic"] = (moments[:, 1:] == moments[:, :1]).all(axis=1)
     bodies["isolated"], bodies["ballistic"] = isolated, ballistic
     bodies["number"] = number

@@ -63,7 +63,7 @@ class Elements:
     """The rows after the joints of a scene: relations, rows of the user's, springs and inertias as rows."""
 
     def __init__(self, scene, coordinates, functions: Functions, pieces: Pieces, sizes: np.ndarray):
-        self.coordinates = coordinates
+        self.coordinates, self.sizes = coordinates, sizes
         self.kinds, self.rows, self.numbers, self.touching = [], [], [], []
         self.relations, self.user, self.stiff, self.rotors = [], [], [], []
         for force in scene.forces:
@@ -77,7 +77,7 @@ class Elements:
             if isinstance(d, Rows):
                 self._user(constraint, functions)
             else:
-                self._relation(constraint, functions, sizes)
+                self._relation(constraint, functions)
 
     def _add(self, kind, rows, number, bodies):
         self.kinds.append(kind)
@@ -133,12 +133,13 @@ class Elements:
         self._add(arrays.USER_ROWS, rows, len(self.user), [b.index for b in d.bodies])
         self.user.append(made)
 
-    def _relation(self, constraint, functions, sizes):
+    def _relation(self, constraint, functions):
         d, made = constraint.definition, table(arrays.RELATION_ROW, 1)
         given = d.terms if isinstance(d, Coupling) else ((d.joint, d.coordinate, 1.0),)
         terms = [(self.coordinates.number(joint, k), factor) for joint, k, factor in given]
         lengths = [
-            abs(factor) * (1.0 if coordinate_kind(joint, k) == "turn" else sizes[joint.child.index])
+            abs(factor)
+            * (1.0 if coordinate_kind(joint, k) == "turn" else self.sizes[joint.child.index])
             for joint, k, factor in given
         ]
         made.scale = max(lengths)
