@@ -63,7 +63,7 @@ class Run:
 
     #: is asked at pauses; True interrupts the run
     to_stop: Callable[[], bool] = staticmethod(lambda: False)
-    #: calls entries of compiled code: all that a run passes to them has one type, whatever its scene and method
+    #: what a run passes to compiled code has one type, whatever its scene and method
     call = Entries()
 
     def __init__(self, scene: Scene, settings: Settings):

@@ -40,13 +40,12 @@ def table(fields: list, *shape: int) -> Columns:
     Its memory is an array of bytes: NumPy takes ten times as long to make zeros of a type with many fields.
     An array without rows is made once for each type.
     """
-    known = _KINDS.get(id(fields))
-    if known is None:
+    if id(fields) not in _KINDS:
         kind = np.dtype((np.record, np.dtype(fields, align=True)))
-        known = _KINDS[id(fields)] = fields, kind, np.zeros(0, kind).view(Columns)
+        _KINDS[id(fields)] = fields, kind, np.zeros(0, kind).view(Columns)
+    _, kind, none = _KINDS[id(fields)]
     if shape == (0,):
-        return known[2]
-    kind = known[1]
+        return none
     return np.ndarray.__new__(Columns, shape, kind, np.zeros(kind.itemsize * prod(shape), np.uint8))
 
 

@@ -77,7 +77,7 @@ class Elements:
             if isinstance(d, Rows):
                 self._user(constraint, functions)
             else:
-                self._relation(constraint, functions)
+                self._relation(constraint, functions, sizes)
 
     def _add(self, kind, rows, number, bodies):
         self.kinds.append(kind)
@@ -133,13 +133,12 @@ class Elements:
         self._add(arrays.USER_ROWS, rows, len(self.user), [b.index for b in d.bodies])
         self.user.append(made)
 
-    def _relation(self, constraint, functions):
+    def _relation(self, constraint, functions, sizes):
         d, made = constraint.definition, table(arrays.RELATION_ROW, 1)
         given = d.terms if isinstance(d, Coupling) else ((d.joint, d.coordinate, 1.0),)
         terms = [(self.coordinates.number(joint, k), factor) for joint, k, factor in given]
         lengths = [
-            abs(factor)
-            * (1.0 if coordinate_kind(joint, k) == "turn" else self.sizes[joint.child.index])
+            abs(factor) * (1.0 if coordinate_kind(joint, k) == "turn" else sizes[joint.child.index])
             for joint, k, factor in given
         ]
         made.scale = max(lengths)

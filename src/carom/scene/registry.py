@@ -70,10 +70,9 @@ class Registry:
 
     def parts(self, kind: type) -> tuple:
         """Return all parts of a `kind`, in the order added."""
-        found = self.derived.get(kind)
-        if found is None:
-            found = self.derived[kind] = tuple(self._kinds.get(kind, ()))
-        return found
+        if kind not in self.derived:
+            self.derived[kind] = tuple(self._kinds.get(kind, ()))
+        return self.derived[kind]
 
     def __iter__(self) -> Iterator:
         """Go through all parts, in the order added."""

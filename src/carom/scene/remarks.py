@@ -29,18 +29,14 @@ def _of_untouched(scene: Scene) -> list[str]:
     """Return a sentence about free bodies that cannot touch anything, if others could touch them."""
     if not (scene.fixed or scene.contacts):
         return []
-    touched = _touched(scene)
-    free = [b for b in scene.bodies if b not in touched]
-    if not free:
-        return []
-    attached = {id(part) for joint in scene.joints for part in (joint.parent, joint.child)}
-    attached |= {id(part) for constraint in scene.constraints for part in constraint.parts}
+    kept = _touched(scene)
+    kept.update(part for joint in scene.joints for part in (joint.parent, joint.child))
+    kept.update(part for constraint in scene.constraints for part in constraint.parts)
     for force in scene.forces:
         # springs and what the user writes may hold it
         if not isinstance(force.definition, (Force, Torque)):
-            attached |= {id(part) for part in (force.parent, force.child)}
-            attached |= {id(part) for part in getattr(force.definition, "bodies", ())}
-    free = [b for b in free if id(b) not in attached]
+            kept.update((force.parent, force.child, *getattr(force.definition, "bodies", ())))
+    free = [b for b in scene.bodies if b not in kept]
     if not free:
         return []
     bare = [b for b in free if b.shape is None]
@@ -57,7 +53,7 @@ def _touched(scene: Scene) -> set:
     found = scene._pairs.defaults(scene.bodies, scene.fixed)
     if found is not None:
         some = np.union1d(found.grounded.body, np.flatnonzero(meeting(found)))
-        touched.update(scene.bodies[b] for b in some)
+        touched.update(map(scene.bodies.__getitem__, some))
     return touched
 
 
