@@ -319,7 +319,7 @@ class Run:
 
     def judged(self, status: Status) -> Status:
         """Return the status at the end of the run, after the check of energy, gaps and contact problems."""
-        bad = status is Status.SUCCESS and inaccurate(self.watch)[0]
+        bad = status is Status.SUCCESS and inaccurate(r.as_numbers(self.watch))
         return Status.INACCURATE if bad else status
 
     def go_back(self) -> None:
