@@ -31,7 +31,7 @@ class Value(Generic[Kept, Given]):
 
     def __get__(self, record: Any, owner: type | None = None) -> Kept:
         if record is not None:
-            return vars(record)[self.name]
+            return record.__dict__[self.name]
         if self.default is REQUIRED:  # so a dataclass learns that it has none
             raise AttributeError(self.name)
         return self.default

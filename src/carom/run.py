@@ -15,6 +15,7 @@ from carom.dynamics.methods import EXPLICIT, METHODS, make_method
 from carom.dynamics.project import project_start
 from carom.dynamics.reactions import start_errors, start_speeds
 from carom.dynamics.thresholds import FIRST_STEP
+from carom.geometry.frames import length
 from carom.impact.multiple.layout import multiple_settings
 from carom.impact.workspace import new_group, new_multiple, no_multiple
 from carom.model import records as r
@@ -62,6 +63,8 @@ class Run:
 
     #: is asked at pauses; True interrupts the run
     to_stop: Callable[[], bool] = staticmethod(lambda: False)
+    #: what a run passes to compiled code has one type, whatever its scene and method
+    call = Entries()
 
     def __init__(self, scene: Scene, settings: Settings):
         # from the third run with the same settings on, all but the records is cast from a mould
@@ -99,7 +102,7 @@ class Run:
         if adapts:
             step = time_of_bounces(system, tolerances, step)
         self.controls = Controls(
-            step=step, pull=float(np.linalg.norm(system.gravity)), interval=self.grid.interval,
+            step=step, pull=length(system.gravity), interval=self.grid.interval,
             duration=settings.duration, location=LOCATIONS[settings.impact_location],
             gap=options.gap_tolerance, tie=options.tie_tolerance, hold=int(options.hold),
             rest=options.rest_tolerance, layer_steps=options.layer_steps,
@@ -136,7 +139,6 @@ class Run:
         of = system, self.active
         self.islands = new_islands(*of, later) if self.apart else no_islands(*of)
         self.group = new_group(system, later is not None)
-        self.call = Entries(system, self.method)
         again = self.apart and options.hold and has_events(system, later is not None)
         self.controls = self.controls._replace(retry=int(again))
         self.crowd = no_crowd()  # made when there is one
@@ -317,7 +319,7 @@ class Run:
 
     def judged(self, status: Status) -> Status:
         """Return the status at the end of the run, after the check of energy, gaps and contact problems."""
-        bad = status is Status.SUCCESS and inaccurate(self.watch[0])
+        bad = status is Status.SUCCESS and inaccurate(r.as_numbers(self.watch))
         return Status.INACCURATE if bad else status
 
     def go_back(self) -> None:

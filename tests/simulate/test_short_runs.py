@@ -213,11 +213,23 @@ def test_columns_of_a_solution_are_plain_arrays():
     assert type(a.ledger.loads) is np.ndarray
 
 
-def test_scratch_is_of_the_same_types_in_every_run():
-    # Units and entries are found by the types of system, method and settings alone (carom._compiled.units).
-    makers = (ball, die, pendulum)
-    runs = [carom.simulate(make(), 0.5, step=0.01)._run for make in makers]
-    for name in ("active", "now", "work", "group", "multiple", "crowd", "clock", "records"):
+def hull():
+    """A tetrahedron whose corners were given in Fortran's order."""
+    scene = carom.Scene()
+    scene.add_half_space((0, 0, 0), (0, 0, 1))
+    corners = np.asfortranarray(0.1 * np.vstack([np.eye(3), np.zeros(3)]))
+    scene.add_body(carom.Convex(corners), mass=1.0, position=(0, 0, 1))
+    scene.add_static(carom.Convex(corners), position=(1, 0, 1))
+    scene.set_contact_default(friction=0.3)
+    return scene
+
+
+@quiet
+def test_what_compiled_code_is_given_is_of_the_same_types_in_every_run():
+    # An entry is found by the classes of its arguments alone (`Run.call`).
+    makers = (ball, die, pendulum, joined, pile, hull)
+    runs = [carom.simulate(make(), 0.08, **how)._run for make in makers for how in WAYS]
+    for name in ("model", "data", "method", "islands", "grid"):
         kinds = [in_c_order(kind(getattr(run, name))) for run in runs]
         assert kinds[1:] == kinds[:-1], name
     grown = runs[0].records

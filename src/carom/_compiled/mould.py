@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from mmap import ACCESS_COPY, ACCESS_WRITE, mmap
 from typing import Any
 
@@ -14,14 +14,16 @@ SMALL = 512  # bytes up to which it takes longer to look for zeros than to copy 
 LARGE, PRIVATE = 1 << 20, ACCESS_WRITE if os.name == "nt" else ACCESS_COPY
 
 
-def arrays_of(value) -> Iterator[np.ndarray]:
-    """Yield the arrays in nested tuples that can be written to."""
-    if isinstance(value, np.ndarray):
-        if value.size and value.flags.writeable:
-            yield value
-    elif isinstance(value, tuple):
-        for part in value:
-            yield from arrays_of(part)
+def arrays_of(value) -> list[np.ndarray]:
+    """Return the arrays in nested tuples that can be written to."""
+    found, left = [], [value]
+    while left:
+        part = left.pop()
+        if isinstance(part, tuple):
+            left += part[::-1]
+        elif isinstance(part, np.ndarray) and part.size and part.flags.writeable:
+            found.append(part)
+    return found
 
 
 class Mould:
@@ -36,7 +38,7 @@ class Mould:
         arrays = [one for one in arrays_of(parts) if id(one) not in known]
         zero = [a.nbytes > SMALL and not a.reshape(-1).view(np.uint8).any() for a in arrays]
         content = [b"" if empty else one.tobytes("A") for one, empty in zip(arrays, zero)]
-        order = np.argsort(zero, kind="stable").tolist()
+        order = sorted(range(len(zero)), key=zero.__getitem__)
         self.recipe = parts, [arrays[k] for k in order], [content[k] for k in order]
 
     def cast(self) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import prod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,14 +38,15 @@ def table(fields: list, *shape: int) -> Columns:
     """Return a zero array of records with the given fields.
 
     Its memory is an array of bytes: NumPy takes ten times as long to make zeros of a type with many fields.
+    An array without rows is made once for each type.
     """
     if id(fields) not in _KINDS:
-        _KINDS[id(fields)] = fields, np.dtype((np.record, np.dtype(fields, align=True)))
-    kind = _KINDS[id(fields)][1]
-    size = kind.itemsize
-    for length in shape:
-        size *= length
-    return np.ndarray.__new__(Columns, shape, kind, np.zeros(size, np.uint8))
+        kind = np.dtype((np.record, np.dtype(fields, align=True)))
+        _KINDS[id(fields)] = fields, kind, np.zeros(0, kind).view(Columns)
+    _, kind, none = _KINDS[id(fields)]
+    if shape == (0,):
+        return none
+    return np.ndarray.__new__(Columns, shape, kind, np.zeros(kind.itemsize * prod(shape), np.uint8))
 
 
 def copied(rows: np.ndarray) -> Any:
@@ -53,4 +55,4 @@ def copied(rows: np.ndarray) -> Any:
 
 
 #: lists of fields and the types made from them: without this cache they took a tenth of a short run
-_KINDS: dict[int, tuple[list, np.dtype]] = {}
+_KINDS: dict[int, tuple[list, np.dtype, Columns]] = {}

@@ -22,8 +22,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from carom._compiled.decorators import kernel
 from carom.dynamics import thresholds as limits
 from carom.geometry.rotation import norm
@@ -176,7 +174,7 @@ def plan_next(dt, error, again, controls, work):
 
 def complete(rtol: float, atol: float | None, system) -> tuple[float, float]:
     """Return (rtol, atol [m]); the default of `atol` is `rtol` times the size of the smallest body."""
-    return rtol, rtol * float(np.min(system.bodies.extent)) if atol is None else atol
+    return rtol, rtol * float(system.bodies["extent"].min()) if atol is None else atol
 
 
 def time_of_bounces(system, tolerances: tuple[float, float], longest: float) -> float:
@@ -184,9 +182,9 @@ def time_of_bounces(system, tolerances: tuple[float, float], longest: float) -> 
 
     It replaces the step where this is a measure of time, for persistent contacts and for bodies at rest.
     """
-    g = float(np.linalg.norm(system.gravity))
+    g = math.sqrt(system.gravity @ system.gravity)
     if not system.contacts.size or g == 0.0:
         return longest
     rtol, atol = tolerances
-    size = float(np.min(system.bodies.extent[system.contacts.body]))
-    return min(longest, float(np.sqrt(8.0 * (atol + rtol * size) / g)))
+    size = float(system.bodies["extent"][system.contacts["body"]].min())
+    return min(longest, math.sqrt(8.0 * (atol + rtol * size) / g))

@@ -89,10 +89,9 @@ def capacity(system: System, more: bool) -> int:
     if found.any():
         points = np.where(found, MOST_POINTS, vertices)
         return max(1, min(MOST_TOGETHER, int(points.sum()) + more_rows))
-    count = np.zeros(system.bodies.size + 1, dtype=np.int64)
     rows = 1 + (contacts["turning"] > 0.0).sum(axis=1)
-    np.add.at(count, system.bodies["component"][contacts["body"]], rows * vertices)
-    return max(1, min(MOST_TOGETHER, int(count.max()) + more_rows))
+    count = np.bincount(system.bodies["component"][contacts["body"]], rows * vertices)
+    return max(1, min(MOST_TOGETHER, int(count.max(initial=0.0)) + more_rows))
 
 
 def new_group(system: System, more: bool = False) -> Group:

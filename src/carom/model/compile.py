@@ -105,7 +105,7 @@ def principal(inertia: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = inertia.tolist()
     scale = max(xx, yy, zz)
     if scale - min(xx, yy, zz) <= 1e-13 * scale:
-        diagonal[:] = diagonal.mean()
+        diagonal[:] = diagonal.sum() / 3.0
     if max(map(abs, (xy, xz, yx, yz, zx, zy))) <= 1e-15 * scale:
         return diagonal, np.array([1.0, 0.0, 0.0, 0.0])
     moments, axes = np.linalg.eigh(inertia)
@@ -118,9 +118,7 @@ def principal(inertia: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _start(scene):
     bodies = scene.bodies
-    pairs = [principal(b.inertia) for b in bodies]
-    moments = np.array([m for m, _ in pairs])
-    to_principal = np.array([q for _, q in pairs])
+    moments, to_principal = map(np.array, zip(*(principal(b.inertia) for b in bodies)))
     start = table(STATE, len(bodies))
     start["Q"] = attitudes(np.array([b.orientation for b in bodies]), to_principal)
     start["x"] = [b.position for b in bodies]
@@ -132,7 +130,7 @@ def _start(scene):
 def attitudes(orientation: np.ndarray, to_principal: np.ndarray) -> np.ndarray:
     """Return the quaternions (N, 4) from principal axes to the world of bodies with these orientations."""
     Q = quaternion.multiply(orientation, to_principal)
-    return Q / np.linalg.norm(Q, axis=1, keepdims=True)
+    return Q / np.sqrt(np.add.reduce(Q * Q, axis=1, keepdims=True))
 
 
 def _joints(scene, moments, placement, elements, options, loops):
@@ -178,7 +176,7 @@ def _joints(scene, moments, placement, elements, options, loops):
         solver = solvers.tree_solver(joints, order, carrier, rotor)
     else:
         mass = np.array([b.mass for b in scene.bodies])
-        ratio, light, heavy = solvers.spread(touching, mass, moments, _extents(scene, joints))
+        ratio, light, heavy = solvers.spread(touching, mass, moments, _extents(elements, joints))
         if ratio > LARGEST_MASS_RATIO and not loops:
             names = scene.bodies[light].name, scene.bodies[heavy].name
             raise ValueError(
@@ -284,12 +282,12 @@ def start_sizes(scene) -> np.ndarray:
     )
 
 
-def _extents(scene, joints) -> np.ndarray:
+def _extents(elements: Elements, joints) -> np.ndarray:
     """Return a length (N,) of each body: the largest of the size of its shape and the arms of its joints.
 
     Without a shape its radius of gyration counts: a joint may be at its mass centre, or nearly so.
     """
-    size = start_sizes(scene)
+    size = elements.sizes.copy()
     for side in ("parent", "child") if len(joints) else ():
         sides, anchors = joints[side], joints[f"{side}_anchor"]
         inside = sides >= 0
@@ -314,9 +312,8 @@ def _bodies(scene, moments, joints, elements, springs, loads, bushings, more):
             ballistic[loaded[loaded >= 0]] = 0
     ballistic[more.named] = 0
     bodies["mass"] = [b.mass for b in scene.bodies]
-    bodies["inertia"], bodies["extent"], bodies["ball"] = moments, _extents(scene, joints), ball
-    bodies["isotropic"] = moments.max(axis=1) == moments.min(axis=1)
-    bodies["isolated"], bodies["ballistic"] = isolated, ballistic
-    bodies["number"] = number
+    bodies["inertia"], bodies["extent"], bodies["ball"] = moments, _extents(elements, joints), ball
+    bodies["isotropic"] = (moments[:, 1:] == moments[:, :1]).all(axis=1)
+    bodies["isolated"], bodies["ballistic"], bodies["number"] = isolated, ballistic, number
     bodies["component"] = np.where(isolated == 1, number, len(bodies))
     return bodies

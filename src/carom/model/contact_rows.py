@@ -76,8 +76,8 @@ def contact_rows(pairs: PairTable, grounded: Cores, single: Cores) -> Rows:
     if between.any():
         pieces = _lengths(single.first)
         count = np.where(between, pieces[pairs.body] * pieces[pairs.other], count)
-    number = np.repeat(np.arange(len(count)), count)
-    k = np.arange(len(number)) - np.repeat(np.cumsum(count) - count, count)
+    number = np.arange(len(count)).repeat(count)
+    k = np.arange(len(number)) - (count.cumsum() - count).repeat(count)
     core, other = table(CORE, len(number)), table(CORE, len(number))
     flat = ~between[number]
     core[flat] = grounded.group[grounded.first[pairs.body[number[flat]]] + k[flat]]

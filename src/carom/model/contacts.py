@@ -11,7 +11,7 @@ from carom._compiled.record_arrays import table
 from carom.collision.layout import SOLID, Hulls, no_hulls, solid_table
 from carom.collision.level_layout import Levels
 from carom.geometry import quaternion
-from carom.geometry.frames import contact_axes
+from carom.geometry.frames import contact_axes, length
 from carom.model.arrays import CONTACT
 from carom.model.contact_rows import Rows, contact_rows, first_pairs
 from carom.model.cores import Cores, new_cores, singly, swollen_alike
@@ -31,7 +31,6 @@ class Surfaces(NamedTuple):
     single: Cores  # piece by piece, against each other
     shared: int  # first vertex of `single`, after those of contacts with half-spaces
     place: np.ndarray  # (N,) first solid of each body
-    fastest: float  # speed of a body at the start
 
 
 class Contacts(NamedTuple):
@@ -62,14 +61,15 @@ def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool =
     every = _shapes(scene, pairs.body[meets], pairs.other[meets], others)
     single = new_cores(every, singly, to_principal)
     which = contact_rows(pairs, grounded, single)
-    flat = pairs.other[which.number] < 0
-    curved = pairs.body[which.number[flat & (which.core["curved"] == 1)]]
-    place, solids, hulls = _solids(scene, every, curved, to_principal)
+    flat, curved = pairs.other[which.number] < 0, which.core["curved"] == 1
+    rolls = pairs.body[which.number[flat & curved]]
+    place, solids, hulls = _solids(scene, every, rolls, to_principal)
     _place_statics(scene, single, solids, place)
-    own = _own_vertices(which, flat & (which.core["curved"] == 0))
-    vertices = np.concatenate([grounded.vertices[own], single.vertices])
-    fastest = max((float(np.linalg.norm(body.velocity)) for body in scene.bodies), default=0.0)
-    surfaces = Surfaces(grounded, single, len(own), place, fastest)
+    # a vertex carries a contact, so each row with a half-space has its own
+    ranges = (which.core[end][flat & ~curved].tolist() for end in ("first", "last"))
+    own = [grounded.vertices[first:last] for first, last in zip(*ranges)]
+    vertices = np.concatenate([*own, single.vertices])
+    surfaces = Surfaces(grounded, single, len(vertices) - len(single.vertices), place)
     rows = _rows(scene, options, pairs, which, surfaces)
     rows, levels = with_level_rows(rows, *find_levels(scene, pairs, place))
     return Contacts(rows, vertices, solids, hulls, levels, known, surfaces, later)
@@ -123,17 +123,17 @@ def _rows(scene, options: Options, pairs: PairTable, which: Rows, surfaces: Surf
     _write_laws(rows, pairs, which)
     _write_statics(rows, scene)
     extent = rows["extent"]
-    rows["still"] = 1e-14 * _speed(scene, extent, surfaces.fastest)
+    rows["still"] = 1e-14 * _speed(scene, extent)
     rows["width"] = 1e-5 * extent if options.layer_width is None else options.layer_width
     rows["penetration"] = options.penetration
     return rows
 
 
-def _speed(scene: Scene, extent: np.ndarray, fastest: float) -> np.ndarray | float:
+def _speed(scene: Scene, extent: np.ndarray) -> np.ndarray | float:
     """Return the speed of a fall by the size of a body; without gravity, the greatest speed at the start."""
-    if np.any(scene.gravity):
-        return np.sqrt(np.linalg.norm(scene.gravity) * extent)
-    return fastest
+    if scene.gravity.any():
+        return np.sqrt(length(scene.gravity) * extent)
+    return max((length(body.velocity) for body in scene.bodies), default=0.0)
 
 
 def _shapes(scene: Scene, *chosen: np.ndarray) -> list[Shape | None]:
@@ -149,6 +149,8 @@ def _parts(scene: Scene) -> tuple:
 
 def _write_statics(rows: np.recarray, scene: Scene) -> None:
     """Write whether the other side of each row is static, and its position; for kernels it is not a body."""
+    if not scene.statics:
+        return
     count = len(scene.bodies)
     rows["static"] = rows["other"] >= count
     for b, solid in enumerate(scene.statics, start=count):
@@ -174,13 +176,6 @@ def _write_shapes(rows: np.recarray, which: Rows) -> None:
     rows["radius"], rows["core"] = core["radius"] + other["radius"], core["reach"]
 
 
-def _own_vertices(which: Rows, flat: np.ndarray) -> np.ndarray:
-    """Return the vertices of the rows with half-spaces: a vertex carries a contact, so each row has its own."""
-    length = np.where(flat, which.core["last"] - which.core["first"], 0)
-    first = np.cumsum(length) - length
-    return np.repeat(which.core["first"] - first, length) + np.arange(length.sum())
-
-
 def _write_ranges(rows: np.recarray, which: Rows, shared: int) -> None:
     """Write the ranges of vertices.
 
@@ -188,10 +183,12 @@ def _write_ranges(rows: np.recarray, which: Rows, shared: int) -> None:
     contacts of a piece share its vertices, which begin at `shared`.
     """
     core, other, flat = which.core, which.other, rows["touches"] == 0
-    length = np.where(flat, core["last"] - core["first"], 0)
-    last = np.cumsum(length)
-    rows["first"][flat], rows["last"][flat] = (last - length)[flat], last[flat]
+    count = flat * (core["last"] - core["first"])
+    last = count.cumsum()
+    rows["first"], rows["last"] = flat * (last - count), flat * last
     pair = rows["other"] >= 0
+    if not pair.any():
+        return
     for name, end, body in (
         ("first", "first", core), ("last", "last", core),
         ("other_first", "first", other), ("other_last", "last", other),
@@ -219,7 +216,7 @@ def _write_solids(rows: np.recarray, which: Rows, place: np.ndarray) -> None:
     """Write the solids of each row."""
     rows["solid"] = which.core["piece"] + place[rows["body"]]
     between = rows["other"] >= 0
-    rows["other_solid"] = np.where(between, place[rows["other"]] + which.other["piece"], 0)
+    rows["other_solid"] = between * (place[rows["other"]] + which.other["piece"])
 
 
 def _write_laws(rows: np.recarray, pairs: PairTable, which: Rows) -> None:

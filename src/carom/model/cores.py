@@ -70,7 +70,7 @@ def new_cores(
         group[at : at + len(one.group)] = one.group
         at += len(one.group)
     length = group["last"]
-    last = np.cumsum(length)
+    last = length.cumsum()
     group["first"], group["last"] = last - length, last
     return Cores(group, first, np.concatenate([one.vertices for one in there]))
 

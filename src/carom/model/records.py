@@ -236,12 +236,12 @@ def with_room(records: Records, saved: int, rows: int = 1) -> Records:
 
 def trimmed(records: Records, clock: np.recarray) -> Records:
     """Return copies of the rows that were written."""
-    return Records(*(rows.copy().view(Columns) for rows in written(records, clock)))
+    return Records(*(rows.copy() for rows in written(records, clock)))
 
 
 def written(records: Records, clock: np.recarray) -> Records:
     """Return views of the rows that were written; a run that continues may write to them."""
-    return Records(*(rows[:end].view(Columns) for rows, end in zip(records, _ends(clock))))
+    return Records._make(rows[:end] for rows, end in zip(records, _ends(clock)))
 
 
 def _ends(clock: np.recarray) -> tuple[int, ...]:
@@ -250,6 +250,6 @@ def _ends(clock: np.recarray) -> tuple[int, ...]:
     return tuple(int(clock[name][0]) for name in names)
 
 
-def as_numbers(clock: np.recarray) -> dict:
-    """Return the fields of the clock as Python numbers, by name."""
-    return dict(zip(clock.dtype.names or (), clock[0].item()))
+def as_numbers(row: np.recarray) -> dict:
+    """Return the fields of the clock, or of another table of one row, as Python numbers, by name."""
+    return dict(zip(row.dtype.names or (), row.item()))

@@ -63,7 +63,7 @@ class Elements:
     """The rows after the joints of a scene: relations, rows of the user's, springs and inertias as rows."""
 
     def __init__(self, scene, coordinates, functions: Functions, pieces: Pieces, sizes: np.ndarray):
-        self.coordinates = coordinates
+        self.coordinates, self.sizes = coordinates, sizes
         self.kinds, self.rows, self.numbers, self.touching = [], [], [], []
         self.relations, self.user, self.stiff, self.rotors = [], [], [], []
         for force in scene.forces:

@@ -44,7 +44,7 @@ _WHY = {
 _OTHER = "they could not be moved from event to event"
 
 
-def beyond(i: int, watch: np.record | np.ndarray, times: float = 1.0):
+def beyond(i: int, watch: np.record | np.ndarray | dict, times: float = 1.0):
     """Return whether the energy error of a kind exceeds `times` the tolerance; for one record, or an array.
 
     The work that applied forces could do over the allowed errors of positions is allowed too: at rest no energy
@@ -59,10 +59,10 @@ def allowed(watch: np.record | np.ndarray | dict, times: float = INACCURATE):
     return most + ENERGY_ROUND_OFF * watch["size"]
 
 
-def inaccurate(watch: np.record | np.ndarray):
+def inaccurate(watch: np.record | np.ndarray | dict):
     """Return whether runs are no success by energy, gaps and contact problems; for one record, or an array."""
     solved = watch["unsolved"] <= TOO_POOR * watch["speed"]
-    return beyond(ALL, watch, INACCURATE) | ~(watch["depth"] <= TOO_DEEP) | ~solved
+    return beyond(ALL, watch, INACCURATE) | np.logical_not((watch["depth"] <= TOO_DEEP) & solved)
 
 
 def sentences(

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from carom.geometry.frames import length
 from carom.scene.all_pairs import meeting
-from carom.scene.bodies import Body, HalfSpace
+from carom.scene.bodies import HalfSpace
 from carom.scene.constraints import coordinate_kind
 from carom.scene.forces import Force, Torque
 
@@ -28,15 +29,14 @@ def _of_untouched(scene: Scene) -> list[str]:
     """Return a sentence about free bodies that cannot touch anything, if others could touch them."""
     if not (scene.fixed or scene.contacts):
         return []
-    touched = _touched(scene)
-    attached = {id(part) for joint in scene.joints for part in (joint.parent, joint.child)}
-    attached |= {id(part) for constraint in scene.constraints for part in constraint.parts}
+    kept = _touched(scene)
+    kept.update(part for joint in scene.joints for part in (joint.parent, joint.child))
+    kept.update(part for constraint in scene.constraints for part in constraint.parts)
     for force in scene.forces:
         # springs and what the user writes may hold it
         if not isinstance(force.definition, (Force, Torque)):
-            attached |= {id(part) for part in (force.parent, force.child)}
-            attached |= {id(part) for part in getattr(force.definition, "bodies", ())}
-    free = [b for b in scene.bodies if not touched[b.index] and id(b) not in attached]
+            kept.update((force.parent, force.child, *getattr(force.definition, "bodies", ())))
+    free = [b for b in scene.bodies if b not in kept]
     if not free:
         return []
     bare = [b for b in free if b.shape is None]
@@ -47,17 +47,13 @@ def _of_untouched(scene: Scene) -> list[str]:
     ]
 
 
-def _touched(scene: Scene) -> np.ndarray:
-    """Return which bodies (N,) have a contact of their own or by default."""
-    touched = np.zeros(len(scene.bodies), dtype=bool)
-    for contact in scene.contacts:
-        touched[
-            [part.index for part in (contact.body, contact.other) if isinstance(part, Body)]
-        ] = True
+def _touched(scene: Scene) -> set:
+    """Return the parts that have a contact of their own or by default."""
+    touched: set = {part for one in scene.contacts for part in (one.body, one.other)}
     found = scene._pairs.defaults(scene.bodies, scene.fixed)
     if found is not None:
-        touched[found.grounded.body] = True
-        touched |= meeting(found)
+        some = np.union1d(found.grounded.body, np.flatnonzero(meeting(found)))
+        touched.update(map(scene.bodies.__getitem__, some))
     return touched
 
 
@@ -81,11 +77,11 @@ def _of_gravity(scene: Scene) -> list[str]:
     planes, gravity = scene.half_spaces, scene.gravity
     if not planes or scene.statics or scene.joints or scene.constraints or scene.forces:
         return []
-    normals = np.array([plane.normal for plane in planes])
-    away = normals @ gravity > 0.5 * np.linalg.norm(gravity)
-    velocities = np.array([body.velocity for body in scene.bodies]).reshape(-1, 3)
-    if not away.all() or (velocities @ normals.T < 0.0).any():  # thrown at a ceiling
+    much, normals = 0.5 * length(gravity), [plane.normal for plane in planes]
+    if not all(normal @ gravity > much for normal in normals):
         return []
+    if any(body.velocity @ normal < 0.0 for body in scene.bodies for normal in normals):
+        return []  # thrown at a ceiling
     down = tuple((0.0 - gravity).tolist())
     return [
         f"Gravity {tuple(gravity.tolist())} points away from {_names(planes)}: bodies do not fall onto it. "

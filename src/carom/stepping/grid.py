@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from carom._compiled.decorators import inlined
+from carom.geometry.frames import length
 from carom.geometry.thresholds import ROUND_OFF
 from carom.model.arrays import System
 from carom.stepping.thresholds import FALL_OF_ONE, FALL_OF_SEVERAL, LONGEST_PART, STEPS_BY_SPEED
@@ -137,8 +138,8 @@ def longest_step(
         return min(duration, most or duration)
     longest = LONGEST_PART * duration
     extent = system.bodies.extent
-    size = float(np.min(extent if more else extent[system.contacts.body]))
-    several, g = len(system.bodies) > 1, float(np.linalg.norm(system.gravity))
+    size = float((extent if more else extent[system.contacts["body"]]).min())
+    several, g = len(system.bodies) > 1, length(system.gravity)
     if g > 0.0:
         part = FALL_OF_SEVERAL if several else FALL_OF_ONE
         return min(longest, part * math.sqrt(2.0 * size / g))

@@ -5,6 +5,8 @@ The coefficients are those of SciPy, which is loaded when they are needed.
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from carom.model.method import RUNGE_KUTTA, Definition, Method, explicit
@@ -31,6 +33,7 @@ def _tableau(chosen) -> Method:
     return explicit(A, np.array(chosen.B))
 
 
+@cache
 def rk5_with_error() -> Method:
     """Return those of order 5 with a seventh stage at the end, without weight, and the weights of the error."""
     from scipy.integrate import RK45
@@ -40,6 +43,7 @@ def rk5_with_error() -> Method:
     return method._replace(A=A, b=np.append(method.b, 0.0), E=np.array([RK45.E]))
 
 
+@cache
 def rk8_with_error() -> Method:
     """Return those of order 8 with the weights of both errors, of order 5 and 3."""
     from scipy.integrate import DOP853
