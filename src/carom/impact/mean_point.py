@@ -39,7 +39,7 @@ def as_one(system, k, state, group, work):
         place(contact, core, state, point)
     inverse_masses(system, 1, work.point, state, work, hit.W)
     hit.u[0], hit.u[1], hit.u[2] = contact_velocity(point, state)
-    return k == 1 or move_alike(k, group.v[U], group.m[0], hit, 10.0 * slow(contact, state))
+    return k == 1 or move_alike(k, group.v[U], group.W, hit, 10.0 * slow(contact, state))
 
 
 @kernel

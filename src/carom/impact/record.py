@@ -75,7 +75,7 @@ def write_share(contact, i, k, state, group, multiple, clock, records):
     phases = layout.WEDGED if result.wedged[i] != 0 else 0
     if multiple.e[i] > 0.0:
         phases |= result.summary[0].marks & (layout.AT_ONCE | layout.PLASTIC)
-    copy_block(group.m[0], n, records.impact[clock.struck].W)
+    copy_block(group.W, n, records.impact[clock.struck].W)
     blow = Blow(
         k, three(group.v[U], n), three(result.velocity, n), three(result.impulse, n), taken,
         returned, loss, taken + returned - loss, phases, 0.0,

@@ -89,7 +89,7 @@ def strike(model, data, method, c):
     if approach < 0.0 or jams:
         hit.closed = max(k, 2) if jams else k  # after a jam active points are always decided again
         if k > 1:
-            inverse_masses(system, k, group.points[0], state, work, group.m[0])
+            inverse_masses(system, k, group.points[0], state, work, group.W)
             velocities(k, group.points[0], state, group.v[U])
         single = as_one(system, k, state, group, work)
         if not single and data.multiple.e.shape[0] < k:

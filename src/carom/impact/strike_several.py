@@ -28,8 +28,11 @@ HERTZ, LINEAR = 1.5, 1.0
 def resolve_group(k, W, u, mu, multiple):
     """Solve the impact of k points; the clock of the workspace gets its code."""
     contacts = by_reference(
-        CornerContacts(k, 0, W, u, mu, multiple.e, multiple.law, multiple.kappa, multiple.pair)
-    )
+        CornerContacts(
+            k=k, others=0, W=W, u=u, friction=mu, restitution=multiple.e, law=multiple.law,
+            stiffness=multiple.kappa, pair=multiple.pair,
+        )
+    )  # fmt: skip
     given = multiple.settings
     settings = MultipleSettings(
         given.multiple, given.rtol, exponent_of(k, multiple), given.max_events, given.max_steps,
@@ -82,7 +85,7 @@ def strike_several(model, data, c, k):
         contact = system.contacts[group.closed[i].contact]
         if abs(u[3 * i]) <= slow(contact, state):
             u[3 * i] = 0.0  # touching, not striking
-        if u[3 * i] < 0.0 and blocked(system, group.points[0][i], group.m[0][3 * i, 3 * i]):
+        if u[3 * i] < 0.0 and blocked(system, group.points[0][i], group.W[3 * i, 3 * i]):
             hit.code = BLOCKED
             return
         j, contact_state = group.closed[i].active, active.contact_states[group.closed[i].contact]
@@ -97,7 +100,7 @@ def strike_several(model, data, c, k):
     passage = multiple.workspace.work.clock[0]
     if model.controls.retry == 1:  # the group can take a time-stepping step instead
         passage.left = int(max(0.0, left(model.controls, clock, COUNT_PASSAGES)) / k**3)
-    resolve_group(k, group.m[0], u, group.mu, multiple)
+    resolve_group(k, group.W, u, group.mu, multiple)
     clock.counts[COUNT_PASSAGES] += k**3 * multiple.result.summary[0].steps
     clock.since += k * multiple.result.summary[0].steps
     if passage.code != OK or passage.left < 0:

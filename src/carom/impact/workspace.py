@@ -45,8 +45,25 @@ CLOSED_POINT = [
 ]
 
 #: rows of `v`: velocities; velocities or accelerations without the unknown impulses; impulses or forces;
-#: accelerations with them; what a search keeps
-U, C, P, OLD, KEPT = range(5)
+#: accelerations with them; errors of positions or velocities, then the impulses that remove them
+U, C, P, ACCELERATIONS, RETURN = range(5)
+
+
+class Equations(NamedTuple):
+    """A linear system A x = r for the forces or impulses in some rows of the points of a group."""
+
+    rows: np.ndarray  # (3K,) the row of each unknown
+    chosen: np.ndarray  # (3K,) rows of those that are shared (`carom.persistent.sharing`)
+    A: np.ndarray  # (3K, 3K)
+    factor: np.ndarray  # (3K, 3K) of A, or of A and a compliance
+    pivot: np.ndarray  # (3K,) rows exchanged in the factor
+    diagonal: np.ndarray  # (3K,) of A, in whose parts pivots are judged
+    x: np.ndarray  # (3K,)
+    r: np.ndarray  # (3K,) right-hand side, then the error that x leaves
+    before: np.ndarray  # (3K,) the unknowns before an iteration of Newton's method
+    directions: np.ndarray  # (3K, 3K) corrections z of x, each before A z (`persistent.settle`)
+    part: np.ndarray  # (3K,) the part of the correction by r in each of them
+    iterations: np.ndarray  # (1,) of stages that fail in a closing step, and for impulses instead
 
 
 class Group(NamedTuple):
@@ -58,12 +75,13 @@ class Group(NamedTuple):
     closed: np.recarray  # (K,) CLOSED_POINT
     points: np.recarray  # (2, K) POINT: of the present state; of the end of a step
     v: np.ndarray  # (5, 3K) vectors
-    m: np.ndarray  # (2, 3K, 3K) inverse mass W, and a factor
+    W: np.ndarray  # (3K, 3K) inverse mass
     idle: np.ndarray  # (2, K, K) the projector to normal forces that move nothing, and its square
     mu: np.ndarray  # (K,)
     kind: np.ndarray  # (K,) of `carom.friction`
     heading: np.ndarray  # (K, 2)
     member: np.ndarray  # (N,) bodies of the group
+    equations: Equations
     cone: ContactWork
 
 
@@ -99,9 +117,20 @@ def new_group(system: System, more: bool = False) -> Group:
     n, k = system.bodies.size, capacity(system, more)
     return Group(
         closed=table(CLOSED_POINT, k), points=table(POINT, 2, k), v=np.zeros((5, 3 * k)),
-        m=np.zeros((2, 3 * k, 3 * k)), idle=np.zeros((2, k, k)), mu=np.zeros(k),
+        W=np.zeros((3 * k, 3 * k)), idle=np.zeros((2, k, k)), mu=np.zeros(k),
         kind=np.zeros(k, dtype=np.int64), heading=np.zeros((k, 2)), member=np.zeros(n, dtype=np.int64),
-        cone=new_contact_work(k),
+        equations=new_equations(3 * k), cone=new_contact_work(k),
+    )  # fmt: skip
+
+
+def new_equations(n: int) -> Equations:
+    """Return a system of up to n unknowns; its three matrices take .8 MB for 60 points."""
+    rows, chosen, pivot = (np.zeros(n, dtype=np.int64) for _ in range(3))
+    A, factor, directions = (np.zeros((n, n)) for _ in range(3))
+    diagonal, x, r, before, part = (np.zeros(n) for _ in range(5))
+    return Equations(
+        rows=rows, chosen=chosen, A=A, factor=factor, pivot=pivot, diagonal=diagonal, x=x, r=r,
+        before=before, directions=directions, part=part, iterations=np.zeros(1, dtype=np.int64),
     )  # fmt: skip
 
 

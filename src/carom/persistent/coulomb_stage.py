@@ -16,9 +16,9 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction import lu
-from carom.friction.layout import OF_STAGES, SLIDING
+from carom.friction.layout import SLIDING
 from carom.impact.thresholds import GROUP_ERROR
-from carom.impact.workspace import KEPT, OLD, C, P, U
+from carom.impact.workspace import C, P, U
 from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import JOINT, is_driven, radius_of
 from carom.persistent.settle import greatest, settle
@@ -83,14 +83,14 @@ def largest(k, group):
         if group.closed[i].turns == 0:
             push = max(push, abs(group.v[C][3 * i]))
         elif group.closed[i].turns == JOINT:
-            push = max(push, group.mu[i] * group.m[0][3 * i + 1, 3 * i + 1])
+            push = max(push, group.mu[i] * group.W[3 * i + 1, 3 * i + 1])
     return push
 
 
 @kernel
 def product(k, row, group):
     """Return a row of W p."""
-    W, p, total = group.m[0][row], group.v[P], 0.0
+    W, p, total = group.W[row], group.v[P], 0.0
     for j in range(3 * k):
         total += W[j] * p[j]
     return total
@@ -99,7 +99,7 @@ def product(k, row, group):
 @kernel
 def list_unknowns(k, group):
     """List the rows of the unknown forces; return their number. Other forces are zero."""
-    rows, n = group.cone.active, 0
+    rows, n = group.equations.rows, 0
     for i in range(k):
         closed_point = group.closed[i]
         parent = i if closed_point.turns == 0 else closed_point.parent
@@ -123,8 +123,8 @@ def newton(k, hg, halves, idle, group):
 
     Halved steps can stop where discs meet, between stick and slip; whole steps then go on.
     """
-    n, p, x, kept = list_unknowns(k, group), group.v[P], group.v[OLD], group.v[KEPT]
-    rows, L = group.cone.active, group.cone.matrix
+    n, p, equations = list_unknowns(k, group), group.v[P], group.equations
+    rows, before, r, L = equations.rows, equations.before, equations.r, equations.factor
     push, slip = largest(k, group), 0.0
     for i in range(k):
         slip = max(slip, max(abs(group.v[U][3 * i + 1]), abs(group.v[U][3 * i + 2])))
@@ -133,19 +133,19 @@ def newton(k, hg, halves, idle, group):
     for _ in range(STAGE_ITERATIONS):
         if size <= enough:
             return True
-        group.cone.count[OF_STAGES] += 1
+        equations.iterations[0] += 1
         for i in range(n):
             for j in range(n):
-                group.cone.W[i, j] = L[i, j]
+                L[i, j] = equations.A[i, j]
             L[i, i] += limits.PROXIMAL_SPRING * compliance_of(group, rows[i])
-            x[i], kept[i] = -x[i], p[rows[i]]
-        lu.factor(L, n, group.cone.pivot, 0.0)
+            r[i], before[i] = -r[i], p[rows[i]]
+        lu.factor(L, n, equations.pivot, 0.0)
         asked, force = 0.01 * max(enough, limits.LINEAR_SHARE * size), greatest(3 * k, p)
-        rest = settle(n, 0.0, asked, limits.FORCE_ERROR * push, force, group.cone, group.m[1], x)
+        rest = settle(n, 0.0, asked, limits.FORCE_ERROR * push, force, equations)
         part, best = 1.0, size
         for _ in range(halves):
             for i in range(n):
-                p[rows[i]] = kept[i] + part * group.cone.vector[0, i]
+                p[rows[i]] = before[i] + part * equations.x[i]
             size = write_equations(k, n, hg, idle, group)
             if size < (1.0 - 0.1 * part) * best:
                 break
@@ -163,27 +163,28 @@ def newton(k, hg, halves, idle, group):
 
 @kernel
 def write_equations(k, n, hg, idle, group):
-    """Write the errors of the equations, as accelerations, to OLD, and their Jacobian; return the greatest."""
-    rows, x, L, W, most = group.cone.active, group.v[OLD], group.cone.matrix, group.m[0], 0.0
-    i = 0
+    """Write the errors of the equations, as accelerations, and their Jacobian A; return the greatest."""
+    rows, errors, A = group.equations.rows, group.equations.r, group.equations.A
+    W, most, i = group.W, 0.0, 0
     while i < n:
         row = rows[i]
         if row % 3 == 0:
-            x[i] = group.v[C][row] + product(k, row, group)
+            errors[i] = group.v[C][row] + product(k, row, group)
             for j in range(n):
-                L[i, j] = W[row, rows[j]]
+                A[i, j] = W[row, rows[j]]
             if idle > 0.0:
                 for j in range(n):
                     if rows[j] % 3 == 0:
                         part = idle * group.idle[0, row // 3, rows[j] // 3]
-                        x[i], L[i, j] = x[i] + part * group.v[P][rows[j]], L[i, j] + part
-            most, i = max(most, abs(x[i])), i + 1
+                        errors[i] += part * group.v[P][rows[j]]
+                        A[i, j] += part
+            most, i = max(most, abs(errors[i])), i + 1
             continue
         width = 2 if i + 1 < n and rows[i + 1] // 3 == row // 3 else 1
         write_disc(k, n, i, width, hg, group)
         for r in range(i, i + width):
-            if not abs(x[r]) <= most and most == most:
-                most = abs(x[r])
+            if not abs(errors[r]) <= most and most == most:
+                most = abs(errors[r])
         i += width
     return most
 
@@ -191,7 +192,8 @@ def write_equations(k, n, hg, idle, group):
 @kernel
 def write_disc(k, n, i, width, hg, group):
     """Write the equations of the friction of one point: unknowns i and, if `width` is 2, i + 1."""
-    rows, x, L, W, p = group.cone.active, group.v[OLD], group.cone.matrix, group.m[0], group.v[P]
+    rows, errors, A = group.equations.rows, group.equations.r, group.equations.A
+    W, p = group.W, group.v[P]
     a, b, unit = rows[i], rows[i + width - 1], rows[i] // 3
     closed_point = group.closed[unit]
     normal = 3 * (unit if closed_point.turns == 0 else closed_point.parent)  # below 0 for a joint
@@ -208,13 +210,13 @@ def write_disc(k, n, i, width, hg, group):
     if not known and z <= radius:
         for r in range(width):
             for j in range(n):
-                L[i + r, j] = W[rows[i + r], rows[j]]
-        x[i], x[i + width - 1] = ga, gb if width == 2 else ga
+                A[i + r, j] = W[rows[i + r], rows[j]]
+        errors[i], errors[i + width - 1] = ga, gb if width == 2 else ga
         return
     ea, eb, part = za / z, zb / z, 0.0 if known else radius / z
-    x[i] = scale * (p[a] - radius * ea)
+    errors[i] = scale * (p[a] - radius * ea)
     if width == 2:
-        x[i + 1] = scale * (p[b] - radius * eb)
+        errors[i + 1] = scale * (p[b] - radius * eb)
     grows = group.mu[unit] if normal >= 0 and p[normal] > 0.0 else 0.0
     for j in range(n):
         row = rows[j]
@@ -223,7 +225,7 @@ def write_disc(k, n, i, width, hg, group):
         along = ea * da + eb * db
         g = grows if row == normal else 0.0
         own = 1.0 if j == i else 0.0
-        L[i, j] = scale * (own - part * (da - ea * along) - ea * g)
+        A[i, j] = scale * (own - part * (da - ea * along) - ea * g)
         if width == 2:
             own = 1.0 if j == i + 1 else 0.0
-            L[i + 1, j] = scale * (own - part * (db - eb * along) - eb * g)
+            A[i + 1, j] = scale * (own - part * (db - eb * along) - eb * g)

@@ -16,7 +16,7 @@ from carom.dynamics.several_points import velocities
 from carom.dynamics.thresholds import ERROR_SHARE
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER, RESOLUTION
-from carom.impact.workspace import OLD, C, P, U
+from carom.impact.workspace import ACCELERATIONS, C, P, U
 from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
 from carom.persistent.forces import solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among
@@ -109,7 +109,7 @@ def note_modes(model, data, k, h):
 @kernel
 def braked(i, h, group):
     """Return the greatest change of the slip of a point, or of the rate of a joint, by friction in a time h."""
-    W, q = group.m[0], 3 * i
+    W, q = group.W, 3 * i
     most = W[q + 1, q + 1]
     if group.closed[i].turns != JOINT:
         most = max(most, W[q + 2, q + 2])
@@ -244,7 +244,7 @@ def clear(active_point):
 @kernel
 def gains(i, push, group):
     """Return whether a point accelerates along its surface."""
-    a = group.v[OLD]
+    a = group.v[ACCELERATIONS]
     return math.hypot(a[3 * i + 1], a[3 * i + 2]) > 1e-7 * push
 
 

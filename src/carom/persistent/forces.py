@@ -14,7 +14,7 @@ from carom.contact.gap import slow
 from carom.dynamics.acceleration import acceleration
 from carom.dynamics.several_points import of_one_body
 from carom.friction.layout import CONE, SLIDING
-from carom.impact.workspace import OLD, C, P, U
+from carom.impact.workspace import ACCELERATIONS, C, P, U
 from carom.kinematics.flight import free_rates
 from carom.persistent.coulomb_stage import solve_stage
 from carom.persistent.joint_rows import JOINT, mode_of_joint
@@ -60,7 +60,7 @@ def set_heading(group, i, u1, u2, still):
 
 @kernel
 def solve_forces(k, group):
-    """Write the forces of the points that stay closed to P, and the accelerations of all k points to OLD.
+    """Write the forces of the points that stay closed, and the accelerations of all k points.
 
     Slip goes on along the headings that are known. Return whether there is a solution.
     """
@@ -77,7 +77,7 @@ def time_to_stop(i, group):
     """Return the time until slip of point i stops at its present deceleration."""
     d1, d2 = group.heading[i, 0], group.heading[i, 1]
     speed = group.v[U][3 * i + 1] * d1 + group.v[U][3 * i + 2] * d2
-    rate = group.v[OLD][3 * i + 1] * d1 + group.v[OLD][3 * i + 2] * d2
+    rate = group.v[ACCELERATIONS][3 * i + 1] * d1 + group.v[ACCELERATIONS][3 * i + 2] * d2
     return speed / -rate if group.kind[i] == SLIDING and rate < 0.0 else math.inf
 
 
@@ -93,4 +93,4 @@ def take_forces(active_point, i, group):
     for r in range(3):
         active_point.force[r] = group.v[P][3 * i + r]
         for j in range(3):
-            active_point.W[r, j] = group.m[0][3 * i + r, 3 * i + j]
+            active_point.W[r, j] = group.W[3 * i + r, 3 * i + j]

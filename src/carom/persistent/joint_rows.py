@@ -91,7 +91,7 @@ def drift_of_coordinate(system, i, state, work):
 @kernel
 def is_driven(group, i):
     """Return whether joints and motors leave the coordinate of an entry no freedom."""
-    return not group.m[0][3 * i + 1, 3 * i + 1] > group.closed[i].spring
+    return not group.W[3 * i + 1, 3 * i + 1] > group.closed[i].spring
 
 
 @kernel

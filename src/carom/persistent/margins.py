@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.impact.workspace import OLD, C, P
+from carom.impact.workspace import ACCELERATIONS, C, P
 from carom.model.actions import EVENT_JAM, EVENT_SEPARATE, MODE_OPEN, MODE_SLIP, MODE_STICK
 from carom.persistent.settle import greatest
 from carom.persistent.thresholds import EVENT_ERROR, EVENT_MARGIN, NO_MARGIN
@@ -40,7 +40,7 @@ def set_margins(active_point, i, push, group):
     active_point.lift, active_point.grip = 1.0, 1.0
     if not push > 0.0:
         return
-    q, W, p, a = 3 * i, group.m[0], group.v[P], group.v[OLD]
+    q, W, p, a = 3 * i, group.W, group.v[P], group.v[ACCELERATIONS]
     if active_point.next == MODE_OPEN:
         active_point.lift = -max(a[q] / push, 2.0 * EVENT_ERROR)
         return

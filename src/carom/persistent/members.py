@@ -17,7 +17,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.dynamics.explicit import combine_body, copy_state, node, note_velocity, stages_within
 from carom.dynamics.several_points import velocities
-from carom.friction.layout import BUDGET, CONE, DISC, ENOUGH, ITERATIONS, NEAR, OF_STAGES, SLIDING
+from carom.friction.layout import BUDGET, CONE, DISC, ENOUGH, ITERATIONS, NEAR, SLIDING
 from carom.friction.solve import solve_cones
 from carom.friction.strategy import budget
 from carom.geometry.rotation import normalize
@@ -89,7 +89,8 @@ def implicit_stage(model, data, label, loaded, count, s, hg, closes):
     """
     group, work = data.group, data.work
     k, change, power, rubbed = -1, 0.0, 0.0, 0.0
-    group.cone.count[OF_STAGES] = 0
+    iterations = group.equations.iterations
+    iterations[0] = 0
     for m in range(count):
         copy_state(work.first[group.member[m]], work.stage[group.member[m]])
     for turn in range(FIXED_POINT):
@@ -113,13 +114,13 @@ def implicit_stage(model, data, label, loaded, count, s, hg, closes):
         if k != before:
             for row in range(3 * k):
                 group.v[P][row] = 0.0
-        lost = group.cone.count[OF_STAGES]
+        lost = iterations[0]
         if (closes and lost >= budget(k)) or not solve_stage(k, hg, group):
             if not closes:
                 return -1, 0.0, 0.0
             solve_impulses(model, data, k, hg)
         else:
-            group.cone.count[OF_STAGES] = lost
+            iterations[0] = lost
         for i in range(k):  # the work of friction of all points: what sticks has no velocity
             group.kind[i] = SLIDING
         velocities(k, group.points[0], work.stage, group.v[U])
@@ -200,8 +201,8 @@ def solve_impulses(model, data, k, h):
     count[NEAR], group.cone.mismatch[ENOUGH], count[BUDGET] = 0, 0.0, budget(k)
     for _ in range(50 if turning else 1):
         change = bound_turning(model.system, k, group)
-        solve_cones(k, group.m[0], group.v[C], group.mu, group.kind, group.heading, p, group.cone)
-        count[OF_STAGES] += count[ITERATIONS]
+        solve_cones(k, group.W, group.v[C], group.mu, group.kind, group.heading, p, group.cone)
+        group.equations.iterations[0] += count[ITERATIONS]
         if turning and not change > 1e-14:
             break
     for i in range(k):

@@ -18,7 +18,7 @@ from carom.dynamics.passed_edges import has_passed
 from carom.dynamics.project import project_position, shift
 from carom.dynamics.several_points import spread_all, velocities, yields
 from carom.friction.ldl import factor_by_pivots, substitute
-from carom.impact.workspace import KEPT, P, U
+from carom.impact.workspace import RETURN, P
 from carom.kinematics.contact_point import in_axes
 from carom.model.actions import MODE_STICK
 from carom.persistent.thresholds import DEPENDENCE
@@ -58,7 +58,7 @@ def given(group, row):
     """
     closed_point = group.closed[row // 3]
     first = 1 if closed_point.turns > 0 else 0
-    return first <= row % 3 < first + closed_point.rows and yields(group.m[0], row)
+    return first <= row % 3 < first + closed_point.rows and yields(group.W, row)
 
 
 @kernel
@@ -67,28 +67,29 @@ def factor_given(k, group):
     n = 0
     for i in range(3 * k):
         if given(group, i):
-            group.cone.active[n], n = i, n + 1
+            group.equations.rows[n], n = i, n + 1
     return factor_rows(n, group)
 
 
 @kernel
 def factor_rows(n, group):
     """Factor W for n rows of a list, from which those that depend on others go; return the number left."""
-    L, rows, own = group.m[1], group.cone.active, group.v[KEPT]
+    equations = group.equations
+    rows, L, own = equations.rows, equations.factor, equations.diagonal
     for i in range(n):
-        own[i] = group.m[0][rows[i], rows[i]]
+        own[i] = group.W[rows[i], rows[i]]
         for j in range(n):
-            L[i, j] = group.m[0][rows[i], rows[j]]
+            L[i, j] = group.W[rows[i], rows[j]]
     return factor_by_pivots(n, DEPENDENCE, rows, own, L)
 
 
 @kernel
 def solve_rows(k, n, group, x):
     """Replace x, in the n rows, by the impulses that remove it; zero the others."""
-    rows, y = group.cone.active, group.v[KEPT]
+    rows, y = group.equations.rows, group.equations.x
     for i in range(n):
         y[i] = -x[rows[i]]
-    substitute(n, group.m[1], y)
+    substitute(n, group.equations.factor, y)
     for i in range(3 * k):
         x[i] = 0.0
     for i in range(n):
@@ -101,7 +102,7 @@ def onto_surfaces(system, active, k, count, state, group, work):
     place_closed(system, k, state, group, group.points[1], work)
     if not mark_rows(system, active, k, group):
         return
-    n, x = factor_given(k, group), group.v[U]
+    n, x = factor_given(k, group), group.v[RETURN]
     for _ in range(11):
         if errors(system, active, k, state, group, x, work):
             break
@@ -116,7 +117,7 @@ def onto_surfaces(system, active, k, count, state, group, work):
 @kernel
 def onto_tangents(system, k, count, state, group, work):
     """Remove the velocities of the bodies of the group in the rows that are given."""
-    n, x = factor_given(k, group), group.v[U]
+    n, x = factor_given(k, group), group.v[RETURN]
     velocities(k, group.points[0], state, x)
     solve_rows(k, n, group, x)
     spread_all(system, k, group.points[0], x, count, group.member, work.stage, work)

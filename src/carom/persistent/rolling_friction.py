@@ -23,7 +23,7 @@ def bound_turning(system, k, group):
         closed_point = group.closed[i]
         if closed_point.turns == 0 or closed_point.turns == JOINT:
             continue
-        q, W = 3 * i, group.m[0]
+        q, W = 3 * i, group.W
         d = system.contacts[closed_point.contact].turning[closed_point.turns - 1]
         bound = d / group.points[0][i].length * max(0.0, group.v[P][3 * closed_point.parent])
         W[q, q] = 0.5 * (W[q + 1, q + 1] + W[q + 2, q + 2])

@@ -52,7 +52,7 @@ def write_rows(model, data, label, s) -> int:
     system, group, work = model.system, data.group, data.work
     points, state = group.points[0], work.stage
     k = find_points(system, data.active, label, state, group, work)
-    inverse_masses(system, k, points, state, work, group.m[0])
+    inverse_masses(system, k, points, state, work, group.W)
     write_motion(system, k, state, work.stages[s], group, work)
     return k
 

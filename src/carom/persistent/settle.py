@@ -22,14 +22,14 @@ CORRECTIONS = 30
 
 
 @kernel
-def settle(n, held, enough, small, force, cone, Z, r):
-    """Solve A x = r with W for A and the factor of A + eps S in `matrix`; return the greatest error left.
+def settle(n, held, enough, small, force, equations):
+    """Solve A x = r with the factor of A + eps S; return the greatest error left, which r becomes.
 
-    x is `vector[0]`, r becomes the error, Z has room for the corrections. `held` corrections of the first r are
-    in the solution already. An error below `small` asks for no entry of x above `force`: the rows have it.
+    `held` corrections of the first r are in the solution already. An error below `small` asks for no entry of x
+    above `force`: the rows have it.
     """
-    A, x = cone.W, cone.vector[0]
-    size, part, first, room = greatest(n, r), cone.vector[1], 0, Z.shape[0] // 2
+    A, x, r, Z, part = equations.A, equations.x, equations.r, equations.directions, equations.part
+    size, first, room = greatest(n, r), 0, Z.shape[0] // 2
     for i in range(n):
         x[i] = 0.0
     for turn in range(CORRECTIONS):
@@ -37,7 +37,7 @@ def settle(n, held, enough, small, force, cone, Z, r):
             break
         first = turn if turn - first == room else first  # no room for more directions
         z, q = Z[2 * (turn - first)], Z[2 * (turn - first) + 1]
-        correct(n, cone, r, z)
+        correct(n, equations, z)
         part[turn - first] = 1.0
         for i in range(n):
             q[i] = dot(n, A[i], z)
@@ -51,7 +51,7 @@ def settle(n, held, enough, small, force, cone, Z, r):
         removes = along * along > REMOVED * REMOVED * whole and abs(along) <= MULTIPLE * length
         removes = removes and not (size <= small and abs(along) * greatest(n, z) > length * force)
         if not removes:
-            correct(n, cone, r, z)
+            correct(n, equations, z)
             for i in range(n):
                 x[i] -= held * z[i]
             break
@@ -65,11 +65,11 @@ def settle(n, held, enough, small, force, cone, Z, r):
 
 
 @kernel
-def correct(n, cone, r, z):
+def correct(n, equations, z):
     """Write z = (A + eps S)^-1 r."""
     for i in range(n):
-        z[i] = r[i]
-    lu.substitute(cone.matrix, n, cone.pivot, z)
+        z[i] = equations.r[i]
+    lu.substitute(equations.factor, n, equations.pivot, z)
 
 
 @kernel

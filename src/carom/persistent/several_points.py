@@ -14,7 +14,7 @@ from carom.dynamics.several_points import inverse_masses, yields
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import RESOLUTION
 from carom.impact.thresholds import VELOCITY_LEFT
-from carom.impact.workspace import OLD, C, P, U
+from carom.impact.workspace import ACCELERATIONS, RETURN, C, P, U
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.model.event_rows import begin_event, end_event
@@ -41,7 +41,7 @@ def activate_several(model, data, k, label, horizon):
     active, state, group, work = data.active, data.state, data.group, data.work
     clock, records = data.clocks[0], data.records
     rows = add_frictions(system, label, state, k, group, work)
-    inverse_masses(system, rows, group.points[0], state, work, group.m[0])
+    inverse_masses(system, rows, group.points[0], state, work, group.W)
     pose_forces(system, controls, rows, state, group, work)
     judge(model, data, k, rows, horizon)
     if leave_unreachable(system, state, k, group):
@@ -86,13 +86,13 @@ def judge(model, data, k, rows, horizon):
         more = False
         for i in range(k):
             contact, u = system.contacts[group.closed[i].contact], group.v[U][3 * i]
-            a = group.v[OLD][3 * i]
+            a = group.v[ACCELERATIONS][3 * i]
             if group.closed[i].stays == 0:
                 end = horizon_of(contact, model.controls, -a, horizon)
                 if bounces_end(contact, u, -a, slow(contact, state), end):
                     group.closed[i].stays, more = 1, True
                     group.closed[i].bounces = time_without_torque(contact, u, -a, state)
-            elif turn == 0 and a > max(1e-10 * push, group.v[P][3 * i] * group.m[0][3 * i, 3 * i]):
+            elif turn == 0 and a > max(1e-10 * push, group.v[P][3 * i] * group.W[3 * i, 3 * i]):
                 group.closed[i].stays = 0  # it has no force
         if not more:
             break
@@ -100,7 +100,7 @@ def judge(model, data, k, rows, horizon):
 
 @kernel
 def solve_among(system, k, rows, group):
-    """Write the forces of those of k points that stay closed to P, and the accelerations of all to OLD."""
+    """Write the forces of those of k points that stay closed, and the accelerations of all."""
     weigh(system, rows, group)
     for i in range(k):
         if group.closed[i].stays == 0:
@@ -141,10 +141,10 @@ def leave_unreachable(system, state, k, group):
 
 @kernel
 def velocity_after(q, k, group):
-    """Return the velocity of row q after the impulses in `old`."""
-    after, x = group.v[U][q], group.v[OLD]
+    """Return the velocity of row q after the impulses in RETURN."""
+    after, x = group.v[U][q], group.v[RETURN]
     for j in range(3 * k):
-        after += group.m[0][q, j] * x[j]
+        after += group.W[q, j] * x[j]
     return after
 
 
@@ -159,7 +159,7 @@ def time_without_torque(contact, rate, g, state):
 def stops(group, i):
     """Return whether row i is removed: the normal of a point that stays, and its tangents if it sticks."""
     drops = group.closed[i // 3].stays == 1 and (i % 3 == 0 or group.kind[i // 3] == CONE)
-    return drops and yields(group.m[0], i)
+    return drops and yields(group.W, i)
 
 
 @kernel
@@ -195,7 +195,7 @@ def end_bounces(model, data, k, label, horizon):
         contact = system.contacts[group.closed[i].contact]
         end = horizon_of(contact, controls, -group.v[C][3 * i], horizon)
         group.closed[i].stopped = 0 if time_to_stop(i, group) > end else 1
-    x = group.v[OLD]
+    x = group.v[RETURN]
     find_pull(k, 1, group)
     normal, tangential = work_of_pull(k, group)
     if not normal + tangential <= spare(
@@ -220,8 +220,8 @@ def end_bounces(model, data, k, label, horizon):
 
 @kernel
 def work_of_pull(k, group):
-    """Return the work of the impulses in `old`: half of each times its velocities before and after."""
-    x, u = group.v[OLD], group.v[U]
+    """Return the work of the impulses in RETURN: half of each times its velocities before and after."""
+    x, u = group.v[RETURN], group.v[U]
     normal, tangential = 0.0, 0.0
     for i in range(3 * k):
         if x[i] == 0.0:
@@ -236,11 +236,11 @@ def work_of_pull(k, group):
 
 @kernel
 def find_pull(k, friction, group):
-    """Write the impulses that remove the velocities into `old`: with friction (1) if iterations converge."""
-    n, m, x, last, first = 3 * k, 0, group.v[OLD], group.v[P], 0.0
+    """Write the impulses that remove the velocities to RETURN: with friction (1) if iterations converge."""
+    n, m, x, last, first = 3 * k, 0, group.v[RETURN], group.v[P], 0.0
     for i in range(n):
         if stops(group, i):
-            group.cone.active[m], m = i, m + 1
+            group.equations.rows[m], m = i, m + 1
     m = factor_rows(m, group)
     for with_friction in range(friction, -1, -1):
         for i in range(n):
@@ -261,7 +261,7 @@ def find_pull(k, friction, group):
 @kernel
 def pull_once(k, m, with_friction, group):
     """Solve m rows for the impulses with the friction of the last iteration; return their change and size."""
-    n, W, x, last = 3 * k, group.m[0], group.v[OLD], group.v[P]
+    n, W, x, last = 3 * k, group.W, group.v[RETURN], group.v[P]
     for i in range(k):  # friction of the points that slip
         slides = with_friction == 1 and group.closed[i].stays == 1 and group.closed[i].stopped == 0
         for r in range(2):

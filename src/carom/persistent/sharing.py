@@ -15,7 +15,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.friction import lu
 from carom.geometry.thresholds import REMAINDER
-from carom.impact.workspace import KEPT, OLD, P
+from carom.impact.workspace import P
 from carom.persistent.joint_rows import radius_of
 from carom.persistent.springs import SHARES, compliance_of, grip, soften
 from carom.persistent.thresholds import FREEDOM_ERROR, PROXIMAL_SPRING
@@ -29,35 +29,35 @@ def find_idle(k, group):
 
     ((W + eps S)^-1 eps S)^m, for the normal rows of what presses, has it for a limit.
     """
-    rows, L, Y, Z = group.cone.active, group.cone.matrix, group.idle[0], group.idle[1]
-    closed, x, W, n, size = group.closed, group.v[OLD], group.m[0], 0, 0.0
+    equations, closed, W, n, size = group.equations, group.closed, group.W, 0, 0.0
+    rows, L, x, Y, Z = equations.chosen, equations.factor, equations.x, group.idle[0], group.idle[1]
     for i in range(k):
         if closed[i].turns == 0 and closed[i].loaded == 1:
-            rows[n], n, size = i, n + 1, max(size, closed[i].spring)
+            rows[n], n, size = 3 * i, n + 1, max(size, closed[i].spring)
     for i in range(n):
         for j in range(n):
-            L[i, j] = W[3 * rows[i], 3 * rows[j]]
-        L[i, i] += PROXIMAL_SPRING * closed[rows[i]].spring
-    lu.factor(L, n, group.cone.pivot, 0.0)
+            L[i, j] = W[rows[i], rows[j]]
+        L[i, i] += PROXIMAL_SPRING * closed[rows[i] // 3].spring
+    lu.factor(L, n, equations.pivot, 0.0)
     for j in range(n):
         for i in range(n):
-            x[i] = PROXIMAL_SPRING * closed[rows[j]].spring if i == j else 0.0
-        lu.substitute(L, n, group.cone.pivot, x)
+            x[i] = PROXIMAL_SPRING * closed[rows[j] // 3].spring if i == j else 0.0
+        lu.substitute(L, n, equations.pivot, x)
         for i in range(n):
-            Y[rows[i], rows[j]] = x[i]
+            Y[rows[i] // 3, rows[j] // 3] = x[i]
     for _ in range(SQUARES):
         for i in range(n):
             for j in range(n):
                 total = 0.0
                 for m in range(n):
-                    total += Y[rows[i], rows[m]] * Y[rows[m], rows[j]]
+                    total += Y[rows[i] // 3, rows[m] // 3] * Y[rows[m] // 3, rows[j] // 3]
                 Z[i, j] = total
         for i in range(n):
             for j in range(n):
-                Y[rows[i], rows[j]] = Z[i, j]
+                Y[rows[i] // 3, rows[j] // 3] = Z[i, j]
     total = 0.0
     for i in range(n):
-        total += Y[rows[i], rows[i]]
+        total += Y[rows[i] // 3, rows[i] // 3]
     return size if total > 0.5 and abs(total - round(total)) < FREEDOM_ERROR else 0.0
 
 
@@ -68,28 +68,29 @@ def share(k, n, group):
     Else forces that are not unique would depend on those of the last stage, and change with each iteration of
     its pose: normal ones, and what sticks where others already hold it (a floor, and a hand that pushes).
     """
-    rows, x, kept, p, m = group.cone.active, group.v[OLD], group.v[KEPT], group.v[P], 0
-    L, W, chosen = group.cone.matrix, group.m[0], group.cone.vector[0]
+    equations, p, W, m = group.equations, group.v[P], group.W, 0
+    rows, chosen, L = equations.rows, equations.chosen, equations.factor
+    x, r = equations.x, equations.r
     for i in range(n):
         whole = sticks(group, rows[i] // 3)
         group.closed[rows[i] // 3].rows = 3 if whole else 1
         if rows[i] % 3 == 0 or whole:
             chosen[m], m = rows[i], m + 1
     for i in range(m):
-        kept[i] = 0.0
+        r[i] = 0.0
         for j in range(m):
-            kept[i] += W[int(chosen[i]), int(chosen[j])] * p[int(chosen[j])]
+            r[i] += W[chosen[i], chosen[j]] * p[chosen[j]]
     soften(k, group)
     for _ in range(SHARES):
         for i in range(m):
-            x[i] = kept[i]
+            x[i] = r[i]
             for j in range(m):
-                L[i, j] = W[int(chosen[i]), int(chosen[j])]
-            L[i, i] += PROXIMAL_SPRING * compliance_of(group, int(chosen[i]))
-        lu.factor(L, m, group.cone.pivot, 0.0)
-        lu.substitute(L, m, group.cone.pivot, x)
+                L[i, j] = W[chosen[i], chosen[j]]
+            L[i, i] += PROXIMAL_SPRING * compliance_of(group, chosen[i])
+        lu.factor(L, m, equations.pivot, 0.0)
+        lu.substitute(L, m, equations.pivot, x)
         for i in range(m):
-            p[int(chosen[i])] = x[i]
+            p[chosen[i]] = x[i]
         if not grip(k, group):
             break
 

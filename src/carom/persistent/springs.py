@@ -28,7 +28,7 @@ from carom.friction import lu
 from carom.friction.layout import SLIDING
 from carom.geometry.thresholds import LAST_DIGIT, REMAINDER, ROUND_OFF
 from carom.impact.thresholds import GROUP_ERROR, LOADED_PART
-from carom.impact.workspace import OLD, C, P
+from carom.impact.workspace import ACCELERATIONS, C, P
 from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import JOINT, is_driven
 from carom.persistent.settle import greatest, settle
@@ -44,7 +44,7 @@ def bound_per_force(system, point, closed_point):
 
 @unit
 def solve_springs(k, group) -> bool:
-    """Write the forces of given modes to P, accelerations of all points to OLD; return whether they exist.
+    """Write the forces of given modes, and accelerations of all points; return whether they exist.
 
     C has the accelerations without forces; `kind` says which points slide along `heading`, `loaded` which
     press at first.
@@ -93,8 +93,9 @@ def rows_of(k, i, group):
 
 @kernel
 def factor_rows(k, group):
-    """List the given rows, write the factor of R P F^T + eps S to `cone.matrix`; return their number."""
-    rows, L, A, n = group.cone.active, group.cone.matrix, group.cone.W, 0
+    """List the given rows, write R P F^T and the factor of R P F^T + eps S; return their number."""
+    equations, n = group.equations, 0
+    rows, L, A = equations.rows, equations.factor, equations.A
     for i in range(k):
         first = 1 if group.closed[i].turns > 0 else 0
         for a in range(first, first + group.closed[i].rows):
@@ -104,7 +105,7 @@ def factor_rows(k, group):
         for j in range(n):
             L[i, j] = A[i, j] = response(k, group, rows[i], rows[j])
         L[i, i] += limits.PROXIMAL_SPRING * compliance_of(group, rows[i])
-    lu.factor(L, n, group.cone.pivot, 0.0)
+    lu.factor(L, n, equations.pivot, 0.0)
     return n
 
 
@@ -112,7 +113,7 @@ def factor_rows(k, group):
 def compliance_of(group, row):
     """Return the compliance of a row: that of its point, or of its torque."""
     if group.closed[row // 3].turns > 0:
-        return group.m[0][row, row]
+        return group.W[row, row]
     if group.closed[row // 3].turns == 0 and row % 3 > 0:
         return group.closed[row // 3].hold
     return group.closed[row // 3].spring
@@ -149,7 +150,7 @@ def grip(k, group):
 @kernel
 def moves(group, row):
     """Return whether a force along a row moves its point; if not, its W is round-off (planar motion)."""
-    n, W = row - row % 3, group.m[0]
+    n, W = row - row % 3, group.W
     if group.closed[row // 3].turns == JOINT:
         return row % 3 == 1 and not is_driven(group, row // 3)
     return W[row, row] > 1e-12 * (W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2])
@@ -158,7 +159,7 @@ def moves(group, row):
 @kernel
 def response(k, group, a, row):
     """Return the acceleration in row a by a unit force along a given row, with its friction."""
-    W, i = group.m[0], row // 3
+    W, i = group.W, row // 3
     total = W[a, row]
     if row % 3 > 0:
         return total
@@ -182,7 +183,8 @@ def turns_with(group, j, i):
 @kernel
 def first_forces(k, n, turn, push, group):
     """Solve for the forces; return how many points begin or cease to press, -1 if the rows cannot be met."""
-    p, x, rows, closed = group.v[P], group.v[OLD], group.cone.active, group.closed
+    p, equations, closed = group.v[P], group.equations, group.closed
+    rows, x, r = equations.rows, equations.x, equations.r
     for row in range(3 * k):
         p[row] = 0.0
     for i in range(k):
@@ -190,17 +192,17 @@ def first_forces(k, n, turn, push, group):
             p[3 * i + 1] = -group.mu[i] * group.heading[i, 0]
     for i in range(n):
         x[i] = -acceleration_of(k, rows[i], group)
-    lu.substitute(group.cone.matrix, n, group.cone.pivot, x)
+    lu.substitute(equations.factor, n, equations.pivot, x)
     for i in range(n):
         add_force(k, group, rows[i], x[i])
     for i in range(n):
-        x[i] = -acceleration_of(k, rows[i], group)
+        r[i] = -acceleration_of(k, rows[i], group)
     enough, small = limits.EQUATION_ERROR * push, limits.FORCE_ERROR * push
-    left = settle(n, 1.0, enough, small, greatest(3 * k, p), group.cone, group.m[1], x)
+    left = settle(n, 1.0, enough, small, greatest(3 * k, p), equations)
     if not left <= limits.DEPENDENT_ERROR * push:
         return -1
     for i in range(n):
-        add_force(k, group, rows[i], group.cone.vector[0, i])
+        add_force(k, group, rows[i], x[i])
     changed = load(k, n, push, group)
     if changed > 0 and turn < 2 * k:
         return changed
@@ -213,24 +215,25 @@ def load(k, n, push, group):
 
     With eps all give way: the accelerations are less by eps R P F^T mu, R P F^T mu = S lam in the given rows.
     """
-    closed, rows, x, p, free = group.closed, group.cone.active, group.v[OLD], group.v[P], False
+    closed, equations, p, free = group.closed, group.equations, group.v[P], False
+    rows, r = equations.rows, equations.r
     for i in range(k):
         free = free or (closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0)
     if not free:
         return 0
     most, force, count = 0.0, 0.0, 0
     for i in range(n):
-        x[i] = compliance_of(group, rows[i]) * p[rows[i]]
-        most, force = max(most, abs(x[i])), max(force, abs(p[rows[i]]))
-    settle(n, 0.0, limits.SPRING_ERROR * most, 0.0, 0.0, group.cone, group.m[1], x)
+        r[i] = compliance_of(group, rows[i]) * p[rows[i]]
+        most, force = max(most, abs(r[i])), max(force, abs(p[rows[i]]))
+    settle(n, 0.0, limits.SPRING_ERROR * most, 0.0, 0.0, equations)
     for i in range(k):
         row = 3 * i
         if closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0:
             a = acceleration_of(k, row, group)
             for j in range(n):
                 soft = limits.PROXIMAL_SPRING * response(k, group, row, rows[j])
-                a -= soft * group.cone.vector[0, j]
-            if a < -max(ROUND_OFF * push, LAST_DIGIT * force * group.m[0][row, row]):
+                a -= soft * equations.x[j]
+            if a < -max(ROUND_OFF * push, LAST_DIGIT * force * group.W[row, row]):
                 closed[i].loaded, count = 1, count + 1
     return count
 
@@ -258,7 +261,7 @@ def unload(k, turn, group):
 @kernel
 def acceleration_of(k, row, group):
     """Return the acceleration in a row under the forces in P."""
-    W, p, total = group.m[0], group.v[P], group.v[C][row]
+    W, p, total = group.W, group.v[P], group.v[C][row]
     for j in range(3 * k):
         total += W[row, j] * p[j]
     return total
@@ -266,9 +269,9 @@ def acceleration_of(k, row, group):
 
 @kernel
 def note_accelerations(k, group):
-    """Write the accelerations of all points under the forces in P to OLD."""
+    """Write the accelerations of all points under the forces in P."""
     for row in range(3 * k):
-        group.v[OLD][row] = acceleration_of(k, row, group)
+        group.v[ACCELERATIONS][row] = acceleration_of(k, row, group)
 
 
 @kernel

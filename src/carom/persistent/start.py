@@ -128,7 +128,7 @@ def rates(k, group):
 
     Of a joint it is at least that of its coordinate: it bounds the steps of order 1.
     """
-    rate, most, W = 0.0, 0.0, group.m[0]
+    rate, most, W = 0.0, 0.0, group.W
     for i in range(k):
         q = 3 * i
         force = math.hypot(group.v[P][q + 1], group.v[P][q + 2])

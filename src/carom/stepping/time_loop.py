@@ -103,8 +103,9 @@ def step_apart(model, data, method, islands) -> int:
         state = islands.state[islands.first[0, i] : islands.first[0, i + 1]]
         own = by_reference(
             Data(
-                state, by_reference(active), by_reference(work), data.group, data.multiple, data.crowd,
-                data.clocks, data.records, data.watch,
+                state=state, active=by_reference(active), work=by_reference(work), group=data.group,
+                multiple=data.multiple, crowd=data.crowd, clocks=data.clocks, records=data.records,
+                watch=data.watch,
             )
         )  # fmt: skip
         if plan.entered == 0:  # if the loop was left within an island, it has been entered

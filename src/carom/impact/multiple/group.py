@@ -116,7 +116,7 @@ def _exactly(contacts, still, work, out):
     has absorbed, like each of several contacts. If it separates others and e = 0, the result is NOT_RESOLVED:
     all of them are one plastic event.
     """
-    index, W, before = work.index, work.matrix[o.SINGLE], work.vector[o.TRY]
+    index, W, before = work.index, work.matrix[o.SINGLE], work.vector[o.SINGLE_U]
     q = index[o.MEMBER, 0]
     i = index[o.FIRST_MEMBER, q]
     mu, e, law = contacts.friction[i], contacts.restitution[i], contacts.law[i]

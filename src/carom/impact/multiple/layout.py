@@ -125,15 +125,16 @@ class PassageWork(NamedTuple):
     contact: np.recarray  # (K,) CONTACT
     saved: np.recarray  # (K,) CONTACT, at the first unloading
     clock: np.recarray  # (1,) CLOCK
-    index: np.ndarray  # (11, 3K) rows below
+    index: np.ndarray  # (12, 3K) rows below
     matrix: np.ndarray  # (7, 3K, 3K) below
-    vector: np.ndarray  # (32, 3K) rows below
+    vector: np.ndarray  # (33, 3K) rows below
     series: np.ndarray  # (18, ORDERS, B, 4) below; contact i is lane i % 4 of block i // 4
     # (3K, 3B, 4) W of the group, scaled, in lanes: blocks of n, then of t1 and t2
     columns: np.ndarray
     stage: np.ndarray  # (2, 6, 3K) forces and rates at the stages of an implicit step
     single: np.ndarray  # result of one contact, as `carom.impact.layout` says
     cones: ContactWork
+    heading: np.ndarray  # (K, 2) directions of slip of Moreau's problem, which knows none
 
 
 class BlowWork(NamedTuple):
@@ -163,11 +164,12 @@ BLOW_U, BLOW_FRICTION, BLOW_RESTITUTION, BLOW_STIFFNESS = range(4)
 CLASS, FIRST_MEMBER, CLASS_SIZE, GROUP, MEMBER, STACK, IN_DISC, STUCK, PIVOTED, CLOSED, PRESSED = (
     range(11)
 )
+MOREAU_KIND = 11  # kinds of `carom.friction` in Moreau's problem
 #: `matrix`: W of all contacts, cleaned; W of the group, scaled; H of the sticking contacts, and two to find it;
 #: the inverse Jacobian of the outer iteration; W of one contact
 CLEAN, MASS, HOLDING, FACTOR, MIDDLE, INVERSE, SINGLE = range(7)
 #: rows of `vector`. Velocities before, impulse, velocity; the same at the end of a step
-U0, NOW_P, NOW_U, NEW_P, NEW_U, D, NEW_D, SAVED_P, SAVED_D, WHEN, SCRATCH, ERROR, TRY = range(13)
+U0, NOW_P, NOW_U, NEW_P, NEW_U, D, NEW_D, SAVED_P, SAVED_D, WHEN, SCRATCH, ERROR = range(12)
 #: at the first unloading: times of the changes of mode; friction where it acts, otherwise 0
 SAVED_WHEN, ACTING_MU = 13, 14
 #: friction of the discs; of the series and of stick; of a new order of the series: impulses and velocities
@@ -175,6 +177,8 @@ DISC_T, WEIGHT, SCALE, STICK_T, ORDER_P, ORDER_U = range(15, 21)
 #: of the outer iteration: ln e_*, misses, new misses, step, change of misses, a product, best e_*, its misses,
 #: the step before the last, and the direction of the update
 OUT_X, OUT_F, OUT_NEW, OUT_DX, OUT_DF, OUT_H, OUT_BEST, OUT_BEST_F, OUT_LAST, OUT_V = range(21, 31)
+#: velocity before of one contact; of Moreau's problem: velocity without impulses, friction
+SINGLE_U, MOREAU_C, MOREAU_MU = 12, 31, 32
 #: first index of `series`: velocity n, t1, t2; impulse n, t1, t2; depth; N; |u_t|^2; |u_t|; mu N/|u_t|, the
 #: same times dt/dtau; 1/|u_t|; friction loss; dtau/dt and dt/dtau; numbers of each contact (rows below)
 S_U, S_U1, S_U2, S_P, S_P1, S_P2, S_D, S_N, S_Q, S_R, S_F, S_FS, S_G, S_LOSS, S_RATE, S_SIGMA = (
@@ -231,10 +235,10 @@ def new_multiple_workspace(capacity: int) -> MultipleWorkspace:
     n, blocks = 3 * k, (k + LANES - 1) // LANES
     work = PassageWork(
         contact=table(CONTACT, k), saved=table(CONTACT, k), clock=table(CLOCK, 1),
-        index=np.zeros((11, n), dtype=np.int64), matrix=np.zeros((7, n, n)),
-        vector=np.zeros((31, 3 * LANES * blocks)), series=np.zeros((18, ORDERS, blocks, LANES)),
+        index=np.zeros((12, n), dtype=np.int64), matrix=np.zeros((7, n, n)),
+        vector=np.zeros((33, 3 * LANES * blocks)), series=np.zeros((18, ORDERS, blocks, LANES)),
         columns=np.zeros((n, 3 * blocks, LANES)), stage=np.zeros((2, 6, n)),
-        single=np.zeros(SIZE), cones=new_contact_work(k),
+        single=np.zeros(SIZE), cones=new_contact_work(k), heading=np.zeros((k, 2)),
     )  # fmt: skip
     work.clock["left"] = UNLIMITED
     blow = BlowWork(

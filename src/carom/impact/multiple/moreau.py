@@ -82,9 +82,9 @@ def round_off(n, row, impulse):
 @kernel
 def _once(k, work, smooth):
     """Solve the contact problem, `smooth` without friction; return the change of energy."""
-    vector, heading, total = work.vector, work.matrix[o.FACTOR], 0.0
-    before, bias, u, impulse = vector[o.U0], vector[o.TRY], vector[o.NOW_U], vector[o.NOW_P]
-    mu, kind = vector[o.WEIGHT], work.index[o.STACK]
+    vector, heading, total = work.vector, work.heading, 0.0
+    before, bias, u, impulse = vector[o.U0], vector[o.MOREAU_C], vector[o.NOW_U], vector[o.NOW_P]
+    mu, kind = vector[o.MOREAU_MU], work.index[o.MOREAU_KIND]
     for i in range(3 * k):
         bias[i] = before[i]
     for i in range(k):

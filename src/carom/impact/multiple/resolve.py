@@ -51,8 +51,9 @@ def resolve_contacts(contacts, settings, workspace, out):
                 blow.given[o.BLOW_RESTITUTION, a] = 0.0
         part = by_reference(
             CornerContacts(
-                m, contacts.k - m, blow.W, blow.given[o.BLOW_U], blow.given[o.BLOW_FRICTION],
-                blow.given[o.BLOW_RESTITUTION], blow.law[0], blow.given[o.BLOW_STIFFNESS], blow.law[1],
+                k=m, others=contacts.k - m, W=blow.W, u=blow.given[o.BLOW_U],
+                friction=blow.given[o.BLOW_FRICTION], restitution=blow.given[o.BLOW_RESTITUTION],
+                law=blow.law[0], stiffness=blow.given[o.BLOW_STIFFNESS], pair=blow.law[1],
             )
         )  # fmt: skip
         _together(part, scale, settings, workspace, blow.result)
@@ -77,8 +78,9 @@ def _together(contacts, scale, settings, workspace, out):
     index, clean = work.index, work.matrix[o.CLEAN]
     acting = by_reference(
         CornerContacts(
-            k, contacts.others, clean, contacts.u, work.vector[o.ACTING_MU],
-            contacts.restitution, contacts.law, contacts.stiffness, contacts.pair,
+            k=k, others=contacts.others, W=clean, u=contacts.u, friction=work.vector[o.ACTING_MU],
+            restitution=contacts.restitution, law=contacts.law, stiffness=contacts.stiffness,
+            pair=contacts.pair,
         )
     )  # fmt: skip
     result.classes = reduce(contacts, acting, scale, index)

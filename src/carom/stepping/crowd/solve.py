@@ -120,20 +120,8 @@ def at_hand(crowd, n):
     """Return the problem with arrays cut to the present numbers of bodies and blocks."""
     work, pairs, updates = crowd.problem, crowd.graph.count[3], crowd.graph.count[2]
     return ContactWork(
-        work.kind,
-        work.contact,
-        work.vector,
-        work.count,
-        work.mismatch,
-        work.W,
-        work.matrix,
-        work.pivot,
-        work.active,
-        work.link,
-        work.other,
-        work.body[:n],
-        work.place[:n],
-        work.later[:pairs],
-        work.target[:updates],
-        work.block[: n + 2 * pairs],
-    )
+        kind=work.kind, contact=work.contact, vector=work.vector, count=work.count, mismatch=work.mismatch,
+        W=work.W, matrix=work.matrix, pivot=work.pivot, active=work.active, link=work.link, other=work.other,
+        body=work.body[:n], place=work.place[:n], later=work.later[:pairs], target=work.target[:updates],
+        block=work.block[: n + 2 * pairs],
+    )  # fmt: skip

@@ -78,8 +78,10 @@ def part_solver(islands, i):
     """Return the back end of island i: the back end of its joints, for its number of bodies."""
     s, n = joints_of(islands, i).solver, islands.first[0, i + 1] - islands.first[0, i]
     return Solver(
-        s.kind, s.links[:n], s.rotor[:n], s.workspace[:n], s.order, s.column, s.row, s.update, s.triple, s.term,
-        s.rows, s.sides, s.block, s.drop, s.pose[:n], s.usual, s.fine, s.digits, s.scaled[:n],
+        kind=s.kind, links=s.links[:n], rotor=s.rotor[:n], workspace=s.workspace[:n], order=s.order,
+        column=s.column, row=s.row, update=s.update, triple=s.triple, term=s.term, rows=s.rows, sides=s.sides,
+        block=s.block, drop=s.drop, pose=s.pose[:n], usual=s.usual, fine=s.fine, digits=s.digits,
+        scaled=s.scaled[:n],
     )  # fmt: skip
 
 
@@ -88,20 +90,11 @@ def part_system(system, islands, i, solver):
     """Return island i as a system."""
     first, own = islands.first, joints_of(islands, i)
     return System(
-        islands.bodies[first[0, i] : first[0, i + 1]],
-        system.gravity,
-        own.joints,
-        own.relations,
-        own.springs,
-        own.loads,
-        own.bushings,
-        islands.contacts[first[1, i] : first[1, i + 1]],
-        system.vertices,
-        system.solids,
-        system.hulls,
-        system.levels,
-        solver,
-    )
+        bodies=islands.bodies[first[0, i] : first[0, i + 1]], gravity=system.gravity,
+        joints=own.joints, relations=own.relations, springs=own.springs, loads=own.loads, bushings=own.bushings,
+        contacts=islands.contacts[first[1, i] : first[1, i + 1]], vertices=system.vertices,
+        solids=system.solids, hulls=system.hulls, levels=system.levels, solver=solver,
+    )  # fmt: skip
 
 
 @kernel
@@ -109,7 +102,9 @@ def part_active(active, islands, i):
     """Return the active set of island i."""
     first = islands.first
     contact_states = islands.contact_states[first[1, i] : first[1, i + 1]]
-    return ActiveSet(islands.points[0], contact_states, active.carries, islands.carried)
+    return ActiveSet(
+        points=islands.points[0], contact_states=contact_states, carries=active.carries, count=islands.carried
+    )  # fmt: skip
 
 
 @kernel
@@ -118,23 +113,11 @@ def part_work(work, islands, i):
     a, b = islands.first[0, i], islands.first[0, i + 1]
     n = b - a
     return Work(
-        islands.memory[a:b],
-        work.joint,
-        work.stages,
-        work.known[:n],
-        work.stage[:n],
-        work.trial[:n],
-        work.middle[:n],
-        work.first[:n],
-        work.point,
-        work.pair,
-        work.touches,
-        work.solid_pose,
-        work.hit,
-        work.result,
-        work.search,
-        work.history,
-    )
+        body=islands.memory[a:b], joint=work.joint, stages=work.stages, known=work.known[:n],
+        stage=work.stage[:n], trial=work.trial[:n], middle=work.middle[:n], first=work.first[:n],
+        point=work.point, pair=work.pair, touches=work.touches, solid_pose=work.solid_pose,
+        hit=work.hit, result=work.result, search=work.search, history=work.history,
+    )  # fmt: skip
 
 
 @kernel
