@@ -185,8 +185,8 @@ class Run:
     def data(self) -> Data:
         """The data that kernels change."""
         return Data(
-            self.now, self.active, self.work, self.group, self.multiple, self.crowd, self.clock, self.records,
-            self.watch,
+            state=self.now, active=self.active, work=self.work, group=self.group, multiple=self.multiple,
+            crowd=self.crowd, clocks=self.clock, records=self.records, watch=self.watch,
         )  # fmt: skip
 
     @property

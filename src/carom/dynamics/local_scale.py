@@ -46,9 +46,11 @@ def note_scale(system, controls, state, clock, work):
 def local_controls(controls, clock):
     """Return the settings with the scale of time and the acceleration of the present island."""
     return Controls(
-        clock.scale, clock.pull, controls.interval, controls.duration, controls.location, controls.gap,
-        controls.tie, controls.hold, controls.rest, controls.layer_steps, controls.layer_time,
-        controls.max_impacts, controls.max_cuts, controls.retry, controls.order, controls.rtol, controls.atol,
+        step=clock.scale, pull=clock.pull, interval=controls.interval, duration=controls.duration,
+        location=controls.location, gap=controls.gap, tie=controls.tie, hold=controls.hold, rest=controls.rest,
+        layer_steps=controls.layer_steps, layer_time=controls.layer_time, max_impacts=controls.max_impacts,
+        max_cuts=controls.max_cuts, retry=controls.retry, order=controls.order, rtol=controls.rtol,
+        atol=controls.atol,
     )  # fmt: skip
 
 

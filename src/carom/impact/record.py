@@ -56,9 +56,10 @@ def write_impact(contact, state, point, hit, clock, records):
     out = hit.out
     copy_block(hit.W, 0, records.impact[clock.struck].W)
     blow = Blow(
-        1, three(hit.u, 0), three(out, layout.VELOCITY), three(out, layout.IMPULSE),
-        out[layout.WORK_C], out[layout.WORK_R], out[layout.FRICTION_LOSS],
-        out[layout.ENERGY_CHANGE], int(out[layout.PHASES]), layer_time(contact, hit, out),
+        together=1, before=three(hit.u, 0), after=three(out, layout.VELOCITY),
+        impulse=three(out, layout.IMPULSE), compression=out[layout.WORK_C], restitution=out[layout.WORK_R],
+        friction=out[layout.FRICTION_LOSS], change=out[layout.ENERGY_CHANGE],
+        phases=int(out[layout.PHASES]), duration=layer_time(contact, hit, out),
     )  # fmt: skip
     write_blow(contact, point, state, blow, clock, records)
     clock.impacts += blow.change
@@ -77,8 +78,9 @@ def write_share(contact, i, k, state, group, multiple, clock, records):
         phases |= result.summary[0].marks & (layout.AT_ONCE | layout.PLASTIC)
     copy_block(group.W, n, records.impact[clock.struck].W)
     blow = Blow(
-        k, three(group.v[U], n), three(result.velocity, n), three(result.impulse, n), taken,
-        returned, loss, taken + returned - loss, phases, 0.0,
+        together=k, before=three(group.v[U], n), after=three(result.velocity, n),
+        impulse=three(result.impulse, n), compression=taken, restitution=returned, friction=loss,
+        change=taken + returned - loss, phases=phases, duration=0.0,
     )  # fmt: skip
     write_blow(contact, group.points[0][i], state, blow, clock, records)
     if not (phases & layout.PLASTIC != 0 and multiple.e[i] == 1.0 and group.mu[i] == 0.0):

@@ -67,8 +67,11 @@ def compile_scene(
     touching = compile_contacts(scene, to_principal, options, may_come)
     contacts = with_stops(scene, touching.rows, coordinates, sizes, options)
     relations = elements.arrays(solver, more)
-    forces, gravity = (springs, loads, bushings), np.array(scene.gravity)
-    system = System(bodies, gravity, joints, relations, *forces, contacts, *touching[1:5], solver)
+    system = System(
+        bodies=bodies, gravity=np.array(scene.gravity), joints=joints, relations=relations, springs=springs,
+        loads=loads, bushings=bushings, contacts=contacts, vertices=touching.vertices,
+        solids=touching.solids, hulls=touching.hulls, levels=touching.levels, solver=solver,
+    )  # fmt: skip
     return Compiled(system, start, to_principal, flipped, functions, *touching[5:])
 
 

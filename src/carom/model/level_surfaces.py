@@ -138,8 +138,9 @@ def _face(solid: int, static: int, piece: Piece, every: np.ndarray, corners: np.
     levels = np.sum(inward * corners, axis=1)
     thickness = float(np.max((centre - every) @ normal))
     return Face(
-        solid, static, piece.extent, thickness, normal, corners, inward, levels, centre, reach
-    )
+        solid=solid, static=static, size=piece.extent, thickness=thickness, normal=normal,
+        corners=corners, inward=inward, levels=levels, centre=centre, reach=reach,
+    )  # fmt: skip
 
 
 def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -68,7 +68,10 @@ class Method(NamedTuple):
 
 def explicit(A: np.ndarray, b: np.ndarray) -> Method:
     """Return an explicit Runge-Kutta method without an estimate of its error."""
-    return Method(RUNGE_KUTTA, A, b, np.zeros((0, len(b))), np.zeros(0), 0, 0.0, 0.0, 0.0, 0.0, 0)
+    return Method(
+        kind=RUNGE_KUTTA, A=A, b=b, E=np.zeros((0, len(b))), parts=np.zeros(0), ode=0, beta=0.0, zeta=0.0,
+        augment=0.0, tolerance=0.0, most=0,
+    )  # fmt: skip
 
 
 class Definition(NamedTuple):

@@ -183,5 +183,7 @@ def solve(W, u, mu, e, law, kappa, settings, workspace=None):
     k = len(u)
     room, out = workspace or new_multiple_workspace(k), new_multiple_result(k)
     pair = np.arange(k) if settings.multiple == SEQUENTIAL else np.zeros(k, dtype=np.int64)
-    contacts = CornerContacts(k, 0, W, u.reshape(-1), mu, e, law, kappa, pair)
+    contacts = CornerContacts(
+        k=k, others=0, W=W, u=u.reshape(-1), friction=mu, restitution=e, law=law, stiffness=kappa, pair=pair
+    )  # fmt: skip
     return resolve_multiple(contacts, settings, room, out), out

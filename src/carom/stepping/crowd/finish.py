@@ -76,8 +76,9 @@ def write_impact(model, data, i, k, w, pressure, rubbing):
     spot = crowd.spots[i]
     block_of_point(crowd.problem, i, records.impact[clock.struck].W)
     blow = Blow(
-        max(2, k), three(spot.before, 0), w, three(spot.impulse, 0), min(0.0, pressure),
-        max(0.0, pressure), -rubbing, pressure + rubbing, AT_END, 0.0,
+        together=max(2, k), before=three(spot.before, 0), after=w, impulse=three(spot.impulse, 0),
+        compression=min(0.0, pressure), restitution=max(0.0, pressure), friction=-rubbing,
+        change=pressure + rubbing, phases=AT_END, duration=0.0,
     )  # fmt: skip
     contact = model.system.contacts[spot.contact]
     write_blow(contact, crowd.points[0][i], data.work.trial, blow, clock, records)
