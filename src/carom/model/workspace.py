@@ -154,7 +154,7 @@ RESULT = [
     ("time", "f8"),  # time of the present state, on which prescribed motion depends
 ]
 
-#: search for an event inside a step
+#: search for an event inside a step: between two steps nothing of it is kept
 SEARCH = [
     ("active", "i8"),
     ("kind", "i8"),

@@ -16,8 +16,10 @@ import numpy as np
 from carom import checks
 from carom.model import records as r
 
-#: what is the same in every run of a scene, holds addresses, or is written anew when a step begins
+#: what is the same in every run of a scene, holds addresses, or is written anew when a step begins; files that
+#: have it are read without it
 FIXED = {
+    "work.search",
     "islands.joined", "islands.others",
     "islands.partner", "islands.partner_first", "islands.plane", "islands.plane_first",
     "relations.relations", "relations.terms", "relations.user", "relations.pieces",
@@ -56,7 +58,7 @@ def capture(run) -> Checkpoint | None:
     """Return the checkpoint of a run; None in the middle of a step."""
     clock, search = run.clock[0], run.work.search[0]
     islands = run.islands
-    inside = clock.spent != 0.0 or search.pending != 0
+    inside = clock.spent != 0.0 or clock.paused != 0 or search.pending != 0
     if inside or (islands.plan[0].planned != 0):
         return None
     found = {
@@ -95,11 +97,12 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
     while len(run.islands.which) < found["room"]:
         run.grow(r.FULL_PAIRS)
     here = dict(arrays_of(run))
-    if layout_of(here) != layout_of(checkpoint.arrays):
+    kept = {name: array for name, array in checkpoint.arrays.items() if name not in FIXED}
+    if layout_of(here) != layout_of(kept):
         raise ValueError("the checkpoint was written by another version of carom")
     for name, array in here.items():
-        kept = checkpoint.arrays[name]
-        array[...] = kept.unpacked() if isinstance(kept, Packed) else kept
+        one = kept[name]
+        array[...] = one.unpacked() if isinstance(one, Packed) else one
     _put_records(run, records)
 
 
