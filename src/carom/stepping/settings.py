@@ -113,7 +113,10 @@ def checked_settings(
             f"{'step' if h else 'Options.max_step'} must be above duration / 1e12 = "
             f"{duration / MOST_STEPS:g} s, got {checks.shown(longest)}"
         )
-    return Settings(duration, h, method, impact_location, save_every, save_at, rtol, atol, options)
+    return Settings(
+        duration=duration, step=h, method=method, impact_location=impact_location, save_every=save_every,
+        save_at=save_at, rtol=rtol, atol=atol, options=options,
+    )  # fmt: skip
 
 
 def default_method(h: float | None, rtol: float, scene) -> str:
