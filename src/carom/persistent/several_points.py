@@ -43,6 +43,8 @@ def activate_several(model, data, k, label, horizon):
     rows = add_frictions(system, label, state, k, group, work)
     inverse_masses(system, rows, group.points[0], state, work, group.W)
     pose_forces(system, controls, rows, state, group, work)
+    for row in range(3 * rows):  # a first guess: those of another group, or of other points
+        group.v[P][row] = 0.0
     judge(model, data, k, rows, horizon)
     if leave_unreachable(system, state, k, group):
         solve_among(system, k, rows, group)
