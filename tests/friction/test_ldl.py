@@ -59,3 +59,15 @@ def test_the_rows_of_pivots_span_all_others(rank):
     L, D = np.tril(B, -1)[:, :rank] + np.eye(6)[:, :rank], np.diag(B)[:rank]
     sizes = np.sqrt(np.outer(own, own))
     assert np.all(np.abs((L * D) @ L.T - A[np.ix_(rows, rows)]) <= 1e-12 * sizes)
+
+
+@pytest.mark.plain
+def test_round_off_does_not_say_which_row_is_left_out():
+    """Four corners alike, of rank three: the last one goes, whatever the last digits are."""
+    G = np.array([[1.0, x, y] for x in (-1.0, 1.0) for y in (-1.0, 1.0)])
+    A = G @ G.T
+    for seed in range(20):
+        random = np.random.default_rng(seed)
+        B, rows = A * (1.0 + 1e-15 * random.normal(size=4)), np.arange(4)
+        assert factor_in_place(0.5 * (B + B.T), 4, 1e-10, rows, np.diag(A).copy()) == 3
+        assert rows[3] == 3
