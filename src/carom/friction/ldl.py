@@ -31,14 +31,14 @@ def factor_by_pivots(n, drop, rows, own, L):
     """Factor as `factor` does, by pivots: exchange the numbers `rows` and the sizes `own`; return the rank.
 
     The row that those before it determine least, in parts of its size, comes next: in another order the
-    pivot of a row that nearly depends on them is small, and those after it are its round-off. Up to a factor of
-    two the order is kept: of four corners alike, round-off must not say which is left out. The leading part
+    pivot of a row that nearly depends on them is small, and those after it are its round-off. Rows that are
+    alike to 1e-4 keep their order: of four corners round-off must not say which is left out. The leading part
     of L (n, n), of this rank, is the factor; rows below it are those of L for the rows that are left out.
     """
     for j in range(n):
         best = j
         for i in range(j + 1, n):
-            if L[i, i] * own[best] > 2.0 * L[best, best] * own[i] or not own[best] > 0.0:
+            if L[i, i] * own[best] > 1.0001 * L[best, best] * own[i] or not own[best] > 0.0:
                 best = i
         if not L[best, best] > drop * own[best]:
             return j
