@@ -93,7 +93,7 @@ def evaluate_rows(part, t, x, values, out, rates, work):
         call_function(part[0], t, work.point, values)
     if part[1] != 0:
         call_function(part[1], t, work.point, out)
-        differ(part[1], m * n, t, x, v, along(x, STEP), _FIRST, work.slope, work)
+        differ((part[1], m * n), t, x, v, along(x, STEP), _FIRST, work.slope, work)
         for i in range(m):
             rates[i] = dot(work.slope[i * n :], v, n)
     elif part[0] != 0:
@@ -102,7 +102,7 @@ def evaluate_rows(part, t, x, values, out, rates, work):
             for j in range(n):
                 out[i * n + j] = work.slope[j * m + i]
         h = along(x, STEP_TWICE)
-        differ(part[0], m, t, x, v, h, _SECOND, rates, work)
+        differ((part[0], m), t, x, v, h, _SECOND, rates, work)
         for i in range(m if h > 0.0 else 0):
             rates[i] /= h
 
@@ -117,7 +117,7 @@ def find_slope(part, t, x, n, work):
     for k in range(n):
         axis[k] = 1.0
         h = STEP * max(1.0, abs(x[k]))
-        differ(part[0], part[2], t, x, axis, h, _FIRST, work.slope[k * part[2] :], work)
+        differ((part[0], part[2]), t, x, axis, h, _FIRST, work.slope[k * part[2] :], work)
         axis[k] = 0.0
 
 
@@ -131,9 +131,9 @@ def along(x, part):
 
 
 @kernel
-def differ(address, m, t, x, way, h, weight, out, work):
-    """Write sum_s weight_s f_i(q + s h way) / h for the m results of a function; 0 for h = 0."""
-    q, y, n = work.point, work.sample, work.point.size
+def differ(function, t, x, way, h, weight, out, work):
+    """Write sum_s weight_s f_i(q + s h way) / h of a function: its address, number of results; 0 for h = 0."""
+    (address, m), q, y, n = function, work.point, work.sample, work.point.size
     for i in range(m):
         out[i] = 0.0
     for s in range(-2, 3 if h > 0.0 else -2):
