@@ -13,7 +13,7 @@ HEAPS = pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
 
 
 #: less of what takes long
-LESS = {"heap": {"count": 30}}
+LESS = {"heap": {"count": 30}, "arch": {"halvings": 4}}
 
 
 @pytest.mark.parametrize(
