@@ -124,11 +124,11 @@ def test_interrupted_run_works_out_the_same(tmp_path):
 
 
 def test_heap(tmp_path):
-    # ten balls: islands that come and go, impacts of several points, a heap with all its memory
+    # six balls: islands that come and go, impacts of several points, a heap with all its memory
     path = tmp_path / "run.nc"
     settings = {"step": 5e-3, "options": ALLOWED}
-    interrupted(pile(), 0.3, 0.6, path, **settings)
-    assert differences(carom.resume(path), carom.simulate(pile(), 0.3, **settings)) == []
+    interrupted(pile(6), 0.3, 0.6, path, **settings)
+    assert differences(carom.resume(path), carom.simulate(pile(6), 0.3, **settings)) == []
 
 
 def test_stopped_twice(tmp_path):
@@ -208,7 +208,7 @@ def filled_with_nothing(value):
             filled_with_nothing(one)
 
 
-@pytest.mark.parametrize("scene", [slider(), pile()], ids=["slider", "pile"])
+@pytest.mark.parametrize("scene", [slider(), pile(6)], ids=["slider", "pile"])
 def test_scratch_is_no_state(scene):
     # What a checkpoint leaves out is written in each step before it is read: with nan in it at the
     # checkpoint the run ends with the same records.

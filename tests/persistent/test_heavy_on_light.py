@@ -39,6 +39,6 @@ def test_both_slide_as_one(ratio):
     scene.add_contact(top, low, restitution=0, friction=0.5)
     force = 0.1 * G * ratio  # a fifth of what friction can carry over
     scene.add_force(carom.forces.Force((force, 0, 0)), low)
-    s = carom.simulate(scene, 0.1)
-    way = 0.5 * force / (1 + ratio) * 0.1**2
+    s = carom.simulate(scene, 0.02)
+    way = 0.5 * force / (1 + ratio) * 0.02**2
     np.testing.assert_allclose(s.position[-1, :, 0], (way, 0.02 + way), rtol=0, atol=1e-9)

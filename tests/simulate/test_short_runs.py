@@ -78,10 +78,10 @@ def joined():
 
 
 def pile():
-    """Three boxes, one on another, which have impacts of many points and a workspace that grows."""
+    """Two boxes, one on another, which have impacts of many points and a workspace that grows."""
     scene = carom.Scene()
     scene.add_half_space((0, 0, 0), (0, 0, 1))
-    for k in range(3):
+    for k in range(2):
         place = (0.01 * k, 0, 0.051 + 0.102 * k)
         scene.add_body(carom.Box(0.1, 0.1, 0.1), mass=1.0, position=place)
     scene.set_contact_default(restitution=0.2, friction=0.4)
