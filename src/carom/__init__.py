@@ -38,6 +38,7 @@ from carom.status import AccuracyWarning, MistakeWarning, SimulationError, Statu
 if TYPE_CHECKING:
     from carom import baselines, geometry
     from carom.control.live import Run
+    from carom.dynamics.contact_mass import contact_inverse_mass
     from carom.friction import ContactSolution, solve_contacts
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
     from carom.impact.multiple.api import CornerImpact, resolve_impacts
@@ -85,6 +86,7 @@ __all__ = [
     "axis_angle",
     "baselines",
     "constraints",
+    "contact_inverse_mass",
     "contact_sequence",
     "ensemble",
     "euler",
@@ -120,6 +122,7 @@ _LAZY = {
     "UniformOrientation": "carom.studies.ensembles",
     "ensemble": "carom.studies.ensembles",
     "Sensitivities": "carom.studies.gradient",
+    "contact_inverse_mass": "carom.dynamics.contact_mass",
     "contact_sequence": "carom.studies.gradient",
     "film": "carom.visual.films",
     "impact_layer": "carom.impact",

@@ -17,7 +17,7 @@ ELSEWHERE = {
     "restitution": "e eps cor bounce bounciness elasticity restitution_coefficient",
     "rolling_friction": "mu_r rollingFriction",
     "pivoting_friction": "spinningFriction torsional_friction",
-    "impact_law": "law model",
+    "impact_law": "model",
     "stiffness": "k ke",
     "mass": "m weight",
     "density": "rho",
@@ -48,11 +48,13 @@ ELSEWHERE = {
     "child": "body2 body_b bodyB body",
     "other": "other_body ground plane",
     "definition": "joint force constraint",
-    "law": "impact_law model",
+    "law": "model",
     "inverse_mass": "W delassus",
     "radius": "r R",
     "length": "height h L",
 }
+#: arguments that have two names: an impact by itself has a law, a contact of a scene has an impact law
+_TWINS = {"law": "impact_law", "impact_law": "law"}
 #: what is stated in another place
 _OTHER_PLACE = {
     "friction": "state it for a contact, add_contact(..., friction=) or set_contact_default(friction=), "
@@ -95,7 +97,10 @@ for _ours, _others in ELSEWHERE.items():
 
 
 def known(function: F) -> F:
-    """Decorate a function or a class so that its errors name an unknown or missing argument."""
+    """Decorate a function or a class so that its errors name an unknown or missing argument.
+
+    An argument with two names is taken by both.
+    """
     made: Any = function
     if not isinstance(function, type):
         return _guarded(function, function.__name__)
@@ -114,6 +119,8 @@ def _guarded(function: Any, shown: str) -> Any:
     @wraps(function)
     def guarded(*args, **kwargs):
         if not kwargs.keys() <= has:
+            kwargs = _by_own_names(shown, kwargs, has, by_place[: len(args)])
+        if not kwargs.keys() <= has:
             raise TypeError(
                 _unknown(shown, [n for n in names if n not in ("self", "cls")], kwargs, has)
             )
@@ -131,6 +138,18 @@ def _guarded(function: Any, shown: str) -> Any:
         return function(*args, **kwargs)
 
     return guarded
+
+
+def _by_own_names(shown: str, given: dict, has, placed: tuple[str, ...]) -> dict:
+    """Return arguments by the names that a function has, where they are given by their other name."""
+    found = {}
+    for name, value in given.items():
+        twin = _TWINS.get(name) if name not in has else None
+        own = twin if twin in has else name
+        if own != name and (own in given or own in placed):
+            raise TypeError(f"{shown} takes {own}= or {name}=, which are the same, got both")
+        found[own] = value
+    return found
 
 
 def _unknown(shown: str, names: list[str], given, has) -> str:

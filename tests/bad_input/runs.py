@@ -129,6 +129,10 @@ def run(folder):
         "studies.ensembles.dice.fairness": lambda: (
             dice.fairness, dict(faces=[1, 2, 3]),
         ),
+        "contact_inverse_mass": lambda: (
+            carom.contact_inverse_mass,
+            dict(scene=thrown(), body="ball", point=(0, 0, 0.05), normal=(0, 0, 1.0), other=None),
+        ),
         "resolve_impact": lambda: (carom.resolve_impact, dict(**blow, law="newton")),
         "gradient.impact_derivative": lambda: (gradient.impact_derivative, dict(**blow, law="newton")),
         "impact_layer": lambda: (
