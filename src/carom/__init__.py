@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from carom.io.files.resume import resume
     from carom.io.models import Model, load_model
     from carom.studies import gradient, identify
-    from carom.studies.ensembles import Ensemble, UniformOrientation, ensemble
+    from carom.studies.ensembles import Ensemble, Grid, UniformOrientation, ensemble
     from carom.studies.gradient import Sensitivities, contact_sequence, sensitivities
     from carom.visual import films, plots
     from carom.visual.films import film
@@ -68,6 +68,7 @@ __all__ = [
     "Ellipsoid",
     "Ensemble",
     "GeneralizedSystem",
+    "Grid",
     "Impact",
     "LayerHistory",
     "Material",
@@ -114,6 +115,7 @@ _LAZY = {
     "ContactSolution": "carom.friction",
     "CornerImpact": "carom.impact.multiple.api",
     "Ensemble": "carom.studies.ensembles",
+    "Grid": "carom.studies.ensembles",
     "Impact": "carom.impact",
     "LayerHistory": "carom.impact",
     "Model": "carom.io.models",

@@ -77,7 +77,7 @@ def test_a_law_has_two_names_everywhere():
     assert scene.add_contact(ball, floor, law="poisson").impact_law == "poisson"
     scene.set_contact_default(law="stronge")
     assert scene.contact_default.impact_law == "stronge"
-    both = "takes law= or impact_law=, which are the same, got both"
+    both = "takes (law= or impact_law|impact_law= or law)=, which are the same, got both"
     with pytest.raises(TypeError, match=both):
         carom.resolve_impact(*blow, "newton", impact_law="newton")
     with pytest.raises(TypeError, match=both):
