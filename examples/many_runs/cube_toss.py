@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 import carom
-from carom import identify
+from carom.studies import identify
 from carom.geometry import quaternion
 from carom.visual.plots import style
 

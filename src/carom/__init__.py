@@ -45,9 +45,9 @@ if TYPE_CHECKING:
     from carom.io import models
     from carom.io.files.resume import resume
     from carom.io.models import Model, load_model
-    from carom.studies import gradient, identify
     from carom.studies.ensembles import Ensemble, Grid, UniformOrientation, ensemble
-    from carom.studies.gradient import Sensitivities, contact_sequence, sensitivities
+    from carom.studies.gradient import Sensitivities, contact_sequence, gradient, sensitivities
+    from carom.studies.identify import identify
     from carom.visual import films, plots
     from carom.visual.films import film
     from carom.visual.viewer.api import view
@@ -127,6 +127,8 @@ _LAZY = {
     "contact_inverse_mass": "carom.dynamics.contact_mass",
     "contact_sequence": "carom.studies.gradient",
     "film": "carom.visual.films",
+    "gradient": "carom.studies.gradient",
+    "identify": "carom.studies.identify",
     "impact_layer": "carom.impact",
     "resolve_impact": "carom.impact",
     "resolve_impacts": "carom.impact.multiple.api",
@@ -141,8 +143,6 @@ _PACKAGES = {
     "baselines": "carom.baselines",
     "films": "carom.visual.films",
     "geometry": "carom.geometry",
-    "gradient": "carom.studies.gradient",
-    "identify": "carom.studies.identify",
     "models": "carom.io.models",
     "plots": "carom.visual.plots",
 }

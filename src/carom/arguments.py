@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from difflib import get_close_matches
 from functools import wraps
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 F = TypeVar("F", bound=Callable)
 T = TypeVar("T")
@@ -106,6 +107,27 @@ def known(function: F) -> F:
         return _guarded(function, function.__name__)
     made.__init__ = _guarded(made.__init__, made.__name__)
     return made
+
+
+def formerly(**names: str) -> Callable[[F], F]:
+    """Return a decorator of a function whose arguments had other names, ``old="new"``, which it still takes."""
+
+    def decorate(function: F) -> F:
+        @wraps(function)
+        def taking(*args, **kwargs):
+            for old, new in names.items():
+                if old in kwargs:
+                    warnings.warn(
+                        f"{function.__name__}({old}=) is called {new}=; the old name will go",
+                        DeprecationWarning,
+                        stacklevel=2,
+                    )
+                    kwargs = {new if name == old else name: value for name, value in kwargs.items()}
+            return function(*args, **kwargs)
+
+        return cast(F, taking)
+
+    return decorate
 
 
 def _guarded(function: Any, shown: str) -> Any:

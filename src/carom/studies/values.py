@@ -103,7 +103,7 @@ def components(value) -> dict[str, Any]:
     return MOMENTS if shape == (3, 3) else dict(zip(labels, range(4)))
 
 
-def split(scene: Scene, name: str) -> tuple[str, str]:
+def split(scene: Scene, name: str, argument: str = "vary") -> tuple[str, str]:
     """Return a name without the component at its end, and this component or nothing.
 
     Raises
@@ -118,7 +118,7 @@ def split(scene: Scene, name: str) -> tuple[str, str]:
     if stem == "gravity" or found:
         if label in components(found.value if found else scene.gravity):
             return stem, label
-    raise ValueError(_unknown(scene, name))
+    raise ValueError(_unknown(scene, name, argument))
 
 
 def whole(scene: Scene, inputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -216,24 +216,27 @@ def _light(scene: Scene, found: Found) -> bool:
     return found.field not in POSES or not (scene.joints or scene.forces or scene.constraints)
 
 
-def _unknown(scene: Scene, name: str) -> str:
+def _unknown(scene: Scene, name: str, argument: str) -> str:
     known = [f"{part.name}.{one.field}" for part in scene._parts for one in fields_of(part)]
-    near = get_close_matches(name, known, n=1)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
     return (
-        "names in vary must be 'gravity', or a part of the scene with one of its fields, like "
-        f"{next(iter(known), 'die.position')!r}, got {name!r}{hint or _fields_of(scene, name)}"
+        f"names in {argument} must be 'gravity', or a part of the scene with one of its fields, like "
+        f"{next(iter(known), 'die.position')!r}, got {name!r}{_hint(scene, name, known)}"
     )
 
 
-def _fields_of(scene: Scene, name: str) -> str:
-    """Return the end of a message: the fields of the part that `name` names."""
+def _hint(scene: Scene, name: str, known: list[str]) -> str:
+    """Return the end of a message: the nearest name, or the fields of the part that `name` names."""
     part, _, field = name.rpartition(".")
     try:
         own = [one.field for one in fields_of(scene[part])]
-        return f"; {part!r} has {', '.join(own) or 'no values'}"
     except KeyError:
-        pass
+        own = []
+    near = get_close_matches(field, own, n=1) if own else get_close_matches(name, known, n=1)
+    if near:
+        meant = f"{part}.{near[0]}" if own else near[0]
+        return f"; did you mean {meant!r}?"
+    if own:
+        return f"; {part!r} has {', '.join(own)}"
     pairs = product(scene.bodies, (*scene.fixed, *scene.bodies))
     default = next(((a, b) for a, b in pairs if part == f"{a.name}-{b.name}"), None)
     if field in LAW_FIELDS and default is not None:

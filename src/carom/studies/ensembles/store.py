@@ -69,7 +69,7 @@ class Store:
             ):  # as their places in a list: Zarr has no type of words that all readers know
                 values = np.searchsorted(words[name], values)
             _array(group, f"inputs/{in_file(name)}", values.shape, values.dtype, chunk)[:] = values
-        group.attrs["words"] = words
+        group.attrs["words"], group.attrs["names"] = words, list(inputs)
         kind = outcome_type(bodies)
         for name in kind.names or ():
             base, shape = kind[name].base, kind[name].shape
@@ -171,6 +171,7 @@ class Store:
             values = {from_file(name): np.asarray(array[:]) for name, array in arrays}
             for name, words in self.group.attrs.get("words", {}).items():
                 values[name] = np.array(words)[values[name]]
+            values = {name: values[name] for name in self.group.attrs.get("names", values)}
             whole = _digest(values) == self.group.attrs["inputs"]
         except Exception as error:  # a damaged file may cause any error of a decoder
             raise ValueError(

@@ -11,23 +11,27 @@ from carom.visual.plots import style
 from carom.visual.plots.figure import drawing
 
 
-def ensemble(found: Ensemble, value, over=None, *, ax=None, colorbar: bool = True):
+def ensemble(
+    found: Ensemble, value, over=None, *, ax=None, label: str | None = None, colorbar: bool = True
+):
     """Draw one value of all runs of an ensemble over what was varied.
 
-    Two axes of a `Grid` are a heat map, and one is a line, with the mean over all other axes of the grid. Without a
-    grid each run is a point, of which a second axis makes a colour. Runs that did not end well are left out.
+    Two axes of a `Grid` are a heat map, and one is a line, with the mean over all other axes of the grid.
+    Without a grid each run is a point, in two axes with a colour. Runs that could not start are left out.
 
     Parameters
     ----------
     found : Ensemble
     value : str or (R,)
-        A column of `Ensemble.to_pandas`, such as ``"die.z"``, ``"impacts"`` or ``"status"``, or one number or word
-        for each run.
+        A column of `Ensemble.to_pandas`, such as ``"die.z"``, ``"impacts"`` or ``"status"``, or one number or
+        word for each run.
     over : str or two of them, optional
-        The columns on the horizontal and on the vertical axis. Default: the axes of the grid, or the numbers that
-        were varied.
+        The columns on the horizontal and on the vertical axis. Default: the axes of the grid, or the numbers
+        that were varied.
     ax : Axes, optional
         Axes to draw into. Default: a new figure of pyplot.
+    label : str, optional
+        Name of the value. Default: that of its column.
     colorbar : bool
         Whether the colours have a scale. Default True.
 
@@ -43,9 +47,12 @@ def ensemble(found: Ensemble, value, over=None, *, ax=None, colorbar: bool = Tru
     checks.instance("found", found, (Ensemble,))
     checks.flag("colorbar", colorbar)
     table = columns(found)
-    label = value if isinstance(value, str) else "value"
+    if label is None:
+        label = value if isinstance(value, str) else "value"
+    label = checks.text("label", label)
     values, words = _numbers(_column("value", value, table, len(found)))
-    values = np.where(found.outcomes["status"] >= 0, values, np.nan)
+    if not (isinstance(value, str) and value in ("status", "message")):
+        values = np.where(found.outcomes["status"] >= 0, values, np.nan)
     names = _axes(found, over, table)
     with drawing(ax) as ax:
         ax.set_xlabel(names[0])
@@ -114,7 +121,7 @@ def _axes(found: Ensemble, over, table: dict[str, np.ndarray]) -> list[str]:
         names = [n for n in names if table[n].dtype.kind == "f" and np.ptp(table[n]) > 0.0]
     if not 1 <= len(names) <= 2:
         raise ValueError(
-            f"over must be given, one or two of {', '.join(names) or 'the columns'}, because not one or two numbers "
+            f"over must be one or two of {', '.join(names) or 'the columns'}, because not one or two numbers "
             "were varied, got None"
         )
     return names
