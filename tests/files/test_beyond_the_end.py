@@ -89,6 +89,16 @@ def test_a_run_in_memory_that_has_gone_on_has_no_state_to_save(tmp_path):
         carom.resume(tmp_path / "run.nc", until=0.3)
 
 
+def test_its_end_was_called_duration(tmp_path):
+    path = tmp_path / "run.nc"
+    carom.simulate(die(), 0.05, step=0.01, save=path)
+    with pytest.warns(DeprecationWarning, match=r"resume\(duration=\) is called until="):
+        longer = carom.resume(path, duration=0.08)
+    assert longer.t[-1] == 0.08
+    with pytest.raises(ValueError, match="until must be"):
+        carom.resume(path, until=1e300)
+
+
 @pytest.mark.parametrize("until", [0.1, 0.05, -1.0, "2"])
 def test_not_beyond_the_end(tmp_path, until):
     path = tmp_path / "run.nc"

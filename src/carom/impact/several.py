@@ -15,7 +15,7 @@ from carom.impact.api import Impact, phase_names
 from carom.impact.laws import NUMBERS
 from carom.impact.resolve import resolve_one
 
-BLOCK = 2000  # impacts that take ten times as long as a thread to begin
+FEW_IMPACTS = 2000  # take ten times as long as a thread to begin
 
 
 @entry
@@ -60,19 +60,21 @@ def resolve_several(inverse_mass, velocity, friction, restitution, law) -> Impac
     )  # nothing moves along the second tangent of a plane
     full[:, :k, :k] = np.broadcast_to(W, (*shape, k, k)).reshape(n, k, k)
     speed[:, :k] = np.broadcast_to(u, (*shape, k)).reshape(n, k)
-    rows = [np.broadcast_to(a, shape).flatten() for a in (mu, e, number.reshape(names.shape))]
+    mu, e, number = (
+        np.broadcast_to(a, shape).flatten() for a in (mu, e, number.reshape(names.shape))
+    )
     out = np.zeros((n, o.SIZE))
 
     def solve(first: int) -> None:
         part = slice(first, first + size)
         failed, code = resolve_many(
-            full[part], speed[part], *(row[part] for row in rows), out[part]
+            full[part], speed[part], mu[part], e[part], number[part], out[part]
         )
         if failed >= 0:
             at = tuple(map(int, np.unravel_index(first + failed, shape)))
             raise ValueError(f"the impact at index {at} could not be solved: {o.MESSAGES[code]}")
 
-    size = max(BLOCK, -(-n // (os.cpu_count() or 1)))
+    size = max(FEW_IMPACTS, -(-n // (os.cpu_count() or 1)))
     if n <= size:
         solve(0)
     else:
@@ -135,7 +137,7 @@ def _numbers(name: str, given, allowed: str, inside) -> np.ndarray:
     return values
 
 
-def _all(name: str, values: np.ndarray, allowed: str, good: np.ndarray) -> None:
+def _all(name: str, values: np.ndarray, allowed: str, good) -> None:
     """Refuse values of which one is not good, with its index."""
     if not np.all(good):
         at = tuple(map(int, np.argwhere(~good)[0]))

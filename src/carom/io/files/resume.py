@@ -67,7 +67,10 @@ def resume(
     kept = solution._run
     assert isinstance(kept, KeptRun)
     if until is not None:
-        until = checks.number("until", until, above=solution.settings["duration"], unit="s")
+        given = solution.settings
+        step = given["step"] if isinstance(given["step"], float) else given["duration"]
+        most = 1e12 * step  # steps that have numbers
+        until = checks.number("until", until, above=given["duration"], most=most, unit="s")
     elif solution.status.ended:
         return solution
     can_continue = solution.status is Status.INTERRUPTED or solution.status.ended

@@ -196,8 +196,8 @@ def _load_netcdf(path: Path) -> dict[str, Any]:
     import h5netcdf
 
     with h5netcdf.File(path, "r") as file:
-        _check_format(file.attrs["format"])
-        flags = json.loads(file.attrs["flags"])
+        _check_format(str(file.attrs["format"]))
+        flags = json.loads(str(file.attrs["flags"]))
         lead = file.variables["status"].dimensions
         arrays = {name: _values(one[...]) for name, one in file.variables.items()}
         about = {

@@ -198,7 +198,7 @@ def _given(name: str, spec) -> np.ndarray:
         ) from None
 
 
-def _points(runs: int, total: int, seed: int, sampling: str) -> np.ndarray:
+def _points(runs: int, total: int, seed: int | np.random.Generator, sampling: str) -> np.ndarray:
     """Return points (runs, total) of the open unit cube."""
     if sampling == "random":
         points = np.random.default_rng(seed).random((runs, total))

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 #: words for the status of a run, which is a number among the outcomes
 WORDS = {PENDING: "pending", REFUSED: "refused", **{int(s): s.name.lower() for s in Status}}
-AXES = {(3,): ("x", "y", "z"), (4,): ("w", "x", "y", "z")}
+AXES: dict[tuple[int, ...], tuple[str, ...]] = {(3,): ("x", "y", "z"), (4,): ("w", "x", "y", "z")}
 FOLDERS = ("inputs", "observed")
 
 
