@@ -19,9 +19,7 @@ def main() -> None:
     """Draw the picture."""
     scene = carom.Scene(gravity=(0, 0, -9.81))
     table = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1), name="table")
-    die = scene.add_body(
-        carom.Box(0.02, 0.02, 0.02), mass=0.016, position=(0, 0, 0.1), name="die"
-    )
+    die = scene.add_body(carom.Box(0.02, 0.02, 0.02), mass=0.016, position=(0, 0, 0.1), name="die")
     scene.add_contact(die, table, restitution=0.5, friction=0.2)
     vary = {
         "die-table.friction": carom.Grid(np.linspace(0, 0.6, 31)),

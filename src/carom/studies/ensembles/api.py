@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, suppress
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,6 +28,9 @@ from carom.studies.ensembles.outcome import PENDING
 from carom.studies.ensembles.result import Ensemble
 from carom.studies.ensembles.sampling import as_mapping, draw, on_grid
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 CHUNK = 64  # default number of runs in a part
 NEVER = 10**15  # `save_every` of runs that save only the first and the last state
 
@@ -37,7 +41,7 @@ def ensemble(
     duration: float,
     *,
     step: float | str = "auto",
-    vary: Mapping,
+    vary: Mapping | pd.DataFrame,
     runs: int | None = None,
     seed: int | np.random.Generator = 0,
     sampling: str = "random",
