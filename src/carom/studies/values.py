@@ -136,8 +136,8 @@ def whole(scene: Scene, inputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         if stem not in made:
             made[stem] = np.repeat(np.asarray(value)[None], len(rows), axis=0)
         at = components(value)[label]
-        for place_ in {at, at[::-1]} if isinstance(at, tuple) else (at,):
-            made[stem][(slice(None), *np.atleast_1d(place_))] = rows
+        for one in {at, at[::-1]} if isinstance(at, tuple) else {(at,)}:  # an inertia is symmetric
+            made[stem][(slice(None), *one)] = rows
     for field in [name for name in made if name in LAW_FIELDS]:
         if scene.contact_default is not None or not scene.contacts:
             raise ValueError(
@@ -299,9 +299,8 @@ def _direct(found: Found, value, follow: set[str]) -> dict:
 def _inside(found: Found, value, follow: set[str]) -> dict:
     """Return what a part is made of, made again with a new field, and what follows it."""
     part, owner = found.part, found.owner
-    made: Any = object.__new__(
-        type(owner)
-    )  # by fields as they are kept: what is computed of them is left out
+    # by fields as they are kept; what is computed of them is computed again
+    made: Any = object.__new__(type(owner))
     vars(made).update({one.name: vars(owner)[one.name] for one in fields(owner) if one.init})
     keep(made, **{found.field: found.check(value)})
     if found.field in ENDS and "rest_length" in follow and hasattr(owner, "rest_length"):
