@@ -109,6 +109,25 @@ def test_a_grid_and_a_slash_in_files(tmp_path, ending):
     assert np.array_equal(again.inputs["arm/hand.mass"], made.inputs["arm/hand.mass"])
 
 
+def test_a_folder_without_names_of_bodies_is_read(tmp_path):
+    """As carom 0.1.0 wrote them; their bodies have numbers, and the order of inputs is that of the letters."""
+    for module in ("zarr", "pyarrow"):
+        pytest.importorskip(module)
+    import zarr
+
+    vary = {"die.mass": [1.0, 2.0], "die-ground.friction": [0.1, 0.2]}
+    made = carom.ensemble(die(), 0.02, step=5e-3, vary=vary, executor="serial")
+    made.save(tmp_path / "old.zarr")
+    attributes = zarr.open_group(tmp_path / "old.zarr", mode="r+").attrs
+    for name in ("body_names", "names", "words"):
+        del attributes[name]
+    old = carom.Ensemble.load(tmp_path / "old.zarr")
+    assert same(old, made)
+    assert np.array_equal(old.to_pandas()["body1.z"], made.position[:, 0, 2])
+    old.save(tmp_path / "new.parquet")
+    assert same(carom.Ensemble.load(tmp_path / "new.parquet"), made)
+
+
 def test_what_is_no_file_of_an_ensemble(thrown, tmp_path):
     with pytest.raises(ValueError, match=r"path must end in \.zarr, \.nc"):
         thrown.save(tmp_path / "runs.txt")

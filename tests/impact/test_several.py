@@ -75,6 +75,8 @@ def test_a_law_has_two_names_everywhere():
     floor = scene.add_half_space((0, 0, 0), (0, 0, 1))
     ball = scene.add_body(carom.Sphere(0.1), mass=1, position=(0, 0, 1))
     assert scene.add_contact(ball, floor, law="poisson").impact_law == "poisson"
+    with pytest.raises(AttributeError, match="did you mean 'impact_law'"):
+        _ = scene.contacts[0].law
     scene.set_contact_default(law="stronge")
     assert scene.contact_default.impact_law == "stronge"
     both = "takes (law= or impact_law|impact_law= or law)=, which are the same, got both"

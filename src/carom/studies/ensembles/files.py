@@ -44,7 +44,8 @@ PREFIXES = {"input:": "inputs", "observed:": "observed"}
 
 def facts_of(ensemble: Ensemble) -> dict[str, str]:
     """Return what is known of all runs, as texts."""
-    return {name: ensemble.about[name] for name in FACTS if name in ensemble.about}
+    found = {name: ensemble.about[name] for name in FACTS if name in ensemble.about}
+    return {**found, "body_names": json.dumps(body_names(ensemble))}
 
 
 def labelled(ensemble: Ensemble) -> list[Variable]:
