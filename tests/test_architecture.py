@@ -27,6 +27,7 @@ DOORS = {
     ("results.portable", "io.files.resume"),
     ("results.replay", "run"),
     ("results.drawn", "visual.plots"),
+    ("studies.ensembles.result", "visual.plots"),
 }
 LOOSE = 8
 #: greatest number of lines of each folder, in hundreds: bounds only go down; a new capability states its room

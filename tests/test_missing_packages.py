@@ -28,6 +28,11 @@ def ensemble(run):
         ("h5netcdf", "files", lambda run: run.save("run.nc")),
         ("pyarrow", "parquet", lambda run: run.save("run.parquet")),
         ("xarray", "ensemble", lambda run: ensemble(run).to_xarray()),
+        ("pandas", "files", lambda run: ensemble(run).to_pandas()),
+        ("pyarrow", "parquet", lambda run: ensemble(run).save("runs.parquet")),
+        ("h5netcdf", "files", lambda run: ensemble(run).save("runs.nc")),
+        ("zarr", "ensemble", lambda run: ensemble(run).save("runs.zarr")),
+        ("matplotlib.pyplot", "plot", lambda run: ensemble(run).plot("body1.z")),
         (
             "sympy",
             "sympy",

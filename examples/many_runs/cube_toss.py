@@ -12,8 +12,8 @@ from itertools import pairwise
 import numpy as np
 
 import carom
-from carom import identify
 from carom.geometry import quaternion
+from carom.studies import identify
 from carom.visual.plots import style
 
 EDGE = 0.1024  # [m], in the lengths of the recording, which are 2 % too short

@@ -38,15 +38,16 @@ from carom.status import AccuracyWarning, MistakeWarning, SimulationError, Statu
 if TYPE_CHECKING:
     from carom import baselines, geometry
     from carom.control.live import Run
+    from carom.dynamics.contact_mass import contact_inverse_mass
     from carom.friction import ContactSolution, solve_contacts
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
     from carom.impact.multiple.api import CornerImpact, resolve_impacts
     from carom.io import models
     from carom.io.files.resume import resume
     from carom.io.models import Model, load_model
-    from carom.studies import gradient, identify
-    from carom.studies.ensembles import Ensemble, UniformOrientation, ensemble
-    from carom.studies.gradient import Sensitivities, contact_sequence, sensitivities
+    from carom.studies.ensembles import Ensemble, Grid, UniformOrientation, ensemble
+    from carom.studies.gradient import Sensitivities, contact_sequence, gradient, sensitivities
+    from carom.studies.identify import identify
     from carom.visual import films, plots
     from carom.visual.films import film
     from carom.visual.viewer.api import view
@@ -67,6 +68,7 @@ __all__ = [
     "Ellipsoid",
     "Ensemble",
     "GeneralizedSystem",
+    "Grid",
     "Impact",
     "LayerHistory",
     "Material",
@@ -85,6 +87,7 @@ __all__ = [
     "axis_angle",
     "baselines",
     "constraints",
+    "contact_inverse_mass",
     "contact_sequence",
     "ensemble",
     "euler",
@@ -112,6 +115,7 @@ _LAZY = {
     "ContactSolution": "carom.friction",
     "CornerImpact": "carom.impact.multiple.api",
     "Ensemble": "carom.studies.ensembles",
+    "Grid": "carom.studies.ensembles",
     "Impact": "carom.impact",
     "LayerHistory": "carom.impact",
     "Model": "carom.io.models",
@@ -120,8 +124,11 @@ _LAZY = {
     "UniformOrientation": "carom.studies.ensembles",
     "ensemble": "carom.studies.ensembles",
     "Sensitivities": "carom.studies.gradient",
+    "contact_inverse_mass": "carom.dynamics.contact_mass",
     "contact_sequence": "carom.studies.gradient",
     "film": "carom.visual.films",
+    "gradient": "carom.studies.gradient",
+    "identify": "carom.studies.identify",
     "impact_layer": "carom.impact",
     "resolve_impact": "carom.impact",
     "resolve_impacts": "carom.impact.multiple.api",
@@ -136,8 +143,6 @@ _PACKAGES = {
     "baselines": "carom.baselines",
     "films": "carom.visual.films",
     "geometry": "carom.geometry",
-    "gradient": "carom.studies.gradient",
-    "identify": "carom.studies.identify",
     "models": "carom.io.models",
     "plots": "carom.visual.plots",
 }

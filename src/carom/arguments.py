@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from difflib import get_close_matches
 from functools import wraps
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 F = TypeVar("F", bound=Callable)
 T = TypeVar("T")
@@ -53,6 +54,8 @@ ELSEWHERE = {
     "radius": "r R",
     "length": "height h L",
 }
+#: arguments that have two names: an impact by itself has a law, a contact of a scene has an impact law
+_TWINS = {"law": "impact_law", "impact_law": "law"}
 #: what is stated in another place
 _OTHER_PLACE = {
     "friction": "state it for a contact, add_contact(..., friction=) or set_contact_default(friction=), "
@@ -95,12 +98,36 @@ for _ours, _others in ELSEWHERE.items():
 
 
 def known(function: F) -> F:
-    """Decorate a function or a class so that its errors name an unknown or missing argument."""
+    """Decorate a function or a class so that its errors name an unknown or missing argument.
+
+    An argument with two names is taken by both.
+    """
     made: Any = function
     if not isinstance(function, type):
         return _guarded(function, function.__name__)
     made.__init__ = _guarded(made.__init__, made.__name__)
     return made
+
+
+def formerly(**names: str) -> Callable[[F], F]:
+    """Return a decorator of a function whose arguments had other names, ``old="new"``, which it still takes."""
+
+    def decorate(function: F) -> F:
+        @wraps(function)
+        def taking(*args, **kwargs):
+            for old, new in names.items():
+                if old in kwargs:
+                    warnings.warn(
+                        f"{function.__name__}({old}=) is called {new}=; the old name will go",
+                        DeprecationWarning,
+                        stacklevel=2,
+                    )
+                    kwargs = {new if name == old else name: value for name, value in kwargs.items()}
+            return function(*args, **kwargs)
+
+        return cast(F, taking)
+
+    return decorate
 
 
 def _guarded(function: Any, shown: str) -> Any:
@@ -113,6 +140,8 @@ def _guarded(function: Any, shown: str) -> Any:
 
     @wraps(function)
     def guarded(*args, **kwargs):
+        if not kwargs.keys() <= has:
+            kwargs = _by_own_names(shown, kwargs, has, by_place[: len(args)])
         if not kwargs.keys() <= has:
             raise TypeError(
                 _unknown(shown, [n for n in names if n not in ("self", "cls")], kwargs, has)
@@ -131,6 +160,18 @@ def _guarded(function: Any, shown: str) -> Any:
         return function(*args, **kwargs)
 
     return guarded
+
+
+def _by_own_names(shown: str, given: dict, has, placed: tuple[str, ...]) -> dict:
+    """Return arguments by the names that a function has, where they are given by their other name."""
+    found = {}
+    for name, value in given.items():
+        twin = _TWINS.get(name) if name not in has else None
+        own = twin if twin in has else name
+        if own != name and (own in given or own in placed):
+            raise TypeError(f"{shown} takes {own}= or {name}=, which are the same, got both")
+        found[own] = value
+    return found
 
 
 def _unknown(shown: str, names: list[str], given, has) -> str:

@@ -174,6 +174,17 @@ def integer(name: str, value, *, least: int | None = None, most: int | None = No
     return result
 
 
+def seed(name: str, value) -> int | np.random.Generator:
+    """Return a seed of random numbers: a whole number, or a generator of NumPy, which goes on from there."""
+    if isinstance(value, np.random.Generator):
+        return value
+    if isinstance(value, (float, type(None), np.random.RandomState)):
+        raise ValueError(
+            f"{name} must be a whole number of at least 0 or a numpy.random.Generator, got {shown(value)}"
+        )
+    return integer(name, value, least=0)
+
+
 def choice(name: str, value, allowed: Iterable[str]) -> str:
     """Return `value` if it is one of `allowed`; suggest the nearest one otherwise."""
     options = sorted(allowed)

@@ -3,6 +3,7 @@
 import numpy as np
 
 import carom
+from bad_input import things
 from bad_input.things import XML, W, model, recording, samples, solution, swing, thrown
 from carom import baselines
 from carom.io import models
@@ -47,50 +48,50 @@ def read(folder):
             baselines.cone_residual,
             dict(inverse_mass=W, velocity=(-1.0, 1.0, 0.0), friction=0.1, impulse=(1.0, 0.0, 0.0)),
         ),
-        "identify.Parameter": lambda: (
+        "studies.identify.Parameter": lambda: (
             identify.Parameter, dict(start=0.5, step=0.1, lower=0.0, upper=1.0),
         ),
-        "identify.Recording": lambda: (
+        "studies.identify.Recording": lambda: (
             identify.Recording,
             dict(t=made.t, position=made.position[:, 0], orientation=made.orientation[:, 0],
                  start=identify.State((0, 0, 1.0), (1.0, 0, 0, 0), (0, 0, 0.0), (0, 0, 0.0)), name="throw"),
         ),
-        "identify.fit_free_flight": lambda: (
+        "studies.identify.fit_free_flight": lambda: (
             identify.fit_free_flight,
             dict(t=made.t, **samples(), gravity=(0, 0, -9.81), inertia=(1.0, 1.0, 1.0)),
         ),
-        "identify.free_samples": lambda: (
+        "studies.identify.free_samples": lambda: (
             identify.free_samples,
             dict(**samples(), shape=carom.Sphere(0.1), point=(0, 0, 0.0), normal=(0, 0, 1.0), clearance=0.0),
         ),
-        "identify.roll_out": lambda: (
+        "studies.identify.roll_out": lambda: (
             identify.roll_out,
             dict(scene=thrown(), recording=made, step=0.01, options=carom.Options()),
         ),
-        "identify.roll_outs": lambda: (
+        "studies.identify.roll_outs": lambda: (
             identify.roll_outs,
             dict(make=lambda recording: thrown(), recordings=[made], step=0.01, options=carom.Options(),
-                 threads=1),
+                 workers=1),
         ),
-        "identify.varied": lambda: (
+        "studies.identify.varied": lambda: (
             identify.varied,
             dict(scene=thrown(), restitution=0.5, friction=0.1, friction_held=0.1, inertia_factor=1.0,
                  corner_radius=0.1,
                  start=identify.State((0, 0, 1.0), (1.0, 0, 0, 0), (0, 0, 0.0), (0, 0, 0.0))),
         ),
-        "identify.trajectory_error": lambda: (
+        "studies.identify.trajectory_error": lambda: (
             identify.trajectory_error, dict(simulated=made, recorded=made, length=1.0),
         ),
-        "identify.mean_error": lambda: (identify.mean_error, dict(length=1.0, angle=1.0)),
-        "identify.squared_error": lambda: (identify.squared_error, dict(length=1.0, angle=1.0)),
-        "identify.face_up": lambda: (
+        "studies.identify.mean_error": lambda: (identify.mean_error, dict(length=1.0, angle=1.0)),
+        "studies.identify.squared_error": lambda: (identify.squared_error, dict(length=1.0, angle=1.0)),
+        "studies.identify.face_up": lambda: (
             identify.face_up, dict(orientation=(1.0, 0, 0, 0), up=(0, 0, 1.0)),
         ),
-        "identify.identify": lambda: (
+        "identify": lambda: (
             identify.identify,
             dict(scene=thrown(), recordings=[made], parameters={"restitution": (0.5, 0.1)},
                  objective=lambda simulated, recorded: 1.0, method="Nelder-Mead", restarts=0, tolerance=0.1,
-                 max_evaluations=2, resamples=0, seed=0, step=0.01, options=carom.Options(), threads=1,
+                 max_evaluations=2, resamples=0, seed=0, step=0.01, options=carom.Options(), workers=1,
                  progress=None),
         ),
     }  # fmt: skip
@@ -142,6 +143,11 @@ def read(folder):
             dict(solution=solution(), bodies="ball", plane="xz", outlines=[0.0], ground=True, ax=None),
         ),
         "plots.constraint_errors": lambda: (plots.constraint_errors, dict(solution=swing(), ax=None)),
+        "plots.ensemble": lambda: (
+            plots.ensemble,
+            dict(found=things.runs(), value="ball.z", over="ball.velocity.x", ax=None, label="height",
+                 colorbar=False),
+        ),
         "plots.work_precision": lambda: (
             plots.work_precision, dict(series={"a": ([1.0], [1.0])}, error="error", ax=None),
         ),

@@ -99,7 +99,7 @@ def run(folder):
         ),
         "resume": lambda: (
             carom.resume,
-            dict(path=saved(folder), duration=None, functions={}, save_seconds=60.0, progress=None, throw=True),
+            dict(path=saved(folder), until=None, functions={}, save_seconds=60.0, progress=None, throw=True),
         ),
         "Solution.load": lambda: (carom.Solution.load, dict(path=saved(folder), functions={})),
         "Solution.simulate": lambda: (solution().simulate, dict(duration=0.1, progress=None, throw=True)),
@@ -118,6 +118,14 @@ def run(folder):
                  progress=None),
         ),
         "Ensemble.counts": lambda: (runs().counts, {}),
+        "Ensemble.to_pandas": lambda: (runs().to_pandas, {}),
+        "Ensemble.save": lambda: (runs().save, dict(path=folder / "runs.parquet")),
+        "Ensemble.plot": lambda: (runs().plot, dict(value="ball.z", over="ball.velocity.x")),
+        "Grid": lambda: (carom.Grid, dict(values=[0.1, 0.2])),
+        "gradient": lambda: (
+            carom.gradient,
+            dict(solution=solution(), with_respect_to="ball.position.x", by="auto", throw=True),
+        ),
         "Ensemble.to_xarray": lambda: (runs().to_xarray, {}),
         "Ensemble.load": lambda: (carom.Ensemble.load, dict(path=kept(folder))),
         "Ensemble.solution": lambda: (runs().solution, dict(run=0)),
@@ -129,8 +137,12 @@ def run(folder):
         "studies.ensembles.dice.fairness": lambda: (
             dice.fairness, dict(faces=[1, 2, 3]),
         ),
+        "contact_inverse_mass": lambda: (
+            carom.contact_inverse_mass,
+            dict(scene=thrown(), body="ball", point=(0, 0, 0.05), normal=(0, 0, 1.0), other=None),
+        ),
         "resolve_impact": lambda: (carom.resolve_impact, dict(**blow, law="newton")),
-        "gradient.impact_derivative": lambda: (gradient.impact_derivative, dict(**blow, law="newton")),
+        "studies.gradient.impact_derivative": lambda: (gradient.impact_derivative, dict(**blow, law="newton")),
         "impact_layer": lambda: (
             carom.impact_layer, dict(**blow, penetration=0.5, width=1e-6, law="newton", steps=2),
         ),

@@ -46,7 +46,8 @@ INSTEAD = {
 #: whose values may be functions, and so classes
 FUNCTIONS = {("forces.JointForce", "force")}
 #: values that are right, and ask for a run of hours, or for a server
-RIGHT = {"duration": {"million", "ten to the twelve", "beyond 64 bits"}, "export": {"none"}}
+LONG = {"million", "ten to the twelve", "beyond 64 bits"}
+RIGHT = {"duration": LONG, "until": LONG, "export": {"none"}}
 
 
 def recipes(folder):

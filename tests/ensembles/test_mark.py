@@ -52,7 +52,7 @@ def pendulum(stiffness=3.0, friction=None, force=None):
 
 def mark(scene):
     settings = checked_settings(0.1, 1e-3)
-    return digest(_plan(scene, settings, {}, None), VALUES)
+    return digest(_plan(scene, settings, {}, {}, None)[0], VALUES)
 
 
 @pytest.mark.plain

@@ -23,7 +23,7 @@ def test_whole_steps(make, tmp_path):
     """Bit for bit the run of the whole time; twice, and from what `Solution.save` has written."""
     path = tmp_path / "run.nc"
     carom.simulate(make(), 0.25, step=5e-3, save=path)
-    longer = carom.resume(path, duration=0.5)
+    longer = carom.resume(path, until=0.5)
     whole = carom.simulate(make(), 0.5, step=5e-3)
     assert longer.t[-1] == 0.5
     assert but_settings(longer, whole) == []
@@ -31,7 +31,7 @@ def test_whole_steps(make, tmp_path):
     assert differences(again, longer) == []
     assert derived_differences(again, longer) == []
     again.save(tmp_path / "copy.nc")
-    more = carom.resume(tmp_path / "copy.nc", duration=0.75)
+    more = carom.resume(tmp_path / "copy.nc", until=0.75)
     assert but_settings(more, carom.simulate(make(), 0.75, step=5e-3)) == []
 
 
@@ -39,7 +39,7 @@ def test_a_last_step_that_was_shorter(tmp_path):
     """0.103 s in steps of 10 ms, every third saved: 3 ms at its end, and then whole ones again."""
     path = tmp_path / "run.nc"
     carom.simulate(die(), 0.103, step=0.01, save_every=3, save=path)
-    longer = carom.resume(path, duration=0.18)
+    longer = carom.resume(path, until=0.18)
     first = [0.0, 0.03, 0.06, 0.09, 0.103]
     assert longer.t == pytest.approx([*first, 0.133, 0.163, 0.18], abs=1e-15)
     # free flight is in closed form: where it is does not depend on steps
@@ -51,7 +51,7 @@ def test_a_last_step_that_was_shorter(tmp_path):
 def test_with_tolerances_states_come_as_often_as_before(tmp_path):
     path = tmp_path / "run.nc"
     short = carom.simulate(die(), 0.2, save=path)
-    longer = carom.resume(path, duration=0.3)
+    longer = carom.resume(path, until=0.3)
     assert np.array_equal(longer.t[:201], short.t)
     assert longer.t[201:] == pytest.approx(0.2 + 1e-3 * np.arange(1, 101), abs=1e-12)
     assert np.array_equal(longer.position[:201], short.position)
@@ -60,7 +60,7 @@ def test_with_tolerances_states_come_as_often_as_before(tmp_path):
 def test_times_to_save_at(tmp_path):
     path = tmp_path / "run.nc"
     carom.simulate(die(), 0.2, save_at=[0.05, 0.1], save=path)
-    longer = carom.resume(path, duration=0.3)
+    longer = carom.resume(path, until=0.3)
     assert longer.t[:4].tolist() == [0.0, 0.05, 0.1, 0.2]
     assert longer.t[-1] == 0.3
 
@@ -75,7 +75,7 @@ def test_interrupted_on_the_way(tmp_path):
         if done >= 80:
             raise KeyboardInterrupt
 
-    part = carom.resume(path, duration=0.5, progress=stop, throw=False)
+    part = carom.resume(path, until=0.5, progress=stop, throw=False)
     assert part.status is carom.Status.INTERRUPTED
     assert but_settings(carom.resume(path), whole) == []
 
@@ -86,15 +86,25 @@ def test_a_run_in_memory_that_has_gone_on_has_no_state_to_save(tmp_path):
     short._run.clock["now"] = 0.2  # as if somebody had gone on with it
     short.save(tmp_path / "run.nc")
     with pytest.raises(ValueError, match="it has no checkpoint"):
-        carom.resume(tmp_path / "run.nc", duration=0.3)
+        carom.resume(tmp_path / "run.nc", until=0.3)
 
 
-@pytest.mark.parametrize("duration", [0.1, 0.05, -1.0, "2"])
-def test_not_beyond_the_end(tmp_path, duration):
+def test_its_end_was_called_duration(tmp_path):
+    path = tmp_path / "run.nc"
+    carom.simulate(die(), 0.05, step=0.01, save=path)
+    with pytest.warns(DeprecationWarning, match=r"resume\(duration=\) is called until="):
+        longer = carom.resume(path, duration=0.08)
+    assert longer.t[-1] == 0.08
+    with pytest.raises(ValueError, match="until must be"):
+        carom.resume(path, until=1e300)
+
+
+@pytest.mark.parametrize("until", [0.1, 0.05, -1.0, "2"])
+def test_not_beyond_the_end(tmp_path, until):
     path = tmp_path / "run.nc"
     carom.simulate(die(), 0.1, step=0.01, save=path)
-    with pytest.raises(ValueError, match="duration must be"):
-        carom.resume(path, duration=duration)
+    with pytest.raises(ValueError, match="until must be"):
+        carom.resume(path, until=until)
 
 
 @pytest.mark.parametrize(

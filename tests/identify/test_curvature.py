@@ -116,7 +116,7 @@ class Drawn(Evaluator):
         position = 0.01 * np.random.default_rng(0).normal(size=(100, 3))
         position[:, 0] += (x(np.array(true)) + off - T @ position[:, 0] / (T @ T)) * T
         recording = Recording(T, position, [[1, 0, 0, 0]] * 100)
-        super().__init__(None, [recording], Space(parameters, known=False), None, None)
+        super().__init__(None, [recording], Space(parameters, None), None, None)
         self.points, self.values = [np.array(true, dtype=float)], [np.zeros(1)]
 
     def runs(self, point):

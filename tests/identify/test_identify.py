@@ -74,7 +74,7 @@ def test_same_result_with_threads_and_by_restarts_no_worse():
     recordings = tosses(6, 11, 4, **TRUE)
     begin = {"restitution": (0.5, 0.1)}
     one, two = (
-        identify(box(), recordings, begin, LEAST_SQUARES, resamples=20, threads=n) for n in (1, 2)
+        identify(box(), recordings, begin, LEAST_SQUARES, resamples=20, workers=n) for n in (1, 2)
     )
     assert one.parameters == two.parameters
     np.testing.assert_array_equal(one.uncertainty.samples, two.uncertainty.samples)
@@ -116,7 +116,7 @@ E_ONLY = {"restitution": (0.5, 0.1)}
         ({"method": "Nelder"}, ValueError, "method must be one of"),
         ({"tolerance": 0.0}, ValueError, "tolerance must be"),
         ({"step": -1.0}, ValueError, "step must be finite and above 0"),
-        ({"threads": 0}, ValueError, "threads must be"),
+        ({"workers": 0}, ValueError, "workers must be"),
     ],
 )  # fmt: skip
 def test_bad_input(change, error, message):

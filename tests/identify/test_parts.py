@@ -18,7 +18,7 @@ class Known(Evaluator):
     def __init__(self, parameters, function):
         self.function = function
         super().__init__(None, [Recording([0, 1], np.zeros((2, 3)), [[1, 0, 0, 0]] * 2)],
-                         Space(parameters, known=False), lambda *_: 0.0, None)  # fmt: skip
+                         Space(parameters, None), lambda *_: 0.0, None)  # fmt: skip
 
     def number(self, point):
         point = self.space.clip(np.asarray(point, dtype=float))
@@ -184,8 +184,8 @@ def test_a_run_that_fails_stays_where_it_stopped(t):
 
 def test_roll_outs_keep_their_order():
     found = [falling(np.arange(4) / 30 / (k + 1), str(k)) for k in range(5)]
-    for threads in (1, 3):
-        runs = roll_outs(lambda r: box(), found, threads=threads)
+    for workers in (1, 3):
+        runs = roll_outs(lambda r: box(), found, workers=workers)
         drops = [1 - run.position[-1, 0, 2] for run in runs]
         expected = [0.5 * G * (0.1 / (k + 1)) ** 2 for k in range(5)]
         np.testing.assert_allclose(drops, expected, rtol=0, atol=1e-12)

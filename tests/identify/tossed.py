@@ -32,7 +32,7 @@ def tosses(count, samples, seed, **true):
         start = State(x, q, v, random.uniform(-4, 4, 3))
         t = DT * np.arange(samples)
         found.append(Recording(t, np.zeros((samples, 3)), [[1, 0, 0, 0]] * samples, start, str(k)))
-    runs = roll_outs(lambda r: varied(scene, **true, start=r.start), found, threads=1)
+    runs = roll_outs(lambda r: varied(scene, **true, start=r.start), found, workers=1)
     return [noisy(recording, run, random) for recording, run in zip(found, runs)]
 
 

@@ -223,7 +223,7 @@ def _go_on(path: Path, scene, duration: float | None, given: dict[str, Any], sav
     mine = scenes.functions(scenes.load(scene).scene) if scene is not None else None
     with show.progress("resume") as bar:
         return _with_its_loss(
-            carom.resume, path, duration=duration, functions=mine or None, progress=bar,
+            carom.resume, path, until=duration, functions=mine or None, progress=bar,
             save_seconds=save_seconds,
         )  # fmt: skip
 

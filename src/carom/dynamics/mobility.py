@@ -108,12 +108,16 @@ def mass_matrix(system) -> np.ndarray:
     return np.concatenate([np.repeat(bodies.mass[:, None], 3, axis=1), bodies.inertia], axis=1)
 
 
-def dense_rows(system, start, work) -> tuple[np.ndarray, np.ndarray]:
-    """Return all rows (K, N, 6), linear in world axes and angular in principal ones, and their elements."""
+def dense_rows(system, start, work, rotors: bool = False) -> tuple[np.ndarray, np.ndarray]:
+    """Return all rows (K, N, 6), linear in world axes and angular in principal ones, and their elements.
+
+    Rotors have rows too, which are no constraints.
+    """
     from carom.dynamics.reactions import write_rows
 
     write_rows(system, start, work)
-    count = np.where(system.joints.kind == INERTIA, 0, system.joints.rows)  # no constraint
+    count = system.joints.rows.copy()
+    count[(system.joints.kind == INERTIA) & (not rotors)] = 0
     first = np.cumsum(count) - count
     A = np.zeros((int(count.sum()), len(system.bodies), 6))
     for side in system.solver.sides:

@@ -189,6 +189,7 @@ class GeneralizedSystem:
         """All contacts, in the order in which they were added."""
         return tuple(self._contacts)
 
+    @arguments.known
     def add_contact(
         self,
         gap,

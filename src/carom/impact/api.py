@@ -13,6 +13,9 @@ from carom import arguments, checks
 class Impact:
     """The result of an impact. Vectors are in contact axes: normal, tangent 1, tangent 2.
 
+    Of several impacts all are arrays, whose first axes are those of the arguments together; `phases` is an
+    array of tuples. Of a plane impact vectors have two components.
+
     Parameters
     ----------
     velocity_after : ndarray, shape (3,)
@@ -57,31 +60,34 @@ def resolve_impact(
 
     Parameters
     ----------
-    inverse_mass : array_like, shape (3, 3)
+    inverse_mass : array_like, shape (..., 3, 3) or (..., 2, 2)
         Delassus operator W of the contact [1/kg], symmetric, positive semidefinite, normal first. It is zero
-        for a tangential direction in which nothing can move.
-    velocity : array_like, shape (3,)
+        for a tangential direction in which nothing can move. With (2, 2) the impact is plane: normal and one
+        tangent. `carom.contact_inverse_mass` computes it for a body of a scene.
+    velocity : array_like, shape (..., 3) or (..., 2)
         Relative velocity before the impact [m/s]; the normal component is first, and negative (approach).
-    friction : float
+    friction : float or array_like
         Coulomb coefficient mu, at least 0.
-    restitution : float
+    restitution : float or array_like
         Coefficient e in [0, 1]. For 0 the impact ends with compression, with every law.
-    law : {"newton", "poisson", "stronge"}
-        Definition of e: the ratio of normal velocities (kinematic, default), of normal impulses (kinetic), or
-        the square root of the ratio of works of the normal force (energetic). The three agree if the direction
-        of slip is constant. Newton's law can increase the energy if slip stops or reverses; Stronge's never
-        does.
+    law : {"newton", "poisson", "stronge"}, or array of them
+        Definition of e, also by the name `impact_law`: the ratio of normal velocities (kinematic, default), of
+        normal impulses (kinetic), or the square root of the ratio of works of the normal force (energetic). The
+        three agree if the direction of slip is constant. Newton's law can increase the energy if slip stops or
+        reverses; Stronge's never does.
 
     Returns
     -------
     Impact
-        Velocity after the impact, impulse, energies and phases.
+        Velocity after the impact, impulse, energies and phases. If arguments have more axes, many impacts are
+        solved, for all of them together by the rules of NumPy (broadcasting).
 
     Raises
     ------
     ValueError
-        If an argument is invalid, or no impulse stops the approach: W is singular, friction wedges the pair,
-        and `velocity` has a component that no impulse changes (for example that of a driver).
+        If an argument is invalid, shapes do not go together, or no impulse stops the approach: W is singular,
+        friction wedges the pair, and `velocity` has a component that no impulse changes (for example that of a
+        driver).
 
     Notes
     -----
@@ -95,10 +101,22 @@ def resolve_impact(
     >>> impact = carom.resolve_impact(np.diag([1.0, 3.5, 3.5]), (-1.0, 1.0, 0.0), friction=0.1, restitution=0.5)
     >>> print(impact.velocity_after, impact.impulse, impact.phases)
     [0.5   0.475 0.   ] [ 1.5  -0.15  0.  ] ('slip',)
+
+    In the plane, for three coefficients of friction; with the last two it sticks:
+
+    >>> mu = np.array([0.1, 0.2, 0.3])
+    >>> impact = carom.resolve_impact(np.diag([1.0, 3.5]), (-1.0, 1.0), friction=mu, restitution=0.5)
+    >>> print(impact.velocity_after[:, 1], impact.phases[2])
+    [0.475 0.    0.   ] ('slip', 'stick')
     """
     from carom.impact import layout as o
     from carom.impact.resolve import resolve
 
+    given = inverse_mass, velocity, friction, restitution, law
+    if _are_several(*given):
+        from carom.impact.several import resolve_several
+
+        return resolve_several(*given)
     W, u, mu, e, number = checked_impact(inverse_mass, velocity, friction, restitution, law)
     out = np.zeros(o.SIZE)
     raise_for(resolve(W, u, mu, e, number, out))
@@ -113,6 +131,16 @@ def resolve_impact(
         phases=phase_names(int(out[o.PHASES])),
         wedged=int(out[o.PHASES]) & o.WEDGED != 0,
     )
+
+
+def _are_several(inverse_mass, velocity, friction, restitution, law) -> bool:
+    """Return whether arguments have more axes than those of one impact, or are of a plane one."""
+    cores = ((inverse_mass, 2), (velocity, 1), (friction, 0), (restitution, 0), (law, 0))
+    try:
+        more = any(np.ndim(value) > axes for value, axes in cores)
+        return more or np.shape(inverse_mass) == (2, 2)
+    except Exception:  # whatever is no array is refused by its name, as a part of one impact
+        return False
 
 
 def checked_impact(inverse_mass, velocity, friction, restitution, law):

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 from carom.impact.api import checked_impact, phase_names, raise_for
 
 MOST_STEPS = 100_000  # of one passage through the layer: more steps would only add round-off
@@ -90,6 +90,7 @@ class LayerHistory:
         return self.width * np.exp(y[..., 0] / self.width), u
 
 
+@arguments.known
 def impact_layer(
     inverse_mass,
     velocity,

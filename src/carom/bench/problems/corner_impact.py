@@ -29,14 +29,16 @@ def impacts(count: int = IMPACTS_TIMED, seed: int = 1) -> tuple[np.ndarray, np.n
 
 def ours(mu: float = 0.2, e: float = 0.5, law: int = LAW) -> Callable[[], None]:
     """Return a function that resolves all impacts once."""
-    from carom.bench.loops import resolve_many
-    from carom.impact.layout import SIZE
+    from carom.impact.layout import OK, SIZE
+    from carom.impact.several import resolve_many
 
     W, u = impacts()
-    out = np.zeros(SIZE)
+    n = len(u)
+    same = np.full(n, mu), np.full(n, e), np.full(n, law, dtype=np.int64)
+    out = np.zeros((n, SIZE))
 
     def run() -> None:
-        assert resolve_many(W, u, mu, e, law, out) == 0
+        assert resolve_many(W, u, *same, out) == (-1, OK)
 
     return run
 

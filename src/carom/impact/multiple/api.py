@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 from carom.friction.checks import checked_inverse_masses, per_contact
 
 
@@ -61,6 +61,7 @@ class CornerImpact:
     events: int
 
 
+@arguments.known
 def resolve_impacts(
     inverse_mass,
     velocity,

@@ -12,11 +12,12 @@ from carom.results.solution import Solution
 from carom.status import Status
 
 
+@arguments.formerly(duration="until")
 @arguments.known
 def resume(
     path: str | os.PathLike,
     *,
-    duration: float | None = None,
+    until: float | None = None,
     functions: Mapping[str, Callable] | None = None,
     save_seconds: float = 60.0,
     progress: bool | Callable[[float, float], None] | None = None,
@@ -32,9 +33,10 @@ def resume(
     ----------
     path : str or path
         File of ``simulate(..., save=path)`` or of `Solution.save`.
-    duration : float, optional
-        New duration of the run from its start [s], longer than before. States are saved as often as before.
-        Default: the duration of the run; a run that has reached it is returned unchanged.
+    until : float, optional
+        Time at which the run ends, counted from its start [s], later than before; `Solution.simulate` takes the
+        duration after its end instead. States are saved as often as before. Default: the end that the run was
+        to have; a run that has reached it is returned unchanged.
     functions : mapping, optional
         User-defined functions of the scene, which the file cannot contain: ``"part.field"`` (for example
         ``"motor.force"``) to function. Data that a function itself stores between calls are not restored.
@@ -49,8 +51,9 @@ def resume(
     Raises
     ------
     ValueError
-        If the file is not a file of a run, or has no checkpoint of this version of carom; if `duration` is not
-        longer than before; if functions of the scene are missing, or the scene does not have a given function.
+        If the file is not a file of a run, or has no checkpoint of this version of carom; if `until` is not
+        later than the end of the run; if functions of the scene are missing, or the scene does not have a given
+        function.
     SimulationError
         If the run fails and `throw` is True.
     """
@@ -63,10 +66,11 @@ def resume(
     solution = Solution.load(path, functions=functions)
     kept = solution._run
     assert isinstance(kept, KeptRun)
-    if duration is not None:
-        duration = checks.number(
-            "duration", duration, above=solution.settings["duration"], unit="s"
-        )
+    if until is not None:
+        given = solution.settings
+        step = given["step"] if isinstance(given["step"], float) else given["duration"]
+        most = 1e12 * step  # steps that have numbers
+        until = checks.number("until", until, above=given["duration"], most=most, unit="s")
     elif solution.status.ended:
         return solution
     can_continue = solution.status is Status.INTERRUPTED or solution.status.ended
@@ -81,7 +85,7 @@ def resume(
         )
     kept.need_functions("which the file does not have")
     try:
-        run = kept.revived(duration)
+        run = kept.revived(until)
     except ValueError as error:
         raise ValueError(
             f"path must be a run of this version of carom, got {str(path)!r}: {error}"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import checks
+from carom import arguments, checks
 from carom.io.models.build import Build, Names
 from carom.io.models.contacts import add_contacts
 from carom.io.models.coordinates import add_coordinate_parts, add_mounts
@@ -37,6 +37,7 @@ RESTITUTION = (
 LIGHT, LIGHT_IN_LOOPS = 1e-12, 1e-6
 
 
+@arguments.known
 def load_model(
     source: str | os.PathLike | Any,
     *,

@@ -2,6 +2,6 @@
 
 from carom.studies.ensembles.api import ensemble
 from carom.studies.ensembles.result import Ensemble
-from carom.studies.ensembles.sampling import UniformOrientation
+from carom.studies.ensembles.sampling import Grid, UniformOrientation
 
-__all__ = ["Ensemble", "UniformOrientation", "ensemble"]
+__all__ = ["Ensemble", "Grid", "UniformOrientation", "ensemble"]

@@ -17,7 +17,7 @@ from carom.model.kept import Snapshot
 from carom.run import Run
 from carom.scene.scene import Scene
 from carom.stepping.settings import Settings
-from carom.studies.ensembles.targets import Target, changed, check_places, may_overlap, units
+from carom.studies.values import Target, changed, check_places, may_overlap, units
 
 STATES = {"position": "x", "orientation": "Q", "velocity": "v", "angular_velocity": "w"}
 TURNING = ("rolling_friction", "pivoting_friction")

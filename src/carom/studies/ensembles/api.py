@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, suppress
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,10 +23,13 @@ from carom.stepping.settings import (
     checked_settings,
     mistakes,
 )
-from carom.studies.ensembles.engines import check_engine
+from carom.studies.ensembles.engines import check_engine, check_processes
 from carom.studies.ensembles.outcome import PENDING
 from carom.studies.ensembles.result import Ensemble
-from carom.studies.ensembles.sampling import draw
+from carom.studies.ensembles.sampling import as_mapping, draw, on_grid
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 CHUNK = 64  # default number of runs in a part
 NEVER = 10**15  # `save_every` of runs that save only the first and the last state
@@ -37,9 +41,9 @@ def ensemble(
     duration: float,
     *,
     step: float | str = "auto",
-    vary: Mapping,
+    vary: Mapping | pd.DataFrame,
     runs: int | None = None,
-    seed: int = 0,
+    seed: int | np.random.Generator = 0,
     sampling: str = "random",
     method: str | None = None,
     rtol: float | None = None,
@@ -67,18 +71,23 @@ def ensemble(
         Duration of each run [s].
     step, method, rtol, atol, options
         As for `simulate`.
-    vary : mapping
-        The values for each name: an array whose first axis is over the runs, a SciPy distribution, a list of
-        distributions and numbers (for a vector), or `UniformOrientation()`. If `scene` is a Scene, the names
-        are: ``"gravity"``; ``"die.position"``, ``orientation``, ``velocity``, ``angular_velocity``, ``mass``,
-        ``inertia`` for a body with the name "die"; ``"die-ground.restitution"``, ``friction``,
-        ``friction_held``, ``rolling_friction``, ``pivoting_friction`` for a contact. Inertia is scaled with the
-        mass unless it is varied itself, and `friction_held` follows `friction` if the two were equal.
+    vary : mapping or pandas.DataFrame
+        The values for each name: an array whose first axis is over the runs, a SciPy distribution, a `Grid`, a
+        list of distributions, grids and numbers (for a vector), or `UniformOrientation()`; or a table with a
+        column for each name and a row for each run. If `scene` is a Scene, a name is that of a part and of one
+        of its numbers or words: ``"die.position"``, ``orientation``, ``velocity``, ``angular_velocity``,
+        ``mass``, ``inertia`` of a body with the name "die", and the sizes of its shape (``"die.radius"``);
+        ``"die-ground.restitution"``, ``friction``, ``impact_law`` ... of a contact; the arguments of a joint
+        (``"hinge.anchor"``), of a force (``"spring.stiffness"``), of a motor (``"motor.rate"``), of a stop
+        (``"stop.upper"``), of a half-space or a static body. Also ``"gravity"``; one component
+        (``"die.velocity.x"``, ``"gravity.z"``); and ``"restitution"``, ``"friction"``, ... of all contacts.
+        What is computed from other values by default follows them, unless it is varied itself: inertia the mass
+        and the shape, whose mass stays; `friction_held` the friction; `rest_length` the ends of a spring.
         Orientations may also be a SciPy Rotation or matrices.
     runs : int, optional
-        Number of runs; not needed if `vary` has an array.
-    seed : int
-        Seed of the random numbers. Default 0.
+        Number of runs; not needed if `vary` has an array or a grid. A grid has all combinations of its values.
+    seed : int or numpy.random.Generator
+        Seed of the random numbers, or a generator, which goes on from its state. Default 0.
     sampling : {"random", "sobol", "halton", "latin"}
         Independent random numbers (``"random"``, default), or evenly spread ones (quasi-Monte Carlo or Latin
         hypercube).
@@ -135,6 +144,7 @@ def ensemble(
         raise TypeError(
             f"scene must be a carom.Scene or a function that returns one, got {type(scene).__name__}"
         )
+    vary = as_mapping(vary)
     if not isinstance(vary, Mapping) or not vary:
         raise ValueError(
             f"vary must have at least one name and its values, got {checks.shown(vary)}"
@@ -145,8 +155,13 @@ def ensemble(
     if observe is not None and not callable(observe):
         raise TypeError(f"observe must be a function of a Solution, got {checks.shown(observe)}")
     check_engine(executor)
+    check_processes(executor, scene=scene, observe=observe)
     check_handling(progress, True, 0.0)
-    save = None if save is None else checks.path("save", save)
+    if save is not None:
+        save = checks.path("save", save)
+        from carom.studies.ensembles.files import check_folder
+
+        check_folder(save)
     chunk = checks.integer("chunk", chunk, least=1)
     if workers is not None:
         workers = checks.integer("workers", workers, least=1)
@@ -157,8 +172,9 @@ def ensemble(
         settings = settings._replace(save_every=NEVER)
     from carom.studies.ensembles.plan import facts, join
 
-    inputs = draw(vary, runs, checks.integer("seed", seed, least=0), sampling)
-    plan = _plan(scene, settings, inputs, observe)
+    vary, grid, runs = on_grid(vary, runs)
+    inputs = draw(vary, runs, checks.seed("seed", seed), sampling)
+    plan, values = _plan(scene, settings, inputs, grid, observe)
     for mistake in mistakes(scene, settings):
         warnings.warn(mistake, MistakeWarning, stacklevel=3)
     count = len(next(iter(inputs.values())))
@@ -171,7 +187,7 @@ def ensemble(
     report = reporter(progress, "runs")
     stopped = None
     try:
-        _go(plan, inputs, done, chunk, executor, workers, store, parts, report)
+        _go(plan, values, done, chunk, executor, workers, store, parts, report)
     except KeyboardInterrupt as error:
         stopped = error
     finally:
@@ -180,7 +196,7 @@ def ensemble(
     if store is not None:
         whole, about = store.read(), store.about
     else:
-        whole, about = join(parts, count, plan.bodies), facts(plan)
+        whole, about = join(parts, count, len(plan.bodies)), facts(plan)
     found = Ensemble(inputs, whole.outcomes, whole.observed, whole.failures, about, plan)
     if stopped is not None:
         more = "; call again with the same arguments to continue" if store is not None else ""
@@ -189,17 +205,21 @@ def ensemble(
     return found
 
 
-def _plan(scene, settings: Settings, inputs: dict[str, np.ndarray], observe):
+def _plan(scene, settings: Settings, inputs: dict[str, np.ndarray], grid, observe):
+    """Return the plan, and the values of the runs as it takes them."""
     from carom.studies.ensembles.plan import Plan, plain
-    from carom.studies.ensembles.targets import find_targets
+    from carom.studies.values import find_targets, whole
 
     if isinstance(scene, Scene):
         check_scene(scene, settings)
         scene = scene._as_it_is()
-        return Plan(scene, settings, find_targets(scene, inputs), len(scene.bodies), observe)
+        values = whole(scene, inputs)
+        names = [body.name for body in scene.bodies]
+        return Plan(scene, settings, find_targets(scene, values), names, grid, observe), values
     first = checks.call("scene", lambda: scene(**plain(inputs, 0)))
     checks.instance("the result of the function scene", first, (Scene,))
-    return Plan(scene, settings, [], len(first.bodies), observe)
+    names = [body.name for body in first.bodies]
+    return Plan(scene, settings, [], names, grid, observe), inputs
 
 
 def _store(save, plan, inputs, chunk):
@@ -219,10 +239,10 @@ def _store(save, plan, inputs, chunk):
                 "remove it"
             )
         return store
-    return Store.make(save, inputs, plan.bodies, chunk, {"digest": mark, **facts(plan)})
+    return Store.make(save, inputs, len(plan.bodies), chunk, {"digest": mark, **facts(plan)})
 
 
-def _go(plan, inputs, done, chunk, executor, workers, store, parts, report) -> None:
+def _go(plan, values, done, chunk, executor, workers, store, parts, report) -> None:
     """Make the remaining runs, part by part."""
     from carom.studies.ensembles.engines import each
     from carom.studies.ensembles.plan import STOPPED, do
@@ -230,7 +250,7 @@ def _go(plan, inputs, done, chunk, executor, workers, store, parts, report) -> N
     def tasks() -> Iterator[tuple]:
         for first in range(0, len(done), chunk):
             if not np.all(done[first : first + chunk]):
-                yield plan, first, {k: a[first : first + chunk] for k, a in inputs.items()}
+                yield plan, first, {k: a[first : first + chunk] for k, a in values.items()}
 
     def take(part) -> None:
         if store is not None:

@@ -7,8 +7,11 @@ with its worker is submitted again; its results do not depend on the worker.
 from __future__ import annotations
 
 import os
+import pickle
+import sys
 from collections.abc import Callable, Generator, Iterator
 from concurrent import futures
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from itertools import islice
 
@@ -20,6 +23,11 @@ SUBMISSIONS = 5  # greatest number of times that a part is submitted, if its wor
 
 def check_engine(executor) -> None:
     """Refuse a value that is neither the name of an engine nor an executor."""
+    if executor in ("dask", "distributed"):
+        raise ValueError(
+            f"executor must be a client of dask for many machines, got {executor!r}: "
+            "executor=distributed.Client() starts workers on this one"
+        )
     if isinstance(executor, str):
         checks.choice("executor", executor, NAMES)
     elif isinstance(executor, type) or not (
@@ -29,6 +37,34 @@ def check_engine(executor) -> None:
             f"executor must be one of {', '.join(map(repr, NAMES))}, a concurrent.futures.Executor or a "
             f"dask.distributed.Client, got {checks.shown(executor)}"
         )
+
+
+GUARD = (
+    'a script that starts processes must begin its work below `if __name__ == "__main__":`, because each '
+    'process imports the script; or use executor="threads"'
+)
+
+
+def check_processes(executor, **sent) -> None:
+    """Refuse a start within a process that is being started, and what cannot be sent to processes."""
+    if executor != "processes" and not isinstance(executor, futures.ProcessPoolExecutor):
+        return
+    import multiprocessing
+
+    if getattr(multiprocessing.current_process(), "_inheriting", False):
+        raise RuntimeError(GUARD)
+    for name, one in sent.items():
+        here = getattr(one, "__module__", "") == "__main__"
+        try:
+            pickle.dumps(one)
+            if here and callable(one) and not hasattr(sys.modules["__main__"], "__file__"):
+                raise TypeError("it is defined in an interactive session")
+        except Exception as error:
+            raise ValueError(
+                f"{name} must be what a process can import (no lambda, no function within another one or in a "
+                f"notebook), got {checks.shown(one)}: {error}; put it into a module, or use "
+                'executor="threads"'
+            ) from None
 
 
 @contextmanager
@@ -115,6 +151,10 @@ def _all(tasks, function: Callable, submit, most: int, running: dict) -> Generat
                 yield result
             elif tried < SUBMISSIONS and _lost(error):
                 start(task, tried + 1)
+            elif isinstance(error, BrokenProcessPool):
+                raise RuntimeError(
+                    f"a process ended before its runs were made: it was killed (memory), or {GUARD}"
+                ) from error
             else:
                 raise error
         for task in islice(tasks, most - len(running)):

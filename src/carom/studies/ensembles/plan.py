@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import threading
 import uuid
 from collections.abc import Callable, Iterable, Mapping
@@ -18,7 +19,7 @@ from carom.status import Status
 from carom.stepping.settings import Settings, check_scene
 from carom.studies.ensembles.again import Again
 from carom.studies.ensembles.outcome import REFUSED, End, end_of, no_outcomes, write
-from carom.studies.ensembles.targets import Target
+from carom.studies.values import Target
 
 
 @dataclass(frozen=True)
@@ -28,14 +29,19 @@ class Plan:
     scene: Scene | Callable[..., Scene]
     settings: Settings
     targets: list[Target]
-    bodies: int
+    bodies: list[str]  # names
+    grid: dict[str, np.ndarray]  # its axes by name; empty if there is none
     observe: Callable | None
     token: str = field(default_factory=lambda: uuid.uuid4().hex)
 
 
 def facts(plan: Plan) -> dict[str, str]:
-    """Return version and settings, for `Ensemble.about`."""
-    return {"carom": carom.__version__, "settings": repr(plan.settings)}
+    """Return version, settings, names and grid, for `Ensemble.about`."""
+    found = {"carom": carom.__version__, "settings": repr(plan.settings)}
+    found["body_names"] = json.dumps(plan.bodies)
+    if plan.grid:
+        found["grid"] = json.dumps({name: axis.tolist() for name, axis in plan.grid.items()})
+    return found
 
 
 class Part(NamedTuple):
@@ -58,7 +64,7 @@ def do(plan: Plan, first: int, values: dict[str, np.ndarray]) -> Part:
     After an interruption the remaining runs of the part are pending.
     """
     runs = len(next(iter(values.values())))
-    part, ends, failures = Part(first, no_outcomes(runs, plan.bodies), {}, {}), {}, {}
+    part, ends, failures = Part(first, no_outcomes(runs, len(plan.bodies)), {}, {}), {}, {}
     for k in range(runs):
         try:
             found = one(plan, values, k, part)
@@ -162,9 +168,9 @@ def begin(plan: Plan, values: dict[str, np.ndarray], k: int) -> Run:
         scene = plan.scene(**plain(values, k))
         if not isinstance(scene, Scene):
             raise TypeError(f"scene must return a carom.Scene, got {type(scene).__name__}")
-        if len(scene.bodies) != plan.bodies:
+        if len(scene.bodies) != len(plan.bodies):
             raise ValueError(
-                f"scene must have {plan.bodies} bodies, as in run 0, got {len(scene.bodies)}"
+                f"scene must have {len(plan.bodies)} bodies, as in run 0, got {len(scene.bodies)}"
             )
         check_scene(scene, plan.settings)
         return Run(scene, plan.settings)
@@ -176,4 +182,4 @@ def begin(plan: Plan, values: dict[str, np.ndarray], k: int) -> Run:
 def plain(values: dict[str, np.ndarray], k: int) -> dict[str, Any]:
     """Return the values of run k, as a function that makes its scene gets them."""
     one = {name: np.array(rows[k]) for name, rows in values.items()}
-    return {name: value if value.ndim else float(value) for name, value in one.items()}
+    return {name: value if value.ndim else value.item() for name, value in one.items()}

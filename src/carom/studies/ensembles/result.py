@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import json
+import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from carom import checks
-from carom.status import Status
-from carom.studies.ensembles.outcome import PENDING, REFUSED
+from carom.studies.ensembles.outcome import PENDING
+from carom.studies.ensembles.table import WORDS
 
 if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
     from carom.studies.ensembles.plan import Plan
 
 
@@ -52,16 +59,19 @@ class Ensemble:
 
     @classmethod
     def load(cls, path) -> Ensemble:
-        """Return a saved ensemble, complete or not.
+        """Return a saved ensemble, complete or not: a folder of ``save=``, or a file of `save`.
 
         Raises
         ------
         FileNotFoundError, ValueError
             If the path does not exist, or is not a saved ensemble.
         """
+        from carom.studies.ensembles import files
         from carom.studies.ensembles.store import Store
 
         where = checks.path("path", path)
+        if where.suffix.lower() in files.FILES and not where.is_dir():
+            return cls(**files.load(where))
         try:
             store = Store.open(where)
             whole, inputs = store.read(), store.inputs()
@@ -76,12 +86,21 @@ class Ensemble:
             raise AttributeError(f"an Ensemble has no {name!r}")
         return outcomes[name]
 
+    def __dir__(self) -> list[str]:
+        return [*object.__dir__(self), *(self.outcomes.dtype.names or ())]
+
     def __len__(self) -> int:
         return len(self.outcomes)
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{n} {word}" for word, n in self.counts().items())
         return f"<Ensemble of {len(self)} runs: {counts}>"
+
+    @property
+    def grid(self) -> dict[str, np.ndarray]:
+        """Axes of the grid by name, the last one fastest; empty if no `Grid` was varied."""
+        axes = json.loads(self.about.get("grid", "{}"))
+        return {name: np.array(values) for name, values in axes.items()}
 
     @property
     def done(self) -> np.ndarray:
@@ -95,9 +114,8 @@ class Ensemble:
 
     def counts(self) -> dict[str, int]:
         """Return the number of runs with each status."""
-        words = {PENDING: "pending", REFUSED: "refused", **{int(s): s.name.lower() for s in Status}}
         found, numbers = np.unique(self.outcomes["status"], return_counts=True)
-        return {words[int(s)]: int(n) for s, n in zip(found, numbers)}
+        return {WORDS[int(s)]: int(n) for s, n in zip(found, numbers)}
 
     def solution(self, run: int):
         """Return the complete `Solution` of a run; the run is made again.
@@ -110,7 +128,7 @@ class Ensemble:
         from carom.scene.scene import Scene
         from carom.simulate import simulate
         from carom.studies.ensembles.plan import plain
-        from carom.studies.ensembles.targets import changed
+        from carom.studies.values import changed, whole
 
         run = checks.integer("run", run, least=0, most=len(self) - 1)
         plan = self._plan
@@ -120,31 +138,99 @@ class Ensemble:
                 "same arguments and the same save"
             )
         if isinstance(plan.scene, Scene):
-            values = {name: array[run] for name, array in self.inputs.items()}
+            one = {name: array[run : run + 1] for name, array in self.inputs.items()}
+            values = {name: rows[0] for name, rows in whole(plan.scene, one).items()}
             scene = changed(plan.scene, plan.targets, values)
         else:
             scene = plan.scene(**plain(self.inputs, run))
         how = plan.settings._replace(save_every=1)
         return simulate(scene, **how.as_dict(), options=how.options, throw=False)
 
-    def to_xarray(self):
-        """Return the ensemble as an `xarray.Dataset` with the dimension `run`."""
-        xarray = checks.need("xarray", "to_xarray", "ensemble")
-        units = {
-            "t": "s", "rest_time": "s", "first_impact": "s", "position": "m", "velocity": "m/s",
-            "angular_velocity": "rad/s", "kinetic_energy": "J", "impact_loss": "J",
-            "friction_loss": "J", "bounce_loss": "J", "load_work": "J",
-        }  # fmt: skip
-        variables = {}
-        for name in self.outcomes.dtype.names or ():
-            values = self.outcomes[name]
-            last = {3: "axis", 4: "quaternion"}.get(values.shape[-1]) if values.ndim == 3 else None
-            dims = ("run", "body", last) if last else ("run",)
-            variables[name] = (dims, values, {"units": units[name]} if name in units else {})
-        for folder, arrays in (("input", self.inputs), ("observed", self.observed)):
-            for name, values in arrays.items():
-                more = [f"{name}_{k}" for k in range(1, values.ndim)]
-                key = f"{folder}:{name}"
-                variables[key] = (("run", *more), values, {})
-        attributes = {k: v for k, v in self.about.items() if isinstance(v, (str, int, float))}
-        return xarray.Dataset(variables, attrs=attributes)
+    def save(self, path: str | os.PathLike) -> None:
+        """Write the ensemble to a file, as the ending says; `load` reads all but the last.
+
+        ``.zarr``: a folder as that of ``save=``. ``.nc``, ``.h5``: one netCDF-4 (HDF5) file with the arrays of
+        `to_xarray`. ``.parquet``: the table of `to_pandas`. ``.csv``: the same table as text. An old file is
+        replaced as a whole, a folder only if it is an ensemble.
+
+        Parameters
+        ----------
+        path : str or path
+            Path with one of these endings (or ``.hdf5``), in a folder that exists.
+
+        Raises
+        ------
+        ImportError
+            If a package is missing: zarr (``.zarr``), h5netcdf (``.nc``), pandas (tables), pyarrow
+            (``.parquet``).
+        OSError
+            If the file cannot be written, for example on a full disk; an old file then stays unchanged.
+        ValueError
+            If the folder does not exist, the ending is not one of these, or a folder is no ensemble.
+        """
+        from carom.studies.ensembles.files import save
+
+        where = checks.path("path", path)
+        if not where.is_dir() or where.suffix.lower() != ".zarr":
+            where = checks.file_to_write("path", where)
+        save(where, self)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return a `pandas.DataFrame` with one row for each run.
+
+        Columns are the inputs by their names (components as ``"die.velocity.x"``), what was observed, the
+        outcomes, `status` as a word, `message`, and the state of each body at the end: ``"die.x"``, ``y``,
+        ``z``, the quaternion ``qw``, ``qx``, ``qy``, ``qz``, and the velocities ``vx``, ``vy``, ``vz`` and
+        ``wx``, ``wy``, ``wz``. An input or observed value with the name of an outcome has ``"inputs:"`` or
+        ``"observed:"`` before it.
+
+        Raises
+        ------
+        ImportError
+            If pandas is missing.
+        """
+        from carom.studies.ensembles.files import to_pandas
+
+        return to_pandas(self)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the ensemble as an `xarray.Dataset`.
+
+        Its dimensions are `run`, or, if a `Grid` was varied, the axes of the grid with their values, and `run`
+        is a coordinate with the numbers of the runs; then body, axis and quaternion. Inputs are
+        ``"input:NAME"``, what was observed ``"observed:NAME"``.
+
+        Raises
+        ------
+        ImportError
+            If xarray is missing.
+        """
+        from carom.studies.ensembles.files import to_xarray
+
+        return to_xarray(self)
+
+    def plot(self, value: str | ArrayLike, over: str | Sequence[str] | None = None, **options):
+        """Draw one value of all runs over what was varied, by `carom.plots.ensemble`, and return its axes.
+
+        Parameters
+        ----------
+        value : str or (R,)
+            A column of `to_pandas`, such as ``"die.z"``, ``"impacts"``, or a name of what was observed; or one
+            number for each run.
+        over : str or two of them, optional
+            The columns on the axes. Default: the axes of the grid, or the numbers that were varied. Two axes of
+            a grid are a heat map, with the mean over all other axes; one is a line. Without a grid each run is
+            a point.
+        **options
+            Other arguments of that function, for example ``ax`` to draw into existing axes.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is missing.
+        ValueError
+            If there is no such column, or `over` is needed.
+        """
+        from carom.visual import plots
+
+        return plots.ensemble(self, value, over, **options)

@@ -58,8 +58,18 @@ class Store:
         group = zarr.create_group(str(path), attributes={**about, "chunk": chunk, "bodies": bodies})
         for name in ("inputs", "outcomes", "observed", MARKS):
             group.create_group(name)
+        words = {
+            name: sorted(set(rows.tolist()))
+            for name, rows in inputs.items()
+            if rows.dtype.kind == "U"
+        }
         for name, values in inputs.items():
-            _array(group, f"inputs/{name}", values.shape, values.dtype, chunk)[:] = values
+            if (
+                name in words
+            ):  # as their places in a list: Zarr has no type of words that all readers know
+                values = np.searchsorted(words[name], values)
+            _array(group, f"inputs/{in_file(name)}", values.shape, values.dtype, chunk)[:] = values
+        group.attrs["words"], group.attrs["names"] = words, list(inputs)
         kind = outcome_type(bodies)
         for name in kind.names or ():
             base, shape = kind[name].base, kind[name].shape
@@ -136,7 +146,7 @@ class Store:
 
     def _observed(self, name: str, values: np.ndarray):
         """Return the array of the observed values; a new array replaces it as a whole."""
-        key = f"observed/{name}"
+        key = f"observed/{in_file(name)}"
         if key not in self.group:
             _remove(self.path / NEW)
             shape = (self.runs, *values.shape[1:])
@@ -157,7 +167,11 @@ class Store:
             If they differ from those that were written.
         """
         try:
-            values = {name: np.asarray(a[:]) for name, a in sorted(self.group["inputs"].arrays())}
+            arrays = sorted(self.group["inputs"].arrays())
+            values = {from_file(name): np.asarray(array[:]) for name, array in arrays}
+            for name, words in self.group.attrs.get("words", {}).items():
+                values[name] = np.array(words)[values[name]]
+            values = {name: values[name] for name in self.group.attrs.get("names", values)}
             whole = _digest(values) == self.group.attrs["inputs"]
         except Exception as error:  # a damaged file may cause any error of a decoder
             raise ValueError(
@@ -177,7 +191,8 @@ class Store:
     def _parts(self) -> Iterator[Part]:
         """Yield the parts that have a mark and agree with it."""
         columns = {name: self._column(f"outcomes/{name}") for name in self.group["outcomes"]}
-        observed = {name: self._column(f"observed/{name}") for name in self.group["observed"]}
+        names = self.group["observed"]
+        observed = {from_file(name): self._column(f"observed/{name}") for name in names}
         kind = outcome_type(int(self.group.attrs["bodies"]))
         for first in range(0, self.runs, self.chunk):
             file = self.path / MARKS / f"{first}.json"
@@ -205,6 +220,16 @@ class Store:
             except Exception:
                 continue
         return out
+
+
+def in_file(name: str) -> str:
+    """Return a name as files have it, where a slash leads into a folder."""
+    return name.replace("/", "%2F")
+
+
+def from_file(name: str) -> str:
+    """Return a name that files have as `in_file` says."""
+    return name.replace("%2F", "/")
 
 
 def _columns(outcomes: np.ndarray) -> dict[str, np.ndarray]:

@@ -13,6 +13,11 @@ __all__ = [
     "Margin",
     "Sensitivities",
     "contact_sequence",
+    "gradient",
     "impact_derivative",
     "sensitivities",
 ]
+
+gradient = sensitivities  # the name that some look for
+for _name in __all__:  # also found at the function: `carom.gradient.impact_derivative`
+    setattr(gradient, _name, globals()[_name])

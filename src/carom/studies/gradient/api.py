@@ -17,6 +17,8 @@ def sensitivities(
 ) -> Sensitivities:
     """Differentiate the final state and the impacts of a run by its initial state and parameters of its scene.
 
+    It is also called `carom.gradient`.
+
     There are two methods. "saltation": for bodies in free flight between impacts with one contact point; the
     exact motion is differentiated, and each impact by its saltation matrix, including the change of its time.
     "differences": for joints, forces or persistent contacts; the run is repeated in pieces from event to event,
@@ -38,7 +40,9 @@ def sensitivities(
         - ``"body.mass"``, with constant inertia; ``"body.inertia"``: six columns xx, yy, zz, xy, xz, yz in the
           axes of the body (not by differences);
         - ``"contact.restitution"``, ``"contact.friction"`` (in impacts);
-        - ``"gravity"``: three columns; ``"restitution"`` and ``"friction"``: those of all contacts together.
+        - ``"gravity"``: three columns; ``"restitution"`` and ``"friction"``: those of all contacts together;
+        - one column by its label: ``"body.velocity.x"``, ``"gravity.z"``, ``"body.inertia.xx"``.
+          `carom.ensemble` and `carom.identify` take the same names.
     by : str
         ``"saltation"``, ``"differences"`` or ``"auto"`` (default): differences if the scene has joints,
         constraints or forces, otherwise saltation.

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom import arguments
 from carom.impact.api import checked_impact
 
 
@@ -27,6 +28,7 @@ class ImpactDerivative(NamedTuple):
     error: float  #: estimate of the relative error of `impulse`
 
 
+@arguments.known
 def impact_derivative(
     inverse_mass, velocity, friction: float, restitution: float, law: str = "newton"
 ) -> ImpactDerivative:

@@ -64,7 +64,7 @@ def make_parameters(scene, names, contacts: int, to_principal: np.ndarray) -> Pa
         raise ValueError("with_respect_to must have at least one parameter, got none")
     parts = [_parts(scene, name) for name in names]
     labels, columns = [], {}
-    for name, (_, _, components) in zip(names, parts):
+    for name, (_, _, components, _) in zip(names, parts):
         if name in columns:
             raise ValueError(
                 f"with_respect_to must have each parameter once, got {checks.shown(name)} twice"
@@ -77,18 +77,22 @@ def make_parameters(scene, names, contacts: int, to_principal: np.ndarray) -> Pa
         tuple(labels), columns, np.zeros((N, 12, P)), np.zeros((N, P)), np.zeros((N, 3, 3, P)),
         np.zeros((contacts, P)), np.zeros((contacts, P)), np.zeros((3, P)),
     )  # fmt: skip
-    for name, (part, field, _) in zip(names, parts):
-        _write(made, part, field, columns[name], to_principal)
+    for name, (part, field, _, only) in zip(names, parts):
+        _write(made, part, field, columns[name], to_principal, only)
     return made
 
 
 def _parts(scene, name: str):
-    """Return (part of the scene or None, field, components) of a name."""
+    """Return (part of the scene or None, field, components, the one of them that is meant or all) of a name."""
     checks.text("each name in with_respect_to", name)
     part, _, field = name.rpartition(".")
+    if field in (*AXES, *MOMENTS) and part:
+        of, own, components, _ = _parts(scene, part)
+        checks.choice(f"what follows {part!r} in with_respect_to", field, components)
+        return of, own, (), components.index(field)
     if not part:
         checks.choice("a name in with_respect_to", field, OF_SCENE)
-        return None, field, AXES if field == "gravity" else ()
+        return None, field, AXES if field == "gravity" else (), slice(None)
     try:
         found = scene[part]
     except KeyError as error:
@@ -96,20 +100,20 @@ def _parts(scene, name: str):
     if isinstance(found, Body):
         checks.choice(f"what follows {part!r} in with_respect_to", field, OF_BODY)
         components = AXES if field in VECTORS else tuple(MOMENTS) if field == "inertia" else ()
-        return found, field, components
+        return found, field, components, slice(None)
     if isinstance(found, Contact):
         checks.choice(f"what follows {part!r} in with_respect_to", field, OF_CONTACT)
-        return found, field, ()
+        return found, field, (), slice(None)
     raise ValueError(
         "with_respect_to must have fields of bodies or contacts, as in 'die.velocity', "
         f"'die-ground.friction', or one of {', '.join(OF_SCENE)}, got {checks.shown(name)}"
     )
 
 
-def _write(made: Parameters, part, field, columns, to_principal) -> None:
-    """Write the changes by the parameters of one name."""
+def _write(made: Parameters, part, field, columns, to_principal, only) -> None:
+    """Write the changes by the parameters of one name; `only` are the components that it has."""
     if field == "gravity":
-        made.gravity[:, columns] = np.eye(3)
+        made.gravity[:, columns] = np.eye(3)[:, only]
     elif field in OF_CONTACT:
         which = slice(None) if part is None else part.index
         getattr(made, field)[which, columns] = 1.0
@@ -117,7 +121,7 @@ def _write(made: Parameters, part, field, columns, to_principal) -> None:
         made.mass[part.index, columns] = 1.0
     elif field == "inertia":
         R = quaternion.matrix(to_principal[part.index])
-        made.inertia[part.index, :, :, columns] = np.moveaxis(R.T @ UNITS @ R, 0, -1)
+        made.inertia[part.index, :, :, columns] = np.moveaxis(R.T @ UNITS @ R, 0, -1)[..., only]
     else:
         row = 3 * VECTORS.index(field)
-        made.start[part.index, row : row + 3, columns] = np.eye(3)
+        made.start[part.index, row : row + 3, columns] = np.eye(3)[:, only]

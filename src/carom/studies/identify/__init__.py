@@ -42,3 +42,8 @@ __all__ = [
     "trajectory_error",
     "varied",
 ]
+
+for _name in (
+    __all__
+):  # `carom.identify` is the function, and these are also found at it: `carom.identify.Recording`
+    setattr(identify, _name, globals()[_name])

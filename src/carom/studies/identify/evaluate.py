@@ -11,7 +11,8 @@ from carom.scene.scene import Scene
 from carom.studies.identify.parameters import Space
 from carom.studies.identify.recording import Recording
 from carom.studies.identify.rollout import RollOut, roll_outs
-from carom.studies.identify.varied import varied
+from carom.studies.identify.varied import KNOWN, varied
+from carom.studies.values import changed, find_targets, whole
 
 
 class Evaluator:
@@ -31,7 +32,11 @@ class Evaluator:
         """Return the scene of one recording."""
         named = self.space.named(point)
         if isinstance(self.scene, Scene):
-            return varied(self.scene, **named, start=recording.start)
+            short = {name: value for name, value in named.items() if name in KNOWN}
+            made = varied(self.scene, **short, start=recording.start)
+            rest = {n: np.array([value]) for n, value in named.items() if n not in KNOWN}
+            rows = whole(made, rest)
+            return changed(made, find_targets(made, rows), {n: row[0] for n, row in rows.items()})
         scene = checks.call("scene", self.scene, named, recording)
         checks.instance("the result of the function scene", scene, (Scene,))
         return scene

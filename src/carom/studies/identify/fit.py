@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 from carom.options import Options
 from carom.scene.scene import Scene
 from carom.studies.identify.curvature import curvature
@@ -22,6 +22,8 @@ LEAST_GAIN = 0.02
 METHODS = ("Nelder-Mead", "Powell", "COBYQA", "L-BFGS-B")
 
 
+@arguments.formerly(threads="workers")
+@arguments.known
 def identify(
     scene: Scene | Callable[[dict, Recording], Scene],
     recordings: Sequence[Recording],
@@ -33,10 +35,10 @@ def identify(
     tolerance: float = 1e-3,
     max_evaluations: int = 400,
     resamples: int = 200,
-    seed: int = 0,
+    seed: int | np.random.Generator = 0,
     step: float | None = None,
     options: Options | None = None,
-    threads: int | None = None,
+    workers: int | None = None,
     progress: Callable[[int, dict, float], None] | None = None,
 ) -> Identification:
     """Fit parameters of a scene to recorded motion.
@@ -53,8 +55,9 @@ def identify(
         The recorded motions.
     parameters : dict
         A `Parameter`, or (start, step), for each name. For a `Scene` the names are ``restitution``,
-        ``friction``, ``friction_held``, ``inertia_factor`` and ``corner_radius`` of `varied`; for a function
-        they are free.
+        ``friction``, ``friction_held``, ``inertia_factor`` and ``corner_radius`` of `varied`, and each number
+        that `carom.ensemble` varies: ``"ball-table.friction"``, ``"spring.stiffness"``, ``"gravity.z"``. For a
+        function they are free.
     objective : callable
         Function of (`RollOut`, `Recording`) that returns a number, such as ``mean_error(length, angle)`` or
         ``squared_error(length, angle)``.
@@ -75,9 +78,9 @@ def identify(
         uncertainty. Default 200. They need 2 p^2 + 1 more evaluations, at most six times. If one of these is
         better than the best point by 2 %, the search continues from there. Fewer than six recordings are not
         resampled: their uncertainty is that of the curvature of the sum of squares.
-    seed : int
+    seed : int or numpy.random.Generator
         Seed of the bootstrap samples. Default 0.
-    step, options, threads
+    step, options, workers
         As for `roll_outs`.
     progress : callable, optional
         Function that is called after each evaluation with (number, parameters, objective).
@@ -105,9 +108,9 @@ def identify(
     tolerance = checks.number("tolerance", tolerance, above=0.0, below=1.0)
     max_evaluations = checks.integer("max_evaluations", max_evaluations, least=1)
     resamples = checks.integer("resamples", resamples, least=0, most=100_000)
-    seed = checks.integer("seed", seed, least=0)
-    space = Space(parameters, known=isinstance(scene, Scene))
-    settings = {"step": step, "options": options, "threads": threads}
+    seed = checks.seed("seed", seed)
+    space = Space(parameters, scene if isinstance(scene, Scene) else None)
+    settings = {"step": step, "options": options, "workers": workers}
     evaluate = Evaluator(scene, recordings, space, objective, progress, **settings)
     uncertainty = curved = None
     for _ in range(SEARCHES):

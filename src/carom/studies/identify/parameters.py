@@ -9,7 +9,9 @@ import numpy as np
 
 from carom import checks
 from carom.fields import keep
+from carom.scene.scene import Scene
 from carom.studies.identify.varied import KNOWN
+from carom.studies.values import find, split
 
 
 @dataclass(frozen=True)
@@ -59,13 +61,13 @@ def _bound(name: str, value) -> float:
 class Space:
     """All parameters of a fit in order: starts, steps and bounds."""
 
-    def __init__(self, parameters: Mapping, known: bool):
+    def __init__(self, parameters: Mapping, scene: Scene | None):
         if not isinstance(parameters, Mapping) or not parameters:
             raise ValueError(
                 f"parameters must be a dict of names and Parameters, got {checks.shown(parameters)}"
             )
         self.names = tuple(parameters)
-        all_of_them = [_parameter(name, parameters[name], known) for name in self.names]
+        all_of_them = [_parameter(name, parameters[name], scene) for name in self.names]
         self.start = np.array([p.start for p in all_of_them])
         self.step = np.array([p.step for p in all_of_them])
         self.lower = np.array([p.lower for p in all_of_them])
@@ -80,10 +82,26 @@ class Space:
         return dict(zip(self.names, map(float, values)))
 
 
-def _parameter(name: str, value, known: bool) -> Parameter:
-    bounds = KNOWN.get(name, (-np.inf, np.inf, 0.0)) if known else (-np.inf, np.inf, 0.0)
-    if known:
-        checks.choice("a name in parameters", name, KNOWN)
+def _bounds(name: str, scene: Scene | None) -> tuple[float, float, float]:
+    """Return the bounds of a parameter, and a step for the start of a search, or 0 if none is known."""
+    if scene is None:
+        return -np.inf, np.inf, 0.0
+    if name in KNOWN or not isinstance(name, str) or not ("." in name or name == "gravity"):
+        return KNOWN[checks.choice("a name in parameters", name, KNOWN)]
+    stem, component = split(scene, name, "parameters")
+    found = find(scene, stem)
+    if not component and (
+        found is None or np.ndim(found.value) > 0 or isinstance(found.value, str)
+    ):
+        raise ValueError(
+            f"parameters must be numbers, got {name!r}, which is none; of a vector give components, like "
+            f"{name + '.x'!r}"
+        )
+    return (-np.inf, np.inf, 0.0) if component or found is None else (*found.bounds, 0.0)
+
+
+def _parameter(name: str, value, scene: Scene | None) -> Parameter:
+    bounds = _bounds(name, scene)
     if isinstance(value, Parameter):
         low, high = max(value.lower, bounds[0]), min(value.upper, bounds[1])
         return Parameter(value.start, value.step, low, high)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 from carom.options import Options
 from carom.scene.scene import Scene
 from carom.studies.identify.recording import Recording, checked_recordings
@@ -78,13 +78,14 @@ def roll_out(
     )  # fmt: skip
 
 
+@arguments.formerly(threads="workers")
 def roll_outs(
     make: Callable[[Recording], Scene],
     recordings: Sequence[Recording],
     *,
     step: float | None = None,
     options: Options | None = None,
-    threads: int | None = None,
+    workers: int | None = None,
 ) -> list[RollOut]:
     """Simulate a scene for each recording, in threads.
 
@@ -96,25 +97,25 @@ def roll_outs(
         The recorded motions.
     step, options
         As for `roll_out`.
-    threads : int, optional
+    workers : int, optional
         Number of threads. Default: the number of cores that the process may use. The compiled loop releases the
         lock of the interpreter, so threads run in parallel.
     """
     checks.function("make", make)
     recordings = checked_recordings(recordings)
-    if threads is not None:
-        threads = checks.integer("threads", threads, least=1)
+    if workers is not None:
+        workers = checks.integer("workers", workers, least=1)
 
     def one(recording: Recording) -> RollOut:
         scene = checks.call("make", make, recording)
         checks.instance("the result of make", scene, (Scene,))
         return roll_out(scene, recording, step=step, options=options)
 
-    threads = cores() if threads is None else threads
+    workers = cores() if workers is None else workers
     first = [one(recording) for recording in recordings[:1]]  # compiles all code, once
-    if threads == 1 or len(recordings) < 3:
+    if workers == 1 or len(recordings) < 3:
         return first + [one(recording) for recording in recordings[1:]]
-    with ThreadPoolExecutor(threads) as pool:
+    with ThreadPoolExecutor(workers) as pool:
         return first + list(pool.map(one, recordings[1:]))
 
 

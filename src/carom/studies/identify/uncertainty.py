@@ -25,7 +25,7 @@ class Uncertainty(NamedTuple):
     at_edge: np.ndarray
 
 
-def bootstrap(evaluate: Evaluator, resamples: int, seed: int) -> Uncertainty:
+def bootstrap(evaluate: Evaluator, resamples: int, seed: int | np.random.Generator) -> Uncertainty:
     """Return the spread of the minimum over bootstrap samples of the recordings (with replacement).
 
     Around the best point 2 p^2 + 1 points are evaluated, and a quadratic function is fitted to the objective of
@@ -70,7 +70,9 @@ def quadratic_terms(z: np.ndarray) -> np.ndarray:
     return np.concatenate([np.ones((len(z), 1)), z, z[:, i] * z[:, j]], axis=1)
 
 
-def _minima(coefficients: np.ndarray, resamples: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+def _minima(
+    coefficients: np.ndarray, resamples: int, seed: int | np.random.Generator
+) -> tuple[np.ndarray, np.ndarray]:
     """Return the minima, within [-1, 1], for all recordings, (p,), and for each draw, (B, p)."""
     generator = np.random.default_rng(seed)
     count = coefficients.shape[1]

@@ -1,10 +1,11 @@
 """Plots of the results of a run; needs ``carom[plot]``.
 
 Each function draws one plot of a `Solution` or a `GeneralizedSolution` into given axes or a new figure, and
-returns the axes.
+returns the axes; `ensemble` draws the runs of an `Ensemble`.
 """
 
 from carom.visual.plots.balance import energy
+from carom.visual.plots.ensembles import ensemble
 from carom.visual.plots.errors import constraint_errors
 from carom.visual.plots.glance import overview
 from carom.visual.plots.impacts_over_time import impacts
@@ -19,6 +20,7 @@ __all__ = [
     "constraint_errors",
     "contacts",
     "energy",
+    "ensemble",
     "hodograph",
     "impact_inside",
     "impacts",

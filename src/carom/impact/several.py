@@ -1,0 +1,147 @@
+"""Many impacts at once: the arguments of `resolve_impact` as arrays, spatial or plane."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+
+from carom import checks
+from carom._compiled.decorators import entry
+from carom.impact import layout as o
+from carom.impact.api import Impact, phase_names
+from carom.impact.laws import NUMBERS
+from carom.impact.resolve import resolve_one
+
+FEW_IMPACTS = 2000  # take ten times as long as a thread to begin
+
+
+@entry
+def resolve_many(W, u, mu, e, law, out):
+    """Solve each impact; return the number of the first that failed and its code, or (-1, OK)."""
+    for i in range(u.shape[0]):
+        code = resolve_one(W[i], u[i], mu[i], e[i], law[i], out[i])
+        if code != o.OK:
+            return i, code
+    return -1, o.OK
+
+
+def resolve_several(inverse_mass, velocity, friction, restitution, law) -> Impact:
+    """Solve impacts whose arguments are arrays that go together; see `resolve_impact`."""
+    W = _checked_inverse_masses(inverse_mass)
+    k = W.shape[-1]
+    u = checks.vectors("velocity", velocity, k)
+    _all(
+        "velocity[..., 0] (normal velocity, approach is negative)",
+        u[..., 0],
+        "below 0",
+        u[..., 0] < 0,
+    )
+    mu = _numbers("friction", friction, "at least 0", lambda a: a >= 0)
+    e = _numbers("restitution", restitution, "from 0 to 1", lambda a: (a >= 0) & (a <= 1))
+    names = np.asarray(law, dtype=object)
+    number = np.array(
+        [NUMBERS[checks.choice("law", name, NUMBERS)] for name in names.flat], np.int64
+    )
+    parts = W.shape[:-2], u.shape[:-1], mu.shape, e.shape, names.shape
+    try:
+        shape = np.broadcast_shapes(*parts)
+    except ValueError:
+        raise ValueError(
+            "inverse_mass, velocity, friction, restitution and law must have first axes that go together "
+            f"(broadcast), got {', '.join(map(str, parts))}"
+        ) from None
+    n = int(np.prod(shape))
+    full, speed = (
+        np.zeros((n, 3, 3)),
+        np.zeros((n, 3)),
+    )  # nothing moves along the second tangent of a plane
+    full[:, :k, :k] = np.broadcast_to(W, (*shape, k, k)).reshape(n, k, k)
+    speed[:, :k] = np.broadcast_to(u, (*shape, k)).reshape(n, k)
+    mu, e, number = (
+        np.broadcast_to(a, shape).flatten() for a in (mu, e, number.reshape(names.shape))
+    )
+    out = np.zeros((n, o.SIZE))
+
+    def solve(first: int) -> None:
+        part = slice(first, first + size)
+        failed, code = resolve_many(
+            full[part], speed[part], mu[part], e[part], number[part], out[part]
+        )
+        if failed >= 0:
+            at = tuple(map(int, np.unravel_index(first + failed, shape)))
+            raise ValueError(f"the impact at index {at} could not be solved: {o.MESSAGES[code]}")
+
+    size = max(FEW_IMPACTS, -(-n // (os.cpu_count() or 1)))
+    if n <= size:
+        solve(0)
+    else:
+        with ThreadPoolExecutor() as pool:
+            list(pool.map(solve, range(0, n, size)))
+    return _impact(out, shape, k)
+
+
+def _impact(out: np.ndarray, shape: tuple[int, ...], k: int) -> Impact:
+    """Return the rows of `out` as an `Impact` of arrays, with vectors of k components."""
+
+    def vector(first: int) -> np.ndarray:
+        return out[:, first : first + k].reshape(*shape, k)
+
+    def number(column: int) -> Any:
+        return _plain(out[:, column].reshape(shape))
+
+    masks = out[:, o.PHASES].astype(np.int64)
+    words = {mask: phase_names(mask) for mask in np.unique(masks).tolist()}
+    phases = np.empty(len(masks), dtype=object)
+    phases[:] = [words[mask] for mask in masks.tolist()]
+    return Impact(
+        velocity_after=vector(o.VELOCITY),
+        impulse=vector(o.IMPULSE),
+        compression_impulse=vector(o.COMPRESSION),
+        compression_work=number(o.WORK_C),
+        restitution_work=number(o.WORK_R),
+        friction_loss=number(o.FRICTION_LOSS),
+        energy_change=number(o.ENERGY_CHANGE),
+        phases=_plain(phases.reshape(shape)),
+        wedged=_plain((masks & o.WEDGED != 0).reshape(shape)),
+    )
+
+
+def _plain(values: np.ndarray) -> Any:
+    """Return values of several impacts as they are, that of one as a number or a tuple."""
+    return values if values.ndim else values.item()
+
+
+def _checked_inverse_masses(given) -> np.ndarray:
+    """Return W (..., k, k), k = 2 or 3, as symmetric arrays; refuse others unless W >= 0 and W_nn > 0."""
+    W = checks.real_array("inverse_mass", given, "(..., 3, 3) or (..., 2, 2)")
+    if W.shape[-2:] not in ((3, 3), (2, 2)):
+        raise ValueError(
+            f"inverse_mass must have shape (..., 3, 3) or (..., 2, 2) [1/kg], got shape {W.shape}"
+        )
+    _all("inverse_mass", W, "finite", np.isfinite(W).all(axis=(-2, -1)))
+    off = np.abs(W - W.swapaxes(-2, -1)).max(axis=(-2, -1))
+    _all("inverse_mass", W, "symmetric", off <= 1e-9 * np.abs(W).max(axis=(-2, -1)))
+    W = 0.5 * (W + W.swapaxes(-2, -1))
+    _all("inverse_mass[..., 0, 0] (normal)", W[..., 0, 0], "above 0", W[..., 0, 0] > 0)
+    values = np.linalg.eigvalsh(W)
+    _all("inverse_mass", W, "positive semidefinite", values[..., 0] >= -1e-9 * values[..., -1])
+    return W
+
+
+def _numbers(name: str, given, allowed: str, inside) -> np.ndarray:
+    values = checks.real_array(name, given, "any shape")
+    _all(name, values, f"finite and {allowed}", np.isfinite(values) & inside(values))
+    return values
+
+
+def _all(name: str, values: np.ndarray, allowed: str, good) -> None:
+    """Refuse values of which one is not good, with its index."""
+    if not np.all(good):
+        at = tuple(map(int, np.argwhere(~good)[0]))
+        where = f" at index {at}" if at else ""
+        raise ValueError(
+            f"{name} must be {allowed}, got {checks.shown(values[at].tolist())}{where}"
+        )

@@ -1,0 +1,265 @@
+"""An ensemble as a Dataset, and in files by their endings: netCDF-4 (HDF5), Zarr, Parquet, CSV."""
+
+from __future__ import annotations
+
+import io
+import json
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom import checks
+from carom.io.files.convert import RUN
+from carom.io.files.disk import put
+from carom.io.files.layout import Variable
+from carom.io.files.writing import hdf5
+from carom.studies.ensembles.outcome import no_outcomes
+from carom.studies.ensembles.store import Store, from_file, in_file, is_begun
+from carom.studies.ensembles.table import (
+    AXES,
+    WORDS,
+    body_names,
+    columns,
+    from_columns,
+    layout,
+    messages,
+)  # fmt: skip
+
+if TYPE_CHECKING:
+    from carom.studies.ensembles.result import Ensemble
+
+FORMAT = "carom ensemble in one file 1"
+FILES = (*RUN, ".parquet", ".csv")
+FACTS = ("carom", "settings", "body_names", "grid")  # of `Ensemble.about`, in all files
+UNITS = {
+    "t": "s", "rest_time": "s", "first_impact": "s", "position": "m", "velocity": "m/s",
+    "angular_velocity": "rad/s", "kinetic_energy": "J", "impact_loss": "J",
+    "friction_loss": "J", "bounce_loss": "J", "load_work": "J",
+}  # fmt: skip
+DIMS = {3: ("axis", AXES[(3,)]), 4: ("quaternion", AXES[(4,)])}
+PREFIXES = {"input:": "inputs", "observed:": "observed"}
+
+
+def facts_of(ensemble: Ensemble) -> dict[str, str]:
+    """Return what is known of all runs, as texts."""
+    found = {name: ensemble.about[name] for name in FACTS if name in ensemble.about}
+    return {**found, "body_names": json.dumps(body_names(ensemble))}
+
+
+def labelled(ensemble: Ensemble) -> list[Variable]:
+    """Return all arrays with their dimensions: the axes of the grid, or `run`."""
+    grid = ensemble.grid
+    lead = tuple(map(in_file, grid)) or ("run",)
+    sizes = tuple(map(len, grid.values())) or (len(ensemble),)
+
+    def one(name, values, dims=(), units=None, text="") -> Variable:
+        values = values.reshape(*sizes, *values.shape[1:])
+        return Variable(in_file(name), (*lead, *dims), values, units, text or name)
+
+    found = [Variable(in_file(n), (in_file(n),), values, None, n) for n, values in grid.items()]
+    found.append(one("run", np.arange(len(ensemble)), text="number of the run"))
+    found.append(
+        Variable("body", ("body",), np.array(body_names(ensemble), object), None, "bodies")
+    )
+    for dim, labels in DIMS.values():
+        found.append(Variable(dim, (dim,), np.array(labels, object), None, "components"))
+    for name in ensemble.outcomes.dtype.names or ():
+        values = ensemble.outcomes[name]
+        dims = ("body", DIMS[values.shape[-1]][0]) if values.ndim == 3 else ()
+        text = (
+            "; ".join(f"{code} {word}" for code, word in WORDS.items()) if name == "status" else ""
+        )
+        found.append(one(name, values, dims, UNITS.get(name), text))
+    found.append(one("message", messages(ensemble)))
+    for prefix, folder in PREFIXES.items():
+        for name, values in getattr(ensemble, folder).items():
+            more = [f"{in_file(name)}_{k}" for k in range(1, values.ndim)]
+            found.append(one(f"{prefix}{name}", values, more))
+    return found
+
+
+def to_xarray(ensemble: Ensemble):
+    """Return the ensemble as a Dataset."""
+    xarray = checks.need("xarray", "to_xarray", "ensemble")
+    made = {
+        one.name.replace("%2F", "/"): xarray.Variable(
+            tuple(map(from_file, one.dims)), one.data, one.attrs
+        )
+        for one in labelled(ensemble)
+    }
+    return xarray.Dataset(made, attrs=facts_of(ensemble)).set_coords("run")
+
+
+def to_pandas(ensemble: Ensemble):
+    """Return the ensemble as a table."""
+    pandas = checks.need("pandas", "to_pandas", "files")
+    return pandas.DataFrame(columns(ensemble), index=pandas.RangeIndex(len(ensemble), name="run"))
+
+
+def save(path: Path, ensemble: Ensemble) -> None:
+    """Write an ensemble by the ending of its path."""
+    kind = path.suffix.lower()
+    if kind not in (*FILES, ".zarr"):
+        raise ValueError(
+            f"path must end in .zarr, {', '.join(RUN)} or .parquet (which can be loaded), or in .csv, got "
+            f"{str(path)!r}"
+        )
+    if kind == ".zarr":
+        _save_zarr(path, ensemble)
+    elif kind in RUN:
+        _save_netcdf(path, ensemble)
+    else:
+        if kind == ".parquet":
+            checks.need("pyarrow", "saving as .parquet", "parquet")
+        frame = to_pandas(ensemble)
+        if kind == ".csv":
+            put(path, [frame.to_csv().encode()])
+            return
+        known = {"format": FORMAT, "about": facts_of(ensemble), "layout": layout(ensemble)}
+        frame.attrs = {"carom": json.dumps(known)}
+        out = io.BytesIO()
+        frame.to_parquet(out, engine="pyarrow")
+        put(path, [out.getvalue()])
+
+
+def load(path: Path) -> dict[str, Any]:
+    """Return the fields of the ensemble in a file.
+
+    Raises
+    ------
+    FileNotFoundError, ValueError
+        If there is no such file, or it is not a file of an ensemble.
+    """
+    if not path.exists():
+        raise FileNotFoundError(f"{path} does not exist; Ensemble.save makes such a file")
+    kind = path.suffix.lower()
+    if kind == ".csv":
+        raise ValueError(f"path must be a file that can be loaded, got the table {str(path)!r}")
+    if kind == ".parquet":
+        checks.need("pyarrow", "loading .parquet", "parquet")
+        checks.need("pandas", "loading .parquet", "parquet")
+    else:
+        checks.need("h5netcdf", "loading an ensemble", "files")
+    try:
+        return _load_parquet(path) if kind == ".parquet" else _load_netcdf(path)
+    except Exception as error:  # a damaged file may cause any error of a decoder
+        raise ValueError(
+            f"path must be an ensemble of carom, got {str(path)!r}, which cannot be read as one: {error!r}"
+        ) from error
+
+
+def _save_zarr(path: Path, ensemble: Ensemble) -> None:
+    from carom.studies.ensembles.mark import digest
+    from carom.studies.ensembles.plan import Part
+
+    if path.exists():
+        Store.open(path)  # only an ensemble is replaced
+    new = path.with_name(f".{path.name}.part")
+    shutil.rmtree(new, ignore_errors=True)
+    about: dict[str, Any] = facts_of(ensemble)
+    if ensemble._plan is not None:
+        about["digest"] = digest(ensemble._plan, ensemble.inputs)
+    elif "digest" in ensemble.about:
+        about["digest"] = ensemble.about["digest"]
+    bodies = ensemble.outcomes.dtype["position"].shape[0]
+    chunk = 64
+    store = Store.make(new, ensemble.inputs, bodies, chunk, about)
+    for first in range(0, len(ensemble), chunk):
+        rows = slice(first, first + chunk)
+        said = {k: text for k, text in ensemble.failures.items() if first <= k < first + chunk}
+        seen = {name: values[rows] for name, values in ensemble.observed.items()}
+        store.write(Part(first, ensemble.outcomes[rows], said, seen))
+    if path.exists():
+        shutil.rmtree(path)
+    new.rename(path)
+
+
+def _save_netcdf(path: Path, ensemble: Ensemble) -> None:
+    checks.need("h5netcdf", "saving an ensemble", "files")
+    variables, flags = [], []
+    for one in labelled(ensemble):
+        if one.data.dtype.kind == "c":
+            raise ValueError(
+                f"{one.name!r} must be real to be saved in netCDF, got complex numbers; save as .zarr"
+            )
+        if one.data.dtype.kind == "b":
+            flags.append(one.name)
+            one = one._replace(data=one.data.astype(np.int8))
+        variables.append(one)
+    facts = {k: text for k, text in facts_of(ensemble).items() if k in ("carom", "settings")}
+    attributes = {**facts, "format": FORMAT, "flags": json.dumps(flags)}
+    put(path, [hdf5(variables, attributes)[0]])
+
+
+def _load_netcdf(path: Path) -> dict[str, Any]:
+    import h5netcdf
+
+    with h5netcdf.File(path, "r") as file:
+        _check_format(str(file.attrs["format"]))
+        flags = json.loads(str(file.attrs["flags"]))
+        lead = file.variables["status"].dimensions
+        arrays = {name: _values(one[...]) for name, one in file.variables.items()}
+        about = {
+            name: str(file.attrs[name]) for name in ("carom", "settings") if name in file.attrs
+        }
+    runs = arrays["status"].size
+    rows = {
+        name: values.reshape(runs, *values.shape[len(lead) :]) if name not in lead else values
+        for name, values in arrays.items()
+        if name not in ("body", "axis", "quaternion")
+    }
+    bodies = arrays["body"].tolist()
+    about["body_names"] = json.dumps(bodies)
+    if lead != ("run",):
+        about["grid"] = json.dumps({from_file(name): arrays[name].tolist() for name in lead})
+    outcomes = no_outcomes(runs, len(bodies))
+    for name in outcomes.dtype.names or ():
+        outcomes[name] = rows[name]
+    said = enumerate(rows["message"].tolist())
+    fields = {
+        "about": about,
+        "outcomes": outcomes,
+        "failures": {k: text for k, text in said if text},
+    }
+    for prefix, folder in PREFIXES.items():
+        fields[folder] = {
+            from_file(name).removeprefix(prefix): values.astype(bool) if name in flags else values
+            for name, values in rows.items()
+            if name.startswith(prefix)
+        }
+    return fields
+
+
+def _values(values) -> np.ndarray:
+    """Return an array of a file; words as such."""
+    values = np.asarray(values)
+    if values.dtype.kind not in "OSU":
+        return values
+    words = [one.decode() if isinstance(one, bytes) else one for one in values.ravel().tolist()]
+    return np.array(words, dtype=str).reshape(values.shape)
+
+
+def _load_parquet(path: Path) -> dict[str, Any]:
+    import pandas
+
+    frame = pandas.read_parquet(path, engine="pyarrow")
+    known = json.loads(frame.attrs["carom"])
+    _check_format(known["format"])
+    found = {name: np.array(frame[name].tolist()) for name in frame.columns}
+    return from_columns(found, known["layout"], known["about"])
+
+
+def _check_format(known: str) -> None:
+    if known != FORMAT:
+        raise ValueError(f"its format must be {FORMAT!r}, got {known!r}")
+
+
+def check_folder(save: Path) -> None:
+    """Refuse the name of a file for outcomes that are written during the runs."""
+    if save.suffix.lower() in FILES and not is_begun(save):
+        raise ValueError(
+            f"save must be a folder, such as {save.with_suffix('.zarr').name!r}, because outcomes are written "
+            f"during the runs, got {str(save)!r}; Ensemble.save writes a file at the end"
+        )
