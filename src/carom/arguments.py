@@ -174,6 +174,12 @@ def _by_own_names(shown: str, given: dict, has, placed: tuple[str, ...]) -> dict
     return found
 
 
+def check_known(shown: str, names: list[str], given) -> None:
+    """Refuse arguments, for a function that takes them as ``**given``, that are not among `names`."""
+    if not given.keys() <= set(names):
+        raise TypeError(_unknown(shown, names, given, names))
+
+
 def _unknown(shown: str, names: list[str], given, has) -> str:
     unknown = next(name for name in given if name not in has)
     meant = [name for name in _MEANT.get(unknown, ()) if name in has]

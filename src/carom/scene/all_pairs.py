@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.scene.bodies import FIXED, Body, HalfSpace, StaticBody
+from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.materials import ContactLaw
 from carom.scene.table import Table
 
@@ -66,13 +66,13 @@ def defaults(
     left_out: Iterable[frozenset],
     law: Callable[[Body, Body | HalfSpace | StaticBody], ContactLaw],
 ) -> Defaults:
-    """Return the pairs of bodies with shapes that may touch and are not `left_out`, as `Defaults`.
+    """Return the pairs of bodies with shapes that may touch and are not `left_out`, by names, as `Defaults`.
 
     `law` is asked once for each pair of materials, with the first pair that has them: first those of bodies and
     half-spaces, body by body, then those of two bodies.
     """
     solid = np.array([body.shape is not None for body in bodies], dtype=bool)
-    meets, out = _open(solid, fixed, left_out)
+    meets, out = _open(solid, bodies, fixed, left_out)
     numbers: dict = {}
     kinds = [
         np.array([numbers.setdefault(p.material, len(numbers)) for p in parts], dtype=np.int64)
@@ -95,17 +95,18 @@ def defaults(
     return Defaults(grounded, solid, out, kinds[0], place)
 
 
-def _open(solid: np.ndarray, fixed, left_out) -> tuple[np.ndarray, np.ndarray]:
+def _open(solid: np.ndarray, bodies, fixed, left_out) -> tuple[np.ndarray, np.ndarray]:
     """Return which bodies may touch which half-spaces (N, H), and the pairs of two bodies that may not (E,)."""
     meets = np.repeat(solid[:, None], len(fixed), axis=1)
-    places = {part: h for h, part in enumerate(fixed)}
+    places = {part.name: h for h, part in enumerate(fixed)}
+    numbers = {body.name: b for b, body in enumerate(bodies)}
     out = set()
     for pair in left_out:
-        ends = sorted(part.index for part in pair if isinstance(part, Body))
-        planes = [places[part] for part in pair if isinstance(part, FIXED)]
+        ends = sorted(numbers[name] for name in pair if name in numbers)
+        planes = [places[name] for name in pair if name in places]
         if planes:
             meets[ends, planes] = False
-        elif len(ends) == 2:  # else one of them is the ground
+        else:
             out.add(ends[0] * len(solid) + ends[1])
     return meets, np.array(sorted(out), dtype=np.int64)
 

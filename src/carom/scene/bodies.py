@@ -20,6 +20,7 @@ SLACK = 1e-12  # relative to the largest entry or moment: rounding, not physics
 GREATEST = 1e300  # [kg m^2]: sums are finite
 
 MaterialOrNone = Value[Material | None, Material | None]
+Color = Value[str | None, str | ArrayLike | None]
 
 
 def _material(name: str, value) -> Material:
@@ -64,7 +65,7 @@ class Body:
     velocity: Vector = fields.vector()
     angular_velocity: Vector = fields.vector()
     material: MaterialOrNone = Value(_material, None)
-    color: Value[str | None, str | ArrayLike | None] = Value(hex_color, None)
+    color: Color = Value(hex_color, None)
 
     def __post_init__(self):
         if self.shape is not None:
@@ -90,6 +91,8 @@ class HalfSpace:
         Unit normal of the surface, out of the half-space into free space.
     material : Material or None
         Material of its surface.
+    color : str or None
+        Colour ``#rrggbb`` in pages, pictures and films; None: grey.
     """
 
     index: int
@@ -97,6 +100,7 @@ class HalfSpace:
     point: Vector = fields.vector()
     normal: Vector = fields.direction()
     material: MaterialOrNone = Value(_material, None)
+    color: Color = Value(hex_color, None)
 
     def __repr__(self) -> str:
         return f"HalfSpace({self.name!r}, point={self.point}, normal={self.normal})"
@@ -119,6 +123,8 @@ class StaticBody:
         Unit quaternion (w, x, y, z), shape to world.
     material : Material or None
         Material of its surface.
+    color : str or None
+        Colour ``#rrggbb`` in pages, pictures and films; None: grey.
     """
 
     index: int
@@ -127,6 +133,7 @@ class StaticBody:
     position: Vector = fields.vector()
     orientation: Value[np.ndarray, Any] = Value(attitude)
     material: MaterialOrNone = Value(_material, None)
+    color: Color = Value(hex_color, None)
 
     def __post_init__(self):
         checks.instance("shape", self.shape, SHAPES)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from carom import arguments, checks, fields
 from carom.fields import REQUIRED, Flag, Number, Value, Vector, VectorOrNone, keep
-from carom.scene.bodies import Body, Ground
+from carom.scene.bodies import GROUND, Body, Ground
 from carom.scene.more_forces import (
     AlongJoint,
     CurveSpring,
@@ -195,3 +195,8 @@ def force_on(definition) -> tuple | None:
     if isinstance(definition, AlongJoint):
         return (definition.joint,)
     return definition.bodies if isinstance(definition, UserForce) else None
+
+
+def sides(first) -> tuple[Body | Ground, Body]:
+    """Return parent and child of a force on a joint or on a body."""
+    return (GROUND, first) if isinstance(first, Body) else (first.parent, first.child)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -18,16 +19,17 @@ from carom.scene.all_pairs import (
     no_pairs,
 )
 from carom.scene.bodies import Body, HalfSpace, StaticBody
-from carom.scene.contacts import check_overlap
+from carom.scene.contacts import Contact, check_overlap
+from carom.scene.joints import Joint
 from carom.scene.materials import ContactLaw, checked_rule, law_of
-from carom.scene.registry import Derived
+from carom.scene.registry import Registry
 
 
 class Pairs:
-    """The pairs of one scene."""
+    """The pairs of one scene, each as the names of its parts, which stay when a part is replaced."""
 
-    def __init__(self, derived: Derived):
-        self._derived = derived  # of the scene
+    def __init__(self, parts: Registry):
+        self._parts = parts  # of the scene
         self._own: set = set()
         self._ignored: set = set()
         self._rules: dict[str, str] = {}
@@ -36,46 +38,69 @@ class Pairs:
         self.unsaid_default = True  # whether neither restitution nor friction of it was stated
         self._unsaid: set = set()  # pairs with a contact of which neither was
 
-    def copied(self, derived: Derived) -> Pairs:
+    def copied(self, parts: Registry) -> Pairs:
         """Return a copy with the same pairs."""
-        made = Pairs(derived)
-        vars(made).update(vars(self), _derived=derived)
+        made = Pairs(parts)
+        vars(made).update(vars(self), _parts=parts)
         for name in ("_own", "_ignored", "_unsaid"):
             setattr(made, name, set(getattr(self, name)))
         return made
 
-    def check_new(self, body: Body, other: HalfSpace | StaticBody | Body) -> None:
-        """Refuse a pair of a body with itself, and a pair that already has a contact."""
+    def check_new(self, body: Body, other: HalfSpace | StaticBody | Body, old: Any) -> None:
+        """Refuse a pair of a body with itself, and one that has a contact besides the `old` one it replaces."""
         if body is other:
             raise ValueError(f"body and other must be two, got {body!r} for both")
-        if _key(body, other) in self._own:
+        own = isinstance(old, Contact) and _key(old.body, old.other) == _key(body, other)
+        if _key(body, other) in self._own and not own:
             kind = {HalfSpace: "half_space", StaticBody: "static body"}.get(type(other), "body")
             raise ValueError(
                 f"body {body.name!r} and {kind} {other.name!r} must be given once, "
-                "got a second contact of the two"
+                "got a second contact of the two; replace=True with its name replaces the first"
             )
 
     def add(self, body, other, given) -> None:
         """Store a pair that has a contact of its own, and the values that were given for it."""
-        self._derived.clear()
         self._own.add(_key(body, other))
         stated = given["restitution"] is not None or given["friction"] is not None
         if not stated and self.unsaid_default and body.material is None:
             self._unsaid.add(_key(body, other))
 
+    def state(self, contact: Contact) -> None:
+        """Note that restitution or friction of a contact is stated."""
+        self._unsaid.discard(_key(contact.body, contact.other))
+
     def is_unsaid(self, body, other) -> bool:
         """Return whether restitution and friction of a contact are both unstated, there and as a default."""
         return _key(body, other) in self._unsaid
 
+    def forget(self, part) -> None:
+        """Forget the pairs of a part that is taken away; of a contact, its pair."""
+        pair = _key(part.body, part.other) if isinstance(part, Contact) else None
+        for pairs in (self._own, self._unsaid, self._ignored):
+            pairs -= {one for one in pairs if part.name in one and pair is None}
+        self._own.discard(pair)
+        self._unsaid.discard(pair)
+
+    def left_out(self) -> set[frozenset]:
+        """Return the pairs that the default leaves out: contacts, ignored pairs, and bodies of a joint."""
+        return self._parts.derived.once(
+            "left_out", lambda: self._own | self._ignored | self.joined()
+        )
+
+    def joined(self) -> set[frozenset]:
+        """Return the pairs of bodies with a joint."""
+        joints = self._parts.parts(Joint)
+        return {_key(j.parent, j.child) for j in joints if isinstance(j.parent, Body)}
+
     def ignore(self, body, other) -> None:
-        """Let a pair pass through each other, for example two bodies of a joint."""
-        self._derived.clear()
+        """Let a pair pass through each other."""
+        self._parts.changes()
         self._ignored.add(_key(body, other))
 
     def set_default(self, law: ContactLaw, combine, all_pairs: bool, stated: bool) -> None:
         """Store the default values of pairs; `stated`: restitution or friction was given."""
         all_pairs = checks.flag("all_pairs", all_pairs)
-        self._derived.clear()
+        self._parts.changes()
         self._rules = checked_rule(combine)
         self._values = law
         self.default = law if all_pairs else None
@@ -89,8 +114,7 @@ class Pairs:
         """Return the default law of a pair; None if the pair does not touch by default."""
         no_shape = any(isinstance(part, Body) and part.shape is None for part in (body, other))
         key = _key(body, other)
-        left_out = key in self._own or key in self._ignored
-        if self.default is None or no_shape or body is other or left_out:
+        if self.default is None or no_shape or body is other or key in self.left_out():
             return None
         return self.law(body, other, {})
 
@@ -99,8 +123,8 @@ class Pairs:
         if self.default is None:
             return None
         law = partial(self.law, given={})
-        return self._derived.once(
-            "defaults", lambda: defaults(bodies, fixed, self._own | self._ignored, law)
+        return self._parts.derived.once(
+            "defaults", lambda: defaults(bodies, fixed, self.left_out(), law)
         )
 
     def by_default(self, bodies, fixed) -> PairTable:
@@ -124,4 +148,4 @@ class Pairs:
 
 
 def _key(first, second):
-    return frozenset((first, second))
+    return frozenset((first.name, second.name))

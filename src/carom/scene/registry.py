@@ -8,11 +8,12 @@ from typing import Any
 
 from carom import checks
 from carom.scene.bodies import Body, Ground
+from carom.scene.changes import KINDS, exchanged, followed, of_origin, origin, parts_in
 from carom.scene.contacts import Contact
 
 
 class Derived(dict):
-    """Results of a scene as it is now, by name; each change of the scene empties it."""
+    """Results of a scene as it is, by name; each change of the scene begins another one."""
 
     def once(self, name: Hashable, compute: Callable[[], Any]) -> Any:
         """Return the result of this name; compute it if there is none."""
@@ -31,21 +32,46 @@ class Registry:
         self._parts = {}
         self._kinds = {}
         self.derived = Derived()
+        self.sealed = False  # the scene of a run, which must not change
 
-    def copied(self) -> Registry:
-        """Return a copy with the same parts."""
+    def copied(self, sealed: bool = False) -> Registry:
+        """Return a copy with the same parts; one that is `sealed` has the same results too."""
         made = Registry()
         made._parts = self._parts.copy()
         made._kinds = {kind: parts.copy() for kind, parts in self._kinds.items()}
-        made.derived.update(self.derived)
+        made.derived = self.derived if sealed else Derived(self.derived)
+        made.sealed = sealed
         return made
 
-    def new(self, kind: type, name: str | None, default: str) -> tuple[int, str]:
-        """Return the index and the name of the next part of a `kind`.
+    def changes(self) -> None:
+        """Begin a change of the scene: forget results of it as it was."""
+        if self.sealed:
+            raise ValueError(
+                "scene must not be that of a run or of a solution, which stays as it was; change a copy of it: "
+                "scene.copy()"
+            )
+        self.derived = Derived()
+
+    def new(
+        self, kind: type, name: str | None, default: str, replace: bool = False
+    ) -> tuple[int, str]:
+        """Return the index and the name of the next part of a `kind`, or of that which it replaces.
 
         If the name is None, it becomes `default` with a number: that of the part, or the next free one.
         """
         index = self.count(kind)
+        if checks.flag("replace", replace):
+            if name is None:
+                raise ValueError("name must be given with replace=True, got None")
+            old = self._parts.get(checks.text("name", name))
+            if old is None:
+                return index, name
+            if type(old) is not kind:
+                raise ValueError(
+                    f"name must be that of a {KINDS[kind]} to replace it, got {name!r}, a {KINDS[type(old)]}; "
+                    f"take that away: scene.remove({name!r})"
+                )
+            return old.index, name
         return index, self._numbered(default, index + 1) if name is None else self._free(name)
 
     def _numbered(self, default: str, number: int) -> str:
@@ -57,16 +83,33 @@ class Registry:
         checks.text("name", name)
         if name in self._parts:
             raise ValueError(
-                f"name must be unique in the scene, got {checks.shown(name)} a second time"
+                f"name must be unique in the scene, got {checks.shown(name)} a second time; replace=True "
+                "puts the new part in the place of the one that has it"
             )
         return name
 
     def add(self, part):
-        """Store `part` under its name, and return it."""
-        self.derived.clear()
+        """Store `part` under its name, and return it; a part that has the name gives it its place."""
+        if part.name in self._parts:
+            old = self._parts[part.name]
+            self.exchange({id(old): of_origin(part, old)})
+            return self._parts[part.name]
+        self.changes()
         self._parts[part.name] = part
         self._kinds.setdefault(type(part), []).append(part)
         return part
+
+    def exchange(self, changed: dict[int, Any]) -> None:
+        """Put parts in the place of others, or take them away, as `exchanged` does."""
+        parts = exchanged(self, changed)
+        self.changes()
+        self._parts = {part.name: part for part in parts}
+        self._kinds = {kind: [part for part in parts if type(part) is kind] for kind in KINDS}
+
+    def linked(self, definition) -> Any:
+        """Return a definition that refers to the parts as they are; refuse those of other scenes."""
+        own = {id(part): self.member("definition", part, tuple(KINDS)) for part in parts_in(definition)}
+        return followed(definition, own)
 
     def parts(self, kind: type) -> tuple:
         """Return all parts of a `kind`, in the order added."""
@@ -91,6 +134,26 @@ class Registry:
                 return part
         raise KeyError(f"the scene has no part {self._called(name)}")
 
+    def get(self, name: str) -> Any:
+        """Return the part with exactly this name, or None."""
+        return self._parts.get(name)
+
+    def has(self, part) -> bool:
+        """Return whether there is a part with this name, or a part is one of these."""
+        if isinstance(part, str):
+            try:
+                return self[part] is not None
+            except KeyError:
+                return False
+        own = self._parts.get(part.name) if type(part) in KINDS else None
+        return own is not None and origin(own) is origin(part)
+
+    def named(self, argument: str, part) -> Any:
+        """Return a part of any kind, given as an object or by name; of a contact also by names of both bodies."""
+        if isinstance(part, str) and part not in self._parts and self.has(part):
+            return self[part]
+        return self.member(argument, part, tuple(KINDS))
+
     def member(self, argument: str, part, kinds: tuple[type, ...], hint: str = "") -> Any:
         """Return a `part`, given as an object or by name; refuse other `kinds` and parts of other scenes."""
         if isinstance(part, str):
@@ -101,11 +164,14 @@ class Registry:
                 )
             part = self._parts[part]
         checks.instance(argument, part, kinds, hint)
-        if not isinstance(part, Ground) and self._parts.get(part.name) is not part:
+        if isinstance(part, Ground) or (own := self._parts.get(part.name)) is part:
+            return part
+        if own is None or not self.has(part):
             raise ValueError(
-                f"{argument} must belong to this scene, got {checks.shown(part)} of another one"
+                f"{argument} must belong to this scene, got {checks.shown(part)} of another one, or one that "
+                "was removed"
             )
-        return part
+        return own
 
     def _called(self, name) -> str:
         """Return the end of a message about a name that no part has, with the nearest name."""

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.scene.bodies import GROUND, Body, Ground, HalfSpace, StaticBody, mass_and_inertia
+from carom.scene.changes import KINDS, renewed, told
+from carom.scene.changes import dependents as dependents_of
 from carom.scene.constraints import CONSTRAINTS, Constraint, ConstraintDefinition
-from carom.scene.contacts import check_gap
-from carom.scene.forces import FORCES, AppliedForce, ForceDefinition, force_on
+from carom.scene.contacts import Contact, check_gap
+from carom.scene.forces import FORCES, AppliedForce, ForceDefinition, force_on, sides
 from carom.scene.joints import JOINTS, Joint, JointDefinition
 from carom.scene.materials import Material
 from carom.scene.pairs import Pairs
-from carom.scene.registry import Registry
+from carom.scene.registry import Derived, Registry
 from carom.scene.shapes import Shape
 from carom.scene.stops import Stop
 from carom.scene.summary import counts, summary
@@ -25,18 +28,29 @@ if TYPE_CHECKING:
     from carom.geometry.attitude import Orientation
 
 
+#: an example of a value that each kind of part has
+_VALUES = {
+    Body: "mass=...", HalfSpace: "point=...", StaticBody: "position=...", Joint: "definition=...",
+    AppliedForce: "definition=...", Constraint: "definition=...", Stop: "restitution=...",
+    Contact: "friction=...",
+}  # fmt: skip
+
+
 @in_scene
 @arguments.known
 class Scene(TouchingPairs):
     """A system of bodies, half-spaces, contacts, joints and forces, with its initial state.
 
     The ``add_*`` methods check their arguments at once and return the new part, a read-only object. Each part
-    has a name that is unique in the scene: ``scene["die"]`` is the part with the name "die".
+    has a name that is unique in the scene: ``scene["die"]`` is the part with the name "die", ``"die" in scene``
+    says whether there is one, and ``for part in scene`` goes through all. With ``replace=True`` they put the new
+    part in the place of the one that has its name. `replace` and `remove` change a scene too; a solution keeps
+    the scene as it was.
 
     Parameters
     ----------
     gravity : (3,), default (0, 0, -9.81)
-        Acceleration in world axes [m/s^2].
+        Acceleration in world axes [m/s^2]. It may be set later: ``scene.gravity = (0, 0, -1.62)``.
 
     Examples
     --------
@@ -49,11 +63,10 @@ class Scene(TouchingPairs):
     """
 
     def __init__(self, gravity: ArrayLike = (0.0, 0.0, -9.81)):
-        self._gravity = checks.finite_array("gravity", gravity, (3,), unit="m/s^2")
-        self._gravity.setflags(write=False)
         self._parts = Registry()
-        self._derived = self._parts.derived
-        self._pairs = Pairs(self._derived)
+        self._pairs = Pairs(self._parts)
+        self.gravity = gravity
+        self._snapshot: Scene | None = None  # the scene as it is for solutions; a change makes it old
         self._in_radians: set[str] = set()  # stops whose file has radians
 
     @arguments.known
@@ -63,7 +76,9 @@ class Scene(TouchingPairs):
         normal: ArrayLike,
         *,
         material: Material | None = None,
+        color: str | ArrayLike | None = None,
         name: str | None = None,
+        replace: bool = False,
     ) -> HalfSpace:
         """Add a fixed solid half-space behind a plane, for example a floor.
 
@@ -75,11 +90,16 @@ class Scene(TouchingPairs):
             Normal of the surface, out of the half-space into free space; it is normalised.
         material
             Material of its surface, see `set_contact_default`.
+        color : str or (3,)
+            Colour in pages, pictures and films, as for `add_body`. Default: grey.
         name
             Name in the scene. Default ``"half_space1"``, ``"half_space2"``, ...
+        replace : bool
+            True: a half-space that has this name is replaced, and what refers to it then refers to the new one.
+            Default False: a name that is taken is refused.
         """
-        index, name = self._parts.new(HalfSpace, name, "half_space")
-        return self._parts.add(HalfSpace(index, name, point, normal, material))
+        index, name = self._parts.new(HalfSpace, name, "half_space", replace)
+        return self._parts.add(HalfSpace(index, name, point, normal, material, color))
 
     @arguments.known
     def add_body(
@@ -96,6 +116,7 @@ class Scene(TouchingPairs):
         material: Material | None = None,
         color: str | ArrayLike | None = None,
         name: str | None = None,
+        replace: bool = False,
     ) -> Body:
         """Add a rigid body.
 
@@ -127,6 +148,9 @@ class Scene(TouchingPairs):
         name
             Name in the scene. A cube with "die" in its name is drawn with pips. Default ``"body1"``,
             ``"body2"``, ...
+        replace : bool
+            True: a body that has this name is replaced, and what refers to it then refers to the new one.
+            Default False: a name that is taken is refused.
 
         Raises
         ------
@@ -145,7 +169,7 @@ class Scene(TouchingPairs):
             ...
         ValueError: mass must be finite and above 0 [kg], got -1.0
         """
-        index, name = self._parts.new(Body, name, "body")
+        index, name = self._parts.new(Body, name, "body", replace)
         mass, inertia = mass_and_inertia(shape, mass, density, inertia)
         motion: Any = position, orientation, velocity, angular_velocity, material, color
         return self._parts.add(Body(index, name, shape, mass, inertia, *motion))
@@ -158,7 +182,9 @@ class Scene(TouchingPairs):
         position: ArrayLike = (0.0, 0.0, 0.0),
         orientation: Orientation = (1.0, 0.0, 0.0, 0.0),
         material: Material | None = None,
+        color: str | ArrayLike | None = None,
         name: str | None = None,
+        replace: bool = False,
     ) -> StaticBody:
         """Add a solid that never moves: a wall, a peg, a ramp, a mesh.
 
@@ -175,8 +201,13 @@ class Scene(TouchingPairs):
             As for `add_body`.
         material
             Material of its surface, see `set_contact_default`.
+        color : str or (3,)
+            Colour in pages, pictures and films, as for `add_body`. Default: grey.
         name
             Name in the scene. Default ``"static1"``, ``"static2"``, ...
+        replace : bool
+            True: a static body that has this name is replaced, and what refers to it then refers to the new one.
+            Default False: a name that is taken is refused.
 
         Examples
         --------
@@ -188,8 +219,8 @@ class Scene(TouchingPairs):
         >>> scene.add_contact(ball, step, restitution=0.5, friction=0.3)
         Contact('ball-step', restitution=0.5, friction=0.3, impact_law='newton')
         """
-        index, name = self._parts.new(StaticBody, name, "static")
-        return self._parts.add(StaticBody(index, name, shape, position, orientation, material))
+        index, name = self._parts.new(StaticBody, name, "static", replace)
+        return self._parts.add(StaticBody(index, name, shape, position, orientation, material, color))
 
     @arguments.known
     def add_joint(
@@ -201,6 +232,7 @@ class Scene(TouchingPairs):
         parent_frame: tuple[ArrayLike, Orientation] | None = None,
         child_frame: tuple[ArrayLike, Orientation] | None = None,
         name: str | None = None,
+        replace: bool = False,
     ) -> Joint:
         """Join two bodies, or a body and the ground.
 
@@ -221,6 +253,9 @@ class Scene(TouchingPairs):
             `simulate` refuses them. Default None: the definition is in the world.
         name
             Name in the scene. Default ``"joint1"``, ``"joint2"``, ...
+        replace : bool
+            True: a joint that has this name is replaced, and what refers to it then refers to the new one.
+            Default False: a name that is taken is refused.
 
         Examples
         --------
@@ -239,11 +274,9 @@ class Scene(TouchingPairs):
                 f"{checks.shown(parent)} and {checks.shown(child)}"
             )
         pair: Any = self._parts.pair(parent, child)
-        index, name = self._parts.new(Joint, name, "joint")
+        index, name = self._parts.new(Joint, name, "joint", replace)
         frames: Any = parent_frame, child_frame
-        joint = Joint(index, name, definition, *pair, frames=frames)
-        self._pairs.ignore(*pair)
-        return self._parts.add(joint)
+        return self._parts.add(Joint(index, name, definition, *pair, frames=frames))
 
     @arguments.known
     def add_force(
@@ -253,6 +286,7 @@ class Scene(TouchingPairs):
         child: Body | str | None = None,
         *,
         name: str | None = None,
+        replace: bool = False,
     ) -> AppliedForce:
         """Add a force on `child`, or between `parent` and `child`.
 
@@ -270,8 +304,12 @@ class Scene(TouchingPairs):
             Another body, or its name.
         name
             Name in the scene. Default ``"force1"``, ``"force2"``, ...
+        replace : bool
+            True: a force that has this name is replaced, and what refers to it then refers to the new one.
+            Default False: a name that is taken is refused.
         """
         checks.instance("definition", definition, FORCES)
+        definition = self._parts.linked(definition)
         named = force_on(definition)
         if named is not None:
             if child is not None or parent is not GROUND:
@@ -279,12 +317,7 @@ class Scene(TouchingPairs):
                     f"parent and child must be left out with {type(definition).__name__}, which names "
                     f"its own, got {checks.shown(parent)} and {checks.shown(child)}"
                 )
-            for part in named:
-                self._parts.member("definition", part, (Joint, Body))
-            first = named[0]
-            parent, child = (
-                (first.parent, first.child) if isinstance(first, Joint) else (GROUND, first)
-            )
+            parent, child = sides(named[0])
         if child is None and isinstance(parent, (Body, str)):
             parent, child = GROUND, parent
         if child is None:
@@ -293,12 +326,12 @@ class Scene(TouchingPairs):
                 "add_force(definition, parent, child) for one between two"
             )
         pair: Any = self._parts.pair(parent, child)
-        index, name = self._parts.new(AppliedForce, name, "force")
+        index, name = self._parts.new(AppliedForce, name, "force", replace)
         return self._parts.add(AppliedForce(index, name, definition, *pair))
 
     @arguments.known
     def add_constraint(
-        self, definition: ConstraintDefinition, *, name: str | None = None
+        self, definition: ConstraintDefinition, *, name: str | None = None, replace: bool = False
     ) -> Constraint:
         """Add a constraint beyond joints: a gear, a motor, or user-defined rows.
 
@@ -308,13 +341,13 @@ class Scene(TouchingPairs):
             A constraint of `carom.constraints`. Its joints and bodies must belong to this scene.
         name
             Name in the scene. Default ``"constraint1"``, ``"constraint2"``, ...
+        replace : bool
+            True: a constraint that has this name is replaced, and what refers to it then refers to the new one.
+            Default False: a name that is taken is refused.
         """
         checks.instance("definition", definition, CONSTRAINTS)
-        index, name = self._parts.new(Constraint, name, "constraint")
-        constraint = Constraint(index, name, definition)
-        for part in constraint.parts:
-            self._parts.member("definition", part, (Joint, Body))
-        return self._parts.add(constraint)
+        index, name = self._parts.new(Constraint, name, "constraint", replace)
+        return self._parts.add(Constraint(index, name, self._parts.linked(definition)))
 
     @arguments.known
     def add_stop(
@@ -327,6 +360,7 @@ class Scene(TouchingPairs):
         impact_law: str = "newton",
         coordinate: int = 0,
         name: str | None = None,
+        replace: bool = False,
     ) -> Stop:
         """Add a stop: a limit of a joint coordinate, with impacts and restitution.
 
@@ -353,15 +387,127 @@ class Scene(TouchingPairs):
             Name in the scene. Default ``"stop1"``, ``"stop2"``, ...
         """
         part = self._parts.member("joint", joint, (Joint,))
-        index, name = self._parts.new(Stop, name, "stop")
+        index, name = self._parts.new(Stop, name, "stop", replace)
         return self._parts.add(
             Stop(index, name, part, coordinate, lower, upper, restitution, impact_law)
         )
+
+    def replace(self, name: str, **values) -> Any:
+        """Replace a part by one with other values, and return it; what refers to it then refers to the new one.
+
+        Values that are not given stay as they are. Joints and forces stay where they are in the world at the
+        start, and contacts keep their laws. Positions are checked when the scene is simulated.
+
+        Parameters
+        ----------
+        name : str
+            Name of the part, or the part.
+        **values
+            Arguments of the method that adds such parts. For a contact: values of its law. For a joint, force
+            or constraint: `definition`, or fields of its definition, as in
+            ``scene.replace("spring", stiffness=200)``. A new mass scales the inertia of a body, and a new shape
+            has the inertia of the solid, unless `inertia` is given.
+
+        Raises
+        ------
+        TypeError
+            If such a part has no value of a given name.
+        ValueError
+            If there is no such part, or a value is outside its range; the scene is then as before.
+
+        Examples
+        --------
+        >>> scene = carom.Scene()
+        >>> die = scene.add_body(carom.Box(0.02, 0.02, 0.02), mass=0.016, name="die")
+        >>> scene.replace("die", mass=0.008, color="red").inertia[0, 0] / die.inertia[0, 0]
+        0.5
+        """
+        old = self._parts.named("name", name)
+        if not values:
+            raise TypeError(f"replace needs a value, such as {_VALUES[type(old)]}")
+        if "definition" in values and isinstance(old, (AppliedForce, Constraint)):
+            values["definition"] = self._parts.linked(values["definition"])
+        self._parts.exchange({id(old): renewed(old, values)})
+        if isinstance(old, Contact) and values.keys() & {"restitution", "friction"}:
+            self._pairs.state(old)
+        return self._parts[old.name]
+
+    @arguments.known
+    def remove(self, name: str, *, dependents: bool = False) -> tuple:
+        """Remove a part, and return all parts that were removed.
+
+        Contacts of a body, half-space or static body are removed with it. Bodies of a joint that is removed may
+        touch again by `set_contact_default`.
+
+        Parameters
+        ----------
+        name : str
+            Name of the part, or the part.
+        dependents : bool
+            True: joints of a body are removed with it, and also forces, constraints and stops that refer to
+            the part or to these joints. Default False: a part that has such dependents is not removed.
+
+        Raises
+        ------
+        ValueError
+            If there is no such part, or joints, forces, constraints or stops refer to it and `dependents` is
+            False; the message names them.
+        """
+        part = self._parts.named("name", name)
+        found = list(dependents_of(self._parts, part))
+        others = [one for one in found if not isinstance(one, Contact)]
+        if others and not checks.flag("dependents", dependents):
+            raise ValueError(
+                f"dependents must be True to remove {part.name!r} together with what refers to it: {told(others)}"
+            )
+        removed = part, *found
+        self._parts.exchange({id(one): None for one in removed})
+        for one in removed:
+            self._pairs.forget(one)
+        return removed
+
+    def copy(self) -> Scene:
+        """Return a copy of the scene; a change of one of the two does not change the other.
+
+        Parts of one may be given to methods of the other, where they stand for the parts with their names.
+        """
+        return self._with(self._parts.copied())
+
+    def _with(self, parts: Registry) -> Scene:
+        made: Any = object.__new__(type(self))
+        own = {"_parts": parts, "_pairs": self._pairs.copied(parts), "_snapshot": None}
+        vars(made).update(vars(self), **own, _in_radians=set(self._in_radians))
+        return made
+
+    def _as_it_is(self) -> Scene:
+        """Return the scene for solutions, which cannot be changed: the same one until this scene changes."""
+        if self._parts.sealed:
+            return self
+        if self._snapshot is None or self._snapshot._derived is not self._derived:
+            self._snapshot = self._with(self._parts.copied(sealed=True))
+        return self._snapshot
+
+    def __copy__(self) -> Scene:
+        return self.copy()
+
+    def __getstate__(self) -> dict:  # of deep copies, whose parts may be changed, and pickles
+        return {**vars(self), "_snapshot": None}
+
+    @property
+    def _derived(self) -> Derived:
+        return self._parts.derived
 
     @property
     def gravity(self):
         """Acceleration of gravity (3,), world axes [m/s^2]."""
         return self._gravity
+
+    @gravity.setter
+    def gravity(self, value) -> None:
+        gravity = checks.finite_array("gravity", value, (3,), unit="m/s^2")
+        self._parts.changes()
+        gravity.setflags(write=False)
+        self._gravity = gravity
 
     @property
     def bodies(self) -> tuple[Body, ...]:
@@ -410,14 +556,13 @@ class Scene(TouchingPairs):
         """
         return self._parts[name]
 
-    def _as_it_is(self) -> Scene:
-        """Return a copy with the same parts, which does not change when parts are added to this scene."""
-        made: Any = object.__new__(type(self))
-        vars(made).update(vars(self))
-        made._parts = self._parts.copied()
-        made._derived = made._parts.derived
-        made._pairs = self._pairs.copied(made._derived)
-        return made
+    def __iter__(self) -> Iterator:
+        """Go through all parts by kind: bodies, half-spaces, static bodies, joints, forces, ..., contacts."""
+        return iter([part for kind in KINDS for part in self._parts.parts(kind)])
+
+    def __contains__(self, name) -> bool:
+        """Return whether a part has this name; or, of a part, whether it is one of this scene."""
+        return self._parts.has(name)
 
     def validate(self) -> None:
         """Check that the scene can start: it has bodies, and no body penetrates another one or a half-space.

@@ -39,6 +39,7 @@ class TouchingPairs:
         pivoting_friction: float | None = None,
         multiple: str | None = None,
         name: str | None = None,
+        replace: bool = False,
     ) -> Contact:
         """Add a contact: let a body touch a half-space, a static body or another body.
 
@@ -73,6 +74,8 @@ class TouchingPairs:
             small gaps. See `Options.multiple`.
         name
             Name in the scene. Default: the names of both, such as ``"die-ground"``.
+        replace : bool
+            True: a contact that has this name is replaced. Default False: it is refused.
 
         Raises
         ------
@@ -89,9 +92,10 @@ class TouchingPairs:
         Contact('ball-table', restitution=0.8, friction=0.3, impact_law='stronge')
         """
         body, other = self._two(body, other)
-        self._pairs.check_new(body, other)
         name = f"{body.name}-{other.name}" if name is None else name
-        index, name = self._parts.new(Contact, name, "contact")
+        old = self._parts.get(name) if replace else None
+        self._pairs.check_new(body, other, old)
+        index, name = self._parts.new(Contact, name, "contact", replace)
         given = {
             "restitution": restitution,
             "friction": friction,
@@ -105,7 +109,9 @@ class TouchingPairs:
         law = self._pairs.law(body, other, given)
         contact = Contact(index=index, name=name, body=body, other=other, **asdict(law))
         check_gap(contact)
-        self._parts.add(contact)
+        contact = self._parts.add(contact)
+        if old is not None:
+            self._pairs.forget(old)
         self._pairs.add(body, other, given)
         return contact
 

@@ -11,8 +11,8 @@ T = TypeVar("T")
 
 #: decorator of a scene and its parts: the end of the message about an attribute that cannot be set
 in_scene = arguments.attributes(
-    "values of a scene and of its parts cannot be changed; make a new scene, or vary them from run to run by "
-    "carom.ensemble(scene, duration, vary=...)"
+    "parts are read-only: scene.replace(name, ...) puts a part with other values in their place, and "
+    "carom.ensemble(scene, duration, vary=...) varies them from run to run"
 )
 
 

@@ -38,6 +38,7 @@ class Part(NamedTuple):
     bodies: list[int]  #: -1 for a static one
     look: str  #: "solid", "round" (with a pattern), "joint", "pip" or "static"
     shape: Any = None  #: shape of which it is the whole surface
+    colour: str | None = None  #: of a static body that has one
 
 
 class Link(NamedTuple):
@@ -75,7 +76,7 @@ def colour_of(body: Body) -> str:
 def colours_of(part: Part, scene) -> list[str]:
     """Return the colour of a part on each of its bodies."""
     if part.look in ("joint", "static"):
-        return [JOINT if part.look == "joint" else STATIC] * len(part.bodies)
+        return [JOINT if part.look == "joint" else part.colour or STATIC] * len(part.bodies)
     own = [colour_of(scene.bodies[b]) for b in part.bodies]
     return [pip_colour(one) for one in own] if part.look == "pip" else own
 
@@ -108,7 +109,7 @@ def _static(solid, fineness: int) -> Part:
     """Return the surface of a static body, in the world."""
     vertices, triangles = surface(solid.shape, fineness)
     placed = solid.position + quaternion.rotate(solid.orientation, vertices)
-    return Part(placed, triangles, [-1], "static", solid.shape)
+    return Part(placed, triangles, [-1], "static", solid.shape, solid.color)
 
 
 def outline_of(scene, body: Body) -> Outline:

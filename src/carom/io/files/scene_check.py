@@ -65,8 +65,8 @@ def check_part(scene: Scene, part: Any) -> None:
     _same(part, _made(parts, part))
 
 
-def check_pair(pair: frozenset) -> frozenset:
-    """Return a pair of parts that may touch, or be left out; raise for anything else."""
+def check_pair(pair: frozenset) -> frozenset[str]:
+    """Return the names of two parts that may touch, or be left out; raise for anything else."""
     allowed = (*KINDS, bodies.Ground)
     if len(pair) != 2 or not all(isinstance(one, allowed) for one in pair):
         raise ValueError(
@@ -74,7 +74,7 @@ def check_pair(pair: frozenset) -> frozenset:
         )
     if not any(isinstance(one, bodies.Body) for one in pair):
         raise ValueError(f"one of a pair must be a body, got {set(pair)}")
-    return pair
+    return frozenset(one.name for one in pair)
 
 
 def _made(parts, part: Any) -> Any:

@@ -46,6 +46,7 @@ TYPES: dict[str, type[Any]] = {
     kind.__name__: kind
     for kind in (*PARTS, *SHAPES, *JOINTS, *FORCES, *CONSTRAINTS, Gear, ContactLaw, Material, Piece)
 }
+LATER = {"color": None}  # fields that files of earlier versions do not have
 ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 
 
@@ -114,6 +115,8 @@ class Encoder:
     def _record(self, record, where: str) -> dict:
         values = {}
         for field in fields(record):
+            if field.name in LATER and isinstance(record, FIXED) and record.color is None:
+                continue
             name = field.name if field.name == "definition" else f"{where}.{field.name}"
             below = where if field.name == "definition" else name
             values[field.name] = self.value(getattr(record, field.name), below)
@@ -145,6 +148,7 @@ class Decoder:
         if "type" in data:
             kind = TYPES[data["type"]]
             record = object.__new__(kind)
+            data = LATER | data
             keep(record, **{f.name: self.value(data[f.name]) for f in fields(kind)})
             if not isinstance(record, PARTS):
                 check_record(record)

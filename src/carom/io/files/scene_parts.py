@@ -23,12 +23,13 @@ def scene_to_text(scene: Scene, encoder: Encoder | None = None) -> str:
     """Return a scene as JSON: its parts in the order added, and which pairs touch."""
     encoder, pairs = encoder or Encoder(), scene._pairs
     parts = [encoder.part(part) for part in scene._parts]
+    ignored = [[scene[name] for name in pair] for pair in pairs._ignored]
     data = {
         "gravity": scene.gravity.tolist(),
         "shapes": encoder.shapes,
         "parts": parts,
-        "own_pairs": _names(pairs._own),
-        "ignored_pairs": _names(pairs._ignored),
+        "own_pairs": _names([(one.body, one.other) for one in scene.contacts]),
+        "ignored_pairs": _names([*ignored, *((one.parent, one.child) for one in scene.joints)]),
         "combine": pairs._rules,
         "contact_values": encoder.value(pairs._values),
         "all_pairs": pairs.default is not None,
@@ -88,10 +89,12 @@ def _put_pairs(scene: Scene, data: dict, decoder: Decoder) -> None:
     pairs, values = scene._pairs, decoder.value(data["contact_values"])
     if values is not None:
         checks.instance("contact_values", values, (ContactLaw,))
-    pairs._own, pairs._ignored = (
+    pairs._own, ignored = (
         {check_pair(frozenset(map(decoder.value, pair))) for pair in data[name]}
         for name in ("own_pairs", "ignored_pairs")
     )
+    known = {part.name for part in scene._parts}
+    pairs._ignored = {pair for pair in ignored if pair <= known} - pairs.joined()
     checks.instance("combine", data["combine"], (dict,))
     pairs._rules = checked_rule(data["combine"])
     pairs._values, pairs.unsaid_default = values, False
@@ -122,4 +125,5 @@ def _names(pairs) -> list:
     """Return pairs of parts, or of a part and the ground, in an order that does not depend on memory."""
     encoder = Encoder()
     named = [[encoder.value(p) for p in sorted(pair, key=lambda p: p.name)] for pair in pairs]
-    return sorted(named, key=json.dumps)
+    texts = {json.dumps(pair): pair for pair in named}
+    return [texts[text] for text in sorted(texts)]

@@ -22,7 +22,7 @@ from carom.io.models.model import Model
 from carom.io.models.overlaps import lift_out, pose
 from carom.io.models.reading import compiled_model
 from carom.io.models.report import Report
-from carom.io.models.solids import Solid, add_standing, covering
+from carom.io.models.solids import Solid, add_standing, colour, covering, geoms_of
 from carom.io.models.state import as_it_acts, is_off, point_velocity, starting_data
 from carom.io.models.touching import Filter
 from carom.scene import forces
@@ -215,6 +215,7 @@ def _add_body(build: Build, link: Link, shape, motions) -> None:
         orientation=orientation,
         velocity=motion[:3],
         angular_velocity=motion[3:],
+        color=colour(build, geoms_of(build, link)),
         name=link.name,
     )
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from carom.io.models.limits import check_model, drop_sizes, parsed
 from carom.io.models.report import Report, need_mujoco
-from carom.io.models.urdf import prepared
+from carom.io.models.urdf import colours, prepared
 
 READ = ("body_", "jnt_", "dof_", "geom_", "eq_", "pair_", "qpos", "mesh_vert", "key_q")  # arrays
 DERIVED = ("body_invweight0", "dof_invweight0", "jnt_actfrcrange", "jnt_range")
@@ -100,8 +100,11 @@ def _specification(mujoco, source, package_dirs, report: Report) -> tuple[Any, s
     try:
         if root.tag == "robot":
             mimics = [j.get("name", "") for j in root.iter("joint") if j.find("mimic") is not None]
+            tints = colours(root)  # of visuals, which are left out
             text = prepared(root, folder, package_dirs, report)
             spec = mujoco.MjSpec.from_string(text)
+            for geom in spec.geoms:
+                geom.rgba = tints.get(geom.parent.name, geom.rgba)
         elif isinstance(text, str):
             spec = mujoco.MjSpec.from_string(text)
         elif _is_utf8(text):

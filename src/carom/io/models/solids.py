@@ -18,6 +18,8 @@ from carom.scene.shapes import Box, Compound, Ellipsoid, Shape, Sphere
 from carom.scene.shapes.revolved import Capsule, Cylinder
 
 DENSITY = 1000.0  # [kg/m^3] of what is fixed to the ground, where it makes no difference
+#: red, green, blue and opacity of geoms without a colour: then that of their material counts (mjmodel.h)
+GREY = (0.5, 0.5, 0.5, 1.0)
 SAME = 1e-12  # of the size: a shape that lies in the mass centre, along the axes of its body
 
 
@@ -90,16 +92,34 @@ class Solid(NamedTuple):
     moves: bool
 
 
+def geoms_of(build: Build, link: Link) -> list[int]:
+    """Return all geoms of a link."""
+    geoms = range(build.model.ngeom)
+    return [g for g in geoms if int(build.model.geom_bodyid[g]) in link.members]
+
+
 def covering(build: Build, link: Link, rules: Filter) -> tuple[Shape | None, list[int]]:
     """Return the shape of a link, and those of its geoms that may touch.
 
     If no geom may touch, the shape is that of the visible geoms.
     """
     model = build.model
-    geoms = [g for g in range(model.ngeom) if int(model.geom_bodyid[g]) in link.members]
+    geoms = geoms_of(build, link)
     touching = [g for g in geoms if rules.touches_at_all(g)]
     parts, used = _parts(build, touching or geoms)
     return body_shape(parts, link.centre), used if touching else []
+
+
+def colour(build: Build, geoms: list[int]) -> np.ndarray | None:
+    """Return the colour (3,) of the first of some geoms that has one and is visible; None if none has."""
+    model = build.model
+    for g in geoms:
+        rgba = model.geom_rgba[g]
+        if np.allclose(rgba, GREY) and model.geom_matid[g] >= 0:
+            rgba = model.mat_rgba[model.geom_matid[g]]
+        if rgba[3] > 0.0 and not np.allclose(rgba, GREY):
+            return np.clip(rgba[:3], 0.0, 1.0)
+    return None
 
 
 def _parts(build: Build, geoms: list[int]) -> tuple[list[Placed], list[int]]:
@@ -125,7 +145,8 @@ def add_standing(build: Build, rules: Filter) -> list[Solid]:
 def _half_space(build: Build, g: int) -> HalfSpace:
     name = build.names.new(name_of(build.model, "geom", g), "geom")
     normal = build.data.geom_xmat[g].reshape(3, 3)[:, 2]
-    return build.scene.add_half_space(build.data.geom_xpos[g], normal, name=name)
+    point, tint = build.data.geom_xpos[g], colour(build, [g])
+    return build.scene.add_half_space(point, normal, color=tint, name=name)
 
 
 def _fixed(build: Build, g: int) -> Body | None:
@@ -140,6 +161,7 @@ def _fixed(build: Build, g: int) -> Body | None:
         density=DENSITY,
         position=place + axes @ offset,
         orientation=quaternion.normalize(quaternion.from_matrix(axes)),
+        color=colour(build, [g]),
         name=name,
     )
     build.scene.add_joint(

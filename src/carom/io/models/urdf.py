@@ -23,6 +23,21 @@ SIX: tuple[str, ...] = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 READ = (".stl", ".obj", ".msh")
 
 
+def colours(root: ET.Element) -> dict[str, list[float]]:
+    """Return red, green, blue and opacity of the first ``<visual>`` of each link that has a colour, by its name."""
+    shared = {one.get("name"): one.find("color") for one in root.findall("material")}
+    found: dict[str, list[float]] = {}
+    for link in root.iter("link"):
+        for material in link.findall("visual/material"):
+            own = material.find("color")
+            own = shared.get(material.get("name")) if own is None else own
+            with suppress(ValueError):
+                rgba = [float(word) for word in own.get("rgba", "").split()] if own is not None else []
+                if len(rgba) == 4:
+                    found.setdefault(link.get("name", ""), rgba)
+    return found
+
+
 def prepared(root: ET.Element, folder: Path | None, package_dirs: Iterable, report: Report) -> str:
     """Return the text of a URDF that MuJoCo can read.
 

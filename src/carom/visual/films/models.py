@@ -83,7 +83,7 @@ def rgb(colour: str) -> np.ndarray:
 
 def model_of(part: Part) -> Model:
     """Return a part with its edges; in the place of colours how pale each triangle is."""
-    vertices, triangles, _, look, shape = part
+    vertices, triangles, _, look, shape, _ = part
     corners = vertices[triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     size = np.linalg.norm(normals, axis=1)

@@ -104,7 +104,9 @@ class Stage:
             v = np.cross(n, u)
             # lines go through the point of the half-space, whatever the camera looks at
             middle = half_space.point + _steps(middle - half_space.point, (u, v), self.spacing)
-            self.planes.append((np.array([middle, n, u, v]), np.array([self.spacing, begin, end])))
+            tint = rgb(half_space.color or "#ffffff")
+            grid = np.array([self.spacing, begin, end])
+            self.planes.append((np.array([middle, n, u, v]), grid, tint))
 
     def draw(self, t: float, clock: bool = True) -> np.ndarray:
         """Return the picture (height, width, 3), uint8, at a time within the run."""
@@ -115,7 +117,7 @@ class Stage:
         if self.followed is not None:
             camera = camera._replace(centre=x[self.followed[0].index])
         world, buffer = self._world(x, Q), self._empty(camera)
-        for number, (plane, _) in enumerate(self.planes, 1):
+        for number, (plane, *_) in enumerate(self.planes, 1):
             falls = self.light @ plane[1]
             if falls > 0.1:
                 above = (world.corners - plane[0]) @ plane[1]
@@ -136,11 +138,12 @@ class Stage:
             shape = camera.height, camera.width
             image, depth = np.full((*shape, 3), 255, np.uint8), np.zeros(shape, np.float32)
             self._kept = Buffer(image, depth, np.zeros(shape, np.uint8))
-            for number, (plane, grid) in enumerate(self.planes, 1):
+            for number, (plane, grid, tint) in enumerate(self.planes, 1):
                 middle = plane[0]
                 if self.followed is not None:
                     middle = middle + _steps(camera.centre - middle, plane[2:], grid[0])
                 bright = DIM + (1.0 - DIM) * max(0.0, float(plane[1] @ self.light))
+                bright = bright * tint
                 colours = np.array([bright * PLANE, bright * GRID, BACKGROUND])
                 eye, sight = plane[1:] @ (camera.eye - middle), plane[1:] @ camera.rays
                 ground(eye, sight, grid, colours, number, self._kept)

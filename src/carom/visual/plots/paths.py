@@ -160,8 +160,8 @@ def _static(axes, part, seen) -> None:
 
     shadow = PolyCollection(
         list(part.vertices[:, seen][part.triangles]),
-        facecolor=GROUND,
-        edgecolor=GROUND,
+        facecolor=part.colour or GROUND,
+        edgecolor=part.colour or GROUND,
         lw=0.5,
         zorder=0,
     )
@@ -175,10 +175,10 @@ def _ground(axes, half_space, seen) -> None:
         return
     from matplotlib.patches import Polygon
 
-    extent = axes.dataLim.get_points()
+    extent, colour = axes.dataLim.get_points(), half_space.color or GROUND
     centre, reach = extent.mean(axis=0), 50.0 * np.ptp(extent, axis=0).max()
     point = centre - ((centre - half_space.point[seen]) @ normal) * normal
     along, down = reach * np.array([-normal[1], normal[0]]), -reach * normal
     corners = np.array([point - along, point + along, point + along + down, point - along + down])
     # not through add_patch: the matter has no end, and must not count for the limits
-    axes.add_artist(Polygon(corners, facecolor=GROUND, edgecolor=style.BLACK, lw=0.8, zorder=0))
+    axes.add_artist(Polygon(corners, facecolor=colour, edgecolor=style.BLACK, lw=0.8, zorder=0))

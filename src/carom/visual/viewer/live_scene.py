@@ -125,8 +125,9 @@ class LiveScene:
     def _plane(self, plane) -> None:
         fan = np.array([(0, k, k + 1) for k in range(1, len(plane.corners) - 1)])
         name = f"/planes/{plane.name}"
+        shade = tuple(bytes.fromhex(plane.colour[1:])) if plane.colour else SHADE
         self.stage.add_mesh_simple(
-            name, plane.corners.astype(np.float32), fan, color=SHADE, side="front",
+            name, plane.corners.astype(np.float32), fan, color=shade, side="front",
             cast_shadow=False,
         )  # fmt: skip
         if plane.normal @ self.show.place.up < 0.5:

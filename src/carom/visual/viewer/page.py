@@ -101,11 +101,16 @@ def header(show: Show, packer: Packer) -> dict:
                 "triangles": packer.add(part.triangles, "i4"),
                 "bodies": part.bodies,
                 "look": part.look,
+                "colour": part.colour,
             }
             for part in show.parts
         ],
         "planes": [
-            {"corners": (p.corners - place.centre).tolist(), "normal": p.normal.tolist()}
+            {
+                "corners": (p.corners - place.centre).tolist(),
+                "normal": p.normal.tolist(),
+                "colour": p.colour,
+            }
             for p in show.planes
         ],
         "links": [_link(link, place.centre) for link in show.links],

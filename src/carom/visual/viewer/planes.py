@@ -19,6 +19,7 @@ class Plane(NamedTuple):
     corners: np.ndarray  #: (P, 3) world [m], convex
     normal: np.ndarray  #: (3,)
     name: str
+    colour: str | None = None
 
 
 def planes_of(scene, place, position: np.ndarray) -> list[Plane]:
@@ -44,7 +45,7 @@ def planes_of(scene, place, position: np.ndarray) -> list[Plane]:
         if abs(h.normal @ place.up) < LEVEL:
             corners = _cut(corners, top, -place.up)
         if len(corners) > 2:
-            out.append(Plane(corners, h.normal, h.name))
+            out.append(Plane(corners, h.normal, h.name, h.color))
     return out
 
 

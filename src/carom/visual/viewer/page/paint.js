@@ -10,8 +10,8 @@ class Painter {
   constructor(run, motion, element) {
     Object.assign(this, { run, motion });
     this.canvas = new Canvas(element);
-    this.parts = run.parts.map(({ vertices, triangles, bodies, look }) => (
-      { bodies, look, mesh: this.canvas.mesh(shaded(vertices, triangles)) }));
+    this.parts = run.parts.map(({ vertices, triangles, bodies, look, colour }) => (
+      { bodies, look, colour, mesh: this.canvas.mesh(shaded(vertices, triangles)) }));
     this.furniture = Object.fromEntries(
       Object.entries(furniture()).map(([name, numbers]) => [name, this.canvas.mesh(numbers)]));
     this.cell = this.round(run.place.radius / 9);
@@ -31,7 +31,7 @@ class Painter {
     return (m >= 5 ? 5 : m >= 2 ? 2 : 1) * power;
   }
 
-  plane({ corners, normal }) {
+  plane({ corners, normal, colour }) {
     const middle = times(1 / corners.length, corners.reduce(add));
     const ahead = sub(this.run.place.side, times(dot(this.run.place.side, normal), normal));
     const along = norm(ahead) > 0.3 ? unit(ahead) : across(normal)[0];
@@ -41,6 +41,7 @@ class Painter {
     return {
       mesh: this.canvas.mesh(new Float32Array(corners.flat()), false), normal, along,
       beside: cross(normal, along), middle, cell: this.cell, reach: cut ? 1e9 : reach,
+      tint: rgba(colour ?? "#ffffff").slice(0, 3),
     };
   }
 
@@ -51,10 +52,10 @@ class Painter {
 
   solids(poses) {
     const out = [];
-    for (const { mesh, bodies, look } of this.parts)
+    for (const { mesh, bodies, look, colour: own } of this.parts)
       for (const b of bodies) {
         const { x, Q } = b < 0 ? STILL : poses[b];
-        const colour = rgba(look === "static" ? "#c3ccd4" : this.colourOf(b, look));
+        const colour = rgba(look === "static" ? own ?? "#c3ccd4" : this.colourOf(b, look));
         out.push({ mesh, colour, model: frame(...axesOf(Q), x), pattern: look === "round" });
       }
     const thick = 0.02 * this.run.place.radius;

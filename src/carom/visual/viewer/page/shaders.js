@@ -68,7 +68,7 @@ void main() { world = place; sunned = sun * vec4(place, 1.0); gl_Position = view
   fragment: SHADE + `
 in vec3 world;
 in vec4 sunned;
-uniform vec3 normal, along, beside, middle;
+uniform vec3 normal, along, beside, middle, tint;
 uniform float cell, reach;
 out vec4 result;
 float lines(vec2 p) {
@@ -80,7 +80,7 @@ void main() {
   vec3 c = mix(vec3(0.955, 0.965, 0.973), vec3(0.80, 0.835, 0.865), 0.55 * lines(p));
   c = mix(c, vec3(0.66, 0.71, 0.75), 0.8 * lines(p / 5.0));
   float shadowed = 1.0 - lit(sunned, normal);
-  c *= 1.0 - 0.30 * shadowed;
+  c *= tint * (1.0 - 0.30 * shadowed);
   float away = length(world - middle) / reach;
   result = vec4(c, 1.0 - smoothstep(0.55, 1.0, away));
 }`,
