@@ -25,6 +25,7 @@ def ensemble(run):
         ("PIL", "film", lambda run: carom.films.still(run)),
         ("viser", "view", lambda run: carom.view(run)),
         ("mujoco", "models", lambda run: carom.load_model("<mujoco/>")),
+        ("trimesh", "shapes", lambda run: carom.Mesh.load("a.stl")),
         ("h5netcdf", "files", lambda run: run.save("run.nc")),
         ("pyarrow", "parquet", lambda run: run.save("run.parquet")),
         ("xarray", "ensemble", lambda run: ensemble(run).to_xarray()),

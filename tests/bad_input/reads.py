@@ -4,7 +4,18 @@ import numpy as np
 
 import carom
 from bad_input import things
-from bad_input.things import XML, W, model, recording, samples, solution, swing, thrown
+from bad_input.things import (
+    TETRAHEDRON,
+    XML,
+    W,
+    model,
+    recording,
+    samples,
+    solution,
+    swing,
+    tetrahedron,
+    thrown,
+)
 from carom import baselines
 from carom.io import models
 from carom.studies import identify
@@ -15,6 +26,9 @@ def read(folder):
     """Return functions of (callable, arguments) by name; files are in a folder."""
     made = recording()
     found = {
+        "Mesh.load": lambda: (
+            carom.Mesh.load, dict(path=tetrahedron(folder), scale=1.0, parts=[TETRAHEDRON]),
+        ),
         "baselines.hht_alpha": lambda: (
             baselines.hht_alpha,
             dict(mass=np.eye(1), force=lambda t, q, v: -q, position=[1.0], velocity=[0.0], duration=0.02,

@@ -33,7 +33,7 @@ def stated():
 
     def joined(definition):
         p = parts()
-        return p.scene.add_constraint, dict(definition=definition(p), name="mine")
+        return p.scene.add_constraint, dict(definition=definition(p), name="mine", replace=True)
 
     three = (1.0, 0.0, 0.0)
     number = dict(restitution=0.5, friction=0.1, friction_held=0.1, stiffness=1.0, rolling_friction=0.0,
@@ -74,36 +74,39 @@ def stated():
         ),
         "Scene": lambda: (carom.Scene, dict(gravity=(0, 0, -9.81))),
         "Scene.add_half_space": of_scene(
-            "add_half_space", point=(0, 0, 0), normal=(0, 0, 1), material=carom.Material(0.5, 0.1), name="wall"
+            "add_half_space", point=(0, 0, 0), normal=(0, 0, 1), material=carom.Material(0.5, 0.1), name="wall",
+            color="red", replace=True,
         ),
         "Scene.add_body": of_scene(
             "add_body", shape=carom.Sphere(0.1), mass=1.0, density=None, inertia=(1.0, 1.0, 1.0),
             position=three, orientation=(1.0, 0, 0, 0), velocity=three, angular_velocity=three,
-            material=carom.Material(0.5, 0.1), name="new", color="red",
+            material=carom.Material(0.5, 0.1), name="new", color="red", replace=True,
         ),
         "Scene.add_body of a density": of_scene(
             "add_body", shape=carom.Sphere(0.1), mass=None, density=1.0, inertia=None,
             position=three, orientation=(1.0, 0, 0, 0), velocity=three, angular_velocity=three,
-            material=None, name=None, color=None,
+            material=None, name="new", color=None, replace=False,
         ),
         "Scene.add_static": of_scene(
             "add_static", shape=carom.Sphere(0.1), position=three, orientation=(1.0, 0, 0, 0),
-            material=carom.Material(0.5, 0.1), name="new",
+            material=carom.Material(0.5, 0.1), name="new", color="red", replace=True,
         ),
         "Scene.add_joint": of_scene(
             "add_joint", definition=joints.Spherical((0, 0, 0)), parent="@ball", child="@box",
             parent_frame=(three, (1.0, 0, 0, 0)), child_frame=(three, (1.0, 0, 0, 0)), name="new",
+            replace=True,
         ),
         "Scene.add_force": of_scene(
-            "add_force", definition=forces.Torque(three), parent="@ball", child="@box", name="new"
+            "add_force", definition=forces.Torque(three), parent="@ball", child="@box", name="new",
+            replace=True,
         ),
         "Scene.add_constraint": lambda: joined(lambda p: constraints.Gear(p.hinge, p.slide, 2.0)),
         "Scene.add_stop": of_scene(
             "add_stop", joint="@hinge", lower=-1.0, upper=None, restitution=0.5, impact_law="newton",
-            coordinate=0, name="new",
+            coordinate=0, name="new", replace=True,
         ),
         "Scene.add_contact": of_scene(
-            "add_contact", body="@box", other="@floor", **number, **words, name="new"
+            "add_contact", body="@box", other="@floor", **number, **words, name="new", replace=True
         ),
         "Scene.set_contact_default": of_scene(
             "set_contact_default", **number, **words, combine="average", all_pairs=True
@@ -111,6 +114,9 @@ def stated():
         "Scene.ignore_contact": of_scene("ignore_contact", body="@ball", other="@box"),
         "Scene.contact_law": of_scene("contact_law", body="@ball", other="@box"),
         "Scene.pairs_by_default": of_scene("pairs_by_default"),
+        "Scene.copy": of_scene("copy"),
+        "Scene.replace": of_scene("replace", part="ball", mass=1.0, color="red", position=three),
+        "Scene.remove": of_scene("remove", part="ball", dependents=True),
         "Scene.validate": of_scene("validate"),
         "Scene.check": of_scene("check"),
     }  # fmt: skip

@@ -18,6 +18,15 @@ XML = """<mujoco><worldbody><body name="hand" mocap="true"/>
 <keyframe><key name="k" qpos="0.1"/></keyframe></mujoco>"""
 
 
+def tetrahedron(folder):
+    """The path of a file of a mesh in the format OFF."""
+    rows = [" ".join(map(str, corner)) for corner in TETRAHEDRON]
+    rows += [f"3 {a} {b} {c}" for a, b, c in FACES]
+    path = folder / "solid.off"
+    path.write_text("\n".join(["OFF", "4 4 6", *rows, ""]))
+    return path
+
+
 def parts():
     """A scene with two bodies, a plane and a hinge, and its parts by name."""
     scene = carom.Scene()

@@ -28,6 +28,7 @@ DOCUMENTED = {
     "Solution.joint_coordinates": KeyError,
     "results.SystemState.joint_coordinates": KeyError,
     "Solution.impact_history": IndexError,
+    "Mesh.load": FileNotFoundError,
     "Solution.load": FileNotFoundError,
     "Ensemble.load": FileNotFoundError,
     "load_model": FileNotFoundError,

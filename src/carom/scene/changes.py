@@ -1,8 +1,8 @@
 """Changes of a scene: parts that are replaced or taken away, and what refers to them.
 
-Parts are frozen, and a solution keeps those of its run. So a part that changes, and each part that refers to it or
-gets another number, is made anew. All that are made from one another have one `origin`: so what a method of the
-scene once returned stands for the part that is there.
+Parts are frozen, and a solution keeps those of its run. So a part that changes, and each part that refers to it
+or gets another number, is made anew. All that are made from one another have one `origin`: so what a method of
+the scene once returned stands for the part that is there.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from carom.scene.constraints import CONSTRAINTS, Constraint
 from carom.scene.contacts import Contact
 from carom.scene.forces import FORCES, AppliedForce
 from carom.scene.joints import JOINTS, Joint
+from carom.scene.shapes.mesh import shape_given
 from carom.scene.stops import Stop
 
 #: kinds of parts with what a message calls them; a part refers only to those of kinds before its own
@@ -112,6 +113,8 @@ def renewed(part, values: dict[str, Any]) -> Any:
     """
     definition = getattr(part, "definition", None)
     inside = [] if definition is None else [f.name for f in fields(definition)]
+    if "shape" in values:
+        values["shape"] = shape_given(values["shape"])
     allowed = [name for name in (*(f.name for f in fields(part)), *inside) if name not in _FIXED]
     if isinstance(part, Body):
         allowed.insert(2, "density")
@@ -161,4 +164,3 @@ def _of_body(body: Body, values: dict[str, Any]) -> dict[str, Any]:
 def told(parts: Iterable) -> str:
     """Return parts by kind and name, for a message."""
     return ", ".join(f"{KINDS[type(one)]} {one.name!r}" for one in parts)
-

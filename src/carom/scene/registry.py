@@ -108,7 +108,9 @@ class Registry:
 
     def linked(self, definition) -> Any:
         """Return a definition that refers to the parts as they are; refuse those of other scenes."""
-        own = {id(part): self.member("definition", part, tuple(KINDS)) for part in parts_in(definition)}
+        own = {
+            id(part): self.member("definition", part, tuple(KINDS)) for part in parts_in(definition)
+        }
         return followed(definition, own)
 
     def parts(self, kind: type) -> tuple:
@@ -149,7 +151,7 @@ class Registry:
         return own is not None and origin(own) is origin(part)
 
     def named(self, argument: str, part) -> Any:
-        """Return a part of any kind, given as an object or by name; of a contact also by names of both bodies."""
+        """Return a part of any kind, given as an object or by name, as `__getitem__` finds it."""
         if isinstance(part, str) and part not in self._parts and self.has(part):
             return self[part]
         return self.member(argument, part, tuple(KINDS))

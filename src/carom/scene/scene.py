@@ -19,6 +19,7 @@ from carom.scene.materials import Material
 from carom.scene.pairs import Pairs
 from carom.scene.registry import Derived, Registry
 from carom.scene.shapes import Shape
+from carom.scene.shapes.mesh import shape_given
 from carom.scene.stops import Stop
 from carom.scene.summary import counts, summary
 from carom.scene.touching import TouchingPairs
@@ -43,9 +44,9 @@ class Scene(TouchingPairs):
 
     The ``add_*`` methods check their arguments at once and return the new part, a read-only object. Each part
     has a name that is unique in the scene: ``scene["die"]`` is the part with the name "die", ``"die" in scene``
-    says whether there is one, and ``for part in scene`` goes through all. With ``replace=True`` they put the new
-    part in the place of the one that has its name. `replace` and `remove` change a scene too; a solution keeps
-    the scene as it was.
+    says whether there is one, and ``for part in scene`` goes through all. With ``replace=True`` they put the
+    new part in the place of the one that has its name. `replace` and `remove` change a scene too; a solution
+    keeps the scene as it was.
 
     Parameters
     ----------
@@ -66,7 +67,9 @@ class Scene(TouchingPairs):
         self._parts = Registry()
         self._pairs = Pairs(self._parts)
         self.gravity = gravity
-        self._snapshot: Scene | None = None  # the scene as it is for solutions; a change makes it old
+        self._snapshot: Scene | None = (
+            None  # the scene as it is for solutions; a change makes it old
+        )
         self._in_radians: set[str] = set()  # stops whose file has radians
 
     @arguments.known
@@ -124,7 +127,7 @@ class Scene(TouchingPairs):
         ----------
         shape
             `Sphere`, `Box`, `Capsule`, `Cylinder`, `Disc`, `Ellipsoid`, `Convex`, `Mesh` or
-            `Compound`. A body without a shape cannot touch anything.
+            `Compound`; or an object of trimesh, as a `Mesh`. A body without a shape cannot touch anything.
         mass, density
             Exactly one of the two, above 0: the mass [kg], or the density of the shape [kg/m^3].
         inertia : (3,) or (3, 3)
@@ -170,6 +173,7 @@ class Scene(TouchingPairs):
         ValueError: mass must be finite and above 0 [kg], got -1.0
         """
         index, name = self._parts.new(Body, name, "body", replace)
+        shape = shape_given(shape)
         mass, inertia = mass_and_inertia(shape, mass, density, inertia)
         motion: Any = position, orientation, velocity, angular_velocity, material, color
         return self._parts.add(Body(index, name, shape, mass, inertia, *motion))
@@ -206,8 +210,8 @@ class Scene(TouchingPairs):
         name
             Name in the scene. Default ``"static1"``, ``"static2"``, ...
         replace : bool
-            True: a static body that has this name is replaced, and what refers to it then refers to the new one.
-            Default False: a name that is taken is refused.
+            True: a static body that has this name is replaced, and what refers to it then refers to the new
+            one. Default False: a name that is taken is refused.
 
         Examples
         --------
@@ -220,7 +224,10 @@ class Scene(TouchingPairs):
         Contact('ball-step', restitution=0.5, friction=0.3, impact_law='newton')
         """
         index, name = self._parts.new(StaticBody, name, "static", replace)
-        return self._parts.add(StaticBody(index, name, shape, position, orientation, material, color))
+        shape = shape_given(shape)
+        return self._parts.add(
+            StaticBody(index, name, shape, position, orientation, material, color)
+        )
 
     @arguments.known
     def add_joint(
@@ -392,7 +399,7 @@ class Scene(TouchingPairs):
             Stop(index, name, part, coordinate, lower, upper, restitution, impact_law)
         )
 
-    def replace(self, name: str, **values) -> Any:
+    def replace(self, part, **values) -> Any:
         """Replace a part by one with other values, and return it; what refers to it then refers to the new one.
 
         Values that are not given stay as they are. Joints and forces stay where they are in the world at the
@@ -400,8 +407,8 @@ class Scene(TouchingPairs):
 
         Parameters
         ----------
-        name : str
-            Name of the part, or the part.
+        part
+            The part, or its name.
         **values
             Arguments of the method that adds such parts. For a contact: values of its law. For a joint, force
             or constraint: `definition`, or fields of its definition, as in
@@ -422,7 +429,7 @@ class Scene(TouchingPairs):
         >>> scene.replace("die", mass=0.008, color="red").inertia[0, 0] / die.inertia[0, 0]
         0.5
         """
-        old = self._parts.named("name", name)
+        old = self._parts.named("part", part)
         if not values:
             raise TypeError(f"replace needs a value, such as {_VALUES[type(old)]}")
         if "definition" in values and isinstance(old, (AppliedForce, Constraint)):
@@ -433,7 +440,7 @@ class Scene(TouchingPairs):
         return self._parts[old.name]
 
     @arguments.known
-    def remove(self, name: str, *, dependents: bool = False) -> tuple:
+    def remove(self, part, *, dependents: bool = False) -> tuple:
         """Remove a part, and return all parts that were removed.
 
         Contacts of a body, half-space or static body are removed with it. Bodies of a joint that is removed may
@@ -441,8 +448,8 @@ class Scene(TouchingPairs):
 
         Parameters
         ----------
-        name : str
-            Name of the part, or the part.
+        part
+            The part, or its name.
         dependents : bool
             True: joints of a body are removed with it, and also forces, constraints and stops that refer to
             the part or to these joints. Default False: a part that has such dependents is not removed.
@@ -453,12 +460,13 @@ class Scene(TouchingPairs):
             If there is no such part, or joints, forces, constraints or stops refer to it and `dependents` is
             False; the message names them.
         """
-        part = self._parts.named("name", name)
+        part = self._parts.named("part", part)
         found = list(dependents_of(self._parts, part))
         others = [one for one in found if not isinstance(one, Contact)]
         if others and not checks.flag("dependents", dependents):
             raise ValueError(
-                f"dependents must be True to remove {part.name!r} together with what refers to it: {told(others)}"
+                f"dependents must be True to remove {part.name!r} together with what refers to it: "
+                f"{told(others)}"
             )
         removed = part, *found
         self._parts.exchange({id(one): None for one in removed})

@@ -92,8 +92,8 @@ class TouchingPairs:
         Contact('ball-table', restitution=0.8, friction=0.3, impact_law='stronge')
         """
         body, other = self._two(body, other)
-        name = f"{body.name}-{other.name}" if name is None else name
-        old = self._parts.get(name) if replace else None
+        name = f"{body.name}-{other.name}" if name is None else checks.text("name", name)
+        old = self._parts.get(name) if checks.flag("replace", replace) else None
         self._pairs.check_new(body, other, old)
         index, name = self._parts.new(Contact, name, "contact", replace)
         given = {

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from carom.geometry import quaternion
@@ -84,9 +86,10 @@ def _stops(build: Build, j: int, c: Coordinate, restitution: float, law: str) ->
             )
             end = 0.0
         which = "lower" if side * c.sign > 0.0 else "upper"
+        limit: Any = {which: c.sign * end}
         stop = build.scene.add_stop(
             c.joint,
-            **{which: c.sign * end},
+            **limit,
             restitution=restitution,
             impact_law=law,
             coordinate=c.index,

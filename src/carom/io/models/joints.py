@@ -8,7 +8,7 @@ that they do not count.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -133,7 +133,7 @@ def _light_link(build: Build, link: Link, last: int, later: list[int]) -> Body:
 def _add(build: Build, group: Group, parent: Body | Ground, child) -> None:
     """Add the joint of a group, and keep its coordinates."""
     names = [name_of(build.model, "joint", j) for j, _, _ in group.members]
-    frames = {}
+    frames: Any = {}
     if group.frame is not None:
         frames = {
             "parent_frame": in_body(parent, *group.frame),

@@ -103,7 +103,6 @@ def covering(build: Build, link: Link, rules: Filter) -> tuple[Shape | None, lis
 
     If no geom may touch, the shape is that of the visible geoms.
     """
-    model = build.model
     geoms = geoms_of(build, link)
     touching = [g for g in geoms if rules.touches_at_all(g)]
     parts, used = _parts(build, touching or geoms)

@@ -24,15 +24,16 @@ READ = (".stl", ".obj", ".msh")
 
 
 def colours(root: ET.Element) -> dict[str, list[float]]:
-    """Return red, green, blue and opacity of the first ``<visual>`` of each link that has a colour, by its name."""
+    """Return red, green, blue and opacity of links with a ``<visual>`` that has a colour, by name."""
     shared = {one.get("name"): one.find("color") for one in root.findall("material")}
     found: dict[str, list[float]] = {}
     for link in root.iter("link"):
         for material in link.findall("visual/material"):
             own = material.find("color")
             own = shared.get(material.get("name")) if own is None else own
+            words = "" if own is None else own.get("rgba", "")
             with suppress(ValueError):
-                rgba = [float(word) for word in own.get("rgba", "").split()] if own is not None else []
+                rgba = [float(word) for word in words.split()]
                 if len(rgba) == 4:
                     found.setdefault(link.get("name", ""), rgba)
     return found

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +19,7 @@ from carom.scene.shapes.convex import Convex, hull_of
 
 THIN = 1e-12  # height of a triangle relative to the size of the mesh below which it is degenerate
 BULGE = 1e-9  # height of a vertex above a face, relative to the size, that is rounding
+SINGLE = 1e-6  # the same for vertices that a file has in single precision
 
 
 @arguments.known
@@ -95,6 +98,52 @@ class Mesh(Shape):
         keep(self, points=points, faces=triangles, centroid=centroid, volume=volume, size=size)
         keep(self, convex=convex, _pieces=pieces, _spread=second / volume)
 
+    @classmethod
+    def load(
+        cls, path: str | os.PathLike, *, scale: float = 1.0, parts: Sequence | str | None = None
+    ) -> Mesh:
+        """Return the mesh in a file: STL, OBJ, PLY, OFF, glTF and others that trimesh reads.
+
+        Vertices at the same position are merged. A surface that is oriented inwards is turned. It is convex if
+        no vertex is above a face by more than 1e-6 of its size: files have single precision.
+
+        Parameters
+        ----------
+        path : str or path
+            The file. All its meshes together are the surface.
+        scale : float
+            Length of the unit of the file [m], above 0: 1e-3 for millimetres. Default 1.
+        parts
+            As for `Mesh`, in metres.
+
+        Raises
+        ------
+        FileNotFoundError
+            If there is no such file.
+        ImportError
+            If trimesh is missing (``carom[shapes]``).
+        ValueError
+            If trimesh cannot read the file, or `Mesh` refuses its surface.
+        """
+        file, scale = checks.path("path", path), checks.scale("scale", scale)
+        trimesh = checks.need("trimesh", "Mesh.load", "shapes")
+        if not os.path.isfile(file):
+            raise FileNotFoundError(f"path must be a file with a mesh, got {str(file)!r}")
+        try:
+            found = trimesh.load_mesh(file)
+            found.merge_vertices(merge_tex=True, merge_norm=True)
+            vertices, faces = np.asarray(found.vertices), np.asarray(found.faces)
+        except Exception as error:  # each format has errors of its own
+            raise ValueError(
+                f"path must be a file with a mesh that trimesh reads, got {str(file)!r}: {error}"
+            ) from error
+        inwards = np.sum(np.linalg.det(vertices[faces])) < 0.0  # six times the volume
+        faces = faces[:, ::-1] if inwards else faces
+        rounded = parts is None and len(vertices) > 3 and _is_convex(vertices, faces, SINGLE)
+        made = cls(scale * vertices, faces, [scale * vertices] if rounded else parts)
+        keep(made, convex=made.convex or rounded)
+        return made
+
     def __repr__(self) -> str:
         return f"Mesh(<{len(self.points)} vertices, {len(self.faces)} faces>)"
 
@@ -110,6 +159,15 @@ class Mesh(Shape):
 
     def _inertia(self, mass: float) -> np.ndarray:
         return mass * (np.trace(self._spread) * np.eye(3) - self._spread)
+
+
+def shape_given(shape) -> Any:
+    """Return what is given as a shape; an object of trimesh, with vertices and faces, as a `Mesh`."""
+    if isinstance(shape, (Shape, type)) or not (
+        hasattr(shape, "vertices") and hasattr(shape, "faces")
+    ):
+        return shape
+    return Mesh(shape.vertices, shape.faces)
 
 
 def _checked_faces(faces, points: np.ndarray) -> np.ndarray:
@@ -159,14 +217,14 @@ def _check_closed(triangles: np.ndarray) -> None:
         )
 
 
-def _is_convex(points, triangles) -> bool:
+def _is_convex(points, triangles, bulge: float = BULGE) -> bool:
     """Return True if no vertex lies above the plane of a face, by more than rounding."""
     used = points[np.unique(triangles)]
     size = np.ptp(used, axis=0).max()
     for a, b, c in points[triangles]:
         normal = np.cross(b - a, c - a)
         normal /= np.linalg.norm(normal)
-        if np.max((used - a) @ normal) > BULGE * size:
+        if np.max((used - a) @ normal) > bulge * size:
             return False
     return True
 
