@@ -133,6 +133,8 @@ class Mesh(Shape):
             found = trimesh.load_mesh(file)
             found.merge_vertices(merge_tex=True, merge_norm=True)
             vertices, faces = np.asarray(found.vertices), np.asarray(found.faces)
+            if not len(faces):
+                raise ValueError("it has no triangles")
         except Exception as error:  # each format has errors of its own
             raise ValueError(
                 f"path must be a file with a mesh that trimesh reads, got {str(file)!r}: {error}"
