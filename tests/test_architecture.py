@@ -12,10 +12,10 @@ import carom
 ROOT = Path(carom.__file__).parent
 #: folders and modules of carom, lowest first (`docs/development/architecture.md`)
 ORDER = (
-    "_compiled", "arguments", "checks", "fields", "options", "status", "geometry", "scene", "collision",
-    "model", "kinematics", "contact", "friction", "dynamics", "impact", "persistent", "stepping", "results",
-    "generalized", "run", "io", "control", "simulate", "studies", "visual", "baselines", "paper", "bench",
-    "cli",
+    "_compiled", "hints", "arguments", "checks", "fields", "options", "status", "geometry", "scene",
+    "collision", "model", "kinematics", "contact", "friction", "dynamics", "impact", "persistent",
+    "stepping", "results", "generalized", "run", "io", "control", "simulate", "studies", "visual",
+    "baselines", "paper", "bench", "cli",
 )  # fmt: skip
 #: methods of what users hold in their hands that need a floor above, imported where they are called
 DOORS = {

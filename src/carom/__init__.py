@@ -7,11 +7,11 @@ at import.
 from __future__ import annotations
 
 import importlib
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from carom.generalized import GeneralizedSystem
 from carom.geometry.attitude import axis_angle, euler
+from carom.hints import ending
 from carom.options import Options
 from carom.results.solution import Solution
 from carom.scene import (
@@ -155,8 +155,7 @@ def __getattr__(name: str):
         return getattr(_shapes, name)
     if name in _PACKAGES:
         return importlib.import_module(_PACKAGES[name])
-    near = get_close_matches(name, __all__, n=1)
-    hint = f"; did you mean {near[0]!r}?" if near and name[:1] != "_" else ""
+    hint = ending("carom", name, __all__) if name[:1] != "_" else ""
     raise AttributeError(f"module 'carom' has no attribute {name!r}{hint}")
 
 

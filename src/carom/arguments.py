@@ -3,83 +3,18 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from difflib import get_close_matches
 from functools import wraps
 from typing import Any, TypeVar, cast
 
+from carom.hints import ALIKE, MEANT, PLACE, ending, of_member
+
 F = TypeVar("F", bound=Callable)
 T = TypeVar("T")
 
-#: other names of arguments and attributes: in formulas, and in other engines
-ELSEWHERE = {
-    "friction": "mu mu_s mus friction_coefficient coefficient_of_friction lateralFriction",
-    "friction_held": "mu_held",
-    "restitution": "e eps cor bounce bounciness elasticity restitution_coefficient",
-    "rolling_friction": "mu_r rollingFriction",
-    "pivoting_friction": "spinningFriction torsional_friction",
-    "impact_law": "law model",
-    "stiffness": "k ke",
-    "mass": "m weight",
-    "density": "rho",
-    "inertia": "I J moi inertia_tensor",
-    "position": "pos x xyz origin location translation p",
-    "orientation": "quat q quaternion rotation rot rpy attitude R pose",
-    "velocity": "vel v linear_velocity v0 lin_vel",
-    "angular_velocity": "omega w angvel ang_vel angular",
-    "shape": "geom geometry size box",
-    "gravity": "g",
-    "point": "anchor origin position offset",
-    "normal": "n axis up direction",
-    "name": "label id",
-    "t": "time times",
-    "time": "t",
-    "total_energy": "energy",
-    "duration": "T time t tf t_end t_final end tspan t_span",
-    "step": "dt h timestep time_step step_size stepsize max_step",
-    "save_at": "t_eval saveat output_times",
-    "method": "integrator solver scheme",
-    "rtol": "reltol tol tolerance",
-    "atol": "abstol",
-    "progress": "verbose progress_bar",
-    "save": "path filename file output",
-    "lower": "low minimum min",
-    "upper": "high maximum max",
-    "parent": "body1 body_a bodyA base",
-    "child": "body2 body_b bodyB body",
-    "other": "other_body ground plane",
-    "definition": "joint force constraint",
-    "law": "impact_law model",
-    "inverse_mass": "W delassus",
-    "radius": "r R",
-    "length": "height h L",
-}
 #: arguments that have two names: an impact by itself has a law, a contact of a scene has an impact law
 _TWINS = {"law": "impact_law", "impact_law": "law"}
-#: what is stated in another place
-_OTHER_PLACE = {
-    "friction": "state it for a contact, add_contact(..., friction=) or set_contact_default(friction=), "
-                "or in a Material",
-    "restitution": "state it for a contact, add_contact(..., restitution=) or "
-                   "set_contact_default(restitution=), or in a Material",
-    "rtol": "it is an argument of carom.simulate",
-    "atol": "it is an argument of carom.simulate",
-    "fixed": "a body that never moves is made by add_static",
-    "static": "a body that never moves is made by add_static",
-}  # fmt: skip
-#: what other engines have a method for
-_OTHER_METHOD = {
-    "add_motor": "a motor is made by add_constraint(carom.constraints.Driver(...)), which prescribes the "
-                 "motion of a joint, or by add_force(carom.forces.JointForce(...)), which applies a force",
-    "add_spring": "a spring is made by add_force(carom.forces.Spring(...))",
-    "add_gear": "a gear is made by add_constraint(carom.constraints.Gear(...))",
-    "add_limit": "a limit of a joint is made by add_stop",
-    **dict.fromkeys(("add_floor", "add_ground", "add_plane"), "a floor is made by add_half_space"),
-    **dict.fromkeys(("add_box", "add_sphere", "add_cylinder", "add_capsule"),
-                    "a body with a shape is made by add_body(carom.Box(...), mass=...)"),
-    **dict.fromkeys(("simulate", "run", "step"),
-                    "a scene is simulated by carom.simulate(scene, duration), a carom.Run by advance()"),
-}  # fmt: skip
 #: units in names such as ``angular_velocity_deg``: carom's own unit, and how to convert
 _RADIANS, _PER_SECOND = ("radians", "np.radians(...)"), ("rad/s", "... * math.pi / 30")
 _UNITS = {
@@ -90,11 +25,6 @@ _UNITS = {
     "ms": ("s", "... * 1e-3"), "us": ("s", "... * 1e-6"), "minutes": ("s", "... * 60"),
 }  # fmt: skip
 _IN_DEGREES = ("angle", "angles", "view")  # arguments of carom
-ALIKE = 0.7  # of two names, from 0 to 1, where one may be a slip for the other
-_MEANT: dict[str, list[str]] = {}
-for _ours, _others in ELSEWHERE.items():
-    for _other in _others.split():
-        _MEANT.setdefault(_other, []).append(_ours)
 
 
 def known(function: F) -> F:
@@ -182,11 +112,11 @@ def check_known(shown: str, names: list[str], given) -> None:
 
 def _unknown(shown: str, names: list[str], given, has) -> str:
     unknown = next(name for name in given if name not in has)
-    meant = [name for name in _MEANT.get(unknown, ()) if name in has]
-    if not meant and unknown in _OTHER_PLACE:
-        return f"{shown} has no argument {unknown}=; {_OTHER_PLACE[unknown]}"
+    meant = [name for name in MEANT.get(unknown, ()) if name in has]
+    if not meant and unknown in PLACE:
+        return f"{shown} has no argument {unknown}=; {PLACE[unknown]}"
     word, unit = _without_unit(unknown)
-    meant = meant or [name for name in (word, *_MEANT.get(word, ())) if name in has]
+    meant = meant or [name for name in (word, *MEANT.get(word, ())) if name in has]
     meant = meant or get_close_matches(word, names, n=1, cutoff=ALIKE)
     hint = f"it is called {meant[0]}=" if meant else f"it has {', '.join(names)}"
     if meant == ["orientation"] and unit == _RADIANS:
@@ -235,18 +165,24 @@ def attributes(setting: str = "") -> Callable[[type[T]], type[T]]:
 
 def _no_attribute(thing, name: str) -> str:
     has = [one for one in dir(thing) if one[:1] != "_"]
-    near = [one for one in _MEANT.get(name, ()) if one in has]
+    near = [one for one in MEANT.get(name, ()) if one in has]
     word, unit = _without_unit(name)
-    near = near or [one for one in (word, *_MEANT.get(word, ())) if one in has]
+    near = near or [one for one in (word, *MEANT.get(word, ())) if one in has]
     near = near or get_close_matches(word, has, n=1, cutoff=ALIKE)
     suggested = f"did you mean {near[0]!r}{f', in {unit[0]}' if unit else ''}?" if near else ""
-    hint = _OTHER_METHOD.get(name) or _OTHER_PLACE.get(name) or suggested
+    known = [of_member(kind.__name__, name) for kind in type(thing).__mro__]
+    hint = next(filter(None, known), "") or PLACE.get(name) or suggested
+    hint = f"did you mean {hint!r}?" if hint.isidentifier() else hint
     return f"{type(thing).__name__} has no attribute {name!r}" + (f"; {hint}" if hint else "")
 
 
-def unknown_member(module: str, name: str, members, elsewhere: dict[str, str]) -> AttributeError:
-    """Return the error for a name that a module does not have; `elsewhere` has names from other engines."""
-    meant = elsewhere.get(name.lower())
-    near = [meant] if meant else get_close_matches(name, members, n=1)
-    hint = f"did you mean {near[0]!r}?" if near else f"it has {', '.join(members)}"
-    return AttributeError(f"{module} has no {name!r}; {hint}")
+def members_of(module: str, names: Iterable[str]) -> Callable[[str], Any]:
+    """Return the ``__getattr__`` of a module: an error that names what is probably meant."""
+
+    def get(name: str):
+        if name[:1] == "_":
+            raise AttributeError(name)
+        hint = ending(module, name, names) or f"; it has {', '.join(names)}"
+        raise AttributeError(f"{module} has no {name!r}{hint}")
+
+    return get

@@ -241,6 +241,7 @@ class Solution(Portable, Drawn):
         """
         return self._assemble.constraint_forces(self)
 
+    @arguments.known
     def joint_coordinates(self, joint) -> tuple[np.ndarray, np.ndarray]:
         """Return (coordinates, rates), each (T, n), of a joint at saved times, computed from the states.
 
@@ -304,6 +305,7 @@ class Solution(Portable, Drawn):
         """
         return constraint_rows(self.scene)
 
+    @arguments.known
     def evaluate(self, t, side: str = "right"):
         """Return (position, orientation, velocity, angular_velocity) at times between saved ones.
 
@@ -387,6 +389,7 @@ class Solution(Portable, Drawn):
     def _flights(self):
         return flights(self)
 
+    @arguments.known
     def impact_history(self, k: int, steps: int | None = None):
         """Return impact k resolved in time inside its boundary layer, a `LayerHistory`.
 

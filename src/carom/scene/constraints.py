@@ -206,3 +206,6 @@ class Constraint:
         return (
             f"Constraint({self.name!r}, {self.kind}, {', '.join(repr(p.name) for p in self.parts)})"
         )
+
+
+__getattr__ = arguments.members_of("carom.constraints", ["Coupling", "Driver", "Gear", "Rows"])

@@ -200,3 +200,6 @@ def force_on(definition) -> tuple | None:
 def sides(first) -> tuple[Body | Ground, Body]:
     """Return parent and child of a force on a joint or on a body."""
     return (GROUND, first) if isinstance(first, Body) else (first.parent, first.child)
+
+
+__getattr__ = arguments.members_of("carom.forces", [one.__name__ for one in FORCES])

@@ -7,7 +7,7 @@ is by default the mass centre of the child.
 
 from __future__ import annotations
 
-from carom.arguments import unknown_member
+from carom.arguments import members_of
 from carom.scene.values import subclasses_in
 
 # isort: off
@@ -33,15 +33,4 @@ from carom.scene.joints.joint import Joint as Joint
 
 JOINTS = subclasses_in(globals(), JointDefinition)
 
-_ELSEWHERE = {
-    "hinge": "Revolute", "rotational": "Revolute", "pin": "Revolute", "continuous": "Revolute",
-    "ball": "Spherical", "socket": "Spherical", "slide": "Prismatic", "slider": "Prismatic",
-    "translational": "Prismatic", "weld": "Fixed", "rigid": "Fixed", "rod": "Distance", "rope": "Distance",
-    "cardan": "Universal", "rolling": "RollingSphere", "wheel": "RollingDisc",
-}  # fmt: skip
-
-
-def __getattr__(name: str):
-    if name[:1] == "_":
-        raise AttributeError(name)
-    raise unknown_member("carom.joints", name, [joint.__name__ for joint in JOINTS], _ELSEWHERE)
+__getattr__ = members_of("carom.joints", [joint.__name__ for joint in JOINTS])

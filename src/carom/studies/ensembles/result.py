@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import checks
+from carom.hints import ending
 from carom.studies.ensembles.outcome import PENDING
 from carom.studies.ensembles.table import WORDS
 
@@ -83,7 +84,8 @@ class Ensemble:
         """Return an outcome of all runs."""
         outcomes = self.__dict__.get("outcomes")
         if outcomes is None or name not in (outcomes.dtype.names or ()):
-            raise AttributeError(f"an Ensemble has no {name!r}")
+            has = [*dir(type(self)), *(() if outcomes is None else outcomes.dtype.names)]
+            raise AttributeError(f"an Ensemble has no {name!r}{ending('Ensemble', name, has)}")
         return outcomes[name]
 
     def __dir__(self) -> list[str]:

@@ -1,0 +1,250 @@
+"""Names from formulas and from other libraries, with those that carom has: the hints of its messages.
+
+Names are compared without capitals and underscores. What stands for them is a name of carom, or a sentence.
+"""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+
+ALIKE = 0.7  # of two names, from 0 to 1, where one may be a slip for the other
+
+#: arguments and attributes, with other names of them
+VALUES = {
+    "friction": "mu mu_s mus friction_coefficient coefficient_of_friction lateralFriction",
+    "friction_held": "mu_held",
+    "restitution": "e eps cor bounce bounciness elasticity restitution_coefficient",
+    "rolling_friction": "mu_r rollingFriction",
+    "pivoting_friction": "spinningFriction torsional_friction",
+    "impact_law": "law model",
+    "stiffness": "k ke spring_constant",
+    "damping": "c d kd damping_coefficient viscosity",
+    "rest_length": "l0 length0 natural_length",
+    "mass": "m weight",
+    "density": "rho",
+    "inertia": "I J moi moment inertia_tensor",
+    "position": "pos x xyz origin location translation p",
+    "orientation": "quat q quaternion rotation rot rpy attitude R pose",
+    "velocity": "vel v linear_velocity v0 lin_vel",
+    "angular_velocity": "omega w angvel ang_vel angular",
+    "shape": "geom geometry size box",
+    "color": "colour rgba rgb c facecolor",
+    "gravity": "g",
+    "point": "anchor origin position offset",
+    "anchor": "pivot pos point position origin",
+    "normal": "n axis up direction",
+    "name": "label id",
+    "t": "time times",
+    "time": "t",
+    "total_energy": "energy",
+    "duration": "T time t tf t_end t_max t_final end tspan t_span",
+    "step": "dt h timestep time_step step_size stepsize max_step",
+    "save_at": "t_eval saveat output_times",
+    "save_every": "stride every decimation",
+    "method": "integrator solver scheme",
+    "rtol": "reltol tol tolerance",
+    "atol": "abstol",
+    "events": "event",
+    "progress": "verbose progress_bar",
+    "save": "path filename file output",
+    "lower": "low minimum min",
+    "upper": "high maximum max",
+    "parent": "body1 body_a bodyA base",
+    "child": "body2 body_b bodyB body",
+    "other": "other_body ground plane",
+    "definition": "joint force constraint",
+    "law": "impact_law model",
+    "inverse_mass": "W delassus",
+    "radius": "r R",
+    "length": "height h L",
+    "runs": "n size samples n_samples n_runs num_runs count repeats",
+    "workers": "n_jobs jobs n_workers num_workers max_workers processes n_processes threads cores",
+    "executor": "backend pool parallel",
+    "seed": "random_state rng",
+    "vary": "params parameters inputs variables",
+    "impacts": "collisions hits",
+    "bodies": "links rigid_bodies",
+    "to_pandas": "to_dataframe to_df df dataframe",
+    "to_xarray": "to_dataset",
+    "path": "filename file fname where",
+    "evaluate": "sol interpolate interp at",
+    "replace": "set update modify change edit set_body",
+    "remove": "delete pop discard drop remove_body",
+    "copy": "clone duplicate deepcopy",
+    "advance": "step run integrate step_simulation",
+    "set_force": "apply_force set_control",
+}
+#: arguments and attributes that are stated in another place
+PLACES = {
+    "state it for a contact, add_contact(..., friction=) or set_contact_default(friction=), or in a Material":
+        "friction mu",
+    "state it for a contact, add_contact(..., restitution=) or set_contact_default(restitution=), or in a "
+    "Material": "restitution",
+    "it is an argument of carom.simulate": "rtol atol",
+    "a body that never moves is made by add_static": "fixed static is_static kinematic",
+}  # fmt: skip
+_JOINT = "it is made by add_joint(carom.joints.{}(...), parent, child)"
+_SHAPED = "a body with a shape is made by add_body(carom.{}(...), mass=...)"
+_VIEWED = (
+    "a motion is looked at by carom.view(solution), solution.plot() and carom.film(solution, path)"
+)
+_ELSEWHERE = "it is carom.{0}.{1}"
+_OF_SCENE = {
+    "a motor is made by add_constraint(carom.constraints.Driver(...)), which prescribes the motion of a joint, "
+    "or by add_force(carom.forces.JointForce(...)), which applies a force": "add_motor add_actuator",
+    "a spring is made by add_force(carom.forces.Spring(...))": "add_spring",
+    "a damper is a spring without stiffness: add_force(carom.forces.Spring(stiffness=0, damping=...))":
+        "add_damper add_dashpot",
+    "a torque is made by add_force(carom.forces.Torque(...))": "add_torque",
+    "a gear is made by add_constraint(carom.constraints.Gear(...))": "add_gear",
+    "a limit of a joint is made by add_stop": "add_limit add_joint_limit",
+    "a floor is made by add_half_space": "add_floor add_ground add_plane add_ground_plane",
+    "a wall is made by add_half_space, where it has no end, or by add_static": "add_wall",
+    "a body that never moves is made by add_static": "add_fixed add_obstacle add_static_body",
+    _SHAPED.format("Box"): "add_box add_cube",
+    _SHAPED.format("Sphere"): "add_sphere add_ball add_particle add_point_mass",
+    _SHAPED.format("Cylinder"): "add_cylinder",
+    _SHAPED.format("Capsule"): "add_capsule",
+    "a mesh is a shape: add_body(carom.Mesh.load(path), mass=...)": "add_mesh load_mesh",
+    "bodies are made by add_body": "add add_rigid_body add_link create_body create_multi_body",
+    _JOINT.format("Revolute"): "add_hinge add_revolute add_revolute_joint add_pin add_pivot",
+    _JOINT.format("Prismatic"): "add_slider add_slide add_prismatic",
+    _JOINT.format("Spherical"): "add_ball_joint add_spherical add_socket",
+    _JOINT.format("Fixed"): "add_weld add_fixed_joint",
+    _JOINT.format("Distance"): "add_rod add_rope add_distance",
+    "gravity is an attribute: scene.gravity = (0, 0, -9.81)": "set_gravity",
+    "it is stated by set_contact_default, or for one pair by add_contact":
+        "set_friction set_restitution set_material collisions add_collision contact_material",
+    "a scene is simulated by carom.simulate(scene, duration), a carom.Run by advance()":
+        "simulate run step solve integrate step_simulation",
+    "a part is scene[name]": "get get_body body find part",
+    "sensors are readings of the solution: solution.evaluate(t), solution[name]": "add_sensor",
+    "model files are read by carom.load_model(path)": "load from_mjcf from_urdf load_mjcf load_urdf",
+    "a file has a solution with its scene: carom.simulate(scene, duration).save(path)": "save to_file",
+    _VIEWED: "show plot draw render animate view",
+}  # fmt: skip
+_OF_SOLUTION = {
+    'tables are written by save("run.csv"), or made by to_pandas()': "to_csv to_parquet to_excel",
+    'it is written by save("run.nc"), and read by carom.Solution.load("run.nc")':
+        "to_netcdf to_hdf5 to_file dump write export_data",
+    "a film is made by carom.film(solution, path)": "film animate video to_mp4 to_gif render movie",
+    "it is shown by carom.view(solution)": "show view display",
+    "forces of contacts are forces and contact_force, those of joints joint_reactions": "reactions lambda_",
+    "coordinates of a joint are joint_coordinates(name)": "qpos qvel joint_angles angle angles joints",
+    "bodies are those of its scene: solution.scene.bodies, solution[name]": "bodies body",
+}  # fmt: skip
+_OF_ENSEMBLE = {
+    "tables are made by to_xarray().to_dataframe()": "to_csv to_excel",
+    "one run is made again by solution(number)": "runs solutions results trajectories",
+}
+#: names of classes and modules, with what people call them
+MEMBERS = {
+    "Scene": _OF_SCENE,
+    "Run": {"a scene is simulated by carom.simulate(scene, duration), a carom.Run by advance()": "simulate"},
+    "Solution": _OF_SOLUTION,
+    "Ensemble": _OF_ENSEMBLE,
+    "carom": {
+        "Scene": "World Simulation Simulator System Space Engine MultibodyPlant ChSystem ChSystemNSC",
+        "Sphere": "Ball",
+        "Box": "Cube Cuboid",
+        "Capsule": "Rod Pill",
+        "Convex": "ConvexHull Hull Polyhedron",
+        "simulate": "solve integrate step solve_ivp odeint",
+        "ensemble": "monte_carlo sweep batch parallel",
+        "view": "show render animate display",
+        "euler": "rpy from_euler quaternion quat rotation",
+        "load_model": "load_mjcf load_urdf read_urdf from_urdf from_mjcf MjModel",
+        "a run is read by carom.Solution.load(path), a robot by carom.load_model(path), a mesh by "
+        "carom.Mesh.load(path)": "load read open load_solution",
+        "a run is written by solution.save(path)": "save dump write",
+        "a plot is made by solution.plot(), and by the functions of carom.plots": "plot",
+        "a floor is made by scene.add_half_space(point, normal)": "Plane HalfSpace Ground Floor",
+        "a body is made by scene.add_body(shape, mass=...)": "Body RigidBody Particle PointMass",
+        "a body that never moves is made by scene.add_static(shape)": "StaticBody Static",
+        "a contact is made by scene.add_contact(body, other)": "Contact Collision",
+        _ELSEWHERE.format("joints", "Revolute"): "Hinge Revolute HingeJoint RevoluteJoint PinJoint PivotJoint",
+        _ELSEWHERE.format("joints", "Prismatic"): "Prismatic Slider PrismaticJoint",
+        _ELSEWHERE.format("joints", "Spherical"): "Spherical BallJoint",
+        _ELSEWHERE.format("joints", "Fixed"): "Fixed Weld FixedJoint WeldJoint",
+        _ELSEWHERE.format("forces", "Spring"): "Spring DampedSpring Damper",
+        _ELSEWHERE.format("forces", "Force"): "Force",
+        _ELSEWHERE.format("forces", "Torque"): "Torque",
+        _ELSEWHERE.format("constraints", "Driver"): "Motor Driver Actuator",
+        _ELSEWHERE.format("constraints", "Gear"): "Gear",
+    },
+    "carom.joints": {
+        "Revolute": "hinge rotational pin pivot continuous RevoluteJoint HingeJoint",
+        "Spherical": "ball socket BallJoint",
+        "Prismatic": "slide slider translational PrismaticJoint",
+        "Fixed": "weld rigid FixedJoint",
+        "Distance": "rod rope PinJoint",
+        "Universal": "cardan",
+        "RollingSphere": "RollingJoint RollingBall",
+        "RollingDisc": "wheel",
+        "a body without a joint moves freely": "free freejoint floating sixdof",
+        "a motor is carom.constraints.Driver or carom.forces.JointForce": "motor driver actuator",
+        "a gear is carom.constraints.Gear": "gear",
+        "a spring is carom.forces.Spring, or carom.forces.JointSpring along a joint": "spring bushing",
+        "a limit is made by scene.add_stop(joint, upper=...)": "limit stop",
+    },
+    "carom.forces": {
+        "a damper is a spring without stiffness: carom.forces.Spring(stiffness=0, damping=...)":
+            "Damper Dashpot LinearDamper",
+        "JointSpring": "TorsionSpring TorsionalSpring RotationalSpring RotarySpring JointDamper",
+        "Spring": "LinearSpring DampedSpring SpringDamper",
+        "Force": "Constant ConstantForce Thruster Load PointForce",
+        "Torque": "Moment Couple",
+        "JointForce": "Motor Actuator JointTorque JointActuator",
+        "JointFriction": "DryFriction CoulombFriction",
+        "JointInertia": "Armature Rotor ReflectedInertia",
+        "Bushing": "Mount",
+        "UserForce": "Drag AirDrag Custom CustomForce Function Field Wrench",
+        "gravity is that of the scene: carom.Scene(gravity=...)": "Gravity",
+        "friction of contacts is stated by scene.add_contact(..., friction=)": "Friction",
+    },
+    "carom.constraints": {
+        "Driver": "Motor RotationMotor SpeedMotor PrescribedMotion Actuator",
+        "Coupling": "Rack RackAndPinion Differential Pulley Belt Mimic",
+        "Gear": "GearJoint GearRatio",
+        "Rows": "Custom UserConstraint Nonholonomic",
+        "a limit is made by scene.add_stop(joint, upper=...)": "Limit Stop RotaryLimit",
+        _ELSEWHERE.format("joints", "Fixed"): "Weld Fixed",
+        _ELSEWHERE.format("joints", "Distance"): "Distance Rod",
+        _ELSEWHERE.format("joints", "Revolute"): "Hinge Revolute",
+    },
+}  # fmt: skip
+
+
+def _plain(name: str) -> str:
+    return name.lower().replace("_", "")
+
+
+def _by_name(table: dict[str, str]) -> dict[str, str]:
+    return {_plain(name): ours for ours, names in table.items() for name in names.split()}
+
+
+MEANT: dict[str, list[str]] = {}
+for _ours, _others in VALUES.items():
+    for _other in _others.split():
+        MEANT.setdefault(_other, []).append(_ours)
+PLACE = {name: said for said, names in PLACES.items() for name in names.split()}
+_MEMBER = {owner: _by_name(table) for owner, table in MEMBERS.items()}
+
+
+def of_member(owner: str, name: str) -> str:
+    """Return what a class or module has for a name from elsewhere: a name or a sentence, "" for none."""
+    return _MEMBER.get(owner, {}).get(_plain(name), "")
+
+
+def ending(owner: str, name: str, members, near: str = "") -> str:
+    """Return the end of the message about a name that a class or module does not have, "" if nothing is near.
+
+    `near` is a member that is meant where the table of the owner has none.
+    """
+    meant = of_member(owner, name)
+    if meant and not meant.isidentifier():
+        return f"; {meant}"
+    close = (
+        [meant or near] if meant or near else get_close_matches(name, members, n=1, cutoff=ALIKE)
+    )
+    return f"; did you mean {close[0]!r}?" if close else ""

@@ -1,0 +1,123 @@
+"""Names from other libraries: what stands for each in the table of hints exists, and messages say it."""
+
+import importlib
+import re
+
+import numpy as np
+import pytest
+
+import carom
+from carom import hints
+
+OWNERS = {
+    "Scene": carom.Scene,
+    "Run": carom.Run,
+    "Solution": carom.Solution,
+    "Ensemble": carom.Ensemble,
+}
+ENTRIES = [
+    (owner, name, ours)
+    for owner, table in hints.MEMBERS.items()
+    for ours, names in table.items()
+    for name in names.split()
+]
+
+
+def owner_of(name):
+    """Return a class or module of the table."""
+    if name in OWNERS:
+        return OWNERS[name]
+    return getattr(carom, name.partition(".")[2]) if "." in name else importlib.import_module(name)
+
+
+@pytest.mark.parametrize(("owner", "name", "ours"), ENTRIES)
+def test_a_name_from_elsewhere_is_answered(owner, name, ours):
+    holder = owner_of(owner)
+    own = [
+        *dir(holder),
+        *(getattr(carom.Solution, "__annotations__", ()) if owner == "Solution" else ()),
+    ]
+    assert name not in own  # a hint for what exists would never be shown
+    assert hints.of_member(owner, name) == ours
+    if ours.isidentifier():
+        assert hasattr(holder, ours)
+    if "carom" in owner:
+        with pytest.raises(AttributeError, match=re.escape(ours)):
+            getattr(holder, name)
+
+
+def named_in(sentence):
+    """Return what a sentence names: words with ``carom.`` before them, methods of scenes and of solutions."""
+    for word in re.findall(r"\bcarom\.[\w.]*\w", sentence):
+        yield carom, word.partition(".")[2]
+    for word in re.findall(r"\b(?:add_\w+|set_contact_default)\b", sentence):
+        yield carom.Scene, word
+    for word in re.findall(r"\bsolution\.(\w+)", sentence):
+        yield carom.Solution, word
+    for word in re.findall(r"\bscene\.(\w+)", sentence):
+        yield carom.Scene, word
+
+
+@pytest.mark.parametrize("ours", {ours for _, _, ours in ENTRIES} | set(hints.PLACES))
+def test_what_a_sentence_names_exists(ours):
+    if ours.isidentifier():
+        return
+    for holder, names in named_in(ours):
+        for name in names.split("."):
+            if name == "scene" and holder is carom.Solution:
+                break  # a field
+            holder = getattr(holder, name)
+    assert len(ours) > 10
+
+
+def test_no_name_stands_for_itself_or_twice_in_a_table():
+    for ours, others in hints.VALUES.items():
+        assert ours not in others.split()
+        assert len(set(others.split())) == len(others.split())
+    for owner, table in hints.MEMBERS.items():
+        names = [hints._plain(name) for names in table.values() for name in names.split()]
+        assert len(set(names)) == len(names), owner
+
+
+@pytest.fixture(scope="module")
+def run():
+    scene = carom.Scene()
+    scene.add_half_space((0, 0, 0), (0, 0, 1), name="floor")
+    scene.add_body(carom.Sphere(0.1), mass=1, position=(0, 0, 0.5), name="ball")
+    scene.add_contact("ball", "floor", restitution=0.5)
+    return carom.simulate(scene, 0.1, step=0.01)
+
+
+@pytest.mark.parametrize(
+    ("ask", "words"),
+    [
+        (
+            lambda s: s.to_csv("run.csv"),
+            r"Solution has no attribute 'to_csv'; tables are written by",
+        ),
+        (lambda s: s.collisions, "did you mean 'impacts'"),
+        (lambda s: s.animate(), r"a film is made by carom\.film"),
+        (lambda s: s.to_dataframe(), "did you mean 'to_pandas'"),
+        (lambda s: s.sol(0.1), "did you mean 'evaluate'"),
+        (lambda s: s.qpos, "coordinates of a joint are joint_coordinates"),
+        (lambda s: s.positoin, "did you mean 'position'"),
+        (lambda s: s.evaluate(time=0.1), "evaluate has no argument time=; it is called t="),
+        (lambda s: s.save(filename="run.nc"), "save has no argument filename=; it is called path="),
+        (
+            lambda s: carom.Solution.load(file="run.nc"),
+            "load has no argument file=; it is called path=",
+        ),
+        (lambda s: s.joint_coordinates(name="pin"), "it has joint"),
+    ],
+)
+def test_a_solution_says_what_it_has(run, ask, words):
+    with pytest.raises((AttributeError, TypeError), match=words):
+        ask(run)
+
+
+def test_an_ensemble_says_what_it_has(run):
+    made = carom.ensemble(run.scene, 0.1, step=0.05, vary={"ball.mass": np.array([1.0, 2.0])})
+    for name, words in (("to_csv", "tables are made by"), ("statu", "did you mean 'status'")):
+        with pytest.raises(AttributeError, match=words):
+            getattr(made, name)
+    assert not hasattr(made, "_private")
