@@ -33,6 +33,7 @@ TOPICS = {
         ),
         "Joints and constraints": ("add_joint", "add_stop", "add_constraint", "joints", "stops", "constraints"),
         "Forces": ("add_force", "forces"),
+        "Changes": ("replace", "remove", "copy"),
         "Checks": ("check", "validate"),
     },
     "Solution": {

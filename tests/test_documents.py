@@ -146,7 +146,7 @@ SHOWN = [
     "Scene", "Scene.add_body", "Scene.add_contact", "Scene.add_joint", "Scene.check", "simulate",
     "Solution", "results.ImpactTable", "resolve_impact", "impact_layer", "ensemble",
     "sensitivities", "solve_contacts", "euler", "axis_angle", "Scene.ignore_contact",
-    "Scene.add_static", "Run", "contact_inverse_mass",
+    "Scene.add_static", "Scene.replace", "Run", "contact_inverse_mass",
 ]  # fmt: skip
 
 
