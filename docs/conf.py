@@ -60,11 +60,13 @@ sphinx_gallery_conf = {
 
 html_theme = "pydata_sphinx_theme"
 html_title = "carom"
+html_logo = html_favicon = "_static/logo.svg"  # docs/pictures/logo.py
 html_static_path = ["_static"]
 html_css_files = ["carom.css", "gallery.css"]
 _ALONE = ("index", "start", "notation", "benchmarks", "comparison", "limits", "changes", "cite")
 html_sidebars = {page: [] for page in _ALONE}  # pages without others beside them
 html_theme_options = {
+    "logo": {"text": "carom"},  # beside the mark
     "show_toc_level": 2,
     "header_links_before_dropdown": 6,
     "navigation_with_keys": False,

@@ -2,6 +2,7 @@
 
 import re
 from functools import cache
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
 import pytest
@@ -94,3 +95,14 @@ def test_numbers_of_sentences_are_those_of_the_tables(number):
     text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
     (said,) = re.findall(sentence, text)
     assert float(said) == pytest.approx(cell(*place), rel=0.05)
+
+
+def test_the_mark_is_that_of_its_script_and_its_ball_obeys_the_law():
+    spec = spec_from_file_location("logo", ROOT / "docs" / "pictures" / "logo.py")
+    logo = module_from_spec(spec)
+    spec.loader.exec_module(logo)
+    assert logo.OUT.read_text(encoding="utf-8") == logo.svg()
+    (x0, y0), (x, y), (x1, y1) = logo.path()
+    before, after = (x0 - x) / (y - y0), (x1 - x) / (y1 - y)  # speed across by speed along
+    assert after / before == pytest.approx(logo.RESTITUTION)
+    assert logo.MIDDLE - x + logo.RADIUS == logo.OUTER - logo.WIDTH / 2  # it touches the letter

@@ -426,7 +426,7 @@ class Scene(TouchingPairs):
         --------
         >>> scene = carom.Scene()
         >>> die = scene.add_body(carom.Box(0.02, 0.02, 0.02), mass=0.016, name="die")
-        >>> scene.replace("die", mass=0.008, color="red").inertia[0, 0] / die.inertia[0, 0]
+        >>> print(scene.replace("die", mass=0.008, color="red").inertia[0, 0] / die.inertia[0, 0])
         0.5
         """
         old = self._parts.named("part", part)
