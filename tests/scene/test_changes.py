@@ -250,3 +250,20 @@ def test_a_solution_keeps_the_scene_of_its_run():
     assert carom.simulate(changed, 1.0, step=0.01).impacts.time[0] == pytest.approx(
         (1.6 / 9.81) ** 0.5
     )
+
+
+def test_what_add_joint_returned_is_the_joint_in_each_solution():
+    scene = carom.Scene()
+    arm = scene.add_body(carom.Box(0.1, 0.1, 1), mass=1, position=(0, 0, -0.5), name="arm")
+    hinge = joints.Revolute(anchor=(0, 0, 0), axis=(0, 1, 0))
+    hinge = scene.add_joint(hinge, carom.GROUND, arm, name="hinge")
+    first = carom.simulate(scene, 0.1, step=0.01)
+    scene.replace("arm", angular_velocity=(0, 1, 0), velocity=(-0.5, 0, 0))
+    second = carom.simulate(scene, 0.1, step=0.01)
+    assert scene["hinge"] is not hinge  # its child is another one
+    assert first.joint_coordinates(hinge)[1][0, 0] == 0.0
+    assert second.joint_coordinates(hinge)[1][0, 0] == pytest.approx(1.0, rel=1e-14)
+    assert second.joint_coordinates(scene["hinge"])[1][0, 0] == pytest.approx(1.0, rel=1e-14)
+    pickled = pickle.loads(pickle.dumps(second.scene))
+    with pytest.raises(ValueError, match=r"scene\.copy\(\)"):
+        pickled.remove("hinge")

@@ -145,11 +145,11 @@ def of_scene(scene, joint) -> Joint:
         except KeyError as error:
             raise KeyError(f"joint: {error.args[0]}") from None
     checks.instance("joint", joint, (Joint, str))
-    if joint.index >= len(scene.joints) or scene.joints[joint.index] is not joint:
+    if joint not in scene:
         raise ValueError(
             f"joint must belong to the scene of this solution, got {checks.shown(joint)}"
         )
-    return joint
+    return scene[joint.name]
 
 
 def unwrapped(angle: np.ndarray, rate: np.ndarray, t: np.ndarray) -> np.ndarray:

@@ -51,7 +51,8 @@ def read(path: Path, functions: Mapping[str, Callable] | None = None) -> dict[st
     """
     file = unsealed(path)
     try:
-        scene, missing = scene_from_text(file.index.get("scene", ""), functions)
+        made, missing = scene_from_text(file.index.get("scene", ""), functions)
+        scene = made._as_it_is()
     except ValueError as error:
         if str(error).startswith("functions must"):
             raise
