@@ -176,6 +176,10 @@ def test_a_cell_may_run_twice():
     cell(once), cell(twice)
     hinge = cell(twice)
     assert list(map(repr, once)) == list(map(repr, twice))
+    scene = machine()
+    scene.add_contact("die", "floor", friction=0.3, replace=True)
+    assert [contact.name for contact in scene.contacts] == ["die-floor", "arm-floor"]
+    assert same_as(scene_from_text(scene_to_text(scene))[0], scene)
     assert hinge is twice["hinge"] is twice["motor"].definition.joint
     assert twice.contacts[1].other is twice["wall"]
     again, _ = scene_from_text(scene_to_text(twice))

@@ -26,9 +26,20 @@ KINDS: dict[type[Any], str] = {
     Body: "body", HalfSpace: "half-space", StaticBody: "static body", Joint: "joint",
     AppliedForce: "force", Constraint: "constraint", Stop: "stop", Contact: "contact",
 }  # fmt: skip
+_RANKS = {kind: k for k, kind in enumerate(KINDS)}
+#: fields of parts that are other parts, beside those of definitions
+LINKS: dict[type[Any], tuple[str, ...]] = {
+    Joint: ("parent", "child"), AppliedForce: ("parent", "child"), Stop: ("joint",),
+    Contact: ("body", "other"),
+}  # fmt: skip
+LEAVES = (AppliedForce, Constraint, Stop, Contact)  # to which no part refers
 REFERRING = (*FORCES, *CONSTRAINTS)  # definitions that may contain parts
 #: fields of parts and definitions that say which part it is, or to which it refers
 _FIXED = {"index", "name", "body", "other", "parent", "child", "frames", "joint", "bodies", "terms"}
+
+
+def _rank(part) -> int:
+    return _RANKS[type(part)]
 
 
 def origin(part) -> Any:
@@ -43,9 +54,15 @@ def of_origin(part, first) -> Any:
 
 
 def parts_in(value) -> Iterator[Any]:
-    """Yield the parts to which a part or a definition refers."""
-    for field in fields(value):
-        yield from _parts_of(getattr(value, field.name))
+    """Yield the parts to which a part or a definition refers, and the ground."""
+    own = vars(value)
+    for name in LINKS.get(type(value), ()):
+        yield own[name]
+    if isinstance(value, REFERRING):
+        for field in fields(value):
+            yield from _parts_of(own[field.name])
+    elif isinstance(own.get("definition"), REFERRING):
+        yield from parts_in(own["definition"])
 
 
 def _parts_of(value) -> Iterator[Any]:
@@ -54,8 +71,6 @@ def _parts_of(value) -> Iterator[Any]:
     elif isinstance(value, tuple):
         for one in value:
             yield from _parts_of(one)
-    elif isinstance(value, REFERRING):
-        yield from parts_in(value)
 
 
 def followed(record, made: Mapping[int, Any], **own) -> Any:
@@ -63,10 +78,11 @@ def followed(record, made: Mapping[int, Any], **own) -> Any:
 
     It is the record itself if it refers to none of them and has the values `own`.
     """
+    alike = all(getattr(record, name) == value for name, value in own.items())
+    if alike and not any(id(part) in made for part in parts_in(record)):
+        return record
     old = {field.name: getattr(record, field.name) for field in fields(record)}
     new = {name: _followed(value, made) for name, value in old.items()}
-    if all(new[name] is old[name] for name in old) and own.items() <= old.items():
-        return record
     found = object.__new__(type(record))
     keep(found, **new | own)
     if hasattr(found, "__post_init__") and not isinstance(found, Joint):  # whose frames stay exact
@@ -88,19 +104,21 @@ def exchanged(parts: Iterable, changed: Mapping[int, Any]) -> list:
 
     All others are numbered and refer to parts as it is then.
     """
-    numbers, made = dict.fromkeys(KINDS, 0), {}
-    for part in sorted(parts, key=lambda one: list(KINDS).index(type(one))):
+    numbers, made, found = dict.fromkeys(KINDS, 0), {}, []
+    for part in sorted(parts, key=_rank):
         new = changed.get(id(part), part)
         if new is not None:
-            made[id(part)] = followed(new, made, index=numbers[type(new)])
+            found.append(followed(new, made, index=numbers[type(new)]))
             numbers[type(new)] += 1
-    return list(made.values())
+            if found[-1] is not part:
+                made[id(part)] = found[-1]
+    return found
 
 
 def dependents(parts: Iterable, part) -> list:
     """Return the parts that refer to a part, directly or by others."""
     found = [part]
-    for one in sorted(parts, key=lambda one: list(KINDS).index(type(one))):
+    for one in sorted(parts, key=_rank):
         if any(other is known for other in parts_in(one) for known in found):
             found.append(one)
     return found[1:]

@@ -8,7 +8,7 @@ from typing import Any
 
 from carom import checks
 from carom.scene.bodies import Body, Ground
-from carom.scene.changes import KINDS, exchanged, followed, of_origin, origin, parts_in
+from carom.scene.changes import KINDS, LEAVES, exchanged, followed, of_origin, origin, parts_in
 from carom.scene.contacts import Contact
 
 
@@ -92,8 +92,15 @@ class Registry:
         """Store `part` under its name, and return it; a part that has the name gives it its place."""
         if part.name in self._parts:
             old = self._parts[part.name]
-            self.exchange({id(old): of_origin(part, old)})
-            return self._parts[part.name]
+            of_origin(part, old)
+            names = list(self._parts)
+            later = set(names[names.index(part.name) :])
+            if not isinstance(part, LEAVES) or any(one.name in later for one in parts_in(part)):
+                self.exchange({id(old): part})
+                return self._parts[part.name]
+            self.changes()
+            self._parts[part.name] = self._kinds[type(part)][part.index] = part
+            return part
         self.changes()
         self._parts[part.name] = part
         self._kinds.setdefault(type(part), []).append(part)
