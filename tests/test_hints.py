@@ -115,6 +115,22 @@ def test_a_solution_says_what_it_has(run, ask, words):
         ask(run)
 
 
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: carom.view(file="run.nc"), "view has no argument file=; it has solution"),
+        (lambda: carom.films.still(time=0.1), "still has no argument time=; it is called t="),
+        (lambda: carom.solve_contacts(mu=0.1), "it is called friction="),
+        (lambda: carom.sensitivities(param="die.mass"), "sensitivities has no argument param="),
+        (lambda: carom.Scene().ignore_contact(a="die"), "ignore_contact has no argument a="),
+        (lambda: carom.GeneralizedSystem(M=1), "GeneralizedSystem has no argument M="),
+    ],
+)
+def test_a_function_says_which_argument_is_meant(call, words):
+    with pytest.raises(TypeError, match=words):
+        call()
+
+
 def test_an_ensemble_says_what_it_has(run):
     made = carom.ensemble(run.scene, 0.1, step=0.05, vary={"ball.mass": np.array([1.0, 2.0])})
     for name, words in (("to_csv", "tables are made by"), ("statu", "did you mean 'status'")):

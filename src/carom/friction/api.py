@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 from carom.friction.checks import checked_inverse_masses
 
 KINDS = {"coulomb": 0, "sliding": 1, "sticking": 2}
@@ -51,6 +51,7 @@ class ContactSolution:
     message: str
 
 
+@arguments.known
 def solve_contacts(
     inverse_mass, velocity, friction, *, kind="coulomb", heading=None, start=None
 ) -> ContactSolution:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from carom.generalized.evaluate import Evaluation
 
 
+@arguments.known
 class GeneralizedSystem:
     r"""A system in generalised coordinates: metric, forces, constraints and contacts (paper, Eqs. (1), (6)).
 
@@ -168,6 +169,7 @@ class GeneralizedSystem:
         if not np.linalg.eigvalsh(M)[0] > 0.0:
             raise ValueError(f"metric must be positive definite, got {M.tolist()} at the start")
 
+    @arguments.known
     def set_state(self, position, velocity) -> None:
         """Set the initial coordinates and velocities, each (n,)."""
         self.position = self._at(position)

@@ -165,6 +165,7 @@ class TouchingPairs:
         stated = restitution is not None or friction is not None
         self._pairs.set_default(default, combine, all_pairs, stated)
 
+    @arguments.known
     def ignore_contact(self, body: Some, other: Some | None = None) -> None:
         """Exclude pairs from the contacts of `set_contact_default`: they pass through each other.
 
@@ -204,6 +205,7 @@ class TouchingPairs:
         for a, b in pairs:
             self._pairs.ignore(a, b)
 
+    @arguments.known
     def contact_law(self, body: One, other: One) -> ContactLaw | None:
         """Return the default law of a pair without a contact of its own; None if the pair does not touch.
 

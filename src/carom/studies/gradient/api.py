@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from carom import checks
+from carom import arguments, checks
 from carom.dynamics.methods import METHODS
 from carom.model.method import THREE_FIELD
 from carom.results.solution import Solution
@@ -12,6 +12,7 @@ from carom.studies.gradient.result import Sensitivities
 WAYS = ("auto", "saltation", "differences")
 
 
+@arguments.known
 def sensitivities(
     solution: Solution, with_respect_to, *, by: str = "auto", throw: bool = True
 ) -> Sensitivities:

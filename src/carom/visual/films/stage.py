@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 from carom.geometry import quaternion
 from carom.scene.shapes.revolved import Cylinder
 from carom.visual.bodies import Part, ground_points, links_of, moving, outline_of, turn_to
@@ -187,6 +187,7 @@ class Stage:
         return int(np.clip(np.ceil(2.0 - np.log10(max(span, 1e-9))), 0, 9))
 
 
+@arguments.known
 def still(
     solution,
     t: float | None = None,

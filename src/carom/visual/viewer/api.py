@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
-from carom import checks
+from carom import arguments, checks
 from carom.visual.viewer.frames import MOST_FRAMES
 
 if TYPE_CHECKING:
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from carom.visual.viewer.page import Exported
 
 
+@arguments.known
 def view(
     solution: Solution | str | os.PathLike,
     *,
