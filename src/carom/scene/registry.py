@@ -35,11 +35,11 @@ class Registry:
         self.sealed = False  # the scene of a run, which must not change
 
     def copied(self, sealed: bool = False) -> Registry:
-        """Return a copy with the same parts; one that is `sealed` has the same results too."""
+        """Return a copy with the same parts and results; one that is `sealed` refuses changes."""
         made = Registry()
         made._parts = self._parts.copy()
         made._kinds = {kind: parts.copy() for kind, parts in self._kinds.items()}
-        made.derived = self.derived if sealed else Derived(self.derived)
+        made.derived.update(self.derived)
         made.sealed = sealed
         return made
 

@@ -67,9 +67,8 @@ class Scene(TouchingPairs):
         self._parts = Registry()
         self._pairs = Pairs(self._parts)
         self.gravity = gravity
-        self._snapshot: Scene | None = (
-            None  # the scene as it is for solutions; a change makes it old
-        )
+        #: the scene for solutions, and the results of this one when it was made
+        self._snapshot: tuple = None, None
         self._in_radians: set[str] = set()  # stops whose file has radians
 
     @arguments.known
@@ -483,7 +482,7 @@ class Scene(TouchingPairs):
 
     def _with(self, parts: Registry) -> Scene:
         made: Any = object.__new__(type(self))
-        own = {"_parts": parts, "_pairs": self._pairs.copied(parts), "_snapshot": None}
+        own = {"_parts": parts, "_pairs": self._pairs.copied(parts), "_snapshot": (None, None)}
         vars(made).update(vars(self), **own, _in_radians=set(self._in_radians))
         return made
 
@@ -491,15 +490,15 @@ class Scene(TouchingPairs):
         """Return the scene for solutions, which cannot be changed: the same one until this scene changes."""
         if self._parts.sealed:
             return self
-        if self._snapshot is None or self._snapshot._derived is not self._derived:
-            self._snapshot = self._with(self._parts.copied(sealed=True))
-        return self._snapshot
+        if self._snapshot[1] is not self._derived:  # which each change makes anew
+            self._snapshot = self._with(self._parts.copied(sealed=True)), self._derived
+        return self._snapshot[0]
 
     def __copy__(self) -> Scene:
         return self.copy()
 
     def __getstate__(self) -> dict:  # of deep copies, whose parts may be changed, and pickles
-        return {**vars(self), "_snapshot": None}
+        return {**vars(self), "_snapshot": (None, None)}
 
     @property
     def _derived(self) -> Derived:
