@@ -133,7 +133,7 @@ def test_a_function_says_which_argument_is_meant(call, words):
 
 def test_an_ensemble_says_what_it_has(run):
     made = carom.ensemble(run.scene, 0.1, step=0.05, vary={"ball.mass": np.array([1.0, 2.0])})
-    for name, words in (("to_csv", "tables are made by"), ("statu", "did you mean 'status'")):
+    for name, words in (("to_csv", "tables are written by"), ("statu", "did you mean 'status'")):
         with pytest.raises(AttributeError, match=words):
             getattr(made, name)
     assert not hasattr(made, "_private")

@@ -134,7 +134,7 @@ _OF_SOLUTION = {
     "bodies are those of its scene: solution.scene.bodies, solution[name]": "bodies body",
 }  # fmt: skip
 _OF_ENSEMBLE = {
-    "tables are made by to_xarray().to_dataframe()": "to_csv to_excel",
+    'tables are written by save("runs.csv"), or made by to_pandas()': "to_csv to_excel",
     "one run is made again by solution(number)": "runs solutions results trajectories",
 }
 #: names of classes and modules, with what people call them
