@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from carom._compiled.record_arrays import table
 from carom._compiled.user_functions import Functions
 from carom.dynamics.methods import make_method
 from carom.generalized import layout as o
@@ -34,7 +35,7 @@ class Evaluation:
         sizes = model.n, model.holonomic, model.rows, len(friction)
         self.system = o.Coordinates(addresses, parts.reshape(-1, 3), *sizes, friction, drop)
         self.work = o.new_work(self.system, STAGES)
-        self.none_active = o.new_active_set(len(friction))
+        self.none_active = table(o.CONTACT, len(friction))
 
     def compute(self, x, t: float) -> int:
         """Compute all quantities at a state (q, v) without active contacts, into `work`; return a status."""
@@ -73,7 +74,7 @@ class Evaluation:
             address=self.system.address * [1, 0, 0, 0], part=part, holonomic=0, rows=0, contacts=0
         )
         work, method = o.new_work(free, STAGES), make_method("rk4", Options())
-        code = move_freely(o.Motion(free, method, o.new_active_set(0), work), x, parts)
+        code = move_freely(o.Motion(free, method, table(o.CONTACT, 0), work), x, parts)
         self.failed()
         if code != 0:
             raise ValueError(f"the autoparallel could not be integrated: {Status(code).message}")

@@ -35,7 +35,7 @@ class GeneralizedRun:
 
     def __init__(
         self, system: GeneralizedSystem, settings: Settings,
-        start: tuple[float, np.ndarray, o.ActiveSet] | None = None,
+        start: tuple[float, np.ndarray, np.recarray] | None = None,
     ):  # fmt: skip
         options = settings.options
         made = system.evaluation()
@@ -59,8 +59,8 @@ class GeneralizedRun:
         self.method = make_method(settings.method, options, settings.adapts)
         self.work = o.new_work(self.system, len(self.method.b))
         x = np.concatenate([system.position, system.velocity])
-        begin, x, active = start or (0.0, x, o.new_active_set(self.system.contacts))
-        self.x, self.active = x.copy(), o.copied(active)
+        begin, x, active = start or (0.0, x, table(o.CONTACT, self.system.contacts))
+        self.x, self.active = x.copy(), active.copy()
         self.motion = o.Motion(self.system, self.method, self.active, self.work)
         self.clock = table(o.CLOCK, 1)
         self.clock["now"] = begin
@@ -68,8 +68,8 @@ class GeneralizedRun:
         self.series = table(o.CLOCK, grid.rows + 2)
         self.states = np.zeros((grid.rows + 2, 2 * n))
         self.record = o.Record(self.clock, self.series, self.states)
-        # of the events: time, state before and after, active contacts
-        self.nodes: list[tuple[float, np.ndarray, np.ndarray, o.ActiveSet]] = []
+        # of the events: time, state before and after, contacts
+        self.nodes: list[tuple[float, np.ndarray, np.ndarray, np.recarray]] = []
         self.contacts = Contacts(self)
         self.reason = ""  # of a failure, beyond its status
         self.located, self.at_once, self.last = 0, 0, -1.0
@@ -79,7 +79,7 @@ class GeneralizedRun:
             self.code = self.contacts.resolve(0, -1)
             self.save_now()
 
-    def again(self, begin: float, x: np.ndarray, active: o.ActiveSet, end: float) -> GeneralizedRun:
+    def again(self, begin: float, x: np.ndarray, active: np.recarray, end: float) -> GeneralizedRun:
         """Return a run between two times that starts at a state (q, v) of this one."""
         run = GeneralizedRun(self.user, self.how, (begin, x, active))
         run.plan = self.plan._replace(grid=part_of_grid(self.plan.grid, begin, end))
