@@ -27,6 +27,7 @@ from carom.model.kept import Snapshot
 from carom.model.method import IMPLICIT, THREE_FIELD
 from carom.options import Options
 from carom.results.accuracy import inaccurate
+from carom.results.costs import costs
 from carom.results.solution import Solution
 from carom.scene.all_pairs import PairTable
 from carom.scene.joints import Joint
@@ -65,6 +66,7 @@ class Run:
     to_stop: Callable[[], bool] = staticmethod(lambda: False)
     #: what a run passes to compiled code has one type, whatever its scene and method
     call = Entries()
+    costs = costs  # for the progress bar
 
     def __init__(self, scene: Scene, settings: Settings):
         # from the third run with the same settings on, all but the records is cast from a mould
