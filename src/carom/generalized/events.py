@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
+from carom.contact.continuous_detection import cubic_clears
 from carom.generalized.linear import dot
 from carom.generalized.motion import acceleration, find_contacts, persists, slip_of
 from carom.generalized.step import take
@@ -78,20 +79,12 @@ def first_violated(system, work):
 def dips(system, h, work):
     """Return a contact whose gap may have been below zero within the step, -1 if none.
 
-    The cubic with the gaps and rates at both ends decides: its least value is below a tenth of the depth of the
-    dip.
+    Its rate changes sign, and the cubic with the gaps and rates at both ends may be below zero.
     """
     for c in range(system.contacts):
-        g0, r0 = work.before[0, c], h * work.before[1, c]
-        g1, r1 = work.margin[a.EVENT_GAP, c], -h * work.margin[a.EVENT_RATE, c]
-        if not r0 < 0.0 < r1:
-            continue
-        third, second = 2.0 * (g0 - g1) + r0 + r1, 3.0 * (g1 - g0) - 2.0 * r0 - r1
-        root = math.sqrt(max(second * second - 3.0 * third * r0, 0.0))
-        # of 3 third s^2 + 2 second s + r0
-        s = -r0 / (second + root) if second > 0.0 else (root - second) / (3.0 * third)
-        least = g0 + s * (r0 + s * (second + s * third))
-        if least <= 0.1 * (min(g0, g1) - least):
+        g0, r0 = work.before[0, c], work.before[1, c]
+        g1, r1 = work.margin[a.EVENT_GAP, c], -work.margin[a.EVENT_RATE, c]
+        if r0 < 0.0 < r1 and not cubic_clears(g0, r0, g1, r1, h, 0.0):
             return c
     return -1
 

@@ -10,14 +10,13 @@ from carom.generalized.solution import CoordinateImpact
 from carom.impact import layout as o
 from carom.impact.laws import GAINING
 from carom.impact.resolve import resolve
+from carom.impact.thresholds import GROUP_SEED, NO_RESTITUTION
 from carom.status import Status
 
 if TYPE_CHECKING:
     from carom.generalized.contacts import Contacts
 
 BLOWS = 200  # impacts at one instant
-SEED = 1e-7  # approach of a contact that jams, relative to its slip (mathematics page, §3.6)
-SPENT = 1e-6  # relative to the first impact in a row: slower ones have no restitution
 
 
 def rows_of(contacts: list[int]) -> np.ndarray:
@@ -63,7 +62,7 @@ class Strike:
     def left(self, c: int) -> float:
         """Return e of a contact, or 0 if its impacts have left hardly any speed."""
         e = float(self.contacts.restitution[c])
-        return 0.0 if e < 1.0 and e ** float(self.blows[c]) <= SPENT else e
+        return 0.0 if e < 1.0 and e ** float(self.blows[c]) <= NO_RESTITUTION else e
 
     def together(self, closed: list[int], jams: int) -> int:
         """Change the velocities by the impact of closed contacts; return a status."""
@@ -73,7 +72,7 @@ class Strike:
         u[np.abs(u[:, 0]) <= here.still[closed], 0] = 0.0
         if jams >= 0:
             i = closed.index(jams)
-            u[i, 0] = -SEED * np.linalg.norm(u[i, 1:])
+            u[i, 0] = -GROUP_SEED * np.linalg.norm(u[i, 1:])
         mu, e = here.friction[closed], np.array([self.restitution(c) for c in closed])
         code, after, p, works, wedged = self.solve(W, u, mu, e, closed)
         if code != o.OK:
