@@ -37,20 +37,20 @@ class GeneralizedRun:
         self, system: GeneralizedSystem, settings: Settings,
         start: tuple[float, np.ndarray, np.recarray] | None = None,
     ):  # fmt: skip
-        options = settings.options
-        made = system.evaluation()
-        system = system._as_it_is()
-        self.user, self.options, self.how = system, options, settings
+        options, made = settings.options, system.evaluation()
+        if settings.atol is None:
+            settings = settings._replace(atol=settings.rtol)
+        self.user = system = system._as_it_is()
+        self.options, self.how = options, settings
+        self.settings = {**settings.as_dict(), "options": options.as_dict()}
         # a gap that closes and opens within a step is detected from both ends of the step
         between = settings.duration / (STATES if system.contacts else 1)
         longest = settings.step or options.max_step or between
         grid = planned_grid(settings, settings.duration, longest)
         order = METHODS[settings.method].order if settings.adapts else 0
-        atol = settings.rtol if settings.atol is None else settings.atol
-        self.plan = o.Plan(settings.duration, grid.interval, grid, order, settings.rtol, atol)
-        self.settings = {**settings.as_dict(), "options": options.as_dict()}
-        if settings.adapts:
-            self.settings["atol"] = atol
+        self.plan = o.Plan(
+            settings.duration, grid.interval, grid, order, settings.rtol, settings.atol
+        )
         same = made.system.drop == options.drop_tolerance
         self.made: Evaluation = made if same else Evaluation(system, options.drop_tolerance)
         self.made.functions.forget()

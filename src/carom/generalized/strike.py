@@ -99,21 +99,19 @@ class Strike:
         """
         law = self.contacts.law[closed]
         if len(closed) == 1:
-            out = np.zeros(o.SIZE)
-            out[o.STILL] = self.contacts.still[closed[0]]
-            code = resolve(W, u[0].copy(), mu[0], e[0], law[0], out)
-            after, p = (out[at : at + 3] for at in (o.VELOCITY, o.IMPULSE))
-            works = out[[o.WORK_C, o.WORK_R, o.FRICTION_LOSS]]
-            wedged = int(out[o.PHASES]) & o.WEDGED
-        else:
-            from carom.impact.multiple import api
-            from carom.impact.multiple.layout import multiple_settings, new_multiple_workspace
+            out = np.zeros((o.SIZE, 1))
+            out[o.STILL] = self.contacts.still[closed]
+            code = resolve(W, u[0].copy(), mu[0], e[0], law[0], out[:, 0])
+            after, p = (out[at : at + 3].T for at in (o.VELOCITY, o.IMPULSE))
+            works, phases = out[[o.WORK_C, o.WORK_R, o.FRICTION_LOSS]], out[o.PHASES].astype(int)
+            return code, after, p, works, phases & o.WEDGED
+        from carom.impact.multiple import api
+        from carom.impact.multiple.layout import multiple_settings, new_multiple_workspace
 
-            if self.room is None:
-                self.room = new_multiple_workspace(len(self.blows))
-            settings = multiple_settings(self.run.options, 1.0)
-            code, found = api.solve(W, u, mu, e, law, np.ones(len(u)), settings, self.room)
-            after, p, wedged = found.velocity, found.impulse, found.wedged
-            works = np.array([found.compression, found.restitution, found.friction])
-        shapes = (after, (-1, 3)), (p, (-1, 3)), (works, (3, -1)), (wedged, -1)
-        return code, *(np.reshape(one, shape) for one, shape in shapes)
+        if self.room is None:
+            self.room = new_multiple_workspace(len(self.blows))
+        settings = multiple_settings(self.run.options, 1.0)
+        code, found = api.solve(W, u, mu, e, law, np.ones(len(u)), settings, self.room)
+        after, p = found.velocity.reshape(-1, 3), found.impulse.reshape(-1, 3)
+        works = np.array([found.compression, found.restitution, found.friction])
+        return code, after, p, works, found.wedged
