@@ -146,7 +146,7 @@ class Contacts:
     def stays(self, c: int, draw: float) -> bool:
         """Return whether the bounces of a contact with the acceleration `draw` end within a step."""
         u, still = float(self.u[c, 0]), self.still[c]
-        e = self.strike.left(c)
+        e = float(self.strike.restitution(c, self.strike.blows[c]))
         ends = e < 1.0 and 2.0 * u < draw * (1.0 - e) * self.run.moment(draw)
         return -10.0 * still <= u and (u <= still or ends)
 
@@ -195,7 +195,7 @@ class Contacts:
             brake = float(friction * self.W_ii[c, 1:].sum())
             stop[c] = max(stop[c], 1e-3 * run.moment(brake) * brake)
         v = run.x[run.n :].copy()
-        active.mode, active.heading, active.force = a.MODE_OPEN, 0.0, 0.0
+        active["mode"], active["heading"], active["force"] = a.MODE_OPEN, 0.0, 0.0
         active.mode[chosen] = np.where((self.slip <= stop)[chosen], a.MODE_STICK, a.MODE_SLIP)
         code = self.project() if chosen else 0
         run.clock[0].bounces += 0.5 * (run.x[run.n :] - v) @ M @ (run.x[run.n :] + v)

@@ -38,8 +38,8 @@ class GeneralizedRun:
         start: tuple[float, np.ndarray, np.recarray] | None = None,
     ):  # fmt: skip
         options, made = settings.options, system.evaluation()
-        if settings.atol is None:
-            settings = settings._replace(atol=settings.rtol)
+        atol = settings.rtol if settings.atol is None else settings.atol
+        settings = settings._replace(atol=atol)
         self.user = system = system._as_it_is()
         self.options, self.how = options, settings
         self.settings = {**settings.as_dict(), "options": options.as_dict()}
@@ -48,9 +48,7 @@ class GeneralizedRun:
         longest = settings.step or options.max_step or between
         grid = planned_grid(settings, settings.duration, longest)
         order = METHODS[settings.method].order if settings.adapts else 0
-        self.plan = o.Plan(
-            settings.duration, grid.interval, grid, order, settings.rtol, settings.atol
-        )
+        self.plan = o.Plan(settings.duration, grid.interval, grid, order, settings.rtol, atol)
         same = made.system.drop == options.drop_tolerance
         self.made: Evaluation = made if same else Evaluation(system, options.drop_tolerance)
         self.made.functions.forget()

@@ -46,23 +46,18 @@ class Strike:
                 return code
         return Status.TOO_MANY_IMPACTS
 
-    def restitution(self, c: int) -> float:
-        """Return e of the next impact; 0 if hardly any speed is left after many impacts in a row.
+    def count(self, closed: list[int]) -> None:
+        """Count blows: in a row are those after a bounce below the tolerances, or shorter than a given step."""
+        here, plan, since = self.contacts, self.run.plan, self.run.reached - self.struck[closed]
+        fallen = -here.u[closed, 0] * since
+        high = fallen > plan.atol + plan.rtol if plan.order else since > plan.step
+        self.blows[closed] = np.where(high, 0, self.blows[closed]) + 1
+        self.struck[closed] = self.run.reached
 
-        In a row are impacts after a bounce that is lower than the tolerances, or shorter than a given step.
-        """
-        here, plan, since = self.contacts, self.run.plan, self.run.reached - self.struck[c]
-        if (-here.u[c, 0] * since > plan.atol + plan.rtol) if plan.order else (since > plan.step):
-            self.blows[c] = 0
-        self.struck[c] = self.run.reached
-        e = self.left(c)
-        self.blows[c] += 1
-        return e
-
-    def left(self, c: int) -> float:
-        """Return e of a contact, or 0 if its impacts have left hardly any speed."""
-        e = float(self.contacts.restitution[c])
-        return 0.0 if e < 1.0 and e ** float(self.blows[c]) <= NO_RESTITUTION else e
+    def restitution(self, c, before):
+        """Return e of contacts after a number of blows in a row; 0 if these have left hardly any speed."""
+        e = self.contacts.restitution[c]
+        return np.where((e < 1.0) & (e**before <= NO_RESTITUTION), 0.0, e)
 
     def together(self, closed: list[int], jams: int) -> int:
         """Change the velocities by the impact of closed contacts; return a status."""
@@ -73,7 +68,8 @@ class Strike:
         if jams >= 0:
             i = closed.index(jams)
             u[i, 0] = -GROUP_SEED * np.linalg.norm(u[i, 1:])
-        mu, e = here.friction[closed], np.array([self.restitution(c) for c in closed])
+        self.count(closed)
+        mu, e = here.friction[closed], self.restitution(closed, self.blows[closed] - 1.0)
         code, after, p, works, wedged = self.solve(W, u, mu, e, closed)
         if code != o.OK:
             return Status.IMPACT_FAILED

@@ -25,16 +25,16 @@ class Derived(dict):
 
 
 class Registry:
-    """All named parts of one scene, in the order in which they were added."""
+    """All named parts of one scene, or system in coordinates, in the order in which they were added."""
 
-    def __init__(self):
-        self._parts = {}
+    def __init__(self, whole: str = "scene"):
+        self.whole, self._parts = whole, {}
         self._kinds = {}
         self.derived = Derived()
 
     def copied(self) -> Registry:
         """Return a copy with the same parts."""
-        made = Registry()
+        made = Registry(self.whole)
         made._parts = self._parts.copy()
         made._kinds = {kind: parts.copy() for kind, parts in self._kinds.items()}
         made.derived.update(self.derived)
@@ -57,7 +57,7 @@ class Registry:
         checks.text("name", name)
         if name in self._parts:
             raise ValueError(
-                f"name must be unique in the scene, got {checks.shown(name)} a second time"
+                f"name must be unique in the {self.whole}, got {checks.shown(name)} a second time"
             )
         return name
 
@@ -97,13 +97,14 @@ class Registry:
             if part not in self._parts:
                 world = hint if Ground in kinds and part.lower() in ("world", "ground") else ""
                 raise ValueError(
-                    f"{argument} must be a part of the scene, which has none {self._called(part)}{world}"
+                    f"{argument} must be a part of the {self.whole}, which has none "
+                    f"{self._called(part)}{world}"
                 )
             part = self._parts[part]
         checks.instance(argument, part, kinds, hint)
         if not isinstance(part, Ground) and self._parts.get(part.name) is not part:
             raise ValueError(
-                f"{argument} must belong to this scene, got {checks.shown(part)} of another one"
+                f"{argument} must belong to this {self.whole}, got {checks.shown(part)} of another one"
             )
         return part
 
