@@ -15,9 +15,9 @@ from carom.generalized.evaluate import Evaluation
 from carom.generalized.loop import save_now, time_loop
 from carom.generalized.step import project
 from carom.model.kept import Kept
-from carom.model.records import PAUSE
-from carom.status import SUCCESS, Status
-from carom.stepping.grid import STATES, part_of_grid, planned_grid
+from carom.status import Status
+from carom.stepping.grid import STATES, Grid, part_of_grid, planned_grid
+from carom.stepping.running import Running
 
 if TYPE_CHECKING:
     from carom.generalized.system import GeneralizedSystem
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 EVENTS_AT_ONCE = 200  # events at one instant
 
 
-class GeneralizedRun:
+class GeneralizedRun(Running):
     """A run of a `GeneralizedSystem`: state, records and workspace.
 
     It begins at the initial state of the system, or at `start`: a time, and the state (q, v) and the active
@@ -51,7 +51,8 @@ class GeneralizedRun:
         self.plan = o.Plan(settings.duration, grid.interval, grid, order, settings.rtol, atol)
         same = made.system.drop == options.drop_tolerance
         self.made: Evaluation = made if same else Evaluation(system, options.drop_tolerance)
-        self.made.functions.forget()
+        self.functions = self.made.functions
+        self.functions.forget()
         self.system = self.made.system
         n = self.n = self.system.n
         self.method = make_method(settings.method, options, settings.adapts)
@@ -112,24 +113,9 @@ class GeneralizedRun:
             project(self.system, self.active, 0.0, x, True, self.work)
 
     @property
-    def failure(self) -> BaseException | None:
-        """The error that a user-defined function has raised, or None."""
-        return self.made.functions.failed
-
-    @property
-    def steps(self) -> int:
-        """Number of steps to the end."""
-        return self.plan.grid.last
-
-    @property
-    def steps_done(self) -> int:
-        """Number of finished steps."""
-        return int(self.clock[0].step)
-
-    @property
-    def reached(self) -> float:
-        """Time that the run has reached."""
-        return float(self.clock[0].now)
+    def grid(self) -> Grid:
+        """The steps of the run."""
+        return self.plan.grid
 
     def moment(self, acceleration: float) -> float:
         """Return a time that counts as zero: a step, or with tolerances that of a bounce as high as these."""
@@ -142,41 +128,27 @@ class GeneralizedRun:
         """Write the present state into the records."""
         save_now(self.system, self.x, self.record, self.work)
 
-    def go_on(self, until: float) -> Status:
-        """Continue until step number `until`, or a failure."""
+    def take_steps(self, until: int) -> int:
+        """Continue to step number `until`; return a status, or PAUSE."""
         while self.code == 0:
-            self.code = time_loop(self.motion, self.x, self.plan, int(until), self.record)
-            if self.code == o.EVENT:
-                self.code = self.event()
-            elif self.code == PAUSE and self.failure is None:
-                self.code = 0  # Python raises Ctrl-C here
-            else:
-                break
+            code = time_loop(self.motion, self.x, self.plan, until, self.record)
+            if code != o.EVENT:
+                return code
+            self.code = self.event()
         code, self.code = self.code, 0
-        if isinstance(self.failure, KeyboardInterrupt):  # while a plain function ran
-            self.made.functions.forget()
-            return Status.INTERRUPTED
-        if code != SUCCESS and self.is_to_blame():
-            self.reason = self.made.functions.reason
-            return Status.FUNCTION_FAILED
-        return Status.SUCCESS if code == SUCCESS else Status(code)
+        return code
 
-    def is_to_blame(self) -> bool:
-        """Return whether a user-defined function has ended the run."""
-        functions = self.made.functions
-        if self.failure is None and not functions.blame(self.reached) and functions.has_compiled:
-            # the step once more, with compiled functions called from Python
-            place = Kept((self.motion, self.x, self.clock))
-            functions.call_from_python([self.system.address, *self.system.part[:, :2].T])
-            time_loop(self.motion, self.x, self.plan, self.steps_done + 1, self.record)
-            place.restore()
-            functions.blame(self.reached)
-        return self.failure is not None
+    def blame_compiled(self) -> None:
+        """Take the failed step once more, with compiled functions called from Python, which notes faults."""
+        place = Kept((self.motion, self.x, self.clock))
+        self.functions.call_from_python([self.system.address, *self.system.part[:, :2].T])
+        time_loop(self.motion, self.x, self.plan, self.steps_done + 1, self.record)
+        place.restore()
 
     def costs(self) -> str:
         """Return what the run has done so far, for the progress bar."""
         counts = list(self.counted().items())[3:]
-        counts.append(("calls of Python functions", self.made.functions.calls))
+        counts.append(("calls of Python functions", self.functions.calls))
         return "; ".join(f"{count} {name}" for name, count in counts if count)
 
     def counted(self) -> dict[str, int]:
@@ -207,6 +179,7 @@ class GeneralizedRun:
         from carom.generalized.solution import GeneralizedSolution
 
         clock = self.clock[0]
+        self.reason = self.functions.reason if status is Status.FUNCTION_FAILED else ""
         if status is not Status.SUCCESS and clock.now > self.series.now[clock.saved - 1]:
             self.save_now()
         return GeneralizedSolution._from_run(self, status)
