@@ -114,8 +114,7 @@ class Contacts:
         active.mode[contact] = a.MODE_SLIP
         code = project(run.system, active, run.reached, run.x, False, run.work)
         active.mode[contact] = a.MODE_OPEN
-        if code == 0 and (run.system.rows > 0 or self.active()):
-            code = self.project()
+        code = code or self.project()
         return Status.RETURN_MAP_FAILED if code == Status.CONSTRAINTS_LOST else code
 
     def note_changes(self) -> None:

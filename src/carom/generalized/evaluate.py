@@ -42,11 +42,11 @@ class Evaluation:
         code = look(self.system, self.none_active, t, x, self.work)
         return Status.FUNCTION_FAILED if self.functions.failed is not None else code
 
-    def look(self, x, t: float = 0.0) -> int:
-        """Do the same at (q, v), or at (q, 0) for q; raise the error of a user-defined function."""
-        code = self.compute(np.append(x, np.zeros(2 * self.n - len(x))), t)
+    def look(self, x, t: float = 0.0) -> o.Work:
+        """Return `work` at (q, v), or at (q, 0) for q; raise the error of a user-defined function."""
+        self.compute(np.append(x, np.zeros(2 * self.n - len(x))), t)
         self.failed()
-        return code
+        return self.work
 
     def failed(self) -> None:
         """Raise the error that a function of the user's has raised."""
@@ -59,8 +59,7 @@ class Evaluation:
         n, e = self.n, np.eye(self.n)
 
         def bend(v):
-            self.look(np.append(q, v))
-            return self.work.c.copy()
+            return self.look(np.append(q, v)).c.copy()
 
         first = [[bend(a + b) - bend(a - b) for b in e] for a in e]  # (i, j, k)
         first = 0.25 * np.moveaxis(np.array(first), 2, 0).reshape(n, -1)
@@ -90,10 +89,10 @@ class Evaluation:
         """
         from scipy.optimize import root
 
-        n, seen = self.n, self.work
+        n = self.n
 
         def surfaces(at):
-            self.look(at)
+            seen = self.look(at)
             rows = np.vstack([seen.G[contact, :1], seen.A[: len(seen.phi)]])
             return np.append(seen.gap[contact], seen.phi), rows, np.linalg.solve(seen.M, rows.T)
 

@@ -151,9 +151,8 @@ class GeneralizedSolution(Drawn):
     def constraint_errors(self) -> tuple[np.ndarray, np.ndarray]:
         """Greatest errors of the constraints at each saved time: of phi(q) (T,) and of A v (T,)."""
         position, rate = np.zeros(len(self.t)), np.zeros(len(self.t))
-        seen = self._run.made.work
         for k in range(len(self.t)):
-            self._run.made.look(np.append(self.q[k], self.v[k]), float(self.t[k]))
+            seen = self._run.made.look(np.append(self.q[k], self.v[k]), float(self.t[k]))
             position[k] = np.max(np.abs(seen.phi), initial=0.0)
             rate[k] = np.max(np.abs(seen.A @ self.v[k]), initial=0.0)
         return position, rate

@@ -248,8 +248,7 @@ class GeneralizedSystem:
         return self._made
 
     def _look(self, position):
-        self.evaluation().look(self._at(position))
-        return self.evaluation().work
+        return self.evaluation().look(self._at(position))
 
     def metric(self, position) -> np.ndarray:
         """Return M (n, n) at coordinates (n,)."""
