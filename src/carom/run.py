@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from carom._compiled.mould import Mould, arrays_of
@@ -27,6 +25,7 @@ from carom.model.kept import Snapshot
 from carom.model.method import IMPLICIT, THREE_FIELD
 from carom.options import Options
 from carom.results.accuracy import inaccurate
+from carom.results.costs import costs
 from carom.results.solution import Solution
 from carom.scene.all_pairs import PairTable
 from carom.scene.joints import Joint
@@ -51,6 +50,7 @@ from carom.stepping.islands.layout import (
     together,
     with_partners,
 )
+from carom.stepping.running import Running
 from carom.stepping.settings import Settings
 from carom.stepping.thresholds import STEP_SHARE
 
@@ -58,13 +58,12 @@ ROOM_AT_FIRST = 8  # points of an impact for which there is room at first
 LOCATIONS = {"locate": LOCATE, "project": PROJECT, "work": WORK}
 
 
-class Run:
+class Run(Running):
     """A run that can be continued step by step; `solution` may be taken at any time."""
 
-    #: is asked at pauses; True interrupts the run
-    to_stop: Callable[[], bool] = staticmethod(lambda: False)
     #: what a run passes to compiled code has one type, whatever its scene and method
     call = Entries()
+    costs = costs  # for the progress bar
 
     def __init__(self, scene: Scene, settings: Settings):
         # from the third run with the same settings on, all but the records is cast from a mould
@@ -172,11 +171,6 @@ class Run:
         return known
 
     @property
-    def steps(self) -> int:
-        """Number of steps to the end."""
-        return self.grid.last
-
-    @property
     def model(self) -> Model:
         """The data that kernels only read: the compiled scene, and the settings of the run."""
         return Model(self.compiled.system, self.controls)
@@ -256,11 +250,6 @@ class Run:
         return len(self.crowd.spots) >= SPOTS
 
     @property
-    def steps_done(self) -> int:
-        """Number of finished steps."""
-        return int(self.clock["step"][0])
-
-    @property
     def bodies(self):
         """The records of the bodies in the kernels, (N,) BODY."""
         return self.compiled.system.bodies
@@ -271,51 +260,36 @@ class Run:
         return self.compiled.to_principal
 
     @property
-    def failure(self) -> BaseException | None:
-        """The error that a user-defined function has raised, or None."""
-        return self.compiled.functions.failed
+    def functions(self) -> Functions:
+        """The user-defined functions."""
+        return self.compiled.functions
 
-    @property
-    def reached(self) -> float:
-        """Time that the run has reached [s]."""
-        return float(self.clock["now"][0])
-
-    def go_on(self, until: int) -> Status:
-        """Continue to step number `until`, or to a failure."""
+    def take_steps(self, until: int) -> int:
+        """Continue to step number `until`; return a status, or PAUSE."""
         while True:
-            state = (self.model, self.data, self.method, self.islands, self.grid, int(until))
+            state = (self.model, self.data, self.method, self.islands, self.grid, until)
             code = self.call(time_loop.run, *state)
-            if code == r.GROW:
-                self.grow(self.clock[0].grow)
-            elif code == r.PAUSE and self.failure is None:
-                if self.to_stop():  # here Ctrl-C is raised
-                    return Status.INTERRUPTED
-            elif isinstance(self.failure, KeyboardInterrupt):  # while a plain function ran
-                self.compiled.functions.forget()
-                return Status.INTERRUPTED
-            elif self.failure is not None or self.is_to_blame(code):
-                return Status.FUNCTION_FAILED
-            else:
-                return Status(code)
+            if code != r.GROW:
+                return code
+            self.grow(self.clock[0].grow)
 
-    def is_to_blame(self, code: int) -> bool:
-        """Return whether a user-defined function without a finite result has ended the run."""
-        functions, begin = self.compiled.functions, float(self.clock["begin"][0])
-        if code == Status.SUCCESS or functions.blame(begin) or not functions.has_compiled:
-            return self.failure is not None
-        # once more, with compiled functions called from Python
-        place = Snapshot(self)
+    def begin(self) -> float:
+        """Return the start of the step: a trial step of it has failed."""
+        return float(self.clock["begin"][0])
+
+    def blame_compiled(self) -> None:
+        """Take the failed step once more, with compiled functions called from Python, which notes faults."""
+        functions, place = self.functions, Snapshot(self)
         self.go_back()
         system = self.compiled.system, self.islands
         fields = [(one, name) for one in arrays_of(system) for name in one.dtype.names or ()]
         functions.call_from_python(one[name] for one, name in fields if name.endswith("address"))
         self.records = r.with_room(self.records, int(self.clock["saved"][0]))
         self.save_now()  # the energy of the state that was reached
-        if not functions.blame(begin):
+        if not functions.blame(self.begin()):
             state = (self.model, self.data, self.method, self.islands, self.grid)
             self.call(time_loop.run, *state, self.steps_done + 1)
         place.put_back()
-        return functions.blame(begin)
 
     def judged(self, status: Status) -> Status:
         """Return the status at the end of the run, after the check of energy, gaps and contact problems."""
