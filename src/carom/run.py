@@ -286,7 +286,7 @@ class Run:
             state = (self.model, self.data, self.method, self.islands, self.grid, int(until))
             code = self.call(time_loop.run, *state)
             if code == r.GROW:
-                self.grow(self.clock[0].grow)
+                self.grow(self.work.step[0].grow)
             elif code == r.PAUSE and self.failure is None:
                 if self.to_stop():  # here Ctrl-C is raised
                     return Status.INTERRUPTED
@@ -300,7 +300,7 @@ class Run:
 
     def is_to_blame(self, code: int) -> bool:
         """Return whether a user-defined function without a finite result has ended the run."""
-        functions, begin = self.compiled.functions, float(self.clock["begin"][0])
+        functions, begin = self.compiled.functions, float(self.work.step["begin"][0])
         if code == Status.SUCCESS or functions.blame(begin) or not functions.has_compiled:
             return self.failure is not None
         # once more, with compiled functions called from Python
@@ -324,7 +324,7 @@ class Run:
 
     def go_back(self) -> None:
         """Return to the start of the step in which the run was interrupted."""
-        islands, active, search = self.islands, self.active, self.work.search
+        islands, active, step, search = self.islands, self.active, self.work.step, self.work.search
         start = islands.single
         if islands.apart:
             if islands.plan[0].planned == 0:
@@ -341,7 +341,7 @@ class Run:
         else:
             return
         self.clock[:] = (islands if islands.apart else start).clock
-        search["pending"], active.carries[:] = 0, 0
+        step["spent"], step["paused"], search["pending"], active.carries[:] = 0.0, 0, 0, 0
         points = active.points[: active.count[0]]
         active.carries[points["feature"][points["touches"] == 0]] = 1
 

@@ -93,7 +93,7 @@ def strike(model, data, method, c):
             velocities(k, group.points[0], state, group.v[U])
         single = as_one(system, k, state, group, work)
         if not single and data.multiple.e.shape[0] < k:
-            clock.grow, hit.code = FULL_MULTIPLE, GROW
+            work.step[0].grow, hit.code = FULL_MULTIPLE, GROW
             return
         begin_event(system, c, group.closed[0].feature, state, clock, records)
         first = clock.struck
@@ -109,7 +109,7 @@ def strike(model, data, method, c):
             return
         project_velocity(system, state, False, work)
         clock.loads += driven_work(system, state, first, clock, records, work)
-        end_event(system, JAMS if jams else IMPACT, state, clock, records)
+        end_event(system, c, JAMS if jams else IMPACT, state, clock, records)
         forget_jams(active, k, group)
         for i in range(active.contact_states.shape[0]):
             if concerns(system.contacts[i], work.body[contact.body].label, work):

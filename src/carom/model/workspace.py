@@ -154,6 +154,29 @@ RESULT = [
     ("time", "f8"),  # time of the present state, on which prescribed motion depends
 ]
 
+#: a step of an island, or of bodies that move together: between two steps nothing of it is kept
+STEP = [
+    ("begin", "f8"),
+    ("length", "f8"),
+    ("spent", "f8"),  # time of it that is done, 0 between two steps
+    ("impacts", "f8"),  # entry of the ledger when the step began
+    ("owed", "f8"),  # energy that friction gave since, for dropped bounces, and has not taken back
+    ("first_touch", "i8"),  # rows of touches, and of events, when the island began with the step
+    ("first_event", "i8"),
+    ("tries", "i8"),  # pieces of the step of a crowd that were tried
+    ("whole", "i8"),  # 1 if touching bodies have moved as a crowd
+    # `Controls.step` and `Controls.pull` of the island (`carom.dynamics.local_scale`)
+    ("scale", "f8"),
+    ("pull", "f8"),
+    ("longest", "f8"),  # step of contacts, by the applied forces at the start
+    # work [J] that applied forces could do over the allowed error of a position, at the start
+    ("able", "f8"),
+    ("counts", "f8", COUNTS),  # work that counts against the bounds of the island
+    ("grow", "i8"),  # which arrays must grow before the loop continues
+    ("since", "f8"),  # bodies and points passed since the loop was entered
+    ("paused", "i8"),  # 1 if the loop was left in the middle of a trial step
+]
+
 #: search for an event inside a step: between two steps nothing of it is kept
 SEARCH = [
     ("active", "i8"),
@@ -230,5 +253,6 @@ class Work(NamedTuple):
     solid_pose: np.ndarray  # (2, 7) of its solids
     hit: np.recarray  # (1,) HIT
     result: np.recarray  # (1,) RESULT
+    step: np.recarray  # (1,) STEP
     search: np.recarray  # (1,) SEARCH
     history: np.ndarray  # (0, 16) no history inside the loop

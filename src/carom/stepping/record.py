@@ -34,9 +34,9 @@ def still(state):
 
 
 @inlined
-def grow(clock, what):
+def grow(step, what):
     """Request longer arrays: return the code with which the loop is left."""
-    clock.grow = what
+    step.grow = what
     return GROW
 
 

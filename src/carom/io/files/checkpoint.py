@@ -16,10 +16,15 @@ import numpy as np
 from carom import checks
 from carom.model import records as r
 
+#: what a step writes before it reads it: fields that the clock of a file may have besides its own
+SCRATCH = (
+    "spent", "begin", "length", "before", "owed", "first_touch", "concerns", "in_step", "tries", "scale",
+    "pull", "longest", "able", "counts", "grow", "since", "paused", "whole_at",
+)  # fmt: skip
 #: what is the same in every run of a scene, holds addresses, or is written anew when a step begins; files that
 #: have it are read without it
 FIXED = {
-    "work.search",
+    *(f"clock.{name}" for name in SCRATCH), "work.step", "work.search",
     "islands.joined", "islands.others",
     "islands.partner", "islands.partner_first", "islands.plane", "islands.plane_first",
     "relations.relations", "relations.terms", "relations.user", "relations.pieces",
@@ -56,9 +61,9 @@ class Checkpoint(NamedTuple):
 
 def capture(run) -> Checkpoint | None:
     """Return the checkpoint of a run; None in the middle of a step."""
-    clock, search = run.clock[0], run.work.search[0]
+    step, search = run.work.step[0], run.work.search[0]
     islands = run.islands
-    inside = clock.spent != 0.0 or clock.paused != 0 or search.pending != 0
+    inside = step.spent != 0.0 or step.paused != 0 or search.pending != 0
     if inside or (islands.plan[0].planned != 0):
         return None
     found = {
@@ -102,7 +107,9 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
         raise ValueError("the checkpoint was written by another version of carom")
     for name, array in here.items():
         one = kept[name]
-        array[...] = one.unpacked() if isinstance(one, Packed) else one
+        one = one.unpacked() if isinstance(one, Packed) else one
+        for field in array.dtype.names or (...,):
+            array[field] = one[field]
     _put_records(run, records)
 
 
@@ -141,11 +148,12 @@ def _deflated(array: np.ndarray) -> bytes:
 
 def layout_of(arrays: Mapping[str, np.ndarray | Packed]) -> dict[str, tuple]:
     """Return type and shape of arrays by name."""
-    return {name: (_type_of(a), tuple(a.shape)) for name, a in sorted(arrays.items())}
+    return {name: (_type_of(name, a), tuple(a.shape)) for name, a in sorted(arrays.items())}
 
 
-def _type_of(array: np.ndarray | Packed) -> str:
-    return str(array.dtype.descr if array.dtype.names else array.dtype.str)
+def _type_of(name: str, array: np.ndarray | Packed) -> str:
+    fields = [field for field in array.dtype.descr if f"{name}.{field[0]}" not in FIXED]
+    return str(fields if array.dtype.names else array.dtype.str)
 
 
 def arrays_of(run) -> Iterator[tuple[str, np.ndarray]]:

@@ -35,10 +35,10 @@ def fly(model, data, method, h, loaded, cut):
     With `cut` the code is `TOO_LONG` if the energy error of this motion is larger than a step may have.
     """
     system, active, now, crowd, work = model.system, data.active, data.state, data.crowd, data.work
-    clock, search, code, loads, friction = data.clocks[0], work.search[0], 0, 0.0, 0.0
+    search, code, loads, friction = work.search[0], 0, 0.0, 0.0
     if loaded:
         count, active.count[0] = active.count[0], 0
-        work.result[0].start = clock.begin + clock.spent
+        work.result[0].start = work.step[0].begin + work.step[0].spent
         applied, code = step(method, system, active, now, h, work.trial, work)
         search.applied, search.friction = applied, 0.0
         if rubs(system) and code == 0:

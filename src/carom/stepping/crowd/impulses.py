@@ -57,15 +57,15 @@ def find_impulses(model, data, k, h, fall, patient):
     crowd, work, clock, n = data.crowd, data.work, data.clocks[0], data.state.shape[0]
     pose(system, active, k, h, fall, now, crowd, work)
     tolerance = ERROR_SHARE * controls.rest * fall * h
-    most = left(controls, clock, COUNT_BLOCKS) if patient else 0.0
-    gamma, residual = solve(system, crowd, k, n, tolerance, most, clock)
+    most = left(controls, work.step[0], COUNT_BLOCKS) if patient else 0.0
+    gamma, residual = solve(system, data, k, tolerance, most)
     answer(system, k, gamma, crowd, work)
     gain_all(crowd, work)
     clock.trials += 1
     clock.contact_steps += 1
-    clock.since += 10.0 * (k + n)
+    work.step[0].since += 10.0 * (k + n)
     if n > 1 and bounces_give(k, crowd, work.trial):
-        more = limit_bounces(system, k, n, tolerance, most, crowd, work, clock)
+        more = limit_bounces(system, data, k, tolerance, most)
         residual = max(residual, more)
     for i in range(k):
         for j in range(3):
@@ -93,12 +93,13 @@ def bounces_give(k, crowd, end):
 
 
 @kernel
-def limit_bounces(system, k, n, tolerance, most, crowd, work, clock):
+def limit_bounces(system, data, k, tolerance, most):
     """Reduce the restitution of all impacts of the piece by one factor, so that together they add no energy.
 
     The impulses p_0 without restitution lose energy. p = p_0 + s (p_e - p_0) is in the cones, and with it no
     point approaches. The work of p is quadratic in s, and its root is the greatest s without a gain of energy.
     """
+    crowd, work = data.crowd, data.work
     full, end, problem = crowd.bouncing, work.trial, crowd.problem
     for i in range(3 * k):
         full[i] = crowd.p[i]
@@ -108,7 +109,7 @@ def limit_bounces(system, k, n, tolerance, most, crowd, work, clock):
         if spot.strikes == 1 and spot.bound + spot.drift[0] > 0.0:
             crowd.c[3 * i] += spot.bound + spot.drift[0]
         spot.after[0], spot.after[1], spot.after[2] = w
-    gamma, residual = solve(system, crowd, k, n, tolerance, most, clock)
+    gamma, residual = solve(system, data, k, tolerance, most)
     answer(system, k, gamma, crowd, work)
     gain_all(crowd, work)
     a, b, c = 0.0, 0.0, 0.0  # coefficients of the work a + b s + c s^2

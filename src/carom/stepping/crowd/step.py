@@ -64,22 +64,22 @@ def step_crowd(model, data, method):
     it.
     """
     system, controls = model.system, model.controls
-    now, work, clocks = data.state, data.work, data.clocks
-    clock, result, search = clocks[0], work.result[0], work.search[0]
-    result.code = 0 if data.crowd.spots.shape[0] >= SPOTS else grow(clock, r.FULL_SPOTS)
+    now, work = data.state, data.work
+    step, result, search = work.step[0], work.result[0], work.search[0]
+    result.code = 0 if data.crowd.spots.shape[0] >= SPOTS else grow(step, r.FULL_SPOTS)
     if result.code != 0:
         return
-    if clock.spent == 0.0:
+    if step.spent == 0.0:
         search.pace = math.inf
-    while clock.spent < clock.length:
-        if clock.since > r.LONG:
+    while step.spent < step.length:
+        if step.since > r.LONG:
             result.code = r.PAUSE
             return
-        dt = min(piece(system, now, controls, clock.length - clock.spent), search.pace)
+        dt = min(piece(system, now, controls, step.length - step.spent), search.pace)
         while True:
-            clock.tries += 1
-            affordable = left(controls, clock, COUNT_BLOCKS) >= DEAR * data.active.count[0]
-            patient = clock.tries <= CAREFUL and affordable
+            step.tries += 1
+            affordable = left(controls, step, COUNT_BLOCKS) >= DEAR * data.active.count[0]
+            patient = step.tries <= CAREFUL and affordable
             careful = patient and dt > SHORTEST_CUT * controls.interval
             result.code = move_on(model, data, method, dt, patient, careful)
             if result.code == CONSTRAINTS_LOST and dt > SHORTEST_CUT * controls.interval:
@@ -90,10 +90,10 @@ def step_crowd(model, data, method):
         if result.code != 0:
             return
         search.pace = 2.0 * dt
-        if dt == clock.length - clock.spent:
-            clock.spent = clock.length
+        if dt == step.length - step.spent:
+            step.spent = step.length
         else:
-            clock.spent += dt
+            step.spent += dt
 
 
 @kernel
@@ -158,7 +158,7 @@ def move_on(model, data, method, h, patient, careful):
 
     # the energy balance, and the persistent contacts from now on
     clock.residual = max(clock.residual, residual)
-    clock.now = clock.begin + clock.spent + h
+    clock.now = work.step[0].begin + work.step[0].spent + h
     impacts, friction, bounces = clock.impacts, clock.friction, clock.bounces
     named = finish(model, data, k, h, fall, residual)
     if k > 0:
@@ -190,10 +190,10 @@ def collide(model, data, h, fall, patient, careful):
     while True:
         k = find_points(model, data, h, fall, wide)
         if k < 0:
-            return grow(clock, r.FULL_SPOTS), k, 0.0, 0.0
+            return grow(work.step[0], r.FULL_SPOTS), k, 0.0, 0.0
         rows = r.MARGIN + k + data.active.count[0]
         if max(clock.event, clock.struck) + rows > data.records.event.shape[0]:
-            return grow(clock, r.FULL_EVENTS), k, 0.0, 0.0
+            return grow(work.step[0], r.FULL_EVENTS), k, 0.0, 0.0
         residual = find_impulses(model, data, k, h, fall, patient)
         if (
             careful
@@ -216,7 +216,7 @@ def collide(model, data, h, fall, patient, careful):
                 return TOO_LONG, k, residual, driven
             room, holds = lift_others(system, k, RESOLUTION, crowd, work)
             if not room:
-                return grow(clock, r.FULL_SPOTS), k, residual, driven
+                return grow(work.step[0], r.FULL_SPOTS), k, residual, driven
             return 0 if holds else CONSTRAINTS_LOST, k, residual, driven
         wide, before = min(limits.SEARCH_LIMIT, wide * limits.SEARCH_GROWTH), k
 
