@@ -130,10 +130,10 @@ def forget_jams(active, k, group):
 
 @kernel
 def strike_one(model, data, method, c):
-    """Solve the impact of the one point in work.point, with W and u in work.hit."""
+    """Solve the impact of the one point in work.struck, with W and u in work.hit."""
     system, controls = model.system, model.controls
     active, state, work, clock = data.active, data.state, data.work, data.clocks[0]
-    contact, hit, point = system.contacts[c], work.hit[0], work.point[0]
+    contact, hit, point = system.contacts[c], work.hit[0], work.struck[0]
     hit.out[layout.STILL] = slow(contact, state)
     if blocked(system, point, hit.W[0, 0]):
         hit.code = BLOCKED

@@ -162,16 +162,17 @@ def with_contacts(active: workspace.ActiveSet, count: int) -> workspace.ActiveSe
 def new_work(system: System, stages: int) -> workspace.Work:
     """Return the workspace of one run."""
     n, w = system.bodies.size, workspace
-    state, trial, middle, first = (table(STATE, n) for _ in range(4))
+    stage, trial, part, middle, iterate, mean, beside, origin = table(STATE, 8, n)
+    struck, placed = table(w.POINT, 2, 1)
     body = table(w.BODY_WORK, n)
     body["room"] = np.inf
     return w.Work(
         body=body, joint=table(w.JOINT_WORK, system.joints.size),
         stages=table(w.STAGE, max(stages, len(ESDIRK)) + 1, n), known=table(w.KNOWN, n),
-        stage=state, trial=trial, middle=middle, first=first, point=table(w.POINT, 1),
-        pair=new_pair_work(), touches=new_points(), solid_pose=np.zeros((2, 7)),
-        hit=table(w.HIT, 1), result=table(w.RESULT, 1), step=table(w.STEP, 1),
-        search=table(w.SEARCH, 1), history=np.zeros((0, 16)),
+        stage=stage, trial=trial, part=part, middle=middle, iterate=iterate, mean=mean, beside=beside,
+        origin=origin, struck=struck, placed=placed, pair=new_pair_work(), touches=new_points(),
+        solid_pose=np.zeros((2, 7)), hit=table(w.HIT, 1), result=table(w.RESULT, 1),
+        step=table(w.STEP, 1), search=table(w.SEARCH, 1), history=np.zeros((0, 16)),
     )  # fmt: skip
 
 

@@ -164,7 +164,8 @@ STEP = [
     ("first_touch", "i8"),  # rows of touches, and of events, when the island began with the step
     ("first_event", "i8"),
     ("tries", "i8"),  # pieces of the step of a crowd that were tried
-    ("whole", "i8"),  # 1 if touching bodies have moved as a crowd
+    ("crowd", "i8"),  # 1 if the island moves as a crowd, and 1 if touching bodies have done so
+    ("whole", "i8"),
     # `Controls.step` and `Controls.pull` of the island (`carom.dynamics.local_scale`)
     ("scale", "f8"),
     ("pull", "f8"),
@@ -243,11 +244,16 @@ class Work(NamedTuple):
     joint: np.recarray  # (J,) JOINT_WORK
     stages: np.recarray  # (S + 1, N) STAGE: of the S stages of a step; of a single state
     known: np.recarray  # (N,) KNOWN, of the end of the last step
-    stage: np.recarray  # (N,) STATE
-    trial: np.recarray  # (N,) STATE
-    middle: np.recarray  # (N,) STATE
-    first: np.recarray  # (N,) STATE
-    point: np.recarray  # (1,) POINT, the one that strikes or is checked
+    stage: np.recarray  # (N,) STATE of the present stage
+    trial: np.recarray  # (N,) STATE at the end of the trial step
+    part: np.recarray  # (N,) STATE at the start of the present part of a step
+    middle: np.recarray  # (N,) STATE in the middle of a step of the three-field method,
+    iterate: np.recarray  # (N,) STATE and at the end of it, as the last iteration left it
+    mean: np.recarray  # (N,) STATE at the start of a step of RATTLE, with mean velocities
+    beside: np.recarray  # (N,) STATE beside a singular position
+    origin: np.recarray  # (N,) STATE from which the return map moves
+    struck: np.recarray  # (1,) POINT that strikes alone
+    placed: np.recarray  # (1,) POINT of which only gap or place is needed
     pair: PairWork
     touches: np.recarray  # (8,) TOUCH_POINT of the last pair
     solid_pose: np.ndarray  # (2, 7) of its solids

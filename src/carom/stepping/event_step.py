@@ -298,7 +298,7 @@ def may_end(contact, system, controls, state, horizon, work):
     """
     if contact.touches != 0:
         return True
-    point = work.point[0]
+    point = work.struck[0]
     rate = contact_velocity(point, state)[0]
     if rate <= slow(contact, state) or system.bodies[contact.body].ballistic == 0:
         return True

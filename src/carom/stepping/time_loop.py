@@ -68,6 +68,7 @@ def step_single(model, data, method, start):
     if start.begun[0] == 0:
         note_scale(model.system, model.controls, data.state, data.work)
         begin_count(model.controls, data.work)
+        parts.choose(model.system, model.controls, data.active, data.clocks[0].step, data.work)
     one_island.begin_single(model.system, data.active, data.state, data.clocks, data.work, start)
     controls = local_controls(model.controls, step)
     local = by_reference(Model(model.system, controls))
@@ -112,6 +113,7 @@ def step_apart(model, data, method, islands) -> int:
             parts.enter(system, own.active, data.active, own.work, islands, data.clocks[0])
             note_scale(system, model.controls, state, own.work)
             begin_count(model.controls, own.work)
+            parts.choose(system, model.controls, own.active, data.clocks[0].step, own.work)
         controls = local_controls(model.controls, step)
         part = by_reference(Model(by_reference(system), controls))
         code = move_island(part, own, method)
@@ -167,13 +169,12 @@ def charge_impacts(clock, step):
 @inlined
 def move_island(model, data, method):
     """Move an island to the end of the step: event by event, or in one time-stepping step if it is a crowd."""
-    system, work, number = model.system, data.work, data.clocks[0].step
-    if model.controls.retry == 0 or not parts.is_crowd(system, data.active, number, work):
-        parts.recover(system, number, work)
+    work = data.work
+    if work.step[0].crowd == 0:
         return advance(model, data, method)
     step_crowd(model, data, method)
     code = work.result[0].code
-    if code == 0 and left_ball(system, data.state, work.step[0].length, work):
+    if code == 0 and left_ball(model.system, data.state, work.step[0].length, work):
         return r.LEFT_BALL
     return code
 

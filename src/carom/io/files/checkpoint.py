@@ -16,7 +16,7 @@ import numpy as np
 from carom import checks
 from carom.model import records as r
 
-#: what a step writes before it reads it: fields that the clock of a file may have besides its own
+#: fields that the clock of a file may have besides its own: a step writes them before it reads them
 SCRATCH = (
     "spent", "begin", "length", "before", "owed", "first_touch", "concerns", "in_step", "tries", "scale",
     "pull", "longest", "able", "counts", "grow", "since", "paused", "whole_at",
@@ -24,9 +24,11 @@ SCRATCH = (
 #: what is the same in every run of a scene, holds addresses, or is written anew when a step begins; files that
 #: have it are read without it
 FIXED = {
-    *(f"clock.{name}" for name in SCRATCH), "work.step", "work.search",
-    "islands.joined", "islands.others",
-    "islands.partner", "islands.partner_first", "islands.plane", "islands.plane_first",
+    *(f"clock.{name}" for name in SCRATCH), "work.first", "work.point",
+    "work.step", "work.search", "work.known", "work.stage", "work.trial", "work.part", "work.middle",
+    "work.iterate", "work.mean", "work.beside", "work.origin", "work.struck", "work.placed",
+    "islands.joined", "islands.others", "islands.partner", "islands.partner_first", "islands.plane",
+    "islands.plane_first",
     "relations.relations", "relations.terms", "relations.user", "relations.pieces",
     "relations.pushes", "relations.forces", "relations.named",
 }  # fmt: skip

@@ -36,11 +36,11 @@ def find_points(model, data, h, fall, wide):
     if k < 0:
         return k
     for b in range(n):
-        halfway(now[b], crowd.flight[b], work.stage[b])
+        halfway(now[b], crowd.flight[b], crowd.middle[b])
     place_all(system, 0, k, crowd.flight, crowd, crowd.points[1], work)
     for i in range(k):
         crowd.spots[i].left = crowd.points[1][i].gap
-    place_all(system, 0, k, work.stage, crowd, crowd.points[0], work)
+    place_all(system, 0, k, crowd.middle, crowd, crowd.points[0], work)
     if n > 1:
         place_all(system, 0, k, now, crowd, crowd.points[1], work)
     note_drift(active, k, n > 1, now, crowd)
@@ -173,7 +173,7 @@ def lift_others(system, k, depth, crowd, work):
     """
     end, holds = work.trial, True
     for b in range(end.shape[0]):
-        copy_state(end[b], work.stage[b])
+        copy_state(end[b], crowd.pressed[b])
     for _ in range(LIFTS):
         last = gather_sunk(system, k, depth, end, crowd, work)
         if last < 0:
@@ -183,7 +183,7 @@ def lift_others(system, k, depth, crowd, work):
         place_all(system, k, last, end, crowd, crowd.points[0], work)
         write_responses(system, k, last, crowd, work)
         holds = onto_surfaces(system, last, end.shape[0], end, crowd, work) <= RESOLUTION
-    respin(system, work.stage, end)
+    respin(system, crowd.pressed, end)
     project_velocity(system, end, True, work)
     return True, holds
 

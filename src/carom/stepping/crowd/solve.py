@@ -43,11 +43,8 @@ def solve(system, data, k, tolerance, left):
     most = max(ALLOWED * k, min(left, PATIENT * ALLOWED * k))
     speed = greatest_speed(crowd, k) / gamma
     r, goal, done = sweep_until(system, crowd, k, max(tolerance / gamma, RESIDUAL * speed), FIRST)
-    enough, good = (
-        max(tolerance / gamma, goal, RESIDUAL * speed),
-        max(goal, limits.SLOW_RESIDUAL * speed),
-    )
-    good = max(good, CROWD_REST * tolerance / gamma)
+    enough = max(tolerance / gamma, goal, RESIDUAL * speed)
+    good = max(goal, limits.SLOW_RESIDUAL * speed, CROWD_REST * tolerance / gamma)
     spent, least, turn, idle = done * k, r, 0, 0
     p, kept = work.vector[o.ITERATE], work.vector[o.START_BEST]
     copy(k, p, kept)

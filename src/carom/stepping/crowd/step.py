@@ -39,17 +39,11 @@ from carom.stepping.crowd.free_motion import (
     power_of_path,
     work_on_path,
 )
-from carom.stepping.crowd.impulses import (
-    find_impulses,
-    find_points,
-    impose,
-    lift_others,
-)
+from carom.stepping.crowd.impulses import find_impulses, find_points, impose, lift_others
 from carom.stepping.crowd.layout import SPOTS
 from carom.stepping.crowd.solve import greatest_speed
 from carom.stepping.record import finite, grow
 
-# greatest number of tries with pieces that may be cut; shortest piece, relative to the step
 CAREFUL = 300  # greatest number of tries with pieces that may be cut
 DEAR = 500.0  # products with blocks per active point that a step must still afford if a piece may be cut
 AGAIN = 16  # greatest number of searches for points: a row of bodies pushes one more each time
@@ -149,7 +143,7 @@ def move_on(model, data, method, h, patient, careful):
     applied, rubbed = 0.0, 0.0
     if loaded:
         search = work.search[0]
-        taken, rubbed = power_of_path(system, h, now, end, work)
+        taken, rubbed = power_of_path(system, h, now, end, crowd.middle, work)
         applied = driven + work_on_path(search.applied, h, loads, taken)
         rubbed = work_on_path(search.friction, h, rubbing, rubbed)
     gained = energy_gained(model, data, h, loaded) - applied - rubbed
@@ -195,11 +189,8 @@ def collide(model, data, h, fall, patient, careful):
         if max(clock.event, clock.struck) + rows > data.records.event.shape[0]:
             return grow(work.step[0], r.FULL_EVENTS), k, 0.0, 0.0
         residual = find_impulses(model, data, k, h, fall, patient)
-        if (
-            careful
-            and residual
-            > limits.RESIDUAL_LIMIT * greatest_speed(crowd, k) + limits.RESIDUAL_LIMIT * fall * h
-        ):
+        most = limits.RESIDUAL_LIMIT * greatest_speed(crowd, k) + limits.RESIDUAL_LIMIT * fall * h
+        if careful and residual > most:
             return TOO_LONG, k, residual, 0.0  # a shorter piece is a different problem
         if careful and misses_bounce(system, k, h, fall, crowd):
             return TOO_LONG, k, residual, 0.0

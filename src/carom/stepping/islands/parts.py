@@ -114,9 +114,11 @@ def part_work(work, islands, i):
     n = b - a
     return Work(
         body=islands.memory[a:b], joint=work.joint, stages=work.stages, known=work.known[:n],
-        stage=work.stage[:n], trial=work.trial[:n], middle=work.middle[:n], first=work.first[:n],
-        point=work.point, pair=work.pair, touches=work.touches, solid_pose=work.solid_pose,
-        hit=work.hit, result=work.result, step=work.step, search=work.search, history=work.history,
+        stage=work.stage[:n], trial=work.trial[:n], part=work.part[:n], middle=work.middle[:n],
+        iterate=work.iterate[:n], mean=work.mean[:n], beside=work.beside[:n], origin=work.origin[:n],
+        struck=work.struck, placed=work.placed, pair=work.pair, touches=work.touches,
+        solid_pose=work.solid_pose, hit=work.hit, result=work.result, step=work.step, search=work.search,
+        history=work.history,
     )  # fmt: skip
 
 
@@ -156,8 +158,8 @@ def slot_of(islands, i, active_point):
 
 
 @kernel
-def is_crowd(part, active, step, work):
-    """Return whether an island takes a time-stepping step: it is large, or the event-driven step failed lately.
+def choose(part, controls, active, number, work):
+    """Note whether an island moves as a crowd in step `number`: it is large, or has failed as events lately.
 
     It is large if bodies lie on each other at many points, two per body or more. Bodies that roll on a table or
     strike in flight move from event to event.
@@ -165,8 +167,11 @@ def is_crowd(part, active, step, work):
     n = part.bodies.shape[0]
     crowd = active.count[0] >= max(MANY, EACH * n)
     for b in range(n):
-        crowd = crowd or work.body[b].whole_until > step
-    return crowd
+        crowd = crowd or work.body[b].whole_until > number
+    work.step[0].crowd = 1 if crowd and controls.retry == 1 else 0
+    for b in range(n if work.step[0].crowd == 0 else 0):
+        if work.body[b].whole_until < number:
+            work.body[b].whole_for //= 2
 
 
 @kernel
@@ -196,14 +201,6 @@ def give_up_body(controls, number, step, memory):
     memory.whole_for = min(128, max(1, 2 * memory.whole_for))
     memory.whole_until = number + memory.whole_for
     keep_count(controls, step, memory)
-
-
-@kernel
-def recover(part, step, work):
-    """Record that an island moves from event to event."""
-    for b in range(part.bodies.shape[0]):
-        if work.body[b].whole_until < step:
-            work.body[b].whole_for //= 2
 
 
 @kernel
