@@ -228,11 +228,18 @@ def test_scratch_is_no_state(scene):
     clock = table([("spent", "f8"), *r.CLOCK, ("counts", "f8", COUNTS)], 1)
     for name in part.clock.dtype.names:
         clock[name] = part.clock[name]
-    older = {**checkpoint.arrays, "work.search": part.work.search, "clock": clock}
+    older = {**checkpoint.arrays, "clock": clock, "islands.clock": clock, "work.point": clock}
     restore(again, checkpoint._replace(arrays=older), r.trimmed(part.records, part.clock))
     work = again.work
     left_out = [getattr(work, name) for name in work._fields if f"work.{name}" in FIXED]
-    filled_with_nothing((again.group, again.multiple, again.crowd, *left_out))
+    left_out += (
+        again.group,
+        again.multiple,
+        again.crowd,
+        again.islands.clock,
+        again.islands.single.clock,
+    )
+    filled_with_nothing(tuple(left_out))
     for name in "spent", "paused":
         work.step[name] = 0  # as in a new run
     work.search["pending"] = 0

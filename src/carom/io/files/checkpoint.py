@@ -27,8 +27,8 @@ FIXED = {
     *(f"clock.{name}" for name in SCRATCH), "work.first", "work.point",
     "work.step", "work.search", "work.known", "work.stage", "work.trial", "work.part", "work.middle",
     "work.iterate", "work.mean", "work.beside", "work.origin", "work.struck", "work.placed",
-    "islands.joined", "islands.others", "islands.partner", "islands.partner_first", "islands.plane",
-    "islands.plane_first",
+    "islands.clock", "islands.single.clock", "islands.joined", "islands.others", "islands.partner",
+    "islands.partner_first", "islands.plane", "islands.plane_first",
     "relations.relations", "relations.terms", "relations.user", "relations.pieces",
     "relations.pushes", "relations.forces", "relations.named",
 }  # fmt: skip
