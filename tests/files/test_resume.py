@@ -226,7 +226,7 @@ def test_scratch_is_no_state(scene):
     assert "work.search" not in checkpoint.arrays
     # as in files of before, whose clock also had what is in `work.step`
     clock = table([("spent", "f8"), *r.CLOCK, ("counts", "f8", COUNTS)], 1)
-    for name in part.clock.dtype.names:
+    for name, *_ in r.CLOCK:
         clock[name] = part.clock[name]
     older = {**checkpoint.arrays, "clock": clock, "islands.clock": clock, "work.point": clock}
     restore(again, checkpoint._replace(arrays=older), r.trimmed(part.records, part.clock))

@@ -82,9 +82,7 @@ class Group(NamedTuple):
     heading: np.ndarray  # (K, 2)
     member: np.ndarray  # (N,) bodies of the group
     base: np.recarray  # (N,) STATE of an implicit stage, without its own term
-    free: (
-        np.recarray
-    )  # (N,) STATE of which the velocities are those of a stage without forces of points
+    free: np.recarray  # (N,) STATE with velocities of a stage without forces of points
     equations: Equations
     cone: ContactWork
 
@@ -119,12 +117,12 @@ def capacity(system: System, more: bool) -> int:
 def new_group(system: System, more: bool = False) -> Group:
     """Return the workspace for the largest group of `system`; `more` says that contacts may be added."""
     n, k = system.bodies.size, capacity(system, more)
-    base, free = table(STATE, 2, n)
     return Group(
         closed=table(CLOSED_POINT, k), points=table(POINT, 2, k), v=np.zeros((5, 3 * k)),
         W=np.zeros((3 * k, 3 * k)), idle=np.zeros((2, k, k)), mu=np.zeros(k),
         kind=np.zeros(k, dtype=np.int64), heading=np.zeros((k, 2)), member=np.zeros(n, dtype=np.int64),
-        base=base, free=free, equations=new_equations(3 * k), cone=new_contact_work(k),
+        base=table(STATE, n), free=table(STATE, n),
+        equations=new_equations(3 * k), cone=new_contact_work(k),
     )  # fmt: skip
 
 

@@ -190,8 +190,7 @@ def longer(records: Records, clock: np.recarray) -> Records:
 
     Zeros that were never written take no memory.
     """
-    ends = dict(zip(records._fields, _ends(clock)))
-    out = {}
+    ends, out = ends_of(clock), {}
     for name in ("touch", "impact", "event", "snapshot"):
         rows = getattr(records, name)
         longer, end = np.zeros((2 * len(rows), *rows.shape[1:]), rows.dtype), ends[name] + MARGIN
@@ -221,13 +220,13 @@ def trimmed(records: Records, clock: np.recarray) -> Records:
 
 def written(records: Records, clock: np.recarray) -> Records:
     """Return views of the rows that were written; a run that continues may write to them."""
-    return Records._make(rows[:end] for rows, end in zip(records, _ends(clock)))
+    return Records._make(rows[:end] for rows, end in zip(records, ends_of(clock).values()))
 
 
-def _ends(clock: np.recarray) -> tuple[int, ...]:
-    """Return how many rows of each table were written."""
+def ends_of(clock: np.recarray) -> dict[str, int]:
+    """Return how many rows of each table were written, by its name."""
     names = "saved", "saved", "touched", "struck", "event", "snapped"
-    return tuple(int(clock[name][0]) for name in names)
+    return {table: int(clock[name][0]) for table, name in zip(Records._fields, names)}
 
 
 def as_numbers(row: np.recarray) -> dict:

@@ -166,12 +166,10 @@ STEP = [
     ("tries", "i8"),  # pieces of the step of a crowd that were tried
     ("crowd", "i8"),  # 1 if the island moves as a crowd, and 1 if touching bodies have done so
     ("whole", "i8"),
-    # `Controls.step` and `Controls.pull` of the island (`carom.dynamics.local_scale`)
-    ("scale", "f8"),
+    ("scale", "f8"),  # `Controls.step` and `Controls.pull` of the island
     ("pull", "f8"),
     ("longest", "f8"),  # step of contacts, by the applied forces at the start
-    # work [J] that applied forces could do over the allowed error of a position, at the start
-    ("able", "f8"),
+    ("able", "f8"),  # work [J] that these could do over the allowed errors of positions
     ("counts", "f8", COUNTS),  # work that counts against the bounds of the island
     ("grow", "i8"),  # which arrays must grow before the loop continues
     ("since", "f8"),  # bodies and points passed since the loop was entered

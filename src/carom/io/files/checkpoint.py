@@ -16,19 +16,17 @@ import numpy as np
 from carom import checks
 from carom.model import records as r
 
-#: fields that the clock of a file may have besides its own: a step writes them before it reads them
-SCRATCH = (
-    "spent", "begin", "length", "before", "owed", "first_touch", "concerns", "in_step", "tries", "scale",
-    "pull", "longest", "able", "counts", "grow", "since", "paused", "whole_at",
-)  # fmt: skip
 #: what is the same in every run of a scene, holds addresses, or is written anew when a step begins; files that
 #: have it are read without it
 FIXED = {
-    *(f"clock.{name}" for name in SCRATCH), "work.first", "work.point",
-    "work.step", "work.search", "work.known", "work.stage", "work.trial", "work.part", "work.middle",
-    "work.iterate", "work.mean", "work.beside", "work.origin", "work.struck", "work.placed",
-    "islands.clock", "islands.single.clock", "islands.joined", "islands.others", "islands.partner",
-    "islands.partner_first", "islands.plane", "islands.plane_first",
+    *("clock." + name for name in (
+        "spent", "begin", "length", "before", "owed", "first_touch", "concerns", "in_step", "tries",
+        "scale", "pull", "longest", "able", "counts", "grow", "since", "paused", "whole_at",
+    )),
+    "work.first", "work.point", "work.step", "work.search", "work.known", "work.stage", "work.trial",
+    "work.part", "work.middle", "work.iterate", "work.mean", "work.beside", "work.origin", "work.struck",
+    "work.placed", "islands.clock", "islands.single.clock", "islands.joined", "islands.others",
+    "islands.partner", "islands.partner_first", "islands.plane", "islands.plane_first",
     "relations.relations", "relations.terms", "relations.user", "relations.pieces",
     "relations.pushes", "relations.forces", "relations.named",
 }  # fmt: skip
@@ -63,17 +61,13 @@ class Checkpoint(NamedTuple):
 
 def capture(run) -> Checkpoint | None:
     """Return the checkpoint of a run; None in the middle of a step."""
-    step, search = run.work.step[0], run.work.search[0]
-    islands = run.islands
+    step, search, islands = run.work.step[0], run.work.search[0], run.islands
     inside = step.spent != 0.0 or step.paused != 0 or search.pending != 0
     if inside or (islands.plan[0].planned != 0):
         return None
-    found = {
-        "multiple": len(run.multiple.e),
-        "spots": len(run.crowd.spots),
-        "room": len(islands.which),
-        "pairs": 0 if run.found is None else len(run.found),
-    }
+    pairs = 0 if run.found is None else len(run.found)
+    multiple, spots = len(run.multiple.e), len(run.crowd.spots)
+    found = {"multiple": multiple, "spots": spots, "room": len(islands.which), "pairs": pairs}
     return Checkpoint(found, {name: array.copy() for name, array in arrays_of(run)})
 
 
@@ -183,11 +177,7 @@ def _walk(name: str, value) -> Iterator[tuple[str, np.ndarray]]:
 
 def _put_records(run, records: r.Records) -> None:
     """Copy the records before the checkpoint into the records of a run, which are lengthened as in a run."""
-    clock = run.clock[0]
-    ends = {
-        "series": clock.saved, "state": clock.saved, "touch": clock.touched,
-        "impact": clock.struck, "event": clock.event, "snapshot": clock.snapped,
-    }  # fmt: skip
+    ends = r.ends_of(run.clock)
     grows = ("touch", "impact", "event", "snapshot")
     while any(len(getattr(run.records, name)) < ends[name] for name in grows):
         run.records = r.longer(run.records, run.clock)
