@@ -271,11 +271,11 @@ class Run(Running):
             code = self.call(time_loop.run, *state)
             if code != r.GROW:
                 return code
-            self.grow(self.clock[0].grow)
+            self.grow(self.work.step[0].grow)
 
     def begin(self) -> float:
         """Return the start of the step: a trial step of it has failed."""
-        return float(self.clock["begin"][0])
+        return float(self.work.step["begin"][0])
 
     def blame_compiled(self) -> None:
         """Take the failed step once more, with compiled functions called from Python, which notes faults."""
@@ -298,7 +298,7 @@ class Run(Running):
 
     def go_back(self) -> None:
         """Return to the start of the step in which the run was interrupted."""
-        islands, active, search = self.islands, self.active, self.work.search
+        islands, active, step, search = self.islands, self.active, self.work.step, self.work.search
         start = islands.single
         if islands.apart:
             if islands.plan[0].planned == 0:
@@ -315,7 +315,7 @@ class Run(Running):
         else:
             return
         self.clock[:] = (islands if islands.apart else start).clock
-        search["pending"], active.carries[:] = 0, 0
+        step["spent"], step["paused"], search["pending"], active.carries[:] = 0.0, 0, 0, 0
         points = active.points[: active.count[0]]
         active.carries[points["feature"][points["touches"] == 0]] = 1
 

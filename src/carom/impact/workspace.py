@@ -17,7 +17,7 @@ from carom.impact.multiple.layout import (
     new_multiple_result,
     new_multiple_workspace,
 )
-from carom.model.arrays import System
+from carom.model.arrays import STATE, System
 from carom.model.workspace import POINT
 
 #: greatest number of points that are solved together
@@ -81,6 +81,8 @@ class Group(NamedTuple):
     kind: np.ndarray  # (K,) of `carom.friction`
     heading: np.ndarray  # (K, 2)
     member: np.ndarray  # (N,) bodies of the group
+    base: np.recarray  # (N,) STATE of an implicit stage, without its own term
+    free: np.recarray  # (N,) STATE with velocities of a stage without forces of points
     equations: Equations
     cone: ContactWork
 
@@ -119,6 +121,7 @@ def new_group(system: System, more: bool = False) -> Group:
         closed=table(CLOSED_POINT, k), points=table(POINT, 2, k), v=np.zeros((5, 3 * k)),
         W=np.zeros((3 * k, 3 * k)), idle=np.zeros((2, k, k)), mu=np.zeros(k),
         kind=np.zeros(k, dtype=np.int64), heading=np.zeros((k, 2)), member=np.zeros(n, dtype=np.int64),
+        base=table(STATE, n), free=table(STATE, n),
         equations=new_equations(3 * k), cone=new_contact_work(k),
     )  # fmt: skip
 

@@ -69,7 +69,7 @@ def step_group(model, data, method, label, h):
     applied = result.power  # powers at the start
     had, rubbed = result.applied, result.friction
     clock.contact_steps += 1
-    clock.since += 5.0 * k * stages_within(method)
+    work.step[0].since += 5.0 * k * stages_within(method)
     order = controls.order
     if h * rate <= STIFF_SLIP and not (result.stiff == 1 and work.search[0].again == 1):
         result.applied = had + h * method.b[0] * applied

@@ -200,12 +200,11 @@ def end_bounces(model, data, k, label, horizon):
     x = group.v[RETURN]
     find_pull(k, 1, group)
     normal, tangential = work_of_pull(k, group)
-    if not normal + tangential <= spare(
-        clock
-    ):  # points that are next to each other push each other out
+    # points that are next to each other push each other out
+    if not normal + tangential <= spare(clock, work.step[0]):
         find_pull(k, 0, group)
         normal, tangential = work_of_pull(k, group)
-    name_work(normal, tangential, clock)
+    name_work(normal, tangential, clock, work.step[0])
     for i in range(k):
         n, t1, t2 = x[3 * i], x[3 * i + 1], x[3 * i + 2]
         if n != 0.0 or t1 != 0.0 or t2 != 0.0:
@@ -313,7 +312,7 @@ def set_modes(model, data, k):
         closed_point.active = activate(system, active, closed_point, mode, state, work)
         clock.holds += 1
         records.event[clock.event].mode = mode
-        end_event(system, PERSISTS, state, clock, records)
+        end_event(system, closed_point.contact, PERSISTS, state, clock, records)
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.stays == 0:
@@ -328,7 +327,8 @@ def set_modes(model, data, k):
         if active_point.mode != mode:
             active_point.mode = mode
             begin_event(system, closed_point.contact, closed_point.feature, state, clock, records)
-            end_event(system, SLIPS if mode == MODE_SLIP else STICKS, state, clock, records)
+            kind = SLIPS if mode == MODE_SLIP else STICKS
+            end_event(system, closed_point.contact, kind, state, clock, records)
 
 
 @kernel
@@ -355,7 +355,7 @@ def first_forces(model, data, label):
                 begin_event(
                     system, closed_point.contact, closed_point.feature, state, clock, records
                 )
-                end_event(system, SLIPS, state, clock, records)
+                end_event(system, closed_point.contact, SLIPS, state, clock, records)
     add_forces_of_corners(active, k, group)
     lay_down(model, data, k, label)
 
@@ -431,5 +431,5 @@ def deactivate_open(model, data, k, label):
                     system, closed_point.contact, closed_point.feature, state, clock, records
                 )
                 deactivate(active, j)
-                end_event(system, OPENS, state, clock, records)
+                end_event(system, closed_point.contact, OPENS, state, clock, records)
                 break

@@ -16,10 +16,10 @@ from carom.stepping.thresholds import CROWD_ERROR, CROWD_GAIN
 @kernel
 def energy_gained(model, data, h, loaded):
     """Return the gain of kinetic and potential energy of the bodies."""
-    system, start, end, clock = model.system, data.state, data.work.trial, data.clocks[0]
+    system, start, end, step = model.system, data.state, data.work.trial, data.work.step[0]
     if not loaded:
         return gained_in_flight(system, start, end)
-    t = clock.begin + clock.spent
+    t = step.begin + step.spent
     before, low, _ = energies(system, start, t)
     after, high, _ = energies(system, end, t + h)
     return (after + high) - (before + low)

@@ -46,9 +46,9 @@ def finish(model, data, k, h, fall, residual):
     # less than these products; the caller assigns the rest (`carom.stepping.crowd.balance.take_over`)
     pressing, rubbing = min(0.0, pressing + max(0.0, rubbing)), min(0.0, rubbing)
     impacts = min(0.0, impacts)
-    if k > 0 and clock.whole_at != clock.step + 1:
+    if k > 0 and data.work.step[0].whole == 0:
         clock.whole += 1
-        clock.whole_at = clock.step + 1
+        data.work.step[0].whole = 1
     clock.impacts += impacts
     clock.friction += rubbing
     clock.bounces += pressing

@@ -36,11 +36,11 @@ def find_points(model, data, h, fall, wide):
     if k < 0:
         return k
     for b in range(n):
-        halfway(now[b], crowd.flight[b], work.stage[b])
+        halfway(now[b], crowd.flight[b], crowd.middle[b])
     place_all(system, 0, k, crowd.flight, crowd, crowd.points[1], work)
     for i in range(k):
         crowd.spots[i].left = crowd.points[1][i].gap
-    place_all(system, 0, k, work.stage, crowd, crowd.points[0], work)
+    place_all(system, 0, k, crowd.middle, crowd, crowd.points[0], work)
     if n > 1:
         place_all(system, 0, k, now, crowd, crowd.points[1], work)
     note_drift(active, k, n > 1, now, crowd)
@@ -57,15 +57,15 @@ def find_impulses(model, data, k, h, fall, patient):
     crowd, work, clock, n = data.crowd, data.work, data.clocks[0], data.state.shape[0]
     pose(system, active, k, h, fall, now, crowd, work)
     tolerance = ERROR_SHARE * controls.rest * fall * h
-    most = left(controls, clock, COUNT_BLOCKS) if patient else 0.0
-    gamma, residual = solve(system, crowd, k, n, tolerance, most, clock)
+    most = left(controls, work.step[0], COUNT_BLOCKS) if patient else 0.0
+    gamma, residual = solve(system, data, k, tolerance, most)
     answer(system, k, gamma, crowd, work)
     gain_all(crowd, work)
     clock.trials += 1
     clock.contact_steps += 1
-    clock.since += 10.0 * (k + n)
+    work.step[0].since += 10.0 * (k + n)
     if n > 1 and bounces_give(k, crowd, work.trial):
-        more = limit_bounces(system, k, n, tolerance, most, crowd, work, clock)
+        more = limit_bounces(system, data, k, tolerance, most)
         residual = max(residual, more)
     for i in range(k):
         for j in range(3):
@@ -93,12 +93,13 @@ def bounces_give(k, crowd, end):
 
 
 @kernel
-def limit_bounces(system, k, n, tolerance, most, crowd, work, clock):
+def limit_bounces(system, data, k, tolerance, most):
     """Reduce the restitution of all impacts of the piece by one factor, so that together they add no energy.
 
     The impulses p_0 without restitution lose energy. p = p_0 + s (p_e - p_0) is in the cones, and with it no
     point approaches. The work of p is quadratic in s, and its root is the greatest s without a gain of energy.
     """
+    crowd, work = data.crowd, data.work
     full, end, problem = crowd.bouncing, work.trial, crowd.problem
     for i in range(3 * k):
         full[i] = crowd.p[i]
@@ -108,7 +109,7 @@ def limit_bounces(system, k, n, tolerance, most, crowd, work, clock):
         if spot.strikes == 1 and spot.bound + spot.drift[0] > 0.0:
             crowd.c[3 * i] += spot.bound + spot.drift[0]
         spot.after[0], spot.after[1], spot.after[2] = w
-    gamma, residual = solve(system, crowd, k, n, tolerance, most, clock)
+    gamma, residual = solve(system, data, k, tolerance, most)
     answer(system, k, gamma, crowd, work)
     gain_all(crowd, work)
     a, b, c = 0.0, 0.0, 0.0  # coefficients of the work a + b s + c s^2
@@ -172,7 +173,7 @@ def lift_others(system, k, depth, crowd, work):
     """
     end, holds = work.trial, True
     for b in range(end.shape[0]):
-        copy_state(end[b], work.stage[b])
+        copy_state(end[b], crowd.pressed[b])
     for _ in range(LIFTS):
         last = gather_sunk(system, k, depth, end, crowd, work)
         if last < 0:
@@ -182,7 +183,7 @@ def lift_others(system, k, depth, crowd, work):
         place_all(system, k, last, end, crowd, crowd.points[0], work)
         write_responses(system, k, last, crowd, work)
         holds = onto_surfaces(system, last, end.shape[0], end, crowd, work) <= RESOLUTION
-    respin(system, work.stage, end)
+    respin(system, crowd.pressed, end)
     project_velocity(system, end, True, work)
     return True, holds
 

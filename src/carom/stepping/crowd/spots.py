@@ -115,7 +115,7 @@ def add_turning(contact, first, k, crowd):
 @kernel
 def add_vertices(system, contact, c, reach, state, k, crowd, work):
     """Add the vertices that may reach a half-space; return the new count, -1 if there is no room."""
-    point = work.point[0]
+    point = work.placed[0]
     for i in range(contact.first, contact.last):
         place(contact, system.vertices[i], state, point)
         if point.gap <= reach:
@@ -130,7 +130,7 @@ def add_vertices(system, contact, c, reach, state, k, crowd, work):
 @kernel
 def add_stop(system, c, h, fall, state, k, crowd, work):
     """Add a stop if it may be reached; return the new count, -1 if there is no room."""
-    contact, point = system.contacts[c], work.point[0]
+    contact, point = system.contacts[c], work.placed[0]
     place_stop(system, contact, crowd.flight, point)
     after, rate = point.gap, abs(contact_velocity(point, crowd.flight)[0])
     place_stop(system, contact, state, point)
@@ -146,13 +146,13 @@ def add_stop(system, c, h, fall, state, k, crowd, work):
 @kernel
 def add_touches(system, contact, c, reach, state, k, crowd, work):
     """Add the points that the kernels of pairs find; return the new count, -1 if there is no room."""
-    p = work.hit[0].point
     count = find_touches(system, contact, state, max(reach, REACH * smaller(contact)), work)
     for i in range(count):
         touch = work.touches[i]
         if touch.gap <= reach:
             if k == crowd.spots.shape[0]:
                 return -1
+            p = crowd.spots[k].point
             own_point(contact, touch, state, p)
             take(crowd.spots[k], c, touch.feature, touch.gap, p[0], p[1], p[2])
             k += 1
