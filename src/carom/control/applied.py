@@ -9,11 +9,15 @@ import numpy as np
 
 from carom import checks
 from carom.geometry import quaternion
+from carom.model.compile import Compiled, attitudes
 from carom.scene.forces import AppliedForce, Force, Torque
 from carom.scene.more_forces import JointForce, JointSpring
 
 HINT = "; state one by Scene.add_force, and give it or its name"
 UNITS = {Force: "N", Torque: "N m"}
+
+#: rows that were saved before, index of the force, and the value: what was set as a run went
+History = list[tuple[int, int, Any]]
 
 
 class Place(NamedTuple):
@@ -27,10 +31,11 @@ class Place(NamedTuple):
 class Applied:
     """The forces of a run that may be set, and what they have been set to."""
 
-    def __init__(self, run, implicit: bool):
-        self.run, self.places = run, places(run, implicit)
-        # rows that were saved before, and the value
-        self.history: list[tuple[int, Place, Any]] = []
+    def __init__(self, run, implicit: bool, history: History | None = None):
+        self.run, self.places = run, places(run.scene, run.compiled, implicit)
+        self.history: History = list(history or ())
+        for index, value in {index: value for _, index, value in self.history}.items():
+            self._put(index, value)
 
     def set(self, force, value) -> None:
         """Set a force, given itself or by its name."""
@@ -46,12 +51,13 @@ class Applied:
             value = checks.number("value", value)
         else:
             value = checks.finite_array("value", value, (3,), unit=UNITS[type(force.definition)])
-            if place.frame is not None:
-                value = quaternion.rotate_back(place.frame, value)
-        self.history.append((int(self.run.clock["saved"][0]), place, value))
-        put(self.run.compiled.system, place, value)
+        self.history.append((int(self.run.clock["saved"][0]), force.index, value))
+        self._put(force.index, value)
+
+    def _put(self, index: int, value) -> None:
+        put(self.run.compiled.system, self.places[index], value)
         if self.run.islands.joined.loads.size:  # a second time, for the island of loaded bodies
-            put(self.run.islands.joined, place, value)
+            put(self.run.islands.joined, self.places[index], value)
 
 
 def put(system, place: Place, value) -> None:
@@ -59,20 +65,23 @@ def put(system, place: Place, value) -> None:
     if place.column == "push":
         system.relations.pushes["force"][place.rows[0]] = value
         return
+    if place.frame is not None:
+        value = quaternion.rotate_back(place.frame, value)
     column = system.loads[place.column]
     for sign, row in zip((1.0, -1.0), place.rows):
         column[row] = sign * value
 
 
-def places(run, implicit: bool) -> dict[int, Place]:
+def places(scene, compiled: Compiled, implicit: bool) -> dict[int, Place]:
     """Return where the forces of a scene are, by their index: in the order in which they were compiled."""
     out, loads, pushes = {}, 0, 0
-    for force in run.scene.forces:
+    for force in scene.forces:
         d = force.definition
         if isinstance(d, (Force, Torque)):
             both = isinstance(d, Torque) and force.parent.index >= 0
             rows = (loads, loads + 1) if both else (loads,)
-            frame = run.compiled.start.Q[force.child.index].copy() if d.follow else None
+            at = compiled.to_principal[[force.child.index]]
+            frame = attitudes(force.child.orientation[None], at)[0] if d.follow else None
             out[force.index] = Place(type(d).__name__.lower(), rows, frame)
             loads += len(rows)
         elif isinstance(d, JointForce):
@@ -85,14 +94,14 @@ def places(run, implicit: bool) -> dict[int, Place]:
 
 
 def rows_of_forces(
-    history: list[tuple[int, Place, Any]], system, saved: int
+    history: History, places: dict[int, Place], system, saved: int
 ) -> Iterator[tuple[int, int]]:
     """Go through ranges of saved rows in which forces stay as they are; write them into the system."""
     first = 0
-    for row, place, value in history:
+    for row, index, value in history:
         if min(row, saved) > first:
             yield first, min(row, saved)
             first = min(row, saved)
-        put(system, place, value)
+        put(system, places[index], value)
     if saved > first:
         yield first, saved

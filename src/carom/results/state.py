@@ -60,6 +60,7 @@ class SystemState:
         self.t = float(clock["now"][0])
         self.kinetic_energy = float(clock["kinetic"][0])
         self.potential_energy = float(clock["potential"][0])
+        self._turns = run.compiled.system.relations.coordinates["reference"].copy()
 
     @classmethod
     def _of_file(cls, scene, t: float, kinetic: float, potential: float, motion) -> SystemState:
@@ -68,6 +69,7 @@ class SystemState:
         rows = np.zeros(len(scene.bodies), STATE)
         rows["x"], rows["Q"], rows["v"], rows["w"] = motion
         rows.flags.writeable = False
+        state._turns = None  # whole turns of the coordinates that a run counts
         state._joints, state._rows, state._scene, state._to_principal = {}, rows, scene, _NONE
         state.t, state.kinetic_energy, state.potential_energy = t, kinetic, potential
         return state
@@ -96,6 +98,11 @@ class SystemState:
         out = quaternion.multiply(np.array(self._rows["Q"]), turned)
         out.flags.writeable = False
         return out
+
+    @property
+    def turns(self) -> np.ndarray | None:
+        """Coordinates (C,) whose whole turns a run counts [rad or m]; None of a state from a file."""
+        return self._turns
 
     @property
     def total_energy(self) -> float:

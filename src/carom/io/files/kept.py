@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -29,8 +30,10 @@ class KeptRun:
     def __init__(
         self, scene: Scene, settings: dict, options: Options, records: r.Records,
         checkpoint: Checkpoint | None, missing: list[str], attributes: dict, found: np.ndarray | None,
+        history: list[tuple[int, int, Any]] | None = None,
     ):  # fmt: skip
         self.attributes, self.found = attributes, found
+        self.history = history  # of a `carom.Run`: what its forces were set to
         self.scene, self.settings, self.options = scene, settings, options
         self.records, self.checkpoint, self.missing = records, checkpoint, missing
         self.clock = r.new_clock()

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from carom.geometry import quaternion
-from carom.io.models.build import Build, Coordinate
+from carom.io.models.build import Build
 from carom.io.models.links import Link, called, name_of
 from carom.io.models.report import need_mujoco
+from carom.results.robot import Coordinate
 from carom.scene import constraints, forces
 from carom.scene.bodies import GROUND
 

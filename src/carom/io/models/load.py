@@ -22,6 +22,7 @@ from carom.io.models.model import Model
 from carom.io.models.overlaps import lift_out, pose
 from carom.io.models.reading import compiled_model
 from carom.io.models.report import Report
+from carom.io.models.robot import robot_of
 from carom.io.models.solids import Solid, add_standing, colour, covering, geoms_of
 from carom.io.models.state import as_it_acts, is_off, point_velocity, starting_data
 from carom.io.models.touching import Filter
@@ -237,16 +238,13 @@ def _finished(build: Build, m, links, covers, restitution: float) -> Model:
     for link in links:
         for g in covers[link.body][1]:
             build.geoms[g] = build.moving(link.body)
+    robot = build.scene._robot = robot_of(build, links)
     return Model(
         scene=build.scene,
         report=build.report,
         bodies={name_of(m, "body", b): build.carrier(b) for b in range(m.nbody)},
-        joints={name_of(m, "joint", j): c for j, c in build.coordinates.items()},
+        joints=robot.joints,
         geoms={name_of(m, "geom", g): part for g, part in sorted(build.geoms.items())},
         restitution=restitution,
         mujoco=m,
-        _start=build.data.qpos.copy(),
-        _links=links,
-        _coordinates=build.coordinates,
-        _balls=build.balls,
     )

@@ -1,0 +1,356 @@
+"""A model in its own coordinates: its `qpos`, `qvel`, controls and sensors, in the order of MuJoCo.
+
+A scene that `load_model` has made has a `Robot`, which is stored with it. A hinge or a slide has the coordinate
+``q = start + sign * coordinate of the scene``; a ball joint has the quaternion of its child relative to its
+parent, and the angular velocity in axes of the child; a free joint has position and quaternion of the axes of
+its body, the velocity of their origin in world axes, and the angular velocity in axes of the body.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from carom import arguments, checks, fields
+from carom.fields import Integer, Number, Value, Vector
+from carom.geometry import quaternion
+from carom.results.joint_coordinates import TURN, Sides, sides_of
+from carom.scene import joints as j
+from carom.scene.bodies import Body
+from carom.scene.constraints import coordinate_kind
+from carom.scene.forces import AppliedForce
+from carom.scene.joints import Joint
+
+UNIT = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+def _array(name: str, value) -> np.ndarray:
+    return checks.finite_array(name, value, (None,))
+
+
+@arguments.known
+@dataclass(frozen=True, eq=False)
+class Coordinate:
+    """A coordinate of a hinge or a slide of the model: ``q = start + sign * coordinate of the scene``.
+
+    Attributes
+    ----------
+    name : str
+        Name of the joint in the model.
+    joint : Joint
+        Joint of the scene.
+    index : int
+        Index of the coordinate of this joint.
+    sign : float
+        1 or -1.
+    start : float
+        q at the start [rad or m].
+    row : int
+        Its number among the coordinates of the model.
+    position, velocity : int
+        Its places in `qpos` and in `qvel`.
+    """
+
+    name: str
+    joint: Joint
+    index: Integer = fields.integer(least=0)
+    sign: Number = fields.number()
+    start: Number = fields.number()
+    row: Integer = fields.integer(least=0)
+    position: Integer = fields.integer(least=0)
+    velocity: Integer = fields.integer(least=0)
+
+    def of(self, states) -> tuple[Any, Any]:
+        """Return q and its rate, as the model defines them.
+
+        Parameters
+        ----------
+        states : Solution or SystemState
+            For a solution, q and rate are arrays (T,), with whole turns counted between saved times; for the
+            state of a run they are numbers, with the whole turns that the run has counted.
+        """
+        q, rate = states.joint_coordinates(self.joint.name)
+        q, rate = q[..., self.index], rate[..., self.index]
+        turns = getattr(states, "_turns", None)
+        if turns is not None and coordinate_kind(self.joint, self.index) == "turn":
+            q = q + TURN * round((turns[self.row] - q) / TURN)
+        return self.start + self.sign * q, self.sign * rate
+
+
+@dataclass(frozen=True, eq=False)
+class Ball:
+    """A ball joint of the model, with the places of its first numbers in `qpos` and in `qvel`."""
+
+    name: str
+    joint: Joint
+    position: Integer = fields.integer(least=0)
+    velocity: Integer = fields.integer(least=0)
+
+
+@dataclass(frozen=True, eq=False)
+class FreeBody:
+    """A body with a free joint: its mass centre in the axes of the model, and its places as of a `Ball`."""
+
+    name: str
+    body: Body
+    centre: Vector = fields.vector()
+    position: Integer = fields.integer(least=0)
+    velocity: Integer = fields.integer(least=0)
+
+
+@dataclass(frozen=True, eq=False)
+class Keyframe:
+    """A named state of a model.
+
+    Attributes
+    ----------
+    name : str
+    qpos : (nq,)
+    qvel : (nv,)
+    ctrl : (nu,)
+    """
+
+    name: str
+    qpos: Value[np.ndarray, Any] = Value(_array)
+    qvel: Value[np.ndarray, Any] = Value(_array)
+    ctrl: Value[np.ndarray, Any] = Value(_array)
+
+
+class Motion(NamedTuple):
+    """Position, orientation, velocity and angular velocity (N, ...) of all bodies, and the turns of joints."""
+
+    position: np.ndarray
+    orientation: np.ndarray
+    velocity: np.ndarray
+    angular_velocity: np.ndarray
+    turns: np.ndarray | None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Robot:
+    """A model in its own coordinates, which its scene has as `Scene.robot`.
+
+    The methods take a `Solution`, also one from a file, and give arrays with time first; or `Run.state`, and
+    give the values at that time.
+
+    Attributes
+    ----------
+    start : (nq,)
+        `qpos` at the start.
+    coordinates, balls, frees, keyframe_list : tuples
+    """
+
+    start: Value[np.ndarray, Any] = Value(_array)
+    coordinates: tuple[Coordinate, ...] = ()
+    balls: tuple[Ball, ...] = ()
+    frees: tuple[FreeBody, ...] = ()
+    keys: tuple[Keyframe, ...] = ()
+
+    @cached_property
+    def joints(self) -> dict[str, Coordinate]:
+        """Hinges and slides by name."""
+        return {one.name: one for one in self.coordinates}
+
+    @cached_property
+    def keyframes(self) -> Mapping[str, Keyframe]:
+        """Keyframes by name."""
+        return Named("keyframe", {one.name: one for one in self.keys})
+
+    @property
+    def nv(self) -> int:
+        """Number of velocities."""
+        return len(self.coordinates) + 3 * len(self.balls) + 6 * len(self.frees)
+
+    def qpos(self, states) -> np.ndarray:
+        """Return the coordinates (T, nq) or (nq,) of a solution or state, as MuJoCo's ``data.qpos``."""
+        states = self._checked(states)
+        q = np.empty((*states.position.shape[:-2], len(self.start)))
+        q[...] = self.start
+        for one in self.coordinates:
+            q[..., one.position] = one.of(states)[0]
+        for one in self.balls:
+            turned = _relative(one.joint, states)
+            q[..., one.position : one.position + 4] = quaternion.multiply(
+                np.broadcast_to(self._ball_start(one), turned.shape), turned
+            )
+        for one in self.frees:
+            turn = states.orientation[..., one.body.index, :]
+            origin = states.position[..., one.body.index, :] - quaternion.rotate(turn, one.centre)
+            q[..., one.position : one.position + 3] = origin
+            q[..., one.position + 3 : one.position + 7] = turn
+        return q
+
+    def qvel(self, states) -> np.ndarray:
+        """Return the velocities (T, nv) or (nv,) of a solution or state, as MuJoCo's ``data.qvel``."""
+        states = self._checked(states)
+        rates = np.empty((*states.position.shape[:-2], self.nv))
+        for one in self.coordinates:
+            rates[..., one.velocity] = one.of(states)[1]
+        spin = states.angular_velocity
+        for one in self.balls:
+            child, parent = one.joint.child, one.joint.parent
+            relative = spin[..., child.index, :]
+            if isinstance(parent, Body):
+                relative = relative - spin[..., parent.index, :]
+            own = quaternion.rotate_back(states.orientation[..., child.index, :], relative)
+            rates[..., one.velocity : one.velocity + 3] = own
+        for one in self.frees:
+            turn, w = (part[..., one.body.index, :] for part in (states.orientation, spin))
+            arm, first = quaternion.rotate(turn, one.centre), one.velocity
+            rates[..., first : first + 3] = states.velocity[..., one.body.index, :] - np.cross(w, arm)
+            rates[..., first + 3 : first + 6] = quaternion.rotate_back(turn, w)
+        return rates
+
+    @property
+    def parts_by_name(self) -> list[tuple[str, int]]:
+        """Names and indices of the joints and bodies that coordinates move."""
+        parts = [one.joint for one in (*self.coordinates, *self.balls)]
+        return [(part.name, part.index) for part in (*parts, *(one.body for one in self.frees))]
+
+    def _ball_start(self, one: Ball) -> np.ndarray:
+        return self.start[one.position : one.position + 4]
+
+    def _checked(self, states):
+        """Return states of a scene with the bodies of this model."""
+        from carom.results.solution import Solution
+        from carom.results.state import SystemState
+
+        checks.instance("states", states, (Solution, SystemState))
+        scene = states.scene if isinstance(states, Solution) else states._scene
+        if scene.robot is not self and (
+            scene.robot is None or scene.robot.parts_by_name != self.parts_by_name
+        ):
+            raise ValueError(f"states must be of the scene of this model, got {states!r}")
+        return states
+
+    def placed(self, base, qpos, qvel) -> Motion:
+        """Return the motion of all bodies for coordinates of the model, None for those of the state `base`.
+
+        Bodies that are not moved by coordinates of the model stay as in `base`.
+
+        Raises
+        ------
+        ValueError
+            If an array has a wrong length, or a quaternion is 0.
+        """
+        q = self.qpos(base) if qpos is None else checks.finite_array("qpos", qpos, (len(self.start),))
+        v = self.qvel(base) if qvel is None else checks.finite_array("qvel", qvel, (self.nv,))
+        moved = Motion(
+            base.position.copy(), base.orientation.copy(), base.velocity.copy(),
+            base.angular_velocity.copy(), None if base._turns is None else base._turns.copy(),
+        )  # fmt: skip
+        x, Q, speed, spin, turns = moved
+        for one in self.frees:
+            b, first = one.body.index, one.position
+            Q[b] = _unit(one, q[first + 3 : first + 7])
+            arm = quaternion.rotate(Q[b], one.centre)
+            spin[b] = quaternion.rotate(Q[b], v[one.velocity + 3 : one.velocity + 6])
+            x[b] = q[first : first + 3] + arm
+            speed[b] = v[one.velocity : one.velocity + 3] + np.cross(spin[b], arm)
+        by_joint: dict[int, list[Coordinate]] = {}
+        for one in self.coordinates:
+            by_joint.setdefault(one.joint.index, []).append(one)
+            if turns is not None:
+                turns[one.row] = one.sign * (q[one.position] - one.start)
+        links: dict[int, Any] = {k: (some[0].joint, some) for k, some in by_joint.items()}
+        links |= {one.joint.index: (one.joint, one) for one in self.balls}
+        for _, (joint, of) in sorted(links.items()):  # parents before children, as they were added
+            if isinstance(of, Ball):
+                turned = _unit(of, q[of.position : of.position + 4])
+                turned = quaternion.multiply(quaternion.conjugate(self._ball_start(of)), turned)
+                rates = v[of.velocity : of.velocity + 3]
+                _put_ball(joint, turned, rates, moved)
+            else:
+                own = np.zeros((2, len(joint.definition.coordinates)))
+                for one in of:
+                    own[:, one.index] = one.sign * (q[one.position] - one.start), one.sign * v[one.velocity]
+                _put_child(sides_of(joint), *own, moved)
+        return moved
+
+    def __repr__(self) -> str:
+        return f"<Robot: {len(self.start)} coordinates>"
+
+
+class Named(dict):
+    """Things by name; the message about another name lists them."""
+
+    def __init__(self, kind: str, things: Mapping[str, Any]):
+        super().__init__(things)
+        self.kind = kind
+
+    def __missing__(self, name):
+        known = ", ".join(map(repr, self)) or "none"
+        raise KeyError(f"the model has no {self.kind} {name!r}; it has {known}{checks.nearest(str(name), self)}")
+
+
+def _unit(one, q: np.ndarray) -> np.ndarray:
+    """Return a quaternion of `qpos`, normalised as MuJoCo does."""
+    length = math.sqrt(float(q @ q))
+    if not length > 0.0:
+        raise ValueError(f"qpos must have a quaternion of {one.name!r}, got 0")
+    return q / length
+
+
+def _relative(joint: Joint, states) -> np.ndarray:
+    """Return C0* P0 P* C for the orientations P of the parent and C of the child: 1 at the start."""
+    child = states.orientation[..., joint.child.index, :]
+    start = quaternion.conjugate(joint.child.orientation)
+    turned = np.broadcast_to(start, child.shape)
+    if isinstance(joint.parent, Body):
+        turned = quaternion.multiply(turned, np.broadcast_to(joint.parent.orientation, child.shape))
+        back = quaternion.conjugate(states.orientation[..., joint.parent.index, :])
+        turned = quaternion.multiply(turned, back)
+    return quaternion.multiply(turned, child)
+
+
+def _put_ball(joint: Joint, turned: np.ndarray, rates: np.ndarray, moved: Motion) -> None:
+    """Write the motion of the child of a ball joint: C = P P0* C0 turned, and its rate in its own axes."""
+    P, w = UNIT, np.zeros(3)
+    if isinstance(joint.parent, Body):
+        P = quaternion.multiply(
+            moved.orientation[joint.parent.index], quaternion.conjugate(joint.parent.orientation)
+        )
+        w = moved.angular_velocity[joint.parent.index]
+    C = quaternion.multiply(quaternion.multiply(P, joint.child.orientation), turned)
+    _hang(sides_of(joint), C, w + quaternion.rotate(C, rates), np.zeros(3), np.zeros(3), moved)
+
+
+def _put_child(joint: Sides, q: np.ndarray, rates: np.ndarray, moved: Motion) -> None:
+    """Write the motion of the child of a joint with coordinates q."""
+    P, w = UNIT, np.zeros(3)
+    if joint.parent.body >= 0:
+        P = moved.orientation[joint.parent.body]
+        w = moved.angular_velocity[joint.parent.body]
+    P = quaternion.multiply(P, np.array(joint.parent.turn))
+    turned, spin, shift, speed = UNIT, w.copy(), np.zeros(3), np.zeros(3)
+    axes = [np.array(axis) for axis in joint.axes]
+    if isinstance(joint.definition, j.Universal):
+        axes = [np.asarray(joint.definition.axis_parent), np.asarray(joint.definition.axis_child)]
+    for axis, kind, own, rate in zip(axes, joint.definition.coordinates, q, rates):
+        along = quaternion.rotate(quaternion.multiply(P, turned), axis)
+        if kind == "turn":
+            spin += rate * along
+            turned = quaternion.multiply(turned, quaternion.exp(own * axis))
+        else:  # slides come before a turn about another axis, or go along that of the turn
+            shift += own * along
+            speed += rate * along
+    C = quaternion.multiply(quaternion.multiply(P, turned), quaternion.conjugate(joint.child.turn))
+    _hang(joint, C, spin, shift, speed + np.cross(w, shift), moved)
+
+
+def _hang(joint: Sides, C, spin, shift, speed, moved: Motion) -> None:
+    """Write the motion of a child with this orientation, whose anchor is shifted from that of the parent."""
+    c, p, at, v = joint.child.body, joint.parent.body, np.array(joint.parent.anchor), np.zeros(3)
+    if p >= 0:
+        arm = quaternion.rotate(moved.orientation[p], at)
+        at = moved.position[p] + arm
+        v = moved.velocity[p] + np.cross(moved.angular_velocity[p], arm)
+    arm = quaternion.rotate(C, np.array(joint.child.anchor))
+    moved.orientation[c], moved.angular_velocity[c] = C, spin
+    moved.position[c] = at + shift - arm
+    moved.velocity[c] = v + speed - np.cross(spin, arm)
