@@ -10,8 +10,9 @@ import numpy as np
 from carom import checks
 from carom.geometry import quaternion
 from carom.model.compile import Compiled, attitudes
+from carom.results.robot import columns, commands, first_controls
 from carom.scene.forces import AppliedForce, Force, Torque
-from carom.scene.more_forces import JointForce, JointSpring
+from carom.scene.more_forces import Actuator, JointForce, JointSpring, Law
 
 HINT = "; state one by Scene.add_force, and give it or its name"
 UNITS = {Force: "N", Torque: "N m"}
@@ -25,7 +26,8 @@ class Place(NamedTuple):
 
     column: str  # force, torque or push
     rows: tuple[int, ...]
-    frame: np.ndarray | None  # quaternion of the body at the start, where the vector turns with it
+    frame: np.ndarray | None = None  # of the body at the start, where the vector turns with it
+    actuator: Actuator | None = None  # whose control is set
 
 
 class Applied:
@@ -34,6 +36,9 @@ class Applied:
     def __init__(self, run, implicit: bool, history: History | None = None):
         self.run, self.places = run, places(run.scene, run.compiled, implicit)
         self.history: History = list(history or ())
+        self.commands = commands(run.scene)
+        self.ctrl = first_controls(self.commands)
+        self._column = columns(self.commands)
         for index, value in {index: value for _, index, value in self.history}.items():
             self._put(index, value)
 
@@ -42,34 +47,46 @@ class Applied:
         scene = self.run.scene
         force = scene._parts.member("force", force, (AppliedForce,), HINT)
         place = self.places.get(force.index)
-        if place is None:
+        if place is None or place.actuator is not None:
+            hint = "" if place is None else f", whose control is run.ctrl[{force.name!r}]"
             raise ValueError(
                 "force must be a Force, a Torque or a JointForce with a number, got "
-                f"{force.name!r}, a {force.kind}"
+                f"{force.name!r}, a {force.kind}{hint}"
             )
         if place.column == "push":
             value = checks.number("value", value)
         else:
             value = checks.finite_array("value", value, (3,), unit=UNITS[type(force.definition)])
-        self.history.append((int(self.run.clock["saved"][0]), force.index, value))
-        self._put(force.index, value)
+        self.note(force.index, value)
+
+    def note(self, index: int, value) -> None:
+        """Set the force with this index to a value, which was checked, or the control of an actuator."""
+        self.history.append((int(self.run.clock["saved"][0]), index, value))
+        self._put(index, value)
 
     def _put(self, index: int, value) -> None:
-        put(self.run.compiled.system, self.places[index], value)
+        compiled, place = self.run.compiled, self.places[index]
+        if index in self._column:
+            self.ctrl[self._column[index]] = value
+        put(compiled.system, compiled.laws.get(index), place, value)
         if self.run.islands.joined.loads.size:  # a second time, for the island of loaded bodies
-            put(self.run.islands.joined, self.places[index], value)
+            put(self.run.islands.joined, None, place, value)
 
 
-def put(system, place: Place, value) -> None:
-    """Write the value of a force where kernels find it."""
-    if place.column == "push":
+def put(system, law: Law | None, place: Place, value) -> None:
+    """Write the value of a force where kernels find it, or a control into its law."""
+    if law is not None:
+        law.set(value)
+    elif place.column == "push":
+        if place.actuator is not None:
+            value = place.actuator.constant(value)
         system.relations.pushes["force"][place.rows[0]] = value
-        return
-    if place.frame is not None:
-        value = quaternion.rotate_back(place.frame, value)
-    column = system.loads[place.column]
-    for sign, row in zip((1.0, -1.0), place.rows):
-        column[row] = sign * value
+    else:
+        if place.frame is not None:
+            value = quaternion.rotate_back(place.frame, value)
+        column = system.loads[place.column]
+        for sign, row in zip((1.0, -1.0), place.rows):
+            column[row] = sign * value
 
 
 def places(scene, compiled: Compiled, implicit: bool) -> dict[int, Place]:
@@ -84,9 +101,11 @@ def places(scene, compiled: Compiled, implicit: bool) -> dict[int, Place]:
             frame = attitudes(force.child.orientation[None], at)[0] if d.follow else None
             out[force.index] = Place(type(d).__name__.lower(), rows, frame)
             loads += len(rows)
-        elif isinstance(d, JointForce):
-            if not callable(d.force):
-                out[force.index] = Place("push", (pushes,), None)
+        elif isinstance(d, (Actuator, JointForce)):
+            if isinstance(d, Actuator):
+                out[force.index] = Place("push", (pushes,), actuator=d)
+            elif not callable(d.force):
+                out[force.index] = Place("push", (pushes,))
             pushes += 1
         elif isinstance(d, JointSpring) and not implicit:
             pushes += 1
@@ -94,14 +113,14 @@ def places(scene, compiled: Compiled, implicit: bool) -> dict[int, Place]:
 
 
 def rows_of_forces(
-    history: History, places: dict[int, Place], system, saved: int
+    history: History, places: dict[int, Place], compiled: Compiled, saved: int
 ) -> Iterator[tuple[int, int]]:
-    """Go through ranges of saved rows in which forces stay as they are; write them into the system."""
+    """Go through ranges of saved rows in which forces stay as they are; write them into the scene."""
     first = 0
     for row, index, value in history:
         if min(row, saved) > first:
             yield first, min(row, saved)
             first = min(row, saved)
-        put(system, places[index], value)
+        put(compiled.system, compiled.laws.get(index), places[index], value)
     if saved > first:
         yield first, saved

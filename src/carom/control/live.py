@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.control.applied import Applied, History, places, rows_of_forces
-from carom.control.endless import BLOCK, Endless
+from carom.control.commands import Controls
+from carom.control.endless import BLOCK, Endless, Start
 from carom.dynamics.methods import METHODS
 from carom.io.files.checkpoint import capture, state_at_end
 from carom.io.files.kept import KeptRun
@@ -93,6 +94,7 @@ class Run:
                     raise ValueError(
                         f"{name} must be left out with a solution, which has its own, got {checks.shown(value)}"
                     )
+            self._start = None
             self._take_on(scene)
             return
         scene = scene.scene if isinstance(scene, Model) else scene
@@ -112,6 +114,7 @@ class Run:
         )
         check_scene(scene, settings)
         self._begin(scene, settings)
+        self._start: Start | None = None
         for mistake in mistakes(scene, settings):
             warnings.warn(mistake, MistakeWarning, stacklevel=3)
 
@@ -151,12 +154,25 @@ class Run:
     @property
     def state(self) -> SystemState:
         """The state at this time; it stays as it is when the run goes on."""
-        return SystemState(self._run, self._joints)
+        return SystemState(self._run, self._joints, self._applied.ctrl)
 
     @property
     def solution(self) -> Solution:
         """All of the run up to this time; it stays as it is when the run goes on, and `simulate` refuses it."""
         return solution_of(self._run, self._status, self._applied.history)
+
+    @property
+    def ctrl(self) -> Controls:
+        """Controls of the actuators: ``run.ctrl["hip"] = 0.5``, or ``run.ctrl = [0.5, 0.0]`` for all.
+
+        A control stays until it is set again. It is not clipped; a value outside the range of its actuator acts
+        as the nearest inside. An actuator is a `forces.Actuator` of the scene, or one of a model.
+        """
+        return Controls(self._applied)
+
+    @ctrl.setter
+    def ctrl(self, values: ArrayLike) -> None:
+        Controls(self._applied)[:] = checks.finite_array("ctrl", values, (len(self._applied.ctrl),))
 
     def set_force(self, force: AppliedForce | str, value: ArrayLike) -> None:
         """Set a force of the scene to a new value, which it keeps until it is set again.
@@ -213,7 +229,9 @@ class Run:
                 raise ValueError("keyframe must be given alone, got a state, qpos or qvel with it")
             key = _robot(self._run.scene, "keyframe").keyframes[keyframe]
             qpos, qvel = key.qpos, key.qvel
-        fresh = Endless(self._run.scene, self._run.how)
+        if self._start is None:
+            self._start = Start(Endless(self._run.scene, self._run.how))
+        fresh = self._start.again()
         if state is not None or qpos is not None or qvel is not None:
             begin = SystemState(fresh) if state is None else state
             if qpos is not None and qvel is None:
@@ -222,6 +240,8 @@ class Run:
             fresh.clock["saved"] = 0
             fresh.save_now()
         self._stand(fresh)
+        if key is not None and len(key.ctrl):
+            Controls(self._applied)[: len(key.ctrl)] = key.ctrl
 
     def set_state(
         self,
@@ -334,7 +354,7 @@ class Frozen(KeptRun):
         """Go through ranges of saved rows in which forces stay as they are; write them into the system."""
         implicit = METHODS[self.settings["method"]].kind == IMPLICIT
         at = places(self.scene, self.compiled, implicit)
-        return rows_of_forces(self.history or [], at, system, saved)
+        return rows_of_forces(self.history or [], at, self.compiled, saved)
 
 
 def solution_of(run: Endless, status: Status, history: History) -> Solution:

@@ -22,9 +22,9 @@ from carom.geometry import quaternion
 from carom.results.joint_coordinates import TURN, Sides, sides_of
 from carom.scene import joints as j
 from carom.scene.bodies import Body
-from carom.scene.constraints import coordinate_kind
 from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
+from carom.scene.more_forces import Actuator
 
 UNIT = np.array([1.0, 0.0, 0.0, 0.0])
 
@@ -51,7 +51,7 @@ class Coordinate:
     start : float
         q at the start [rad or m].
     row : int
-        Its number among the coordinates of the model.
+        Its number among the coordinates of the model; -1 of one that no model has.
     position, velocity : int
         Its places in `qpos` and in `qvel`.
     """
@@ -61,7 +61,7 @@ class Coordinate:
     index: Integer = fields.integer(least=0)
     sign: Number = fields.number()
     start: Number = fields.number()
-    row: Integer = fields.integer(least=0)
+    row: Integer = fields.integer(least=-1)
     position: Integer = fields.integer(least=0)
     velocity: Integer = fields.integer(least=0)
 
@@ -77,7 +77,7 @@ class Coordinate:
         q, rate = states.joint_coordinates(self.joint.name)
         q, rate = q[..., self.index], rate[..., self.index]
         turns = getattr(states, "_turns", None)
-        if turns is not None and coordinate_kind(self.joint, self.index) == "turn":
+        if turns is not None and self.row >= 0 and self.joint.definition.coordinates[self.index] == "turn":
             q = q + TURN * round((turns[self.row] - q) / TURN)
         return self.start + self.sign * q, self.sign * rate
 
@@ -101,6 +101,91 @@ class FreeBody:
     centre: Vector = fields.vector()
     position: Integer = fields.integer(least=0)
     velocity: Integer = fields.integer(least=0)
+
+
+@dataclass(frozen=True, eq=False)
+class Motor:
+    """An actuator of a model.
+
+    Attributes
+    ----------
+    name : str
+    parts : tuple of AppliedForce
+        Forces of the scene, with a `forces.Actuator` each: one, or one for each joint of a tendon; none of an
+        actuator that the scene does not represent.
+    terms : tuple of (Coordinate, float)
+        Coordinates and their factors in the length, ``sum of factor q``.
+    force_range : (2,) or None
+        Its own, without that of its joint.
+    """
+
+    name: str
+    parts: tuple[AppliedForce, ...]
+    terms: tuple[tuple[Coordinate, float], ...]
+    force_range: Value[np.ndarray | None, Any] = Value(_array, None)
+
+    def length(self, states) -> tuple[Any, Any]:
+        """Return the length and its rate, as of `Coordinate.of`."""
+        pairs = [(factor * np.array(one.of(states))) for one, factor in self.terms]
+        return tuple(sum(pairs)) if pairs else (0.0, 0.0)
+
+    def control(self, states) -> Any:
+        """Return the control, which is not clipped, as of `Coordinate.of`."""
+        scene = states._scene if hasattr(states, "_scene") else states.scene
+        names = [one.name for one in commands(scene)]
+        return controls(states)[..., names.index(self.name)]
+
+    def force(self, states) -> Any:
+        """Return the force of the actuator [N] or [N m], before its gear, as of `Coordinate.of`."""
+        control = self.control(states)
+        if not self.parts:
+            return 0.0 * control
+        d, (one, _) = self.parts[0].definition, self.terms[0]
+        q, rate = one.of(states)
+        if d.control_range is not None:
+            control = np.clip(control, *d.control_range)
+        force = d.affine(control, d.gear * one.sign * (q - one.start), d.gear * one.sign * rate)
+        return force if self.force_range is None else np.clip(force, *self.force_range)
+
+
+def commands(scene) -> list[Motor]:
+    """Return the actuators of a scene: those of its model, then others."""
+    own = [] if scene.robot is None else list(scene.robot.motors)
+    known = {part.index for one in own for part in one.parts}
+    for force in scene.forces:
+        d = force.definition
+        if isinstance(d, Actuator) and force.index not in known:
+            along = Coordinate(force.name, d.joint, d.coordinate, 1.0, 0.0, -1, 0, 0)
+            own.append(Motor(force.name, (force,), ((along, d.gear),), d.force_range))
+    return own
+
+
+def first_controls(motors: list[Motor]) -> np.ndarray:
+    """Return the controls (nu,) that actuators have until they are set."""
+    return np.array([one.parts[0].definition.control if one.parts else 0.0 for one in motors])
+
+
+def columns(motors: list[Motor]) -> dict[int, int]:
+    """Return the place of each actuator among the controls by the index of its force."""
+    return {part.index: k for k, one in enumerate(motors) for part in one.parts}
+
+
+def controls(states) -> np.ndarray:
+    """Return the controls (T, nu) of a solution, those that acted until each saved time; or (nu,) of a state."""
+    if getattr(states, "_ctrl", None) is not None:
+        return states._ctrl
+    of_state = hasattr(states, "_scene")
+    motors = commands(states._scene if of_state else states.scene)
+    first = first_controls(motors)
+    if of_state:
+        return first
+    place, u = columns(motors), np.full((len(states.t), len(motors)), np.nan)
+    u[0] = first
+    for row, index, value in getattr(states._run, "history", None) or ():
+        if row < len(u) and index in place:
+            u[row, place[index]] = value
+    since = np.maximum.accumulate(np.where(np.isnan(u), 0, np.arange(len(u))[:, None]), axis=0)
+    return np.take_along_axis(u, since, axis=0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +227,11 @@ class Robot:
     ----------
     start : (nq,)
         `qpos` at the start.
-    coordinates, balls, frees, keyframe_list : tuples
+    coordinates : tuple of Coordinate
+    balls, frees : tuples
+        Ball joints and bodies with free joints.
+    keys : tuple of Keyframe
+    motors : tuple of Motor
     """
 
     start: Value[np.ndarray, Any] = Value(_array)
@@ -150,6 +239,7 @@ class Robot:
     balls: tuple[Ball, ...] = ()
     frees: tuple[FreeBody, ...] = ()
     keys: tuple[Keyframe, ...] = ()
+    motors: tuple[Motor, ...] = ()
 
     @cached_property
     def joints(self) -> dict[str, Coordinate]:
@@ -160,6 +250,15 @@ class Robot:
     def keyframes(self) -> Mapping[str, Keyframe]:
         """Keyframes by name."""
         return Named("keyframe", {one.name: one for one in self.keys})
+
+    @cached_property
+    def actuators(self) -> Mapping[str, Motor]:
+        """Actuators by name."""
+        return Named("actuator", {one.name: one for one in self.motors})
+
+    def ctrl(self, states) -> np.ndarray:
+        """Return the controls (T, nu) or (nu,), as MuJoCo's ``data.ctrl``; (T, nu): of the step before."""
+        return controls(self._checked(states))
 
     @property
     def nv(self) -> int:

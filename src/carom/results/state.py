@@ -52,7 +52,7 @@ class SystemState:
         Energies of the whole system [J].
     """
 
-    def __init__(self, run, joints: dict[int, Sides] | None = None):
+    def __init__(self, run, joints: dict[int, Sides] | None = None, ctrl: np.ndarray | None = None):
         self._joints = {} if joints is None else joints  # joints prepared so far
         clock, rows = run.clock, run.now.view(np.ndarray).copy()
         rows.flags.writeable = False
@@ -60,6 +60,7 @@ class SystemState:
         self.t = float(clock["now"][0])
         self.kinetic_energy = float(clock["kinetic"][0])
         self.potential_energy = float(clock["potential"][0])
+        self._ctrl = None if ctrl is None else ctrl.copy()
         self._turns = run.compiled.system.relations.coordinates["reference"].copy()
 
     @classmethod
@@ -69,6 +70,7 @@ class SystemState:
         rows = np.zeros(len(scene.bodies), STATE)
         rows["x"], rows["Q"], rows["v"], rows["w"] = motion
         rows.flags.writeable = False
+        state._ctrl = None
         state._turns = None  # whole turns of the coordinates that a run counts
         state._joints, state._rows, state._scene, state._to_principal = {}, rows, scene, _NONE
         state.t, state.kinetic_energy, state.potential_energy = t, kinetic, potential

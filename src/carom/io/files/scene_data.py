@@ -30,7 +30,7 @@ import numpy as np
 from carom import checks
 from carom.fields import keep
 from carom.io.files.scene_check import check_record
-from carom.results.robot import Ball, Coordinate, FreeBody, Keyframe, Robot
+from carom.results.robot import Ball, Coordinate, FreeBody, Keyframe, Motor, Robot
 from carom.scene.bodies import FIXED, GROUND, Body, Ground
 from carom.scene.constraints import CONSTRAINTS, Constraint, Gear
 from carom.scene.contacts import Contact
@@ -43,7 +43,7 @@ from carom.scene.stops import Stop
 
 #: parts that have a name in the scene
 PARTS = (*FIXED, Body, Joint, AppliedForce, Constraint, Stop, Contact)
-ROBOT = (Robot, Coordinate, Ball, FreeBody, Keyframe)
+ROBOT = (Robot, Coordinate, Ball, FreeBody, Keyframe, Motor)
 TYPES: dict[str, type[Any]] = {
     kind.__name__: kind
     for kind in (

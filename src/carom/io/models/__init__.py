@@ -3,6 +3,6 @@
 from carom.io.models.load import load_model
 from carom.io.models.model import Model
 from carom.io.models.report import Entry, Report
-from carom.results.robot import Coordinate, Keyframe, Robot
+from carom.results.robot import Coordinate, Keyframe, Motor, Robot
 
-__all__ = ["Coordinate", "Entry", "Keyframe", "Model", "Report", "Robot", "load_model"]
+__all__ = ["Coordinate", "Entry", "Keyframe", "Model", "Motor", "Report", "Robot", "load_model"]

@@ -9,7 +9,6 @@ from carom.io.models.report import Report, need_mujoco
 
 #: parts listed by name: accessor of the model, count, description, replacement in the scene
 LISTED = (
-    ("actuator", "nu", "actuators are not represented", "exerts no force"),
     ("tendon", "ntendon", "tendons are not represented", "left out"),
     ("skin", "nskin", "is only visible", "left out"),
     ("sensor", "nsensor", "sensors are not represented", "use the solution"),

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
+from carom.io.models.actuators import add_actuators
 from carom.io.models.build import Build, Names
 from carom.io.models.contacts import add_contacts
 from carom.io.models.coordinates import add_coordinate_parts, add_mounts
@@ -158,6 +159,7 @@ def load_model(
     _add_gravcomp(build)
     add_coordinate_parts(build, limit_restitution, impact_law, armature)
     add_mounts(build, jointed)
+    motors = add_actuators(build)
     add_equalities(build)
     if contacts:
         moving = [
@@ -167,6 +169,7 @@ def load_model(
         solids = [*moving, *standing]
         add_contacts(build, solids, rules, restitution, friction, impact_law, overlaps == "refuse")
     report_leftovers(model, motions, report)
+    build.scene._robot = robot_of(build, links, motors)
     return _finished(build, model, links, covers, restitution)
 
 
@@ -238,7 +241,8 @@ def _finished(build: Build, m, links, covers, restitution: float) -> Model:
     for link in links:
         for g in covers[link.body][1]:
             build.geoms[g] = build.moving(link.body)
-    robot = build.scene._robot = robot_of(build, links)
+    robot = build.scene.robot
+    assert robot is not None
     return Model(
         scene=build.scene,
         report=build.report,

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from carom.io.models.report import Report
-from carom.results.robot import Coordinate, Keyframe, Robot
+from carom.results.robot import Coordinate, Keyframe, Motor, Robot
 from carom.results.solution import Solution
 from carom.results.state import SystemState
 from carom.scene.bodies import Body, Ground, HalfSpace
@@ -48,6 +48,11 @@ class Model:
     mujoco: Any
 
     @property
+    def actuators(self) -> Mapping[str, Motor]:
+        """Actuators by name: their `length`, `control` and `force`."""
+        return self._robot.actuators
+
+    @property
     def keyframes(self) -> Mapping[str, Keyframe]:
         """Keyframes by name: `qpos`, `qvel` and `ctrl`; for `Run.reset`."""
         return self._robot.keyframes
@@ -67,6 +72,13 @@ class Model:
     def qvel(self, states: Solution | SystemState) -> np.ndarray:
         """Return the velocities of the model, as MuJoCo's ``data.qvel``: (T, nv) or (nv,), as `qpos`."""
         return self._robot.qvel(states)
+
+    def ctrl(self, states: Solution | SystemState) -> np.ndarray:
+        """Return the controls of the actuators, as MuJoCo's ``data.ctrl``: (T, nu) or (nu,), as `qpos`.
+
+        Those of a saved time are the ones that acted until then.
+        """
+        return self._robot.ctrl(states)
 
     @property
     def _robot(self) -> Robot:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from carom.io.models.build import Build
 from carom.io.models.links import Link, name_of
 from carom.io.models.report import need_mujoco
-from carom.results.robot import Ball, FreeBody, Keyframe, Robot
+from carom.results.robot import Ball, FreeBody, Keyframe, Motor, Robot
 
 
-def robot_of(build: Build, links: list[Link]) -> Robot:
+def robot_of(build: Build, links: list[Link], motors: list[Motor]) -> Robot:
     """Return the robot of a scene in the making."""
     m, free = build.model, need_mujoco().mjtJoint.mjJNT_FREE
     places = {j: (int(m.jnt_qposadr[j]), int(m.jnt_dofadr[j])) for j in range(m.njnt)}
@@ -22,4 +22,6 @@ def robot_of(build: Build, links: list[Link]) -> Robot:
         Keyframe(name_of(m, "key", k), m.key_qpos[k], m.key_qvel[k], m.key_ctrl[k])
         for k in range(m.nkey)
     ]
-    return Robot(build.data.qpos, tuple(build.coordinates.values()), tuple(balls), tuple(frees), tuple(keys))
+    return Robot(
+        build.data.qpos, tuple(build.coordinates.values()), tuple(balls), tuple(frees), tuple(keys), tuple(motors)
+    )  # fmt: skip
