@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
-from carom.control.applied import Applied, History, places, rows_of_forces
+from carom.control.applied import Applied
 from carom.control.commands import Controls
 from carom.control.endless import BLOCK, Endless, Start
+from carom.control.meter import Meter
 from carom.dynamics.methods import METHODS
 from carom.io.files.checkpoint import capture, state_at_end
 from carom.io.files.kept import KeptRun
@@ -22,6 +23,7 @@ from carom.model.compile import attitudes
 from carom.model.method import IMPLICIT
 from carom.options import Options
 from carom.results.robot import Robot
+from carom.results.set_forces import History
 from carom.results.solution import Solution
 from carom.results.state import SystemState
 from carom.scene.forces import AppliedForce
@@ -94,7 +96,7 @@ class Run:
                     raise ValueError(
                         f"{name} must be left out with a solution, which has its own, got {checks.shown(value)}"
                     )
-            self._start = None
+            self._start = self._meter = None
             self._take_on(scene)
             return
         scene = scene.scene if isinstance(scene, Model) else scene
@@ -115,6 +117,7 @@ class Run:
         check_scene(scene, settings)
         self._begin(scene, settings)
         self._start: Start | None = None
+        self._meter: Meter | None = None
         for mistake in mistakes(scene, settings):
             warnings.warn(mistake, MistakeWarning, stacklevel=3)
 
@@ -154,7 +157,12 @@ class Run:
     @property
     def state(self) -> SystemState:
         """The state at this time; it stays as it is when the run goes on."""
-        return SystemState(self._run, self._joints, self._applied.ctrl)
+        robot, measured = self._run.scene.robot, None
+        if robot is not None and robot.dynamic:
+            if self._meter is None:
+                self._meter = Meter(self._run)
+            measured = self._meter.read(self._run)
+        return SystemState(self._run, self._joints, self._applied.ctrl, measured)
 
     @property
     def solution(self) -> Solution:
@@ -342,21 +350,6 @@ def place(run: Endless, state: SystemState, qpos, qvel) -> None:
     run.check(run.scene)
 
 
-class Frozen(KeptRun):
-    """The records of a run up to some time, and the forces that were set until then."""
-
-    def __init__(self, run: Endless, settings: dict, history: History):
-        records, past = r.trimmed(run.records, run.clock), {"status": Status.SUCCESS.name}
-        known = run.scene, settings, run.options, records, None, [], past, run.found, history
-        super().__init__(*known)
-
-    def rows_of_forces(self, system, saved: int):
-        """Go through ranges of saved rows in which forces stay as they are; write them into the system."""
-        implicit = METHODS[self.settings["method"]].kind == IMPLICIT
-        at = places(self.scene, self.compiled, implicit)
-        return rows_of_forces(self.history or [], at, self.compiled, saved)
-
-
 def solution_of(run: Endless, status: Status, history: History) -> Solution:
     """Return the solution of a run up to now; the run may go on, and knows nothing of it."""
     clock = run.clock.copy()
@@ -366,7 +359,8 @@ def solution_of(run: Endless, status: Status, history: History) -> Solution:
     made = run.solution(status)
     longest = run.how.step or run.controls.interval
     settings = {**made.settings, "duration": max(run.reached, longest)}
-    kept = Frozen(run, settings, list(history))
+    records, past = r.trimmed(run.records, run.clock), {"status": Status.SUCCESS.name}
     run.clock[:] = clock
-    kept.checkpoint = capture(run)
+    known = run.scene, settings, run.options, records, capture(run), [], past, run.found
+    kept = KeptRun(*known, list(history))
     return replace(made, settings=settings, _run=kept)

@@ -232,6 +232,7 @@ class Robot:
         Ball joints and bodies with free joints.
     keys : tuple of Keyframe
     motors : tuple of Motor
+    readings : tuple of Sensor
     """
 
     start: Value[np.ndarray, Any] = Value(_array)
@@ -240,6 +241,7 @@ class Robot:
     frees: tuple[FreeBody, ...] = ()
     keys: tuple[Keyframe, ...] = ()
     motors: tuple[Motor, ...] = ()
+    readings: tuple[Any, ...] = ()
 
     @cached_property
     def joints(self) -> dict[str, Coordinate]:
@@ -255,6 +257,16 @@ class Robot:
     def actuators(self) -> Mapping[str, Motor]:
         """Actuators by name."""
         return Named("actuator", {one.name: one for one in self.motors})
+
+    @cached_property
+    def sensors(self) -> Mapping[str, Any]:
+        """Sensors by name."""
+        return Named("sensor", {one.name: one for one in self.readings})
+
+    @cached_property
+    def dynamic(self) -> bool:
+        """Whether a sensor needs accelerations or forces of contacts."""
+        return any(one.dynamic for one in self.readings)
 
     def ctrl(self, states) -> np.ndarray:
         """Return the controls (T, nu) or (nu,), as MuJoCo's ``data.ctrl``; (T, nu): of the step before."""

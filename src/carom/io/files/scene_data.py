@@ -31,6 +31,7 @@ from carom import checks
 from carom.fields import keep
 from carom.io.files.scene_check import check_record
 from carom.results.robot import Ball, Coordinate, FreeBody, Keyframe, Motor, Robot
+from carom.results.sensors import Frame, Sensor
 from carom.scene.bodies import FIXED, GROUND, Body, Ground
 from carom.scene.constraints import CONSTRAINTS, Constraint, Gear
 from carom.scene.contacts import Contact
@@ -43,7 +44,7 @@ from carom.scene.stops import Stop
 
 #: parts that have a name in the scene
 PARTS = (*FIXED, Body, Joint, AppliedForce, Constraint, Stop, Contact)
-ROBOT = (Robot, Coordinate, Ball, FreeBody, Keyframe, Motor)
+ROBOT = (Robot, Coordinate, Ball, FreeBody, Keyframe, Motor, Frame, Sensor)
 TYPES: dict[str, type[Any]] = {
     kind.__name__: kind
     for kind in (

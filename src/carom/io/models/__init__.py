@@ -4,5 +4,6 @@ from carom.io.models.load import load_model
 from carom.io.models.model import Model
 from carom.io.models.report import Entry, Report
 from carom.results.robot import Coordinate, Keyframe, Motor, Robot
+from carom.results.sensors import Sensor
 
-__all__ = ["Coordinate", "Entry", "Keyframe", "Model", "Motor", "Report", "Robot", "load_model"]
+__all__ = ["Coordinate", "Entry", "Keyframe", "Model", "Motor", "Report", "Robot", "Sensor", "load_model"]

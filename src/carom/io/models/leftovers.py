@@ -11,7 +11,6 @@ from carom.io.models.report import Report, need_mujoco
 LISTED = (
     ("tendon", "ntendon", "tendons are not represented", "left out"),
     ("skin", "nskin", "is only visible", "left out"),
-    ("sensor", "nsensor", "sensors are not represented", "use the solution"),
 )
 #: arrays whose nonzero values are left out, if this version of MuJoCo has them
 NOT_ZERO = (

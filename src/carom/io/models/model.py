@@ -10,6 +10,7 @@ import numpy as np
 
 from carom.io.models.report import Report
 from carom.results.robot import Coordinate, Keyframe, Motor, Robot
+from carom.results.sensors import Sensor
 from carom.results.solution import Solution
 from carom.results.state import SystemState
 from carom.scene.bodies import Body, Ground, HalfSpace
@@ -51,6 +52,11 @@ class Model:
     def actuators(self) -> Mapping[str, Motor]:
         """Actuators by name: their `length`, `control` and `force`."""
         return self._robot.actuators
+
+    @property
+    def sensors(self) -> Mapping[str, Sensor]:
+        """Sensors by name; also ``solution["gyro"]`` and ``run.state["gyro"]``."""
+        return self._robot.sensors
 
     @property
     def keyframes(self) -> Mapping[str, Keyframe]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from carom.io.models.build import Build
 from carom.io.models.links import Link, name_of
 from carom.io.models.report import need_mujoco
+from carom.io.models.sensors import sensors_of
 from carom.results.robot import Ball, FreeBody, Keyframe, Motor, Robot
 
 
@@ -23,5 +24,6 @@ def robot_of(build: Build, links: list[Link], motors: list[Motor]) -> Robot:
         for k in range(m.nkey)
     ]
     return Robot(
-        build.data.qpos, tuple(build.coordinates.values()), tuple(balls), tuple(frees), tuple(keys), tuple(motors)
+        build.data.qpos, tuple(build.coordinates.values()), tuple(balls), tuple(frees), tuple(keys), tuple(motors),
+        tuple(sensors_of(build, links, motors)),
     )  # fmt: skip
