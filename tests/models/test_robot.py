@@ -206,7 +206,9 @@ def test_a_position_servo_swings():
 
     Beyond its range a control acts as the end of it, and the work of the servo is in the ledger.
     """
-    model, run = wheel('<position name="a" joint="axle" kp="2" kv=".1" gear="3" ctrlrange="-1 .6"/>')
+    model, run = wheel(
+        '<position name="a" joint="axle" kp="2" kv=".1" gear="3" ctrlrange="-1 .6"/>'
+    )
     assert not model.report.of("actuator")
     run.ctrl["a"] = 5.0
     assert run.ctrl["a"] == 5.0
@@ -229,7 +231,9 @@ def test_a_position_servo_swings():
 
 def test_a_servo_whose_force_is_limited():
     """Far from its target the torque is the limit, q = F t^2/(2 J); near it the law is linear."""
-    model, run = wheel('<position name="a" joint="axle" kp="100" kv="20" forcerange="-.3 .3"/>', 1e-8)
+    model, run = wheel(
+        '<position name="a" joint="axle" kp="100" kv="20" forcerange="-.3 .3"/>', 1e-8
+    )
     run.ctrl["a"] = 1.0
     run.advance(0.7)
     assert model.qpos(run.state)[0] == pytest.approx(0.3 * 0.7**2, abs=1e-9)
@@ -276,13 +280,17 @@ def test_an_actuator_of_a_scene_with_the_implicit_method(tmp_path):
 def test_controls_that_are_wrong(arm):
     run = carom.Run(arm, step=1e-3)
     names = "'shoulder', 'knee', 'grip', 'twist', 'swing', 'both'"
-    with pytest.raises(KeyError, match=f"the run has no actuator 'gripper'; it has {names}; did you mean 'grip'"):
+    with pytest.raises(
+        KeyError, match=f"the run has no actuator 'gripper'; it has {names}; did you mean 'grip'"
+    ):
         run.ctrl["gripper"] = 1.0
     with pytest.raises(ValueError, match=r"ctrl\['grip'\] must be finite"):
         run.ctrl["grip"] = math.nan
     with pytest.raises(ValueError, match=r"ctrl must have shape \(6,\), got shape \(2,\)"):
         run.ctrl = [1.0, 2.0]
-    with pytest.raises(ValueError, match=r"a Actuator, whose control is run\.ctrl\['knee \(actuator\)'\]"):
+    with pytest.raises(
+        ValueError, match=r"a Actuator, whose control is run\.ctrl\['knee \(actuator\)'\]"
+    ):
         run.set_force("knee (actuator)", 1.0)
     with pytest.raises(ValueError, match=r"force_range must be \(least, greatest\)"):
         carom.forces.Actuator(arm.joints["knee"].joint, force_range=(1.0, -1.0))

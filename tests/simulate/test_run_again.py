@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from simulate.test_run_public import arm, cart, dice
 
 import carom
+from simulate.test_run_public import arm, cart, dice
 
 G = 9.81
 TABLES = ("t", "position", "orientation", "velocity", "angular_velocity", "total_energy")
@@ -38,7 +38,9 @@ def test_a_solution_of_a_run_is_taken_on(tmp_path, how):
     again = carom.Run(carom.Solution.load(tmp_path / "again.nc"))
     assert np.array_equal(steps(again, 1).state.velocity, whole.velocity[61])
     for refuse in (loaded.simulate, lambda d: carom.resume(tmp_path / "run.nc", duration=1.0 + d)):
-        with pytest.raises(ValueError, match=r"that of a Run: take it on with carom\.Run\(solution\)"):
+        with pytest.raises(
+            ValueError, match=r"that of a Run: take it on with carom\.Run\(solution\)"
+        ):
             refuse(0.1)
 
 
@@ -76,7 +78,9 @@ def test_what_cannot_be_taken_on():
         carom.Run(solution, step=0.02)
     with pytest.raises(ValueError, match="save_every must be left out"):
         carom.Run(solution, save_every=2)
-    with pytest.raises(TypeError, match=r"scene must be a carom\.Scene, a Model or a Solution, got 3"):
+    with pytest.raises(
+        TypeError, match=r"scene must be a carom\.Scene, a Model or a Solution, got 3"
+    ):
         carom.Run(3)
 
 

@@ -326,7 +326,9 @@ class Run:
 def _robot(scene: Scene, name: str) -> Robot:
     """Return the model of a scene, or say that an argument needs one."""
     if scene.robot is None:
-        raise ValueError(f"{name} must be left out: only a scene of load_model has coordinates of a model")
+        raise ValueError(
+            f"{name} must be left out: only a scene of load_model has coordinates of a model"
+        )
     return scene.robot
 
 

@@ -225,7 +225,10 @@ def accelerations(solution) -> np.ndarray:
     """
     run = solution._run
     system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
-    out, work = np.zeros((len(rec.state), len(system.bodies), 6)), r.new_work(system, run.method.b.size)
+    out, work = (
+        np.zeros((len(rec.state), len(system.bodies), 6)),
+        r.new_work(system, run.method.b.size),
+    )
     with _kept_turns(system):
         for first, last in ranges_of(run, len(out)):
             for k in range(first, last):

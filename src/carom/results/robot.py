@@ -77,7 +77,11 @@ class Coordinate:
         q, rate = states.joint_coordinates(self.joint.name)
         q, rate = q[..., self.index], rate[..., self.index]
         turns = getattr(states, "_turns", None)
-        if turns is not None and self.row >= 0 and self.joint.definition.coordinates[self.index] == "turn":
+        if (
+            turns is not None
+            and self.row >= 0
+            and self.joint.definition.coordinates[self.index] == "turn"
+        ):
             q = q + TURN * round((turns[self.row] - q) / TURN)
         return self.start + self.sign * q, self.sign * rate
 
@@ -140,12 +144,18 @@ class Motor:
         control = self.control(states)
         if not self.parts:
             return 0.0 * control
-        d, (one, _) = self.parts[0].definition, self.terms[0]
+        d, (one, _) = _actuator(self), self.terms[0]
         q, rate = one.of(states)
         if d.control_range is not None:
             control = np.clip(control, *d.control_range)
         force = d.affine(control, d.gear * one.sign * (q - one.start), d.gear * one.sign * rate)
         return force if self.force_range is None else np.clip(force, *self.force_range)
+
+
+def _actuator(motor: Motor) -> Actuator:
+    d = motor.parts[0].definition
+    assert isinstance(d, Actuator)
+    return d
 
 
 def commands(scene) -> list[Motor]:
@@ -162,7 +172,7 @@ def commands(scene) -> list[Motor]:
 
 def first_controls(motors: list[Motor]) -> np.ndarray:
     """Return the controls (nu,) that actuators have until they are set."""
-    return np.array([one.parts[0].definition.control if one.parts else 0.0 for one in motors])
+    return np.array([_actuator(one).control if one.parts else 0.0 for one in motors])
 
 
 def columns(motors: list[Motor]) -> dict[int, int]:
@@ -313,7 +323,9 @@ class Robot:
         for one in self.frees:
             turn, w = (part[..., one.body.index, :] for part in (states.orientation, spin))
             arm, first = quaternion.rotate(turn, one.centre), one.velocity
-            rates[..., first : first + 3] = states.velocity[..., one.body.index, :] - np.cross(w, arm)
+            rates[..., first : first + 3] = states.velocity[..., one.body.index, :] - np.cross(
+                w, arm
+            )
             rates[..., first + 3 : first + 6] = quaternion.rotate_back(turn, w)
         return rates
 
@@ -349,7 +361,11 @@ class Robot:
         ValueError
             If an array has a wrong length, or a quaternion is 0.
         """
-        q = self.qpos(base) if qpos is None else checks.finite_array("qpos", qpos, (len(self.start),))
+        q = (
+            self.qpos(base)
+            if qpos is None
+            else checks.finite_array("qpos", qpos, (len(self.start),))
+        )
         v = self.qvel(base) if qvel is None else checks.finite_array("qvel", qvel, (self.nv,))
         moved = Motion(
             base.position.copy(), base.orientation.copy(), base.velocity.copy(),
@@ -379,8 +395,11 @@ class Robot:
             else:
                 own = np.zeros((2, len(joint.definition.coordinates)))
                 for one in of:
-                    own[:, one.index] = one.sign * (q[one.position] - one.start), one.sign * v[one.velocity]
-                _put_child(sides_of(joint), *own, moved)
+                    own[:, one.index] = (
+                        one.sign * (q[one.position] - one.start),
+                        one.sign * v[one.velocity],
+                    )
+                _put_child(sides_of(joint), own[0], own[1], moved)
         return moved
 
     def __repr__(self) -> str:
@@ -396,7 +415,9 @@ class Named(dict):
 
     def __missing__(self, name):
         known = ", ".join(map(repr, self)) or "none"
-        raise KeyError(f"the model has no {self.kind} {name!r}; it has {known}{checks.nearest(str(name), self)}")
+        raise KeyError(
+            f"the model has no {self.kind} {name!r}; it has {known}{checks.nearest(str(name), self)}"
+        )
 
 
 def _unit(one, q: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ it, and the forces of persistent contacts, but not the impulses of impacts.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -31,6 +31,9 @@ class Frame:
     body: Body | Ground = GROUND
     position: Vector = fields.vector((0.0, 0.0, 0.0))
     orientation: Value[np.ndarray, Any] = Value(checks.unit_quaternion, (1.0, 0.0, 0.0, 0.0))
+
+
+WORLD = Frame()
 
 
 class Moving(NamedTuple):
@@ -74,8 +77,8 @@ class Sensor:
 
     name: str
     kind: str
-    frame: Frame = field(default_factory=Frame)
-    reference: Frame = field(default_factory=Frame)
+    frame: Frame = WORLD
+    reference: Frame = WORLD
     members: tuple[Body, ...] = ()
     terms: tuple[tuple[Coordinate, float], ...] = ()
     motors: tuple[tuple[Motor, float], ...] = ()
@@ -221,7 +224,11 @@ def _momentum(one: Sensor, states):
     for body in one.members:
         b = body.index
         arm, speed = states.position[..., b, :] - centre, states.velocity[..., b, :] - drift
-        total = total + body.mass * np.cross(arm, speed) + _turned(body, states, states.angular_velocity)
+        total = (
+            total
+            + body.mass * np.cross(arm, speed)
+            + _turned(body, states, states.angular_velocity)
+        )
     return total
 
 
@@ -238,7 +245,11 @@ def _interaction(one: Sensor, states) -> tuple[Any, Any]:
     The sum of m (a - g), and of the changes of spin, less that of the forces of contacts.
     """
     at, gravity = moving(one.frame, states).position, _scene(states).gravity
-    force, torque, acceleration = np.zeros(at.shape), np.zeros(at.shape), measured(states).accelerations
+    force, torque, acceleration = (
+        np.zeros(at.shape),
+        np.zeros(at.shape),
+        measured(states).accelerations,
+    )
     for body in one.members:
         b, w = body.index, states.angular_velocity[..., body.index, :]
         own = body.mass * (acceleration[..., b, :3] - gravity)

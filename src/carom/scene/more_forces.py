@@ -138,7 +138,9 @@ class Actuator(AlongJoint):
     @property
     def spring(self) -> tuple[float, float]:
         """Stiffness and damping of its force along the coordinate."""
-        return -self.gear * self.gear * float(self.bias[1]), -self.gear * self.gear * float(self.bias[2])
+        return -self.gear * self.gear * float(self.bias[1]), -self.gear * self.gear * float(
+            self.bias[2]
+        )
 
     def clipped(self, control: float) -> float:
         """Return the control that acts."""
@@ -170,7 +172,9 @@ class Law:
 
     def set(self, control: float) -> None:
         """Let this control act."""
-        self.rest = self.actuator.gain * self.actuator.clipped(control) + float(self.actuator.bias[0])
+        self.rest = self.actuator.gain * self.actuator.clipped(control) + float(
+            self.actuator.bias[0]
+        )
 
     def __call__(self, t: float, q: float, rate: float) -> float:
         """Return the force along the coordinate."""

@@ -20,8 +20,8 @@ from carom.io.files.checkpoint import from_index
 from carom.io.files.kept import KeptRun
 from carom.io.files.layout import ENERGIES, EVENT, IMPACT, INTERVAL, LEDGER, MOTION
 from carom.io.files.scene_parts import scene_from_text
-from carom.io.files.settings_in_time import from_rows
 from carom.io.files.sealed import Sealed, refusal, unsealed
+from carom.io.files.settings_in_time import from_rows
 from carom.io.files.user_events import from_file
 from carom.model import records as r
 from carom.options import Options

@@ -48,7 +48,16 @@ ROBOT = (Robot, Coordinate, Ball, FreeBody, Keyframe, Motor, Frame, Sensor)
 TYPES: dict[str, type[Any]] = {
     kind.__name__: kind
     for kind in (
-        *PARTS, *SHAPES, *JOINTS, *FORCES, *CONSTRAINTS, Gear, ContactLaw, Material, Piece, *ROBOT
+        *PARTS,
+        *SHAPES,
+        *JOINTS,
+        *FORCES,
+        *CONSTRAINTS,
+        Gear,
+        ContactLaw,
+        Material,
+        Piece,
+        *ROBOT,
     )
 }
 LATER = {"color": None}  # fields that files of earlier versions do not have

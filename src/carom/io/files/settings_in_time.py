@@ -35,7 +35,9 @@ def from_rows(data: memoryview, note, scene) -> list[tuple[int, int, Any]] | Non
         return None
     count = checks.integer("length of history", note[0], least=0, most=len(data) // ROW.itemsize)
     most = len(data) - count * ROW.itemsize
-    table = np.frombuffer(data, ROW, count, checks.integer("place of history", note[1], least=0, most=most))
+    table = np.frombuffer(
+        data, ROW, count, checks.integer("place of history", note[1], least=0, most=most)
+    )
     kinds = [type(force.definition) for force in scene.forces]
     inside = (table["force"] >= 0) & (table["force"] < len(kinds)) & (table["row"] >= 0)
     if not (inside.all() and np.isfinite(table["value"]).all()):

@@ -18,8 +18,8 @@ from carom.io.files.checkpoint import Checkpoint, packed, state_at_end
 from carom.io.files.convert import is_table, write_tables
 from carom.io.files.disk import put
 from carom.io.files.layout import Variable
-from carom.io.files.settings_in_time import as_rows
 from carom.io.files.sealed import seal
+from carom.io.files.settings_in_time import as_rows
 from carom.io.files.user_events import index_of
 from carom.io.files.variables import attributes, labelled
 from carom.model import records as r

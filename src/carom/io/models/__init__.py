@@ -6,4 +6,14 @@ from carom.io.models.report import Entry, Report
 from carom.results.robot import Coordinate, Keyframe, Motor, Robot
 from carom.results.sensors import Sensor
 
-__all__ = ["Coordinate", "Entry", "Keyframe", "Model", "Motor", "Report", "Robot", "Sensor", "load_model"]
+__all__ = [
+    "Coordinate",
+    "Entry",
+    "Keyframe",
+    "Model",
+    "Motor",
+    "Report",
+    "Robot",
+    "Sensor",
+    "load_model",
+]

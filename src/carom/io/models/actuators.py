@@ -14,7 +14,12 @@ from carom.results.robot import Coordinate, Motor
 from carom.scene import forces
 
 NO_FORCE = "exerts no force"
-TRANSMISSIONS = {"SLIDERCRANK": "a slider-crank", "SITE": "a site", "BODY": "a body", "SO3": "a ball joint"}
+TRANSMISSIONS = {
+    "SLIDERCRANK": "a slider-crank",
+    "SITE": "a site",
+    "BODY": "a body",
+    "SO3": "a ball joint",
+}
 
 
 def add_actuators(build: Build) -> list[Motor]:
@@ -39,7 +44,11 @@ def add_actuators(build: Build) -> list[Motor]:
 def _part(build: Build, a: int, name: str, c: Coordinate, factor: float, law: dict[str, Any]):
     """Add the force along one coordinate; in the scene it is 0 at the start, so the length there is a bias."""
     bias = law["bias"] + [law["bias"][1] * factor * c.start, 0.0, 0.0]
-    given = {**law, "bias": bias, "force_range": _force_range(build, a, c, factor, law["force_range"])}
+    given = {
+        **law,
+        "bias": bias,
+        "force_range": _force_range(build, a, c, factor, law["force_range"]),
+    }
     made = forces.Actuator(c.joint, **given, gear=factor * c.sign, coordinate=c.index)
     return build.scene.add_force(made, name=build.names.new(name, "actuator"))
 
@@ -47,7 +56,11 @@ def _part(build: Build, a: int, name: str, c: Coordinate, factor: float, law: di
 def _terms(build: Build, a: int) -> tuple[list[tuple[Coordinate, float]], str]:
     """Return the coordinates on which an actuator acts with their factors, and why it cannot."""
     m, kinds = build.model, need_mujoco().mjtTrn
-    kind, target, gear = int(m.actuator_trntype[a]), int(m.actuator_trnid[a, 0]), float(m.actuator_gear[a, 0])
+    kind, target, gear = (
+        int(m.actuator_trntype[a]),
+        int(m.actuator_trnid[a, 0]),
+        float(m.actuator_gear[a, 0]),
+    )
     if kind in (kinds.mjTRN_JOINT, kinds.mjTRN_JOINTINPARENT):
         if target in build.coordinates:
             return [(build.coordinates[target], gear)], ""
@@ -131,6 +144,8 @@ def _rotor(build: Build, a: int, terms) -> None:
         inertia = forces.JointInertia(c.joint, armature * factor**2, c.index)
         build.scene.add_force(inertia, name=build.names.new(f"{name}:armature", "force"))
     elif armature > 0.0:
-        build.report.add(called(m, "actuator", a), "armature of a tendon of several joints", "left out")
+        build.report.add(
+            called(m, "actuator", a), "armature of a tendon of several joints", "left out"
+        )
     if np.any(getattr(m, "actuator_damping", np.zeros(a + 1))[a]):
         build.report.add(called(m, "actuator", a), "damping of its own", "left out")

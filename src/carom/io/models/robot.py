@@ -15,7 +15,9 @@ def robot_of(build: Build, links: list[Link], motors: list[Motor]) -> Robot:
     places = {j: (int(m.jnt_qposadr[j]), int(m.jnt_dofadr[j])) for j in range(m.njnt)}
     balls = [Ball(name_of(m, "joint", j), joint, *places[j]) for j, joint in build.balls.items()]
     frees = [
-        FreeBody(link.name, build.moving(link.body), link.centre, *places[int(m.body_jntadr[link.body])])
+        FreeBody(
+            link.name, build.moving(link.body), link.centre, *places[int(m.body_jntadr[link.body])]
+        )
         for link in links
         if m.body_jntnum[link.body] and m.jnt_type[m.body_jntadr[link.body]] == free
     ]

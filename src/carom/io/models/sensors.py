@@ -27,21 +27,30 @@ def sensors_of(build: Build, links: list[Link], motors: list[Motor]) -> list[Sen
     for s in range(build.model.nsensor):
         kind = need_mujoco().mjtSensor(int(build.model.sensor_type[s])).name[7:].lower()
         kind = NAMES.get(kind, kind)
-        given = _given(build, links, motors, s, kind) if kind in READINGS else "a scene has none of this kind"
+        given = (
+            _given(build, links, motors, s, kind)
+            if kind in READINGS
+            else "a scene has none of this kind"
+        )
         if isinstance(given, str):
             build.report.add(called(build.model, "sensor", s), given, LEFT_OUT)
             continue
         positive = need_mujoco().mjtDataType.mjDATATYPE_POSITIVE
         out.append(
             Sensor(
-                name_of(build.model, "sensor", s), kind, cutoff=float(build.model.sensor_cutoff[s]),
-                positive=bool(build.model.sensor_datatype[s] == positive), **given,
+                name_of(build.model, "sensor", s),
+                kind,
+                cutoff=float(build.model.sensor_cutoff[s]),
+                positive=bool(build.model.sensor_datatype[s] == positive),
+                **given,
             )  # fmt: skip
         )
     return out
 
 
-def _given(build: Build, links: list[Link], motors: list[Motor], s: int, kind: str) -> dict[str, Any] | str:
+def _given(
+    build: Build, links: list[Link], motors: list[Motor], s: int, kind: str
+) -> dict[str, Any] | str:
     """Return the fields of a sensor, or why there is none."""
     m, target = build.model, int(build.model.sensor_objid[s])
     if kind in ("clock", "e_kinetic"):
@@ -52,7 +61,10 @@ def _given(build: Build, links: list[Link], motors: list[Motor], s: int, kind: s
         c = build.coordinates[target]
         ends = m.jnt_actfrcrange[target] if m.jnt_actfrclimited[target] else ()
         pulls = tuple((one, factor) for one in motors for own, factor in one.terms if own is c)
-        return {"terms": ((c, 1.0),), **({"motors": pulls, "values": ends} if kind == "jointactuatorfrc" else {})}
+        return {
+            "terms": ((c, 1.0),),
+            **({"motors": pulls, "values": ends} if kind == "jointactuatorfrc" else {}),
+        }
     if kind.startswith("ball"):
         if target not in build.balls:
             return "its joint is no ball joint"
@@ -60,7 +72,11 @@ def _given(build: Build, links: list[Link], motors: list[Motor], s: int, kind: s
         return {"at": int(place[target])}
     if kind.startswith("tendon"):
         terms = fixed_tendon(build, target)
-        return "its tendon is not along coordinates of joints" if terms is None else {"terms": tuple(terms)}
+        return (
+            "its tendon is not along coordinates of joints"
+            if terms is None
+            else {"terms": tuple(terms)}
+        )
     if kind.startswith("actuator"):
         if kind != "actuatorfrc" and not motors[target].terms:
             return "its actuator is not represented"
@@ -74,13 +90,17 @@ def _seen(build: Build, links: list[Link], s: int, kind: str, target: int) -> di
     body, frame = _frame(build, links, int(m.sensor_objtype[s]), target)
     fields: dict[str, Any] = {"frame": frame}
     if m.sensor_refid[s] >= 0:
-        fields["reference"] = _frame(build, links, int(m.sensor_reftype[s]), int(m.sensor_refid[s]))[1]
+        fields["reference"] = _frame(
+            build, links, int(m.sensor_reftype[s]), int(m.sensor_refid[s])
+        )[1]
     if kind in SUBTREES:
         if body != int(m.body_weldid[body]):
             return "its body is a part of the body that carries it"
         if kind in ("force", "torque") and body == 0:
             return "its body is fixed to the world"
-        fields["members"] = tuple(build.moving(link.body) for link in links if _carries(m, body, link.body))
+        fields["members"] = tuple(
+            build.moving(link.body) for link in links if _carries(m, body, link.body)
+        )
         if not fields["members"]:
             return "no body that moves is behind it"
     if kind == "touch" and m.sensor_objtype[s] == site:
