@@ -235,7 +235,8 @@ class Run:
         if keyframe is not None:
             if state is not None or qpos is not None or qvel is not None:
                 raise ValueError("keyframe must be given alone, got a state, qpos or qvel with it")
-            key = _robot(self._run.scene, "keyframe").keyframes[keyframe]
+            name = checks.text("keyframe", keyframe)
+            key = _robot(self._run.scene, "keyframe").keyframes[name]
             qpos, qvel = key.qpos, key.qvel
         if self._start is None:
             self._start = Start(Endless(self._run.scene, self._run.how))
@@ -340,7 +341,7 @@ def place(run: Endless, state: SystemState, qpos, qvel) -> None:
     motion = state
     if qpos is not None or qvel is not None:
         robot = _robot(run.scene, "qpos" if qpos is not None else "qvel")
-        motion = robot.placed(state, qpos, qvel)
+        motion = robot._placed(state, qpos, qvel)
     now = run.now
     now["x"], now["Q"] = motion.position, attitudes(motion.orientation, run.to_principal)
     now["v"], now["w"] = motion.velocity, motion.angular_velocity

@@ -65,15 +65,16 @@ class Coordinate:
     position: Integer = fields.integer(least=0)
     velocity: Integer = fields.integer(least=0)
 
-    def of(self, states) -> tuple[Any, Any]:
+    def of(self, solution) -> tuple[Any, Any]:
         """Return q and its rate, as the model defines them.
 
         Parameters
         ----------
-        states : Solution or SystemState
-            For a solution, q and rate are arrays (T,), with whole turns counted between saved times; for the
-            state of a run they are numbers, with the whole turns that the run has counted.
+        solution : Solution or SystemState
+            For a solution, also one from a file, q and rate are arrays (T,), with whole turns counted between
+            saved times; for the state of a run they are numbers, with the whole turns that the run has counted.
         """
+        states = checked(solution)
         q, rate = states.joint_coordinates(self.joint.name)
         q, rate = q[..., self.index], rate[..., self.index]
         turns = getattr(states, "_turns", None)
@@ -128,19 +129,21 @@ class Motor:
     terms: tuple[tuple[Coordinate, float], ...]
     force_range: Value[np.ndarray | None, Any] = Value(_array, None)
 
-    def length(self, states) -> tuple[Any, Any]:
+    def length(self, solution) -> tuple[Any, Any]:
         """Return the length and its rate, as of `Coordinate.of`."""
+        states = checked(solution)
         pairs = [(factor * np.array(one.of(states))) for one, factor in self.terms]
         return tuple(sum(pairs)) if pairs else (0.0, 0.0)
 
-    def control(self, states) -> Any:
+    def control(self, solution) -> Any:
         """Return the control, which is not clipped, as of `Coordinate.of`."""
-        scene = states._scene if hasattr(states, "_scene") else states.scene
-        names = [one.name for one in commands(scene)]
+        states = checked(solution)
+        names = [one.name for one in commands(scene_of(states))]
         return controls(states)[..., names.index(self.name)]
 
-    def force(self, states) -> Any:
+    def force(self, solution) -> Any:
         """Return the force of the actuator [N] or [N m], before its gear, as of `Coordinate.of`."""
+        states = checked(solution)
         control = self.control(states)
         if not self.parts:
             return 0.0 * control
@@ -150,6 +153,20 @@ class Motor:
             control = np.clip(control, *d.control_range)
         force = d.affine(control, d.gear * one.sign * (q - one.start), d.gear * one.sign * rate)
         return force if self.force_range is None else np.clip(force, *self.force_range)
+
+
+def checked(solution):
+    """Return a solution, or the state of a run."""
+    from carom.results.solution import Solution
+    from carom.results.state import SystemState
+
+    checks.instance("solution", solution, (Solution, SystemState))
+    return solution
+
+
+def scene_of(states):
+    """Return the scene of a solution or state."""
+    return states._scene if hasattr(states, "_scene") else states.scene
 
 
 def _actuator(motor: Motor) -> Actuator:
@@ -181,13 +198,12 @@ def columns(motors: list[Motor]) -> dict[int, int]:
 
 
 def controls(states) -> np.ndarray:
-    """Return the controls (T, nu) of a solution, those that acted until each saved time; or (nu,) of a state."""
+    """Return the controls (nu,) of a state, or (T, nu) of a solution: those that acted until each saved time."""
     if getattr(states, "_ctrl", None) is not None:
         return states._ctrl
-    of_state = hasattr(states, "_scene")
-    motors = commands(states._scene if of_state else states.scene)
+    motors = commands(scene_of(states))
     first = first_controls(motors)
-    if of_state:
+    if hasattr(states, "_scene"):
         return first
     place, u = columns(motors), np.full((len(states.t), len(motors)), np.nan)
     u[0] = first
@@ -230,8 +246,8 @@ class Motion(NamedTuple):
 class Robot:
     """A model in its own coordinates, which its scene has as `Scene.robot`.
 
-    The methods take a `Solution`, also one from a file, and give arrays with time first; or `Run.state`, and
-    give the values at that time.
+    Its methods take a solution, also one from a file, and give arrays with time first; or ``run.state``, and give
+    the values at that time.
 
     Attributes
     ----------
@@ -278,18 +294,18 @@ class Robot:
         """Whether a sensor needs accelerations or forces of contacts."""
         return any(one.dynamic for one in self.readings)
 
-    def ctrl(self, states) -> np.ndarray:
+    def ctrl(self, solution) -> np.ndarray:
         """Return the controls (T, nu) or (nu,), as MuJoCo's ``data.ctrl``; (T, nu): of the step before."""
-        return controls(self._checked(states))
+        return controls(self._checked(solution))
 
     @property
     def nv(self) -> int:
         """Number of velocities."""
         return len(self.coordinates) + 3 * len(self.balls) + 6 * len(self.frees)
 
-    def qpos(self, states) -> np.ndarray:
+    def qpos(self, solution) -> np.ndarray:
         """Return the coordinates (T, nq) or (nq,) of a solution or state, as MuJoCo's ``data.qpos``."""
-        states = self._checked(states)
+        states = self._checked(solution)
         q = np.empty((*states.position.shape[:-2], len(self.start)))
         q[...] = self.start
         for one in self.coordinates:
@@ -306,9 +322,9 @@ class Robot:
             q[..., one.position + 3 : one.position + 7] = turn
         return q
 
-    def qvel(self, states) -> np.ndarray:
+    def qvel(self, solution) -> np.ndarray:
         """Return the velocities (T, nv) or (nv,) of a solution or state, as MuJoCo's ``data.qvel``."""
-        states = self._checked(states)
+        states = self._checked(solution)
         rates = np.empty((*states.position.shape[:-2], self.nv))
         for one in self.coordinates:
             rates[..., one.velocity] = one.of(states)[1]
@@ -330,7 +346,7 @@ class Robot:
         return rates
 
     @property
-    def parts_by_name(self) -> list[tuple[str, int]]:
+    def _parts_by_name(self) -> list[tuple[str, int]]:
         """Names and indices of the joints and bodies that coordinates move."""
         parts = [one.joint for one in (*self.coordinates, *self.balls)]
         return [(part.name, part.index) for part in (*parts, *(one.body for one in self.frees))]
@@ -338,20 +354,14 @@ class Robot:
     def _ball_start(self, one: Ball) -> np.ndarray:
         return self.start[one.position : one.position + 4]
 
-    def _checked(self, states):
-        """Return states of a scene with the bodies of this model."""
-        from carom.results.solution import Solution
-        from carom.results.state import SystemState
+    def _checked(self, solution):
+        """Return states of a scene with the joints and bodies of this model."""
+        other = scene_of(checked(solution)).robot
+        if other is not self and (other is None or other._parts_by_name != self._parts_by_name):
+            raise ValueError(f"solution must be of the scene of this model, got {solution!r}")
+        return solution
 
-        checks.instance("states", states, (Solution, SystemState))
-        scene = states.scene if isinstance(states, Solution) else states._scene
-        if scene.robot is not self and (
-            scene.robot is None or scene.robot.parts_by_name != self.parts_by_name
-        ):
-            raise ValueError(f"states must be of the scene of this model, got {states!r}")
-        return states
-
-    def placed(self, base, qpos, qvel) -> Motion:
+    def _placed(self, base, qpos, qvel) -> Motion:
         """Return the motion of all bodies for coordinates of the model, None for those of the state `base`.
 
         Bodies that are not moved by coordinates of the model stay as in `base`.
@@ -415,9 +425,8 @@ class Named(dict):
 
     def __missing__(self, name):
         known = ", ".join(map(repr, self)) or "none"
-        raise KeyError(
-            f"the model has no {self.kind} {name!r}; it has {known}{checks.nearest(str(name), self)}"
-        )
+        near = checks.nearest(str(name), self)
+        raise KeyError(f"the model has no {self.kind} {name!r}; it has {known}{near}")
 
 
 def _unit(one, q: np.ndarray) -> np.ndarray:

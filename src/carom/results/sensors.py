@@ -16,7 +16,7 @@ import numpy as np
 from carom import checks, fields
 from carom.fields import Flag, Integer, Number, Value, Vector
 from carom.geometry import quaternion
-from carom.results.robot import Coordinate, Motor
+from carom.results.robot import Coordinate, Motor, checked, scene_of
 from carom.scene.bodies import GROUND, Body, Ground
 
 
@@ -92,9 +92,9 @@ class Sensor:
         """Whether it needs accelerations or forces of contacts."""
         return self.kind in DYNAMIC
 
-    def of(self, states) -> Any:
+    def of(self, solution) -> Any:
         """Return what it shows: (T, ...) of a `Solution`, at its saved times, or of ``run.state``."""
-        shown = READINGS[self.kind](self, states)
+        shown = READINGS[self.kind](self, checked(solution))
         if self.cutoff > 0.0:
             shown = np.clip(shown, 0.0 if self.positive else -self.cutoff, self.cutoff)
         return shown
@@ -160,13 +160,9 @@ def _magnetometer(one: Sensor, states):
     return quaternion.rotate_back(turn, np.broadcast_to(one.values, (*turn.shape[:-1], 3)))
 
 
-def _scene(states):
-    return states._scene if hasattr(states, "_scene") else states.scene
-
-
 def _felt(one: Sensor, states):
     """Return the acceleration of a frame minus gravity: a + alpha x r + w x (w x r) - g."""
-    gravity = _scene(states).gravity
+    gravity = scene_of(states).gravity
     if isinstance(one.frame.body, Ground):
         return np.broadcast_to(-gravity, (*states.position.shape[:-2], 3))
     b = one.frame.body.index
@@ -199,7 +195,7 @@ def _motors(one: Sensor, states):
 
 def _ball(rate: bool):
     def read(one: Sensor, states):
-        robot = _scene(states).robot
+        robot = scene_of(states).robot
         q = robot.qvel(states) if rate else robot.qpos(states)
         return q[..., one.at : one.at + (3 if rate else 4)]
 
@@ -244,7 +240,7 @@ def _interaction(one: Sensor, states) -> tuple[Any, Any]:
 
     The sum of m (a - g), and of the changes of spin, less that of the forces of contacts.
     """
-    at, gravity = moving(one.frame, states).position, _scene(states).gravity
+    at, gravity = moving(one.frame, states).position, scene_of(states).gravity
     force, torque, acceleration = (
         np.zeros(at.shape),
         np.zeros(at.shape),

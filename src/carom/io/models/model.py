@@ -63,28 +63,28 @@ class Model:
         """Keyframes by name: `qpos`, `qvel` and `ctrl`; for `Run.reset`."""
         return self._robot.keyframes
 
-    def qpos(self, states: Solution | SystemState) -> np.ndarray:
+    def qpos(self, solution: Solution | SystemState) -> np.ndarray:
         """Return the coordinates of the model, as MuJoCo's ``data.qpos``.
 
         Set ``data.qpos`` to a row and call ``mujoco.mj_forward`` to draw the motion.
 
         Parameters
         ----------
-        states : Solution or SystemState
+        solution : Solution or SystemState
             A solution, also one from a file: (T, nq) at its saved times; or ``run.state``: (nq,).
         """
-        return self._robot.qpos(states)
+        return self._robot.qpos(solution)
 
-    def qvel(self, states: Solution | SystemState) -> np.ndarray:
+    def qvel(self, solution: Solution | SystemState) -> np.ndarray:
         """Return the velocities of the model, as MuJoCo's ``data.qvel``: (T, nv) or (nv,), as `qpos`."""
-        return self._robot.qvel(states)
+        return self._robot.qvel(solution)
 
-    def ctrl(self, states: Solution | SystemState) -> np.ndarray:
+    def ctrl(self, solution: Solution | SystemState) -> np.ndarray:
         """Return the controls of the actuators, as MuJoCo's ``data.ctrl``: (T, nu) or (nu,), as `qpos`.
 
         Those of a saved time are the ones that acted until then.
         """
-        return self._robot.ctrl(states)
+        return self._robot.ctrl(solution)
 
     @property
     def _robot(self) -> Robot:
