@@ -18,6 +18,7 @@ class Leg(gym.Env):
         self.observation_space = gym.spaces.Box(-np.inf, np.inf, (7,), dtype=np.float64)
 
     def reset(self, *, seed=None, options=None):
+        """Begin in a crouch, a little above the floor."""
         super().reset(seed=seed)
         crouch = self.model.keyframes["crouch"]
         self.run.reset(qpos=crouch.qpos + (self.np_random.uniform(0.0, 0.1), 0.0, 0.0))
@@ -25,6 +26,7 @@ class Leg(gym.Env):
         return self._seen(), {}
 
     def step(self, action):
+        """Set the targets, and go on by a period."""
         self.run.ctrl = action
         failed = False
         try:

@@ -1,4 +1,4 @@
-"""A model in its own coordinates: positions, controls, keyframes and sensors, against MuJoCo and closed forms."""
+"""A model in its own coordinates, against MuJoCo and closed forms."""
 
 import math
 
@@ -22,7 +22,7 @@ ARM = """
    <site name="elbow" pos=".02 .01 0" euler=".1 1 .1"/>
    <body name="hand" pos=".3 0 0"><joint name="wrist" type="ball" pos="0 0 .01"/>
     <geom type="box" size=".05 .03 .02" pos=".05 0 0" mass=".3"/><site name="palm" pos=".02 0 0"/>
-    <body name="tip" pos=".1 .1 .1" euler=".3 0 0"><geom size=".01" mass=".1"/><site name="tips" pos=".01 0 0"/></body>
+    <body name="tip" pos=".1 .1 .1" euler=".3 0 0"><geom size=".01" mass=".1"/></body>
     <body name="finger" pos=".1 0 0"><joint name="grip" type="slide" axis="0 1 0"/>
      <joint name="twist" axis="0 1 0"/><geom type="sphere" size=".02" mass=".1"/></body>
    </body></body>
@@ -30,7 +30,8 @@ ARM = """
    <joint name="knee" axis="0 1 .3" pos="0 0 .2"/>
    <geom type="capsule" fromto="0 0 0 0 0 -.3" size=".02" mass="1"/></body>
  </body>
- <body name="puck" pos="3 0 0"><joint name="px" type="slide" axis="1 0 0"/><joint name="py" type="slide" axis="0 1 0"/>
+ <body name="puck" pos="3 0 0"><joint name="px" type="slide" axis="1 0 0"/>
+  <joint name="py" type="slide" axis="0 1 0"/>
   <joint name="pt" axis="0 0 1" pos=".1 0 0"/><geom type="box" size=".2 .1 .05" mass="2"/></body>
  <body name="rod" pos="5 0 0"><joint name="swing" axis="0 1 0" pos="0 0 .4" ref=".3" actuatorfrcrange="-.1 .1"/>
   <geom type="box" size=".02 .02 .3" mass="2"/></body>
@@ -45,7 +46,8 @@ ARM = """
  <motor name="both" tendon="both"/>
 </actuator>
 <sensor>SENSORS</sensor>
-<keyframe><key name="home" qpos="0 0 1.5 1 0 0 0 .1 .2 1 0 0 0 .02 .3 .1 .2 .1 .2 .3 .4" ctrl=".1 .2 .3 .4 .5 .6"/></keyframe>
+<keyframe><key name="home" qpos="0 0 1.5 1 0 0 0 .1 .2 1 0 0 0 .02 .3 .1 .2 .1 .2 .3 .4"
+ ctrl=".1 .2 .3 .4 .5 .6"/></keyframe>
 </mujoco>"""
 FRAMES = "framepos framequat framexaxis frameyaxis framezaxis framelinvel frameangvel framelinacc frameangacc"
 OBJECTS = ("body hand", "xbody hand", "geom bg", "site palm", "body tip", "site mark")
@@ -241,7 +243,9 @@ def test_a_servo_whose_force_is_limited():
     run.advance(12.0)
     assert model.qpos(run.state)[0] == pytest.approx(1.0, abs=1e-8)
     assert run.solution.status is carom.Status.SUCCESS
+    kept = run.ctrl
     run.reset()
+    assert kept["a"] == 0.0
     run.advance(0.5)
     assert model.qpos(run.state)[0] == 0.0
 
@@ -330,3 +334,47 @@ def test_a_foot_on_the_floor():
     assert run.state["toe"] == 0.0
     assert run.state["up"] == pytest.approx([0.0, 0.0, G + 2.0], abs=1e-9)
     assert solution["toe"].shape == solution.t.shape
+
+
+WHEELS = """
+<mujoco><option gravity="0 0 0"/><worldbody>
+<body pos="0 0 1"><joint name="a" axis="0 1 0"/><inertial pos="0 0 0" mass="1" diaginertia=".5 .5 .5"/></body>
+<body pos="0 2 1"><joint name="b" type="slide" axis="1 0 0"/>
+<inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/></body>
+</worldbody>
+<tendon><fixed name="t" %s><joint joint="a" coef=".3"/><joint joint="b" coef="-1.5"/></fixed></tendon>
+<actuator>%s</actuator>
+<sensor><tendonpos name="l" tendon="t"/><tendonvel name="v" tendon="t"/></sensor></mujoco>"""
+#: 1/inertia of the length: .3^2/.5 + 1.5^2/2; the link that slides by it has 1e-6 of the inertia
+EASE = 0.09 / 0.5 + 2.25 / 2.0
+
+
+def test_a_spring_along_a_tendon():
+    """l'' = -k c (l - rest): a cosine, from the state that a run is put to; the joints share it as c_k/m_k."""
+    model = carom.load_model(WHEELS % ('stiffness="7" springlength=".2"', ""), qpos=[0.4, 0.1])
+    run = carom.Run(model, rtol=1e-10)
+    run.reset(qpos=[1.0, -0.5])
+    begin = 0.3 * 1.0 + 1.5 * 0.5
+    run.advance(1.3)
+    length = 0.2 + (begin - 0.2) * math.cos(math.sqrt(7 * EASE) * 1.3)
+    assert run.state["l"] == pytest.approx(length, abs=1e-5)
+    a, b = model.qpos(run.state) - (1.0, -0.5)
+    assert a / b == pytest.approx((0.3 / 0.5) / (-1.5 / 2.0), abs=1e-9)
+
+
+def test_a_tendon_with_a_limit_and_a_servo():
+    """It strikes its limit with restitution .5; a servo along it brings it to its target."""
+    limited = WHEELS % ('range="-1 .4" limited="true"', "")
+    run = carom.Run(carom.load_model(limited, limit_restitution=0.5), step=1e-2)
+    run.reset(qvel=[0.0, -1.0], qpos=[0.0, 0.0])
+    run.advance(1.0)
+    hit = 0.4 / 1.5
+    assert run.state["v"] == pytest.approx(-0.75, abs=1e-5)
+    assert run.state["l"] == pytest.approx(0.4 - 0.75 * (1.0 - hit), abs=1e-5)
+    servo = '<position name="m" tendon="t" kp="50" kv="12"/>'
+    model = carom.load_model(WHEELS % ("", servo))
+    run = carom.Run(model, step=1e-3)
+    run.ctrl["m"] = 0.7
+    run.advance(5.0)
+    assert run.state["l"] == pytest.approx(0.7, abs=1e-9)
+    assert model.actuators["m"].force(run.state) == pytest.approx(0.0, abs=1e-7)

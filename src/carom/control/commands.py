@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -20,9 +22,13 @@ class Controls:
         Names of the actuators, in their order.
     """
 
-    def __init__(self, applied: Applied):
-        self._applied = applied
-        self.names = tuple(one.name for one in applied.commands)
+    def __init__(self, applied: Callable[[], Applied]):
+        self._of_run = applied  # a run that is reset has others
+        self.names = tuple(one.name for one in applied().commands)
+
+    @property
+    def _applied(self) -> Applied:
+        return self._of_run()
 
     def __len__(self) -> int:
         return len(self.names)

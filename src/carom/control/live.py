@@ -176,11 +176,11 @@ class Run:
         A control stays until it is set again. It is not clipped; a value outside the range of its actuator acts
         as the nearest inside. An actuator is a `forces.Actuator` of the scene, or one of a model.
         """
-        return Controls(self._applied)
+        return Controls(lambda: self._applied)
 
     @ctrl.setter
     def ctrl(self, values: ArrayLike) -> None:
-        Controls(self._applied)[:] = checks.finite_array("ctrl", values, (len(self._applied.ctrl),))
+        self.ctrl[:] = checks.finite_array("ctrl", values, (len(self._applied.ctrl),))
 
     def set_force(self, force: AppliedForce | str, value: ArrayLike) -> None:
         """Set a force of the scene to a new value, which it keeps until it is set again.
@@ -250,7 +250,7 @@ class Run:
             fresh.save_now()
         self._stand(fresh)
         if key is not None and len(key.ctrl):
-            Controls(self._applied)[: len(key.ctrl)] = key.ctrl
+            self.ctrl[: len(key.ctrl)] = key.ctrl
 
     def set_state(
         self,

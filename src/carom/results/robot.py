@@ -132,8 +132,12 @@ class Motor:
     def length(self, solution) -> tuple[Any, Any]:
         """Return the length and its rate, as of `Coordinate.of`."""
         states = checked(solution)
-        pairs = [(factor * np.array(one.of(states))) for one, factor in self.terms]
-        return tuple(sum(pairs)) if pairs else (0.0, 0.0)
+        if not self.terms:
+            return 0.0, 0.0
+        pairs = [one.of(states) for one, _ in self.terms]
+        factors = [factor for _, factor in self.terms]
+        length, rate = (sum(f * x for f, x in zip(factors, column)) for column in zip(*pairs))
+        return length, rate
 
     def control(self, solution) -> Any:
         """Return the control, which is not clipped, as of `Coordinate.of`."""
@@ -198,7 +202,7 @@ def columns(motors: list[Motor]) -> dict[int, int]:
 
 
 def controls(states) -> np.ndarray:
-    """Return the controls (nu,) of a state, or (T, nu) of a solution: those that acted until each saved time."""
+    """Return the controls (nu,) of a state, or (T, nu) of a solution: those that acted until each time."""
     if getattr(states, "_ctrl", None) is not None:
         return states._ctrl
     motors = commands(scene_of(states))
@@ -246,8 +250,8 @@ class Motion(NamedTuple):
 class Robot:
     """A model in its own coordinates, which its scene has as `Scene.robot`.
 
-    Its methods take a solution, also one from a file, and give arrays with time first; or ``run.state``, and give
-    the values at that time.
+    Its methods take a solution, also one from a file, and give arrays with time first; or ``run.state``, and
+    give the values at that time.
 
     Attributes
     ----------
@@ -259,6 +263,8 @@ class Robot:
     keys : tuple of Keyframe
     motors : tuple of Motor
     readings : tuple of Sensor
+    lines : tuple
+        Slides of the scene by the lengths of tendons, each with its coordinates and their factors.
     """
 
     start: Value[np.ndarray, Any] = Value(_array)
@@ -268,6 +274,15 @@ class Robot:
     keys: tuple[Keyframe, ...] = ()
     motors: tuple[Motor, ...] = ()
     readings: tuple[Any, ...] = ()
+    lines: tuple[tuple[Joint, tuple[tuple[Coordinate, float], ...]], ...] = ()
+
+    def __post_init__(self):
+        places = [(one, 1, 1) for one in self.coordinates] + [(one, 4, 3) for one in self.balls]
+        for one, wide, quick in (*places, *((one, 7, 6) for one in self.frees)):
+            if one.position + wide > len(self.start) or one.velocity + quick > self.nv:
+                raise ValueError(
+                    f"the place of {one.name!r} must be one in qpos and qvel, got {one.position}"
+                )
 
     @cached_property
     def joints(self) -> dict[str, Coordinate]:
@@ -410,6 +425,10 @@ class Robot:
                         one.sign * v[one.velocity],
                     )
                 _put_child(sides_of(joint), own[0], own[1], moved)
+        for joint, terms in self.lines:
+            length = sum(factor * (q[one.position] - one.start) for one, factor in terms)
+            rate = sum(factor * v[one.velocity] for one, factor in terms)
+            _put_child(sides_of(joint), np.array([length]), np.array([rate]), moved)
         return moved
 
     def __repr__(self) -> str:

@@ -10,6 +10,7 @@ from carom.io.models.build import Build
 from carom.io.models.links import called, name_of
 from carom.io.models.report import need_mujoco
 from carom.io.models.state import is_off
+from carom.io.models.tendons import Terms
 from carom.results.robot import Coordinate, Motor
 from carom.scene import forces
 
@@ -22,15 +23,16 @@ TRANSMISSIONS = {
 }
 
 
-def add_actuators(build: Build) -> list[Motor]:
-    """Add all actuators that act on hinges, slides and fixed tendons by an affine law; report the others."""
+def add_actuators(build: Build, tendons: dict[int, Terms]) -> list[Motor]:
+    """Add all actuators that act on hinges, slides and fixed tendons by an affine law; report the others.
+
+    `tendons` has the coordinates along which they pull each tendon.
+    """
     out = []
     for a in range(getattr(build.model, "nactuator", build.model.nu)):
         name = name_of(build.model, "actuator", a)
-        terms, why = _terms(build, a)
+        terms, why = _terms(build, a, tendons)
         law, reason = _law(build, a)
-        if len(terms) > 1 and not why and np.any(law["bias"][1:]):
-            why = "a force that depends on the length of a tendon of several joints"
         if why or reason:
             build.report.add(called(build.model, "actuator", a), why or reason, NO_FORCE)
             out.append(Motor(name, (), tuple(terms)))
@@ -53,7 +55,9 @@ def _part(build: Build, a: int, name: str, c: Coordinate, factor: float, law: di
     return build.scene.add_force(made, name=build.names.new(name, "actuator"))
 
 
-def _terms(build: Build, a: int) -> tuple[list[tuple[Coordinate, float]], str]:
+def _terms(
+    build: Build, a: int, tendons: dict[int, Terms]
+) -> tuple[list[tuple[Coordinate, float]], str]:
     """Return the coordinates on which an actuator acts with their factors, and why it cannot."""
     m, kinds = build.model, need_mujoco().mjtTrn
     kind, target, gear = (
@@ -66,23 +70,12 @@ def _terms(build: Build, a: int) -> tuple[list[tuple[Coordinate, float]], str]:
             return [(build.coordinates[target], gear)], ""
         return [], "it acts on a ball or free joint"
     if kind == kinds.mjTRN_TENDON:
-        terms = fixed_tendon(build, target)
+        terms = tendons.get(target)
         if terms is None:
             return [], "its tendon is not along coordinates of joints"
         return [(c, gear * factor) for c, factor in terms], ""
     names = {getattr(kinds, f"mjTRN_{key}", None): what for key, what in TRANSMISSIONS.items()}
     return [], f"it acts on {names.get(kind, 'something unknown')}"
-
-
-def fixed_tendon(build: Build, tendon: int) -> list[tuple[Coordinate, float]] | None:
-    """Return the coordinates of a fixed tendon with their factors; None of one along a path."""
-    m, joint = build.model, need_mujoco().mjtWrap.mjWRAP_JOINT
-    first = int(m.tendon_adr[tendon])
-    wraps = range(first, first + int(m.tendon_num[tendon]))
-    ids = [int(m.wrap_objid[w]) for w in wraps]
-    if any(m.wrap_type[w] != joint for w in wraps) or not all(j in build.coordinates for j in ids):
-        return None
-    return [(build.coordinates[j], float(m.wrap_prm[w])) for j, w in zip(ids, wraps)]
 
 
 def _law(build: Build, a: int) -> tuple[dict[str, Any], str]:
@@ -123,8 +116,8 @@ def _limited(build: Build, a: int) -> bool:
 def _force_range(build: Build, a: int, c: Coordinate, factor: float, own):
     """Return the range of the force, also that of the joint where no other actuator acts on it."""
     m = build.model
-    j = next(k for k, one in build.coordinates.items() if one is c)
-    if not m.jnt_actfrclimited[j]:
+    j = next((k for k, one in build.coordinates.items() if one is c), -1)
+    if j < 0 or not m.jnt_actfrclimited[j]:
         return own
     joint, acts = need_mujoco().mjtTrn.mjTRN_JOINT, m.actuator_trntype
     if np.sum((acts == joint) & (m.actuator_trnid[:, 0] == j)) != 1 or factor == 0.0:

@@ -46,6 +46,7 @@ class Build:
     bodies: dict[int, Body | Ground] = field(default_factory=lambda: {0: GROUND})  # of links
     coordinates: dict[int, Coordinate] = field(default_factory=dict)  # of hinges and slides
     balls: dict[int, Joint] = field(default_factory=dict)  # of ball joints
+    lines: list[tuple[Joint, tuple]] = field(default_factory=list)  # slides along tendons
     geoms: dict[int, Body | HalfSpace] = field(default_factory=dict)
     hulls: dict[int, Convex | None] = field(default_factory=dict)  # of meshes
 

@@ -26,6 +26,7 @@ from carom.io.models.report import Report
 from carom.io.models.robot import robot_of
 from carom.io.models.solids import Solid, add_standing, colour, covering, geoms_of
 from carom.io.models.state import as_it_acts, is_off, point_velocity, starting_data
+from carom.io.models.tendons import add_tendons, needs_link
 from carom.io.models.touching import Filter
 from carom.scene import forces
 from carom.scene.materials import IMPACT_LAWS
@@ -139,7 +140,8 @@ def load_model(
     model = compiled_model(source, free_root, package_dirs, report)
     motions = motions_of(model, mocap)
     acts = as_it_acts(model, motions)
-    light = LIGHT_IN_LOOPS if motions or np.any(acts.eq_active0) else LIGHT
+    lines = any(needs_link(acts, t) for t in range(acts.ntendon))
+    light = LIGHT_IN_LOOPS if lines or motions or np.any(acts.eq_active0) else LIGHT
     data = starting_data(acts, keyframe, qpos, qvel)
     build, links = _new_build(acts, data, report, light, max_hull_vertices)
     restitution = _restitution(model, restitution, report)
@@ -159,7 +161,7 @@ def load_model(
     _add_gravcomp(build)
     add_coordinate_parts(build, limit_restitution, impact_law, armature)
     add_mounts(build, jointed)
-    motors = add_actuators(build)
+    motors = add_actuators(build, add_tendons(build, limit_restitution, impact_law))
     add_equalities(build)
     if contacts:
         moving = [

@@ -26,6 +26,6 @@ def robot_of(build: Build, links: list[Link], motors: list[Motor]) -> Robot:
         for k in range(m.nkey)
     ]
     return Robot(
-        build.data.qpos, tuple(build.coordinates.values()), tuple(balls), tuple(frees), tuple(keys), tuple(motors),
-        tuple(sensors_of(build, links, motors)),
+        build.data.qpos, tuple(build.coordinates.values()), tuple(balls), tuple(frees), tuple(keys),
+        tuple(motors), tuple(sensors_of(build, links, motors)), tuple(build.lines),
     )  # fmt: skip

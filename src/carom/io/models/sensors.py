@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from carom.geometry import quaternion
-from carom.io.models.actuators import fixed_tendon
 from carom.io.models.build import Build
 from carom.io.models.links import Link, called, name_of, pose_on_link
 from carom.io.models.report import need_mujoco
+from carom.io.models.tendons import fixed_tendon
 from carom.results.robot import Motor
 from carom.results.sensors import READINGS, Frame, Sensor
 from carom.scene.bodies import GROUND
@@ -26,7 +26,7 @@ def sensors_of(build: Build, links: list[Link], motors: list[Motor]) -> list[Sen
     out = []
     for s in range(build.model.nsensor):
         kind = need_mujoco().mjtSensor(int(build.model.sensor_type[s])).name[7:].lower()
-        kind = NAMES.get(kind, kind)
+        kind = str(NAMES.get(kind, kind))
         given = (
             _given(build, links, motors, s, kind)
             if kind in READINGS
@@ -35,16 +35,12 @@ def sensors_of(build: Build, links: list[Link], motors: list[Motor]) -> list[Sen
         if isinstance(given, str):
             build.report.add(called(build.model, "sensor", s), given, LEFT_OUT)
             continue
-        positive = need_mujoco().mjtDataType.mjDATATYPE_POSITIVE
-        out.append(
-            Sensor(
-                name_of(build.model, "sensor", s),
-                kind,
-                cutoff=float(build.model.sensor_cutoff[s]),
-                positive=bool(build.model.sensor_datatype[s] == positive),
-                **given,
-            )  # fmt: skip
+        cutoff, positive = (
+            float(build.model.sensor_cutoff[s]),
+            need_mujoco().mjtDataType.mjDATATYPE_POSITIVE,
         )
+        given |= {"cutoff": cutoff, "positive": bool(build.model.sensor_datatype[s] == positive)}
+        out.append(Sensor(name_of(build.model, "sensor", s), kind, **given))
     return out
 
 
