@@ -117,7 +117,7 @@ class Actuator(AlongJoint):
         u until it is set, and in `simulate`. Default 0.
     control_range, force_range : (2,), optional
         Least and greatest u and F: others are replaced by the nearest of these. A law that depends on q or q'
-        and has a `force_range` is called as a Python function, which takes 2 microseconds.
+        and has a `force_range` is called as a Python function, which takes 3 microseconds.
     coordinate : int
         Index of the coordinate of the joint. Default 0.
     """
