@@ -37,7 +37,7 @@ def test_a_solution_of_a_run_is_taken_on(tmp_path, how):
     loaded.save(tmp_path / "again.nc")
     again = carom.Run(carom.Solution.load(tmp_path / "again.nc"))
     assert np.array_equal(steps(again, 1).state.velocity, whole.velocity[61])
-    for refuse in (loaded.simulate, lambda d: carom.resume(tmp_path / "run.nc", duration=1.0 + d)):
+    for refuse in (loaded.simulate, lambda d: carom.resume(tmp_path / "run.nc", until=1.0 + d)):
         with pytest.raises(
             ValueError, match=r"that of a Run: take it on with carom\.Run\(solution\)"
         ):
