@@ -398,3 +398,17 @@ def test_a_tendon_with_a_limit_and_a_servo():
     run.advance(5.0)
     assert run.state["l"] == pytest.approx(0.7, abs=1e-9)
     assert model.actuators["m"].force(run.state) == pytest.approx(0.0, abs=1e-7)
+
+
+def test_a_scene_of_a_model_that_changes():
+    """A replaced body is the one that coordinates read; the model ends with one of its joints."""
+    model = carom.load_model(FOOT, restitution=0.0)
+    model.scene.replace("leg", mass=2.0)
+    run = carom.Run(model, step=1e-3)
+    run.reset(qpos=[0.5, 0.0])
+    run.ctrl["lift"] = 0.0
+    run.advance(0.1)
+    assert model.qpos(run.state)[0] == pytest.approx(0.5 - 0.5 * G * 0.1**2, abs=1e-12)
+    assert run.state["f"] == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
+    model.scene.remove("pin", dependents=True)
+    assert model.scene.robot is None

@@ -8,20 +8,21 @@ its body, the velocity of their origin in world axes, and the angular velocity i
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from carom import arguments, checks, fields
-from carom.fields import Integer, Number, Value, Vector
+from carom.fields import Integer, Number, Value, Vector, keep
 from carom.geometry import quaternion
 from carom.results.joint_coordinates import TURN, Sides, sides_of
 from carom.scene import joints as j
-from carom.scene.bodies import Body
+from carom.scene.bodies import Body, Ground
 from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
 from carom.scene.more_forces import Actuator
@@ -369,6 +370,13 @@ class Robot:
     def _ball_start(self, one: Ball) -> np.ndarray:
         return self.start[one.position : one.position + 4]
 
+    def _followed(self, find) -> Robot | None:
+        """Return the model of a scene whose parts may have been replaced; None if one has been removed."""
+        try:
+            return _followed(self, find)
+        except LookupError:
+            return None
+
     def _checked(self, solution):
         """Return states of a scene with the joints and bodies of this model."""
         other = scene_of(checked(solution)).robot
@@ -433,6 +441,27 @@ class Robot:
 
     def __repr__(self) -> str:
         return f"<Robot: {len(self.start)} coordinates>"
+
+
+def _followed(value, find) -> Any:
+    """Return a value that refers to the parts that `find` gives for the names of its own."""
+    if isinstance(value, (Body, Joint, AppliedForce)):
+        part = find(value.name)
+        if not isinstance(part, type(value)):
+            raise LookupError(value.name)
+        return part
+    if isinstance(value, tuple):
+        new = tuple(_followed(one, find) for one in value)
+        return value if all(a is b for a, b in zip(new, value)) else new
+    if not is_dataclass(value) or isinstance(value, (Ground, type)):
+        return value
+    old = {one.name: getattr(value, one.name) for one in dataclasses.fields(value)}
+    new = {name: _followed(one, find) for name, one in old.items()}
+    if all(new[name] is old[name] for name in old):
+        return value
+    made = object.__new__(type(value))
+    keep(made, **new)
+    return made
 
 
 class Named(dict):

@@ -508,8 +508,14 @@ class Scene(TouchingPairs):
 
     @property
     def robot(self) -> Robot | None:
-        """The model in its own coordinates, where `load_model` has made the scene; else None."""
-        return self._robot
+        """The model in its own coordinates, where `load_model` has made the scene; else None.
+
+        It is also None when one of its bodies, joints or actuators has been removed.
+        """
+        robot = self._robot
+        if robot is None:
+            return None
+        return self._derived.once("robot", lambda: robot._followed(self._parts.get))
 
     @property
     def gravity(self):
