@@ -147,14 +147,20 @@ class Run(Running):
         self.watch = new_watch(options.energy_tolerance, share)
         flies = system.bodies["ballistic"] == 1  # in closed form: any step is good
         self.work.body["ahead"] = np.where(flies, 1.0, FIRST_STEP) * self.grid.interval
-        if options.project_start and len(system.joints):
-            error = project_start(system, self.now, self.work)
-            if not error <= options.constraint_tolerance:
-                raise ValueError(
-                    "the initial positions must be near positions that satisfy the joints, got positions from "
-                    f"which Newton's method leaves an error of {error:.3g}; start nearer"
-                )
+        self.project()
         self.work.body["label"] = np.where(flies, system.bodies["component"], system.bodies.size)
+
+    def project(self) -> None:
+        """Move the bodies into positions that satisfy the joints, where `Options.project_start` says so."""
+        system = self.compiled.system
+        if not (self.options.project_start and len(system.joints)):
+            return
+        error = project_start(system, self.now, self.work)
+        if not error <= self.options.constraint_tolerance:
+            raise ValueError(
+                "the initial positions must be near positions that satisfy the joints, got positions from "
+                f"which Newton's method leaves an error of {error:.3g}; start nearer"
+            )
 
     def check(self, scene: Scene) -> None:
         """Check the initial state."""

@@ -213,6 +213,39 @@ def _kept_turns(system):
     reference[:] = kept
 
 
+def ranges_of(run, saved: int):
+    """Return the ranges of saved rows in which the forces stay as they are: a `carom.Run` may have set them."""
+    return run.rows_of_forces(saved) if hasattr(run, "rows_of_forces") else [(0, saved)]
+
+
+def accelerations(solution) -> np.ndarray:
+    """Return the accelerations (T, N, 6) of all bodies at saved times, linear and angular, world axes.
+
+    At the time of an impact they are those after it.
+    """
+    run = solution._run
+    system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
+    out, work = (
+        np.zeros((len(rec.state), len(system.bodies), 6)),
+        r.new_work(system, run.method.b.size),
+    )
+    with _kept_turns(system):
+        for first, last in ranges_of(run, len(out)):
+            for k in range(first, last):
+                touch = rec.touch[np.searchsorted(rec.touch.saved, k) :]
+                out[k] = acceleration(system, run.options, rec.series.t, rec.state, k, touch, work)
+    return out
+
+
+def acceleration(system, options, t, states, k: int, touch, work) -> np.ndarray:
+    """Return the accelerations (N, 6) at state k, under the forces `touch` of its contacts."""
+    from carom.dynamics.reactions import reactions
+
+    out = np.zeros((len(states), system.joints.size, 6))
+    reactions(system, options.augmentation, t, states, (k, k + 1), touch, work, out)
+    return work.body["motion"]
+
+
 def element_reactions(solution) -> np.ndarray:
     """Return the multipliers of each joint, then of each constraint (T, E, 6), as in the solver."""
     from carom.dynamics.reactions import reactions
@@ -221,9 +254,8 @@ def element_reactions(solution) -> np.ndarray:
     system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
     out = np.zeros((len(rec.state), system.joints.size, 6))
     work = r.new_work(system, run.method.b.size)
-    ranges = getattr(run, "rows_of_forces", None)  # for a run whose forces were set in steps
     with _kept_turns(system):
-        for rows in [(0, len(out))] if ranges is None else ranges(system, len(out)):
+        for rows in ranges_of(run, len(out)):
             touch = rec.touch[np.searchsorted(rec.touch.saved, rows[0]) :]
             reactions(
                 system, run.options.augmentation, rec.series.t, rec.state, rows, touch, work, out

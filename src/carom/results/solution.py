@@ -195,8 +195,11 @@ class Solution(Portable, Drawn):
         sums = (np.array(self._series[one.name]) for one in fields(Ledger)[2:])
         return Ledger(self.kinetic_energy, self.potential_energy, *sums)
 
-    def __getitem__(self, name: str) -> BodyState:
-        """Return the motion of a body by its name: arrays (T, 3) and (T, 4) in a `BodyState`."""
+    def __getitem__(self, name: str) -> BodyState | Any:
+        """Return the motion of a body by its name: arrays (T, 3) and (T, 4) in a `BodyState`.
+
+        Of a sensor of a model, what it shows at the saved times, (T, ...).
+        """
         from carom.results.state import state_of_body
 
         return state_of_body(self, self.scene, name, "solution")
@@ -217,6 +220,10 @@ class Solution(Portable, Drawn):
             names = ", ".join(f"events[{i}]" for i in not_seen)
             more = (f"{names} did not happen.", *more)
         return " ".join((said, *more))
+
+    @cached_property
+    def _accelerations(self) -> np.ndarray:
+        return self._assemble.accelerations(self)
 
     @cached_property
     def _reactions(self) -> np.ndarray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from carom.results.joint_coordinates import Sides, coordinates, of_scene, sides_
 from carom.scene.bodies import Body
 
 if TYPE_CHECKING:
+    from carom.results.sensors import Measured
     from carom.scene.scene import Scene
 
 _NONE = np.array([1.0, 0.0, 0.0, 0.0])
@@ -29,8 +30,13 @@ class BodyState(NamedTuple):
     angular_velocity: np.ndarray  #: (3,) or (T, 3) [rad/s]
 
 
-def state_of_body(states, scene: Scene, name: str, whose: str) -> BodyState:
-    """Return the part of `states` that belongs to the body with this name; `whose` is for messages."""
+def state_of_body(states, scene: Scene, name: str, whose: str) -> BodyState | Any:
+    """Return the part of `states` that belongs to the body with this name; `whose` is for messages.
+
+    A name that no part has may be that of a sensor of the model.
+    """
+    if scene.robot is not None and name not in scene._parts and name in scene.robot.sensors:
+        return scene.robot.sensors[name].of(states)
     try:
         part = scene[name]
     except KeyError as error:
@@ -52,7 +58,13 @@ class SystemState:
         Energies of the whole system [J].
     """
 
-    def __init__(self, run, joints: dict[int, Sides] | None = None):
+    def __init__(
+        self,
+        run,
+        joints: dict[int, Sides] | None = None,
+        ctrl: np.ndarray | None = None,
+        measured: Measured | None = None,
+    ):
         self._joints = {} if joints is None else joints  # joints prepared so far
         clock, rows = run.clock, run.now.view(np.ndarray).copy()
         rows.flags.writeable = False
@@ -60,6 +72,9 @@ class SystemState:
         self.t = float(clock["now"][0])
         self.kinetic_energy = float(clock["kinetic"][0])
         self.potential_energy = float(clock["potential"][0])
+        self._measured = measured  # accelerations and forces of contacts, for sensors
+        self._ctrl = None if ctrl is None else ctrl.copy()
+        self._turns = run.compiled.system.relations.coordinates["reference"].copy()
 
     @classmethod
     def _of_file(cls, scene, t: float, kinetic: float, potential: float, motion) -> SystemState:
@@ -68,6 +83,8 @@ class SystemState:
         rows = np.zeros(len(scene.bodies), STATE)
         rows["x"], rows["Q"], rows["v"], rows["w"] = motion
         rows.flags.writeable = False
+        state._ctrl = state._measured = None
+        state._turns = None  # whole turns of the coordinates that a run counts
         state._joints, state._rows, state._scene, state._to_principal = {}, rows, scene, _NONE
         state.t, state.kinetic_energy, state.potential_energy = t, kinetic, potential
         return state
@@ -98,12 +115,17 @@ class SystemState:
         return out
 
     @property
+    def turns(self) -> np.ndarray | None:
+        """Coordinates (C,) whose whole turns a run counts [rad or m]; None of a state from a file."""
+        return self._turns
+
+    @property
     def total_energy(self) -> float:
         """Kinetic plus potential energy [J]."""
         return self.kinetic_energy + self.potential_energy
 
     def __getitem__(self, name: str) -> BodyState:
-        """Return the state of a body, by its name."""
+        """Return the state of a body, by its name, or what a sensor of the model shows."""
         return state_of_body(self, self._scene, name, "state")
 
     def joint_coordinates(self, joint) -> tuple[np.ndarray, np.ndarray]:

@@ -131,6 +131,9 @@ class Registry:
         """Go through all parts, in the order added."""
         return iter(self._parts.values())
 
+    def __contains__(self, name) -> bool:
+        return name in self._parts
+
     def count(self, kind: type) -> int:
         """Return the number of parts of a `kind`."""
         return len(self._kinds.get(kind, ()))
