@@ -14,6 +14,7 @@ from carom._compiled.decorators import kernel
 from carom.contact.closed_points import place_closed, round_off_of_both
 from carom.contact.gap import round_off
 from carom.contact.place import place_any
+from carom.dynamics.contact_impulse import gain
 from carom.dynamics.passed_edges import has_passed
 from carom.dynamics.project import project_position, shift
 from carom.dynamics.several_points import spread_all, velocities, yields
@@ -63,19 +64,12 @@ def given(group, row):
 
 @kernel
 def factor_given(k, group):
-    """List the given rows, and factor W for them; return their number."""
-    n = 0
+    """List the given rows, and factor W for those that do not depend on others; return their number."""
+    n, equations = 0, group.equations
+    rows, L, own = equations.rows, equations.factor, equations.diagonal
     for i in range(3 * k):
         if given(group, i):
-            group.equations.rows[n], n = i, n + 1
-    return factor_rows(n, group)
-
-
-@kernel
-def factor_rows(n, group):
-    """Factor W for n rows of a list, from which those that depend on others go; return the number left."""
-    equations = group.equations
-    rows, L, own = equations.rows, equations.factor, equations.diagonal
+            rows[n], n = i, n + 1
     for i in range(n):
         own[i] = group.W[rows[i], rows[i]]
         for j in range(n):
@@ -122,11 +116,7 @@ def onto_tangents(system, k, count, state, group, work):
     solve_rows(k, n, group, x)
     spread_all(system, k, group.points[0], x, count, group.member, work.stage, work)
     for m in range(count):
-        b = group.member[m]
-        motion = work.body[b].motion
-        for i in range(3):
-            state[b].v[i] += motion[i]
-            state[b].w[i] += motion[3 + i]
+        gain(work.body[group.member[m]].motion, state[group.member[m]])
 
 
 @kernel

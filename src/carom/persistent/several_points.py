@@ -26,8 +26,9 @@ from carom.persistent.forces import pose_forces, solve_forces, take_forces, time
 from carom.persistent.jam import jams_among, note_jam
 from carom.persistent.joint_rows import JOINT, add_frictions
 from carom.persistent.points import weigh
-from carom.persistent.return_to_surfaces import factor_rows, onto_surfaces, solve_rows
-from carom.persistent.settle import greatest
+from carom.persistent.return_to_surfaces import factor_given, given, onto_surfaces, solve_rows
+from carom.persistent.rows import bodies_of
+from carom.persistent.settle import add_product, greatest
 from carom.persistent.start import first_stage
 from carom.persistent.thresholds import REST_SHARE
 
@@ -81,7 +82,10 @@ def judge(model, data, k, rows, horizon):
     system, state, group = model.system, data.state, data.group
     for i in range(k):
         contact, u = system.contacts[group.closed[i].contact], group.v[U][3 * i]
-        group.closed[i].stays = 1 if abs(u) <= slow(contact, state) else 0
+        group.closed[i].stays, group.closed[i].bounces = (
+            1 if abs(u) <= slow(contact, state) else 0,
+            0.0,
+        )
     push = greatest(3 * k, group.v[C])
     for turn in range(k + 1):
         solve_among(system, k, rows, group)
@@ -144,10 +148,7 @@ def leave_unreachable(system, state, k, group):
 @kernel
 def velocity_after(q, k, group):
     """Return the velocity of row q after the impulses in RETURN."""
-    after, x = group.v[U][q], group.v[RETURN]
-    for j in range(3 * k):
-        after += group.W[q, j] * x[j]
-    return after
+    return add_product(group.v[U][q], 3 * k, group.W[q], group.v[RETURN])
 
 
 @kernel
@@ -155,13 +156,6 @@ def time_without_torque(contact, rate, g, state):
     """Return the time of bounces that are left out, in which rolling and pivoting friction do not act."""
     bounces = any_turning(contact) and rate > slow(contact, state)
     return time_of_bounces(contact, rate, g) if bounces else 0.0
-
-
-@kernel
-def stops(group, i):
-    """Return whether row i is removed: the normal of a point that stays, and its tangents if it sticks."""
-    drops = group.closed[i // 3].stays == 1 and (i % 3 == 0 or group.kind[i // 3] == CONE)
-    return drops and yields(group.W, i)
 
 
 @kernel
@@ -228,8 +222,8 @@ def work_of_pull(k, group):
     for i in range(3 * k):
         if x[i] == 0.0:
             continue
-        after = 0.0 if stops(group, i) else velocity_after(i, k, group)
-        if i % 3 > 0 and not stops(group, i):
+        after = 0.0 if given(group, i) else velocity_after(i, k, group)
+        if i % 3 > 0 and not given(group, i):
             tangential += 0.5 * x[i] * (u[i] + after)
         else:
             normal += 0.5 * x[i] * (u[i] + after)
@@ -239,11 +233,11 @@ def work_of_pull(k, group):
 @kernel
 def find_pull(k, friction, group):
     """Write the impulses that remove the velocities to RETURN: with friction (1) if iterations converge."""
-    n, m, x, last, first = 3 * k, 0, group.v[RETURN], group.v[P], 0.0
-    for i in range(n):
-        if stops(group, i):
-            group.equations.rows[m], m = i, m + 1
-    m = factor_rows(m, group)
+    n, x, last, first = 3 * k, group.v[RETURN], group.v[P], 0.0
+    for i in range(k):  # the normal of a point that stays is removed, and its tangents if it sticks
+        closed_point = group.closed[i]
+        closed_point.rows = 0 if closed_point.stays == 0 else 3 if group.kind[i] == CONE else 1
+    m = factor_given(k, group)
     for with_friction in range(friction, -1, -1):
         for i in range(n):
             last[i] = 0.0
@@ -268,17 +262,17 @@ def pull_once(k, m, with_friction, group):
         slides = with_friction == 1 and group.closed[i].stays == 1 and group.closed[i].stopped == 0
         for r in range(2):
             q = 3 * i + 1 + r
-            if not stops(group, q):
+            if not given(group, q):
                 rubs = slides and yields(W, q)
                 last[q] = -group.mu[i] * group.heading[i, r] * last[3 * i] if rubs else 0.0
     for i in range(n):
-        x[i] = group.v[U][i] if stops(group, i) else 0.0
+        x[i] = group.v[U][i] if given(group, i) else 0.0
         for j in range(n):
-            x[i] += W[i, j] * last[j] if stops(group, i) and not stops(group, j) else 0.0
+            x[i] += W[i, j] * last[j] if given(group, i) and not given(group, j) else 0.0
     solve_rows(k, m, group, x)
     change, largest = 0.0, 0.0
     for i in range(n):
-        if stops(group, i):
+        if given(group, i):
             change, largest = max(change, abs(x[i] - last[i])), max(largest, abs(x[i]))
         else:
             x[i] = last[i]
@@ -336,9 +330,7 @@ def first_forces(model, data, label):
     """Store the forces of all active points of the group, and the modes that they ask for."""
     system, active, state = model.system, data.active, data.state
     group, work, clock, records = data.group, data.work, data.clocks[0], data.records
-    count, loaded = members(work, label, group.member), False
-    for m in range(count):
-        loaded = loaded or system.bodies[group.member[m]].ballistic == 0
+    count, loaded = bodies_of(model, data, label)
     work.result[0].start = clock.now
     k, _, _, _, found = first_stage(model, data, label, loaded, count)
     for i in range(k):

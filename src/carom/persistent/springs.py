@@ -31,7 +31,7 @@ from carom.impact.thresholds import GROUP_ERROR, LOADED_PART
 from carom.impact.workspace import ACCELERATIONS, C, P
 from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import JOINT, is_driven
-from carom.persistent.settle import greatest, settle
+from carom.persistent.settle import add_product, greatest, settle
 
 SHARES = 6  # rounds until the compliances of stick are found
 
@@ -261,10 +261,7 @@ def unload(k, turn, group):
 @kernel
 def acceleration_of(k, row, group):
     """Return the acceleration in a row under the forces in P."""
-    W, p, total = group.W, group.v[P], group.v[C][row]
-    for j in range(3 * k):
-        total += W[row, j] * p[j]
-    return total
+    return add_product(group.v[C][row], 3 * k, group.W[row], group.v[P])
 
 
 @kernel

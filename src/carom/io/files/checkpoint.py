@@ -63,7 +63,7 @@ def capture(run) -> Checkpoint | None:
         return None
     found = {
         "multiple": len(run.multiple.e),
-        "spots": len(run.crowd.spots),
+        "spots": len(run.crowd.closed),
         "room": len(islands.which),
         "pairs": 0 if run.found is None else len(run.found),
     }
@@ -92,7 +92,7 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
     found = checkpoint.found
     while len(run.multiple.e) < found["multiple"]:
         run.grow(r.FULL_MULTIPLE)
-    while len(run.crowd.spots) < found["spots"]:
+    while len(run.crowd.closed) < found["spots"]:
         run.grow(r.FULL_SPOTS)
     while len(run.islands.which) < found["room"]:
         run.grow(r.FULL_PAIRS)
