@@ -193,7 +193,7 @@ def end_bounces(model, data, k, label, horizon):
             group.heading[i, 0], group.heading[i, 1] = 0.0, 0.0
     find_pull(k, 1, group)
     normal, tangential = work_of_pull(k, group)
-    if not normal + tangential <= spare(clock):  # points next to each other push each other out
+    if normal > 0.0 or not normal + tangential <= spare(clock):  # neighbours push each other out
         find_pull(k, 0, group)
         normal, tangential = work_of_pull(k, group)
     name_work(normal, tangential, clock)
