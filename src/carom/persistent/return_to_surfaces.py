@@ -21,6 +21,7 @@ from carom.dynamics.project import project_position, shift
 from carom.dynamics.several_points import spread_all, velocities
 from carom.friction import lu
 from carom.friction.layout import SLIDING
+from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.workspace import RETURN, P
 from carom.kinematics.contact_point import in_axes
 from carom.model.actions import MODE_STICK
@@ -74,13 +75,16 @@ def factor_given(k, rubs, group):
 
 
 @kernel
-def solve_rows(k, n, group, x):
-    """Replace x, in the n rows, by the impulses that remove it; zero the others; return the error left."""
+def solve_rows(k, n, tiny, group, x):
+    """Replace x, in the n rows, by the impulses that remove it; zero the others; return the error left.
+
+    What is below `tiny` is round-off, which rows that depend on others do not share.
+    """
     equations = group.equations
     rows, r = equations.rows, equations.r
     for i in range(n):
         r[i] = -x[rows[i]]
-    left = settle(n, 0.0, EQUATION_ERROR * greatest(n, r), 0.0, 0.0, equations)
+    left = settle(n, 0.0, max(tiny, EQUATION_ERROR * greatest(n, r)), 0.0, 0.0, equations)
     for i in range(3 * k):
         x[i] = 0.0
     for i in range(n):
@@ -99,7 +103,7 @@ def onto_surfaces(system, active, k, count, state, group, work):
         if errors(system, active, k, state, group, x, work):
             break
         n = factor_given(k, False, group) if n < 0 else n
-        solve_rows(k, n, group, x)
+        solve_rows(k, n, round_off(system.contacts[group.closed[0].contact], state), group, x)
         spread_all(system, k, group.points[0], x, count, group.member, state, work)
         for m in range(count):
             shift(work.body[group.member[m]].motion, 1.0, state[group.member[m]])
@@ -124,10 +128,23 @@ def onto_tangents(system, active, k, count, state, group, work):
     """Remove the velocities of the bodies of the group that leave surfaces, or places that stick."""
     mark_tangents(active, k, group)
     n, x = factor_given(k, False, group), group.v[RETURN]
+    tiny = SUM_ERROR * greatest_speed(system, state, count, group.member)
     for _ in range(2):  # W is that of the last stage
         velocities(k, group.points[0], state, x)
-        solve_rows(k, n, group, x)
+        solve_rows(k, n, tiny, group, x)
         give(system, k, count, state, group, work)
+
+
+@kernel
+def greatest_speed(system, state, count, member):
+    """Return the greatest speed of the bodies, including that of their rotation at their size."""
+    speed = 0.0
+    for m in range(count):
+        b = member[m]
+        for r in range(3):
+            turning = system.bodies[b].extent * abs(state[b].w[r])
+            speed = max(speed, max(abs(state[b].v[r]), turning))
+    return speed
 
 
 @kernel

@@ -12,7 +12,7 @@ from carom.dynamics.elements import driven_power
 from carom.dynamics.energy import energies
 from carom.dynamics.several_points import inverse_masses
 from carom.friction.layout import CONE, SLIDING
-from carom.geometry.thresholds import REMAINDER, RESOLUTION
+from carom.geometry.thresholds import REMAINDER, RESOLUTION, SUM_ERROR
 from carom.impact.thresholds import VELOCITY_LEFT
 from carom.impact.workspace import ACCELERATIONS, RETURN, C, P, U
 from carom.kinematics.contact_point import contact_velocity
@@ -26,7 +26,13 @@ from carom.persistent.forces import pose_forces, solve_forces, take_forces, time
 from carom.persistent.jam import jams_among, note_jam
 from carom.persistent.joint_rows import JOINT, add_frictions
 from carom.persistent.points import weigh
-from carom.persistent.return_to_surfaces import factor_given, give, onto_surfaces, solve_rows
+from carom.persistent.return_to_surfaces import (
+    factor_given,
+    give,
+    greatest_speed,
+    onto_surfaces,
+    solve_rows,
+)
 from carom.persistent.rows import bodies_of
 from carom.persistent.settle import add_product, greatest
 from carom.persistent.springs import given
@@ -133,7 +139,7 @@ def leave_unreachable(system, state, k, group):
         most = group.v[U][3 * fastest]
         if not most > slow(system.contacts[group.closed[fastest].contact], state):
             return written
-        find_pull(k, 0, group)
+        find_pull(k, 0, 0.0, group)
         written = True
         for i in range(k):
             if group.closed[i].stays == 1:
@@ -158,18 +164,6 @@ def time_without_torque(contact, rate, g, state):
 
 
 @kernel
-def speed_of(system, state, count, member):
-    """Return the greatest speed of the bodies, including that of their rotation at their size."""
-    speed = 0.0
-    for m in range(count):
-        b = member[m]
-        for r in range(3):
-            turning = system.bodies[b].extent * abs(state[b].w[r])
-            speed = max(speed, max(abs(state[b].v[r]), turning))
-    return speed
-
-
-@kernel
 def end_bounces(model, data, k, label, horizon):
     """Remove the normal velocities of the points that stay, in the kinetic metric.
 
@@ -181,7 +175,7 @@ def end_bounces(model, data, k, label, horizon):
     system, controls = model.system, model.controls
     state, group, work, clock = data.state, data.group, data.work, data.clocks[0]
     count = members(work, label, group.member)
-    speed = speed_of(system, state, count, group.member)
+    speed = greatest_speed(system, state, count, group.member)
     still = 1e-12 * speed
     for i in range(3 * k):
         still = max(still, controls.rest * controls.step * abs(group.v[C][i]))
@@ -191,15 +185,15 @@ def end_bounces(model, data, k, label, horizon):
         end = horizon_of(contact, controls, -group.v[C][3 * i], horizon)
         if not time_to_stop(i, group) > end:  # friction ends with the slip
             group.heading[i, 0], group.heading[i, 1] = 0.0, 0.0
-    find_pull(k, 1, group)
+    find_pull(k, 1, SUM_ERROR * speed, group)
     normal, tangential = work_of_pull(k, group)
     if normal > 0.0 or not normal + tangential <= spare(clock):  # neighbours push each other out
-        find_pull(k, 0, group)
+        find_pull(k, 0, SUM_ERROR * speed, group)
         normal, tangential = work_of_pull(k, group)
     name_work(normal, tangential, clock)
     if give(system, k, count, state, group, work):
         clock.loads += driven_power(system, state, work)  # of an impulse: its work
-    if speed_of(system, state, count, group.member) <= still:
+    if greatest_speed(system, state, count, group.member) <= still:
         for m in range(count):
             b = group.member[m]
             for r in range(3):
@@ -222,7 +216,7 @@ def work_of_pull(k, group):
 
 
 @kernel
-def find_pull(k, friction, group):
+def find_pull(k, friction, tiny, group):
     """Write the impulses that remove the velocities to RETURN: with friction (1) if they exist."""
     x = group.v[RETURN]
     for i in range(k):  # the normal of a point that stays is removed, and its tangents if it sticks
@@ -232,12 +226,12 @@ def find_pull(k, friction, group):
         n = factor_given(k, with_friction == 1, group)
         for i in range(3 * k):
             x[i] = group.v[U][i]
-        left = solve_rows(k, n, group, x)
+        left = solve_rows(k, n, tiny, group, x)
         for i in range(k if with_friction == 1 else 0):
             if group.closed[i].rows == 1 and group.kind[i] == SLIDING:
                 for r in range(2):
                     x[3 * i + 1 + r] = -group.mu[i] * group.heading[i, r] * x[3 * i]
-        if left <= REMAINDER * greatest(3 * k, group.v[U]):
+        if left <= max(tiny, REMAINDER * greatest(3 * k, group.v[U])):
             return
 
 
