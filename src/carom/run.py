@@ -253,7 +253,7 @@ class Run(Running):
     @property
     def has_crowd(self) -> bool:
         """Whether a crowd has taken a time-stepping (Moreau) step."""
-        return len(self.crowd.spots) >= SPOTS
+        return len(self.crowd.closed) >= SPOTS
 
     @property
     def bodies(self):

@@ -32,7 +32,6 @@ CLOSED_POINT = [
     ("bounces", "f8"),  # time that its bounces would still take
     ("point", "f8", 3),  # point of the core, body axes
     ("rows", "i8"),  # number of rows that the return to the surface uses
-    ("stopped", "i8"),  # 1 where slip has stopped within the step
     ("own", "i8"),  # 1 if it is the active point of its place, 0 if that only stands for its pair
     ("loaded", "i8"),  # 1 if it presses: its spring carries
     ("patch", "i8"),  # the first point of its patch
@@ -57,7 +56,6 @@ class Equations(NamedTuple):
     A: np.ndarray  # (3K, 3K)
     factor: np.ndarray  # (3K, 3K) of A, or of A and a compliance
     pivot: np.ndarray  # (3K,) rows exchanged in the factor
-    diagonal: np.ndarray  # (3K,) of A, in whose parts pivots are judged
     x: np.ndarray  # (3K,)
     r: np.ndarray  # (3K,) right-hand side, then the error that x leaves
     before: np.ndarray  # (3K,) the unknowns before an iteration of Newton's method
@@ -130,10 +128,10 @@ def new_equations(n: int) -> Equations:
     """Return a system of up to n unknowns; its three matrices take .8 MB for 60 points."""
     rows, chosen, pivot = (np.zeros(n, dtype=np.int64) for _ in range(3))
     A, factor, directions = (np.zeros((n, n)) for _ in range(3))
-    diagonal, x, r, before, part = (np.zeros(n) for _ in range(5))
+    x, r, before, part = (np.zeros(n) for _ in range(4))
     return Equations(
-        rows=rows, chosen=chosen, A=A, factor=factor, pivot=pivot, diagonal=diagonal, x=x, r=r,
-        before=before, directions=directions, part=part, iterations=np.zeros(1, dtype=np.int64),
+        rows=rows, chosen=chosen, A=A, factor=factor, pivot=pivot, x=x, r=r, before=before,
+        directions=directions, part=part, iterations=np.zeros(1, dtype=np.int64),
     )  # fmt: skip
 
 

@@ -75,7 +75,7 @@ def step_single(model, data, method, start):
     code = 0
     while code == 0 and step.spent < step.length:
         code = move_island(local, data, method)
-        if code == 0 and data.crowd.spots.shape[0] >= SPOTS:  # a crowd leaves no groups
+        if code == 0 and data.crowd.closed.shape[0] >= SPOTS:  # a crowd leaves no groups
             regroup(model.system, data.active, data.work)
         if code == 0:
             end_count(controls, data.clocks[0].step, data.work)

@@ -66,7 +66,7 @@ def capture(run) -> Checkpoint | None:
     if inside or (islands.plan[0].planned != 0):
         return None
     pairs = 0 if run.found is None else len(run.found)
-    multiple, spots = len(run.multiple.e), len(run.crowd.spots)
+    multiple, spots = len(run.multiple.e), len(run.crowd.closed)
     found = {"multiple": multiple, "spots": spots, "room": len(islands.which), "pairs": pairs}
     return Checkpoint(found, {name: array.copy() for name, array in arrays_of(run)})
 
@@ -93,7 +93,7 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
     found = checkpoint.found
     while len(run.multiple.e) < found["multiple"]:
         run.grow(r.FULL_MULTIPLE)
-    while len(run.crowd.spots) < found["spots"]:
+    while len(run.crowd.closed) < found["spots"]:
         run.grow(r.FULL_SPOTS)
     while len(run.islands.which) < found["room"]:
         run.grow(r.FULL_PAIRS)

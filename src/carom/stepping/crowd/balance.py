@@ -42,7 +42,7 @@ def off(model, data, k, gained):
     for b in range(start.shape[0]):
         size += kinetic_of(system.bodies[b], start[b]) + weigh(system, b, start, end)
     for i in range(k):
-        u, p = crowd.spots[i].before, crowd.spots[i].impulse
+        u, p = crowd.closed[i].before, crowd.closed[i].impulse
         w = contact_velocity(crowd.points[0][i], end)
         for j in range(3):
             work += 0.5 * p[j] * (u[j] + w[j])

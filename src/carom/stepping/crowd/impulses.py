@@ -39,7 +39,7 @@ def find_points(model, data, h, fall, wide):
         halfway(now[b], crowd.flight[b], crowd.middle[b])
     place_all(system, 0, k, crowd.flight, crowd, crowd.points[1], work)
     for i in range(k):
-        crowd.spots[i].left = crowd.points[1][i].gap
+        crowd.closed[i].left = crowd.points[1][i].gap
     place_all(system, 0, k, crowd.middle, crowd, crowd.points[0], work)
     if n > 1:
         place_all(system, 0, k, now, crowd, crowd.points[1], work)
@@ -69,7 +69,7 @@ def find_impulses(model, data, k, h, fall, patient):
         residual = max(residual, more)
     for i in range(k):
         for j in range(3):
-            crowd.spots[i].impulse[j] = crowd.p[3 * i + j]
+            crowd.closed[i].impulse[j] = crowd.p[3 * i + j]
     return residual
 
 
@@ -86,9 +86,9 @@ def bounces_give(k, crowd, end):
     """Return whether the impulses add energy and some point strikes."""
     total, size, strikes = 0.0, 0.0, False
     for i in range(k):
-        one = work_of(i, crowd.p, crowd.spots[i].before, contact_velocity(crowd.points[0][i], end))
+        one = work_of(i, crowd.p, crowd.closed[i].before, contact_velocity(crowd.points[0][i], end))
         total, size = total + one, size + abs(one)
-        strikes = strikes or crowd.spots[i].strikes == 1
+        strikes = strikes or crowd.closed[i].strikes == 1
     return strikes and total > REMAINDER * size
 
 
@@ -104,7 +104,7 @@ def limit_bounces(system, data, k, tolerance, most):
     for i in range(3 * k):
         full[i] = crowd.p[i]
     for i in range(k):  # remove the bounds of restitution, and store w with restitution
-        spot = crowd.spots[i]
+        spot = crowd.closed[i]
         w = contact_velocity(crowd.points[0][i], end)
         if spot.strikes == 1 and spot.bound + spot.drift[0] > 0.0:
             crowd.c[3 * i] += spot.bound + spot.drift[0]
@@ -114,10 +114,10 @@ def limit_bounces(system, data, k, tolerance, most):
     gain_all(crowd, work)
     a, b, c = 0.0, 0.0, 0.0  # coefficients of the work a + b s + c s^2
     for i in range(k):
-        u, w = crowd.spots[i].before, contact_velocity(crowd.points[0][i], end)
+        u, w = crowd.closed[i].before, contact_velocity(crowd.points[0][i], end)
         for j in range(3):
             p, d = crowd.p[3 * i + j], full[3 * i + j] - crowd.p[3 * i + j]
-            dw = crowd.spots[i].after[j] - w[j]
+            dw = crowd.closed[i].after[j] - w[j]
             a += 0.5 * p * (u[j] + w[j])
             b += 0.5 * (d * (u[j] + w[j]) + p * dw)
             c += 0.5 * d * dw
@@ -165,7 +165,7 @@ def impose(model, data, k, h):
 
 
 @kernel
-def lift_others(system, k, depth, crowd, work):
+def lift_others(system, active, k, depth, crowd, work):
     """Move bodies apart where other features are inside by more than `depth`; keep angular momenta.
 
     Such a feature was no candidate and has no impulse, for example a corner that has come over an edge of a
@@ -175,7 +175,7 @@ def lift_others(system, k, depth, crowd, work):
     for b in range(end.shape[0]):
         copy_state(end[b], crowd.pressed[b])
     for _ in range(LIFTS):
-        last = gather_sunk(system, k, depth, end, crowd, work)
+        last = gather_sunk(system, active, k, depth, end, crowd, work)
         if last < 0:
             return False, holds
         if last == k:

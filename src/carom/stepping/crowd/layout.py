@@ -55,7 +55,7 @@ SPOTS = 8
 class Crowd(NamedTuple):
     """Up to K points of N bodies, and up to P active points. Vectors have rows n, t1, t2 for each point."""
 
-    spots: np.recarray  # (K,) SPOT
+    closed: np.recarray  # (K,) SPOT
     points: np.recarray  # (2, K) POINT: in the middle of the step; at its end
     c: np.ndarray  # (3K,) velocities without impulses minus their bounds
     p: np.ndarray  # (3K,) impulses
@@ -96,7 +96,7 @@ def new_crowd(bodies: int, active: int, points: int, joined: int = 0) -> Crowd:
     )  # fmt: skip
     flight, flight_middle, middle, pressed = table(STATE, 4, bodies)
     return Crowd(
-        spots=table(SPOT, points), points=table(POINT, 2, points), c=np.zeros(3 * points),
+        closed=table(SPOT, points), points=table(POINT, 2, points), c=np.zeros(3 * points),
         p=np.zeros(3 * points), lift=np.zeros(points), bouncing=np.zeros(3 * points),
         problem=problem, mixing=new_mixing(points), graph=graph, flight=flight,
         flight_middle=flight_middle, middle=middle, pressed=pressed,
@@ -113,6 +113,6 @@ def no_crowd() -> Crowd:
 
 def roomier_crowd(crowd: Crowd) -> Crowd:
     """Return the workspace for twice as many points."""
-    points = len(crowd.spots)
+    points = len(crowd.closed)
     joined = 1 + len(crowd.problem.other) // points
     return new_crowd(len(crowd.flight), len(crowd.active), 2 * points, joined)

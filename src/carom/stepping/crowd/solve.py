@@ -89,7 +89,7 @@ def greatest_speed(crowd, k):
     """Return the greatest normal or tangential velocity of a point at the start [m/s]."""
     most = 0.0
     for i in range(k):
-        u = crowd.spots[i].before
+        u = crowd.closed[i].before
         most = max(most, abs(u[0]), abs(u[1]), abs(u[2]))
     return most
 

@@ -60,7 +60,7 @@ def step_crowd(model, data, method):
     system, controls = model.system, model.controls
     now, work = data.state, data.work
     step, result, search = work.step[0], work.result[0], work.search[0]
-    result.code = 0 if data.crowd.spots.shape[0] >= SPOTS else grow(step, r.FULL_SPOTS)
+    result.code = 0 if data.crowd.closed.shape[0] >= SPOTS else grow(step, r.FULL_SPOTS)
     if result.code != 0:
         return
     if step.spent == 0.0:
@@ -205,7 +205,7 @@ def collide(model, data, h, fall, patient, careful):
         if times >= AGAIN or (wide == limits.SEARCH_LIMIT and k == before):
             if sunk > limits.MISSED_DEPTH and h > limits.MISSED_PIECE * model.controls.interval:
                 return TOO_LONG, k, residual, driven
-            room, holds = lift_others(system, k, RESOLUTION, crowd, work)
+            room, holds = lift_others(system, data.active, k, RESOLUTION, crowd, work)
             if not room:
                 return grow(work.step[0], r.FULL_SPOTS), k, residual, driven
             return 0 if holds else CONSTRAINTS_LOST, k, residual, driven
@@ -216,7 +216,7 @@ def collide(model, data, h, fall, patient, careful):
 def misses_bounce(system, k, h, fall, crowd):
     """Return whether a point closes within the piece and would bounce, so that an impact is missing."""
     for i in range(k):
-        spot = crowd.spots[i]
+        spot = crowd.closed[i]
         contact = system.contacts[spot.contact]
         if spot.turns == 0 and spot.gap > 0.0 and spot.left > 0.0 and spot.impulse[0] > 0.0:
             e = contact.restitution
