@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from carom.studies.ensembles.targets import find_targets
 
 import carom
 from carom.io.files.checkpoint import capture
@@ -11,6 +10,7 @@ from carom.io.files.writing import write
 from carom.model import contact_rows
 from carom.stepping.settings import checked_settings
 from carom.studies.ensembles.again import Again
+from carom.studies.values import find_targets
 
 R = 0.01
 ALLOWED = carom.Options(energy_tolerance=0.1)
