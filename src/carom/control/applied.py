@@ -31,6 +31,8 @@ class Applied:
         self.run, self.places = run, places(run, implicit)
         # rows that were saved before, and the value
         self.history: list[tuple[int, Place, Any]] = []
+        self.values: list[tuple[int, int, Any]] = []  # the same with indices and given values
+        self.given: dict[int, Any] = {}  # the present ones, by index; replaced with each
 
     def set(self, force, value) -> None:
         """Set a force, given itself or by its name."""
@@ -42,10 +44,16 @@ class Applied:
                 "force must be a Force, a Torque or a JointForce with a number, got "
                 f"{force.name!r}, a {force.kind}"
             )
-        if place.column == "push":
-            value = checks.number("value", value)
-        else:
-            value = checks.finite_array("value", value, (3,), unit=UNITS[type(force.definition)])
+        push = place.column == "push"
+        unit = "" if push else UNITS[type(force.definition)]
+        value = (
+            checks.number("value", value)
+            if push
+            else checks.finite_array("value", value, (3,), unit)
+        )
+        self.given = {**self.given, force.index: value}
+        self.values.append((int(self.run.clock["saved"][0]), force.index, value))
+        if not push:
             if place.frame is not None:
                 value = quaternion.rotate_back(place.frame, value)
         self.history.append((int(self.run.clock["saved"][0]), place, value))
@@ -96,3 +104,17 @@ def rows_of_forces(
         put(system, place, value)
     if saved > first:
         yield first, saved
+
+
+def values_of_forces(
+    scene, values: list[tuple[int, int, Any]], saved: int
+) -> dict[int, np.ndarray]:
+    """Return the values at saved times, (T,) or (T, 3), of the forces that were set, by index."""
+    out: dict[int, np.ndarray] = {}
+    for row, index, value in values:
+        if index not in out:
+            d = scene.forces[index].definition
+            first = d.force if isinstance(d, JointForce) else d.vector
+            out[index] = np.repeat(np.array(first, dtype=float)[None], saved, axis=0)
+        out[index][row:] = value
+    return out

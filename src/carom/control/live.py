@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import replace
-from typing import Any
 
 from numpy.typing import ArrayLike
 
 from carom import arguments
-from carom.control.applied import Applied, rows_of_forces
+from carom.control.applied import Applied, rows_of_forces, values_of_forces
 from carom.control.endless import BLOCK, Endless
 from carom.dynamics.methods import METHODS
 from carom.io.files.kept import KeptRun
@@ -91,7 +90,7 @@ class Run:
         self._run = Endless(scene, settings)
         implicit = METHODS[settings.method].kind == IMPLICIT
         self._applied = Applied(self._run, implicit)
-        self._status, self._joints = Status.SUCCESS, {}
+        self._status, self._known = Status.SUCCESS, {}
         for mistake in mistakes(scene, settings):
             warnings.warn(mistake, MistakeWarning, stacklevel=3)
 
@@ -103,12 +102,12 @@ class Run:
     @property
     def state(self) -> SystemState:
         """The state at this time; it stays as it is when the run goes on."""
-        return SystemState(self._run, self._joints)
+        return SystemState(self._run, self._known, self._applied.given)
 
     @property
     def solution(self) -> Solution:
         """All of the run up to this time; it stays as it is when the run goes on, and `simulate` refuses it."""
-        return solution_of(self._run, self._status, self._applied.history)
+        return solution_of(self._run, self._status, self._applied)
 
     def set_force(self, force: AppliedForce | str, value: ArrayLike) -> None:
         """Set a force of the scene to a new value, which it keeps until it is set again.
@@ -167,17 +166,21 @@ class Run:
 class Frozen(KeptRun):
     """The records of a run up to some time, and the forces that were set until then."""
 
-    def __init__(self, run: Endless, settings: dict, history: list[tuple[int, Any, Any]]):
+    def __init__(self, run: Endless, settings: dict, applied: Applied):
         records, past = r.trimmed(run.records, run.clock), {"status": Status.SUCCESS.name}
         super().__init__(run.scene, settings, run.options, records, None, [], past, run.found)
-        self.history = history
+        self.history, self.values = list(applied.history), list(applied.values)
 
     def rows_of_forces(self, system, saved: int):
         """Go through ranges of saved rows in which forces stay as they are; write them into the system."""
         return rows_of_forces(self.history, system, saved)
 
+    def values_of_forces(self) -> dict:
+        """Return the values at saved times of the forces that were set, by index."""
+        return values_of_forces(self.scene, self.values, len(self.records.series))
 
-def solution_of(run: Endless, status: Status, history: list[tuple[int, Any, Any]]) -> Solution:
+
+def solution_of(run: Endless, status: Status, applied: Applied) -> Solution:
     """Return the solution of a run up to now; the run may go on, and knows nothing of it."""
     clock = run.clock.copy()
     if run.reached > run.records.series["t"][int(clock["saved"][0]) - 1] and status.ended:
@@ -186,6 +189,6 @@ def solution_of(run: Endless, status: Status, history: list[tuple[int, Any, Any]
     made = run.solution(status)
     longest = run.how.step or run.controls.interval
     settings = {**made.settings, "duration": max(run.reached, longest)}
-    made = replace(made, settings=settings, _run=Frozen(run, settings, list(history)))
+    made = replace(made, settings=settings, _run=Frozen(run, settings, applied))
     run.clock[:] = clock
     return made

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,9 +10,13 @@ import numpy as np
 
 from carom import arguments, checks, fields
 from carom.fields import Function, FunctionOrNone, Integer, Number, Value, Vector
-from carom.scene.bodies import Body
-from carom.scene.constraints import coordinate_kind, distinct_bodies
-from carom.scene.joints import Joint
+from carom.scene.constraints import (
+    Bodies,
+    OneJoint,
+    coordinate_kind,
+    distinct_bodies,
+    joint_or_name,
+)
 from carom.scene.values import apart
 
 
@@ -20,7 +24,7 @@ from carom.scene.values import apart
 class AlongJoint:
     """What acts along a `coordinate` of a joint."""
 
-    joint: Joint
+    joint: OneJoint = Value(joint_or_name)
 
     def __post_init__(self):
         coordinate_kind(self.joint, self.coordinate)  # pyright: ignore[reportAttributeAccessIssue]
@@ -35,7 +39,8 @@ class JointSpring(AlongJoint):
 
     Parameters
     ----------
-    joint : Joint
+    joint : Joint or str
+        The joint, or its name.
     stiffness, damping : float
         For an angle [N m/rad] and [N m s/rad], for a displacement [N/m] and [N s/m]; at least 0. Default 0.
     rest : float
@@ -63,7 +68,8 @@ class JointForce(AlongJoint):
 
     Parameters
     ----------
-    joint : Joint
+    joint : Joint or str
+        The joint, or its name.
     force : float or callable
         Force [N] along a displacement or torque [N m] about an angle: a number, or a function
         ``force(t, q, rate)`` of the time, the coordinate and its rate, plain Python or compiled with Numba.
@@ -85,7 +91,8 @@ class JointFriction(AlongJoint):
 
     Parameters
     ----------
-    joint : Joint
+    joint : Joint or str
+        The joint, or its name.
     bound : float
         Friction force [N] along a displacement or torque [N m] about an angle, at least 0.
     coordinate : int
@@ -107,7 +114,8 @@ class JointInertia(AlongJoint):
 
     Parameters
     ----------
-    joint : Joint
+    joint : Joint or str
+        The joint, or its name.
     inertia : float
         [kg m^2] for an angle, [kg] for a displacement; at least 0.
     coordinate : int
@@ -165,8 +173,8 @@ class UserForce:
 
     Parameters
     ----------
-    bodies : sequence of Body
-        The n bodies on which the forces act, each once.
+    bodies : sequence of Body or str
+        The n bodies on which the forces act, or their names, each once.
     function : callable
         ``function(t, states) -> (n, 6)``: `states` (n, 13) has position, orientation (quaternion, scalar first,
         body to world), velocity and angular velocity of each body, world axes. The result has a force [N] and a
@@ -177,6 +185,6 @@ class UserForce:
         of the forces is part of `potential_energy`; otherwise their work is in `ledger.loads`.
     """
 
-    bodies: Value[tuple[Body, ...], Body | Sequence[Body]] = Value(distinct_bodies)
+    bodies: Bodies = Value(distinct_bodies)
     function: Function = fields.function()
     potential: FunctionOrNone = fields.function(None)

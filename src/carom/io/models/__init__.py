@@ -6,3 +6,7 @@ from carom.io.models.model import Model
 from carom.io.models.report import Entry, Report
 
 __all__ = ["Coordinate", "Entry", "Model", "Report", "load_model"]
+
+
+def __dir__() -> list[str]:
+    return __all__
