@@ -17,8 +17,8 @@ CALLED = {
     "Revolute", "Spherical", "Prismatic", "Cylindrical", "Screw", "Universal", "Planar", "PointOnLine",
     "PointOnPlane", "Fixed", "Distance", "KnifeEdge", "RollingSphere", "RollingDisc",
     "Gear", "Coupling", "Driver", "Rows",
-    "Spring", "Force", "Torque", "Bushing", "JointSpring", "JointForce", "JointFriction", "JointInertia",
-    "CurveSpring", "UserForce",
+    "Spring", "Force", "Torque", "Bushing", "JointSpring", "JointForce", "Actuator", "JointFriction",
+    "JointInertia", "CurveSpring", "UserForce",
 }  # fmt: skip
 
 #: of classes with many members: topics in the order of the page
@@ -34,6 +34,7 @@ TOPICS = {
         "Joints and constraints": ("add_joint", "add_stop", "add_constraint", "joints", "stops", "constraints"),
         "Forces": ("add_force", "forces"),
         "Changes": ("replace", "remove", "copy"),
+        "Model": ("robot",),
         "Checks": ("check", "validate"),
     },
     "Solution": {

@@ -95,7 +95,9 @@ _VIEWED = (
 _ELSEWHERE = "it is carom.{0}.{1}"
 _OF_SCENE = {
     "a motor is made by add_constraint(carom.constraints.Driver(...)), which prescribes the motion of a joint, "
-    "or by add_force(carom.forces.JointForce(...)), which applies a force": "add_motor add_actuator",
+    "or by add_force(carom.forces.JointForce(...)), which applies a force": "add_motor",
+    "a motor with a control is made by add_force(carom.forces.Actuator(...)); in a carom.Run, run.ctrl sets it":
+        "add_actuator add_servo",
     "a spring is made by add_force(carom.forces.Spring(...))": "add_spring",
     "a damper is a spring without stiffness: add_force(carom.forces.Spring(stiffness=0, damping=...))":
         "add_damper add_dashpot",
@@ -200,7 +202,8 @@ MEMBERS = {
         "Spring": "LinearSpring DampedSpring SpringDamper",
         "Force": "Constant ConstantForce Thruster Load PointForce",
         "Torque": "Moment Couple",
-        "JointForce": "Motor Actuator JointTorque JointActuator",
+        "JointForce": "Motor JointTorque JointActuator",
+        "Actuator": "Servo PositionServo PositionActuator Position",
         "JointFriction": "DryFriction CoulombFriction",
         "JointInertia": "Armature Rotor ReflectedInertia",
         "Bushing": "Mount",

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from carom._compiled.mould import Mould, arrays_of
@@ -27,6 +25,7 @@ from carom.model.kept import Snapshot
 from carom.model.method import IMPLICIT, THREE_FIELD
 from carom.options import Options
 from carom.results.accuracy import inaccurate
+from carom.results.costs import costs
 from carom.results.solution import Solution
 from carom.scene.all_pairs import PairTable
 from carom.scene.joints import Joint
@@ -51,6 +50,7 @@ from carom.stepping.islands.layout import (
     together,
     with_partners,
 )
+from carom.stepping.running import Running
 from carom.stepping.settings import Settings
 from carom.stepping.thresholds import STEP_SHARE
 
@@ -58,13 +58,12 @@ ROOM_AT_FIRST = 8  # points of an impact for which there is room at first
 LOCATIONS = {"locate": LOCATE, "project": PROJECT, "work": WORK}
 
 
-class Run:
+class Run(Running):
     """A run that can be continued step by step; `solution` may be taken at any time."""
 
-    #: is asked at pauses; True interrupts the run
-    to_stop: Callable[[], bool] = staticmethod(lambda: False)
     #: what a run passes to compiled code has one type, whatever its scene and method
     call = Entries()
+    costs = costs  # for the progress bar
 
     def __init__(self, scene: Scene, settings: Settings):
         # from the third run with the same settings on, all but the records is cast from a mould
@@ -148,14 +147,20 @@ class Run:
         self.watch = new_watch(options.energy_tolerance, share)
         flies = system.bodies["ballistic"] == 1  # in closed form: any step is good
         self.work.body["ahead"] = np.where(flies, 1.0, FIRST_STEP) * self.grid.interval
-        if options.project_start and len(system.joints):
-            error = project_start(system, self.now, self.work)
-            if not error <= options.constraint_tolerance:
-                raise ValueError(
-                    "the initial positions must be near positions that satisfy the joints, got positions from "
-                    f"which Newton's method leaves an error of {error:.3g}; start nearer"
-                )
+        self.project()
         self.work.body["label"] = np.where(flies, system.bodies["component"], system.bodies.size)
+
+    def project(self) -> None:
+        """Move the bodies into positions that satisfy the joints, where `Options.project_start` says so."""
+        system = self.compiled.system
+        if not (self.options.project_start and len(system.joints)):
+            return
+        error = project_start(system, self.now, self.work)
+        if not error <= self.options.constraint_tolerance:
+            raise ValueError(
+                "the initial positions must be near positions that satisfy the joints, got positions from "
+                f"which Newton's method leaves an error of {error:.3g}; start nearer"
+            )
 
     def check(self, scene: Scene) -> None:
         """Check the initial state."""
@@ -170,11 +175,6 @@ class Run:
         if self.tolerances is not None:
             known["rtol"], known["atol"] = self.tolerances
         return known
-
-    @property
-    def steps(self) -> int:
-        """Number of steps to the end."""
-        return self.grid.last
 
     @property
     def model(self) -> Model:
@@ -253,12 +253,7 @@ class Run:
     @property
     def has_crowd(self) -> bool:
         """Whether a crowd has taken a time-stepping (Moreau) step."""
-        return len(self.crowd.spots) >= SPOTS
-
-    @property
-    def steps_done(self) -> int:
-        """Number of finished steps."""
-        return int(self.clock["step"][0])
+        return len(self.crowd.closed) >= SPOTS
 
     @property
     def bodies(self):
@@ -271,51 +266,36 @@ class Run:
         return self.compiled.to_principal
 
     @property
-    def failure(self) -> BaseException | None:
-        """The error that a user-defined function has raised, or None."""
-        return self.compiled.functions.failed
+    def functions(self) -> Functions:
+        """The user-defined functions."""
+        return self.compiled.functions
 
-    @property
-    def reached(self) -> float:
-        """Time that the run has reached [s]."""
-        return float(self.clock["now"][0])
-
-    def go_on(self, until: int) -> Status:
-        """Continue to step number `until`, or to a failure."""
+    def take_steps(self, until: int) -> int:
+        """Continue to step number `until`; return a status, or PAUSE."""
         while True:
-            state = (self.model, self.data, self.method, self.islands, self.grid, int(until))
+            state = (self.model, self.data, self.method, self.islands, self.grid, until)
             code = self.call(time_loop.run, *state)
-            if code == r.GROW:
-                self.grow(self.clock[0].grow)
-            elif code == r.PAUSE and self.failure is None:
-                if self.to_stop():  # here Ctrl-C is raised
-                    return Status.INTERRUPTED
-            elif isinstance(self.failure, KeyboardInterrupt):  # while a plain function ran
-                self.compiled.functions.forget()
-                return Status.INTERRUPTED
-            elif self.failure is not None or self.is_to_blame(code):
-                return Status.FUNCTION_FAILED
-            else:
-                return Status(code)
+            if code != r.GROW:
+                return code
+            self.grow(self.work.step[0].grow)
 
-    def is_to_blame(self, code: int) -> bool:
-        """Return whether a user-defined function without a finite result has ended the run."""
-        functions, begin = self.compiled.functions, float(self.clock["begin"][0])
-        if code == Status.SUCCESS or functions.blame(begin) or not functions.has_compiled:
-            return self.failure is not None
-        # once more, with compiled functions called from Python
-        place = Snapshot(self)
+    def begin(self) -> float:
+        """Return the start of the step: a trial step of it has failed."""
+        return float(self.work.step["begin"][0])
+
+    def blame_compiled(self) -> None:
+        """Take the failed step once more, with compiled functions called from Python, which notes faults."""
+        functions, place = self.functions, Snapshot(self)
         self.go_back()
         system = self.compiled.system, self.islands
         fields = [(one, name) for one in arrays_of(system) for name in one.dtype.names or ()]
         functions.call_from_python(one[name] for one, name in fields if name.endswith("address"))
         self.records = r.with_room(self.records, int(self.clock["saved"][0]))
         self.save_now()  # the energy of the state that was reached
-        if not functions.blame(begin):
+        if not functions.blame(self.begin()):
             state = (self.model, self.data, self.method, self.islands, self.grid)
             self.call(time_loop.run, *state, self.steps_done + 1)
         place.put_back()
-        return functions.blame(begin)
 
     def judged(self, status: Status) -> Status:
         """Return the status at the end of the run, after the check of energy, gaps and contact problems."""
@@ -324,7 +304,7 @@ class Run:
 
     def go_back(self) -> None:
         """Return to the start of the step in which the run was interrupted."""
-        islands, active, search = self.islands, self.active, self.work.search
+        islands, active, step, search = self.islands, self.active, self.work.step, self.work.search
         start = islands.single
         if islands.apart:
             if islands.plan[0].planned == 0:
@@ -341,7 +321,7 @@ class Run:
         else:
             return
         self.clock[:] = (islands if islands.apart else start).clock
-        search["pending"], active.carries[:] = 0, 0
+        step["spent"], step["paused"], search["pending"], active.carries[:] = 0.0, 0, 0, 0
         points = active.points[: active.count[0]]
         active.carries[points["feature"][points["touches"] == 0]] = 1
 

@@ -120,8 +120,19 @@ def read(folder):
                  overlaps="repair", max_hull_vertices=64, mocap={"hand": [lambda t: (0.0, 0.0, 0.0)]},
                  package_dirs=()),
         ),
-        "Model.qpos": lambda: (model().qpos, dict(solution=swing())),
         "models.Coordinate.of": lambda: (model().joints["j"].of, dict(solution=swing())),
+        "models.Sensor.of": lambda: (model().sensors["q"].of, dict(solution=swing())),
+        **{
+            f"models.Motor.{name}": lambda name=name: (
+                getattr(model().actuators["m"], name), dict(solution=swing()),
+            )
+            for name in ("length", "control", "force")
+        },
+        **{
+            f"{whose}.{name}": lambda of=of, name=name: (getattr(of(), name), dict(solution=swing()))
+            for whose, of in (("Model", model), ("models.Robot", lambda: model().scene.robot))
+            for name in ("qpos", "qvel", "ctrl")
+        },
         "models.Report.of": lambda: (model().report.of, dict(element="joint")),
         "models.Report.add": lambda: (
             models.Report().add, dict(element="joint", what="is missing", instead="none"),

@@ -94,6 +94,14 @@ def run(folder):
         ),
         "Run.advance": lambda: (carom.Run(thrown(), step=0.01).advance, dict(duration=0.02)),
         "Run.set_force": lambda: (things.pushed().set_force, dict(force="push", value=(0.0, 0.0, 1.0))),
+        "Run.reset": lambda: (
+            carom.Run(things.model()).reset,
+            dict(state=carom.Run(things.model()).state, keyframe=None, qpos=[0.1], qvel=[0.2]),
+        ),
+        "Run.set_state": lambda: (
+            carom.Run(things.model()).set_state,
+            dict(state=carom.Run(things.model()).state, qpos=[0.1], qvel=[0.2]),
+        ),
         "results.SystemState.joint_coordinates": lambda: (
             carom.Run(swing().scene).state.joint_coordinates, dict(joint="j", degrees=True),
         ),

@@ -166,6 +166,10 @@ def stated():
             forces.JointSpring, joint="@hinge", stiffness=1.0, damping=1.0, rest=0.1, coordinate=0
         ),
         "forces.JointForce": with_part(forces.JointForce, joint="@hinge", force=1.0, coordinate=0),
+        "forces.Actuator": with_part(
+            forces.Actuator, joint="@hinge", gain=2.0, bias=(0.1, -1.0, -0.1), gear=3.0, control=0.2,
+            control_range=(-1.0, 1.0), force_range=(-5.0, 5.0), coordinate=0,
+        ),
         "forces.JointFriction": with_part(forces.JointFriction, joint="@hinge", bound=1.0, coordinate=0),
         "forces.JointInertia": with_part(forces.JointInertia, joint="@hinge", inertia=1.0, coordinate=0),
         "forces.UserForce": lambda: (

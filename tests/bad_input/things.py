@@ -15,6 +15,7 @@ FACES = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
 XML = """<mujoco><worldbody><body name="hand" mocap="true"/>
 <body pos="0 0 1"><joint name="j" type="hinge" axis="0 1 0"/>
 <geom type="sphere" size="0.1" mass="1"/></body></worldbody>
+<actuator><motor name="m" joint="j"/></actuator><sensor><jointpos name="q" joint="j"/></sensor>
 <keyframe><key name="k" qpos="0.1"/></keyframe></mujoco>"""
 
 

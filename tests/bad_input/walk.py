@@ -24,7 +24,6 @@ LIMIT = 120.0  # seconds that a call may take: the first of its kind is compiled
 
 #: errors that the documentation names, beside ValueError and TypeError
 DOCUMENTED = {
-    "GeneralizedSystem.return_map": KeyError,
     "Solution.joint_coordinates": KeyError,
     "results.SystemState.joint_coordinates": KeyError,
     "Solution.impact_history": IndexError,

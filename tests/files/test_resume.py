@@ -12,9 +12,11 @@ import pytest
 
 import carom
 from carom import forces, joints
-from carom.io.files.checkpoint import capture, restore
+from carom._compiled.record_arrays import table
+from carom.io.files.checkpoint import FIXED, capture, restore
 from carom.io.files.kept import run_again
 from carom.model import records as r
+from carom.model.allowance import COUNTS
 from files.compare import derived_differences, differences
 from files.made_up import rewrite
 from files.scenes import pendulum, pile, push, slider
@@ -222,15 +224,28 @@ def test_scratch_is_no_state(scene):
     checkpoint = capture(part)
     assert checkpoint is not None
     assert "work.search" not in checkpoint.arrays
-    older = {**checkpoint.arrays, "work.search": part.work.search}  # as in files of before
+    # as in files of before, whose clock also had what is in `work.step`
+    clock = table([("spent", "f8"), *r.CLOCK, ("counts", "f8", COUNTS)], 1)
+    for name, *_ in r.CLOCK:
+        clock[name] = part.clock[name]
+    older = {**checkpoint.arrays, "clock": clock, "islands.clock": clock, "work.point": clock}
     restore(again, checkpoint._replace(arrays=older), r.trimmed(part.records, part.clock))
-    filled_with_nothing((again.group, again.multiple, again.crowd, again.work.search))
-    again.work.search["pending"] = 0  # as in a new run
+    work = again.work
+    left_out = [getattr(work, name) for name in work._fields if f"work.{name}" in FIXED]
+    left_out += (
+        again.group,
+        again.multiple,
+        again.crowd,
+        again.islands.clock,
+        again.islands.single.clock,
+    )
+    filled_with_nothing(tuple(left_out))
+    for name in "spent", "paused":
+        work.step[name] = 0  # as in a new run
+    work.search["pending"] = 0
     assert again.go_on(80) is carom.Status.SUCCESS
     one, two = (r.trimmed(run.records, run.clock) for run in (whole, again))
     assert [name for name, a, b in zip(one._fields, one, two) if a.tobytes() != b.tobytes()] == []
-    for name in "since", "grow":  # counted from where the loop was entered; why it was left last
-        whole.clock[name] = again.clock[name] = 0
     assert whole.clock.tobytes() == again.clock.tobytes()
 
 

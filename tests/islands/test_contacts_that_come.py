@@ -10,7 +10,7 @@ from carom.io.files.writing import write
 from carom.model import contact_rows
 from carom.stepping.settings import checked_settings
 from carom.studies.ensembles.again import Again
-from carom.studies.ensembles.targets import find_targets
+from carom.studies.values import find_targets
 
 R = 0.01
 ALLOWED = carom.Options(energy_tolerance=0.1)

@@ -84,7 +84,7 @@ def mass_matrix_and_gravity(model, J):
         if force.kind == "Force":  # gravcomp
             at = element(model.mujoco, "body", force.name.removesuffix(":gravcomp"))
             d = mujoco.MjData(model.mujoco)
-            d.qpos[:] = model._start
+            d.qpos[:] = model.scene.robot.start
             mujoco.mj_forward(model.mujoco, d)
             f = f + jacobian(model.mujoco, d, at.id, d.xipos[at.id])[:3].T @ force.definition.vector
         elif force.kind == "JointInertia":

@@ -153,11 +153,12 @@ def test_shapes_weigh_what_mujoco_says():
 
 def test_everything_left_out_is_reported():
     model = carom.load_model(DATA / "dm_control" / "quadruped.xml")
-    for kind, count in (("actuator", model.mujoco.nu), ("tendon", model.mujoco.ntendon),
-                        ("sensor", model.mujoco.nsensor)):  # fmt: skip
-        assert len(model.report.of(f"{kind} ")) == count > 0
+    told = {entry.element for entry in model.report.of("actuator ")}
+    assert len(told) == model.mujoco.nu == len(model.actuators) > 0
+    told = {entry.element for entry in model.report.of("sensor ")}
+    assert len(told) + len(model.sensors) == model.mujoco.nsensor > len(model.sensors)
     assert "a height field; left out" in str(model.report)
-    assert "more: sensors are not represented" in str(model.report)
+    assert "more: a scene has none of this kind; left out" in str(model.report)
 
 
 def test_names_that_bodies_and_joints_share():

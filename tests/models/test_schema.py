@@ -200,9 +200,9 @@ UNSEEN = "lengthrange size statistic visual default texture material site camera
 #: elements that are reported as a whole (`WHOLE` has one of each kind)
 REPORTED = "extension plugin hfield skin flexcomp deformable tendon flex flexstrain actuator sensor"
 WHOLE = {
-    "tendon": '<tendon><fixed name="x"><joint joint="j" coef="1"/></fixed></tendon>',
-    "actuator": '<actuator><motor name="x" joint="j"/></actuator>',
-    "sensor": '<sensor><jointpos name="x" joint="j"/></sensor>',
+    "tendon": '<tendon><spatial name="x"><site site="p"/><site site="q"/></spatial></tendon>',
+    "actuator": '<actuator><general name="x" joint="j" dyntype="filter" dynprm=".1"/></actuator>',
+    "sensor": '<sensor><rangefinder name="x" site="p"/></sensor>',
     "geom": '<asset><hfield name="h" nrow="2" ncol="2" size="1 1 1 1"/></asset><worldbody>'
     '<geom name="x" type="hfield" hfield="h" pos="0 0 -9"/></worldbody>',
     "deformable": '<worldbody><flexcomp name="x" type="grid" count="2 2 1" spacing=".1 .1 .1" '

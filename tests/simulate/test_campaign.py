@@ -6,6 +6,8 @@ import pytest
 import carom
 from campaigns import crowds, forced, piles, rolls, strikes, throws
 from campaigns.case import run
+from carom.io.files.kept import run_again
+from carom.model.records import FULL_MULTIPLE
 
 
 @pytest.mark.processors
@@ -110,3 +112,15 @@ def test_slip_that_has_just_begun_goes_on_at_any_tolerance(seed):
         ends.append(s.position[-1, 0])
     size = case.scene.bodies[0].shape.size
     assert np.linalg.norm(ends[0] - ends[1]) < 1e-6 * size
+
+
+def test_the_room_of_arrays_changes_nothing():
+    # An island chooses at the start of a step how it moves. If the loop is left for longer arrays in between,
+    # its points may have become many or few.
+    case = crowds.case(901)
+    solution = carom.simulate(case.scene, case.duration, step=case.step)
+    again = run_again(case.scene, solution.settings, carom.Options())
+    for _ in range(3):
+        again.grow(FULL_MULTIPLE)
+    assert again.go_on(again.steps) is carom.Status.SUCCESS
+    assert again.clock.tobytes() == solution._run.clock.tobytes()

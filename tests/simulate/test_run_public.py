@@ -266,7 +266,7 @@ def test_a_solution_stays_as_it_is(tmp_path):
     assert np.allclose(two.t, [0, 0.04, 0.08, 0.1])
     assert np.allclose(run.solution.t[:4], [0, 0.04, 0.08, 0.12])
     assert run.solution.settings["duration"] == run.time
-    with pytest.raises(ValueError, match=r"continue a Run with Run\.advance"):
+    with pytest.raises(ValueError, match=r"take it on with carom\.Run\(solution\)"):
         two.simulate(1.0)
     pytest.importorskip("h5netcdf")
     last = run.solution
@@ -304,7 +304,7 @@ def test_a_run_that_fails():
 @pytest.mark.parametrize(
     ("call", "kind", "words"),
     [
-        (lambda scene: carom.Run(3), TypeError, "scene must be a carom.Scene, got int"),
+        (lambda scene: carom.Run(3), TypeError, "scene must be a carom.Scene, a Model or a Solution, got 3"),
         (lambda scene: carom.Run(scene, dt=0.1), TypeError, "it is called step="),
         (lambda scene: carom.Run(scene, step=-1), ValueError, "step must be finite and above 0"),
         (lambda scene: carom.Run(carom.Scene()), ValueError, "at least one body"),

@@ -1,4 +1,9 @@
-"""The closed points of a group of bodies: vertices on a surface, points of two solids, active contacts."""
+"""Lists of contact points within a distance: vertices on a surface, points of two solids, stops.
+
+`gather_closed` lists the closed and the active points of a group of bodies, `persistent.points` those that
+carry an active contact, `stepping.crowd.spots` those that a crowd may reach within a step. A list has `closed`,
+its points, and `points`, the first row of which has their places in the state.
+"""
 
 from __future__ import annotations
 
@@ -101,7 +106,7 @@ def gather_closed(system, controls, active, c, state, group, work, strikes):
 
 @kernel
 def add_vertices(system, active, c, near, state, k, group):
-    """Add the vertices that are closed to a half-space; return the new count, -1 if there is no room."""
+    """Add the vertices within `near` of a half-space, or active; return the new count, -1 without room."""
     contact = system.contacts[c]
     plane = plane_in_body(contact, state)
     for i in range(contact.first, contact.last):
@@ -117,7 +122,7 @@ def add_vertices(system, active, c, near, state, k, group):
 
 @kernel
 def add_stop(system, active, c, near, state, k, group):
-    """Add a stop that is closed or active; return the new count, -1 if there is no room."""
+    """Add a stop that is within `near` or active; return the new count, -1 without room."""
     if k == group.closed.shape[0]:
         return -1
     point = group.points[0][k]
@@ -130,14 +135,14 @@ def add_stop(system, active, c, near, state, k, group):
 
 @unit
 def add_touches(system, c, near, rim_time, state, k, group, work) -> int:
-    """Add the points of two solids that are closed; return the new count, -1 if there is no room.
+    """Add the points of two solids that are within `near`; return the new count, -1 without room.
 
     A rim that is flat within `rim_time` counts as flat.
     """
     contact = system.contacts[c]
     if beside_face(system, contact, state, max(near, most_of_rim(contact, state, rim_time))):
         return k
-    count = find_touches(system, contact, state, REACH * smaller(contact), work)
+    count = find_touches(system, contact, state, max(near, REACH * smaller(contact)), work)
     if rim_time > 0.0 and count > 0:
         n = work.touches[0].normal
         near = max(near, closed_rim(system, contact, n, state, rim_time))
@@ -146,11 +151,17 @@ def add_touches(system, c, near, rim_time, state, k, group, work) -> int:
         if touch.gap <= near:
             if k == group.closed.shape[0]:
                 return -1
-            own_point(contact, touch, state, group.closed[k].point)
-            write_closed(c, touch.feature, group.closed[k].point, group.closed[k])
-            write_touch(contact, touch, state, group.points[0][k])
+            add_touch(contact, c, touch, state, k, group)
             k += 1
     return k
+
+
+@kernel
+def add_touch(contact, c, touch, state, k, group):
+    """Write a found point of two solids as point k."""
+    own_point(contact, touch, state, group.closed[k].point)
+    write_closed(c, touch.feature, group.closed[k].point, group.closed[k])
+    write_touch(contact, touch, state, group.points[0][k])
 
 
 @unit
@@ -201,9 +212,15 @@ def place_closed(system, k, state, group, points, work):
 
 @kernel
 def write_closed(c, feature, p, closed_point):
-    """Write one closed point."""
+    """Write one point of a list, which is not known to be active."""
     closed_point.contact, closed_point.feature, closed_point.active = c, feature, -1
-    closed_point.stays = 0
-    closed_point.turns, closed_point.bounces = 0, 0.0
+    closed_point.turns = 0
     for k in range(3):
         closed_point.point[k] = p[k]
+
+
+@kernel
+def write_turning(i, turns, parent, closed_point):
+    """Write the rolling (turns = 1) or pivoting (2) friction of point i of a list."""
+    write_closed(parent.contact, parent.feature, parent.point, closed_point)
+    closed_point.turns, closed_point.parent, closed_point.active = turns, i, parent.active

@@ -44,8 +44,8 @@ def place_stop(system, contact, state, point):
 @unit
 def stop_gap(system, contact, state, work) -> tuple[float, float]:
     """Return the gap of a stop and its rate."""
-    place_stop(system, contact, state, work.point[0])
-    return work.point[0].gap, contact_velocity(work.point[0], state)[0]
+    place_stop(system, contact, state, work.placed[0])
+    return work.placed[0].gap, contact_velocity(work.placed[0], state)[0]
 
 
 @unit

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -10,7 +11,9 @@ from carom import checks
 from carom.dynamics.adapt import time_of_bounces
 from carom.dynamics.thresholds import FIRST_STEP
 from carom.geometry.thresholds import ROUND_OFF
+from carom.io.files.checkpoint import Checkpoint, restore
 from carom.model import records as r
+from carom.model.kept import Snapshot
 from carom.run import Run
 from carom.status import Status
 from carom.stepping.grid import Grid, count, longest_step
@@ -18,6 +21,11 @@ from carom.stepping.thresholds import MOST_STEPS
 
 BLOCK = 1024  # steps for which there is room at first
 PART = 65536  # rows for which room is made at a time
+#: what the clock of a run keeps when its bodies are moved
+GOES_ON = (
+    "now", "loads", "impacts", "friction", "bounces", "step", "saved", "struck", "event", "snapped",
+    "touched", "cuts", "trials", "rejected", "located", "holds", "contact_steps", "rounds", "whole",
+)  # fmt: skip
 MOST = 1e7  # longest steps in a call, where tolerances choose them
 
 
@@ -27,7 +35,7 @@ class Endless(Run):
     def first_grid(self, duration: float) -> Grid:
         """Return the first steps: all alike where the step is given, else none yet."""
         how, none = self.how, (np.zeros(0), np.zeros(0, dtype=np.int64))
-        self.asked, self.base, self.wait, self.times = 0, 0.0, 0.0, 0
+        self.asked, self.base, self.wait, self.times, self.before = 0, 0.0, 0.0, 0, 0
         if how.step is not None:
             last = min(BLOCK * how.save_every, 2**62)
             return Grid(how.step, last, how.save_every, *none)
@@ -36,6 +44,51 @@ class Endless(Run):
         self.longest = longest_step(system, start, math.inf, self.options.max_step, later)
         ends, saves = np.zeros(BLOCK + 1), np.ones(BLOCK + 1, dtype=np.int64)
         return Grid(min(self.longest, 1.0), BLOCK, 0, ends, saves)
+
+    def stand(self, kept, checkpoint: Checkpoint) -> None:
+        """Stand at the checkpoint of another run of the same scene; `kept` has its records."""
+        if kept.found is not None:
+            self.add_pairs(kept.found[: checkpoint.found["pairs"]])
+        self.records = r.with_room(self.records, 1, len(kept.records.series))
+        restore(self, checkpoint, kept.records)
+        self.asked, self.base, self.before = self.how.save_every, self.reached, self.steps_done
+        if self.how.step is None:
+            self.controls = self.controls._replace(interval=0.0)  # that of the next steps
+        elif self.reached != self.before * self.how.step:  # an event has ended it, or it had times
+            none = np.zeros(0), np.zeros(0, dtype=np.int64)
+            self.grid = Grid(self.how.step, 0, self.how.save_every, *none)
+        if self.how.step is None or not self.grid.last:
+            self.make_ends(self.before)
+            self.grid.ends[self.before] = self.base
+
+    def move(self, old: Endless, place: Callable[[], None]) -> None:
+        """Go on from the time of an old run with its records, in another state, which `place` writes.
+
+        The change of energy is work of what has moved the bodies.
+        """
+        before, mine = old.clock[0], self.clock[0]
+        if old.found is not None:
+            self.add_pairs(old.found)
+        self.grid, self.records, self.watch = old.grid, old.records, old.watch
+        self.asked, self.base, self.before = old.asked, old.base, old.before
+        self.wait, self.times, self.controls = old.wait, old.times, old.controls
+        for name in GOES_ON:
+            mine[name] = before[name]
+        self.work.step["begin"] = mine.now
+        for name in ("fallen", "parts"):
+            self.work.result[name] = old.work.result[name]
+        if self.tolerances is not None:
+            self.work.body["ahead"] = FIRST_STEP * self.controls.interval
+        place()
+        if self.records.series["t"][mine.saved - 1] == mine.now:  # the new state takes its place
+            mine.saved -= 1
+            touch = self.records.touch["saved"][: mine.touched]
+            mine.touched = np.searchsorted(touch, mine.saved)
+        self.records = r.with_room(self.records, int(mine.saved))
+        self.save_now()
+        given = mine.kinetic + mine.potential - before.kinetic - before.potential
+        mine.loads += given
+        self.records.series["loads"][mine.saved - 1] += given
 
     def go_on(self, until: int) -> Status:
         """Go on to step number `until`, or to a failure: in parts, for which room is made."""
@@ -67,6 +120,13 @@ class Endless(Run):
                     f"duration must be a whole multiple of the step of {step:g} s, got {duration!r}"
                 )
         until = self.steps_done + steps
+        if len(self.grid.ends):
+            self.make_ends(until)
+            later = np.arange(self.steps_done, until) - self.before + 1
+            self.grid.ends[later + self.before] = self.base + later * step
+            self.grid.saves[later + self.before] = later % self.how.save_every == 0
+            self.controls = self.controls._replace(duration=self.grid.ends[until])
+            return until
         while until >= self.grid.last:
             self.grid = self.grid._replace(last=2 * self.grid.last)
             self.controls = self.controls._replace(duration=self.grid.last * step)
@@ -111,7 +171,26 @@ class Endless(Run):
         known = len(self.grid.ends)
         if until < known:
             return
-        more = max(known, until + 1 - known)
+        more = max(known, until + 1 - known, BLOCK)
         ends = np.concatenate([self.grid.ends, np.zeros(more)])
         saves = np.concatenate([self.grid.saves, np.zeros(more, dtype=np.int64)])
         self.grid = self.grid._replace(ends=ends, saves=saves, last=len(ends) - 1)
+
+
+class Start:
+    """A run before its first step, that begins again and again: that is faster than to make another."""
+
+    def __init__(self, run: Endless):
+        self.run, self.place, self.controls = run, Snapshot(run), run.controls
+
+    def again(self) -> Endless:
+        """Return the run, as it was."""
+        run = self.run
+        self.place.put_back()
+        run.grid, run.controls = run.make_grid(), self.controls
+        run.compiled.functions.forget()
+        for law in run.compiled.laws.values():
+            law.set(law.actuator.control)
+        run.clock["saved"] = 0
+        run.save_now()
+        return run

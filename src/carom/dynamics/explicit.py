@@ -77,7 +77,7 @@ def whole_step(method, system, active, start, h, end, work):
         if not (left > 0.0 and result.code == 0):
             break
         result.parts += 1
-        first = work.first
+        first = work.part
         for b in range(start.shape[0]):
             copy_state(end[b], first[b])
     result.applied = applied

@@ -23,30 +23,31 @@ from carom.model.controls import Controls
 
 
 @kernel
-def note_scale(system, controls, state, clock, work):
-    """Write the scale of time and the acceleration of an island to the clock, at the start of a step."""
-    clock.scale, clock.pull, clock.able = controls.step, controls.pull, 0.0
-    clock.longest = math.inf
+def note_scale(system, controls, state, work):
+    """Write the scale of time and the acceleration of an island to `work.step`, at its start."""
+    step = work.step[0]
+    step.scale, step.pull, step.able = controls.step, controls.pull, 0.0
+    step.longest = math.inf
     if controls.order == 0 or system.contacts.shape[0] == 0:
         return
     size = least_size(system)
     length = 8.0 * (controls.atol + controls.rtol * size)
-    clock.scale, clock.pull = controls.interval, pull_of(system, controls, state, clock, work)
-    if clock.pull > 0.0:
-        clock.scale = math.sqrt(length / clock.pull)
-        if clock.able > 0.0:
-            clock.longest = LOAD_STEP * math.sqrt(2.0 * size / clock.pull)
+    step.scale, step.pull = controls.interval, pull_of(system, controls, state, work)
+    if step.pull > 0.0:
+        step.scale = math.sqrt(length / step.pull)
+        if step.able > 0.0:
+            step.longest = LOAD_STEP * math.sqrt(2.0 * size / step.pull)
         return
     speed = greatest_speed(system, state)
     if speed > 0.0:
-        clock.scale = math.sqrt(length * size) / speed
+        step.scale = math.sqrt(length * size) / speed
 
 
 @kernel
-def local_controls(controls, clock):
+def local_controls(controls, step):
     """Return the settings with the scale of time and the acceleration of the present island."""
     return Controls(
-        step=clock.scale, pull=clock.pull, interval=controls.interval, duration=controls.duration,
+        step=step.scale, pull=step.pull, interval=controls.interval, duration=controls.duration,
         location=controls.location, gap=controls.gap, tie=controls.tie, hold=controls.hold, rest=controls.rest,
         layer_steps=controls.layer_steps, layer_time=controls.layer_time, max_impacts=controls.max_impacts,
         max_cuts=controls.max_cuts, retry=controls.retry, order=controls.order, rtol=controls.rtol,
@@ -66,29 +67,30 @@ def least_size(system):
 
 
 @kernel
-def pull_of(system, controls, state, clock, work):
+def pull_of(system, controls, state, work):
     """Return the greatest acceleration of the bodies by gravity and applied forces [m/s^2]."""
     pull = norm(system.gravity)
     for b in range(state.shape[0]):
         if system.bodies[b].ballistic == 0:
-            return max(pull, greatest_pull(system, controls, state, clock, work))
+            return max(pull, greatest_pull(system, controls, state, work))
     return pull
 
 
 @unit
-def greatest_pull(system, controls, state, clock, work) -> float:
+def greatest_pull(system, controls, state, work) -> float:
     """Return the greatest acceleration that applied forces give to a body, also of points by its rotation.
 
-    The work that these forces could do over the allowed errors of the positions is written to the clock: their
-    sizes times atol + rtol L, and torques times the angle of this length at the distance L. Joints are kept:
+    The work that these forces could do over the allowed errors of the positions is `step.able`: their sizes
+    times atol + rtol L, and torques times the angle of this length at the distance L. Joints are kept:
     the torque of a damper moves the links on both sides, and the rotor of its motor, not a hand alone.
     """
-    work.result[0].time, pull = clock.begin, 0.0
+    step, pull = work.step[0], 0.0
+    work.result[0].time = step.begin
     applied_wrenches(system, state, False, work)
     for b in range(state.shape[0]):
         body, f = system.bodies[b], work.body[b].wrench
         error = controls.atol + controls.rtol * body.extent
-        clock.able += error * (norm(f[:3]) + norm(f[3:]) / body.extent)
+        step.able += error * (norm(f[:3]) + norm(f[3:]) / body.extent)
     solve(system, state, False, work)
     for b in range(state.shape[0]):
         body, a, q, J = system.bodies[b], work.body[b].motion, state[b].Q, system.bodies[b].inertia

@@ -36,7 +36,7 @@ def error_of_move(system, start, t, h, end, work) -> float:
                 turn_on(p, q, bias[3:])
         if without_position(system, joint):
             if not ready:
-                mean_velocities(system, start, h, end, work.stage)
+                mean_velocities(system, start, h, end, work.mean)
                 ready = True
             e = mean_error(system, j, start, t, h, end, work)
             error = max(error, e / system.bodies[joint.child].extent)
@@ -86,7 +86,7 @@ def mean_error(system, j, start, t, h, end, work):
         target[k] = bias[k]
     most = 0.0
     for side in range(2):
-        state = end if side == 1 else work.stage
+        state = end if side == 1 else work.mean
         work.result[0].time = t + h if side == 1 else t
         velocity_error(system, j, state, work)
         if joint.kind < RELATION:

@@ -65,18 +65,18 @@ def whole_step(parts, system, start, h, end, work):
     applied, code, result, t = 0.0, DONE, work.result[0], work.result[0].start
     for b in range(start.shape[0]):
         bound = work.body[b].bound
-        copy_state(start[b], work.middle[b])
+        copy_state(start[b], work.part[b])
         if system.bodies[b].ballistic == 0:
             bound[0], bound[1], bound[2] = 0.0, 0.0, 0.0
     for s in range(parts.size):
-        p, code = one_part(system, work.middle, t, parts[s] * h, end, work)
+        p, code = one_part(system, work.part, t, parts[s] * h, end, work)
         applied, t = applied + p, t + parts[s] * h
         if code != DONE:
             break
         for b in range(start.shape[0]):
             if system.bodies[b].ballistic == 0:
-                bound_changes(work.middle[b], end[b], parts[s] * h, work.body[b].bound)
-                copy_state(end[b], work.middle[b])
+                bound_changes(work.part[b], end[b], parts[s] * h, work.body[b].bound)
+                copy_state(end[b], work.part[b])
     result.applied, result.code = applied, code
 
 

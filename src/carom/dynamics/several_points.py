@@ -6,7 +6,6 @@ from carom._compiled.decorators import kernel
 from carom.dynamics.contact_impulse import acts, add_impulse, alone, clear_wrenches, spread
 from carom.dynamics.solve import free_body, solve
 from carom.geometry.rotation import cross
-from carom.geometry.thresholds import ROUND_OFF
 from carom.kinematics.contact_point import (
     contact_acceleration,
     contact_motion,
@@ -122,7 +121,7 @@ def inverse_masses_of_one(body, k, points, state, W):
 
 @kernel
 def spread_all(system, k, points, p, count, member, state, work):
-    """Write motion = P G^T p of the bodies of a group, for impulses of all k points at once."""
+    """Write motion = P G^T p of the bodies of a group, of all k points; return whether joints take part."""
     joined = False
     for m in range(count):
         joined = joined or system.bodies[member[m]].isolated == 0
@@ -135,10 +134,4 @@ def spread_all(system, k, points, p, count, member, state, work):
         for m in range(count):
             b = member[m]
             free_body(system.bodies[b], state[b].Q, work.body[b])
-
-
-@kernel
-def yields(W, i):
-    """Return whether an impulse along row i moves its point; if not, W_ii is round-off (planar motion)."""
-    n = i - i % 3
-    return W[i, i] > ROUND_OFF * (W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2])
+    return joined

@@ -107,10 +107,10 @@ def _sum_rates(system, stage, sums, work, rates, reach, pace):
         share = 6.0 / 5.0 if k == 2 else -32.0 / 35.0 if k == 3 else 3.0 / 14.0
         ahead = (k if i % 2 == 0 else -k) * reach / pace
         for b in range(stage.shape[0]):
-            go_on(stage[b], ahead, work.middle[b])
+            go_on(stage[b], ahead, work.beside[b])
         work.result[0].time = time + ahead
-        return_stage(system, work.middle, work)
-        accelerations(system, work.middle, work, rates)
+        return_stage(system, work.beside, work)
+        accelerations(system, work.beside, work, rates)
         most = max(most, dropped_rows(system, SINGULARITY))
         power += share * work.result[0].power
         for b in range(stage.shape[0]):

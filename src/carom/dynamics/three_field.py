@@ -307,7 +307,7 @@ def position_block(system, method, start, h, end, work):
 
     Returns the largest move, relative to the body.
     """
-    last, change = work.stage, 0.0
+    last, change = work.iterate, 0.0
     for b in range(start.shape[0]):
         copy_state(end[b], last[b])
         if work.body[b].status != RESTS:

@@ -27,22 +27,22 @@ def factor(n, drop, L):
 
 
 @kernel
-def factor_by_pivots(n, drop, rows, own, L):
-    """Factor as `factor` does, by pivots: exchange the numbers `rows` and the sizes `own`; return the rank.
+def factor_by_pivots(n, least, rows, L):
+    """Factor as `factor` does, by pivots above `least`: exchange the numbers `rows`; return the rank.
 
-    The row that those before it determine least, in parts of its size, comes next: in another order the
-    pivot of a row that nearly depends on them is small, and those after it are its round-off. Rows that are
-    alike to 1e-4 keep their order: of four corners round-off must not say which is left out. The leading part
-    of L (n, n), of this rank, is the factor; rows below it are those of L for the rows that are left out.
+    The row that those before it determine least comes next: in another order the pivot of a row that nearly
+    depends on them is small, and those after it are its round-off. Rows that are alike to 1e-4 keep their
+    order: of four corners round-off must not say which is left out. The leading part of L (n, n), of this
+    rank, is the factor; rows below it are those of L for the rows that are left out.
     """
     for j in range(n):
         best = j
         for i in range(j + 1, n):
-            if L[i, i] * own[best] > 1.0001 * L[best, best] * own[i] or not own[best] > 0.0:
+            if L[i, i] > 1.0001 * L[best, best]:
                 best = i
-        if not L[best, best] > drop * own[best]:
+        if not L[best, best] > least:
             return j
-        exchange(n, j, best, rows, own, L)
+        exchange(n, j, best, rows, L)
         for i in range(j + 1, n):
             ratio = L[i, j] / L[j, j]
             for s in range(j + 1, i + 1):
@@ -53,10 +53,9 @@ def factor_by_pivots(n, drop, rows, own, L):
 
 
 @kernel
-def exchange(n, i, j, rows, own, L):
+def exchange(n, i, j, rows, L):
     """Exchange rows i < j of a symmetric matrix of which the part below its diagonal is kept."""
     rows[i], rows[j] = rows[j], rows[i]
-    own[i], own[j] = own[j], own[i]
     if i == j:
         return
     L[i, i], L[j, j] = L[j, j], L[i, i]

@@ -14,7 +14,6 @@ import numpy as np
 
 from carom.friction.layout import CONE, SLIDING, SOLVED, new_contact_work
 from carom.friction.solve import solve_cones
-from carom.generalized.layout import copied
 from carom.generalized.step import project
 from carom.generalized.strike import Strike, rows_of
 from carom.impact.laws import NUMBERS
@@ -41,8 +40,8 @@ class Contacts:
         self.strike = Strike(self)
         self.light = 0.0  # kinetic energy that the loads give in a step: less is round-off
         self.cones: Any = None  # workspace of the contact problem, made when it is first needed
-        # the event that is handled: its kind, its active contact, and what was active before it
-        self.kind, self.marked, self.was = 0, -1, {}
+        # the event that is handled: its kind, its persistent contact, and the contacts before it
+        self.kind, self.marked, self.was = 0, -1, run.active
 
     def note(self, what: str, contact: int) -> None:
         """Write an event."""
@@ -71,26 +70,24 @@ class Contacts:
         return code
 
     def active(self) -> list[int]:
-        """Return the active contacts."""
-        return self.run.active.contact[: self.run.active.count[0]].tolist()
+        """Return the persistent contacts."""
+        return np.flatnonzero(self.run.active.mode).tolist()
 
     def closed(self, struck: int) -> list[int]:
-        """Return the closed contacts: active, just located, or with a gap that counts as zero."""
+        """Return the closed contacts: persistent, just located, or with a gap that counts as zero."""
         near = self.seen.gap <= self.run.options.tie_tolerance * self.run.work.gap_scale
-        near[[*self.active(), *([struck] if struck >= 0 else [])]] = True
+        near |= (self.run.active.mode != a.MODE_OPEN) | (np.arange(len(near)) == struck)
         return np.flatnonzero(near).tolist()
 
     # --- one event --------------------------------------------------------------------------------
 
     def resolve(self, kind: int, index: int) -> int:
         """Handle the located event (kind 0: the start of the run); return a status."""
-        run, active = self.run, self.run.active
+        run = self.run
         if run.system.contacts == 0:
             return 0
-        before, k = run.x.copy(), active.count[0]
+        before, self.kind, self.was = run.x.copy(), kind, run.active.copy()
         struck, self.marked = (index, -1) if kind == a.EVENT_GAP else (-1, index)
-        parts = (one[:k].copy() for one in (active.mode, active.heading, active.force))
-        self.kind, self.was = kind, dict(zip(self.active(), zip(*parts)))
         code = (self.return_to(struck) if struck >= 0 else 0) or self.look()
         if code != 0:
             return code
@@ -100,7 +97,7 @@ class Contacts:
             code = self.set_active(self.chosen(closed, struck), closed)
         if code == 0:
             self.note_changes()
-            run.nodes.append((run.reached, before, run.x.copy(), copied(active)))
+            run.nodes.append((run.reached, before, run.x.copy(), run.active.copy()))
         return code
 
     def project(self) -> int:
@@ -114,26 +111,19 @@ class Contacts:
         An approach of round-off would close it again at once.
         """
         run, active = self.run, self.run.active
-        k = int(active.count[0])
-        active.contact[k], active.mode[k], active.count[0] = contact, a.MODE_SLIP, k + 1
+        active.mode[contact] = a.MODE_SLIP
         code = project(run.system, active, run.reached, run.x, False, run.work)
-        active.count[0] = k
-        if code == 0 and (run.system.rows > 0 or k > 0):
-            code = self.project()
+        active.mode[contact] = a.MODE_OPEN
+        code = code or self.project()
         return Status.RETURN_MAP_FAILED if code == Status.CONSTRAINTS_LOST else code
 
     def note_changes(self) -> None:
         """Write the events of contacts whose mode has changed."""
-        modes = dict(zip(self.active(), self.run.active.mode.tolist()))
-        for c in {**self.was, **modes}:
-            if c not in modes:
-                self.note("opens", c)
-            elif c not in self.was:
-                self.note("held", c)
-            elif modes[c] != self.was[c][0]:
-                self.note("sticks" if modes[c] == a.MODE_STICK else "slips", c)
-            elif c == self.marked and self.kind == a.EVENT_REVERSE:
-                self.note("slips", c)
+        for c, (was, mode) in enumerate(zip(self.was.mode, self.run.active.mode)):
+            if mode != was and a.MODE_OPEN in (mode, was):
+                self.note("opens" if mode == a.MODE_OPEN else "held", c)
+            elif mode != was or (c == self.marked and self.kind == a.EVENT_REVERSE):
+                self.note("sticks" if mode == a.MODE_STICK else "slips", c)
 
     # --- persistent contacts ----------------------------------------------------------------------
 
@@ -150,12 +140,12 @@ class Contacts:
             least = -1e-9 if c == struck and kept else 1e-12
             if draw > least * np.sqrt(size * self.W_ii[c, 0]) and self.stays(c, draw):
                 kept.append(c)
-        return kept
+        return sorted(kept)
 
     def stays(self, c: int, draw: float) -> bool:
         """Return whether the bounces of a contact with the acceleration `draw` end within a step."""
         u, still = float(self.u[c, 0]), self.still[c]
-        e = self.strike.left(c)
+        e = float(self.strike.restitution(c, self.strike.blows[c]))
         ends = e < 1.0 and 2.0 * u < draw * (1.0 - e) * self.run.moment(draw)
         return -10.0 * still <= u and (u <= still or ends)
 
@@ -170,7 +160,7 @@ class Contacts:
                 return code
             driven = [c for c in closed if c not in chosen and self.u[c, 0] < -10.0 * self.still[c]]
             if driven:  # by the change of the others
-                chosen = chosen + driven
+                chosen = sorted(chosen + driven)
                 continue
             rows = rows_of(chosen)
             W, c0, mu = self.W[np.ix_(rows, rows)], self.c[rows], self.friction[chosen]
@@ -197,18 +187,15 @@ class Contacts:
 
     def take_out(self, chosen: list[int]) -> int:
         """Activate contacts: remove their normal velocities, and slip that has stopped; return a status."""
-        run, active, M, k = self.run, self.run.active, self.seen.M.copy(), len(chosen)
+        run, active, M = self.run, self.run.active, self.seen.M.copy()
         stop = np.where(self.friction > 0.0, 10.0 * self.still, -1.0)
-        if (
-            self.kind == a.EVENT_REVERSE
-        ):  # speed that all friction removes in a thousandth of a step
-            c, held = self.marked, self.was.items()
-            friction = sum(self.friction[b] * abs(force[0]) for b, (_, _, force) in held)
-            brake = friction * float(self.W_ii[c, 1:].sum())
+        if self.kind == a.EVENT_REVERSE:  # speed that all friction removes in .001 of a step
+            c, friction = self.marked, self.friction @ np.abs(self.was.force[:, 0])
+            brake = float(friction * self.W_ii[c, 1:].sum())
             stop[c] = max(stop[c], 1e-3 * run.moment(brake) * brake)
         v = run.x[run.n :].copy()
-        active.count[0], active.contact[:k], active.heading[:k] = k, chosen, 0.0
-        active.mode[:k] = np.where((self.slip <= stop)[chosen], a.MODE_STICK, a.MODE_SLIP)
+        active["mode"], active["heading"], active["force"] = a.MODE_OPEN, 0.0, 0.0
+        active.mode[chosen] = np.where((self.slip <= stop)[chosen], a.MODE_STICK, a.MODE_SLIP)
         code = self.project() if chosen else 0
         run.clock[0].bounces += 0.5 * (run.x[run.n :] - v) @ M @ (run.x[run.n :] + v)
         return code or self.look()
@@ -217,22 +204,18 @@ class Contacts:
         """Return the directions of slip (k, 2); 0 for a contact that is free to stick or slip."""
         along = np.where((self.slip > 10.0 * self.still)[:, None], self.u[:, 1:], 0.0)
         if self.kind == a.EVENT_CONE and not along[self.marked].any():
-            along[self.marked] = -self.was[self.marked][2][1:]  # stick has just ended
+            along[self.marked] = -self.was.force[self.marked, 1:]  # stick has just ended
         along[self.friction == 0.0] = 0.0
         return along[chosen] / np.maximum(np.linalg.norm(along[chosen], axis=1), 1e-300)[:, None]
 
     def write_held(self, chosen: list[int], p: np.ndarray, heading: np.ndarray) -> None:
         """Write forces p (k, 3) of active contacts, and whether each sticks; so does what others hold alone."""
-        active, was, nothing = self.run.active, self.was, 1e-12 * np.max(p[:, 0])
-        for i, c in enumerate(chosen):
-            active.mode[i], active.force[i], active.heading[i] = a.MODE_SLIP, p[i], heading[i]
-            if heading[i].any() or not self.friction[c] > 0.0:
-                continue
-            pull, most = float(np.linalg.norm(p[i, 1:])), self.friction[c] * p[i, 0]
-            within = pull <= max(most * (1.0 - 1e-10), nothing)
-            if within or (c in was and was[c][0] == a.MODE_STICK):
-                active.mode[i] = a.MODE_STICK
-            elif pull > 0.0:
-                active.heading[i] = -p[i, 1:] / pull
-            elif c in was:
-                active.heading[i] = was[c][1]
+        active, was, mu = self.run.active, self.was, self.friction[chosen]
+        pull, most = np.linalg.norm(p[:, 1:], axis=1), mu * p[:, 0]
+        free = (mu > 0.0) & ~heading.any(axis=1)
+        within = pull <= np.maximum(most * (1.0 - 1e-10), 1e-12 * np.max(p[:, 0]))
+        sticks = free & (within | (was.mode[chosen] == a.MODE_STICK))
+        turned = np.where(pull > 0.0, -p[:, 1:].T / np.maximum(pull, 1e-300), was.heading[chosen].T)
+        active.mode[chosen] = np.where(sticks, a.MODE_STICK, a.MODE_SLIP)
+        active.heading[chosen] = np.where(free & ~sticks, turned, heading.T).T
+        active.force[chosen] = p

@@ -35,36 +35,35 @@ def evaluate_parts(system, which, t, x, work):
 
     Those of the coordinates get a copy of them, `work.point`.
     """
-    n, h, k, C = system.n, system.holonomic, system.rows, system.contacts
-    copy_row(x, work.point, n)
+    h = system.holonomic
+    copy_row(x, work.point, system.n)
     if which == o.CALL_INERTIA:
         evaluate_inertia(system, t, x, work)
     elif which == o.CALL_LOADS:
         evaluate_loads(system, t, x, work)
     elif which == o.CALL_ROWS:
-        out, rates = work.rows[h:], work.rows[h + k * n :]
-        evaluate_rows(system.part[o.OF_CONSTRAINT], t, x, work.rows, out, rates, work)
-        evaluate_rows(system.part[o.OF_ROWS], t, x, work.rows, out[h * n :], rates[h:], work)
+        phi, A, rate = work.phi, work.A, work.A_rate
+        evaluate_rows(system.part[o.OF_CONSTRAINT], t, x, phi, A, rate, work)
+        evaluate_rows(system.part[o.OF_ROWS], t, x, phi, A[h:], rate[h:], work)
     else:
-        for c in range(C):
-            values, out = work.contacts[c:], work.contacts[C + 3 * n * c :]
-            rates, part = work.contacts[C + 3 * n * C + 3 * c :], o.OF_CONTACT + 2 * c
-            evaluate_rows(system.part[part], t, x, values, out, rates, work)
-            evaluate_rows(system.part[part + 1], t, x, values, out[n:], rates[1:], work)
+        for c in range(system.contacts):
+            gap, G, rate, part = work.gap[c:], work.G[c], work.G_rate[c], o.OF_CONTACT + 2 * c
+            evaluate_rows(system.part[part], t, x, gap, G, rate, work)
+            evaluate_rows(system.part[part + 1], t, x, gap, G[1:], rate[1:], work)
 
 
 @kernel
 def evaluate_inertia(system, t, x, work):
     """Write M and Gamma_kij v_i v_j."""
-    n, out, part, dM = system.n, work.inertia, system.part[o.OF_METRIC], work.slope
-    call_function(part[0], t, work.point, out)
+    n, c, part, dM = system.n, work.c, system.part[o.OF_METRIC], work.slope
+    call_function(part[0], t, work.point, work.M)
     find_slope(part, t, x, n, work)
     for i in range(n):
-        out[n * n + i] = 0.0
+        c[i] = 0.0
         for j in range(n):
             for k in range(n):
                 w, first, second = x[n + k] * x[n + j], (n * k + i) * n + j, (n * i + k) * n + j
-                out[n * n + i] += dM[first] * w - 0.5 * dM[second] * w
+                c[i] += dM[first] * w - 0.5 * dM[second] * w
 
 
 @kernel
@@ -100,7 +99,7 @@ def evaluate_rows(part, t, x, values, out, rates, work):
         find_slope(part, t, x, n, work)
         for i in range(m):
             for j in range(n):
-                out[i * n + j] = work.slope[j * m + i]
+                out[i, j] = work.slope[j * m + i]
         h = along(x, STEP_TWICE)
         differ((part[0], m), t, x, v, h, _SECOND, rates, work)
         for i in range(m if h > 0.0 else 0):

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from carom._compiled.record_arrays import table
 from carom._compiled.user_functions import Functions
 from carom.dynamics.methods import make_method
 from carom.generalized import layout as o
@@ -34,18 +35,18 @@ class Evaluation:
         sizes = model.n, model.holonomic, model.rows, len(friction)
         self.system = o.Coordinates(addresses, parts.reshape(-1, 3), *sizes, friction, drop)
         self.work = o.new_work(self.system, STAGES)
-        self.none_active = o.new_active_set(len(friction))
+        self.none_active = table(o.CONTACT, len(friction))
 
     def compute(self, x, t: float) -> int:
         """Compute all quantities at a state (q, v) without active contacts, into `work`; return a status."""
         code = look(self.system, self.none_active, t, x, self.work)
         return Status.FUNCTION_FAILED if self.functions.failed is not None else code
 
-    def look(self, x, t: float = 0.0) -> int:
-        """Do the same at (q, v), or at (q, 0) for q; raise the error of a user-defined function."""
-        code = self.compute(np.append(x, np.zeros(2 * self.n - len(x))), t)
+    def look(self, x, t: float = 0.0) -> o.Work:
+        """Return `work` at (q, v), or at (q, 0) for q; raise the error of a user-defined function."""
+        self.compute(np.append(x, np.zeros(2 * self.n - len(x))), t)
         self.failed()
-        return code
+        return self.work
 
     def failed(self) -> None:
         """Raise the error that a function of the user's has raised."""
@@ -58,8 +59,7 @@ class Evaluation:
         n, e = self.n, np.eye(self.n)
 
         def bend(v):
-            self.look(np.append(q, v))
-            return self.work.c.copy()
+            return self.look(np.append(q, v)).c.copy()
 
         first = [[bend(a + b) - bend(a - b) for b in e] for a in e]  # (i, j, k)
         first = 0.25 * np.moveaxis(np.array(first), 2, 0).reshape(n, -1)
@@ -73,7 +73,7 @@ class Evaluation:
             address=self.system.address * [1, 0, 0, 0], part=part, holonomic=0, rows=0, contacts=0
         )
         work, method = o.new_work(free, STAGES), make_method("rk4", Options())
-        code = move_freely(o.Motion(free, method, o.new_active_set(0), work), x, parts)
+        code = move_freely(o.Motion(free, method, table(o.CONTACT, 0), work), x, parts)
         self.failed()
         if code != 0:
             raise ValueError(f"the autoparallel could not be integrated: {Status(code).message}")
@@ -89,10 +89,10 @@ class Evaluation:
         """
         from scipy.optimize import root
 
-        n, seen = self.n, self.work
+        n = self.n
 
         def surfaces(at):
-            self.look(at)
+            seen = self.look(at)
             rows = np.vstack([seen.G[contact, :1], seen.A[: len(seen.phi)]])
             return np.append(seen.gap[contact], seen.phi), rows, np.linalg.solve(seen.M, rows.T)
 

@@ -13,8 +13,9 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
+from carom.contact.continuous_detection import cubic_clears
 from carom.generalized.linear import dot
-from carom.generalized.motion import acceleration, find_contacts, slip_of
+from carom.generalized.motion import acceleration, find_contacts, persists, slip_of
 from carom.generalized.step import take
 from carom.model import actions as a
 from carom.status import NOT_FINITE
@@ -33,33 +34,34 @@ def find_margins(motion, t):
     They are infinite for contacts that are not in their mode.
     """
     system, active, work = motion.system, motion.active, motion.work
-    margin, end, code = work.margin, work.end, 0
+    margin, nothing, end, code, most = work.margin, work.nothing, work.end, 0, 0.0
     find_contacts(system, t, end, work)
     for c in range(system.contacts):
-        for kind in range(a.NO_EVENT):
-            margin[kind, c], work.nothing[kind, c] = math.inf, 0.0
-        margin[a.EVENT_GAP, c] = work.gap[c]
-        work.nothing[a.EVENT_GAP, c] = ROUND_OFF * work.gap_scale[c]
-        margin[a.EVENT_RATE, c] = -dot(work.G[c, 0], end[system.n :], system.n)
         if not math.isfinite(work.gap[c]):
             return NOT_FINITE
-    if active.count[0] > 0:
+    if persists(active):
         _, _, code = acceleration(system, active, t, end, work, work.trial)
-    most = 0.0
-    for i in range(active.count[0]):
-        most = max(most, abs(active.force[i, 0]))
-    for i in range(active.count[0]):
-        c, force, mu = active.contact[i], active.force[i], system.friction[active.contact[i]]
-        margin[a.EVENT_GAP, c], margin[a.EVENT_RATE, c] = math.inf, math.inf
+    for c in range(system.contacts):
+        if active[c].mode != a.MODE_OPEN:
+            most = max(most, abs(active[c].force[0]))
+    for c in range(system.contacts):
+        contact, force, mu = active[c], active[c].force, system.friction[c]
+        for kind in range(a.NO_EVENT):
+            margin[kind, c], nothing[kind, c] = math.inf, 0.0
+        if contact.mode == a.MODE_OPEN:
+            margin[a.EVENT_GAP, c] = work.gap[c]
+            nothing[a.EVENT_GAP, c] = ROUND_OFF * work.gap_scale[c]
+            margin[a.EVENT_RATE, c] = -dot(work.G[c, 0], end[system.n :], system.n)
+            continue
         margin[a.EVENT_SEPARATE, c] = force[0]
-        if active.mode[i] == a.MODE_STICK:
+        if contact.mode == a.MODE_STICK:
             pull = math.sqrt(force[1] * force[1] + force[2] * force[2])
             margin[a.EVENT_CONE, c] = mu * force[0] - pull
-            work.nothing[a.EVENT_CONE, c] = CONE_ROUND_OFF * most
+            nothing[a.EVENT_CONE, c] = CONE_ROUND_OFF * most
         elif mu > 0.0:
-            u1, u2 = slip_of(system, active, i, end, work)
-            margin[a.EVENT_REVERSE, c] = u1 * active.heading[i, 0] + u2 * active.heading[i, 1]
-            margin[a.EVENT_JAM, c] = active.yields[i]
+            u1, u2 = slip_of(system, c, end, work)
+            margin[a.EVENT_REVERSE, c] = u1 * contact.heading[0] + u2 * contact.heading[1]
+            margin[a.EVENT_JAM, c] = contact.yields
     return code
 
 
@@ -77,20 +79,12 @@ def first_violated(system, work):
 def dips(system, h, work):
     """Return a contact whose gap may have been below zero within the step, -1 if none.
 
-    The cubic with the gaps and rates at both ends decides: its least value is below a tenth of the depth of the
-    dip.
+    Its rate changes sign, and the cubic with the gaps and rates at both ends may be below zero.
     """
     for c in range(system.contacts):
-        g0, r0 = work.before[0, c], h * work.before[1, c]
-        g1, r1 = work.margin[a.EVENT_GAP, c], -h * work.margin[a.EVENT_RATE, c]
-        if not r0 < 0.0 < r1:
-            continue
-        third, second = 2.0 * (g0 - g1) + r0 + r1, 3.0 * (g1 - g0) - 2.0 * r0 - r1
-        root = math.sqrt(max(second * second - 3.0 * third * r0, 0.0))
-        # of 3 third s^2 + 2 second s + r0
-        s = -r0 / (second + root) if second > 0.0 else (root - second) / (3.0 * third)
-        least = g0 + s * (r0 + s * (second + s * third))
-        if least <= 0.1 * (min(g0, g1) - least):
+        g0, r0 = work.before[0, c], work.before[1, c]
+        g1, r1 = work.margin[a.EVENT_GAP, c], -work.margin[a.EVENT_RATE, c]
+        if r0 < 0.0 < r1 and not cubic_clears(g0, r0, g1, r1, h, 0.0):
             return c
     return -1
 

@@ -1,4 +1,4 @@
-"""The arrays of a `GeneralizedSystem` for the kernels: the system, its active set, and workspace.
+"""The arrays of a `GeneralizedSystem` for the kernels: the system, the modes of its contacts, workspace.
 
 A state is one array ``x = (q, v)`` of 2n numbers. The kernels call the functions of the user as four functions
 ``f(t, x, out)`` (`carom._compiled.user_functions`); the layout of their results is defined here.
@@ -44,18 +44,6 @@ class Coordinates(NamedTuple):
     drop: float  # a row is left out if its pivot is below this part of its diagonal
 
 
-class ActiveSet(NamedTuple):
-    """Active contacts; the first `count` entries are in use."""
-
-    count: np.ndarray  # (1,) int64
-    contact: np.ndarray  # (C,) int64
-    row: np.ndarray  # (C,) int64, its first row of R
-    mode: np.ndarray  # (C,) int64, MODE_SLIP or MODE_STICK
-    heading: np.ndarray  # (C, 2) direction of slip
-    force: np.ndarray  # (C, 3) normal first
-    yields: np.ndarray  # (C,) W_nn - mu W_nt.heading of a slipping contact
-
-
 class Work(NamedTuple):
     """Workspace. The first four arrays are results of the functions, the next nine are views of them."""
 
@@ -96,12 +84,19 @@ class Work(NamedTuple):
     spent: np.ndarray  # (2,) work of loads and of friction in the last step
 
 
+#: a contact: its mode; while it persists, first row of R, direction of slip, force with the normal first,
+#: and W_nn - mu W_nt.heading of one that slips
+CONTACT = [
+    ("mode", "i8"), ("row", "i8"), ("heading", "f8", 2), ("force", "f8", 3), ("yields", "f8"),
+]  # fmt: skip
+
+
 class Motion(NamedTuple):
-    """The data of a step other than the state: the system, the method, the persistent contacts, workspace."""
+    """The data of a step other than the state: the system, the method, the modes of contacts, workspace."""
 
     system: Coordinates
     method: Method
-    active: ActiveSet
+    active: np.recarray  # (C,) CONTACT
     work: Work
 
 
@@ -133,18 +128,6 @@ class Record(NamedTuple):
     clock: np.recarray  # (1,) CLOCK
     series: np.recarray  # (rows,) CLOCK
     states: np.ndarray  # (rows, 2n)
-
-
-def new_active_set(contacts: int) -> ActiveSet:
-    """Return an active set with room for all contacts, none active."""
-    count, (contact, row, mode) = np.zeros(1, np.int64), np.zeros((3, contacts), np.int64)
-    vectors = np.zeros((contacts, 2)), np.zeros((contacts, 3))
-    return ActiveSet(count, contact, row, mode, *vectors, np.zeros(contacts))
-
-
-def copied(active: ActiveSet) -> ActiveSet:
-    """Return a copy of an active set."""
-    return ActiveSet(*(one.copy() for one in active))
 
 
 def new_work(system: Coordinates, stages: int) -> Work:

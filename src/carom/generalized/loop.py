@@ -107,11 +107,10 @@ def turns(motion):
     slip faster than the step follows, that of a stage is far off.
     """
     active, work, n = motion.active, motion.work, motion.system.n
-    for i in range(active.count[0]):
-        c = active.contact[i]
-        if active.mode[i] != a.MODE_SLIP or not motion.system.friction[c] > 0.0:
+    for c in range(motion.system.contacts):
+        if active[c].mode != a.MODE_SLIP or not motion.system.friction[c] > 0.0:
             continue
-        e1, e2 = active.heading[i, 0], active.heading[i, 1]
+        e1, e2 = active[c].heading[0], active[c].heading[1]
         for s in range(1, motion.method.b.size + 1):
             v = work.stages[s] if s < motion.method.b.size else work.end[n:]
             u1, u2 = dot(work.G[c, 1], v, n), dot(work.G[c, 2], v, n)

@@ -50,11 +50,20 @@ def find_metric(system, t, x, work):
 
 
 @kernel
+def persists(active):
+    """Return whether any contact persists."""
+    for c in range(active.shape[0]):
+        if active[c].mode != a.MODE_OPEN:
+            return True
+    return False
+
+
+@kernel
 def find_rows(system, active, t, x, work):
-    """Compute constraint rows, and contacts if any is active."""
+    """Compute constraint rows, and contacts if any persists."""
     if system.rows > 0:
         evaluate(system, o.CALL_ROWS, t, x, work.rows, work)
-    if active.count[0] > 0:
+    if persists(active):
         evaluate(system, o.CALL_CONTACTS, t, x, work.contacts, work)
 
 
@@ -80,20 +89,29 @@ def terms(row, x, n):
 
 
 @kernel
-def slip_of(system, active, i, x, work):
-    """Return the slip (u_1, u_2) of persistent contact i; rows must be those of `x`."""
-    n, rows = system.n, work.G[active.contact[i]]
+def slip_of(system, c, x, work):
+    """Return the slip (u_1, u_2) of contact c; rows must be those of `x`."""
+    n, rows = system.n, work.G[c]
     return dot(rows[1], x[n:], n), dot(rows[2], x[n:], n)
 
 
 @kernel
-def direction(active, i, u1, u2):
+def direction(contact, u1, u2):
     """Return the direction of slip; if it would reverse within a stage, the direction before."""
-    h1, h2 = active.heading[i, 0], active.heading[i, 1]
+    h1, h2 = contact.heading[0], contact.heading[1]
     size = math.sqrt(u1 * u1 + u2 * u2)
     if size > 0.0 and u1 * h1 + u2 * h2 > 0.0:
         return u1 / size, u2 / size
     return h1, h2
+
+
+@kernel
+def add_row_to(row, target, m, work):
+    """Write row number m of R and D, and what it must give; return the number of rows."""
+    copy_row(row, work.R[m], row.size)
+    copy_row(row, work.D[m], row.size)
+    work.rhs[m] = target
+    return m + 1
 
 
 @kernel
@@ -102,29 +120,25 @@ def gather(system, active, what, x, work):
 
     Return the number of rows.
     """
-    n, m = system.n, (system.holonomic if what == POSITION else system.rows)
-    for r in range(m):
-        copy_row(work.A[r], work.R[r], n)
-        work.rhs[r] = -work.phi[r] if what == POSITION else -work.A_rate[r]
-    for i in range(active.count[0]):
-        c = active.contact[i]
-        active.row[i] = m
-        for r in range(3 if active.mode[i] == a.MODE_STICK and what != POSITION else 1):
-            copy_row(work.G[c, r], work.R[m], n)
-            work.rhs[m] = -work.gap[c] if what == POSITION else -work.G_rate[c, r]
-            m += 1
-    for r in range(m):
-        copy_row(work.R[r], work.D[r], n)
-        if what == RATE:
-            work.rhs[r] = 0.0
-    for i in range(active.count[0] if what == ACCELERATION else 0):
-        c = active.contact[i]
-        mu = system.friction[c]
-        if active.mode[i] == a.MODE_SLIP and mu > 0.0:
-            u1, u2 = slip_of(system, active, i, x, work)
-            e1, e2 = direction(active, i, u1, u2)
-            add_row(-mu * e1, work.G[c, 1], work.D[active.row[i]], n)
-            add_row(-mu * e2, work.G[c, 2], work.D[active.row[i]], n)
+    m, n = 0, system.n
+    for r in range(system.holonomic if what == POSITION else system.rows):
+        target = 0.0 if what == RATE else -work.phi[r] if what == POSITION else -work.A_rate[r]
+        m = add_row_to(work.A[r], target, m, work)
+    for c in range(system.contacts):
+        contact, mu, first = active[c], system.friction[c], m
+        if contact.mode == a.MODE_OPEN:
+            continue
+        contact.row = m
+        for r in range(3 if contact.mode == a.MODE_STICK and what != POSITION else 1):
+            target = (
+                0.0 if what == RATE else -work.gap[c] if what == POSITION else -work.G_rate[c, r]
+            )
+            m = add_row_to(work.G[c, r], target, m, work)
+        if what == ACCELERATION and contact.mode == a.MODE_SLIP and mu > 0.0:
+            u1, u2 = slip_of(system, c, x, work)
+            e1, e2 = direction(contact, u1, u2)
+            add_row(-mu * e1, work.G[c, 1], work.D[first], n)
+            add_row(-mu * e2, work.G[c, 2], work.D[first], n)
     return m
 
 
@@ -152,7 +166,7 @@ def react(system, m, out, work):
 def acceleration(system, active, t, x, work, rate):
     """Write x' into `rate` (2n,); return power of loads, of friction, and a status.
 
-    Forces of persistent contacts go to `active.force`.
+    Forces of persistent contacts go to their records.
     """
     n, a, friction = system.n, work.a, 0.0
     code = find_metric(system, t, x, work)
@@ -162,7 +176,7 @@ def acceleration(system, active, t, x, work, rate):
     copy_row(work.load, a, n)
     add_row(-1.0, work.c, a, n)
     solve_metric(n, work.L, a)
-    if system.rows > 0 or active.count[0] > 0:
+    if system.rows > 0 or persists(active):
         find_rows(system, active, t, x, work)
         react(system, gather(system, active, ACCELERATION, x, work), a, work)
         friction = note_forces(system, active, x, work)
@@ -175,15 +189,18 @@ def acceleration(system, active, t, x, work, rate):
 def note_forces(system, active, x, work):
     """Write the forces of persistent contacts from the multipliers; return the power of friction."""
     power = 0.0
-    for i in range(active.count[0]):
-        force, mu, m = active.force[i], system.friction[active.contact[i]], active.row[i]
+    for c in range(system.contacts):
+        contact, mu = active[c], system.friction[c]
+        force, m = contact.force, contact.row
+        if contact.mode == a.MODE_OPEN:
+            continue
         force[0] = work.rhs[m]
-        active.yields[i] = work.K[m, m]
-        if active.mode[i] == a.MODE_STICK:
+        contact.yields = work.K[m, m]
+        if contact.mode == a.MODE_STICK:
             force[1], force[2] = work.rhs[m + 1], work.rhs[m + 2]
         else:
-            u1, u2 = slip_of(system, active, i, x, work)
-            e1, e2 = direction(active, i, u1, u2)
+            u1, u2 = slip_of(system, c, x, work)
+            e1, e2 = direction(contact, u1, u2)
             force[1], force[2] = -mu * force[0] * e1, -mu * force[0] * e2
             power += force[1] * u1 + force[2] * u2
     return power

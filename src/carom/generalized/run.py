@@ -15,9 +15,9 @@ from carom.generalized.evaluate import Evaluation
 from carom.generalized.loop import save_now, time_loop
 from carom.generalized.step import project
 from carom.model.kept import Kept
-from carom.model.records import PAUSE
-from carom.status import SUCCESS, Status
-from carom.stepping.grid import STATES, part_of_grid, planned_grid
+from carom.status import Status
+from carom.stepping.grid import STATES, Grid, part_of_grid, planned_grid
+from carom.stepping.running import Running
 
 if TYPE_CHECKING:
     from carom.generalized.system import GeneralizedSystem
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 EVENTS_AT_ONCE = 200  # events at one instant
 
 
-class GeneralizedRun:
+class GeneralizedRun(Running):
     """A run of a `GeneralizedSystem`: state, records and workspace.
 
     It begins at the initial state of the system, or at `start`: a time, and the state (q, v) and the active
@@ -35,32 +35,31 @@ class GeneralizedRun:
 
     def __init__(
         self, system: GeneralizedSystem, settings: Settings,
-        start: tuple[float, np.ndarray, o.ActiveSet] | None = None,
+        start: tuple[float, np.ndarray, np.recarray] | None = None,
     ):  # fmt: skip
-        options = settings.options
-        made = system.evaluation()
-        system = system._as_it_is()
-        self.user, self.options, self.how = system, options, settings
+        options, made = settings.options, system.evaluation()
+        atol = settings.rtol if settings.atol is None else settings.atol
+        settings = settings._replace(atol=atol)
+        self.user = system = system._as_it_is()
+        self.options, self.how = options, settings
+        self.settings = {**settings.as_dict(), "options": options.as_dict()}
         # a gap that closes and opens within a step is detected from both ends of the step
         between = settings.duration / (STATES if system.contacts else 1)
         longest = settings.step or options.max_step or between
         grid = planned_grid(settings, settings.duration, longest)
         order = METHODS[settings.method].order if settings.adapts else 0
-        atol = settings.rtol if settings.atol is None else settings.atol
         self.plan = o.Plan(settings.duration, grid.interval, grid, order, settings.rtol, atol)
-        self.settings = {**settings.as_dict(), "options": options.as_dict()}
-        if settings.adapts:
-            self.settings["atol"] = atol
         same = made.system.drop == options.drop_tolerance
         self.made: Evaluation = made if same else Evaluation(system, options.drop_tolerance)
-        self.made.functions.forget()
+        self.functions = self.made.functions
+        self.functions.forget()
         self.system = self.made.system
         n = self.n = self.system.n
         self.method = make_method(settings.method, options, settings.adapts)
         self.work = o.new_work(self.system, len(self.method.b))
         x = np.concatenate([system.position, system.velocity])
-        begin, x, active = start or (0.0, x, o.new_active_set(self.system.contacts))
-        self.x, self.active = x.copy(), o.copied(active)
+        begin, x, active = start or (0.0, x, table(o.CONTACT, self.system.contacts))
+        self.x, self.active = x.copy(), active.copy()
         self.motion = o.Motion(self.system, self.method, self.active, self.work)
         self.clock = table(o.CLOCK, 1)
         self.clock["now"] = begin
@@ -68,18 +67,18 @@ class GeneralizedRun:
         self.series = table(o.CLOCK, grid.rows + 2)
         self.states = np.zeros((grid.rows + 2, 2 * n))
         self.record = o.Record(self.clock, self.series, self.states)
-        # of the events: time, state before and after, active contacts
-        self.nodes: list[tuple[float, np.ndarray, np.ndarray, o.ActiveSet]] = []
+        # of the events: time, state before and after, contacts
+        self.nodes: list[tuple[float, np.ndarray, np.ndarray, np.recarray]] = []
         self.contacts = Contacts(self)
         self.reason = ""  # of a failure, beyond its status
-        self.located, self.at_once, self.last = 0, 0, -1.0
+        self.located: list[float] = []  # times of events
         self.code = 0
         if start is None:
             self.check_start()
             self.code = self.contacts.resolve(0, -1)
             self.save_now()
 
-    def again(self, begin: float, x: np.ndarray, active: o.ActiveSet, end: float) -> GeneralizedRun:
+    def again(self, begin: float, x: np.ndarray, active: np.recarray, end: float) -> GeneralizedRun:
         """Return a run between two times that starts at a state (q, v) of this one."""
         run = GeneralizedRun(self.user, self.how, (begin, x, active))
         run.plan = self.plan._replace(grid=part_of_grid(self.plan.grid, begin, end))
@@ -87,19 +86,16 @@ class GeneralizedRun:
 
     def check_start(self) -> None:
         """Raise an error if the start violates constraints or contacts; `project_start` projects velocities."""
-        options, x, n = self.options, self.x, self.n
-        code, seen = self.made.look(x), self.made.work
-
-        def exceed(errors, rows, at, least):
-            most = options.constraint_tolerance * np.maximum(np.abs(rows) @ np.abs(at), least)
-            return bool(np.any(~(np.abs(errors) <= most)))
-
+        tolerance, x, n = self.options.constraint_tolerance, self.x, self.n
+        seen = self.made.look(x)
         A, rates = seen.A, seen.A @ x[n:]
-        if exceed(seen.phi, A[: len(seen.phi)], x[:n], 1.0):
+        sizes, speeds = np.abs(A[: len(seen.phi)]) @ np.abs(x[:n]), np.abs(A) @ np.abs(x[n:])
+        if not np.all(np.abs(seen.phi) <= tolerance * np.maximum(sizes, 1.0)):
             raise ValueError(
                 f"position must satisfy the constraints, got phi(q) = {seen.phi.tolist()} at the start"
             )
-        if exceed(rates, A, x[n:], 1e-300) and not options.project_start:
+        right = np.all(np.abs(rates) <= tolerance * np.maximum(speeds, 1e-300))
+        if not (right or self.options.project_start):
             raise ValueError(
                 f"velocity must satisfy the constraints, got A v = {rates.tolist()} at the start; use "
                 "Options(project_start=True)"
@@ -110,28 +106,13 @@ class GeneralizedRun:
             raise ValueError(
                 f"position must not be inside a contact, got the gap {seen.gap[contact]:.6g} of {name!r}"
             )
-        if code == 0 and len(A):
+        if len(A):
             project(self.system, self.active, 0.0, x, True, self.work)
 
     @property
-    def failure(self) -> BaseException | None:
-        """The error that a user-defined function has raised, or None."""
-        return self.made.functions.failed
-
-    @property
-    def steps(self) -> int:
-        """Number of steps to the end."""
-        return self.plan.grid.last
-
-    @property
-    def steps_done(self) -> int:
-        """Number of finished steps."""
-        return int(self.clock[0].step)
-
-    @property
-    def reached(self) -> float:
-        """Time that the run has reached."""
-        return float(self.clock[0].now)
+    def grid(self) -> Grid:
+        """The steps of the run."""
+        return self.plan.grid
 
     def moment(self, acceleration: float) -> float:
         """Return a time that counts as zero: a step, or with tolerances that of a bounce as high as these."""
@@ -144,41 +125,27 @@ class GeneralizedRun:
         """Write the present state into the records."""
         save_now(self.system, self.x, self.record, self.work)
 
-    def go_on(self, until: float) -> Status:
-        """Continue until step number `until`, or a failure."""
+    def take_steps(self, until: int) -> int:
+        """Continue to step number `until`; return a status, or PAUSE."""
         while self.code == 0:
-            self.code = time_loop(self.motion, self.x, self.plan, int(until), self.record)
-            if self.code == o.EVENT:
-                self.code = self.event()
-            elif self.code == PAUSE and self.failure is None:
-                self.code = 0  # Python raises Ctrl-C here
-            else:
-                break
+            code = time_loop(self.motion, self.x, self.plan, until, self.record)
+            if code != o.EVENT:
+                return code
+            self.code = self.event()
         code, self.code = self.code, 0
-        if isinstance(self.failure, KeyboardInterrupt):  # while a plain function ran
-            self.made.functions.forget()
-            return Status.INTERRUPTED
-        if code != SUCCESS and self.is_to_blame():
-            self.reason = self.made.functions.reason
-            return Status.FUNCTION_FAILED
-        return Status.SUCCESS if code == SUCCESS else Status(code)
+        return code
 
-    def is_to_blame(self) -> bool:
-        """Return whether a user-defined function has ended the run."""
-        functions = self.made.functions
-        if self.failure is None and not functions.blame(self.reached) and functions.has_compiled:
-            # the step once more, with compiled functions called from Python
-            place = Kept((self.motion, self.x, self.clock))
-            functions.call_from_python([self.system.address, *self.system.part[:, :2].T])
-            time_loop(self.motion, self.x, self.plan, self.steps_done + 1, self.record)
-            place.restore()
-            functions.blame(self.reached)
-        return self.failure is not None
+    def blame_compiled(self) -> None:
+        """Take the failed step once more, with compiled functions called from Python, which notes faults."""
+        place = Kept((self.motion, self.x, self.clock))
+        self.functions.call_from_python([self.system.address, *self.system.part[:, :2].T])
+        time_loop(self.motion, self.x, self.plan, self.steps_done + 1, self.record)
+        place.restore()
 
     def costs(self) -> str:
         """Return what the run has done so far, for the progress bar."""
         counts = list(self.counted().items())[3:]
-        counts.append(("calls of Python functions", self.made.functions.calls))
+        counts.append(("calls of Python functions", self.functions.calls))
         return "; ".join(f"{count} {name}" for name, count in counts if count)
 
     def counted(self) -> dict[str, int]:
@@ -186,7 +153,7 @@ class GeneralizedRun:
         clock, kinds = self.clock[0], [kind for _, kind, _ in self.contacts.events]
         return {
             "steps": int(clock.step), "trial_steps": int(clock.trials), "rejected": int(clock.rejected),
-            "located events": self.located, "impacts": kinds.count("impact"),
+            "located events": len(self.located), "impacts": kinds.count("impact"),
             "holds": kinds.count("held"),
         }  # fmt: skip
 
@@ -195,12 +162,10 @@ class GeneralizedRun:
 
     def event(self) -> int:
         """Handle the event at which the loop has stopped; return a status."""
-        clock = self.clock[0]
-        self.located += 1
-        near = clock.now - self.last <= 1e-12 * self.plan.step
-        self.at_once = self.at_once + 1 if near else 0
-        self.last = float(clock.now)
-        if self.at_once > EVENTS_AT_ONCE:
+        clock, times = self.clock[0], self.located
+        times.append(float(clock.now))
+        before = times[-EVENTS_AT_ONCE] if len(times) >= EVENTS_AT_ONCE else -np.inf
+        if times[-1] - before <= 1e-10 * self.plan.step:
             return Status.TOO_MANY_IMPACTS
         return self.contacts.resolve(int(clock.kind), int(clock.index))
 
@@ -209,6 +174,7 @@ class GeneralizedRun:
         from carom.generalized.solution import GeneralizedSolution
 
         clock = self.clock[0]
+        self.reason = self.functions.reason if status is Status.FUNCTION_FAILED else ""
         if status is not Status.SUCCESS and clock.now > self.series.now[clock.saved - 1]:
             self.save_now()
         return GeneralizedSolution._from_run(self, status)

@@ -153,9 +153,8 @@ class GeneralizedSolution(Drawn):
     def constraint_errors(self) -> tuple[np.ndarray, np.ndarray]:
         """Greatest errors of the constraints at each saved time: of phi(q) (T,) and of A v (T,)."""
         position, rate = np.zeros(len(self.t)), np.zeros(len(self.t))
-        seen = self._run.made.work
         for k in range(len(self.t)):
-            self._run.made.look(np.append(self.q[k], self.v[k]), float(self.t[k]))
+            seen = self._run.made.look(np.append(self.q[k], self.v[k]), float(self.t[k]))
             position[k] = np.max(np.abs(seen.phi), initial=0.0)
             rate[k] = np.max(np.abs(seen.A @ self.v[k]), initial=0.0)
         return position, rate
@@ -190,32 +189,31 @@ class GeneralizedSolution(Drawn):
 
     def _state(self, time: float, left: bool) -> np.ndarray:
         """Return the state (q, v) at a time, before or after an event at this time."""
-        at, before, after, active = self._nodes
+        at, nodes = self._nodes
         k = max(int(np.searchsorted(at, time, side="left" if left else "right")) - 1, 0)
-        last = min(k + 1, len(at) - 1)
-        if time == at[k]:
-            return after[k]
-        if time > at[last] - ROUND_OFF * self.t[-1]:
-            return before[last]
-        run = self._run.again(float(at[k]), after[k], active[k], time)
+        begin, _, start, active = nodes[k]
+        last, end, *_ = nodes[min(k + 1, len(at) - 1)]
+        if time == begin:
+            return start
+        if time > last - ROUND_OFF * self.t[-1]:
+            return end
+        run = self._run.again(float(begin), start, active, time)
         if run.go_on(run.steps) is Status.SUCCESS:
             return run.x
-        h = at[last] - at[k]  # the end of a run that failed
-        start, end = np.split(after[k], 2), np.split(before[last], 2)
-        return np.concatenate(cubic((time - at[k]) / h, h, *start, *end))
+        h = last - begin  # the end of a run that failed
+        return np.concatenate(cubic((time - begin) / h, h, *np.split(start, 2), *np.split(end, 2)))
 
     @cached_property
-    def _nodes(self):
-        """Times (K,), states before and after (K, 2n), active contacts, of events and saved steps in order."""
-        events = self._run.nodes
+    def _nodes(self) -> tuple[np.ndarray, list[tuple]]:
+        """Times, and times, states before and after, and contacts, of events and saved steps in order."""
+        events, nodes = self._run.nodes, list(self._run.nodes)
         at = np.array([time for time, *_ in events])
-        own = ~np.isin(self.t, at)  # a step that ends with an event is saved after it
-        saved, time = np.hstack([self.q, self.v])[own], np.concatenate([self.t[own], at])
-        order = np.argsort(time, kind="stable")
-        before, after = (np.array([*saved, *(one[k] for one in events)])[order] for k in (1, 2))
-        active = [*(one[3] for one in events), self._run.active]
-        since = np.searchsorted(at, time[order], side="right") - 1  # the last event
-        return time[order], before, after, [active[k] for k in since]
+        since = np.searchsorted(at, self.t, side="right") - 1  # the last event
+        for time, x, i in zip(self.t, np.hstack([self.q, self.v]), since):
+            if i < 0 or at[i] < time:  # a step that ends with an event is saved after it
+                nodes.append((time, x, x, events[i][3] if i >= 0 else self._run.active))
+        nodes.sort(key=lambda node: node[0])
+        return np.array([time for time, *_ in nodes]), nodes
 
     def __repr__(self) -> str:
         return (

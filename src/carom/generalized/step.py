@@ -14,6 +14,7 @@ from carom.generalized.motion import (
     find_metric,
     find_rows,
     gather,
+    persists,
     react,
     slip_of,
     solve_metric,
@@ -47,7 +48,7 @@ def take(motion, t, x, h):
         total += end[j]
     if not math.isfinite(total):
         return NOT_FINITE
-    if system.rows > 0 or active.count[0] > 0:
+    if system.rows > 0 or persists(active):
         code = return_to_surfaces(system, active, t + h, end, work)
         return project_rates(system, active, t + h, end, work) if code == 0 else code
     return 0
@@ -80,27 +81,31 @@ def combine(weight, count, h, x, stages, out):
 @kernel
 def note_slip_directions(system, active, t, x, work):
     """Store the direction of slip of persistent contacts at the start of a step."""
-    if active.count[0] == 0:
-        return
     find_rows(system, active, t, x, work)
-    for i in range(active.count[0]):
-        if active.mode[i] != a.MODE_STICK:
-            u1, u2 = slip_of(system, active, i, x, work)
-            active.heading[i, 0], active.heading[i, 1] = direction(active, i, u1, u2)
+    for c in range(system.contacts):
+        if active[c].mode == a.MODE_SLIP:
+            u1, u2 = slip_of(system, c, x, work)
+            active[c].heading[0], active[c].heading[1] = direction(active[c], u1, u2)
 
 
 @kernel
-def error_of(system, active, m, x, work):
-    """Return the greatest error of the m rows for coordinates, each relative to the terms of its row."""
-    n, h, worst = system.n, system.holonomic, 0.0
-    for r in range(m):
-        size = terms(work.R[r], x, n)
-        if r < h:
-            work.row_scale[r] = size = max(work.row_scale[r], size)
-        else:
-            size = max(size, work.gap_scale[active.contact[r - h]])
-        worst = max(worst, abs(work.rhs[r]) / size if size > 0.0 else abs(work.rhs[r]))
+def error_of(system, active, x, work):
+    """Return the greatest error of coordinates, relative to the terms of each constraint and gap."""
+    n, worst = system.n, 0.0
+    for r in range(system.holonomic):
+        work.row_scale[r] = max(work.row_scale[r], terms(work.A[r], x, n))
+        worst = max(worst, relative(work.phi[r], work.row_scale[r]))
+    for c in range(system.contacts):
+        if active[c].mode != a.MODE_OPEN:
+            size = max(terms(work.G[c, 0], x, n), work.gap_scale[c])
+            worst = max(worst, relative(work.gap[c], size))
     return worst
+
+
+@kernel
+def relative(error, size):
+    """Return |error| in parts of a size, if there is one."""
+    return abs(error) / size if size > 0.0 else abs(error)
 
 
 @kernel
@@ -118,7 +123,7 @@ def return_to_surfaces(system, active, t, x, work):
             return code
         find_rows(system, active, t, x, work)
         m = gather(system, active, POSITION, x, work)
-        error = error_of(system, active, m, x, work)
+        error = error_of(system, active, x, work)
         if not error > _NONE or (iteration > 0 and error >= 0.5 * last):
             break
         last = error

@@ -10,14 +10,13 @@ from carom.generalized.solution import CoordinateImpact
 from carom.impact import layout as o
 from carom.impact.laws import GAINING
 from carom.impact.resolve import resolve
+from carom.impact.thresholds import GROUP_SEED, NO_RESTITUTION
 from carom.status import Status
 
 if TYPE_CHECKING:
     from carom.generalized.contacts import Contacts
 
 BLOWS = 200  # impacts at one instant
-SEED = 1e-7  # approach of a contact that jams, relative to its slip (mathematics page, §3.6)
-SPENT = 1e-6  # relative to the first impact in a row: slower ones have no restitution
 
 
 def rows_of(contacts: list[int]) -> np.ndarray:
@@ -47,23 +46,18 @@ class Strike:
                 return code
         return Status.TOO_MANY_IMPACTS
 
-    def restitution(self, c: int) -> float:
-        """Return e of the next impact; 0 if hardly any speed is left after many impacts in a row.
+    def count(self, closed: list[int]) -> None:
+        """Count blows: in a row are those after a bounce below the tolerances, or shorter than a given step."""
+        here, plan, since = self.contacts, self.run.plan, self.run.reached - self.struck[closed]
+        fallen = -here.u[closed, 0] * since
+        high = fallen > plan.atol + plan.rtol if plan.order else since > plan.step
+        self.blows[closed] = np.where(high, 0, self.blows[closed]) + 1
+        self.struck[closed] = self.run.reached
 
-        In a row are impacts after a bounce that is lower than the tolerances, or shorter than a given step.
-        """
-        here, plan, since = self.contacts, self.run.plan, self.run.reached - self.struck[c]
-        if (-here.u[c, 0] * since > plan.atol + plan.rtol) if plan.order else (since > plan.step):
-            self.blows[c] = 0
-        self.struck[c] = self.run.reached
-        e = self.left(c)
-        self.blows[c] += 1
-        return e
-
-    def left(self, c: int) -> float:
-        """Return e of a contact, or 0 if its impacts have left hardly any speed."""
-        e = float(self.contacts.restitution[c])
-        return 0.0 if e < 1.0 and e ** float(self.blows[c]) <= SPENT else e
+    def restitution(self, c, before):
+        """Return e of contacts after a number of blows in a row; 0 if these have left hardly any speed."""
+        e = self.contacts.restitution[c]
+        return np.where((e < 1.0) & (e**before <= NO_RESTITUTION), 0.0, e)
 
     def together(self, closed: list[int], jams: int) -> int:
         """Change the velocities by the impact of closed contacts; return a status."""
@@ -73,8 +67,9 @@ class Strike:
         u[np.abs(u[:, 0]) <= here.still[closed], 0] = 0.0
         if jams >= 0:
             i = closed.index(jams)
-            u[i, 0] = -SEED * np.linalg.norm(u[i, 1:])
-        mu, e = here.friction[closed], np.array([self.restitution(c) for c in closed])
+            u[i, 0] = -GROUP_SEED * np.linalg.norm(u[i, 1:])
+        self.count(closed)
+        mu, e = here.friction[closed], self.restitution(closed, self.blows[closed] - 1.0)
         code, after, p, works, wedged = self.solve(W, u, mu, e, closed)
         if code != o.OK:
             return Status.IMPACT_FAILED
@@ -100,21 +95,19 @@ class Strike:
         """
         law = self.contacts.law[closed]
         if len(closed) == 1:
-            out = np.zeros(o.SIZE)
-            out[o.STILL] = self.contacts.still[closed[0]]
-            code = resolve(W, u[0].copy(), mu[0], e[0], law[0], out)
-            after, p = (out[at : at + 3] for at in (o.VELOCITY, o.IMPULSE))
-            works = out[[o.WORK_C, o.WORK_R, o.FRICTION_LOSS]]
-            wedged = int(out[o.PHASES]) & o.WEDGED
-        else:
-            from carom.impact.multiple import api
-            from carom.impact.multiple.layout import multiple_settings, new_multiple_workspace
+            out = np.zeros((o.SIZE, 1))
+            out[o.STILL] = self.contacts.still[closed]
+            code = resolve(W, u[0].copy(), mu[0], e[0], law[0], out[:, 0])
+            after, p = (out[at : at + 3].T for at in (o.VELOCITY, o.IMPULSE))
+            works, phases = out[[o.WORK_C, o.WORK_R, o.FRICTION_LOSS]], out[o.PHASES].astype(int)
+            return code, after, p, works, phases & o.WEDGED
+        from carom.impact.multiple import api
+        from carom.impact.multiple.layout import multiple_settings, new_multiple_workspace
 
-            if self.room is None:
-                self.room = new_multiple_workspace(len(self.blows))
-            settings = multiple_settings(self.run.options, 1.0)
-            code, found = api.solve(W, u, mu, e, law, np.ones(len(u)), settings, self.room)
-            after, p, wedged = found.velocity, found.impulse, found.wedged
-            works = np.array([found.compression, found.restitution, found.friction])
-        shapes = (after, (-1, 3)), (p, (-1, 3)), (works, (3, -1)), (wedged, -1)
-        return code, *(np.reshape(one, shape) for one, shape in shapes)
+        if self.room is None:
+            self.room = new_multiple_workspace(len(self.blows))
+        settings = multiple_settings(self.run.options, 1.0)
+        code, found = api.solve(W, u, mu, e, law, np.ones(len(u)), settings, self.room)
+        after, p = found.velocity.reshape(-1, 3), found.impulse.reshape(-1, 3)
+        works = np.array([found.compression, found.restitution, found.friction])
+        return code, after, p, works, found.wedged

@@ -31,11 +31,11 @@ class SymbolicModel:
         if n == 0:
             raise ValueError("coordinates must have at least one coordinate, got none")
         functions = all(isinstance(q, sp.core.function.AppliedUndef) for q in self.coordinates)
-        if velocities is None and functions:
-            velocities = [q.diff(q.args[0]) for q in self.coordinates]
-        self.velocities = []
-        if velocities is not None:
-            self.velocities = self.symbols("velocities", self.each("velocities", velocities))
+        if velocities is None:
+            velocities = [q.diff(q.args[0]) for q in self.coordinates] if functions else []
+        else:
+            self.each("velocities", velocities)
+        self.velocities = self.symbols("velocities", velocities)
         if not (parameters is None or isinstance(parameters, Mapping)):
             raise ValueError(
                 f"parameters must be a mapping from symbols to numbers, got {checks.shown(parameters)}"
@@ -52,15 +52,12 @@ class SymbolicModel:
         self.time = time if time is not None or not functions else self.coordinates[0].args[0]
         self.q = sp.symbols(f"q:{n}", real=True, cls=sp.Dummy)
         self.v = sp.symbols(f"v:{n}", real=True, cls=sp.Dummy)
-        self.t = sp.Dummy("t", real=True)
+        self.t, self.speeds = sp.Dummy("t", real=True), sp.Matrix(self.v)
         if (kinetic_energy is None) == (metric is None):
             raise ValueError("kinetic_energy or metric must be given, and not both")
         if metric is None:
-            T = self.take("kinetic_energy", kinetic_energy, "qv")
-            otherwise = "a quadratic form of the velocities (without terms of degree 0 or 1)"
-            self.M = self.form(
-                T, 2, f"kinetic_energy must be {otherwise}, got {checks.shown(kinetic_energy)}"
-            )
+            otherwise = "be a quadratic form of the velocities (without terms of degree 0 or 1)"
+            self.M = self.form("kinetic_energy", kinetic_energy, 2, otherwise)
         else:
             entries = self.table("metric", metric, n)
             self.M = sp.Matrix(n, n, [self.take("metric", one, "q") for one in entries])
@@ -73,9 +70,8 @@ class SymbolicModel:
         self.phi = [self.take("constraints", one, "q") for one in constraints]
         rates = checks.listed("rates", rates, "expressions")
         speeds = [self.linear("rates", one) for one in rates]
-        self.holonomic = len(self.phi)
         self.A = [*map(self.gradient, self.phi), *speeds]
-        self.rows = len(self.A)
+        self.holonomic, self.rows = len(self.phi), len(self.A)
         self.contacts: list[tuple[Any, list]] = []
 
     def take(self, name: str, expression, allowed: str):
@@ -136,23 +132,23 @@ class SymbolicModel:
             raise ValueError(f"{name} must have shape ({n}, {n}), got {shape[:2]}")
         return [one for row in rows for one in row]
 
-    def form(self, expression, degree: int, otherwise: str) -> Any:
+    def form(self, name: str, given, degree: int, otherwise: str) -> Any:
         """Return the derivatives of this degree by the velocities, if the expression is a form of this degree.
 
         Then they do not have velocities, and its first ones times the velocities are `degree` times itself.
         """
+        expression = self.take(name, given, "qv")
         slope = self.sp.Matrix([expression]).jacobian(self.v)
-        rest = degree * expression - sum(a * v for a, v in zip(slope, self.v))
+        rest = degree * expression - (slope * self.speeds)[0]
         result = slope if degree == 1 else slope.jacobian(self.v)
         if result.has(*self.v) or not self.is_zero(rest):
-            raise ValueError(otherwise)
+            raise ValueError(f"{name} must {otherwise}, got {checks.shown(given)}")
         return result
 
-    def linear(self, name: str, expression) -> list:
+    def linear(self, name: str, given) -> list:
         """Return the row of an expression that is linear in the velocities."""
-        otherwise = f"{name} must be linear in the velocities, without a term of degree 0, got "
-        taken = self.take(name, expression, "qv")
-        return list(self.form(taken, 1, f"{otherwise}{checks.shown(expression)}"))
+        otherwise = "be linear in the velocities, without a term of degree 0"
+        return list(self.form(name, given, 1, otherwise))
 
     def is_zero(self, expression) -> bool:
         """Return whether an expression is zero, by its form or at some points."""
@@ -186,10 +182,9 @@ class SymbolicModel:
 
     def inertia(self) -> list:
         """Return M and Gamma_kij v_i v_j = (dM/dt v)_k - d_k (v M v) / 2."""
-        momentum = list(self.M * self.sp.Matrix(self.v))
-        twice = sum(p * w for p, w in zip(momentum, self.v))
-        bend = [self.rate(p) - one / 2 for p, one in zip(momentum, self.gradient(twice))]
-        return [*self.M, *bend]
+        momentum = self.M * self.speeds
+        slope = self.gradient(momentum.dot(self.speeds))
+        return [*self.M, *(rate - one / 2 for rate, one in zip(self.rates(momentum), slope))]
 
     def loads(self) -> list:
         """Return V, Q - dV, Q v."""
@@ -202,19 +197,17 @@ class SymbolicModel:
 
     def contact_terms(self) -> list:
         """Return gaps, G, (dG/dt) v."""
-        return [
-            *(rho for rho, _ in self.contacts),
-            *self.with_rates([row for _, G in self.contacts for row in G]),
-        ]
+        rows = [row for _, G in self.contacts for row in G]
+        return [*(rho for rho, _ in self.contacts), *self.with_rates(rows)]
 
     def with_rates(self, rows: list) -> list:
         """Return the entries of rows, and (d row/dt) v of each."""
-        speeds = [sum(a * v for a, v in zip(row, self.v)) for row in rows]
-        return [*(a for row in rows for a in row), *map(self.rate, speeds)]
+        A = self.sp.Matrix(len(rows), self.n, [one for row in rows for one in row])
+        return [*A, *self.rates(A * self.speeds)] if rows else []
 
-    def rate(self, expression):
-        """Return the rate of a function of the coordinates, for constant velocities."""
-        return sum(slope * v for slope, v in zip(self.gradient(expression), self.v))
+    def rates(self, functions) -> Any:
+        """Return the rates of a column of functions of the coordinates, for constant velocities."""
+        return functions.jacobian(self.q) * self.speeds
 
     def gradient(self, expression) -> list:
         """Return the derivatives of an expression by the coordinates."""
@@ -224,12 +217,9 @@ class SymbolicModel:
         """Return the addresses of the four compiled functions, which have no parts."""
         result = []
         for name in ("inertia", "loads", "row_terms", "contact_terms"):
-            terms, at = getattr(self, name)(), 0
-            if terms:
-                sizes = (2 * self.n,), (len(terms),)
-                code = self.write(name, terms)
-                at = functions.written(code, *sizes, f"an expression ({name})")
-            result.append(at)
+            terms = getattr(self, name)()
+            given = (2 * self.n,), (len(terms),), f"an expression ({name})"
+            result.append(functions.written(self.write(name, terms), *given) if terms else 0)
         return result, []
 
     def write(self, name: str, terms: list):
@@ -238,8 +228,7 @@ class SymbolicModel:
         from sympy.printing.pycode import PythonCodePrinter
 
         sp, printer = self.sp, PythonCodePrinter({"fully_qualified_modules": False})
-        x = [sp.Symbol(f"x{i}", real=True) for i in range(2 * self.n)]
-        t = sp.Symbol("t", real=True)
+        *x, t = sp.symbols(f"x:{2 * self.n} t", real=True)
         exchange = dict(zip([*self.q, *self.v, self.t], [*x, t]))
         terms = [sp.sympify(term).xreplace(exchange) for term in terms]
         shared, terms = sp.cse(terms, symbols=sp.numbered_symbols("s"), order="none")
@@ -253,7 +242,6 @@ class SymbolicModel:
             raise ValueError(
                 f"an expression has a function that cannot be compiled, or whose derivative cannot: {error}"
             ) from None
-        code = "\n".join(lines)
-        space: dict[str, Any] = {"math": math, **{k: getattr(math, k) for k in dir(math)}}
-        exec(code, space)
+        space: dict[str, Any] = {"math": math, **vars(math)}
+        exec("\n".join(lines), space)
         return space[name]

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom import arguments, checks
-from carom.generalized.stated import CoordinateContact, checked_contact
+from carom.generalized.stated import CoordinateContact
+from carom.scene.registry import Registry
 
 if TYPE_CHECKING:
     from carom.generalized.evaluate import Evaluation
@@ -160,8 +161,7 @@ class GeneralizedSystem:
 
     def _start(self, model, q, v) -> None:
         self._model: Any = model
-        self._contacts: list[CoordinateContact] = []
-        self._made: Evaluation | None = None
+        self._parts, self._made = Registry("system"), None
         self.position, self.velocity = q, v
         M = checks.finite_array("metric at position", model.metric_at(q), (model.n, model.n))
         if not np.allclose(M, M.T, rtol=0, atol=1e-12 * np.max(np.abs(M))):
@@ -178,7 +178,7 @@ class GeneralizedSystem:
     def _as_it_is(self) -> GeneralizedSystem:
         """Return a copy that does not change when this system gets a contact or another state."""
         made = copy(self)
-        made._contacts = list(self._contacts)
+        made._parts = self._parts.copied()
         return made
 
     @property
@@ -189,7 +189,7 @@ class GeneralizedSystem:
     @property
     def contacts(self) -> tuple[CoordinateContact, ...]:
         """All contacts, in the order in which they were added."""
-        return tuple(self._contacts)
+        return self._parts.parts(CoordinateContact)
 
     @arguments.known
     def add_contact(
@@ -230,11 +230,16 @@ class GeneralizedSystem:
         ValueError
             If an argument is invalid, or `friction` is given without `tangent`.
         """
-        contact = checked_contact(self._contacts, tangent, restitution, friction, impact_law, name)
+        name = f"contact {len(self.contacts)}" if name is None else name
+        index, name = self._parts.new(CoordinateContact, name, "contact")
+        contact = CoordinateContact(name, restitution, friction, impact_law, index)
+        if contact.friction > 0.0 and tangent is None:
+            raise ValueError(
+                f"friction needs a tangent, got friction {checks.shown(friction)} without one"
+            )
         self._model.add_contact(gap, gap_gradient, tangent)
         self._made = None
-        self._contacts.append(contact)
-        return contact
+        return self._parts.add(contact)
 
     def evaluation(self) -> Evaluation:
         """Return the compiled functions of the system, for evaluation at single states."""
@@ -245,8 +250,7 @@ class GeneralizedSystem:
         return self._made
 
     def _look(self, position):
-        self.evaluation().look(self._at(position))
-        return self.evaluation().work
+        return self.evaluation().look(self._at(position))
 
     def metric(self, position) -> np.ndarray:
         """Return M (n, n) at coordinates (n,)."""
@@ -283,24 +287,11 @@ class GeneralizedSystem:
 
         Raises
         ------
-        KeyError
-            If there is no contact with this name.
         ValueError
-            If `position` is not finite, or the map does not converge.
+            If the system has no such contact, `position` is not finite, or the map does not converge.
         """
-        index = self._contact(contact).index
+        index = self._parts.member("contact", contact, (CoordinateContact,)).index
         return self.evaluation().return_map(self._at(position), index)
-
-    def _contact(self, contact) -> CoordinateContact:
-        if isinstance(contact, str):
-            for one in self._contacts:
-                if one.name == contact:
-                    return one
-            raise KeyError(f"there is no contact with the name {checks.shown(contact)}")
-        checks.instance("contact", contact, (CoordinateContact, str))
-        if not any(one is contact for one in self._contacts):
-            raise ValueError(f"contact must belong to this system, got {contact!r} of another one")
-        return contact
 
     def _at(self, position) -> np.ndarray:
         return checks.finite_array("position", position, (self.coordinates,))
@@ -308,5 +299,5 @@ class GeneralizedSystem:
     def __repr__(self) -> str:
         return (
             f"<GeneralizedSystem: {self.coordinates} coordinates, {self._model.rows} constraints, "
-            f"{len(self._contacts)} contacts>"
+            f"{len(self.contacts)} contacts>"
         )

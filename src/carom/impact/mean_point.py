@@ -24,7 +24,7 @@ def as_one(system, k, state, group, work):
 
     If there are several, `group` has the W and u of all of them.
     """
-    hit, point, closed = work.hit[0], work.point[0], group.closed
+    hit, point, closed = work.hit[0], work.struck[0], group.closed
     contact, core = system.contacts[closed[0].contact], hit.point
     for i in range(1, k):
         if contact.touches != 0 or closed[i].contact != closed[0].contact:
@@ -37,7 +37,7 @@ def as_one(system, k, state, group, work):
             for i in range(k):
                 core[r] += closed[i].point[r] / k
         place(contact, core, state, point)
-    inverse_masses(system, 1, work.point, state, work, hit.W)
+    inverse_masses(system, 1, work.struck, state, work, hit.W)
     hit.u[0], hit.u[1], hit.u[2] = contact_velocity(point, state)
     return k == 1 or move_alike(k, group.v[U], group.W, hit, 10.0 * slow(contact, state))
 

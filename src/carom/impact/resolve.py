@@ -270,15 +270,9 @@ def _along_line(contact, phase, line, s):
     if not length < math.inf:
         return s, _ENDLESS, marks
     s = (
-        s[0] + length * f1,
-        s[1] + length * f2,
-        s[2] + length * k,
-        s[3] + length,
-        s[4] + length * t1,
-        s[5] + length * t2,
-        s[6] + loss,
-        s[7] + length * (s[2] + 0.5 * k * length),
-    )
+        s[0] + length * f1, s[1] + length * f2, s[2] + length * k, s[3] + length, s[4] + length * t1,
+        s[5] + length * t2, s[6] + loss, s[7] + length * (s[2] + 0.5 * k * length),
+    )  # fmt: skip
     return s, ended, marks
 
 

@@ -26,7 +26,7 @@ def return_map(system, contact, state, work, tie, tolerance):
     One point is moved until it is on the surface. If the rotation of the body has then moved another point
     below the surface, that point is next.
     """
-    origin, core, point = work.middle, work.hit[0].point, work.point[0]
+    origin, core, point = work.origin, work.hit[0].point, work.struck[0]
     joined = system.bodies[contact.body].isolated == 0
     kappa, rho = 0.0, -math.inf
     for iteration in range(100):

@@ -93,7 +93,7 @@ def strike(model, data, method, c):
             velocities(k, group.points[0], state, group.v[U])
         single = as_one(system, k, state, group, work)
         if not single and data.multiple.e.shape[0] < k:
-            clock.grow, hit.code = FULL_MULTIPLE, GROW
+            work.step[0].grow, hit.code = FULL_MULTIPLE, GROW
             return
         begin_event(system, c, group.closed[0].feature, state, clock, records)
         first = clock.struck
@@ -109,7 +109,7 @@ def strike(model, data, method, c):
             return
         project_velocity(system, state, False, work)
         clock.loads += driven_work(system, state, first, clock, records, work)
-        end_event(system, JAMS if jams else IMPACT, state, clock, records)
+        end_event(system, c, JAMS if jams else IMPACT, state, clock, records)
         forget_jams(active, k, group)
         for i in range(active.contact_states.shape[0]):
             if concerns(system.contacts[i], work.body[contact.body].label, work):
@@ -130,10 +130,10 @@ def forget_jams(active, k, group):
 
 @kernel
 def strike_one(model, data, method, c):
-    """Solve the impact of the one point in work.point, with W and u in work.hit."""
+    """Solve the impact of the one point in work.struck, with W and u in work.hit."""
     system, controls = model.system, model.controls
     active, state, work, clock = data.active, data.state, data.work, data.clocks[0]
-    contact, hit, point = system.contacts[c], work.hit[0], work.point[0]
+    contact, hit, point = system.contacts[c], work.hit[0], work.struck[0]
     hit.out[layout.STILL] = slow(contact, state)
     if blocked(system, point, hit.W[0, 0]):
         hit.code = BLOCKED

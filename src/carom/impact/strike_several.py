@@ -78,7 +78,7 @@ def strike_several(model, data, c, k):
     """
     system = model.system
     active, state, group, multiple = data.active, data.state, data.group, data.multiple
-    work, clock = data.work, data.clocks[0]
+    work, clock, step = data.work, data.clocks[0], data.work.step[0]
     hit, u = work.hit[0], group.v[U]
     count_blows(model, data, k)
     for i in range(k):
@@ -99,10 +99,10 @@ def strike_several(model, data, c, k):
         multiple.pair[i] = pair_of(i, system.contacts, group.closed, all_by_pairs)
     passage = multiple.workspace.work.clock[0]
     if model.controls.retry == 1:  # the group can take a time-stepping step instead
-        passage.left = int(max(0.0, left(model.controls, clock, COUNT_PASSAGES)) / k**3)
+        passage.left = int(max(0.0, left(model.controls, step, COUNT_PASSAGES)) / k**3)
     resolve_group(k, group.W, u, group.mu, multiple)
-    clock.counts[COUNT_PASSAGES] += k**3 * multiple.result.summary[0].steps
-    clock.since += k * multiple.result.summary[0].steps
+    step.counts[COUNT_PASSAGES] += k**3 * multiple.result.summary[0].steps
+    step.since += k * multiple.result.summary[0].steps
     if passage.code != OK or passage.left < 0:
         hit.code = IMPACT_FAILED
         return

@@ -17,7 +17,7 @@ from carom.kinematics.contact_point import contact_motion, contact_velocity, pla
 @kernel
 def restore_work(system, contact, state, drop, work):
     """Change u_n at the core point of `work.hit` by the potential energy `drop` [J] that became kinetic."""
-    hit, point = work.hit[0], work.point[0]
+    hit, point = work.hit[0], work.struck[0]
     place(contact, hit.point, state, point)
     un = contact_velocity(point, state)[0]
     if un < 0.0:

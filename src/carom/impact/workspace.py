@@ -17,7 +17,7 @@ from carom.impact.multiple.layout import (
     new_multiple_result,
     new_multiple_workspace,
 )
-from carom.model.arrays import System
+from carom.model.arrays import STATE, System
 from carom.model.workspace import POINT
 
 #: greatest number of points that are solved together
@@ -32,7 +32,6 @@ CLOSED_POINT = [
     ("bounces", "f8"),  # time that its bounces would still take
     ("point", "f8", 3),  # point of the core, body axes
     ("rows", "i8"),  # number of rows that the return to the surface uses
-    ("stopped", "i8"),  # 1 where slip has stopped within the step
     ("own", "i8"),  # 1 if it is the active point of its place, 0 if that only stands for its pair
     ("loaded", "i8"),  # 1 if it presses: its spring carries
     ("patch", "i8"),  # the first point of its patch
@@ -57,7 +56,6 @@ class Equations(NamedTuple):
     A: np.ndarray  # (3K, 3K)
     factor: np.ndarray  # (3K, 3K) of A, or of A and a compliance
     pivot: np.ndarray  # (3K,) rows exchanged in the factor
-    diagonal: np.ndarray  # (3K,) of A, in whose parts pivots are judged
     x: np.ndarray  # (3K,)
     r: np.ndarray  # (3K,) right-hand side, then the error that x leaves
     before: np.ndarray  # (3K,) the unknowns before an iteration of Newton's method
@@ -81,6 +79,8 @@ class Group(NamedTuple):
     kind: np.ndarray  # (K,) of `carom.friction`
     heading: np.ndarray  # (K, 2)
     member: np.ndarray  # (N,) bodies of the group
+    base: np.recarray  # (N,) STATE of an implicit stage, without its own term
+    free: np.recarray  # (N,) STATE with velocities of a stage without forces of points
     equations: Equations
     cone: ContactWork
 
@@ -119,6 +119,7 @@ def new_group(system: System, more: bool = False) -> Group:
         closed=table(CLOSED_POINT, k), points=table(POINT, 2, k), v=np.zeros((5, 3 * k)),
         W=np.zeros((3 * k, 3 * k)), idle=np.zeros((2, k, k)), mu=np.zeros(k),
         kind=np.zeros(k, dtype=np.int64), heading=np.zeros((k, 2)), member=np.zeros(n, dtype=np.int64),
+        base=table(STATE, n), free=table(STATE, n),
         equations=new_equations(3 * k), cone=new_contact_work(k),
     )  # fmt: skip
 
@@ -127,10 +128,10 @@ def new_equations(n: int) -> Equations:
     """Return a system of up to n unknowns; its three matrices take .8 MB for 60 points."""
     rows, chosen, pivot = (np.zeros(n, dtype=np.int64) for _ in range(3))
     A, factor, directions = (np.zeros((n, n)) for _ in range(3))
-    diagonal, x, r, before, part = (np.zeros(n) for _ in range(5))
+    x, r, before, part = (np.zeros(n) for _ in range(4))
     return Equations(
-        rows=rows, chosen=chosen, A=A, factor=factor, pivot=pivot, diagonal=diagonal, x=x, r=r,
-        before=before, directions=directions, part=part, iterations=np.zeros(1, dtype=np.int64),
+        rows=rows, chosen=chosen, A=A, factor=factor, pivot=pivot, x=x, r=r, before=before,
+        directions=directions, part=part, iterations=np.zeros(1, dtype=np.int64),
     )  # fmt: skip
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -26,9 +25,7 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
     total = run.steps
     report, late, wish = reporter(progress, "steps"), False, None
     if isinstance(report, Bar):
-        from carom.results.costs import costs
-
-        report.costs, late = partial(costs, run), report.patience > 0.0
+        report.costs, late = run.costs, report.patience > 0.0
     if keeper is not None:
         wish = keeper.interval / LOOKS
     elif late:

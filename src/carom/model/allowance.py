@@ -41,63 +41,64 @@ def part(controls, kind):
 
 
 @kernel
-def left(controls, clock, kind):
+def left(controls, step, kind):
     """Return how much work of a kind the present island may still do up to the present time."""
-    return part(controls, kind) * (SAVED + refilled(controls, clock.spent)) - clock.counts[kind]
+    return part(controls, kind) * (SAVED + refilled(controls, step.spent)) - step.counts[kind]
 
 
 @kernel
-def overdone(controls, clock):
+def overdone(controls, step):
     """Return whether the present island has done more than it may, and can be moved as a crowd instead."""
     if controls.retry == 0:
         return False
     for kind in range(COUNT_BLOCKS):
-        if left(controls, clock, kind) < 0.0:
+        if left(controls, step, kind) < 0.0:
             return True
     return False
 
 
 @kernel
-def begin_count(controls, clock, work):
+def begin_count(controls, work):
     """Set the counts of an island to the greatest of its bodies."""
     for kind in range(COUNTS if controls.retry == 1 else 0):
-        clock.counts[kind] = 0.0
+        most = 0.0
         for b in range(work.body.shape[0]):
-            clock.counts[kind] = max(clock.counts[kind], work.body[b].counts[kind])
+            most = max(most, work.body[b].counts[kind])
+        work.step[0].counts[kind] = most
 
 
 @kernel
-def end_count(controls, clock, work):
-    """Store the counts for the bodies of an island, less what is allowed for the time of the step.
+def end_count(controls, number, work):
+    """Store the counts for the bodies of an island, less what is allowed for the time of step `number`.
 
     A step as a crowd saves nothing for the next try to move event by event, which has at least one part.
     """
     for kind in range(COUNTS if controls.retry == 1 else 0):
-        done, most = clock.counts[kind], part(controls, kind) * SAVED
-        more = part(controls, kind) * refilled(controls, clock.length)
+        done, most = work.step[0].counts[kind], part(controls, kind) * SAVED
+        more = part(controls, kind) * refilled(controls, work.step[0].length)
         for b in range(work.body.shape[0]):
-            whole = kind < COUNT_BLOCKS and work.body[b].whole_until > clock.step
+            whole = kind < COUNT_BLOCKS and work.body[b].whole_until > number
             rest = min(done, most - more) if whole else min(done, most) - more
             work.body[b].counts[kind] = max(0.0, rest)
 
 
 @kernel
-def keep_count(controls, clock, memory):
+def keep_count(controls, step, memory):
     """Store the counts of a step that is given up for a body."""
     for kind in range(COUNTS):
-        memory.counts[kind] = min(clock.counts[kind], part(controls, kind) * SAVED + 1.0)
+        memory.counts[kind] = min(step.counts[kind], part(controls, kind) * SAVED + 1.0)
 
 
 @kernel
-def mark_count(clock, search):
+def mark_count(work):
     """Store the counts before a step is proposed."""
     for kind in range(COUNTS):
-        search.counts[kind] = clock.counts[kind]
+        work.search[0].counts[kind] = work.step[0].counts[kind]
 
 
 @kernel
-def smooth_count(clock, search):
+def smooth_count(work):
     """Let only a part of the work since then count."""
     for kind in range(COUNTS):
-        before = search.counts[kind]
-        clock.counts[kind] = before + SMOOTH * (clock.counts[kind] - before)
+        before, counts = work.search[0].counts[kind], work.step[0].counts
+        counts[kind] = before + SMOOTH * (counts[kind] - before)

@@ -22,7 +22,7 @@ from carom.model.thresholds import LARGEST_MASS_RATIO, MASS_RATIO
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, joined_tables, some_pairs
 from carom.scene.forces import Bushing, CurveSpring, Force, Spring, Torque
-from carom.scene.more_forces import JointInertia
+from carom.scene.more_forces import JointInertia, Law
 from carom.scene.scene import Scene
 
 
@@ -37,6 +37,7 @@ class Compiled(NamedTuple):
     pairs: PairTable  # the two sides of each contact, by its number
     surfaces: Surfaces  # data from which rows of contacts are made
     later: Defaults | None  # pairs of bodies that get rows when they come near each other
+    laws: dict[int, Law]  # of actuators that are functions, by the index of the force
 
 
 def compile_scene(
@@ -51,6 +52,8 @@ def compile_scene(
     start, to_principal, moments = _start(scene)
     placement, functions = Placement(start, to_principal), Functions()
     coordinates = Coordinates(placement)
+    for one in () if scene.robot is None else scene.robot.coordinates:
+        coordinates.number(one.joint, one.index)  # a run counts their whole turns
     pieces = Pieces()
     sizes = start_sizes(scene)
     elements = Elements(scene, coordinates, functions, pieces, sizes)
@@ -72,7 +75,7 @@ def compile_scene(
         loads=loads, bushings=bushings, contacts=contacts, vertices=touching.vertices,
         solids=touching.solids, hulls=touching.hulls, levels=touching.levels, solver=solver,
     )  # fmt: skip
-    return Compiled(system, start, to_principal, flipped, functions, *touching[5:])
+    return Compiled(system, start, to_principal, flipped, functions, *touching[5:], more.laws)
 
 
 def compiled_once(scene: Scene, options: Options, *ways: bool) -> Compiled:

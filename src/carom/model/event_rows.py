@@ -9,7 +9,6 @@ from carom._compiled.decorators import kernel
 def begin_event(system, c, feature, state, clock, records):
     """Write the state before an event of contact c into the next rows."""
     event, k = records.event[clock.event], clock.snapped
-    clock.concerns = c
     event.time, event.saved, event.first = clock.now, clock.saved, k
     event.contact, event.feature = system.contacts[c].number, feature
     for b in range(state.shape[0]):
@@ -22,12 +21,12 @@ def begin_event(system, c, feature, state, clock, records):
 
 
 @kernel
-def end_event(system, kind, state, clock, records):
-    """Write the velocities after the event, and close its row.
+def end_event(system, c, kind, state, clock, records):
+    """Write the velocities after the event of contact c, and close its row.
 
     Only bodies of the contact, and those whose velocity has changed, keep their snapshots.
     """
-    contact, k = system.contacts[clock.concerns], clock.snapped
+    contact, k = system.contacts[c], clock.snapped
     for b in range(state.shape[0]):
         row = records.snapshot[clock.snapped + b]
         changed = b == contact.body or b == contact.other
@@ -41,7 +40,6 @@ def end_event(system, kind, state, clock, records):
     records.event[clock.event].kind = kind
     clock.snapped = k
     clock.event += 1
-    clock.in_step += 1
     clock.in_moment += 1
     clock.at_once += 1
 

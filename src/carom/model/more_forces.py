@@ -8,7 +8,15 @@ from carom._compiled.composed import is_compiled, joined, once
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
 from carom.model.arrays import FRICTION, PIECE, PUSH, USER_FORCE
-from carom.scene.more_forces import CurveSpring, JointForce, JointFriction, JointSpring, UserForce
+from carom.scene.more_forces import (
+    Actuator,
+    CurveSpring,
+    JointForce,
+    JointFriction,
+    JointSpring,
+    Law,
+    UserForce,
+)
 
 DEGREE = 5
 
@@ -41,11 +49,14 @@ class MoreForces:
     def __init__(self, scene, coordinates, functions: Functions, pieces: Pieces, implicit: bool):
         self.pushes, self.forces, self.frictions, self.named = [], [], [], []
         self.width = 0
+        self.laws: dict[int, Law] = {}  # of actuators, by the index of the force
         self.curves: dict[int, tuple[int, int]] = {}  # by the index of the force
         for force in scene.forces:
             d = force.definition
             if isinstance(d, CurveSpring):
                 self.curves[force.index] = pieces.add(d.tension)
+            elif isinstance(d, Actuator):
+                self.pushes.append(_actuator(force, coordinates, functions, self.laws, implicit))
             elif isinstance(d, JointForce) or (isinstance(d, JointSpring) and not implicit):
                 self.pushes.append(_push(force, coordinates, functions))
             elif isinstance(d, JointFriction):
@@ -83,6 +94,23 @@ def _push(force, coordinates, functions):
     else:
         made.force = d.force
     return made
+
+
+def _actuator(force, coordinates, functions, laws, implicit: bool):
+    d, made = force.definition, table(PUSH, 1)
+    made.coordinate, made.force = coordinates.number(d.joint, d.coordinate), d.constant(d.control)
+    if d.law:
+        laws[force.index] = law = Law(d)
+        name = f"the force {force.name!r}"
+        made.address = functions.address(_of_coordinate(law), (2,), (1,), name)
+    elif not (implicit and is_damped_spring(d)):
+        made.stiffness, made.damping = d.spring
+    return made
+
+
+def is_damped_spring(d) -> bool:
+    """Return whether an actuator has a spring and damper that an implicit step may take as a row."""
+    return not d.law and min(d.spring) >= 0.0 and max(d.spring) > 0.0
 
 
 def _friction(d, coordinates):

@@ -9,7 +9,6 @@ import numpy as np
 from carom._compiled.record_arrays import Columns, table
 from carom.collision.layout import new_pair_work, new_points
 from carom.model import workspace
-from carom.model.allowance import COUNTS
 from carom.model.arrays import STATE, System
 from carom.model.method import ESDIRK
 
@@ -21,48 +20,28 @@ IMPACT, PERSISTS, SLIPS, STICKS, OPENS, JAMS = range(6)
 ENERGIES = [("kinetic", "f8"), ("potential", "f8")]
 LEDGER = [("loads", "f8"), ("impacts", "f8"), ("friction", "f8"), ("bounces", "f8")]
 
-#: progress of a run, kept between calls of the loop
+#: progress of a run: what is kept of it between two steps, and written to a checkpoint
 CLOCK = [
     ("now", "f8"),
-    ("spent", "f8"),  # time of the present step that is done
-    ("begin", "f8"),  # start and length of the present step
-    ("length", "f8"),
     *ENERGIES,
     *LEDGER,
-    ("before", "f8"),  # value of `impacts` when the step began
-    ("owed", "f8"),  # energy that friction gave since, for dropped bounces, and has not taken back
     ("step", "i8"),  # finished steps
     ("saved", "i8"),
     ("struck", "i8"),
     ("event", "i8"),
     ("snapped", "i8"),  # rows of snapshots
     ("touched", "i8"),  # rows of touches
-    ("first_touch", "i8"),  # rows of touches when the island began with the step
-    ("concerns", "i8"),  # contact of the event that is being written
-    ("in_step", "i8"),  # impacts and events in the present step
     ("in_moment", "i8"),  # impacts and events since `moment`, a time less than `Controls.step` ago
     ("moment", "f8"),
     ("at_once", "i8"),  # impacts and events at the present time
     ("cuts", "i8"),
     ("trials", "i8"),
     ("rejected", "i8"),  # trial steps with too large an error
-    ("tries", "i8"),  # pieces of the present step of a crowd that were tried
-    # `Controls.step` and `Controls.pull` of the present island (`carom.dynamics.local_scale`)
-    ("scale", "f8"),
-    ("pull", "f8"),
-    ("longest", "f8"),  # step of contacts of this island, by the applied forces at that time
-    # work [J] that applied forces could do over the allowed error of a position, at that time
-    ("able", "f8"),
-    ("counts", "f8", COUNTS),  # work of the present island that counts against its bounds
-    ("grow", "i8"),  # which arrays must grow before the loop continues
-    ("since", "f8"),  # bodies and points passed since the loop was entered
-    ("paused", "i8"),  # 1 if the loop was left in the middle of a trial step
     ("located", "i8"),
     ("holds", "i8"),
     ("contact_steps", "i8"),  # steps, and trial steps, of groups in contact at several points
     ("rounds", "i8"),  # iterations in these steps
     ("whole", "i8"),  # steps in which touching bodies moved as a crowd
-    ("whole_at", "i8"),  # number, from 1, of the last of these steps
     ("residual", "f8"),  # greatest of persistent contacts since the last saved row
     ("still", "f8"),  # end of the step after which nothing has moved; infinite while bodies move
 ]
@@ -125,16 +104,16 @@ SNAPSHOT = [
 
 MARGIN = 260  # impacts, or events, that one pass of the loop may write
 # codes that are not in `Status`. The loop returns these, and continues when it is called again:
-GROW = 100  # arrays are full (`clock.grow` tells which): the caller makes longer ones
+GROW = 100  # arrays are full (`step.grow` tells which): the caller makes longer ones
 PAUSE = 101  # much work was done: the caller checks for Ctrl-C
 # a code within the loop:
 LEFT_BALL = 102  # a body has left the ball that its island gave it
 
-# values of `clock.grow`: records of impacts and events, pairs of islands, points of a crowd, points of an
+# values of `step.grow`: records of impacts and events, pairs of islands, points of a crowd, points of an
 # impact; contacts, because bodies have come near each other
 FULL_EVENTS, FULL_PAIRS, FULL_SPOTS, FULL_MULTIPLE, NEW_PAIRS = range(5)
 
-# value of `clock.since` at which the loop pauses, so that an interrupt is seen: no result depends on it
+# value of `step.since` at which the loop pauses, so that an interrupt is seen: no result depends on it
 LONG = 5e4
 
 
@@ -183,16 +162,17 @@ def with_contacts(active: workspace.ActiveSet, count: int) -> workspace.ActiveSe
 def new_work(system: System, stages: int) -> workspace.Work:
     """Return the workspace of one run."""
     n, w = system.bodies.size, workspace
-    state, trial, middle, first = (table(STATE, n) for _ in range(4))
+    stage, trial, part, middle, iterate, mean, beside, origin = table(STATE, 8, n)
+    struck, placed = table(w.POINT, 2, 1)
     body = table(w.BODY_WORK, n)
     body["room"] = np.inf
     return w.Work(
         body=body, joint=table(w.JOINT_WORK, system.joints.size),
         stages=table(w.STAGE, max(stages, len(ESDIRK)) + 1, n), known=table(w.KNOWN, n),
-        stage=state, trial=trial, middle=middle, first=first, point=table(w.POINT, 1),
-        pair=new_pair_work(), touches=new_points(), solid_pose=np.zeros((2, 7)),
-        hit=table(w.HIT, 1), result=table(w.RESULT, 1), search=table(w.SEARCH, 1),
-        history=np.zeros((0, 16)),
+        stage=stage, trial=trial, part=part, middle=middle, iterate=iterate, mean=mean, beside=beside,
+        origin=origin, struck=struck, placed=placed, pair=new_pair_work(), touches=new_points(),
+        solid_pose=np.zeros((2, 7)), hit=table(w.HIT, 1), result=table(w.RESULT, 1),
+        step=table(w.STEP, 1), search=table(w.SEARCH, 1), history=np.zeros((0, 16)),
     )  # fmt: skip
 
 
@@ -210,8 +190,7 @@ def longer(records: Records, clock: np.recarray) -> Records:
 
     Zeros that were never written take no memory.
     """
-    ends = dict(zip(records._fields, _ends(clock)))
-    out = {}
+    ends, out = ends_of(clock), {}
     for name in ("touch", "impact", "event", "snapshot"):
         rows = getattr(records, name)
         longer, end = np.zeros((2 * len(rows), *rows.shape[1:]), rows.dtype), ends[name] + MARGIN
@@ -241,13 +220,13 @@ def trimmed(records: Records, clock: np.recarray) -> Records:
 
 def written(records: Records, clock: np.recarray) -> Records:
     """Return views of the rows that were written; a run that continues may write to them."""
-    return Records._make(rows[:end] for rows, end in zip(records, _ends(clock)))
+    return Records._make(rows[:end] for rows, end in zip(records, ends_of(clock).values()))
 
 
-def _ends(clock: np.recarray) -> tuple[int, ...]:
-    """Return how many rows of each table were written."""
+def ends_of(clock: np.recarray) -> dict[str, int]:
+    """Return how many rows of each table were written, by its name."""
     names = "saved", "saved", "touched", "struck", "event", "snapped"
-    return tuple(int(clock[name][0]) for name in names)
+    return {table: int(clock[name][0]) for table, name in zip(Records._fields, names)}
 
 
 def as_numbers(row: np.recarray) -> dict:

@@ -10,12 +10,12 @@ from carom._compiled.composed import is_compiled, joined, once
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
 from carom.model import arrays
-from carom.model.more_forces import MoreForces, Pieces
+from carom.model.more_forces import MoreForces, Pieces, is_damped_spring
 from carom.model.placement import Placement
 from carom.scene.constraints import Coupling, Rows, coordinate_kind
 from carom.scene.forces import Spring
 from carom.scene.joints import Joint
-from carom.scene.more_forces import JointInertia, JointSpring
+from carom.scene.more_forces import Actuator, JointInertia, JointSpring
 
 
 class Coordinates:
@@ -89,12 +89,16 @@ class Elements:
         """Add the springs of a scene, between points and along coordinates, as rows for the implicit step."""
         for force in scene.forces:
             d = force.definition
-            if not isinstance(d, (Spring, JointSpring)) or not (d.stiffness + d.damping > 0.0):
-                continue
             made = table(arrays.STIFF_SPRING, 1)
-            made.stiffness, made.damping = d.stiffness, d.damping
-            if isinstance(d, JointSpring):
-                made.coordinate, made.rest = self.coordinates.number(d.joint, d.coordinate), d.rest
+            if isinstance(d, Actuator) and is_damped_spring(d):
+                made.stiffness, made.damping = d.spring
+            elif isinstance(d, (Spring, JointSpring)) and d.stiffness + d.damping > 0.0:
+                made.stiffness, made.damping = d.stiffness, d.damping
+            else:
+                continue
+            if isinstance(d, (Actuator, JointSpring)):
+                made.coordinate = self.coordinates.number(d.joint, d.coordinate)
+                made.rest = getattr(d, "rest", 0.0)
                 row = self.coordinates.rows[int(made.coordinate[0])]
                 made.child, made.parent = row.child, row.parent
             else:

@@ -154,6 +154,28 @@ RESULT = [
     ("time", "f8"),  # time of the present state, on which prescribed motion depends
 ]
 
+#: a step of an island, or of bodies that move together: between two steps nothing of it is kept
+STEP = [
+    ("begin", "f8"),
+    ("length", "f8"),
+    ("spent", "f8"),  # time of it that is done, 0 between two steps
+    ("impacts", "f8"),  # entry of the ledger when the step began
+    ("owed", "f8"),  # energy that friction gave since, for dropped bounces, and has not taken back
+    ("first_touch", "i8"),  # rows of touches, and of events, when the island began with the step
+    ("first_event", "i8"),
+    ("tries", "i8"),  # pieces of the step of a crowd that were tried
+    ("crowd", "i8"),  # 1 if the island moves as a crowd, and 1 if touching bodies have done so
+    ("whole", "i8"),
+    ("scale", "f8"),  # `Controls.step` and `Controls.pull` of the island
+    ("pull", "f8"),
+    ("longest", "f8"),  # step of contacts, by the applied forces at the start
+    ("able", "f8"),  # work [J] that these could do over the allowed errors of positions
+    ("counts", "f8", COUNTS),  # work that counts against the bounds of the island
+    ("grow", "i8"),  # which arrays must grow before the loop continues
+    ("since", "f8"),  # bodies and points passed since the loop was entered
+    ("paused", "i8"),  # 1 if the loop was left in the middle of a trial step
+]
+
 #: search for an event inside a step: between two steps nothing of it is kept
 SEARCH = [
     ("active", "i8"),
@@ -220,15 +242,21 @@ class Work(NamedTuple):
     joint: np.recarray  # (J,) JOINT_WORK
     stages: np.recarray  # (S + 1, N) STAGE: of the S stages of a step; of a single state
     known: np.recarray  # (N,) KNOWN, of the end of the last step
-    stage: np.recarray  # (N,) STATE
-    trial: np.recarray  # (N,) STATE
-    middle: np.recarray  # (N,) STATE
-    first: np.recarray  # (N,) STATE
-    point: np.recarray  # (1,) POINT, the one that strikes or is checked
+    stage: np.recarray  # (N,) STATE of the present stage
+    trial: np.recarray  # (N,) STATE at the end of the trial step
+    part: np.recarray  # (N,) STATE at the start of the present part of a step
+    middle: np.recarray  # (N,) STATE in the middle of a step of the three-field method,
+    iterate: np.recarray  # (N,) STATE and at the end of it, as the last iteration left it
+    mean: np.recarray  # (N,) STATE at the start of a step of RATTLE, with mean velocities
+    beside: np.recarray  # (N,) STATE beside a singular position
+    origin: np.recarray  # (N,) STATE from which the return map moves
+    struck: np.recarray  # (1,) POINT that strikes alone
+    placed: np.recarray  # (1,) POINT of which only gap or place is needed
     pair: PairWork
     touches: np.recarray  # (8,) TOUCH_POINT of the last pair
     solid_pose: np.ndarray  # (2, 7) of its solids
     hit: np.recarray  # (1,) HIT
     result: np.recarray  # (1,) RESULT
+    step: np.recarray  # (1,) STEP
     search: np.recarray  # (1,) SEARCH
     history: np.ndarray  # (0, 16) no history inside the loop

@@ -56,7 +56,7 @@ def activate(system, active, closed_point, mode, state, work):
 @kernel
 def set_anchor(system, active_point, state, work):
     """Store the present position of a point, at which it stays while it sticks."""
-    point, x = work.point[0], state[active_point.body].x
+    point, x = work.placed[0], state[active_point.body].x
     place_any(
         system,
         system.contacts[active_point.contact],

@@ -48,13 +48,13 @@ def time_of_bounces(contact, rate, g):
 
 
 @kernel
-def spare(clock):
+def spare(clock, step):
     """Return the energy that dropped bounces may add: the loss by impacts of the step minus the energy owed."""
-    return max(0.0, clock.before - clock.impacts - clock.owed)
+    return max(0.0, step.impacts - clock.impacts - step.owed)
 
 
 @kernel
-def name_work(normal, tangential, clock):
+def name_work(normal, tangential, clock, step):
     """Add the work of the impulse that removes bounces to the ledger.
 
     A gain belongs to friction. It is less than the loss by friction in persistent contact until the time at
@@ -65,4 +65,4 @@ def name_work(normal, tangential, clock):
     else:
         clock.bounces += normal
         clock.friction += tangential
-        clock.owed += tangential
+        step.owed += tangential

@@ -13,14 +13,13 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.contact.groups import members
 from carom.dynamics.adapt import allowed_error, note_miss
 from carom.dynamics.explicit import CONSTRAINTS_LOST, bound_accelerations_of, rubs, stages_within
 from carom.dynamics.thresholds import ERROR_SHARE
 from carom.model.actions import MODE_OPEN
 from carom.persistent.finish import land, note_modes, review
 from carom.persistent.members import closing_member, explicit_member, implicit_member
-from carom.persistent.rows import beyond_stop
+from carom.persistent.rows import beyond_stop, bodies_of
 from carom.persistent.start import first_modes, first_stage
 from carom.persistent.step_control import unnamed
 from carom.persistent.thresholds import FALLS, STIFF_SLIP
@@ -62,14 +61,12 @@ def step_group(model, data, method, label, h):
     """Step one group: by the explicit member while modes last, else by the implicit one or the closing one."""
     system, controls, work, clock = model.system, model.controls, data.work, data.clocks[0]
     group, result = data.group, data.work.result[0]
-    count, loaded = members(work, label, group.member), False
-    for m in range(count):
-        loaded = loaded or system.bodies[group.member[m]].ballistic == 0
+    count, loaded = bodies_of(model, data, label)
     k, rate, push, friction, _ = first_stage(model, data, label, loaded, count)
     applied = result.power  # powers at the start
     had, rubbed = result.applied, result.friction
     clock.contact_steps += 1
-    clock.since += 5.0 * k * stages_within(method)
+    work.step[0].since += 5.0 * k * stages_within(method)
     order = controls.order
     if h * rate <= STIFF_SLIP and not (result.stiff == 1 and work.search[0].again == 1):
         result.applied = had + h * method.b[0] * applied

@@ -21,7 +21,7 @@ from carom.impact.thresholds import GROUP_ERROR
 from carom.impact.workspace import C, P, U
 from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import JOINT, is_driven, radius_of
-from carom.persistent.settle import greatest, settle
+from carom.persistent.settle import dot, greatest, settle
 from carom.persistent.sharing import find_idle, share
 from carom.persistent.springs import compliance_of, moves
 
@@ -69,7 +69,7 @@ def change_loads(k, turn, group):
                 p[row] = 0.0
     for i in range(0 if found else k):
         if closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0:
-            if product(k, 3 * i, group) + group.v[C][3 * i] < -limits.SETTLED_SHARE * push:
+            if dot(3 * k, group.W[3 * i], p) + group.v[C][3 * i] < -limits.SETTLED_SHARE * push:
                 closed[i].loaded = 1
                 return True
     return found
@@ -85,15 +85,6 @@ def largest(k, group):
         elif group.closed[i].turns == JOINT:
             push = max(push, group.mu[i] * group.W[3 * i + 1, 3 * i + 1])
     return push
-
-
-@kernel
-def product(k, row, group):
-    """Return a row of W p."""
-    W, p, total = group.W[row], group.v[P], 0.0
-    for j in range(3 * k):
-        total += W[j] * p[j]
-    return total
 
 
 @kernel
@@ -164,29 +155,30 @@ def newton(k, hg, halves, idle, group):
 @kernel
 def write_equations(k, n, hg, idle, group):
     """Write the errors of the equations, as accelerations, and their Jacobian A; return the greatest."""
-    rows, errors, A = group.equations.rows, group.equations.r, group.equations.A
-    W, most, i = group.W, 0.0, 0
+    rows, i = group.equations.rows, 0
     while i < n:
-        row = rows[i]
-        if row % 3 == 0:
-            errors[i] = group.v[C][row] + product(k, row, group)
-            for j in range(n):
-                A[i, j] = W[row, rows[j]]
-            if idle > 0.0:
-                for j in range(n):
-                    if rows[j] % 3 == 0:
-                        part = idle * group.idle[0, row // 3, rows[j] // 3]
-                        errors[i] += part * group.v[P][rows[j]]
-                        A[i, j] += part
-            most, i = max(most, abs(errors[i])), i + 1
-            continue
-        width = 2 if i + 1 < n and rows[i + 1] // 3 == row // 3 else 1
-        write_disc(k, n, i, width, hg, group)
-        for r in range(i, i + width):
-            if not abs(errors[r]) <= most and most == most:
-                most = abs(errors[r])
+        width = 1
+        if rows[i] % 3 == 0:
+            write_normal(k, n, i, idle, group)
+        else:
+            width = 2 if i + 1 < n and rows[i + 1] // 3 == rows[i] // 3 else 1
+            write_disc(k, n, i, width, hg, group)
         i += width
-    return most
+    return greatest(n, group.equations.r)
+
+
+@kernel
+def write_normal(k, n, i, idle, group):
+    """Write the equation of the normal force of one point, unknown i."""
+    rows, errors, A = group.equations.rows, group.equations.r, group.equations.A
+    W, p, row = group.W[rows[i]], group.v[P], rows[i]
+    errors[i] = group.v[C][row] + dot(3 * k, W, p)
+    for j in range(n):
+        A[i, j] = W[rows[j]]
+        if idle > 0.0 and rows[j] % 3 == 0:
+            part = idle * group.idle[0, row // 3, rows[j] // 3]
+            errors[i] += part * p[rows[j]]
+            A[i, j] += part
 
 
 @kernel
@@ -201,8 +193,8 @@ def write_disc(k, n, i, width, hg, group):
     known = hg == 0.0 and group.kind[unit] == SLIDING
     first = group.v[C][a] if hg == 0.0 else group.v[U][a] / hg
     second = group.v[C][b] if hg == 0.0 else group.v[U][b] / hg
-    ga = first + product(k, a, group)
-    gb = second + product(k, b, group) if width == 2 else 0.0
+    ga = first + dot(3 * k, W[a], p)
+    gb = second + dot(3 * k, W[b], p) if width == 2 else 0.0
     za, zb = p[a] - ga / scale, p[b] - gb / scale if width == 2 else 0.0
     z, radius = math.sqrt(za * za + zb * zb), radius_of(group, unit)
     if known:

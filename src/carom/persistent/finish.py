@@ -20,12 +20,12 @@ from carom.impact.workspace import ACCELERATIONS, C, P, U
 from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
 from carom.persistent.forces import solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among
-from carom.persistent.joint_rows import JOINT, is_driven, place_coordinate, radius_of
+from carom.persistent.joint_rows import JOINT, place_coordinate, radius_of
 from carom.persistent.margins import greatest_push, set_margins
 from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
 from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
 from carom.persistent.settle import greatest
-from carom.persistent.springs import note_accelerations, solve_springs
+from carom.persistent.springs import solve_springs
 from carom.persistent.step_control import rest_speed
 from carom.persistent.thresholds import FEW_REST, FRICTION_LIMIT
 
@@ -49,15 +49,7 @@ def land(model, data, loaded, k, count) -> bool:
         if group.closed[i].turns == JOINT:
             one = system.relations.frictions[group.closed[i].active]
             place_coordinate(system.relations.coordinates[one.coordinate], end, group.points[0][i])
-    for _ in range(2):  # the factor is that of the last stage
-        for i in range(k):
-            closed_point, sticks = group.closed[i], group.kind[i] != SLIDING
-            closed_point.rows = 0
-            if closed_point.turns == JOINT:
-                closed_point.rows = 1 if sticks and not is_driven(group, i) else 0
-            elif closed_point.turns == 0 and group.v[P][3 * i] > 0.0:
-                closed_point.rows = 0 if has_passed(active, i, group) else 3 if sticks else 1
-        onto_tangents(system, k, count, end, group, work)
+    onto_tangents(system, active, k, count, end, group, work)
     show(count, end, group, work)
     return True
 
@@ -198,7 +190,9 @@ def solve_end(model, data, loaded, k, count, s, still, h):
         push_bodies(model, data, loaded, k, count, s)
         lasts = within_cones(k, group)
         if stick_where_slip_ends(model, data, k, h, still):
-            onto_tangents_of(model, data, k, count)
+            onto_tangents(model.system, data.active, k, count, data.work.trial, group, data.work)
+            velocities(k, group.points[0], data.work.trial, group.v[U])
+            show(count, data.work.trial, group, data.work)
             lasts = True
         if lasts:
             return True, True
@@ -317,23 +311,6 @@ def first_stop(system, active, closed_point):
     if closed_point.turns == JOINT:
         return system.relations.frictions[closed_point.active].first_stop
     return active.points[closed_point.active].first_stop[closed_point.turns]
-
-
-@kernel
-def onto_tangents_of(model, data, k, count):
-    """Remove the velocities of points that stick from the end of the step."""
-    group, work = data.group, data.work
-    for i in range(k):
-        closed_point = group.closed[i]
-        closed_point.rows = 0 if closed_point.loaded == 0 or closed_point.turns > 0 else 3
-        if group.kind[i] == SLIDING:
-            closed_point.rows = min(closed_point.rows, 1)
-        elif closed_point.turns == JOINT:
-            closed_point.rows = 1
-    onto_tangents(model.system, k, count, work.trial, group, work)
-    velocities(k, group.points[0], work.trial, group.v[U])
-    note_accelerations(k, group)
-    show(count, work.trial, group, work)
 
 
 @kernel

@@ -11,28 +11,27 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
-from carom.dynamics.acceleration import acceleration
-from carom.dynamics.several_points import of_one_body
+from carom.dynamics.explicit import copy_state
 from carom.friction.layout import CONE, SLIDING
 from carom.impact.workspace import ACCELERATIONS, C, P, U
-from carom.kinematics.flight import free_rates
 from carom.persistent.coulomb_stage import solve_stage
 from carom.persistent.joint_rows import JOINT, mode_of_joint
 from carom.persistent.rolling_friction import take_torque
-from carom.persistent.rows import write_motion
+from carom.persistent.rows import accelerate_freely, bodies_of, write_motion
 from carom.persistent.settle import greatest
 from carom.persistent.springs import note_accelerations
 
 
 @kernel
-def pose_forces(system, controls, k, state, group, work):
+def pose_forces(model, data, k, label):
     """Write u, c = du/dt without contact forces, and the direction of slip, of the k points of the group."""
-    b, rates = group.points[0][0].a, work.stages[work.stages.shape[0] - 1]
-    if of_one_body(system, k, group.points[0]) and system.bodies[b].ballistic == 1:
-        free_rates(system.bodies[b], system.gravity, state[b], rates[b].rate)
-    else:
-        acceleration(system, state, work, rates)
-    write_motion(system, k, state, rates, group, work)
+    system, controls, state = model.system, model.controls, data.state
+    group, work, last = data.group, data.work, data.work.stages.shape[0] - 1
+    for b in range(state.shape[0]):
+        copy_state(state[b], work.stage[b])
+    count, loaded = bodies_of(model, data, label)
+    accelerate_freely(model, data, loaded, count, last)
+    write_motion(system, k, state, work.stages[last], group, work)
     push = greatest(3 * k, group.v[C])
     for i in range(k):
         if group.closed[i].turns == JOINT:

@@ -66,7 +66,7 @@ def implicit_member(model, data, method, label, loaded, count, h):
     for s in range(1, stages):
         for m in range(count):
             b = group.member[m]
-            combine_body(A[s], s, h, start[b], work.stages, b, work.first[b])
+            combine_body(A[s], s, h, start[b], work.stages, b, group.base[b])
             for r in range(6):
                 work.stages[s, b].rate[r] = work.stages[s - 1, b].rate[r]
         result.time = result.start + h * node(A[s], s + 1)
@@ -83,7 +83,7 @@ def implicit_member(model, data, method, label, loaded, count, h):
 
 @kernel
 def implicit_stage(model, data, label, loaded, count, s, hg, closes):
-    """Solve for stage s in `work.stage`, from `work.first` without it.
+    """Solve for stage s in `work.stage`, from `group.base` without it.
 
     Return the number of points, -1 if there is no solution, and the powers of loads and of friction.
     """
@@ -92,13 +92,13 @@ def implicit_stage(model, data, label, loaded, count, s, hg, closes):
     iterations = group.equations.iterations
     iterations[0] = 0
     for m in range(count):
-        copy_state(work.first[group.member[m]], work.stage[group.member[m]])
+        copy_state(group.base[group.member[m]], work.stage[group.member[m]])
     for turn in range(FIXED_POINT):
         change, size = 0.0, 0.0
         for m in range(count):
             b = group.member[m]
             length, stage = model.system.bodies[b].extent, work.stages[s, b]
-            own = move_stage(work.first[b], hg, length, stage, work.stage[b])
+            own = move_stage(group.base[b], hg, length, stage, work.stage[b])
             change, size = max(change, own[0]), max(size, own[1])
         if change > 0.0:  # a body that stops has errors of the others
             change = change / size if size > 0.0 else math.inf
@@ -109,8 +109,8 @@ def implicit_stage(model, data, label, loaded, count, s, hg, closes):
         k = write_rows(model, data, label, s)
         for m in range(count):
             b = group.member[m]
-            add_velocity(work.first[b], hg, work.stages[s, b], work.middle[b])
-        velocities(k, group.points[0], work.middle, group.v[U])
+            add_velocity(group.base[b], hg, work.stages[s, b], group.free[b])
+        velocities(k, group.points[0], group.free, group.v[U])
         if k != before:
             for row in range(3 * k):
                 group.v[P][row] = 0.0
@@ -169,7 +169,7 @@ def closing_member(model, data, label, loaded, count, h):
     result = work.result[0]
     for m in range(count):
         b = group.member[m]
-        copy_state(start[b], work.first[b])
+        copy_state(start[b], group.base[b])
         for r in range(6):
             work.stages[1, b].rate[r] = work.stages[0, b].rate[r]
     result.time = result.start + h

@@ -23,10 +23,11 @@ def jam_point(model, data, i):
     if presses(active_point, k):
         note_jam(active, active_point)
         return NOTHING
-    begin_event(system, active_point.contact, active_point.feature, now, clock, records)
+    c = active_point.contact
+    begin_event(system, c, active_point.feature, now, clock, records)
     deactivate(active, i)
     regroup(system, active, work)
-    end_event(system, r.OPENS, now, clock, records)
+    end_event(system, c, r.OPENS, now, clock, records)
     return NOTHING
 
 
@@ -58,16 +59,16 @@ def turn_modes(model, data):
             note_jam(active, active_point)
         if active_point.next == active_point.mode:
             continue
-        changed = True
-        begin_event(system, active_point.contact, active_point.feature, now, clock, records)
+        changed, c = True, active_point.contact
+        begin_event(system, c, active_point.feature, now, clock, records)
         if active_point.next == MODE_OPEN:
             deactivate(active, i)
-            end_event(system, r.OPENS, now, clock, records)
+            end_event(system, c, r.OPENS, now, clock, records)
         else:
             active_point.mode = active_point.next
             if active_point.mode == MODE_STICK:
                 set_anchor(system, active_point, now, work)
             kind = r.STICKS if active_point.mode == MODE_STICK else r.SLIPS
-            end_event(system, kind, now, clock, records)
+            end_event(system, c, kind, now, clock, records)
     if refresh_pairs(system, controls, active, now, work) or changed:
         regroup(system, active, work)

@@ -17,16 +17,9 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.contact.closed_points import write_closed
+from carom.contact.closed_points import add_touch, write_closed, write_turning
 from carom.contact.continuous_detection_pair import nearest_touch
-from carom.contact.pair_point import (
-    find_touches,
-    list_touches,
-    own_point,
-    smaller,
-    which_touch,
-    write_touch,
-)
+from carom.contact.pair_point import find_touches, list_touches, smaller, which_touch
 from carom.contact.place import place_any
 from carom.contact.rim import same_point
 from carom.contact.stop import is_active
@@ -137,7 +130,7 @@ def add_face(system, active, c, i, state, k, group, work):
         near = min(near, work.touches[t].gap + REACH * smaller(contact))
     for t in range(count if near < 2.0 * REACH * smaller(contact) else 0):
         if work.touches[t].gap <= near:
-            k = add_touch(contact, c, work.touches[t], i, state, k, group)
+            k = add_found(contact, c, work.touches[t], i, state, k, group)
             note_own(system, active, 0, work.touches[t], state, group.closed[k - 1])
     return k
 
@@ -167,21 +160,18 @@ def add_nearest(system, active, j, count, state, k, group, work):
         if group.closed[i].contact == c and group.closed[i].feature == touch.feature:
             if same_point(system, contact, touch, touch.feature, group.closed[i].point, state):
                 return k
-    k = add_touch(contact, c, touch, j, state, k, group)
+    k = add_found(contact, c, touch, j, state, k, group)
     group.closed[k - 1].own = 1
     return k
 
 
 @kernel
-def add_touch(contact, c, touch, j, state, k, group):
+def add_found(contact, c, touch, j, state, k, group):
     """Add a found point, with the active point j to stand for it; return the new count."""
     if k == group.closed.shape[0]:
         return k
-    closed_point = group.closed[k]
-    own_point(contact, touch, state, closed_point.point)
-    write_closed(c, touch.feature, closed_point.point, closed_point)
-    closed_point.active, closed_point.own = j, 0
-    write_touch(contact, touch, state, group.points[0][k])
+    add_touch(contact, c, touch, state, k, group)
+    group.closed[k].active, group.closed[k].own = j, 0
     return k + 1
 
 
@@ -200,8 +190,7 @@ def add_turning(system, active, k, group):
         for turns in range(1, 3):
             if turning[turns - 1] > 0.0 and total < group.closed.shape[0]:
                 more, point = group.closed[total], group.points[0][total]
-                write_closed(closed_point.contact, closed_point.feature, closed_point.point, more)
-                more.active, more.parent, more.turns = closed_point.active, i, turns
+                write_turning(i, turns, closed_point, more)
                 more.own = closed_point.own
                 copy_point(group.points[0][i], point)
                 point.turns = turns

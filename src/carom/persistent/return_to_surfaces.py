@@ -3,7 +3,8 @@
     xi = -P G^T lam,   W lam = phi,    phi: the gap of each loaded point, and for a vertex that sticks also the
                                        tangential displacement from its anchor,
 
-repeated until phi is round-off. Rows that depend on others are left out.
+repeated until phi is round-off. Velocities return to the tangents with the same rows. Rows that depend on
+others share what removes it, each by its own size (`carom.persistent.settle`).
 """
 
 from __future__ import annotations
@@ -14,14 +15,20 @@ from carom._compiled.decorators import kernel
 from carom.contact.closed_points import place_closed, round_off_of_both
 from carom.contact.gap import round_off
 from carom.contact.place import place_any
+from carom.dynamics.contact_impulse import gain
 from carom.dynamics.passed_edges import has_passed
 from carom.dynamics.project import project_position, shift
-from carom.dynamics.several_points import spread_all, velocities, yields
-from carom.friction.ldl import factor_by_pivots, substitute
+from carom.dynamics.several_points import spread_all, velocities
+from carom.friction import lu
+from carom.friction.layout import SLIDING
+from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.workspace import RETURN, P
 from carom.kinematics.contact_point import in_axes
 from carom.model.actions import MODE_STICK
-from carom.persistent.thresholds import DEPENDENCE
+from carom.persistent.joint_rows import JOINT, is_driven
+from carom.persistent.settle import greatest, settle
+from carom.persistent.springs import list_given, response
+from carom.persistent.thresholds import EQUATION_ERROR, PROXIMAL_SPRING
 
 
 @kernel
@@ -51,49 +58,38 @@ def mark_rows(system, active, k, group):
 
 
 @kernel
-def given(group, row):
-    """Return whether a row is given and its W is not zero.
+def factor_given(k, rubs, group):
+    """List the given rows, write W for them, and its factor with compliances; return their number.
 
-    The first row of a point of rolling or pivoting is its bound.
+    If it `rubs`, an impulse along the normal of a point that slips has its friction.
     """
-    closed_point = group.closed[row // 3]
-    first = 1 if closed_point.turns > 0 else 0
-    return first <= row % 3 < first + closed_point.rows and yields(group.W, row)
-
-
-@kernel
-def factor_given(k, group):
-    """List the given rows, and factor W for them; return their number."""
-    n = 0
-    for i in range(3 * k):
-        if given(group, i):
-            group.equations.rows[n], n = i, n + 1
-    return factor_rows(n, group)
-
-
-@kernel
-def factor_rows(n, group):
-    """Factor W for n rows of a list, from which those that depend on others go; return the number left."""
-    equations = group.equations
-    rows, L, own = equations.rows, equations.factor, equations.diagonal
+    n, equations, W = list_given(k, group), group.equations, group.W
+    rows, A, L = equations.rows, equations.A, equations.factor
     for i in range(n):
-        own[i] = group.W[rows[i], rows[i]]
         for j in range(n):
-            L[i, j] = group.W[rows[i], rows[j]]
-    return factor_by_pivots(n, DEPENDENCE, rows, own, L)
+            along = response(k, group, rows[i], rows[j]) if rubs else W[rows[i], rows[j]]
+            A[i, j] = L[i, j] = along
+        L[i, i] += PROXIMAL_SPRING * W[rows[i], rows[i]]
+    lu.factor(L, n, equations.pivot, 0.0)
+    return n
 
 
 @kernel
-def solve_rows(k, n, group, x):
-    """Replace x, in the n rows, by the impulses that remove it; zero the others."""
-    rows, y = group.equations.rows, group.equations.x
+def solve_rows(k, n, tiny, group, x):
+    """Replace x, in the n rows, by the impulses that remove it; zero the others; return the error left.
+
+    What is below `tiny` is round-off, which rows that depend on others do not share.
+    """
+    equations = group.equations
+    rows, r = equations.rows, equations.r
     for i in range(n):
-        y[i] = -x[rows[i]]
-    substitute(n, group.equations.factor, y)
+        r[i] = -x[rows[i]]
+    left = settle(n, 0.0, max(tiny, EQUATION_ERROR * greatest(n, r)), 0.0, 0.0, equations)
     for i in range(3 * k):
         x[i] = 0.0
     for i in range(n):
-        x[rows[i]] = y[i]
+        x[rows[i]] = equations.x[i]
+    return left
 
 
 @kernel
@@ -102,12 +98,13 @@ def onto_surfaces(system, active, k, count, state, group, work):
     place_closed(system, k, state, group, group.points[1], work)
     if not mark_rows(system, active, k, group):
         return
-    n, x = factor_given(k, group), group.v[RETURN]
+    n, x = -1, group.v[RETURN]
     for _ in range(11):
         if errors(system, active, k, state, group, x, work):
             break
-        solve_rows(k, n, group, x)
-        spread_all(system, k, group.points[0], x, count, group.member, work.stage, work)
+        n = factor_given(k, False, group) if n < 0 else n
+        solve_rows(k, n, round_off(system.contacts[group.closed[0].contact], state), group, x)
+        spread_all(system, k, group.points[0], x, count, group.member, state, work)
         for m in range(count):
             shift(work.body[group.member[m]].motion, 1.0, state[group.member[m]])
         if system.joints.shape[0] > 0:
@@ -115,18 +112,49 @@ def onto_surfaces(system, active, k, count, state, group, work):
 
 
 @kernel
-def onto_tangents(system, k, count, state, group, work):
-    """Remove the velocities of the bodies of the group in the rows that are given."""
-    n, x = factor_given(k, group), group.v[RETURN]
-    velocities(k, group.points[0], state, x)
-    solve_rows(k, n, group, x)
-    spread_all(system, k, group.points[0], x, count, group.member, work.stage, work)
+def mark_tangents(active, k, group):
+    """Write how many rows keep each point on its surface, and at its place if it sticks."""
+    for i in range(k):
+        closed_point, sticks = group.closed[i], group.kind[i] != SLIDING
+        closed_point.rows = 0
+        if closed_point.turns == JOINT:
+            closed_point.rows = 1 if sticks and not is_driven(group, i) else 0
+        elif closed_point.turns == 0 and group.v[P][3 * i] > 0.0:
+            closed_point.rows = 0 if has_passed(active, i, group) else 3 if sticks else 1
+
+
+@kernel
+def onto_tangents(system, active, k, count, state, group, work):
+    """Remove the velocities of the bodies of the group that leave surfaces, or places that stick."""
+    mark_tangents(active, k, group)
+    n, x = factor_given(k, False, group), group.v[RETURN]
+    tiny = SUM_ERROR * greatest_speed(system, state, count, group.member)
+    for _ in range(2):  # W is that of the last stage
+        velocities(k, group.points[0], state, x)
+        solve_rows(k, n, tiny, group, x)
+        give(system, k, count, state, group, work)
+
+
+@kernel
+def greatest_speed(system, state, count, member):
+    """Return the greatest speed of the bodies, including that of their rotation at their size."""
+    speed = 0.0
     for m in range(count):
-        b = group.member[m]
-        motion = work.body[b].motion
-        for i in range(3):
-            state[b].v[i] += motion[i]
-            state[b].w[i] += motion[3 + i]
+        b = member[m]
+        for r in range(3):
+            turning = system.bodies[b].extent * abs(state[b].w[r])
+            speed = max(speed, max(abs(state[b].v[r]), turning))
+    return speed
+
+
+@kernel
+def give(system, k, count, state, group, work):
+    """Change velocities of a group by the impulses in RETURN; return whether joints pass them on."""
+    p, member = group.v[RETURN], group.member
+    joined = spread_all(system, k, group.points[0], p, count, member, state, work)
+    for m in range(count):
+        gain(work.body[member[m]].motion, state[member[m]])
+    return joined
 
 
 @kernel

@@ -12,6 +12,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
+from carom.contact.groups import members
 from carom.contact.place import drift_of
 from carom.dynamics.acceleration import accelerate, acceleration
 from carom.dynamics.elements import driven_power
@@ -25,6 +26,15 @@ from carom.persistent.joint_rows import JOINT, PIVOT, drift_of_coordinate, is_dr
 from carom.persistent.points import find_points
 from carom.persistent.springs import bound_per_force
 from carom.persistent.thresholds import SLIP_COSINE, STOPPED_SLIP
+
+
+@kernel
+def bodies_of(model, data, label):
+    """List the bodies of a group; return their number, and whether one has joints or loads."""
+    count, loaded = members(data.work, label, data.group.member), False
+    for m in range(count):
+        loaded = loaded or model.system.bodies[data.group.member[m]].ballistic == 0
+    return count, loaded
 
 
 @kernel

@@ -75,7 +75,12 @@ def correct(n, equations, z):
 @kernel
 def dot(n, a, b):
     """Return the product of two vectors."""
-    total = 0.0
+    return add_product(0.0, n, a, b)
+
+
+@kernel
+def add_product(total, n, a, b):
+    """Return a number plus the product of two vectors."""
     for i in range(n):
         total += a[i] * b[i]
     return total

@@ -7,12 +7,12 @@ import math
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.contact.groups import members
-from carom.dynamics.contact_impulse import add_velocity, alone, spread
+from carom.dynamics.contact_impulse import alone
 from carom.dynamics.elements import driven_power
 from carom.dynamics.energy import energies
-from carom.dynamics.several_points import inverse_masses, yields
+from carom.dynamics.several_points import inverse_masses
 from carom.friction.layout import CONE, SLIDING
-from carom.geometry.thresholds import RESOLUTION
+from carom.geometry.thresholds import REMAINDER, RESOLUTION, SUM_ERROR
 from carom.impact.thresholds import VELOCITY_LEFT
 from carom.impact.workspace import ACCELERATIONS, RETURN, C, P, U
 from carom.kinematics.contact_point import contact_velocity
@@ -26,23 +26,29 @@ from carom.persistent.forces import pose_forces, solve_forces, take_forces, time
 from carom.persistent.jam import jams_among, note_jam
 from carom.persistent.joint_rows import JOINT, add_frictions
 from carom.persistent.points import weigh
-from carom.persistent.return_to_surfaces import factor_rows, onto_surfaces, solve_rows
-from carom.persistent.settle import greatest
+from carom.persistent.return_to_surfaces import (
+    factor_given,
+    give,
+    greatest_speed,
+    onto_surfaces,
+    solve_rows,
+)
+from carom.persistent.rows import bodies_of
+from carom.persistent.settle import add_product, greatest
+from carom.persistent.springs import given
 from carom.persistent.start import first_stage
 from carom.persistent.thresholds import REST_SHARE
-
-FRICTION_ROUNDS = 60  # of friction with what it does to the normal impulses
 
 
 @kernel
 def activate_several(model, data, k, label, horizon):
     """Judge all k closed points of a group; activate the new ones, deactivate those that open."""
-    system, controls = model.system, model.controls
+    system = model.system
     active, state, group, work = data.active, data.state, data.group, data.work
     clock, records = data.clocks[0], data.records
     rows = add_frictions(system, label, state, k, group, work)
     inverse_masses(system, rows, group.points[0], state, work, group.W)
-    pose_forces(system, controls, rows, state, group, work)
+    pose_forces(model, data, rows, label)
     for row in range(3 * rows):  # a first guess: those of another group, or of other points
         group.v[P][row] = 0.0
     judge(model, data, k, rows, horizon)
@@ -81,7 +87,10 @@ def judge(model, data, k, rows, horizon):
     system, state, group = model.system, data.state, data.group
     for i in range(k):
         contact, u = system.contacts[group.closed[i].contact], group.v[U][3 * i]
-        group.closed[i].stays = 1 if abs(u) <= slow(contact, state) else 0
+        group.closed[i].stays, group.closed[i].bounces = (
+            1 if abs(u) <= slow(contact, state) else 0,
+            0.0,
+        )
     push = greatest(3 * k, group.v[C])
     for turn in range(k + 1):
         solve_among(system, k, rows, group)
@@ -130,7 +139,7 @@ def leave_unreachable(system, state, k, group):
         most = group.v[U][3 * fastest]
         if not most > slow(system.contacts[group.closed[fastest].contact], state):
             return written
-        find_pull(k, 0, group)
+        find_pull(k, 0, 0.0, group)
         written = True
         for i in range(k):
             if group.closed[i].stays == 1:
@@ -144,10 +153,7 @@ def leave_unreachable(system, state, k, group):
 @kernel
 def velocity_after(q, k, group):
     """Return the velocity of row q after the impulses in RETURN."""
-    after, x = group.v[U][q], group.v[RETURN]
-    for j in range(3 * k):
-        after += group.W[q, j] * x[j]
-    return after
+    return add_product(group.v[U][q], 3 * k, group.W[q], group.v[RETURN])
 
 
 @kernel
@@ -155,25 +161,6 @@ def time_without_torque(contact, rate, g, state):
     """Return the time of bounces that are left out, in which rolling and pivoting friction do not act."""
     bounces = any_turning(contact) and rate > slow(contact, state)
     return time_of_bounces(contact, rate, g) if bounces else 0.0
-
-
-@kernel
-def stops(group, i):
-    """Return whether row i is removed: the normal of a point that stays, and its tangents if it sticks."""
-    drops = group.closed[i // 3].stays == 1 and (i % 3 == 0 or group.kind[i // 3] == CONE)
-    return drops and yields(group.W, i)
-
-
-@kernel
-def speed_of(system, state, count, member):
-    """Return the greatest speed of the bodies, including that of their rotation at their size."""
-    speed = 0.0
-    for m in range(count):
-        b = member[m]
-        for r in range(3):
-            turning = system.bodies[b].extent * abs(state[b].w[r])
-            speed = max(speed, max(abs(state[b].v[r]), turning))
-    return speed
 
 
 @kernel
@@ -188,7 +175,7 @@ def end_bounces(model, data, k, label, horizon):
     system, controls = model.system, model.controls
     state, group, work, clock = data.state, data.group, data.work, data.clocks[0]
     count = members(work, label, group.member)
-    speed = speed_of(system, state, count, group.member)
+    speed = greatest_speed(system, state, count, group.member)
     still = 1e-12 * speed
     for i in range(3 * k):
         still = max(still, controls.rest * controls.step * abs(group.v[C][i]))
@@ -196,24 +183,19 @@ def end_bounces(model, data, k, label, horizon):
     for i in range(k):
         contact = system.contacts[group.closed[i].contact]
         end = horizon_of(contact, controls, -group.v[C][3 * i], horizon)
-        group.closed[i].stopped = 0 if time_to_stop(i, group) > end else 1
-    x = group.v[RETURN]
-    find_pull(k, 1, group)
+        if not time_to_stop(i, group) > end:  # friction ends with the slip
+            group.heading[i, 0], group.heading[i, 1] = 0.0, 0.0
+    find_pull(k, 1, SUM_ERROR * speed, group)
     normal, tangential = work_of_pull(k, group)
-    if not normal + tangential <= spare(
-        clock
-    ):  # points that are next to each other push each other out
-        find_pull(k, 0, group)
+    if normal > 0.0 or not normal + tangential <= spare(
+        clock, work.step[0]
+    ):  # neighbours push each other out
+        find_pull(k, 0, SUM_ERROR * speed, group)
         normal, tangential = work_of_pull(k, group)
-    name_work(normal, tangential, clock)
-    for i in range(k):
-        n, t1, t2 = x[3 * i], x[3 * i + 1], x[3 * i + 2]
-        if n != 0.0 or t1 != 0.0 or t2 != 0.0:
-            spread(system, group.points[0][i], state, n, t1, t2, work)
-            add_velocity(system, group.points[0][i], work, state)
-            if not alone(system, group.points[0][i]):
-                clock.loads += driven_power(system, state, work)  # of an impulse: its work
-    if speed_of(system, state, count, group.member) <= still:
+    name_work(normal, tangential, clock, work.step[0])
+    if give(system, k, count, state, group, work):
+        clock.loads += driven_power(system, state, work)  # of an impulse: its work
+    if greatest_speed(system, state, count, group.member) <= still:
         for m in range(count):
             b = group.member[m]
             for r in range(3):
@@ -228,61 +210,31 @@ def work_of_pull(k, group):
     for i in range(3 * k):
         if x[i] == 0.0:
             continue
-        after = 0.0 if stops(group, i) else velocity_after(i, k, group)
-        if i % 3 > 0 and not stops(group, i):
-            tangential += 0.5 * x[i] * (u[i] + after)
+        if given(group, i):
+            normal += 0.5 * x[i] * u[i]
         else:
-            normal += 0.5 * x[i] * (u[i] + after)
+            tangential += 0.5 * x[i] * (u[i] + velocity_after(i, k, group))
     return normal, tangential
 
 
 @kernel
-def find_pull(k, friction, group):
-    """Write the impulses that remove the velocities to RETURN: with friction (1) if iterations converge."""
-    n, m, x, last, first = 3 * k, 0, group.v[RETURN], group.v[P], 0.0
-    for i in range(n):
-        if stops(group, i):
-            group.equations.rows[m], m = i, m + 1
-    m = factor_rows(m, group)
+def find_pull(k, friction, tiny, group):
+    """Write the impulses that remove the velocities to RETURN: with friction (1) if they exist."""
+    x = group.v[RETURN]
+    for i in range(k):  # the normal of a point that stays is removed, and its tangents if it sticks
+        closed_point = group.closed[i]
+        closed_point.rows = 0 if closed_point.stays == 0 else 3 if group.kind[i] == CONE else 1
     for with_friction in range(friction, -1, -1):
-        for i in range(n):
-            last[i] = 0.0
-        before = math.inf
-        for turn in range(FRICTION_ROUNDS):
-            change, largest = pull_once(k, m, with_friction, group)
-            for i in range(n):
-                last[i] = x[i]
-            first = largest if turn == 0 else first  # without friction
-            if not change < before:
-                break
-            before = change
-        if with_friction == 0 or before <= 1e-9 * first:
+        n = factor_given(k, with_friction == 1, group)
+        for i in range(3 * k):
+            x[i] = group.v[U][i]
+        left = solve_rows(k, n, tiny, group, x)
+        for i in range(k if with_friction == 1 else 0):
+            if group.closed[i].rows == 1 and group.kind[i] == SLIDING:
+                for r in range(2):
+                    x[3 * i + 1 + r] = -group.mu[i] * group.heading[i, r] * x[3 * i]
+        if left <= max(tiny, REMAINDER * greatest(3 * k, group.v[U])):
             return
-
-
-@kernel
-def pull_once(k, m, with_friction, group):
-    """Solve m rows for the impulses with the friction of the last iteration; return their change and size."""
-    n, W, x, last = 3 * k, group.W, group.v[RETURN], group.v[P]
-    for i in range(k):  # friction of the points that slip
-        slides = with_friction == 1 and group.closed[i].stays == 1 and group.closed[i].stopped == 0
-        for r in range(2):
-            q = 3 * i + 1 + r
-            if not stops(group, q):
-                rubs = slides and yields(W, q)
-                last[q] = -group.mu[i] * group.heading[i, r] * last[3 * i] if rubs else 0.0
-    for i in range(n):
-        x[i] = group.v[U][i] if stops(group, i) else 0.0
-        for j in range(n):
-            x[i] += W[i, j] * last[j] if stops(group, i) and not stops(group, j) else 0.0
-    solve_rows(k, m, group, x)
-    change, largest = 0.0, 0.0
-    for i in range(n):
-        if stops(group, i):
-            change, largest = max(change, abs(x[i] - last[i])), max(largest, abs(x[i]))
-        else:
-            x[i] = last[i]
-    return change, largest
 
 
 @kernel
@@ -313,7 +265,7 @@ def set_modes(model, data, k):
         closed_point.active = activate(system, active, closed_point, mode, state, work)
         clock.holds += 1
         records.event[clock.event].mode = mode
-        end_event(system, PERSISTS, state, clock, records)
+        end_event(system, closed_point.contact, PERSISTS, state, clock, records)
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.stays == 0:
@@ -328,7 +280,8 @@ def set_modes(model, data, k):
         if active_point.mode != mode:
             active_point.mode = mode
             begin_event(system, closed_point.contact, closed_point.feature, state, clock, records)
-            end_event(system, SLIPS if mode == MODE_SLIP else STICKS, state, clock, records)
+            kind = SLIPS if mode == MODE_SLIP else STICKS
+            end_event(system, closed_point.contact, kind, state, clock, records)
 
 
 @kernel
@@ -336,9 +289,7 @@ def first_forces(model, data, label):
     """Store the forces of all active points of the group, and the modes that they ask for."""
     system, active, state = model.system, data.active, data.state
     group, work, clock, records = data.group, data.work, data.clocks[0], data.records
-    count, loaded = members(work, label, group.member), False
-    for m in range(count):
-        loaded = loaded or system.bodies[group.member[m]].ballistic == 0
+    count, loaded = bodies_of(model, data, label)
     work.result[0].start = clock.now
     k, _, _, _, found = first_stage(model, data, label, loaded, count)
     for i in range(k):
@@ -355,7 +306,7 @@ def first_forces(model, data, label):
                 begin_event(
                     system, closed_point.contact, closed_point.feature, state, clock, records
                 )
-                end_event(system, SLIPS, state, clock, records)
+                end_event(system, closed_point.contact, SLIPS, state, clock, records)
     add_forces_of_corners(active, k, group)
     lay_down(model, data, k, label)
 
@@ -431,5 +382,5 @@ def deactivate_open(model, data, k, label):
                     system, closed_point.contact, closed_point.feature, state, clock, records
                 )
                 deactivate(active, j)
-                end_event(system, OPENS, state, clock, records)
+                end_event(system, closed_point.contact, OPENS, state, clock, records)
                 break

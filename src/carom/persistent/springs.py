@@ -31,7 +31,7 @@ from carom.impact.thresholds import GROUP_ERROR, LOADED_PART
 from carom.impact.workspace import ACCELERATIONS, C, P
 from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import JOINT, is_driven
-from carom.persistent.settle import greatest, settle
+from carom.persistent.settle import add_product, greatest, settle
 
 SHARES = 6  # rounds until the compliances of stick are found
 
@@ -94,18 +94,31 @@ def rows_of(k, i, group):
 @kernel
 def factor_rows(k, group):
     """List the given rows, write R P F^T and the factor of R P F^T + eps S; return their number."""
-    equations, n = group.equations, 0
+    equations, n = group.equations, list_given(k, group)
     rows, L, A = equations.rows, equations.factor, equations.A
-    for i in range(k):
-        first = 1 if group.closed[i].turns > 0 else 0
-        for a in range(first, first + group.closed[i].rows):
-            if moves(group, 3 * i + a):
-                rows[n], n = 3 * i + a, n + 1
     for i in range(n):
         for j in range(n):
             L[i, j] = A[i, j] = response(k, group, rows[i], rows[j])
         L[i, i] += limits.PROXIMAL_SPRING * compliance_of(group, rows[i])
     lu.factor(L, n, equations.pivot, 0.0)
+    return n
+
+
+@kernel
+def given(group, row):
+    """Return whether a row is given and moves its point; that of a torque or joint follows its bound."""
+    closed_point = group.closed[row // 3]
+    first = 1 if closed_point.turns > 0 else 0
+    return first <= row % 3 < first + closed_point.rows and moves(group, row)
+
+
+@kernel
+def list_given(k, group):
+    """List the given rows; return their number."""
+    n = 0
+    for row in range(3 * k):
+        if given(group, row):
+            group.equations.rows[n], n = row, n + 1
     return n
 
 
@@ -261,10 +274,7 @@ def unload(k, turn, group):
 @kernel
 def acceleration_of(k, row, group):
     """Return the acceleration in a row under the forces in P."""
-    W, p, total = group.W, group.v[P], group.v[C][row]
-    for j in range(3 * k):
-        total += W[row, j] * p[j]
-    return total
+    return add_product(group.v[C][row], 3 * k, group.W[row], group.v[P])
 
 
 @kernel

@@ -3,7 +3,6 @@
 EQUATION_ERROR = 1e-13  #: accelerations without forces: error of the equations of a stage
 FORCE_ERROR = 1e-5  #: accelerations without forces: an error that asks for no greater forces
 DEPENDENT_ERROR = 1e-3  #: accelerations without forces: greatest error of rows that depend on others
-DEPENDENCE = 1e-10  #: row: a smaller pivot is round-off of a row that depends on those before it
 LINEAR_SHARE = 1e-6  #: error: that of the linear equations of a round
 SETTLED_SHARE = 1e-9  #: error: the same for an error that no iteration makes less
 LAST_CHANGE = 1e-14  #: velocities: change by an iteration that is the last

@@ -15,7 +15,7 @@ from carom.model.arrays import STOP
 from carom.results import stiff_forces
 from carom.results.accuracy import sentences
 from carom.results.costs import busiest
-from carom.results.dry_friction import with_dry_friction
+from carom.results.dry_friction import with_dry_friction, with_forces
 from carom.results.event_tables import ContactTable, EventTable, ImpactTable, contact_table
 from carom.results.exerted import exerted
 from carom.results.impact_remarks import remarks
@@ -225,6 +225,40 @@ def _kept_turns(system):
     reference[:] = kept
 
 
+def ranges_of(run, compiled, saved: int):
+    """Return the ranges of saved rows in which the forces stay as they are: a `carom.Run` may have set them."""
+    return run.rows_of_forces(compiled, saved) if hasattr(run, "rows_of_forces") else [(0, saved)]
+
+
+def accelerations(solution) -> np.ndarray:
+    """Return the accelerations (T, N, 6) of all bodies at saved times, linear and angular, world axes.
+
+    At the time of an impact they are those after it.
+    """
+    run = solution._run
+    system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
+    touch = with_forces(solution.scene, solution, solution._solved[1], rec.touch)
+    out, work = (
+        np.zeros((len(rec.state), len(system.bodies), 6)),
+        r.new_work(system, run.method.b.size),
+    )
+    with _kept_turns(system):
+        for first, last in ranges_of(run, run.compiled, len(out)):
+            for k in range(first, last):
+                own = touch[np.searchsorted(touch["saved"], k) :]
+                out[k] = acceleration(system, run.options, rec.series.t, rec.state, k, own, work)
+    return out
+
+
+def acceleration(system, options, t, states, k: int, touch, work) -> np.ndarray:
+    """Return the accelerations (N, 6) at state k, under the forces `touch` of its contacts."""
+    from carom.dynamics.reactions import reactions
+
+    out = np.zeros((len(states), system.joints.size, 6))
+    reactions(system, options.augmentation, t, states, (k, k + 1), touch, work, out)
+    return work.body["motion"]
+
+
 def element_reactions(solution) -> tuple[np.ndarray, dict[int, np.ndarray]]:
     """Return the reactions of joints on their children, then the multipliers of each constraint (T, E, 6).
 
@@ -234,13 +268,12 @@ def element_reactions(solution) -> tuple[np.ndarray, dict[int, np.ndarray]]:
 
     run = solution._run
     rec, stages = r.trimmed(run.records, run.clock), run.method.b.size
-    ranges = getattr(run, "rows_of_forces", None)  # for a run whose forces were set in steps
 
     def solve(compiled, touch) -> np.ndarray:
         system = compiled.system
         out, work = np.zeros((len(rec.state), system.joints.size, 6)), r.new_work(system, stages)
         with _kept_turns(system):
-            for rows in [(0, len(out))] if ranges is None else ranges(system, len(out)):
+            for rows in ranges_of(run, compiled, len(out)):
                 part = touch[np.searchsorted(touch["saved"], rows[0]) :]
                 times = rec.series.t, rec.state
                 reactions(system, run.options.augmentation, *times, rows, part, work, out)

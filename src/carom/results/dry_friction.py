@@ -32,7 +32,7 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
     solve : ``solve(compiled, touch)`` returns reactions on the children
     """
     scene, times = run.scene, len(states.position)
-    dry = [force for force in scene.forces if isinstance(force.definition, JointFriction)]
+    dry = dry_frictions(scene)
     if not dry:
         return solve(run.compiled, touch), {}
     laws: list[Any] = [force.definition for force in dry]
@@ -45,9 +45,8 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
     bound = np.array([d.bound for d in laws])
     value = np.where(sticks, 0.0, -bound * np.sign(rate))
     while True:
-        slips = [_touches(*part, one) for part in zip(laws, joints, value.T)]
-        full = np.concatenate([touch, *slips])
-        full = full[np.argsort(full["saved"], kind="stable")].view(Columns)
+        values = {force.index: value[:, k] for k, force in enumerate(dry)}
+        full = with_forces(scene, states, values, touch)
         out = solve(run.compiled, full)
         for held in np.unique(sticks[np.any(sticks, axis=1)], axis=0):
             made = scene.copy()
@@ -65,6 +64,20 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
             return out, {force.index: value[:, k] for k, force in enumerate(dry)}
         value, sticks = np.clip(value, -bound, bound), sticks & ~beyond
         value[sticks] = 0.0
+
+
+def dry_frictions(scene) -> list:
+    """Return the forces of dry friction in joints."""
+    return [force for force in scene.forces if isinstance(force.definition, JointFriction)]
+
+
+def with_forces(scene, states, values: dict[int, np.ndarray], touch) -> np.recarray:
+    """Return active points, and the values (T,) of dry frictions as such points, in the order of time."""
+    one = states if len(states.position) > 1 else _Alone(states)
+    laws = [(force.definition, values[force.index]) for force in dry_frictions(scene)]
+    points = [_touches(d, jc.sides_of(d.joint), value, one) for d, value in laws]
+    full = np.concatenate([touch, *points])
+    return full[np.argsort(full["saved"], kind="stable")].view(Columns)
 
 
 class _Alone:

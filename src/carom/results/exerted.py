@@ -19,6 +19,7 @@ from carom.scene.bodies import Body
 from carom.scene.constraints import coordinate_kind
 from carom.scene.forces import AppliedForce, Bushing, Force, Spring, Torque
 from carom.scene.more_forces import (
+    Actuator,
     AlongJoint,
     CurveSpring,
     JointFriction,
@@ -177,6 +178,8 @@ def _along(d, states, t, value):
         value = math.nan if value is None else value
     elif isinstance(d, JointSpring):
         value = -d.stiffness * (q - d.rest) - d.damping * rate
+    elif isinstance(d, Actuator):
+        value = d.force_at(d.control if value is None else value, q, rate)
     elif value is None and callable(d.force):
         called = [d.force(*one) for one in zip(*(np.atleast_1d(a).tolist() for a in (t, q, rate)))]
         value = np.reshape(np.array(called, dtype=float), np.shape(t))

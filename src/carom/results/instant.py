@@ -26,37 +26,53 @@ class Instant:
         if known.get("given") is not given:  # it is replaced where a force is set
             known["given"], known["loads"] = given, tuple(map(copied, loads(system)))
         self.loads = known["loads"]
+        self.laws = {index: law.rest for index, law in run.compiled.laws.items()}
         self.seen: Any = None  # the states, as those of a run of one time
 
     @cached_property
     def solved(self) -> tuple[np.ndarray, dict[int, np.ndarray]]:
         """Reactions of joints on their children, multipliers of constraints (1, E, 6); dry frictions."""
+        from carom.results.dry_friction import with_dry_friction
+
+        return with_dry_friction(
+            self.run, self.seen, self.touch, lambda *given: self.solve(*given)[0]
+        )
+
+    @cached_property
+    def accelerations(self) -> np.ndarray:
+        """Accelerations (N, 6) of all bodies, linear and angular, world axes."""
+        from carom.results.dry_friction import with_forces
+
+        run, values = self.run, self.solved[1]
+        return self.solve(run.compiled, with_forces(run.scene, self.seen, values, self.touch))[1]
+
+    def solve(self, compiled, touch) -> tuple[np.ndarray, np.ndarray]:
+        """Return reactions on children (1, E, 6) and accelerations under forces at active points."""
         from carom.dynamics.reactions import reactions
         from carom.model.kept import Kept
         from carom.model.records import new_work
         from carom.results.assemble import on_children
-        from carom.results.dry_friction import with_dry_friction
 
-        run, own = self.run, self.run.compiled.system
+        run, system, touch = self.run, compiled.system, copied(touch)
+        touch["saved"] = 1
         # the second of two equal states: whole turns are counted from those of the first
         states, times = table(STATE, 2, len(self.states)), np.full(2, self.t)
         states[:] = self.states
-
-        def solve(compiled, touch) -> np.ndarray:
-            system, touch = compiled.system, copied(touch)
-            touch["saved"] = 1
-            out = np.zeros((2, system.joints.size, 6))
-            kept = Kept((system,))  # the run may go on
-            if system is own:
-                system.relations.coordinates["reference"] = self.turns
-            for there, was in zip(loads(system), self.loads):
-                there[:] = was
-            work = new_work(system, run.method.b.size)
-            reactions(system, run.options.augmentation, times, states, (1, 2), touch, work, out)
-            kept.restore()
-            return on_children(compiled, states[1:], out[1:])
-
-        return with_dry_friction(run, self.seen, self.touch, solve)
+        out = np.zeros((2, system.joints.size, 6))
+        kept = Kept((system,))  # the run may go on
+        present = {index: law.rest for index, law in compiled.laws.items()}
+        if compiled is run.compiled:
+            system.relations.coordinates["reference"] = self.turns
+        for there, was in zip(loads(system), self.loads):
+            there[:] = was
+        for index, rest in self.laws.items():
+            compiled.laws[index].rest = rest
+        work = new_work(system, run.method.b.size)
+        reactions(system, run.options.augmentation, times, states, (1, 2), touch, work, out)
+        kept.restore()
+        for index, rest in present.items():
+            compiled.laws[index].rest = rest
+        return on_children(compiled, states[1:], out[1:]), np.array(work.body["motion"])
 
 
 def loads(system) -> tuple[np.recarray, np.recarray]:

@@ -56,7 +56,9 @@ class Source:
     def _ipython_key_completions_(self) -> list[str]:
         parts = [part.name for part in self._scene._parts if type(part) in VIEWS]
         contacts = first_names(self._numbers())
-        return list(dict.fromkeys([*parts, *(contacts if len(contacts) < MOST_LISTED else ())]))
+        listed = contacts if len(contacts) < MOST_LISTED else ()
+        sensors = () if self._scene.robot is None else self._scene.robot.sensors
+        return list(dict.fromkeys([*parts, *listed, *sensors]))
 
 
 class _Motion(NamedTuple):
@@ -450,7 +452,9 @@ VIEWS: dict[type, Callable] = {
 
 def view(source: Source, key, whose: str):
     """Return the results of one part, given by name or as the object; `whose` is for messages."""
-    scene = source._scene
+    scene, robot = source._scene, source._scene.robot
+    if robot is not None and isinstance(key, str) and key not in scene and key in robot.sensors:
+        return robot.sensors[key].of(source)
     if isinstance(key, tuple(VIEWS)):
         if key not in scene:
             raise ValueError(

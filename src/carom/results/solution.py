@@ -261,6 +261,10 @@ class Solution(Portable, Drawn, Source):
         return " ".join((said, *more))
 
     @cached_property
+    def _accelerations(self) -> np.ndarray:
+        return self._assemble.accelerations(self)
+
+    @cached_property
     def _solved(self) -> tuple[np.ndarray, dict[int, np.ndarray]]:
         return self._assemble.element_reactions(self)
 

@@ -45,7 +45,13 @@ class SystemState(Source):
         Energies of the whole system [J].
     """
 
-    def __init__(self, run, known: dict | None = None, given: dict | None = None):
+    def __init__(
+        self,
+        run,
+        known: dict | None = None,
+        given: dict | None = None,
+        ctrl: np.ndarray | None = None,
+    ):
         self._known = {} if known is None else known  # joints prepared so far, names of contacts
         clock, rows = run.clock, run.now.view(np.ndarray).copy()
         rows.flags.writeable = False
@@ -55,6 +61,7 @@ class SystemState(Source):
         self.potential_energy = float(clock["potential"][0])
         given = _NONE_SET if given is None else given
         self._instant = Instant(run, rows, self.t, given, self._known)
+        self._ctrl = None if ctrl is None else ctrl.copy()
 
     @classmethod
     def _of_file(cls, scene, t: float, kinetic: float, potential: float, motion) -> SystemState:
@@ -64,7 +71,7 @@ class SystemState(Source):
         rows["x"], rows["Q"], rows["v"], rows["w"] = motion
         rows.flags.writeable = False
         state._known, state._rows, state._scene, state._to_principal = {}, rows, scene, _NONE
-        state._instant = None
+        state._instant = state._ctrl = None
         state.t, state.kinetic_energy, state.potential_energy = t, kinetic, potential
         return state
 
@@ -94,12 +101,20 @@ class SystemState(Source):
         return out
 
     @property
+    def turns(self) -> np.ndarray | None:
+        """Coordinates (C,) whose whole turns a run counts [rad or m]; None of a state from a file."""
+        return None if self._instant is None else self._instant.turns
+
+    @property
     def total_energy(self) -> float:
         """Kinetic plus potential energy [J]."""
         return self.kinetic_energy + self.potential_energy
 
     def __getitem__(self, name):
-        """Return the state of a body, a joint, a force or a contact, given by name or as the object."""
+        """Return the state of a body, a joint, a force or a contact, given by name or as the object.
+
+        A name that no part has may be that of a sensor of the model.
+        """
         return view(self, name, "state")
 
     @property
@@ -136,6 +151,11 @@ class SystemState(Source):
     def _solved(self):
         self._at.seen = _OneTime(self)
         return self._at.solved
+
+    @property
+    def _accelerations(self) -> np.ndarray:
+        self._at.seen = _OneTime(self)
+        return self._at.accelerations
 
     @property
     def _reactions(self) -> np.ndarray:

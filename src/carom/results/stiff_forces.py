@@ -16,7 +16,7 @@ import numpy as np
 from carom.dynamics.force_rows import BUSHINGS, PUSHES, SPRINGS, write_force_rows
 from carom.model import records as r
 from carom.scene.forces import Bushing, Spring
-from carom.scene.more_forces import CurveSpring, JointForce, JointSpring
+from carom.scene.more_forces import Actuator, CurveSpring, JointForce, JointSpring
 from carom.status import Advice
 
 FEW_TRIALS = 1000  # trial steps below which nothing is said
@@ -88,7 +88,7 @@ def stiff_forces(run) -> list[Force]:
         if isinstance(d, (Spring, CurveSpring)):
             one, springs = system.springs[springs], springs + 1
             out.append(Force(force.index, (SPRINGS, springs - 1, 0), one.stiffness, one.damping))
-        elif isinstance(d, (JointForce, JointSpring)):
+        elif isinstance(d, (Actuator, JointForce, JointSpring)):
             one, pushes = system.relations.pushes[pushes], pushes + 1
             out.append(Force(force.index, (PUSHES, pushes - 1, 0), one.stiffness, one.damping))
         elif isinstance(d, Bushing):

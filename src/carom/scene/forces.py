@@ -16,6 +16,7 @@ from carom import arguments, checks, fields
 from carom.fields import REQUIRED, Flag, Number, Value, Vector, VectorOrNone, keep
 from carom.scene.bodies import GROUND, Body, Ground
 from carom.scene.more_forces import (
+    Actuator,
     AlongJoint,
     CurveSpring,
     JointForce,
@@ -144,6 +145,7 @@ ForceDefinition = (
     | Bushing
     | JointSpring
     | JointForce
+    | Actuator
     | JointFriction
     | JointInertia
     | CurveSpring

@@ -26,17 +26,17 @@ class Derived(dict):
 
 
 class Registry:
-    """All named parts of one scene, in the order in which they were added."""
+    """All named parts of one scene, or system in coordinates, in the order in which they were added."""
 
-    def __init__(self):
-        self._parts = {}
+    def __init__(self, whole: str = "scene"):
+        self.whole, self._parts = whole, {}
         self._kinds = {}
         self.derived = Derived()
         self.sealed = False  # the scene of a run, which must not change
 
     def copied(self, sealed: bool = False) -> Registry:
         """Return a copy with the same parts and results; one that is `sealed` refuses changes."""
-        made = Registry()
+        made = Registry(self.whole)
         made._parts = self._parts.copy()
         made._kinds = {kind: parts.copy() for kind, parts in self._kinds.items()}
         made.derived.update(self.derived)
@@ -82,9 +82,10 @@ class Registry:
     def _free(self, name: str) -> str:
         checks.text("name", name)
         if name in self._parts:
+            instead = "; replace=True puts the new part in the place of the one that has it"
             raise ValueError(
-                f"name must be unique in the scene, got {checks.shown(name)} a second time; replace=True "
-                "puts the new part in the place of the one that has it"
+                f"name must be unique in the {self.whole}, got {checks.shown(name)} a second time"
+                f"{instead if self.whole == 'scene' else ''}"
             )
         return name
 
@@ -130,6 +131,9 @@ class Registry:
         """Go through all parts, in the order added."""
         return iter(self._parts.values())
 
+    def __contains__(self, name) -> bool:
+        return name in self._parts
+
     def count(self, kind: type) -> int:
         """Return the number of parts of a `kind`."""
         return len(self._kinds.get(kind, ()))
@@ -169,7 +173,8 @@ class Registry:
             if part not in self._parts:
                 world = hint if Ground in kinds and part.lower() in ("world", "ground") else ""
                 raise ValueError(
-                    f"{argument} must be a part of the scene, which has none {self._called(part)}{world}"
+                    f"{argument} must be a part of the {self.whole}, which has none "
+                    f"{self._called(part)}{world}"
                 )
             part = self._parts[part]
         checks.instance(argument, part, kinds, hint)
@@ -177,8 +182,8 @@ class Registry:
             return part
         if own is None or not self.has(part):
             raise ValueError(
-                f"{argument} must belong to this scene, got {checks.shown(part)} of another one, or one that "
-                "was removed"
+                f"{argument} must belong to this {self.whole}, got {checks.shown(part)} of another one, "
+                "or one that was removed"
             )
         return own
 

@@ -28,6 +28,7 @@ from carom.scene.values import in_scene
 
 if TYPE_CHECKING:
     from carom.geometry.attitude import Orientation
+    from carom.results.robot import Robot
 
 
 #: an example of a value that each kind of part has
@@ -71,6 +72,7 @@ class Scene(TouchingPairs):
         #: the scene for solutions, and the results of this one when it was made
         self._snapshot: tuple = None, None
         self._in_radians: set[str] = set()  # stops whose file has radians
+        self._robot: Robot | None = None
 
     @arguments.known
     def add_half_space(
@@ -506,6 +508,17 @@ class Scene(TouchingPairs):
     @property
     def _derived(self) -> Derived:
         return self._parts.derived
+
+    @property
+    def robot(self) -> Robot | None:
+        """The model in its own coordinates, where `load_model` has made the scene; else None.
+
+        It is also None when one of its bodies, joints or actuators has been removed.
+        """
+        robot = self._robot
+        if robot is None:
+            return None
+        return self._derived.once("robot", lambda: robot._followed(self._parts.get))
 
     @property
     def gravity(self):

@@ -86,7 +86,7 @@ def begin_watch(system, now, t, watch):
 
 
 @kernel
-def note_whole(system, controls, clock, code, bodies, watch):
+def note_whole(system, controls, step, code, bodies, watch):
     """Note that a step was given up event by event, and becomes a time-stepping step.
 
     Its impacts are at its end, so a body that it stops or turns round is misplaced by at most 2 V h, with the
@@ -97,12 +97,12 @@ def note_whole(system, controls, clock, code, bodies, watch):
     size = math.inf
     for b in range(system.bodies.shape[0]):
         size = min(size, system.bodies[b].extent)
-    speed = watch.speed + controls.pull * clock.length
-    watch.whole_error += 2.0 * speed * clock.length / size
+    speed = watch.speed + controls.pull * step.length
+    watch.whole_error += 2.0 * speed * step.length / size
     if watch.whole == 0:
-        watch.whole_at, watch.whole_bodies, watch.whole_code = clock.begin, bodies, code
+        watch.whole_at, watch.whole_bodies, watch.whole_code = step.begin, bodies, code
     watch.whole += 1
-    watch.whole_length = max(watch.whole_length, clock.length)
+    watch.whole_length = max(watch.whole_length, step.length)
 
 
 @kernel
@@ -113,9 +113,10 @@ def note_energies(system, now, clock):
 
 
 @kernel
-def watch_step(system, now, clock, records, watch):
+def watch_step(system, data):
     """Check the balance at the end of a step."""
-    size = max(note_energies(system, now, clock), size_of_stillness(system, clock.length))
+    now, clock, step, watch = data.state, data.clocks[0], data.work.step[0], data.watch[0]
+    size = max(note_energies(system, now, clock), size_of_stillness(system, step.length))
     kinetic, potential = clock.kinetic, clock.potential
     residual = kinetic + potential - watch.total
     residual -= clock.loads + clock.impacts + clock.friction + clock.bounces
@@ -123,8 +124,8 @@ def watch_step(system, now, clock, records, watch):
     exchanged = max(exchanged, max(abs(clock.loads), abs(clock.impacts)))
     exchanged = max(exchanged, max(abs(clock.friction), abs(clock.bounces)))
     watch.exchanged, watch.size = exchanged, max(watch.size, size)
-    watch.able = max(watch.able, clock.able)
-    watch.named += given_by_law(system, clock, records, watch)
+    watch.able = max(watch.able, step.able)
+    watch.named += given_by_law(system, clock, data.records, watch)
     total = abs(residual)
     compare(RESIDUAL, residual, clock.now, watch)
     for i in range(1, 4):
@@ -135,9 +136,7 @@ def watch_step(system, now, clock, records, watch):
         total += line - watch.lowest[i]
         compare(i, line - watch.lowest[i], clock.now, watch)
     compare(ALL, total, clock.now, watch)
-    watch.speed = max(
-        watch.speed, greatest_speed(system, now) + norm(system.gravity) * clock.length
-    )
+    watch.speed = max(watch.speed, greatest_speed(system, now) + norm(system.gravity) * step.length)
     if not clock.residual <= watch.unsolved and watch.unsolved == watch.unsolved:
         watch.unsolved, watch.unsolved_at = clock.residual, clock.now
 
@@ -261,7 +260,7 @@ def off_balance(model, data):
     jams = search.active == 1 and search.kind == EVENT_JAM
     if active.count[0] == 0:
         result.unnamed = 0.0
-    watch.able = max(watch.able, clock.able)
+    watch.able = max(watch.able, work.step[0].able)
     off, grows = imbalance(system, active, data.state, work.trial, named, clock.now, dt, watch)
     result.unnamed = max(result.unnamed, off)
     cut = grows or off > (CUT_SHARE if careful else 1.0)

@@ -47,10 +47,10 @@ def advance(model, data, method) -> int:
 
     Propose a step, find the first event in it, accept the motion up to there, and act on the event.
     """
-    clock, search = data.clocks[0], data.work.search[0]
-    if not (clock.spent > 0.0 or clock.paused == 1 or search.pending != NOTHING):
+    step, search = data.work.step[0], data.work.search[0]
+    if not (step.spent > 0.0 or step.paused == 1 or search.pending != NOTHING):
         search.pace, search.sure = math.inf, math.inf
-    while clock.spent < clock.length:
+    while step.spent < step.length:
         code = may_go_on(model, data)
         if code != 0:
             return code
@@ -75,12 +75,13 @@ def advance(model, data, method) -> int:
 @inlined
 def may_go_on(model, data):
     """Return 0, or the code with which the loop is left: pause, longer arrays, or a step with too much work."""
-    controls, clock = model.controls, data.clocks[0]
-    if clock.since > r.LONG and clock.paused == 0:
+    controls, clock, step = model.controls, data.clocks[0], data.work.step[0]
+    if step.since > r.LONG and step.paused == 0:
         return r.PAUSE
     if full(model.system, data.active, clock, data.records):
-        return grow(clock, r.FULL_EVENTS)
-    if clock.in_step > controls.max_impacts or clock.at_once > 1000 or overdone(controls, clock):
+        return grow(step, r.FULL_EVENTS)
+    many = clock.event - step.first_event > controls.max_impacts or clock.at_once > 1000
+    if many or overdone(controls, step):
         return TOO_MANY
     return 0
 
@@ -88,14 +89,14 @@ def may_go_on(model, data):
 @inlined
 def due_action(model, data):
     """Return the action that is due before time advances: a postponed one, or one that closed points need."""
-    controls, clock, search = model.controls, data.clocks[0], data.work.search[0]
-    search.left = clock.length - clock.spent
+    controls, step, search = model.controls, data.work.step[0], data.work.search[0]
+    search.left = step.length - step.spent
     action = search.pending
     search.pending = NOTHING
-    if action != NOTHING and clock.paused == 0:
+    if action != NOTHING and step.paused == 0:
         return action  # it was postponed until its unit was compiled, and keeps its horizon
     search.horizon = search.left if exact(controls) else controls.step
-    if clock.paused == 1:
+    if step.paused == 1:
         return NOTHING
     action, c = find_due_contact(model.system, controls, data.active, data.state, data.work)
     if action != NOTHING:
@@ -131,13 +132,13 @@ def accept_step(model, data):
     if left_ball(system, now, search.dt, work):
         return r.LEFT_BALL, NOTHING
     if search.dt == search.left:
-        clock.spent = clock.length
+        work.step[0].spent = work.step[0].length
     met = search.found == 1 and search.kind != EVENT_GAP and switch_due(active, search)
     if active.count[0] > 0:
         turn_modes(model, data)
     if search.found == 0:
         if controls.order > 0 and search.dt < 0.5 * search.pace:
-            smooth_count(clock, search)
+            smooth_count(work)
         return 0, NOTHING
 
     # its event
@@ -152,17 +153,18 @@ def accept_step(model, data):
 @inlined
 def accept(data, search):
     """Make the trial state the present one, and add the work done in the step."""
-    now, trial, clock, active = data.state, data.work.trial, data.clocks[0], data.active
+    now, trial, active = data.state, data.work.trial, data.active
+    clock, step = data.clocks[0], data.work.step[0]
     for b in range(now.shape[0]):
         copy_state(trial[b], now[b])
     for i in range(active.count[0]):
         active.points[i].bounces = max(0.0, active.points[i].bounces - search.dt)
     before = clock.now
-    clock.spent += search.dt
-    clock.now = clock.begin + clock.spent
+    step.spent += search.dt
+    clock.now = step.begin + step.spent
     clock.loads += search.applied
     clock.friction += search.friction
-    clock.owed = max(0.0, clock.owed + search.friction)
+    step.owed = max(0.0, step.owed + search.friction)
     if clock.now > before:
         clock.at_once = 0
 
@@ -177,12 +179,12 @@ def act(model, data, method, action):
         struck = clock.struck
         strike(model, data, method, search.contact)
         closed = work.hit[0].closed
-        clock.since += 10.0
+        work.step[0].since += 10.0
         if work.hit[0].code != 0:
             search.pending = STRIKE if work.hit[0].code >= r.GROW else NOTHING
             return work.hit[0].code
         if controls.layer_time == 1 and clock.struck > struck:
-            clock.spent += data.records.impact[struck].duration  # positions do not change
+            work.step[0].spent += data.records.impact[struck].duration  # positions do not change
         contact = system.contacts[search.contact]
         if closed == 1 and not may_end(contact, system, controls, data.state, search.horizon, work):
             return 0
@@ -197,7 +199,7 @@ def persist(model, data):
     if work.hit[0].code != 0:
         return work.hit[0].code
     if clock.now == 0.0:  # in contact from the start: write it to the first row
-        clock.touched = clock.first_touch
+        clock.touched = work.step[0].first_touch
         save_contacts(model.system, data.active, data.state, 0, clock, work, data.records)
     return 0
 
@@ -296,7 +298,7 @@ def may_end(contact, system, controls, state, horizon, work):
     """
     if contact.touches != 0:
         return True
-    point = work.point[0]
+    point = work.struck[0]
     rate = contact_velocity(point, state)[0]
     if rate <= slow(contact, state) or system.bodies[contact.body].ballistic == 0:
         return True

@@ -34,9 +34,9 @@ def still(state):
 
 
 @inlined
-def grow(clock, what):
+def grow(step, what):
     """Request longer arrays: return the code with which the loop is left."""
-    clock.grow = what
+    step.grow = what
     return GROW
 
 
@@ -69,15 +69,14 @@ def save(system, active, now, clock, work, records):
 def save_contacts(system, active, now, k, clock, work, records):
     """Write forces and moments of all active points at saved time k."""
     for i in range(active.count[0]):
-        active_point, point, touch = active.points[i], work.point[0], records.touch[clock.touched]
+        active_point, point, touch = active.points[i], work.placed[0], records.touch[clock.touched]
         contact = system.contacts[active_point.contact]
         place_any(system, contact, active_point.feature, active_point.point, now, point, work)
         E, arm, other, f = point.axes, point.arm_a, point.arm_b, active_point.force
         touch.saved, touch.contact, touch.feature = k, contact.number, active_point.feature
         touch.mode, touch.body = active_point.mode, system.bodies[active_point.body].number
-        touch.other = -1
-        if active_point.other >= 0:
-            touch.other = system.bodies[active_point.other].number
+        pair = active_point.other >= 0
+        touch.other = system.bodies[active_point.other].number if pair else -1
         fx = f[0] * E[0, 0] + f[1] * E[1, 0] + f[2] * E[2, 0]
         fy = f[0] * E[0, 1] + f[1] * E[1, 1] + f[2] * E[2, 1]
         fz = f[0] * E[0, 2] + f[1] * E[1, 2] + f[2] * E[2, 2]
@@ -95,7 +94,7 @@ def save_contacts(system, active, now, k, clock, work, records):
         mz = m[0] * E[0, 2] + m[1] * E[1, 2] + m[2] * E[2, 2]
         t, o, p = touch.moment, touch.other_moment, touch.push
         t[0], t[1], t[2] = tx + mx, ty + my, tz + mz
-        o[0], o[1], o[2] = sx - mx, sy - my, sz - mz
+        o[0], o[1], o[2] = (sx - mx, sy - my, sz - mz) if pair else (0.0, 0.0, 0.0)
         p[0], p[1], p[2] = fx, fy, fz
         for j in range(3):
             touch.force[j], touch.point[j] = unit * f[j], now[active_point.body].x[j] + arm[j]

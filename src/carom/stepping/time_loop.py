@@ -33,14 +33,14 @@ def run(model, data, method, islands, grid, until):
 
     Return 0, a code for the caller, or a `Status`.
     """
-    controls, clock = model.controls, data.clocks[0]
-    clock.since = 0.0
+    controls, clock, step = model.controls, data.clocks[0], data.work.step[0]
+    step.since = 0.0
     forget_end(data.work)
     while clock.step < until:
-        if clock.since > r.LONG:
+        if step.since > r.LONG:
             return r.PAUSE
-        clock.since += 0.1 * data.state.shape[0]
-        clock.begin, clock.length = begin_and_length(grid, controls.duration, clock.step)
+        step.since += 0.1 * data.state.shape[0]
+        step.begin, step.length = begin_and_length(grid, controls.duration, clock.step)
         if islands.apart == 1:
             code = step_apart(model, data, method, islands)
         else:
@@ -50,7 +50,7 @@ def run(model, data, method, islands, grid, until):
         if code != 0:
             return code
         if clock.touched + data.active.points.shape[0] > data.records.touch.shape[0]:
-            return grow(clock, r.FULL_EVENTS)
+            return grow(step, r.FULL_EVENTS)
         if islands.apart == 1:
             end_islands(model, data, islands)
         else:
@@ -64,35 +64,36 @@ def run(model, data, method, islands, grid, until):
 @kernel
 def step_single(model, data, method, start):
     """Move all bodies to the end of the step together; return 0, REPEAT, or a code."""
-    clock = data.clocks[0]
+    step = data.work.step[0]
     if start.begun[0] == 0:
-        note_scale(model.system, model.controls, data.state, clock, data.work)
-        begin_count(model.controls, clock, data.work)
+        note_scale(model.system, model.controls, data.state, data.work)
+        begin_count(model.controls, data.work)
+        parts.choose(model.system, model.controls, data.active, data.clocks[0].step, data.work)
     one_island.begin_single(model.system, data.active, data.state, data.clocks, data.work, start)
-    controls = local_controls(model.controls, clock)
+    controls = local_controls(model.controls, step)
     local = by_reference(Model(model.system, controls))
     code = 0
-    while code == 0 and clock.spent < clock.length:
+    while code == 0 and step.spent < step.length:
         code = move_island(local, data, method)
-        if code == 0 and data.crowd.spots.shape[0] >= SPOTS:  # a crowd leaves no groups
+        if code == 0 and data.crowd.closed.shape[0] >= SPOTS:  # a crowd leaves no groups
             regroup(model.system, data.active, data.work)
         if code == 0:
-            end_count(controls, clock, data.work)
-            note_gain(controls, clock, data.watch[0])
+            end_count(controls, data.clocks[0].step, data.work)
+            note_gain(controls, step, data.watch[0])
     return REPEAT if code != 0 and retry_single(model, data, start, code) else code
 
 
 @unit
 def step_apart(model, data, method, islands) -> int:
     """Move the bodies to the end of the step, island by island; return 0, REPEAT, or a code."""
-    clock, plan = data.clocks[0], islands.plan[0]
+    step, plan = data.work.step[0], islands.plan[0]
     if plan.planned == 0:
         plan.widen = max(1.0, plan.widen)
         code = parts.begin_step(
-            model.system, data.active, data.state, clock.length, data.clocks, data.work, islands
+            model.system, data.active, data.state, data.clocks, data.work, islands
         )
         if code != READY:
-            return grow(clock, code)
+            return grow(step, code)
     code = 0
     while code == 0 and plan.at < plan.count:
         i = plan.at
@@ -109,42 +110,41 @@ def step_apart(model, data, method, islands) -> int:
             )
         )  # fmt: skip
         if plan.entered == 0:  # if the loop was left within an island, it has been entered
-            parts.enter(system, own.active, data.active, own.work, islands, clock.begin, clock)
-            clock.first_touch = clock.touched
-            note_scale(system, model.controls, state, clock, own.work)
-            begin_count(model.controls, clock, own.work)
-        controls = local_controls(model.controls, clock)
+            parts.enter(system, own.active, data.active, own.work, islands, data.clocks[0])
+            note_scale(system, model.controls, state, own.work)
+            begin_count(model.controls, own.work)
+            parts.choose(system, model.controls, own.active, data.clocks[0].step, own.work)
+        controls = local_controls(model.controls, step)
         part = by_reference(Model(by_reference(system), controls))
         code = move_island(part, own, method)
         if code == 0:
-            end_count(controls, clock, own.work)
-            note_gain(controls, clock, data.watch[0])
+            end_count(controls, data.clocks[0].step, own.work)
+            note_gain(controls, step, data.watch[0])
             parts.leave(own.active, islands)
     return REPEAT if code != 0 and retry_apart(model, data, islands, code) else code
 
 
 @inlined
-def note_gain(controls, clock, watch):
+def note_gain(controls, step, watch):
     """Raise the greatest speed to that which forces could have given in the step.
 
     Bodies that a force presses have no speed, but the residual of their contacts is a part of this one.
     """
-    watch.speed = max(watch.speed, controls.pull * clock.length)
+    watch.speed = max(watch.speed, controls.pull * step.length)
 
 
 @inlined
 def finish_step(model, data, grid):
     """Set the clock to the end of the step, check the energy balance, and save the state if it is due."""
     system, controls, clock, state = model.system, model.controls, data.clocks[0], data.state
-    clock.spent = 0.0
-    charge_impacts(clock)
+    charge_impacts(clock, data.work.step[0])
+    data.work.step[0].spent = 0.0
     clock.step += 1
-    clock.in_step = 0
     clock.now = end_of(grid, controls.duration, clock.step)
     clock.still = min(clock.still, clock.now) if still(state) else math.inf
     if not finite(state):
         return NOT_FINITE
-    watch_step(system, state, clock, data.records, data.watch[0])
+    watch_step(system, data)
     if not math.isfinite(clock.kinetic + clock.potential):
         return NOT_FINITE
     if is_saved(grid, clock.step):
@@ -155,28 +155,26 @@ def finish_step(model, data, grid):
 
 
 @kernel
-def charge_impacts(clock):
+def charge_impacts(clock, step):
     """Assign to impacts the energy that friction gained by dropped bounces in the step and did not lose again.
 
     The friction of impacts, bounces and persistent contact together is mu times their normal impulse. If the
     contact ends early, the impacts have lost less.
     """
-    part = min(clock.owed, max(0.0, clock.before - clock.impacts))
+    part = min(step.owed, max(0.0, step.impacts - clock.impacts))
     clock.impacts += part
     clock.friction -= part
-    clock.owed = 0.0
 
 
 @inlined
 def move_island(model, data, method):
     """Move an island to the end of the step: event by event, or in one time-stepping step if it is a crowd."""
-    system, work, step = model.system, data.work, data.clocks[0].step
-    if model.controls.retry == 0 or not parts.is_crowd(system, data.active, step, work):
-        parts.recover(system, step, work)
+    work = data.work
+    if work.step[0].crowd == 0:
         return advance(model, data, method)
     step_crowd(model, data, method)
     code = work.result[0].code
-    if code == 0 and left_ball(system, data.state, data.clocks[0].length, work):
+    if code == 0 and left_ball(model.system, data.state, work.step[0].length, work):
         return r.LEFT_BALL
     return code
 
@@ -193,12 +191,12 @@ def may_be_whole(code, active):
 @inlined
 def retry_single(model, data, start, code):
     """Return to the start of a step that failed event by event; return whether this is done."""
-    clock = data.clocks[0]
+    step = data.work.step[0]
     if code >= r.GROW or model.controls.retry == 0 or not may_be_whole(code, data.active):
         return False
-    if not one_island.give_up_single(model.controls, clock, data.work):
+    if not one_island.give_up_single(model.controls, data.clocks[0].step, data.work):
         return False
-    note_whole(model.system, model.controls, clock, code, data.state.shape[0], data.watch[0])
+    note_whole(model.system, model.controls, step, code, data.state.shape[0], data.watch[0])
     one_island.forget_single(model.system, data.active, data.state, data.clocks, data.work, start)
     return True
 
@@ -212,20 +210,20 @@ def retry_apart(model, data, islands, code):
     """
     if code >= r.GROW and code != r.LEFT_BALL:
         return False  # the caller handles the code, and calls again
-    clock, again = data.clocks[0], code == r.LEFT_BALL
+    step, again = data.work.step[0], code == r.LEFT_BALL
     if again:
         islands.plan[0].widen *= 2.0
     elif model.controls.hold == 1 and may_be_whole(code, data.active):
-        again = parts.give_up(model.controls, islands, clock, data.work)
+        again = parts.give_up(model.controls, islands, data.clocks[0].step, data.work)
         if again:
             bodies = parts.bodies_of_present(islands)
-            note_whole(model.system, model.controls, clock, code, bodies, data.watch[0])
-    parts.forget_step(data.active, data.clocks, islands)
+            note_whole(model.system, model.controls, step, code, bodies, data.watch[0])
+    parts.forget_step(data.active, data.clocks, data.work, islands)
     return again
 
 
 @unit
 def end_islands(model, data, islands):
     """Write all islands back to the whole system."""
-    clock = data.clocks[0]
-    parts.end_step(model.system, data.active, data.state, clock.length, clock, data.work, islands)
+    number = data.clocks[0].step
+    parts.end_step(model.system, data.active, data.state, number, data.work, islands)

@@ -41,9 +41,9 @@ EVENTS_AT_NOW = 20  # events in no time: after so many they wait for the end of 
 @inlined
 def propose_step(model, data):
     """Store the length of the first trial step, unless the loop was left in the middle of one."""
-    clock, search = data.clocks[0], data.work.search[0]
-    if clock.paused == 1:
-        clock.paused = 0
+    clock, step, search = data.clocks[0], data.work.step[0], data.work.search[0]
+    if step.paused == 1:
+        step.paused = 0
         return
     note_first_stops(model.system, data.active)
     if clock.now - clock.moment > model.controls.step:
@@ -52,14 +52,14 @@ def propose_step(model, data):
     if model.controls.order > 0 and may_err(model.system, data.active):
         dt = min(dt, allowed_step(search.left, data.work))
     if data.active.count[0] > 0:
-        dt = until_bounces_end(data.active, min(dt, clock.longest))
+        dt = until_bounces_end(data.active, min(dt, step.longest))
     dt = until_stop(model, data.active, dt, clock)
     if search.sure < dt:
         dt = search.sure
         search.sure *= 2.0
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
     data.work.result[0].stiff = 0
-    mark_count(clock, search)
+    mark_count(data.work)
     search.eager = 1 if clock.in_moment < EVENTS_AT_NOW else 0
 
 
@@ -103,11 +103,11 @@ def until_bounces_end(active, dt):
 @inlined
 def first_event(model, data, method):
     """Make trial steps until one has no event, or only the first event at its end; return a code."""
-    clock, search = data.clocks[0], data.work.search[0]
+    step, search = data.work.step[0], data.work.search[0]
     search.found = 0
     while True:
-        if clock.since > r.LONG:
-            clock.paused = 1
+        if step.since > r.LONG:
+            step.paused = 1
             return r.PAUSE
         code = trial_step(model, data, method)
         if code == 0:
@@ -127,17 +127,17 @@ def trial_step(model, data, method):
     The code of the step without contact impulses is stored in the search, because a shorter step may succeed.
     """
     system, controls, active, now = model.system, model.controls, data.active, data.state
-    work, clock, search = data.work, data.clocks[0], data.work.search[0]
-    result = work.result[0]
+    work, clock, result = data.work, data.clocks[0], data.work.result[0]
+    own, search = work.step[0], work.search[0]
     result.start, result.order = clock.now, controls.order
     applied, code = step(method, system, active, now, search.dt, work.trial, work)
     search.applied, search.friction, search.code = applied, 0.0, code
     clock.trials += 1
-    clock.counts[COUNT_TRIALS] += 1.0
-    clock.counts[COUNT_SEARCHES] += work.pair.state[0].searches
+    own.counts[COUNT_TRIALS] += 1.0
+    own.counts[COUNT_SEARCHES] += work.pair.state[0].searches
     work.pair.state[0].searches = 0
-    clock.since += 1.0 + now.shape[0] + active.contact_states.shape[0]
-    if overdone(controls, clock):
+    own.since += 1.0 + now.shape[0] + active.contact_states.shape[0]
+    if overdone(controls, own):
         return TOO_MANY
     if (active.count[0] > 0 or rubs(system)) and code == 0:
         contact_step(model, data, method, search.dt)

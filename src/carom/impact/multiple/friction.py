@@ -115,15 +115,14 @@ def find_holding(z, work):
 def _factor(z, work, L):
     """Write L in D W_ZZ D = L L^T, with rows in the order of pivots; return the rank."""
     slot, W, weight = work.index[o.STUCK], work.matrix[o.MASS], work.vector[o.SCALE]
-    order, scale, n, largest = work.index[o.PIVOTED], work.vector[o.STICK_T], 2 * z, 0.0
+    order, n, largest = work.index[o.PIVOTED], 2 * z, 0.0
     for a in range(n):
         row = W[3 * slot[a // 2] + 1 + a % 2]
         for b in range(a + 1):
             L[a, b] = weight[a // 2] * weight[b // 2] * row[3 * slot[b // 2] + 1 + b % 2]
         order[a], largest = a, max(largest, L[a, a])
-    for a in range(n):  # directions that do not move, in a plane, are those of round-off
-        scale[a] = largest
-    rank = factor_by_pivots(n, limits.GROUP_ERROR, order, scale, L)
+    # directions that do not move, in a plane, are those of round-off
+    rank = factor_by_pivots(n, limits.GROUP_ERROR * largest, order, L)
     for b in range(rank):
         root = math.sqrt(L[b, b])
         for a in range(n):

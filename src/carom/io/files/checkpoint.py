@@ -19,8 +19,13 @@ from carom.model import records as r
 #: what is the same in every run of a scene, holds addresses, or is written anew when a step begins; files that
 #: have it are read without it
 FIXED = {
-    "work.search",
-    "islands.joined", "islands.others",
+    *("clock." + name for name in (
+        "spent", "begin", "length", "before", "owed", "first_touch", "concerns", "in_step", "tries",
+        "scale", "pull", "longest", "able", "counts", "grow", "since", "paused", "whole_at",
+    )),
+    "work.first", "work.point", "work.step", "work.search", "work.known", "work.stage", "work.trial",
+    "work.part", "work.middle", "work.iterate", "work.mean", "work.beside", "work.origin", "work.struck",
+    "work.placed", "islands.clock", "islands.single.clock", "islands.joined", "islands.others",
     "islands.partner", "islands.partner_first", "islands.plane", "islands.plane_first",
     "relations.relations", "relations.terms", "relations.user", "relations.pieces",
     "relations.pushes", "relations.forces", "relations.named",
@@ -56,17 +61,13 @@ class Checkpoint(NamedTuple):
 
 def capture(run) -> Checkpoint | None:
     """Return the checkpoint of a run; None in the middle of a step."""
-    clock, search = run.clock[0], run.work.search[0]
-    islands = run.islands
-    inside = clock.spent != 0.0 or clock.paused != 0 or search.pending != 0
+    step, search, islands = run.work.step[0], run.work.search[0], run.islands
+    inside = step.spent != 0.0 or step.paused != 0 or search.pending != 0
     if inside or (islands.plan[0].planned != 0):
         return None
-    found = {
-        "multiple": len(run.multiple.e),
-        "spots": len(run.crowd.spots),
-        "room": len(islands.which),
-        "pairs": 0 if run.found is None else len(run.found),
-    }
+    pairs = 0 if run.found is None else len(run.found)
+    multiple, spots = len(run.multiple.e), len(run.crowd.closed)
+    found = {"multiple": multiple, "spots": spots, "room": len(islands.which), "pairs": pairs}
     return Checkpoint(found, {name: array.copy() for name, array in arrays_of(run)})
 
 
@@ -92,7 +93,7 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
     found = checkpoint.found
     while len(run.multiple.e) < found["multiple"]:
         run.grow(r.FULL_MULTIPLE)
-    while len(run.crowd.spots) < found["spots"]:
+    while len(run.crowd.closed) < found["spots"]:
         run.grow(r.FULL_SPOTS)
     while len(run.islands.which) < found["room"]:
         run.grow(r.FULL_PAIRS)
@@ -102,7 +103,9 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
         raise ValueError("the checkpoint was written by another version of carom")
     for name, array in here.items():
         one = kept[name]
-        array[...] = one.unpacked() if isinstance(one, Packed) else one
+        one = one.unpacked() if isinstance(one, Packed) else one
+        for field in array.dtype.names or (...,):
+            array[field] = one[field]
     _put_records(run, records)
 
 
@@ -141,11 +144,12 @@ def _deflated(array: np.ndarray) -> bytes:
 
 def layout_of(arrays: Mapping[str, np.ndarray | Packed]) -> dict[str, tuple]:
     """Return type and shape of arrays by name."""
-    return {name: (_type_of(a), tuple(a.shape)) for name, a in sorted(arrays.items())}
+    return {name: (_type_of(name, a), tuple(a.shape)) for name, a in sorted(arrays.items())}
 
 
-def _type_of(array: np.ndarray | Packed) -> str:
-    return str(array.dtype.descr if array.dtype.names else array.dtype.str)
+def _type_of(name: str, array: np.ndarray | Packed) -> str:
+    fields = [field for field in array.dtype.descr if f"{name}.{field[0]}" not in FIXED]
+    return str(fields if array.dtype.names else array.dtype.str)
 
 
 def arrays_of(run) -> Iterator[tuple[str, np.ndarray]]:
@@ -173,11 +177,7 @@ def _walk(name: str, value) -> Iterator[tuple[str, np.ndarray]]:
 
 def _put_records(run, records: r.Records) -> None:
     """Copy the records before the checkpoint into the records of a run, which are lengthened as in a run."""
-    clock = run.clock[0]
-    ends = {
-        "series": clock.saved, "state": clock.saved, "touch": clock.touched,
-        "impact": clock.struck, "event": clock.event, "snapshot": clock.snapped,
-    }  # fmt: skip
+    ends = r.ends_of(run.clock)
     grows = ("touch", "impact", "event", "snapshot")
     while any(len(getattr(run.records, name)) < ends[name] for name in grows):
         run.records = r.longer(run.records, run.clock)

@@ -29,6 +29,7 @@ from carom.io.files.layout import (
 )
 from carom.io.files.scene_parts import scene_from_text
 from carom.io.files.sealed import Sealed, refusal, unsealed
+from carom.io.files.settings_in_time import from_rows
 from carom.io.files.user_events import from_file
 from carom.model import records as r
 from carom.options import Options
@@ -85,7 +86,9 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
     note = index["checkpoint"]
     checkpoint = None if note is None else from_index(note, file.data)
     found = _found(arrays, index["found"], len(scene.stops))
-    run = KeptRun(scene, settings, options, records, checkpoint, missing, attributes, found)
+    history = from_rows(file.data, index.get("history"), scene)
+    known = records, checkpoint, missing, attributes, found, history
+    run = KeptRun(scene, settings, options, *known)
     check_numbers(records, len(run.pairs.body) + len(scene.stops))
     names = Numbers(scene, run.pairs)
     motion = {name: arrays.array(name, ("time", *dims)) for name, (dims, _, _) in MOTION.items()}

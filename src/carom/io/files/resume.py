@@ -67,6 +67,7 @@ def resume(
     kept = solution._run
     assert isinstance(kept, KeptRun)
     if until is not None:
+        refuse_steps(kept)
         given = solution.settings
         step = given["step"] if isinstance(given["step"], float) else given["duration"]
         most = 1e12 * step  # steps that have numbers
@@ -102,10 +103,7 @@ def go_on(solution, duration: float, progress, throw: bool):
     check_handling(progress, throw, 60.0)
     duration = checks.number("duration", duration, above=0.0, unit="s")
     checkpoint, kept = state_at_end(solution), solution._run
-    if hasattr(kept, "history"):
-        raise ValueError(
-            "only a solution of simulate can be continued; continue a Run with Run.advance"
-        )
+    refuse_steps(kept)
     if not solution.status.ended or checkpoint is None:
         raise ValueError(
             "the run must have reached its end to continue from there, got a run with the message: "
@@ -116,3 +114,11 @@ def go_on(solution, duration: float, progress, throw: bool):
         kept = KeptRun(*given, missing=[], attributes={}, found=kept.found)
     kept.need_functions("by Solution.load to continue")
     return finish(kept.revived(solution.settings["duration"] + duration), progress, None, throw)
+
+
+def refuse_steps(kept) -> None:
+    """Refuse the solution of a `carom.Run`, whose steps and forces are those that its user asks for."""
+    if getattr(kept, "history", None) is not None:
+        raise ValueError(
+            "the solution must be one of simulate, got that of a Run: take it on with carom.Run(solution)"
+        )

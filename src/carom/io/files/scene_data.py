@@ -30,6 +30,8 @@ import numpy as np
 from carom import checks
 from carom.fields import keep
 from carom.io.files.scene_check import check_record
+from carom.results.robot import Ball, Coordinate, FreeBody, Keyframe, Motor, Robot
+from carom.results.sensors import Frame, Sensor
 from carom.scene.bodies import FIXED, GROUND, Body, Ground
 from carom.scene.constraints import CONSTRAINTS, Constraint, Gear
 from carom.scene.contacts import Contact
@@ -42,9 +44,21 @@ from carom.scene.stops import Stop
 
 #: parts that have a name in the scene
 PARTS = (*FIXED, Body, Joint, AppliedForce, Constraint, Stop, Contact)
+ROBOT = (Robot, Coordinate, Ball, FreeBody, Keyframe, Motor, Frame, Sensor)
 TYPES: dict[str, type[Any]] = {
     kind.__name__: kind
-    for kind in (*PARTS, *SHAPES, *JOINTS, *FORCES, *CONSTRAINTS, Gear, ContactLaw, Material, Piece)
+    for kind in (
+        *PARTS,
+        *SHAPES,
+        *JOINTS,
+        *FORCES,
+        *CONSTRAINTS,
+        Gear,
+        ContactLaw,
+        Material,
+        Piece,
+        *ROBOT,
+    )
 }
 LATER = {"color": None}  # fields that files of earlier versions do not have
 ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")

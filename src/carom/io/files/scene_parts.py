@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from carom import checks
 from carom.io.files.scene_check import check_pair, check_part
 from carom.io.files.scene_data import PARTS, Decoder, Encoder
+from carom.results.robot import Robot
 from carom.scene.materials import ContactLaw, checked_rule
 from carom.scene.scene import Scene
 
@@ -33,6 +34,7 @@ def scene_to_text(scene: Scene, encoder: Encoder | None = None) -> str:
         "combine": pairs._rules,
         "contact_values": encoder.value(pairs._values),
         "all_pairs": pairs.default is not None,
+        "robot": encoder.value(scene.robot, "robot"),
         "functions": list(encoder.functions),
     }
     if encoder.functions:
@@ -81,6 +83,9 @@ def scene_from_text(
             decoder.parts[made.name] = scene._parts.add(made)
     with told("contacts"):
         _put_pairs(scene, data, decoder)
+    with told("robot"):
+        scene._robot = decoder.value(data.get("robot"))
+        checks.instance("robot", scene._robot, (Robot, type(None)))
     return scene, decoder.missing
 
 

@@ -19,6 +19,7 @@ from carom.io.files.convert import is_table, write_tables
 from carom.io.files.disk import put
 from carom.io.files.layout import Variable
 from carom.io.files.sealed import seal
+from carom.io.files.settings_in_time import as_rows
 from carom.io.files.user_events import index_of
 from carom.io.files.variables import attributes, labelled
 from carom.model import records as r
@@ -67,7 +68,7 @@ def file_of(solution, checkpoint: Checkpoint | None = None, whole: bool = True) 
         return end - len(data)
 
     run = solution._run
-    records = r.trimmed(run.records, run.clock)
+    records, history = r.trimmed(run.records, run.clock), as_rows(getattr(run, "history", None))
     for name, _, data in raw.columns(records, known):
         arrays[f"{raw.GROUP}/{name}"] = data.dtype.str, add(data.tobytes())
     index = {
@@ -80,6 +81,7 @@ def file_of(solution, checkpoint: Checkpoint | None = None, whole: bool = True) 
         "words": {name: _coded(known[name], words) for name, words in raw.WORDS.items()},
         "user_events": index_of(solution),
         "found": None if run.found is None else len(run.found),
+        "history": None if history is None else [len(history), add(history.tobytes())],
         "checkpoint": None if checkpoint is None else packed(checkpoint, add),
     }  # fmt: skip
     return seal(parts, index)

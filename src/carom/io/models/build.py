@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
-from carom import checks
 from carom.io.models.report import Report
-from carom.results.solution import Solution
+from carom.results.robot import Coordinate
 from carom.scene.bodies import GROUND, Body, Ground, HalfSpace
 from carom.scene.joints import Joint
 from carom.scene.scene import Scene
@@ -33,33 +32,6 @@ class Names:
         return name
 
 
-class Coordinate(NamedTuple):
-    """A coordinate of a hinge or a slide of the model: ``q = start + sign * coordinate of the scene``.
-
-    Attributes
-    ----------
-    joint : Joint
-        Joint of the scene.
-    index : int
-        Index of the coordinate of this joint.
-    sign : float
-        1 or -1.
-    start : float
-        q at the start [rad or m].
-    """
-
-    joint: Joint
-    index: int
-    sign: float
-    start: float
-
-    def of(self, solution) -> tuple[Any, Any]:
-        """Return q and its rate, each (T,), at the saved times of a solution, as the model defines them."""
-        checks.instance("solution", solution, (Solution,))
-        q, rate = solution.joint_coordinates(self.joint)
-        return self.start + self.sign * q[:, self.index], self.sign * rate[:, self.index]
-
-
 @dataclass
 class Build:
     """A scene in the making."""
@@ -74,6 +46,7 @@ class Build:
     bodies: dict[int, Body | Ground] = field(default_factory=lambda: {0: GROUND})  # of links
     coordinates: dict[int, Coordinate] = field(default_factory=dict)  # of hinges and slides
     balls: dict[int, Joint] = field(default_factory=dict)  # of ball joints
+    lines: list[tuple[Joint, tuple]] = field(default_factory=list)  # slides along tendons
     geoms: dict[int, Body | HalfSpace] = field(default_factory=dict)
     hulls: dict[int, Convex | None] = field(default_factory=dict)  # of meshes
 

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from carom.geometry import quaternion
-from carom.io.models.build import Build, Coordinate
+from carom.io.models.build import Build
 from carom.io.models.links import Link, called, name_of
 from carom.io.models.report import need_mujoco
+from carom.results.robot import Coordinate
 from carom.scene import constraints, forces
 from carom.scene.bodies import GROUND
 
@@ -72,11 +73,17 @@ def _friction(build: Build, j: int, c: Coordinate) -> None:
 
 
 def _stops(build: Build, j: int, c: Coordinate, restitution: float, law: str) -> None:
-    """Add both limits; a limit that the start exceeds is moved to the start."""
-    if not build.model.jnt_limited[j]:
-        return
-    name, what = name_of(build.model, "joint", j), called(build.model, "joint", j)
-    ends = build.model.jnt_range[j] - c.start
+    """Add both limits of a joint."""
+    if build.model.jnt_limited[j]:
+        name, what = name_of(build.model, "joint", j), called(build.model, "joint", j)
+        add_stops(build, c, name, what, build.model.jnt_range[j], restitution, law)
+
+
+def add_stops(
+    build: Build, c: Coordinate, name: str, what: str, ends, restitution: float, law: str
+) -> None:
+    """Add both limits of a coordinate; a limit that the start exceeds is moved to the start."""
+    ends = ends - c.start
     for end, side, word in ((float(ends[0]), 1.0, "lower"), (float(ends[1]), -1.0, "upper")):
         if side * end > 0.0:
             build.report.add(

@@ -13,10 +13,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from carom.geometry import quaternion
-from carom.io.models.build import Build, Coordinate
+from carom.io.models.build import Build
 from carom.io.models.links import Link, name_of
 from carom.io.models.report import need_mujoco
 from carom.io.models.state import point_velocity
+from carom.results.robot import Coordinate
 from carom.scene import joints
 from carom.scene.bodies import Body, Ground
 from carom.scene.joints import JointDefinition
@@ -145,8 +146,10 @@ def _add(build: Build, group: Group, parent: Body | Ground, child) -> None:
         if isinstance(group.definition, joints.Spherical):
             build.balls[j] = joint
         else:
-            start = float(build.data.qpos[build.model.jnt_qposadr[j]])
-            build.coordinates[j] = Coordinate(joint, index, sign, start)
+            places = int(build.model.jnt_qposadr[j]), int(build.model.jnt_dofadr[j])
+            start, row = float(build.data.qpos[places[0]]), len(build.coordinates)
+            name = name_of(build.model, "joint", j)
+            build.coordinates[j] = Coordinate(name, joint, index, sign, start, row, *places)
 
 
 def in_body(body: Body | Ground, position, orientation) -> tuple[np.ndarray, np.ndarray]:

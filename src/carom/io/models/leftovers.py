@@ -8,12 +8,7 @@ from carom.io.models.links import called
 from carom.io.models.report import Report, need_mujoco
 
 #: parts listed by name: accessor of the model, count, description, replacement in the scene
-LISTED = (
-    ("actuator", "nu", "actuators are not represented", "exerts no force"),
-    ("tendon", "ntendon", "tendons are not represented", "left out"),
-    ("skin", "nskin", "is only visible", "left out"),
-    ("sensor", "nsensor", "sensors are not represented", "use the solution"),
-)
+LISTED = (("skin", "nskin", "is only visible", "left out"),)
 #: arrays whose nonzero values are left out, if this version of MuJoCo has them
 NOT_ZERO = (
     ("joint", "jnt_stiffnesspoly", "a spring that is not linear", "only its linear part is used"),

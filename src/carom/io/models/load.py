@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
+from carom.io.models.actuators import add_actuators
 from carom.io.models.build import Build, Names
 from carom.io.models.contacts import add_contacts
 from carom.io.models.coordinates import add_coordinate_parts, add_mounts
@@ -22,8 +23,10 @@ from carom.io.models.model import Model
 from carom.io.models.overlaps import lift_out, pose
 from carom.io.models.reading import compiled_model
 from carom.io.models.report import Report
+from carom.io.models.robot import robot_of
 from carom.io.models.solids import Solid, add_standing, colour, covering, geoms_of
 from carom.io.models.state import as_it_acts, is_off, point_velocity, starting_data
+from carom.io.models.tendons import add_tendons, needs_link
 from carom.io.models.touching import Filter
 from carom.scene import forces
 from carom.scene.materials import IMPACT_LAWS
@@ -137,7 +140,8 @@ def load_model(
     model = compiled_model(source, free_root, package_dirs, report)
     motions = motions_of(model, mocap)
     acts = as_it_acts(model, motions)
-    light = LIGHT_IN_LOOPS if motions or np.any(acts.eq_active0) else LIGHT
+    lines = any(needs_link(acts, t) for t in range(acts.ntendon))
+    light = LIGHT_IN_LOOPS if lines or motions or np.any(acts.eq_active0) else LIGHT
     data = starting_data(acts, keyframe, qpos, qvel)
     build, links = _new_build(acts, data, report, light, max_hull_vertices)
     restitution = _restitution(model, restitution, report)
@@ -157,6 +161,7 @@ def load_model(
     _add_gravcomp(build)
     add_coordinate_parts(build, limit_restitution, impact_law, armature)
     add_mounts(build, jointed)
+    motors = add_actuators(build, add_tendons(build, limit_restitution, impact_law))
     add_equalities(build)
     if contacts:
         moving = [
@@ -166,6 +171,7 @@ def load_model(
         solids = [*moving, *standing]
         add_contacts(build, solids, rules, restitution, friction, impact_law, overlaps == "refuse")
     report_leftovers(model, motions, report)
+    build.scene._robot = robot_of(build, links, motors)
     return _finished(build, model, links, covers, restitution)
 
 
@@ -237,16 +243,14 @@ def _finished(build: Build, m, links, covers, restitution: float) -> Model:
     for link in links:
         for g in covers[link.body][1]:
             build.geoms[g] = build.moving(link.body)
+    robot = build.scene.robot
+    assert robot is not None
     return Model(
         scene=build.scene,
         report=build.report,
         bodies={name_of(m, "body", b): build.carrier(b) for b in range(m.nbody)},
-        joints={name_of(m, "joint", j): c for j, c in build.coordinates.items()},
+        joints=robot.joints,
         geoms={name_of(m, "geom", g): part for g, part in sorted(build.geoms.items())},
         restitution=restitution,
         mujoco=m,
-        _start=build.data.qpos.copy(),
-        _links=links,
-        _coordinates=build.coordinates,
-        _balls=build.balls,
     )

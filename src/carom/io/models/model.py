@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from carom import checks
-from carom.geometry import quaternion
-from carom.io.models.build import Coordinate
-from carom.io.models.links import Link
 from carom.io.models.report import Report
+from carom.results.robot import Coordinate, Keyframe, Motor, Robot
+from carom.results.sensors import Sensor
 from carom.results.solution import Solution
+from carom.results.state import SystemState
 from carom.scene.bodies import Body, Ground, HalfSpace
-from carom.scene.joints import Joint
 from carom.scene.scene import Scene
 
 
@@ -48,55 +47,53 @@ class Model:
     geoms: dict[str, Body | HalfSpace]
     restitution: float
     mujoco: Any
-    _start: np.ndarray = field(repr=False)
-    _links: list[Link] = field(repr=False)
-    _coordinates: dict[int, Coordinate] = field(repr=False)
-    _balls: dict[int, Joint] = field(repr=False)
 
-    def qpos(self, solution) -> np.ndarray:
-        """Return the coordinates (T, nq) of the model at the saved times of a solution, as in MuJoCo.
+    @property
+    def actuators(self) -> Mapping[str, Motor]:
+        """Actuators by name: their `length`, `control` and `force`."""
+        return self._robot.actuators
 
-        Set ``data.qpos`` to a row and call ``mujoco.mj_forward`` to draw the motion, or to get sites and
-        sensors.
+    @property
+    def sensors(self) -> Mapping[str, Sensor]:
+        """Sensors by name; also ``solution["gyro"]`` and ``run.state["gyro"]``."""
+        return self._robot.sensors
+
+    @property
+    def keyframes(self) -> Mapping[str, Keyframe]:
+        """Keyframes by name: `qpos`, `qvel` and `ctrl`; for `Run.reset`."""
+        return self._robot.keyframes
+
+    def qpos(self, solution: Solution | SystemState) -> np.ndarray:
+        """Return the coordinates of the model, as MuJoCo's ``data.qpos``.
+
+        Set ``data.qpos`` to a row and call ``mujoco.mj_forward`` to draw the motion.
+
+        Parameters
+        ----------
+        solution : Solution or SystemState
+            A solution, also one from a file: (T, nq) at its saved times; or ``run.state``: (nq,).
         """
-        checks.instance("solution", solution, (Solution,))
-        names = [[body.name for body in scene.bodies] for scene in (solution.scene, self.scene)]
-        if names[0] != names[1]:
-            raise ValueError(f"solution must be of the scene of this model, got {solution!r}")
-        m = self.mujoco
-        q = np.tile(self._start, (len(solution.t), 1))
-        for j, coordinate in self._coordinates.items():
-            q[:, m.jnt_qposadr[j]] = coordinate.of(solution)[0]
-        for j, joint in self._balls.items():
-            first = int(m.jnt_qposadr[j])
-            q[:, first : first + 4] = _ball(solution, joint, self._start[first : first + 4])
-        moved = {j for j in range(m.njnt)} - self._coordinates.keys() - self._balls.keys()
-        for link in self._links:
-            j = int(m.body_jntadr[link.body])
-            if j in moved:  # a free joint
-                first, body = int(m.jnt_qposadr[j]), self.scene[link.name]
-                turn = solution.orientation[:, body.index]
-                origin = solution.position[:, body.index] - quaternion.rotate(turn, link.centre)
-                q[:, first : first + 3], q[:, first + 3 : first + 7] = origin, turn
-        return q
+        return self._robot.qpos(solution)
+
+    def qvel(self, solution: Solution | SystemState) -> np.ndarray:
+        """Return the velocities of the model, as MuJoCo's ``data.qvel``: (T, nv) or (nv,), as `qpos`."""
+        return self._robot.qvel(solution)
+
+    def ctrl(self, solution: Solution | SystemState) -> np.ndarray:
+        """Return the controls of the actuators, as MuJoCo's ``data.ctrl``: (T, nu) or (nu,), as `qpos`.
+
+        Those of a saved time are the ones that acted until then.
+        """
+        return self._robot.ctrl(solution)
+
+    @property
+    def _robot(self) -> Robot:
+        robot = self.scene.robot
+        assert robot is not None
+        return robot
 
     def __str__(self) -> str:
         return f"{self.scene}\n\nnot as in the model:\n{self.report}"
 
     def __repr__(self) -> str:
         return f"<Model: {self.scene!r}, {len(self.report)} entries in its report>"
-
-
-def _ball(solution, joint: Joint, start: np.ndarray) -> np.ndarray:
-    """Return the quaternion (T, 4) of a ball joint: q0 C0^-1 P0 P^-1 C, of parent P and child C."""
-    shape = solution.orientation[:, joint.child.index].shape
-    child = solution.orientation[:, joint.child.index]
-    turned = quaternion.multiply(
-        np.broadcast_to(start, shape),
-        np.broadcast_to(quaternion.conjugate(joint.child.orientation), shape),
-    )
-    if isinstance(joint.parent, Body):
-        turned = quaternion.multiply(turned, np.broadcast_to(joint.parent.orientation, shape))
-        back = quaternion.conjugate(solution.orientation[:, joint.parent.index])
-        turned = quaternion.multiply(turned, back)
-    return quaternion.multiply(turned, child)

@@ -16,10 +16,10 @@ from carom.stepping.thresholds import CROWD_ERROR, CROWD_GAIN
 @kernel
 def energy_gained(model, data, h, loaded):
     """Return the gain of kinetic and potential energy of the bodies."""
-    system, start, end, clock = model.system, data.state, data.work.trial, data.clocks[0]
+    system, start, end, step = model.system, data.state, data.work.trial, data.work.step[0]
     if not loaded:
         return gained_in_flight(system, start, end)
-    t = clock.begin + clock.spent
+    t = step.begin + step.spent
     before, low, _ = energies(system, start, t)
     after, high, _ = energies(system, end, t + h)
     return (after + high) - (before + low)
@@ -42,7 +42,7 @@ def off(model, data, k, gained):
     for b in range(start.shape[0]):
         size += kinetic_of(system.bodies[b], start[b]) + weigh(system, b, start, end)
     for i in range(k):
-        u, p = crowd.spots[i].before, crowd.spots[i].impulse
+        u, p = crowd.closed[i].before, crowd.closed[i].impulse
         w = contact_velocity(crowd.points[0][i], end)
         for j in range(3):
             work += 0.5 * p[j] * (u[j] + w[j])

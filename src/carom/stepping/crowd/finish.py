@@ -30,7 +30,7 @@ def finish(model, data, k, h, fall, residual):
     tolerance = rest_speed(controls, fall * h, residual, k, FEW_REST)
     impacts, pressing, rubbing = 0.0, 0.0, 0.0
     for i in range(k):
-        spot, point = crowd.spots[i], crowd.points[0][i]
+        spot, point = crowd.closed[i], crowd.points[0][i]
         p, u = spot.impulse, spot.before
         w = contact_velocity(point, end)
         normal = 0.5 * p[0] * (u[0] + w[0]) if spot.turns == 0 else 0.0
@@ -46,9 +46,9 @@ def finish(model, data, k, h, fall, residual):
     # less than these products; the caller assigns the rest (`carom.stepping.crowd.balance.take_over`)
     pressing, rubbing = min(0.0, pressing + max(0.0, rubbing)), min(0.0, rubbing)
     impacts = min(0.0, impacts)
-    if k > 0 and clock.whole_at != clock.step + 1:
+    if k > 0 and data.work.step[0].whole == 0:
         clock.whole += 1
-        clock.whole_at = clock.step + 1
+        data.work.step[0].whole = 1
     clock.impacts += impacts
     clock.friction += rubbing
     clock.bounces += pressing
@@ -64,8 +64,8 @@ def finish(model, data, k, h, fall, residual):
             active.carries[active.points[i].feature] = 1
     active.count[0] = count
     for i in range(k):  # in event-driven steps these contacts are checked first
-        active.contact_states[crowd.spots[i].contact].near = 1
-        active.contact_states[crowd.spots[i].contact].leaving = 0
+        active.contact_states[crowd.closed[i].contact].near = 1
+        active.contact_states[crowd.closed[i].contact].leaving = 0
     return impacts + pressing + rubbing
 
 
@@ -73,7 +73,7 @@ def finish(model, data, k, h, fall, residual):
 def write_impact(model, data, i, k, w, pressure, rubbing):
     """Write the row of an impact without duration; k points share the impulses of the step."""
     crowd, clock, records = data.crowd, data.clocks[0], data.records
-    spot = crowd.spots[i]
+    spot = crowd.closed[i]
     block_of_point(crowd.problem, i, records.impact[clock.struck].W)
     blow = Blow(
         together=max(2, k), before=three(spot.before, 0), after=w, impulse=three(spot.impulse, 0),
@@ -94,7 +94,7 @@ def list_active(model, data, k, h, tolerance):
     for i in range(active.count[0]):
         crowd.follows[i] = 0  # 1 if a point stays active
     for i in range(k):
-        spot, point = crowd.spots[i], crowd.points[1][i]
+        spot, point = crowd.closed[i], crowd.points[1][i]
         p, c = spot.impulse, spot.contact
         contact, x = system.contacts[c], end[point.a].x
         if spot.turns > 0:
@@ -133,7 +133,7 @@ def list_active(model, data, k, h, tolerance):
 @kernel
 def take_torque(crowd, spot, factor):
     """Write the torque of rolling or of pivoting friction to its active point."""
-    place, p = crowd.spots[spot.parent].place, spot.impulse
+    place, p = crowd.closed[spot.parent].place, spot.impulse
     if place < 0:
         return
     torque = crowd.active[place].torque

@@ -35,10 +35,10 @@ def fly(model, data, method, h, loaded, cut):
     With `cut` the code is `TOO_LONG` if the energy error of this motion is larger than a step may have.
     """
     system, active, now, crowd, work = model.system, data.active, data.state, data.crowd, data.work
-    clock, search, code, loads, friction = data.clocks[0], work.search[0], 0, 0.0, 0.0
+    search, code, loads, friction = work.search[0], 0, 0.0, 0.0
     if loaded:
         count, active.count[0] = active.count[0], 0
-        work.result[0].start = clock.begin + clock.spent
+        work.result[0].start = work.step[0].begin + work.step[0].spent
         applied, code = step(method, system, active, now, h, work.trial, work)
         search.applied, search.friction = applied, 0.0
         if rubs(system) and code == 0:
@@ -47,14 +47,14 @@ def fly(model, data, method, h, loaded, cut):
             search.applied += work.result[0].applied
         for b in range(now.shape[0]):
             copy_state(work.trial[b], crowd.flight[b])
-            halfway(now[b], crowd.flight[b], work.middle[b])
+            halfway(now[b], crowd.flight[b], crowd.flight_middle[b])
         if code == 0 and cut:  # forces may be too stiff for a step of this length
             named, watch = search.applied + search.friction, data.watch[0]
             off, grows = unbalanced(
                 system, active, now, work.trial, named, work.result[0].start, h, watch
             )
             code = TOO_LONG if grows or off > 1.0 else 0
-        loads, friction = power_of_path(system, h, now, crowd.flight, work)
+        loads, friction = power_of_path(system, h, now, crowd.flight, crowd.middle, work)
         active.count[0] = count
     else:
         for b in range(now.shape[0]):
@@ -87,19 +87,19 @@ def friction_power(system, state):
 
 
 @kernel
-def power_of_path(system, h, start, end, work):
+def power_of_path(system, h, start, end, middle, work):
     """Return P_start + 4 P_middle + P_end of loads, and of friction in joints, on a path of linear velocities.
 
     Times h/6 this is the work, by Simpson's rule: the power of dampers is quadratic in time.
     """
     result, begin = work.result[0], work.result[0].start
     for b in range(start.shape[0]):
-        halfway(start[b], end[b], work.stage[b])
+        halfway(start[b], end[b], middle[b])
     result.time = begin
     loads, friction = applied_wrenches(system, start, False, work), friction_power(system, start)
     result.time = begin + 0.5 * h
-    loads += 4.0 * applied_wrenches(system, work.stage, False, work)
-    friction += 4.0 * friction_power(system, work.stage)
+    loads += 4.0 * applied_wrenches(system, middle, False, work)
+    friction += 4.0 * friction_power(system, middle)
     result.time = begin + h
     loads += applied_wrenches(system, end, False, work)
     return loads, friction + friction_power(system, end)
@@ -135,8 +135,8 @@ def follow_path(system, h, start, end, crowd, work):
     A damper then acts on the speed with contacts. Return whether there is a difference.
     """
     for b in range(start.shape[0]):
-        halfway(start[b], end[b], work.stage[b])
-    if not difference_of_loads(system, h, work.stage, work.middle, work):
+        halfway(start[b], end[b], crowd.middle[b])
+    if not difference_of_loads(system, h, crowd.middle, crowd.flight_middle, work):
         return False
     solve(system, crowd.flight, False, work)
     for b in range(start.shape[0]):

@@ -36,11 +36,11 @@ def find_points(model, data, h, fall, wide):
     if k < 0:
         return k
     for b in range(n):
-        halfway(now[b], crowd.flight[b], work.stage[b])
+        halfway(now[b], crowd.flight[b], crowd.middle[b])
     place_all(system, 0, k, crowd.flight, crowd, crowd.points[1], work)
     for i in range(k):
-        crowd.spots[i].left = crowd.points[1][i].gap
-    place_all(system, 0, k, work.stage, crowd, crowd.points[0], work)
+        crowd.closed[i].left = crowd.points[1][i].gap
+    place_all(system, 0, k, crowd.middle, crowd, crowd.points[0], work)
     if n > 1:
         place_all(system, 0, k, now, crowd, crowd.points[1], work)
     note_drift(active, k, n > 1, now, crowd)
@@ -57,19 +57,19 @@ def find_impulses(model, data, k, h, fall, patient):
     crowd, work, clock, n = data.crowd, data.work, data.clocks[0], data.state.shape[0]
     pose(system, active, k, h, fall, now, crowd, work)
     tolerance = ERROR_SHARE * controls.rest * fall * h
-    most = left(controls, clock, COUNT_BLOCKS) if patient else 0.0
-    gamma, residual = solve(system, crowd, k, n, tolerance, most, clock)
+    most = left(controls, work.step[0], COUNT_BLOCKS) if patient else 0.0
+    gamma, residual = solve(system, data, k, tolerance, most)
     answer(system, k, gamma, crowd, work)
     gain_all(crowd, work)
     clock.trials += 1
     clock.contact_steps += 1
-    clock.since += 10.0 * (k + n)
+    work.step[0].since += 10.0 * (k + n)
     if n > 1 and bounces_give(k, crowd, work.trial):
-        more = limit_bounces(system, k, n, tolerance, most, crowd, work, clock)
+        more = limit_bounces(system, data, k, tolerance, most)
         residual = max(residual, more)
     for i in range(k):
         for j in range(3):
-            crowd.spots[i].impulse[j] = crowd.p[3 * i + j]
+            crowd.closed[i].impulse[j] = crowd.p[3 * i + j]
     return residual
 
 
@@ -86,37 +86,38 @@ def bounces_give(k, crowd, end):
     """Return whether the impulses add energy and some point strikes."""
     total, size, strikes = 0.0, 0.0, False
     for i in range(k):
-        one = work_of(i, crowd.p, crowd.spots[i].before, contact_velocity(crowd.points[0][i], end))
+        one = work_of(i, crowd.p, crowd.closed[i].before, contact_velocity(crowd.points[0][i], end))
         total, size = total + one, size + abs(one)
-        strikes = strikes or crowd.spots[i].strikes == 1
+        strikes = strikes or crowd.closed[i].strikes == 1
     return strikes and total > REMAINDER * size
 
 
 @kernel
-def limit_bounces(system, k, n, tolerance, most, crowd, work, clock):
+def limit_bounces(system, data, k, tolerance, most):
     """Reduce the restitution of all impacts of the piece by one factor, so that together they add no energy.
 
     The impulses p_0 without restitution lose energy. p = p_0 + s (p_e - p_0) is in the cones, and with it no
     point approaches. The work of p is quadratic in s, and its root is the greatest s without a gain of energy.
     """
+    crowd, work = data.crowd, data.work
     full, end, problem = crowd.bouncing, work.trial, crowd.problem
     for i in range(3 * k):
         full[i] = crowd.p[i]
     for i in range(k):  # remove the bounds of restitution, and store w with restitution
-        spot = crowd.spots[i]
+        spot = crowd.closed[i]
         w = contact_velocity(crowd.points[0][i], end)
         if spot.strikes == 1 and spot.bound + spot.drift[0] > 0.0:
             crowd.c[3 * i] += spot.bound + spot.drift[0]
         spot.after[0], spot.after[1], spot.after[2] = w
-    gamma, residual = solve(system, crowd, k, n, tolerance, most, clock)
+    gamma, residual = solve(system, data, k, tolerance, most)
     answer(system, k, gamma, crowd, work)
     gain_all(crowd, work)
     a, b, c = 0.0, 0.0, 0.0  # coefficients of the work a + b s + c s^2
     for i in range(k):
-        u, w = crowd.spots[i].before, contact_velocity(crowd.points[0][i], end)
+        u, w = crowd.closed[i].before, contact_velocity(crowd.points[0][i], end)
         for j in range(3):
             p, d = crowd.p[3 * i + j], full[3 * i + j] - crowd.p[3 * i + j]
-            dw = crowd.spots[i].after[j] - w[j]
+            dw = crowd.closed[i].after[j] - w[j]
             a += 0.5 * p * (u[j] + w[j])
             b += 0.5 * (d * (u[j] + w[j]) + p * dw)
             c += 0.5 * d * dw
@@ -164,7 +165,7 @@ def impose(model, data, k, h):
 
 
 @kernel
-def lift_others(system, k, depth, crowd, work):
+def lift_others(system, active, k, depth, crowd, work):
     """Move bodies apart where other features are inside by more than `depth`; keep angular momenta.
 
     Such a feature was no candidate and has no impulse, for example a corner that has come over an edge of a
@@ -172,9 +173,9 @@ def lift_others(system, k, depth, crowd, work):
     """
     end, holds = work.trial, True
     for b in range(end.shape[0]):
-        copy_state(end[b], work.stage[b])
+        copy_state(end[b], crowd.pressed[b])
     for _ in range(LIFTS):
-        last = gather_sunk(system, k, depth, end, crowd, work)
+        last = gather_sunk(system, active, k, depth, end, crowd, work)
         if last < 0:
             return False, holds
         if last == k:
@@ -182,7 +183,7 @@ def lift_others(system, k, depth, crowd, work):
         place_all(system, k, last, end, crowd, crowd.points[0], work)
         write_responses(system, k, last, crowd, work)
         holds = onto_surfaces(system, last, end.shape[0], end, crowd, work) <= RESOLUTION
-    respin(system, work.stage, end)
+    respin(system, crowd.pressed, end)
     project_velocity(system, end, True, work)
     return True, holds
 

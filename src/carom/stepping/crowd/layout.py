@@ -55,7 +55,7 @@ SPOTS = 8
 class Crowd(NamedTuple):
     """Up to K points of N bodies, and up to P active points. Vectors have rows n, t1, t2 for each point."""
 
-    spots: np.recarray  # (K,) SPOT
+    closed: np.recarray  # (K,) SPOT
     points: np.recarray  # (2, K) POINT: in the middle of the step; at its end
     c: np.ndarray  # (3K,) velocities without impulses minus their bounds
     p: np.ndarray  # (3K,) impulses
@@ -65,6 +65,9 @@ class Crowd(NamedTuple):
     mixing: Mixing
     graph: Graph
     flight: np.recarray  # (N,) STATE at the end of the step without contacts
+    flight_middle: np.recarray  # (N,) STATE halfway there, for loaded bodies
+    middle: np.recarray  # (N,) STATE halfway on a path
+    pressed: np.recarray  # (N,) STATE at the end of the step, before bodies are moved apart
     active: np.recarray  # (P,) ACTIVE_POINT after the step
     follows: np.ndarray  # (P,) next active point of the same contact, -1 after the last
     parent: np.ndarray  # (N,) in the union-find of bodies in contact
@@ -91,10 +94,12 @@ def new_crowd(bodies: int, active: int, points: int, joined: int = 0) -> Crowd:
         count=whole(4), body=whole((points, 3)), other=whole(others),
         near=whole((bodies, bodies // WORD + 1)), degree=whole(bodies), rank=whole(bodies),
     )  # fmt: skip
+    flight, flight_middle, middle, pressed = table(STATE, 4, bodies)
     return Crowd(
-        spots=table(SPOT, points), points=table(POINT, 2, points), c=np.zeros(3 * points),
+        closed=table(SPOT, points), points=table(POINT, 2, points), c=np.zeros(3 * points),
         p=np.zeros(3 * points), lift=np.zeros(points), bouncing=np.zeros(3 * points),
-        problem=problem, mixing=new_mixing(points), graph=graph, flight=table(STATE, bodies),
+        problem=problem, mixing=new_mixing(points), graph=graph, flight=flight,
+        flight_middle=flight_middle, middle=middle, pressed=pressed,
         active=table(ACTIVE_POINT, active), follows=whole(active), parent=whole(bodies),
         speed=np.zeros((2, bodies)),
     )  # fmt: skip
@@ -108,6 +113,6 @@ def no_crowd() -> Crowd:
 
 def roomier_crowd(crowd: Crowd) -> Crowd:
     """Return the workspace for twice as many points."""
-    points = len(crowd.spots)
+    points = len(crowd.closed)
     joined = 1 + len(crowd.problem.other) // points
     return new_crowd(len(crowd.flight), len(crowd.active), 2 * points, joined)

@@ -20,7 +20,7 @@ def pose(system, active, k, h, fall, start, crowd, work):
     alone = start.shape[0] == 1
     write_responses(system, 0, k, crowd, work)
     for i in range(k):
-        spot, point = crowd.spots[i], crowd.points[0][i]
+        spot, point = crowd.closed[i], crowd.points[0][i]
         contact, p = system.contacts[spot.contact], crowd.p
         spot.before[0], spot.before[1], spot.before[2] = contact_velocity(point, start)
         free = contact_velocity(point, crowd.flight)
@@ -57,7 +57,7 @@ def note_drift(active, k, several, start, crowd):
     step has order 2 as long as there are no impacts and modes do not change.
     """
     for i in range(k):
-        spot = crowd.spots[i]
+        spot = crowd.closed[i]
         spot.drift[0], spot.drift[1], spot.drift[2] = 0.0, 0.0, 0.0
         if not (several and spot.active >= 0 and spot.turns == 0):
             continue

@@ -30,23 +30,21 @@ SPLIT, LONG_SPLIT = 100, 1000
 
 
 @kernel
-def solve(system, crowd, k, n, tolerance, left, clock):
+def solve(system, data, k, tolerance, left):
     """Solve for the scaled impulses; return their scale, and the residual [m/s].
 
     More than the usual work is done while the step has products with blocks `left`: a sweep and an iteration
     of alternating directions take one for each contact, factors one for each update and four for each contact.
     """
+    crowd, n, counts = data.crowd, data.state.shape[0], data.work.step[0]
     work = crowd.problem
     work.count[o.ITERATIONS] = 0
     gamma = scale_vectors(work, k, crowd.c, crowd.p)
     most = max(ALLOWED * k, min(left, PATIENT * ALLOWED * k))
     speed = greatest_speed(crowd, k) / gamma
     r, goal, done = sweep_until(system, crowd, k, max(tolerance / gamma, RESIDUAL * speed), FIRST)
-    enough, good = (
-        max(tolerance / gamma, goal, RESIDUAL * speed),
-        max(goal, limits.SLOW_RESIDUAL * speed),
-    )
-    good = max(good, CROWD_REST * tolerance / gamma)
+    enough = max(tolerance / gamma, goal, RESIDUAL * speed)
+    good = max(goal, limits.SLOW_RESIDUAL * speed, CROWD_REST * tolerance / gamma)
     spent, least, turn, idle = done * k, r, 0, 0
     p, kept = work.vector[o.ITERATE], work.vector[o.START_BEST]
     copy(k, p, kept)
@@ -80,9 +78,9 @@ def solve(system, crowd, k, n, tolerance, left, clock):
             least = r
         else:
             copy(k, kept, p)
-    clock.rounds += done
-    clock.since += 0.2 * spent
-    clock.counts[COUNT_BLOCKS] += spent
+    data.clocks[0].rounds += done
+    counts.since += 0.2 * spent
+    counts.counts[COUNT_BLOCKS] += spent
     return gamma, gamma * least
 
 
@@ -91,7 +89,7 @@ def greatest_speed(crowd, k):
     """Return the greatest normal or tangential velocity of a point at the start [m/s]."""
     most = 0.0
     for i in range(k):
-        u = crowd.spots[i].before
+        u = crowd.closed[i].before
         most = max(most, abs(u[0]), abs(u[1]), abs(u[2]))
     return most
 

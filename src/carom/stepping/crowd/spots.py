@@ -5,19 +5,18 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.contact.closed_points import apart
-from carom.contact.depth import least_gap
-from carom.contact.pair_point import (
-    find_touches,
-    list_touches,
-    own_point,
-    smaller,
-    which_touch,
-    write_touch,
+from carom.contact.closed_points import (
+    add_stop,
+    add_touches,
+    add_vertices,
+    apart,
+    write_turning,
 )
+from carom.contact.depth import least_gap
+from carom.contact.pair_point import list_touches, smaller, which_touch, write_touch
 from carom.contact.place_of_other import on_half_space
 from carom.contact.stop import place_stop
-from carom.contact.thresholds import ACTIVE_REACH, REACH
+from carom.contact.thresholds import ACTIVE_REACH
 from carom.dynamics.thresholds import EDGE_JUMP
 from carom.geometry.rotation import norm
 from carom.kinematics.contact_point import contact_velocity, place
@@ -46,38 +45,37 @@ def gather(system, active, h, fall, wide, state, crowd, work):
     k, quicker, flight = 0, wide * (3.0 if state.shape[0] == 1 else 1.0), crowd.flight
     chain(system, active, crowd)
     for c in range(system.contacts.shape[0]):
-        contact = system.contacts[c]
+        contact, first = system.contacts[c], k
         if contact.touches == STOP:
-            first = k
-            k = add_stop(system, c, h, wide * fall, state, k, crowd, work)
-            if k < 0:
-                return -1
-            if k > first:
-                find_active(active, crowd.spots[first], crowd)
-            continue
-        speed = max(closing_speed(contact, state), closing_speed(contact, flight))
-        if wide > 1.0:  # also with the velocities from the impulses found before
-            speed = max(speed, closing_speed(contact, work.trial))
-        reach = h * (quicker * speed + 2.0 * wide * fall * h)
-        if apart(system, contact, state, reach):
-            continue
-        first = k
-        if contact.touches == 0:
-            k = add_vertices(system, contact, c, reach, state, k, crowd, work)
+            if reaches_stop(system, contact, h, wide * fall, state, crowd, work):
+                k = add_stop(system, active, c, math.inf, state, k, crowd)
         else:
-            k = add_touches(system, contact, c, reach, state, k, crowd, work)
-        if k < 0:
-            return -1
+            speed = max(closing_speed(contact, state), closing_speed(contact, flight))
+            if wide > 1.0:  # also with the velocities from the impulses found before
+                speed = max(speed, closing_speed(contact, work.trial))
+            reach = h * (quicker * speed + 2.0 * wide * fall * h)
+            k = add_points(system, active, c, reach, state, k, crowd, work)
         for i in range(first, k):
-            find_active(active, crowd.spots[i], crowd)
-        k = add_turning(contact, first, k, crowd)
+            crowd.closed[i].gap = crowd.points[0][i].gap
+            find_active(active, crowd.closed[i], crowd)
+        k = add_turning(system, first, k, crowd)
         if k < 0:
             return -1
     return k
 
 
 @kernel
-def gather_sunk(system, k, depth, end, crowd, work):
+def add_points(system, active, c, reach, state, k, crowd, work):
+    """Add the points of a contact that are within reach; return the new count, -1 without room."""
+    if apart(system, system.contacts[c], state, reach):
+        return k
+    if system.contacts[c].touches == 0:
+        return add_vertices(system, active, c, reach, state, k, crowd)
+    return add_touches(system, c, reach, 0.0, state, k, crowd, work)
+
+
+@kernel
+def gather_sunk(system, active, k, depth, end, crowd, work):
     """Add to the k spots the points of contacts that penetrate by more than `depth` of the smaller body.
 
     Return the new count, -1 if there is no room.
@@ -89,89 +87,36 @@ def gather_sunk(system, k, depth, end, crowd, work):
             continue
         if least_gap(system, contact, end, work) >= -depth * smaller(contact):
             continue
-        if contact.touches == 0:
-            last = add_vertices(system, contact, c, 0.0, end, last, crowd, work)
-        else:
-            last = add_touches(system, contact, c, 0.0, end, last, crowd, work)
+        last = add_points(system, active, c, 0.0, end, last, crowd, work)
         if last < 0:
             return -1
     return last
 
 
 @kernel
-def add_turning(contact, first, k, crowd):
+def add_turning(system, first, k, crowd):
     """Add rolling and pivoting friction of the spots from `first`; return the new count, -1 without room."""
-    last = k
-    for i in range(first, last):
+    for i in range(first, k):
+        spot = crowd.closed[i]
         for turns in range(1, 3):
-            if contact.turning[turns - 1] > 0.0:
-                if k == crowd.spots.shape[0]:
+            if system.contacts[spot.contact].turning[turns - 1] > 0.0:
+                if k == crowd.closed.shape[0]:
                     return -1
-                take_turning(crowd.spots[i], crowd.spots[k], i, turns)
+                write_turning(i, turns, spot, crowd.closed[k])
+                crowd.closed[k].gap = spot.gap
                 k += 1
     return k
 
 
 @kernel
-def add_vertices(system, contact, c, reach, state, k, crowd, work):
-    """Add the vertices that may reach a half-space; return the new count, -1 if there is no room."""
-    point = work.point[0]
-    for i in range(contact.first, contact.last):
-        place(contact, system.vertices[i], state, point)
-        if point.gap <= reach:
-            if k == crowd.spots.shape[0]:
-                return -1
-            p = system.vertices[i]
-            take(crowd.spots[k], c, i, point.gap, p[0], p[1], p[2])
-            k += 1
-    return k
-
-
-@kernel
-def add_stop(system, c, h, fall, state, k, crowd, work):
-    """Add a stop if it may be reached; return the new count, -1 if there is no room."""
-    contact, point = system.contacts[c], work.point[0]
+def reaches_stop(system, contact, h, fall, state, crowd, work):
+    """Return whether a stop may be reached within a time h."""
+    point = work.placed[0]
     place_stop(system, contact, crowd.flight, point)
     after, rate = point.gap, abs(contact_velocity(point, crowd.flight)[0])
     place_stop(system, contact, state, point)
     rate = max(rate, abs(contact_velocity(point, state)[0]))
-    if min(point.gap, after) > h * (rate + 2.0 * fall * h):
-        return k
-    if k == crowd.spots.shape[0]:
-        return -1
-    take(crowd.spots[k], c, 0, point.gap, 0.0, 0.0, 0.0)
-    return k + 1
-
-
-@kernel
-def add_touches(system, contact, c, reach, state, k, crowd, work):
-    """Add the points that the kernels of pairs find; return the new count, -1 if there is no room."""
-    p = work.hit[0].point
-    count = find_touches(system, contact, state, max(reach, REACH * smaller(contact)), work)
-    for i in range(count):
-        touch = work.touches[i]
-        if touch.gap <= reach:
-            if k == crowd.spots.shape[0]:
-                return -1
-            own_point(contact, touch, state, p)
-            take(crowd.spots[k], c, touch.feature, touch.gap, p[0], p[1], p[2])
-            k += 1
-    return k
-
-
-@kernel
-def take(spot, c, feature, gap, p0, p1, p2):
-    """Write a point that may touch."""
-    spot.contact, spot.feature, spot.gap, spot.active, spot.turns = c, feature, gap, -1, 0
-    spot.point[0], spot.point[1], spot.point[2] = p0, p1, p2
-
-
-@kernel
-def take_turning(parent, spot, i, turns):
-    """Write the rolling (turns = 1) or pivoting (2) of spot i."""
-    p = parent.point
-    take(spot, parent.contact, parent.feature, parent.gap, p[0], p[1], p[2])
-    spot.turns, spot.parent, spot.active = turns, i, parent.active
+    return min(point.gap, after) <= h * (rate + 2.0 * fall * h)
 
 
 @kernel
@@ -202,11 +147,11 @@ def place_all(system, first_spot, k, state, crowd, points, work):
     """Write the points from `first_spot` to k in a state."""
     i = first_spot
     while i < k:
-        c = crowd.spots[i].contact
+        c = crowd.closed[i].contact
         contact = system.contacts[c]
         if contact.touches == 0:
-            place(contact, crowd.spots[i].point, state, points[i])
-            points[i].turns, points[i].length = crowd.spots[i].turns, contact.extent
+            place(contact, crowd.closed[i].point, state, points[i])
+            points[i].turns, points[i].length = crowd.closed[i].turns, contact.extent
             i += 1
             continue
         if contact.touches == STOP:
@@ -215,8 +160,8 @@ def place_all(system, first_spot, k, state, crowd, points, work):
             continue
         first = i
         count = list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
-        while i < k and crowd.spots[i].contact == c:
-            spot = crowd.spots[i]
+        while i < k and crowd.closed[i].contact == c:
+            spot = crowd.closed[i]
             t = which_touch(system, contact, count, spot.feature, spot.point, state, work)
             write_touch(contact, work.touches[t], state, points[i])
             points[i].turns, points[i].length = spot.turns, smaller(contact)

@@ -39,17 +39,11 @@ from carom.stepping.crowd.free_motion import (
     power_of_path,
     work_on_path,
 )
-from carom.stepping.crowd.impulses import (
-    find_impulses,
-    find_points,
-    impose,
-    lift_others,
-)
+from carom.stepping.crowd.impulses import find_impulses, find_points, impose, lift_others
 from carom.stepping.crowd.layout import SPOTS
 from carom.stepping.crowd.solve import greatest_speed
 from carom.stepping.record import finite, grow
 
-# greatest number of tries with pieces that may be cut; shortest piece, relative to the step
 CAREFUL = 300  # greatest number of tries with pieces that may be cut
 DEAR = 500.0  # products with blocks per active point that a step must still afford if a piece may be cut
 AGAIN = 16  # greatest number of searches for points: a row of bodies pushes one more each time
@@ -64,22 +58,22 @@ def step_crowd(model, data, method):
     it.
     """
     system, controls = model.system, model.controls
-    now, work, clocks = data.state, data.work, data.clocks
-    clock, result, search = clocks[0], work.result[0], work.search[0]
-    result.code = 0 if data.crowd.spots.shape[0] >= SPOTS else grow(clock, r.FULL_SPOTS)
+    now, work = data.state, data.work
+    step, result, search = work.step[0], work.result[0], work.search[0]
+    result.code = 0 if data.crowd.closed.shape[0] >= SPOTS else grow(step, r.FULL_SPOTS)
     if result.code != 0:
         return
-    if clock.spent == 0.0:
+    if step.spent == 0.0:
         search.pace = math.inf
-    while clock.spent < clock.length:
-        if clock.since > r.LONG:
+    while step.spent < step.length:
+        if step.since > r.LONG:
             result.code = r.PAUSE
             return
-        dt = min(piece(system, now, controls, clock.length - clock.spent), search.pace)
+        dt = min(piece(system, now, controls, step.length - step.spent), search.pace)
         while True:
-            clock.tries += 1
-            affordable = left(controls, clock, COUNT_BLOCKS) >= DEAR * data.active.count[0]
-            patient = clock.tries <= CAREFUL and affordable
+            step.tries += 1
+            affordable = left(controls, step, COUNT_BLOCKS) >= DEAR * data.active.count[0]
+            patient = step.tries <= CAREFUL and affordable
             careful = patient and dt > SHORTEST_CUT * controls.interval
             result.code = move_on(model, data, method, dt, patient, careful)
             if result.code == CONSTRAINTS_LOST and dt > SHORTEST_CUT * controls.interval:
@@ -90,10 +84,10 @@ def step_crowd(model, data, method):
         if result.code != 0:
             return
         search.pace = 2.0 * dt
-        if dt == clock.length - clock.spent:
-            clock.spent = clock.length
+        if dt == step.length - step.spent:
+            step.spent = step.length
         else:
-            clock.spent += dt
+            step.spent += dt
 
 
 @kernel
@@ -149,7 +143,7 @@ def move_on(model, data, method, h, patient, careful):
     applied, rubbed = 0.0, 0.0
     if loaded:
         search = work.search[0]
-        taken, rubbed = power_of_path(system, h, now, end, work)
+        taken, rubbed = power_of_path(system, h, now, end, crowd.middle, work)
         applied = driven + work_on_path(search.applied, h, loads, taken)
         rubbed = work_on_path(search.friction, h, rubbing, rubbed)
     gained = energy_gained(model, data, h, loaded) - applied - rubbed
@@ -158,7 +152,7 @@ def move_on(model, data, method, h, patient, careful):
 
     # the energy balance, and the persistent contacts from now on
     clock.residual = max(clock.residual, residual)
-    clock.now = clock.begin + clock.spent + h
+    clock.now = work.step[0].begin + work.step[0].spent + h
     impacts, friction, bounces = clock.impacts, clock.friction, clock.bounces
     named = finish(model, data, k, h, fall, residual)
     if k > 0:
@@ -190,16 +184,13 @@ def collide(model, data, h, fall, patient, careful):
     while True:
         k = find_points(model, data, h, fall, wide)
         if k < 0:
-            return grow(clock, r.FULL_SPOTS), k, 0.0, 0.0
+            return grow(work.step[0], r.FULL_SPOTS), k, 0.0, 0.0
         rows = r.MARGIN + k + data.active.count[0]
         if max(clock.event, clock.struck) + rows > data.records.event.shape[0]:
-            return grow(clock, r.FULL_EVENTS), k, 0.0, 0.0
+            return grow(work.step[0], r.FULL_EVENTS), k, 0.0, 0.0
         residual = find_impulses(model, data, k, h, fall, patient)
-        if (
-            careful
-            and residual
-            > limits.RESIDUAL_LIMIT * greatest_speed(crowd, k) + limits.RESIDUAL_LIMIT * fall * h
-        ):
+        most = limits.RESIDUAL_LIMIT * greatest_speed(crowd, k) + limits.RESIDUAL_LIMIT * fall * h
+        if careful and residual > most:
             return TOO_LONG, k, residual, 0.0  # a shorter piece is a different problem
         if careful and misses_bounce(system, k, h, fall, crowd):
             return TOO_LONG, k, residual, 0.0
@@ -214,9 +205,9 @@ def collide(model, data, h, fall, patient, careful):
         if times >= AGAIN or (wide == limits.SEARCH_LIMIT and k == before):
             if sunk > limits.MISSED_DEPTH and h > limits.MISSED_PIECE * model.controls.interval:
                 return TOO_LONG, k, residual, driven
-            room, holds = lift_others(system, k, RESOLUTION, crowd, work)
+            room, holds = lift_others(system, data.active, k, RESOLUTION, crowd, work)
             if not room:
-                return grow(clock, r.FULL_SPOTS), k, residual, driven
+                return grow(work.step[0], r.FULL_SPOTS), k, residual, driven
             return 0 if holds else CONSTRAINTS_LOST, k, residual, driven
         wide, before = min(limits.SEARCH_LIMIT, wide * limits.SEARCH_GROWTH), k
 
@@ -225,7 +216,7 @@ def collide(model, data, h, fall, patient, careful):
 def misses_bounce(system, k, h, fall, crowd):
     """Return whether a point closes within the piece and would bounce, so that an impact is missing."""
     for i in range(k):
-        spot = crowd.spots[i]
+        spot = crowd.closed[i]
         contact = system.contacts[spot.contact]
         if spot.turns == 0 and spot.gap > 0.0 and spot.left > 0.0 and spot.impulse[0] > 0.0:
             e = contact.restitution

@@ -31,8 +31,8 @@ def onto_surfaces(system, k, count, end, crowd, work):
         deepest, tiny = 0.0, 1.0
         for i in range(k):
             gap = crowd.points[1][i].gap
-            size = smaller(system.contacts[crowd.spots[i].contact])
-            moves = crowd.spots[i].turns == 0 and crowd.problem.link[i].local[0] > IMMOBILITY
+            size = smaller(system.contacts[crowd.closed[i].contact])
+            moves = crowd.closed[i].turns == 0 and crowd.problem.link[i].local[0] > IMMOBILITY
             if moves and gap < -PLACE_ERROR * size:
                 deepest, tiny = max(deepest, -gap), min(tiny, 0.1 * PLACE_ERROR * size)
         if deepest == 0.0:
@@ -57,7 +57,7 @@ def lift(system, k, tolerance, crowd, work):
         change = 0.0
         for place in range(k):
             i = place if turn % 2 == 0 else k - 1 - place
-            if crowd.spots[i].turns == 0 and problem.link[i].local[0] > IMMOBILITY:
+            if crowd.closed[i].turns == 0 and problem.link[i].local[0] > IMMOBILITY:
                 gap = crowd.points[1][i].gap
                 change = max(change, lift_one(problem, i, gap, lam))
         if change <= tolerance:

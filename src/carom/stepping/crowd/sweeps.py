@@ -51,7 +51,7 @@ def bound_torques(system, crowd, k):
     """Write the bounds d N of rolling and pivoting friction from the present normal impulses."""
     row, q = crowd.problem.contact, crowd.problem.vector[ITERATE]
     for i in range(k):
-        spot = crowd.spots[i]
+        spot = crowd.closed[i]
         if spot.turns > 0:
             d, parent = system.contacts[spot.contact].turning[spot.turns - 1], spot.parent
             most = d / crowd.points[0][i].length * row[parent].scale * q[3 * parent]

@@ -14,10 +14,10 @@ def begin_single(system, active, now, clocks, work, start):
     """Begin a step, unless it has begun already."""
     if start.begun[0] == 1:
         return
-    clock = clocks[0]
-    clock.first_touch, clock.tries = 0, 0
+    clock, step = clocks[0], work.step[0]
+    step.first_touch, step.first_event, step.tries, step.whole = 0, clock.event, 0, 0
     work.pair.state[0].searches = 0
-    clock.before = clock.impacts
+    step.impacts, step.owed = clock.impacts, 0.0
     if start.state.shape[0] == 0:  # the step is never repeated in another way
         return
     for c in range(active.contact_states.shape[0]):
@@ -32,12 +32,12 @@ def begin_single(system, active, now, clocks, work, start):
 
 
 @kernel
-def give_up_single(controls, clock, work):
-    """Give all bodies time-stepping steps, this one and some more; return False if they have them already."""
-    if work.body[0].whole_until > clock.step:
+def give_up_single(controls, number, work):
+    """Give all bodies time-stepping steps, `number` and some more; return False if they have them already."""
+    if work.body[0].whole_until > number:
         return False
     for b in range(work.body.shape[0]):
-        give_up_body(controls, clock, work.body[b])
+        give_up_body(controls, number, work.step[0], work.body[b])
     return True
 
 
@@ -54,7 +54,7 @@ def forget_single(system, active, now, clocks, work, start):
         active.points[i] = start.points[i]
     mark_vertices(active, 1)
     clocks[0] = start.clock[0]
-    start.begun[0] = 0
+    work.step[0].spent, work.step[0].paused, start.begun[0] = 0.0, 0, 0
     forget_turns(system)
     work.search[0].pending = 0
     regroup(system, active, work)

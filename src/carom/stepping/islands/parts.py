@@ -20,11 +20,11 @@ MANY, EACH = 24, 2
 
 
 @kernel
-def begin_step(system, active, now, length, clocks, work, islands):
+def begin_step(system, active, now, clocks, work, islands):
     """Find the islands of a step and fill their slots; return `READY`, or the arrays that must grow first."""
     plan, member = islands.plan[0], islands.member
     mark_active(active, work)
-    code = seek(system, active, now, length, work, islands)
+    code = seek(system, active, now, work.step[0].length, work, islands)
     if code == READY:
         code = number(system, active, now, work, islands)
     if code != READY:
@@ -55,7 +55,7 @@ def begin_step(system, active, now, length, clocks, work, islands):
     if plan.joined >= 0:
         enter_joined(system, islands.joined)
     plan.at, plan.entered, plan.planned = 0, 0, 1
-    clocks[0].before = clocks[0].impacts
+    work.step[0].impacts, work.step[0].owed, work.step[0].whole = clocks[0].impacts, 0.0, 0
     islands.clock[0] = clocks[0]
     return READY
 
@@ -114,14 +114,16 @@ def part_work(work, islands, i):
     n = b - a
     return Work(
         body=islands.memory[a:b], joint=work.joint, stages=work.stages, known=work.known[:n],
-        stage=work.stage[:n], trial=work.trial[:n], middle=work.middle[:n], first=work.first[:n],
-        point=work.point, pair=work.pair, touches=work.touches, solid_pose=work.solid_pose,
-        hit=work.hit, result=work.result, search=work.search, history=work.history,
+        stage=work.stage[:n], trial=work.trial[:n], part=work.part[:n], middle=work.middle[:n],
+        iterate=work.iterate[:n], mean=work.mean[:n], beside=work.beside[:n], origin=work.origin[:n],
+        struck=work.struck, placed=work.placed, pair=work.pair, touches=work.touches,
+        solid_pose=work.solid_pose, hit=work.hit, result=work.result, step=work.step, search=work.search,
+        history=work.history,
     )  # fmt: skip
 
 
 @kernel
-def enter(part, own, active, work, islands, begin, clock):
+def enter(part, own, active, work, islands, clock):
     """Begin with island `plan.at`: copy its active points, label its groups, and reset its clock."""
     i = islands.plan[0].at
     own.count[0] = 0
@@ -134,8 +136,10 @@ def enter(part, own, active, work, islands, begin, clock):
         active_point.contact = slot_of(islands, i, active_point)
         own.count[0] += 1
     regroup(part, own, work)
-    clock.spent, clock.in_step, clock.at_once, clock.now = 0.0, 0, 0, begin
-    clock.tries, work.pair.state[0].searches = 0, 0
+    step = work.step[0]
+    clock.now, clock.at_once, step.spent, step.tries = step.begin, 0, 0.0, 0
+    step.first_touch, step.first_event = clock.touched, clock.event
+    work.pair.state[0].searches = 0
     islands.plan[0].entered = 1
 
 
@@ -154,8 +158,8 @@ def slot_of(islands, i, active_point):
 
 
 @kernel
-def is_crowd(part, active, step, work):
-    """Return whether an island takes a time-stepping step: it is large, or the event-driven step failed lately.
+def choose(part, controls, active, number, work):
+    """Note whether an island moves as a crowd in step `number`: it is large, or has failed as events lately.
 
     It is large if bodies lie on each other at many points, two per body or more. Bodies that roll on a table or
     strike in flight move from event to event.
@@ -163,8 +167,11 @@ def is_crowd(part, active, step, work):
     n = part.bodies.shape[0]
     crowd = active.count[0] >= max(MANY, EACH * n)
     for b in range(n):
-        crowd = crowd or work.body[b].whole_until > step
-    return crowd
+        crowd = crowd or work.body[b].whole_until > number
+    work.step[0].crowd = 1 if crowd and controls.retry == 1 else 0
+    for b in range(n if work.step[0].crowd == 0 else 0):
+        if work.body[b].whole_until < number:
+            work.body[b].whole_for //= 2
 
 
 @kernel
@@ -175,33 +182,25 @@ def bodies_of_present(islands):
 
 
 @kernel
-def give_up(controls, islands, clock, work):
-    """Give the bodies of the present island time-stepping steps, this and some more; return False if they have.
+def give_up(controls, islands, number, work):
+    """Give the bodies of the island time-stepping steps, `number` and some more; return False if they have.
 
     The number doubles with each call in a row: 1, 2, 4, ... 128.
     """
-    first, at, new, step = islands.first, islands.plan[0].at, True, clock.step
+    first, at, new = islands.first, islands.plan[0].at, True
     for slot in range(first[0, at], first[0, at + 1]):
-        new = new and not work.body[islands.body_of[slot]].whole_until > step
+        new = new and not work.body[islands.body_of[slot]].whole_until > number
     for slot in range(first[0, at], first[0, at + 1] if new else 0):
-        give_up_body(controls, clock, work.body[islands.body_of[slot]])
+        give_up_body(controls, number, work.step[0], work.body[islands.body_of[slot]])
     return new
 
 
 @kernel
-def give_up_body(controls, clock, memory):
+def give_up_body(controls, number, step, memory):
     """Give a body time-stepping steps: this one and some more."""
     memory.whole_for = min(128, max(1, 2 * memory.whole_for))
-    memory.whole_until = clock.step + memory.whole_for
-    keep_count(controls, clock, memory)
-
-
-@kernel
-def recover(part, step, work):
-    """Record that an island moves from event to event."""
-    for b in range(part.bodies.shape[0]):
-        if work.body[b].whole_until < step:
-            work.body[b].whole_for //= 2
+    memory.whole_until = number + memory.whole_for
+    keep_count(controls, step, memory)
 
 
 @kernel
@@ -222,9 +221,9 @@ def leave(own, islands):
 
 
 @kernel
-def end_step(system, active, now, length, clock, work, islands):
-    """Write all islands back; move the bodies in free flight that have nothing near."""
-    plan, member = islands.plan[0], islands.member
+def end_step(system, active, now, number, work, islands):
+    """Write all islands back at the end of step `number`; move the bodies in free flight with nothing near."""
+    plan, member, length = islands.plan[0], islands.member, work.step[0].length
     for b in range(system.bodies.shape[0]):
         if member[b].kind == FLIES:
             free_flight(
@@ -237,7 +236,7 @@ def end_step(system, active, now, length, clock, work, islands):
     for slot in range(plan.used):
         contact_state = active.contact_states[islands.which[slot]]
         active.contact_states[islands.which[slot]] = islands.contact_states[slot]
-        contact_state.step = clock.step + 1
+        contact_state.step = number + 1
     for i in range(plan.kept):
         active.points[i] = islands.points[1, i]
     active.count[0] = plan.kept
@@ -247,7 +246,7 @@ def end_step(system, active, now, length, clock, work, islands):
 
 
 @kernel
-def forget_step(active, clocks, islands):
+def forget_step(active, clocks, work, islands):
     """Go back to the start of the step and drop all its results."""
     plan = islands.plan[0]
     for k in range(2):
@@ -259,5 +258,6 @@ def forget_step(active, clocks, islands):
         if active.points[i].touches == 0:
             active.carries[active.points[i].feature] = 1
     clocks[0] = islands.clock[0]
+    work.step[0].spent, work.step[0].paused = 0.0, 0
     plan.planned, plan.entered = 0, 0
     islands.carried[0] = 0

@@ -1,0 +1,69 @@
+"""The controls of the actuators of a run, as an array with names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom import checks
+from carom.control.applied import Applied
+
+
+class Controls:
+    """The controls (nu,) of the actuators of a run: by name, by number, or all at once.
+
+    A value outside the range of its actuator is kept as it is, and acts as the nearest value inside.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Names of the actuators, in their order.
+    """
+
+    def __init__(self, applied: Callable[[], Applied]):
+        self._of_run = applied  # a run that is reset has others
+        self.names = tuple(one.name for one in applied().commands)
+
+    @property
+    def _applied(self) -> Applied:
+        return self._of_run()
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __array__(self, dtype=None, copy=None) -> np.ndarray:
+        return np.array(self._applied.ctrl, dtype=dtype)
+
+    def __getitem__(self, which):
+        """Return the control of an actuator by its name, or what an array has at this place."""
+        return self._applied.ctrl[self._number(which) if isinstance(which, str) else which].copy()
+
+    def __setitem__(self, which, value: ArrayLike) -> None:
+        """Set the control of an actuator by its name, or a part of the array."""
+        wanted = self._applied.ctrl.copy()
+        if isinstance(which, str):
+            k = self._number(which)
+            if not self._applied.commands[k].parts:
+                raise ValueError(
+                    f"the actuator {which!r} is not represented in the scene; the report of the model says why"
+                )
+            wanted[k] = checks.number(f"ctrl[{which!r}]", value)
+        else:
+            wanted[which] = checks.real_array("ctrl", value, f"of {len(wanted)} controls")
+            checks.finite_array("ctrl", wanted, (len(wanted),))
+        for k in np.flatnonzero(wanted != self._applied.ctrl):
+            for part in self._applied.commands[k].parts:
+                self._applied.note(part.index, float(wanted[k]))
+        self._applied.ctrl[:] = wanted
+
+    def _number(self, name: str) -> int:
+        if name in self.names:
+            return self.names.index(name)
+        known = ", ".join(map(repr, self.names)) or "none"
+        near = checks.nearest(name, self.names)
+        raise KeyError(f"the run has no actuator {name!r}; it has {known}{near}")
+
+    def __repr__(self) -> str:
+        return f"<Controls: {dict(zip(self.names, self._applied.ctrl.tolist()))}>"

@@ -1,0 +1,545 @@
+"""A model in its own coordinates: its `qpos`, `qvel`, controls and sensors, in the order of MuJoCo.
+
+A scene that `load_model` has made has a `Robot`, which is stored with it. A hinge or a slide has the coordinate
+``q = start + sign * coordinate of the scene``; a ball joint has the quaternion of its child relative to its
+parent, and the angular velocity in axes of the child; a free joint has position and quaternion of the axes of
+its body, the velocity of their origin in world axes, and the angular velocity in axes of the body.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, is_dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from carom import arguments, checks, fields
+from carom.fields import Integer, Number, Value, Vector, keep
+from carom.geometry import quaternion
+from carom.results.joint_coordinates import TURN, Sides, sides_of
+from carom.scene import joints as j
+from carom.scene.bodies import Body, Ground
+from carom.scene.forces import AppliedForce
+from carom.scene.joints import Joint
+from carom.scene.more_forces import Actuator
+
+UNIT = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+def _array(name: str, value) -> np.ndarray:
+    return checks.finite_array(name, value, (None,))
+
+
+@arguments.known
+@dataclass(frozen=True, eq=False)
+class Coordinate:
+    """A coordinate of a hinge or a slide of the model: ``q = start + sign * coordinate of the scene``.
+
+    Attributes
+    ----------
+    name : str
+        Name of the joint in the model.
+    joint : Joint
+        Joint of the scene.
+    index : int
+        Index of the coordinate of this joint.
+    sign : float
+        1 or -1.
+    start : float
+        q at the start [rad or m].
+    row : int
+        Its number among the coordinates of the model; -1 of one that no model has.
+    position, velocity : int
+        Its places in `qpos` and in `qvel`.
+    """
+
+    name: str
+    joint: Joint
+    index: Integer = fields.integer(least=0)
+    sign: Number = fields.number()
+    start: Number = fields.number()
+    row: Integer = fields.integer(least=-1)
+    position: Integer = fields.integer(least=0)
+    velocity: Integer = fields.integer(least=0)
+
+    def of(self, solution) -> tuple[Any, Any]:
+        """Return q and its rate, as the model defines them.
+
+        Parameters
+        ----------
+        solution : Solution or SystemState
+            For a solution, also one from a file, q and rate are arrays (T,), with whole turns counted between
+            saved times; for the state of a run they are numbers, with the whole turns that the run has counted.
+        """
+        states = checked(solution)
+        q, rate = states.joint_coordinates(self.joint.name)
+        q, rate = q[..., self.index], rate[..., self.index]
+        turns = getattr(states, "_turns", None)
+        if (
+            turns is not None
+            and self.row >= 0
+            and self.joint.definition.coordinates[self.index] == "turn"
+        ):
+            q = q + TURN * round((turns[self.row] - q) / TURN)
+        return self.start + self.sign * q, self.sign * rate
+
+
+@dataclass(frozen=True, eq=False)
+class Ball:
+    """A ball joint of the model, with the places of its first numbers in `qpos` and in `qvel`."""
+
+    name: str
+    joint: Joint
+    position: Integer = fields.integer(least=0)
+    velocity: Integer = fields.integer(least=0)
+
+
+@dataclass(frozen=True, eq=False)
+class FreeBody:
+    """A body with a free joint: its mass centre in the axes of the model, and its places as of a `Ball`."""
+
+    name: str
+    body: Body
+    centre: Vector = fields.vector()
+    position: Integer = fields.integer(least=0)
+    velocity: Integer = fields.integer(least=0)
+
+
+@dataclass(frozen=True, eq=False)
+class Motor:
+    """An actuator of a model.
+
+    Attributes
+    ----------
+    name : str
+    parts : tuple of AppliedForce
+        Forces of the scene, with a `forces.Actuator` each: one, or one for each joint of a tendon; none of an
+        actuator that the scene does not represent.
+    terms : tuple of (Coordinate, float)
+        Coordinates and their factors in the length, ``sum of factor q``.
+    force_range : (2,) or None
+        Its own, without that of its joint.
+    """
+
+    name: str
+    parts: tuple[AppliedForce, ...]
+    terms: tuple[tuple[Coordinate, float], ...]
+    force_range: Value[np.ndarray | None, Any] = Value(_array, None)
+
+    def length(self, solution) -> tuple[Any, Any]:
+        """Return the length and its rate, as of `Coordinate.of`."""
+        states = checked(solution)
+        if not self.terms:
+            return 0.0, 0.0
+        pairs = [one.of(states) for one, _ in self.terms]
+        factors = [factor for _, factor in self.terms]
+        length, rate = (sum(f * x for f, x in zip(factors, column)) for column in zip(*pairs))
+        return length, rate
+
+    def control(self, solution) -> Any:
+        """Return the control, which is not clipped, as of `Coordinate.of`."""
+        states = checked(solution)
+        names = [one.name for one in commands(scene_of(states))]
+        return controls(states)[..., names.index(self.name)]
+
+    def force(self, solution) -> Any:
+        """Return the force of the actuator [N] or [N m], before its gear, as of `Coordinate.of`."""
+        states = checked(solution)
+        control = self.control(states)
+        if not self.parts:
+            return 0.0 * control
+        d, (one, _) = _actuator(self), self.terms[0]
+        q, rate = one.of(states)
+        if d.control_range is not None:
+            control = np.clip(control, *d.control_range)
+        force = d.affine(control, d.gear * one.sign * (q - one.start), d.gear * one.sign * rate)
+        return force if self.force_range is None else np.clip(force, *self.force_range)
+
+
+def checked(solution):
+    """Return a solution, or the state of a run."""
+    from carom.results.solution import Solution
+    from carom.results.state import SystemState
+
+    checks.instance("solution", solution, (Solution, SystemState))
+    return solution
+
+
+def scene_of(states):
+    """Return the scene of a solution or state."""
+    return states._scene
+
+
+def _actuator(motor: Motor) -> Actuator:
+    d = motor.parts[0].definition
+    assert isinstance(d, Actuator)
+    return d
+
+
+def commands(scene) -> list[Motor]:
+    """Return the actuators of a scene: those of its model, then others."""
+    own = [] if scene.robot is None else list(scene.robot.motors)
+    known = {part.index for one in own for part in one.parts}
+    for force in scene.forces:
+        d = force.definition
+        if isinstance(d, Actuator) and force.index not in known:
+            along = Coordinate(force.name, d.joint, d.coordinate, 1.0, 0.0, -1, 0, 0)
+            own.append(Motor(force.name, (force,), ((along, d.gear),), d.force_range))
+    return own
+
+
+def first_controls(motors: list[Motor]) -> np.ndarray:
+    """Return the controls (nu,) that actuators have until they are set."""
+    return np.array([_actuator(one).control if one.parts else 0.0 for one in motors])
+
+
+def columns(motors: list[Motor]) -> dict[int, int]:
+    """Return the place of each actuator among the controls by the index of its force."""
+    return {part.index: k for k, one in enumerate(motors) for part in one.parts}
+
+
+def controls(states) -> np.ndarray:
+    """Return the controls (nu,) of a state, or (T, nu) of a solution: those that acted until each time."""
+    if getattr(states, "_ctrl", None) is not None:
+        return states._ctrl
+    motors = commands(scene_of(states))
+    first = first_controls(motors)
+    if np.ndim(states.t) == 0:
+        return first
+    place, u = columns(motors), np.full((len(states.t), len(motors)), np.nan)
+    u[0] = first
+    for row, index, value in getattr(states._run, "history", None) or ():
+        if row < len(u) and index in place:
+            u[row, place[index]] = value
+    since = np.maximum.accumulate(np.where(np.isnan(u), 0, np.arange(len(u))[:, None]), axis=0)
+    return np.take_along_axis(u, since, axis=0)
+
+
+@dataclass(frozen=True, eq=False)
+class Keyframe:
+    """A named state of a model.
+
+    Attributes
+    ----------
+    name : str
+    qpos : (nq,)
+    qvel : (nv,)
+    ctrl : (nu,)
+    """
+
+    name: str
+    qpos: Value[np.ndarray, Any] = Value(_array)
+    qvel: Value[np.ndarray, Any] = Value(_array)
+    ctrl: Value[np.ndarray, Any] = Value(_array)
+
+
+class Motion(NamedTuple):
+    """Position, orientation, velocity and angular velocity (N, ...) of all bodies, and the turns of joints."""
+
+    position: np.ndarray
+    orientation: np.ndarray
+    velocity: np.ndarray
+    angular_velocity: np.ndarray
+    turns: np.ndarray | None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Robot:
+    """A model in its own coordinates, which its scene has as `Scene.robot`.
+
+    Its methods take a solution, also one from a file, and give arrays with time first; or ``run.state``, and
+    give the values at that time.
+
+    Attributes
+    ----------
+    start : (nq,)
+        `qpos` at the start.
+    coordinates : tuple of Coordinate
+    balls, frees : tuples
+        Ball joints and bodies with free joints.
+    keys : tuple of Keyframe
+    motors : tuple of Motor
+    readings : tuple of Sensor
+    lines : tuple
+        Slides of the scene by the lengths of tendons, each with its coordinates and their factors.
+    """
+
+    start: Value[np.ndarray, Any] = Value(_array)
+    coordinates: tuple[Coordinate, ...] = ()
+    balls: tuple[Ball, ...] = ()
+    frees: tuple[FreeBody, ...] = ()
+    keys: tuple[Keyframe, ...] = ()
+    motors: tuple[Motor, ...] = ()
+    readings: tuple[Any, ...] = ()
+    lines: tuple[tuple[Joint, tuple[tuple[Coordinate, float], ...]], ...] = ()
+
+    def __post_init__(self):
+        places = [(one, 1, 1) for one in self.coordinates] + [(one, 4, 3) for one in self.balls]
+        for one, wide, quick in (*places, *((one, 7, 6) for one in self.frees)):
+            if one.position + wide > len(self.start) or one.velocity + quick > self.nv:
+                raise ValueError(
+                    f"the place of {one.name!r} must be one in qpos and qvel, got {one.position}"
+                )
+
+    @cached_property
+    def joints(self) -> dict[str, Coordinate]:
+        """Hinges and slides by name."""
+        return {one.name: one for one in self.coordinates}
+
+    @cached_property
+    def keyframes(self) -> Mapping[str, Keyframe]:
+        """Keyframes by name."""
+        return Named("keyframe", {one.name: one for one in self.keys})
+
+    @cached_property
+    def actuators(self) -> Mapping[str, Motor]:
+        """Actuators by name."""
+        return Named("actuator", {one.name: one for one in self.motors})
+
+    @cached_property
+    def sensors(self) -> Mapping[str, Any]:
+        """Sensors by name."""
+        return Named("sensor", {one.name: one for one in self.readings})
+
+    @cached_property
+    def dynamic(self) -> bool:
+        """Whether a sensor needs accelerations or forces of contacts."""
+        return any(one.dynamic for one in self.readings)
+
+    def ctrl(self, solution) -> np.ndarray:
+        """Return the controls (T, nu) or (nu,), as MuJoCo's ``data.ctrl``; (T, nu): of the step before."""
+        return controls(self._checked(solution))
+
+    @property
+    def nv(self) -> int:
+        """Number of velocities."""
+        return len(self.coordinates) + 3 * len(self.balls) + 6 * len(self.frees)
+
+    def qpos(self, solution) -> np.ndarray:
+        """Return the coordinates (T, nq) or (nq,) of a solution or state, as MuJoCo's ``data.qpos``."""
+        states = self._checked(solution)
+        q = np.empty((*states.position.shape[:-2], len(self.start)))
+        q[...] = self.start
+        for one in self.coordinates:
+            q[..., one.position] = one.of(states)[0]
+        for one in self.balls:
+            turned = _relative(one.joint, states)
+            q[..., one.position : one.position + 4] = quaternion.multiply(
+                np.broadcast_to(self._ball_start(one), turned.shape), turned
+            )
+        for one in self.frees:
+            turn = states.orientation[..., one.body.index, :]
+            origin = states.position[..., one.body.index, :] - quaternion.rotate(turn, one.centre)
+            q[..., one.position : one.position + 3] = origin
+            q[..., one.position + 3 : one.position + 7] = turn
+        return q
+
+    def qvel(self, solution) -> np.ndarray:
+        """Return the velocities (T, nv) or (nv,) of a solution or state, as MuJoCo's ``data.qvel``."""
+        states = self._checked(solution)
+        rates = np.empty((*states.position.shape[:-2], self.nv))
+        for one in self.coordinates:
+            rates[..., one.velocity] = one.of(states)[1]
+        spin = states.angular_velocity
+        for one in self.balls:
+            child, parent = one.joint.child, one.joint.parent
+            relative = spin[..., child.index, :]
+            if isinstance(parent, Body):
+                relative = relative - spin[..., parent.index, :]
+            own = quaternion.rotate_back(states.orientation[..., child.index, :], relative)
+            rates[..., one.velocity : one.velocity + 3] = own
+        for one in self.frees:
+            turn, w = (part[..., one.body.index, :] for part in (states.orientation, spin))
+            arm, first = quaternion.rotate(turn, one.centre), one.velocity
+            rates[..., first : first + 3] = states.velocity[..., one.body.index, :] - np.cross(
+                w, arm
+            )
+            rates[..., first + 3 : first + 6] = quaternion.rotate_back(turn, w)
+        return rates
+
+    @property
+    def _parts_by_name(self) -> list[tuple[str, int]]:
+        """Names and indices of the joints and bodies that coordinates move."""
+        parts = [one.joint for one in (*self.coordinates, *self.balls)]
+        return [(part.name, part.index) for part in (*parts, *(one.body for one in self.frees))]
+
+    def _ball_start(self, one: Ball) -> np.ndarray:
+        return self.start[one.position : one.position + 4]
+
+    def _followed(self, find) -> Robot | None:
+        """Return the model of a scene whose parts may have been replaced; None if one has been removed."""
+        try:
+            return _followed(self, find)
+        except LookupError:
+            return None
+
+    def _checked(self, solution):
+        """Return states of a scene with the joints and bodies of this model."""
+        other = scene_of(checked(solution)).robot
+        if other is not self and (other is None or other._parts_by_name != self._parts_by_name):
+            raise ValueError(f"solution must be of the scene of this model, got {solution!r}")
+        return solution
+
+    def _placed(self, base, qpos, qvel) -> Motion:
+        """Return the motion of all bodies for coordinates of the model, None for those of the state `base`.
+
+        Bodies that are not moved by coordinates of the model stay as in `base`.
+
+        Raises
+        ------
+        ValueError
+            If an array has a wrong length, or a quaternion is 0.
+        """
+        q = (
+            self.qpos(base)
+            if qpos is None
+            else checks.finite_array("qpos", qpos, (len(self.start),))
+        )
+        v = self.qvel(base) if qvel is None else checks.finite_array("qvel", qvel, (self.nv,))
+        moved = Motion(
+            base.position.copy(), base.orientation.copy(), base.velocity.copy(),
+            base.angular_velocity.copy(), None if base._turns is None else base._turns.copy(),
+        )  # fmt: skip
+        x, Q, speed, spin, turns = moved
+        for one in self.frees:
+            b, first = one.body.index, one.position
+            Q[b] = _unit(one, q[first + 3 : first + 7])
+            arm = quaternion.rotate(Q[b], one.centre)
+            spin[b] = quaternion.rotate(Q[b], v[one.velocity + 3 : one.velocity + 6])
+            x[b] = q[first : first + 3] + arm
+            speed[b] = v[one.velocity : one.velocity + 3] + np.cross(spin[b], arm)
+        by_joint: dict[int, list[Coordinate]] = {}
+        for one in self.coordinates:
+            by_joint.setdefault(one.joint.index, []).append(one)
+            if turns is not None:
+                turns[one.row] = one.sign * (q[one.position] - one.start)
+        links: dict[int, Any] = {k: (some[0].joint, some) for k, some in by_joint.items()}
+        links |= {one.joint.index: (one.joint, one) for one in self.balls}
+        for _, (joint, of) in sorted(links.items()):  # parents before children, as they were added
+            if isinstance(of, Ball):
+                turned = _unit(of, q[of.position : of.position + 4])
+                turned = quaternion.multiply(quaternion.conjugate(self._ball_start(of)), turned)
+                rates = v[of.velocity : of.velocity + 3]
+                _put_ball(joint, turned, rates, moved)
+            else:
+                own = np.zeros((2, len(joint.definition.coordinates)))
+                for one in of:
+                    own[:, one.index] = (
+                        one.sign * (q[one.position] - one.start),
+                        one.sign * v[one.velocity],
+                    )
+                _put_child(sides_of(joint), own[0], own[1], moved)
+        for joint, terms in self.lines:
+            length = sum(factor * (q[one.position] - one.start) for one, factor in terms)
+            rate = sum(factor * v[one.velocity] for one, factor in terms)
+            _put_child(sides_of(joint), np.array([length]), np.array([rate]), moved)
+        return moved
+
+    def __repr__(self) -> str:
+        return f"<Robot: {len(self.start)} coordinates>"
+
+
+def _followed(value, find) -> Any:
+    """Return a value that refers to the parts that `find` gives for the names of its own."""
+    if isinstance(value, (Body, Joint, AppliedForce)):
+        part = find(value.name)
+        if not isinstance(part, type(value)):
+            raise LookupError(value.name)
+        return part
+    if isinstance(value, tuple):
+        new = tuple(_followed(one, find) for one in value)
+        return value if all(a is b for a, b in zip(new, value)) else new
+    if not is_dataclass(value) or isinstance(value, (Ground, type)):
+        return value
+    old = {one.name: getattr(value, one.name) for one in dataclasses.fields(value)}
+    new = {name: _followed(one, find) for name, one in old.items()}
+    if all(new[name] is old[name] for name in old):
+        return value
+    made = object.__new__(type(value))
+    keep(made, **new)
+    return made
+
+
+class Named(dict):
+    """Things by name; the message about another name lists them."""
+
+    def __init__(self, kind: str, things: Mapping[str, Any]):
+        super().__init__(things)
+        self.kind = kind
+
+    def __missing__(self, name):
+        known = ", ".join(map(repr, self)) or "none"
+        near = checks.nearest(str(name), self)
+        raise KeyError(f"the model has no {self.kind} {name!r}; it has {known}{near}")
+
+
+def _unit(one, q: np.ndarray) -> np.ndarray:
+    """Return a quaternion of `qpos`, normalised as MuJoCo does."""
+    length = math.sqrt(float(q @ q))
+    if not length > 0.0:
+        raise ValueError(f"qpos must have a quaternion of {one.name!r}, got 0")
+    return q / length
+
+
+def _relative(joint: Joint, states) -> np.ndarray:
+    """Return C0* P0 P* C for the orientations P of the parent and C of the child: 1 at the start."""
+    child = states.orientation[..., joint.child.index, :]
+    start = quaternion.conjugate(joint.child.orientation)
+    turned = np.broadcast_to(start, child.shape)
+    if isinstance(joint.parent, Body):
+        turned = quaternion.multiply(turned, np.broadcast_to(joint.parent.orientation, child.shape))
+        back = quaternion.conjugate(states.orientation[..., joint.parent.index, :])
+        turned = quaternion.multiply(turned, back)
+    return quaternion.multiply(turned, child)
+
+
+def _put_ball(joint: Joint, turned: np.ndarray, rates: np.ndarray, moved: Motion) -> None:
+    """Write the motion of the child of a ball joint: C = P P0* C0 turned, and its rate in its own axes."""
+    P, w = UNIT, np.zeros(3)
+    if isinstance(joint.parent, Body):
+        P = quaternion.multiply(
+            moved.orientation[joint.parent.index], quaternion.conjugate(joint.parent.orientation)
+        )
+        w = moved.angular_velocity[joint.parent.index]
+    C = quaternion.multiply(quaternion.multiply(P, joint.child.orientation), turned)
+    _hang(sides_of(joint), C, w + quaternion.rotate(C, rates), np.zeros(3), np.zeros(3), moved)
+
+
+def _put_child(joint: Sides, q: np.ndarray, rates: np.ndarray, moved: Motion) -> None:
+    """Write the motion of the child of a joint with coordinates q."""
+    P, w = UNIT, np.zeros(3)
+    if joint.parent.body >= 0:
+        P = moved.orientation[joint.parent.body]
+        w = moved.angular_velocity[joint.parent.body]
+    P = quaternion.multiply(P, np.array(joint.parent.turn))
+    turned, spin, shift, speed = UNIT, w.copy(), np.zeros(3), np.zeros(3)
+    axes = [np.array(axis) for axis in joint.axes]
+    if isinstance(joint.definition, j.Universal):
+        axes = [np.asarray(joint.definition.axis_parent), np.asarray(joint.definition.axis_child)]
+    for axis, kind, own, rate in zip(axes, joint.definition.coordinates, q, rates):
+        along = quaternion.rotate(quaternion.multiply(P, turned), axis)
+        if kind == "turn":
+            spin += rate * along
+            turned = quaternion.multiply(turned, quaternion.exp(own * axis))
+        else:  # slides come before a turn about another axis, or go along that of the turn
+            shift += own * along
+            speed += rate * along
+    C = quaternion.multiply(quaternion.multiply(P, turned), quaternion.conjugate(joint.child.turn))
+    _hang(joint, C, spin, shift, speed + np.cross(w, shift), moved)
+
+
+def _hang(joint: Sides, C, spin, shift, speed, moved: Motion) -> None:
+    """Write the motion of a child with this orientation, whose anchor is shifted from that of the parent."""
+    c, p, at, v = joint.child.body, joint.parent.body, np.array(joint.parent.anchor), np.zeros(3)
+    if p >= 0:
+        arm = quaternion.rotate(moved.orientation[p], at)
+        at = moved.position[p] + arm
+        v = moved.velocity[p] + np.cross(moved.angular_velocity[p], arm)
+    arm = quaternion.rotate(C, np.array(joint.child.anchor))
+    moved.orientation[c], moved.angular_velocity[c] = C, spin
+    moved.position[c] = at + shift - arm
+    moved.velocity[c] = v + speed - np.cross(spin, arm)

@@ -1,0 +1,97 @@
+"""Where kernels find the forces that a `carom.Run` sets, and what they were set to at its saved times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from carom.geometry import quaternion
+from carom.model.compile import Compiled, attitudes
+from carom.scene.forces import Force, Torque
+from carom.scene.more_forces import Actuator, JointForce, JointSpring, Law
+
+#: rows that were saved before, index of the force, and the value: what was set as a run went
+History = list[tuple[int, int, Any]]
+
+
+class Place(NamedTuple):
+    """Where kernels find a force: rows of `loads` with their signs, or a row of `pushes`."""
+
+    column: str  # force, torque or push
+    rows: tuple[int, ...]
+    frame: np.ndarray | None = None  # of the body at the start, where the vector turns with it
+    actuator: Actuator | None = None  # whose control is set
+
+
+def put(system, law: Law | None, place: Place, value) -> None:
+    """Write the value of a force where kernels find it, or a control into its law."""
+    if law is not None:
+        law.set(value)
+    elif place.column == "push":
+        if place.actuator is not None:
+            value = place.actuator.constant(value)
+        system.relations.pushes["force"][place.rows[0]] = value
+    else:
+        if place.frame is not None:
+            value = quaternion.rotate_back(place.frame, value)
+        column = system.loads[place.column]
+        for sign, row in zip((1.0, -1.0), place.rows):
+            column[row] = sign * value
+
+
+def places(scene, compiled: Compiled, implicit: bool) -> dict[int, Place]:
+    """Return where the forces of a scene are, by their index: in the order in which they were compiled."""
+    out, loads, pushes = {}, 0, 0
+    for force in scene.forces:
+        d = force.definition
+        if isinstance(d, (Force, Torque)):
+            both = isinstance(d, Torque) and force.parent.index >= 0
+            rows = (loads, loads + 1) if both else (loads,)
+            at = compiled.to_principal[[force.child.index]]
+            frame = attitudes(force.child.orientation[None], at)[0] if d.follow else None
+            out[force.index] = Place(type(d).__name__.lower(), rows, frame)
+            loads += len(rows)
+        elif isinstance(d, (Actuator, JointForce)):
+            if isinstance(d, Actuator):
+                out[force.index] = Place("push", (pushes,), actuator=d)
+            elif not callable(d.force):
+                out[force.index] = Place("push", (pushes,))
+            pushes += 1
+        elif isinstance(d, JointSpring) and not implicit:
+            pushes += 1
+    return out
+
+
+def rows_of_forces(
+    history: History, scene, places: dict[int, Place], compiled: Compiled, saved: int
+) -> Iterator[tuple[int, int]]:
+    """Go through ranges of saved rows in which forces stay as they are; write them into the compiled scene."""
+    first = 0
+    for index in {index for _, index, _ in history}:
+        put(compiled.system, compiled.laws.get(index), places[index], stated(scene, index))
+    for row, index, value in history:
+        if min(row, saved) > first:
+            yield first, min(row, saved)
+            first = min(row, saved)
+        put(compiled.system, compiled.laws.get(index), places[index], value)
+    if saved > first:
+        yield first, saved
+
+
+def values_of_forces(scene, history: History, saved: int) -> dict[int, np.ndarray]:
+    """Return the values at saved times, (T,) or (T, 3), of the forces that were set, by index."""
+    out: dict[int, np.ndarray] = {}
+    for row, index, value in history:
+        if index not in out:
+            first = np.array(stated(scene, index), dtype=float)
+            out[index] = np.repeat(first[None], saved, axis=0)
+        out[index][row:] = value
+    return out
+
+
+def stated(scene, index: int):
+    """Return the value of a force, or the control of an actuator, until it is set."""
+    d = scene.forces[index].definition
+    return getattr(d, {Actuator: "control", JointForce: "force"}.get(type(d), "vector"))
