@@ -39,7 +39,7 @@ TOPICS = {
     },
     "Solution": {
         "Motion": ("t", "position", "orientation", "velocity", "angular_velocity", "evaluate"),
-        "Impacts": ("impacts", "impact_history", "events"),
+        "Impacts": ("impacts", "joint_impulses", "impact_history", "events"),
         "Contact that stays": (
             "contacts", "contact_mode", "contact_force", "forces", "held_residual", "pairs",
         ),
@@ -55,7 +55,10 @@ TOPICS = {
 }  # fmt: skip
 
 #: tables whose columns are the fields of a record
-ROWS = {"ImpactTable": "ImpactRecord", "CoordinateImpactTable": "CoordinateImpact"}
+ROWS = {
+    "ImpactTable": "ImpactRecord", "JointImpulseTable": "JointImpulse",
+    "CoordinateImpactTable": "CoordinateImpact",
+}  # fmt: skip
 
 
 def find(name: str) -> type:

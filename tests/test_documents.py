@@ -144,7 +144,8 @@ def test_names_in_a_page_exist(path):
 ASKED = re.compile(r">>> (?!.*\+SKIP)")
 SHOWN = [
     "Scene", "Scene.add_body", "Scene.add_contact", "Scene.add_joint", "Scene.check", "simulate",
-    "Solution", "results.ImpactTable", "resolve_impact", "impact_layer", "ensemble",
+    "Solution", "results.ImpactTable", "results.JointImpulseTable", "resolve_impact", "impact_layer",
+    "ensemble",
     "sensitivities", "solve_contacts", "euler", "axis_angle", "Scene.ignore_contact",
     "Scene.add_static", "Scene.replace", "Run", "contact_inverse_mass",
 ]  # fmt: skip

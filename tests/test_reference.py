@@ -42,6 +42,17 @@ def test_all_that_is_public_is_there():
     assert [name for name in public if id(pages.find(f"carom.{name}")) not in known] == []
 
 
+@pytest.mark.parametrize("name", [n for n in carom.__all__ if inspect.ismodule(getattr(carom, n))])
+def test_dir_of_a_module_is_what_is_public(name):
+    """What `dir` and the tabulator key show is on the pages, or a module of which something is."""
+    shown = [one for one in dir(getattr(carom, name)) if not one.startswith("__")]
+    known = {id(pages.find(one)) for one in NAMES} | {
+        id(pages.find(one.rpartition(".")[0])) for one in NAMES
+    }
+    assert shown
+    assert [one for one in shown if id(getattr(getattr(carom, name), one)) not in known] == []
+
+
 def listed(name: str) -> set[str]:
     """Return the members on the page of a class, and the arguments that its signature shows."""
     shown = {

@@ -9,6 +9,7 @@ from bad_input.things import (
     XML,
     W,
     model,
+    pushed,
     recording,
     samples,
     solution,
@@ -161,11 +162,16 @@ def read(folder):
             plots.impact_inside, dict(solution=solution(), k=0, steps=4, ax=None),
         ),
         "plots.phase": lambda: (
-            plots.phase, dict(solution=solution(), of="ball", axis="z", number=0, ax=None),
+            plots.phase,
+            dict(solution=solution(), of="ball", axis="z", number=0, degrees=False, ax=None),
         ),
         "plots.trajectory": lambda: (
             plots.trajectory,
             dict(solution=solution(), bodies="ball", plane="xz", outlines=[0.0], ground=True, ax=None),
+        ),
+        "plots.joints": lambda: (plots.joints, dict(solution=swing(), joints="j", degrees=True, ax=None)),
+        "plots.forces": lambda: (
+            plots.forces, dict(solution=pushed().solution, forces="push", ax=None),
         ),
         "plots.constraint_errors": lambda: (plots.constraint_errors, dict(solution=swing(), ax=None)),
         "plots.ensemble": lambda: (

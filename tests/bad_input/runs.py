@@ -103,7 +103,7 @@ def run(folder):
             dict(state=carom.Run(things.model()).state, qpos=[0.1], qvel=[0.2]),
         ),
         "results.SystemState.joint_coordinates": lambda: (
-            carom.Run(swing().scene).state.joint_coordinates, dict(joint="j"),
+            carom.Run(swing().scene).state.joint_coordinates, dict(joint="j", degrees=True),
         ),
         "resume": lambda: (
             carom.resume,
@@ -112,11 +112,12 @@ def run(folder):
         "Solution.load": lambda: (carom.Solution.load, dict(path=saved(folder), functions={})),
         "Solution.simulate": lambda: (solution().simulate, dict(duration=0.1, progress=None, throw=True)),
         "Solution.save": lambda: (solution().save, dict(path=folder / "again.nc")),
-        "Solution.to_xarray": lambda: (solution().to_xarray, {}),
-        "Solution.to_pandas": lambda: (solution().to_pandas, {}),
+        "Solution.to_xarray": lambda: (solution().to_xarray, dict(degrees=True)),
+        "Solution.to_pandas": lambda: (solution().to_pandas, dict(degrees=True)),
         "Solution.evaluate": lambda: (solution().evaluate, dict(t=0.01, side="left")),
         "Solution.impact_history": lambda: (solution().impact_history, dict(k=0, steps=4)),
-        "Solution.joint_coordinates": lambda: (swing().joint_coordinates, dict(joint="j")),
+        "Solution.joint_coordinates": lambda: (swing().joint_coordinates, dict(joint="j", degrees=True)),
+        "results.JointView.coordinates": lambda: (swing()["j"].coordinates, dict(degrees=True)),
         "Solution.plot": lambda: (solution().plot, dict(kind="impacts", what="ball-floor")),
         "ensemble": lambda: (
             carom.ensemble,

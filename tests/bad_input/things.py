@@ -51,8 +51,10 @@ def thrown():
 def pushed():
     """A run of the ball with a force."""
     scene = thrown()
-    scene.add_force(carom.forces.Force((0, 0, 0)), "ball", name="push")
-    return carom.Run(scene, step=0.01)
+    scene.add_force(carom.forces.Force((0, 0, 1)), "ball", name="push")
+    run = carom.Run(scene, step=0.01)
+    run.advance()
+    return run
 
 
 @functools.cache

@@ -50,7 +50,7 @@ def test_dimensions_and_units(swung):
     assert all("long_name" in one.attrs for one in data.variables.values())
     numbers = {name for name, one in data.variables.items() if one.dtype.kind in "fi"}
     without = {name for name in numbers if units[name] is None}
-    own = {"joint_coordinate", "joint_rate"}  # in coordinate_units
+    own = {"joint_coordinate", "joint_rate", "applied_value"}  # in coordinate_units, applied_units
     assert without == own | {"position_error", "velocity_error"}  # in constraint_unit
 
 
@@ -128,6 +128,29 @@ def test_pandas(slid, swung):
     assert set(rest.body) == {"block"}
     assert set(rest.other) == {""}
     assert list(swung.to_pandas().bodies.columns.unique("body")) == ["rod0", "rod1"]
+    assert frames.joints.empty
+    assert frames.applied_forces.empty
+
+
+def test_joints_and_forces_in_tables(swung, tmp_path):
+    frames = swung.to_pandas(degrees=True)
+    angle = np.degrees(swung["hinge1"].coordinate)
+    np.testing.assert_allclose(frames.joints["hinge1"].coordinate, angle, rtol=1e-15)
+    np.testing.assert_array_equal(frames.joints["hinge0"].fz, swung["hinge0"].force[:, 2])
+    force = swung.scene.forces[0]
+    np.testing.assert_array_equal(frames.applied_forces[force.name].value, swung[force].torque)
+    np.testing.assert_array_equal(frames.applied_forces[force.name].power, swung[force].power)
+    impulses = swung["hinge1"].impulses
+    assert len(impulses) > 0
+    mine = frames.joint_impulses[frames.joint_impulses.joint == "hinge1"]
+    np.testing.assert_array_equal(mine.impulse_x, impulses.impulse[:, 0])
+    data = swung.to_xarray(degrees=True)
+    assert set(data.coordinate_units.values) == {"deg"}
+    np.testing.assert_allclose(data.joint_coordinate.sel(coordinate="hinge1"), angle, rtol=1e-15)
+    np.testing.assert_array_equal(data.applied_power[:, 0], swung[force].power)
+    swung.save(tmp_path / "run.csv")
+    for name in ("joints", "applied_forces", "joint_impulses"):
+        assert (tmp_path / f"run.{name}.csv").exists()
 
 
 def test_constraints_have_rows(tmp_path):

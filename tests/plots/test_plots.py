@@ -146,6 +146,39 @@ def test_contacts_are_bars_where_they_are_held(slid):
     assert set(words(ax)) >= set(table.mode)
 
 
+def test_joints(swung):
+    axes = plots.joints(swung, degrees=True)
+    lines = [{line.get_label(): line.get_ydata() for line in ax.lines} for ax in axes]
+    np.testing.assert_array_equal(
+        lines[0]["hinge1"], swung["hinge1"].coordinates(degrees=True)[0][:, 0]
+    )
+    np.testing.assert_array_equal(lines[2]["hinge0"], np.linalg.norm(swung["hinge0"].force, axis=1))
+    assert [ax.get_ylabel() for ax in axes[:2]] == ["coordinate [deg]", "rate [deg/s]"]
+    assert len(plots.joints(swung, "hinge0")[0].lines) == 1
+    with pytest.raises(ValueError, match=r"joints must be among .*; did you mean 'hinge0'"):
+        plots.joints(swung, "hing0")
+
+
+def test_forces(swung, slid):
+    force = swung.scene.forces[0]
+    axes = swung.plot("forces")
+    lines = {line.get_label(): line.get_ydata() for ax in axes for line in ax.lines}
+    np.testing.assert_array_equal(lines[force.name], swung[force].torque)
+    assert {"stop"} < set(lines)
+    (ax,) = plots.forces(slid, "block-ground")
+    size = np.linalg.norm(slid.contact_force[:, 0], axis=1)
+    np.testing.assert_allclose(ax.lines[0].get_ydata(), size, rtol=1e-12)
+    with pytest.raises(ValueError, match="there must be a force that acts"):
+        plots.forces(carom.simulate(carom_scene(), 0.1))
+
+
+def carom_scene():
+    """A ball that falls: nothing but its weight acts."""
+    scene = carom.Scene()
+    scene.add_body(carom.Sphere(0.1), mass=1.0)
+    return scene
+
+
 def test_constraint_errors(swung):
     ax = plots.constraint_errors(swung)
     unit = swung.constraint_rows.unit

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import carom
+from carom.io.files.scene_parts import scene_from_text, scene_to_text
 
 
 def scene_of(names, **place):
@@ -81,3 +82,71 @@ def test_carom_lists_what_is_public_and_nothing_else():
     for name in dir(carom):
         assert getattr(carom, name) is not None
     assert len(set(carom.__all__)) == len(carom.__all__)
+
+
+def hinged():
+    """Return a scene of two rods on hinges."""
+    scene = carom.Scene()
+    for k, name in enumerate(("left", "right")):
+        scene.add_body(mass=1.0, inertia=(1, 1, 1), position=(k, 0, 0), name=name)
+        hinge = carom.joints.Revolute((k, 0, 0), (0, 0, 1))
+        scene.add_joint(hinge, carom.GROUND, name, name=f"{name} hinge")
+    return scene
+
+
+BY_NAME = {
+    "JointForce": lambda: carom.forces.JointForce("left hinge", 1.0),
+    "JointSpring": lambda: carom.forces.JointSpring("left hinge", 1.0),
+    "JointFriction": lambda: carom.forces.JointFriction("left hinge", 1.0),
+    "JointInertia": lambda: carom.forces.JointInertia("left hinge", 1.0),
+    "UserForce": lambda: carom.forces.UserForce("left", lambda t, x: [[0] * 6]),
+    "Driver": lambda: carom.constraints.Driver("left hinge", rate=0.0),
+    "Gear": lambda: carom.constraints.Gear("left hinge", "right hinge", 2.0),
+    "Coupling": lambda: carom.constraints.Coupling({"left hinge": 1.0, ("right hinge", 0): 2.0}),
+    "Rows": lambda: carom.constraints.Rows(["left", "right"], lambda t, x: [[0] * 13], 1),
+}
+
+
+@pytest.mark.parametrize("kind", BY_NAME)
+def test_a_definition_may_name_its_parts(kind):
+    """The part of the scene has the objects; the definition itself can be added to another scene."""
+    definition = BY_NAME[kind]()
+    for scene in (hinged(), hinged()):
+        add = scene.add_force if hasattr(carom.forces, kind) else scene.add_constraint
+        made = add(definition).definition
+        assert type(made) is type(definition)
+        parts = [term[0] for term in made.terms] if hasattr(made, "terms") else []
+        parts += [made.joint] if hasattr(made, "joint") else list(getattr(made, "bodies", ()))
+        assert parts[0] in (scene["left hinge"], scene["left"])
+        assert all(scene[part.name] is part for part in parts)
+    empty = carom.Scene()
+    empty.add_body(mass=1.0, inertia=(1, 1, 1), name="left hing")
+    add = empty.add_force if hasattr(carom.forces, kind) else empty.add_constraint
+    with pytest.raises(ValueError, match=r"of the definition must be .* none called 'left"):
+        add(definition)
+
+
+def test_a_name_that_does_not_fit_is_refused():
+    scene = hinged()
+    with pytest.raises(TypeError, match="joint of the definition must be a Joint, got Body"):
+        scene.add_force(carom.forces.JointForce("left", 1.0))
+    with pytest.raises(ValueError, match="coordinate must be below 1"):
+        scene.add_constraint(carom.constraints.Driver("left hinge", rate=1.0, coordinate=1))
+    twice = {"left hinge": 1.0, scene["left hinge"]: 2.0}
+    with pytest.raises(ValueError, match="each joint of the definition must be given once"):
+        scene.add_constraint(carom.constraints.Coupling(twice))
+    with pytest.raises(ValueError, match="first and second must be two joints"):
+        carom.constraints.Gear("a", "a", 1.0)
+
+
+@pytest.mark.parametrize("kind", ["JointForce", "Gear"])
+def test_a_file_has_parts_not_names(kind):
+    scene = hinged()
+    add = scene.add_force if kind == "JointForce" else scene.add_constraint
+    add(BY_NAME[kind]())
+    text = scene_to_text(scene)
+    assert scene_from_text(text)[0].joints[0].name == "left hinge"
+    last = text.rindex('{"part": "left hinge"}')
+    made_up = text[:last] + text[last:].replace('{"part": "left hinge"}', '"left hinge"', 1)
+    with pytest.raises((ValueError, TypeError)):
+        scene_from_text(made_up)

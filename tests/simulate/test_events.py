@@ -386,7 +386,7 @@ def test_the_state_is_read_only_and_stays():
     with pytest.raises(ValueError, match="read-only"):
         kept[0]["die"].orientation[0] = 1.0
     assert np.array_equal(kept[1]["die"].velocity, kept[1].velocity[0])
-    for name, words in (("dye", "did you mean 'die'"), ("ground", "must be a body")):
+    for name, words in (("dye", "did you mean 'die'"), ("ground", "never moves")):
         with pytest.raises(KeyError, match=words):
             kept[0][name]
 

@@ -27,3 +27,7 @@ __all__ = [
     "moreau_jean",
     "solve_one_contact",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

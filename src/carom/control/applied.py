@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from carom import checks
 from carom.results.robot import columns, commands, first_controls
 from carom.results.set_forces import History, places, put
@@ -20,6 +22,7 @@ class Applied:
         self.commands = commands(run.scene)
         self.ctrl = first_controls(self.commands)
         self._column = columns(self.commands)
+        self.given: dict[int, Any] = {}  # present values, by index; replaced with each
         for index, value in {index: value for _, index, value in self.history}.items():
             self._put(index, value)
 
@@ -47,6 +50,7 @@ class Applied:
 
     def _put(self, index: int, value) -> None:
         compiled, place = self.run.compiled, self.places[index]
+        self.given = {**self.given, index: value}
         if index in self._column:
             self.ctrl[self._column[index]] = value
         put(compiled.system, compiled.laws.get(index), place, value)

@@ -24,7 +24,7 @@ PART = 65536  # rows for which room is made at a time
 #: what the clock of a run keeps when its bodies are moved
 GOES_ON = (
     "now", "loads", "impacts", "friction", "bounces", "step", "saved", "struck", "event", "snapped",
-    "touched", "cuts", "trials", "rejected", "located", "holds", "contact_steps", "rounds", "whole", "whole_at",
+    "touched", "cuts", "trials", "rejected", "located", "holds", "contact_steps", "rounds", "whole",
 )  # fmt: skip
 MOST = 1e7  # longest steps in a call, where tolerances choose them
 
@@ -74,7 +74,7 @@ class Endless(Run):
         self.wait, self.times, self.controls = old.wait, old.times, old.controls
         for name in GOES_ON:
             mine[name] = before[name]
-        mine.begin = mine.now
+        self.work.step["begin"] = mine.now
         for name in ("fallen", "parts"):
             self.work.result[name] = old.work.result[name]
         if self.tolerances is not None:

@@ -13,7 +13,6 @@ from carom import arguments, checks
 from carom.control.applied import Applied
 from carom.control.commands import Controls
 from carom.control.endless import BLOCK, Endless, Start
-from carom.control.meter import Meter
 from carom.dynamics.methods import METHODS
 from carom.io.files.checkpoint import capture, state_at_end
 from carom.io.files.kept import KeptRun
@@ -96,7 +95,7 @@ class Run:
                     raise ValueError(
                         f"{name} must be left out with a solution, which has its own, got {checks.shown(value)}"
                     )
-            self._start = self._meter = None
+            self._start = None
             self._take_on(scene)
             return
         scene = scene.scene if isinstance(scene, Model) else scene
@@ -117,7 +116,6 @@ class Run:
         check_scene(scene, settings)
         self._begin(scene, settings)
         self._start: Start | None = None
-        self._meter: Meter | None = None
         for mistake in mistakes(scene, settings):
             warnings.warn(mistake, MistakeWarning, stacklevel=3)
 
@@ -131,7 +129,7 @@ class Run:
         """Be this run, whose forces were set so."""
         implicit = METHODS[run.how.method].kind == IMPLICIT
         self._run, self._applied = run, Applied(run, implicit, history)
-        self._status, self._joints = Status.SUCCESS, {}
+        self._status, self._known = Status.SUCCESS, {}
 
     def _take_on(self, solution: Solution) -> None:
         """Stand at the end of a solution."""
@@ -157,17 +155,12 @@ class Run:
     @property
     def state(self) -> SystemState:
         """The state at this time; it stays as it is when the run goes on."""
-        robot, measured = self._run.scene.robot, None
-        if robot is not None and robot.dynamic:
-            if self._meter is None:
-                self._meter = Meter(self._run)
-            measured = self._meter.read(self._run)
-        return SystemState(self._run, self._joints, self._applied.ctrl, measured)
+        return SystemState(self._run, self._known, self._applied.given, self._applied.ctrl)
 
     @property
     def solution(self) -> Solution:
         """All of the run up to this time; it stays as it is when the run goes on, and `simulate` refuses it."""
-        return solution_of(self._run, self._status, self._applied.history)
+        return solution_of(self._run, self._status, self._applied)
 
     @property
     def ctrl(self) -> Controls:

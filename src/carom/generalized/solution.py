@@ -133,10 +133,12 @@ class GeneralizedSolution(Drawn):
         if status is Status.SUCCESS and inaccurate(watch):
             status = Status.INACCURATE
         events = [np.array(column) for column in zip(*run.contacts.events)] or [np.zeros(0)] * 3
+        names = {contact.name: k for k, contact in enumerate(run.user.contacts)}.copy
         return cls(
             t=t, q=states[:, :n].copy(), v=states[:, n:].copy(), kinetic_energy=ledger.kinetic,
-            potential_energy=ledger.potential, impacts=impact_table(run.contacts.strike.records, n),
-            events=EventTable(*events), ledger=ledger, status=status, warnings=warnings,
+            potential_energy=ledger.potential,
+            impacts=impact_table(run.contacts.strike.records, n)._by_name(names),
+            events=EventTable(*events)._by_name(names), ledger=ledger, status=status, warnings=warnings,
             stats=run.counted(), system=run.user, settings=run.settings,
             _run=run,
         )  # fmt: skip

@@ -20,3 +20,7 @@ __all__ = [
     "invariant_directions",
     "resolve_impact",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

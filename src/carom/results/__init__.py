@@ -1,10 +1,35 @@
 """Results of a run: the solution, its tables, its energy ledger, and its states between saved times."""
 
-from carom.results.event_tables import ContactTable as ContactTable
-from carom.results.event_tables import EventTable as EventTable
-from carom.results.event_tables import ForceTable as ForceTable
-from carom.results.event_tables import ImpactRecord as ImpactRecord
-from carom.results.event_tables import ImpactTable as ImpactTable
-from carom.results.ledger import Ledger as Ledger
-from carom.results.state import BodyState as BodyState
-from carom.results.state import SystemState as SystemState
+from carom.results.event_tables import (
+    ContactTable,
+    EventTable,
+    ForceTable,
+    ImpactRecord,
+    ImpactTable,
+    JointImpulse,
+    JointImpulseTable,
+)
+from carom.results.ledger import Ledger
+from carom.results.named import BodyState, ConstraintView, ContactView, ForceView, JointView
+from carom.results.state import SystemState
+
+__all__ = [
+    "BodyState",
+    "ConstraintView",
+    "ContactTable",
+    "ContactView",
+    "EventTable",
+    "ForceTable",
+    "ForceView",
+    "ImpactRecord",
+    "ImpactTable",
+    "JointImpulse",
+    "JointImpulseTable",
+    "JointView",
+    "Ledger",
+    "SystemState",
+]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -15,12 +15,15 @@ from carom.model.arrays import STOP
 from carom.results import stiff_forces
 from carom.results.accuracy import sentences
 from carom.results.costs import busiest
+from carom.results.dry_friction import with_dry_friction, with_forces
 from carom.results.event_tables import ContactTable, EventTable, ImpactTable, contact_table
+from carom.results.exerted import exerted
 from carom.results.impact_remarks import remarks
 from carom.results.locks import locked
 from carom.results.names import constrained, contact_name, contact_names, row_units
 from carom.scene.forces import AppliedForce
 from carom.scene.materials import IMPACT_LAWS
+from carom.scene.more_forces import JointFriction
 from carom.status import Status
 
 #: attributes of contacts that tables show (an ensemble changes them from run to run)
@@ -204,6 +207,15 @@ def contact_sums(touch: np.recarray, saved: int, contacts: int) -> tuple[np.ndar
     return mode, force
 
 
+def exerted_in(solution) -> np.ndarray:
+    """Return what forces exert (T, R, 8)."""
+    # of a run whose forces were set in steps
+    given = getattr(solution._run, "values_of_forces", dict)()
+    if any(isinstance(force.definition, JointFriction) for force in solution.scene.forces):
+        given = {**given, **solution._solved[1]}
+    return exerted(solution.scene, solution, solution.t, given)
+
+
 @contextmanager
 def _kept_turns(system):
     """Restore the whole turns of angles at the end; the reports count them along the saved states."""
@@ -213,9 +225,9 @@ def _kept_turns(system):
     reference[:] = kept
 
 
-def ranges_of(run, saved: int):
+def ranges_of(run, compiled, saved: int):
     """Return the ranges of saved rows in which the forces stay as they are: a `carom.Run` may have set them."""
-    return run.rows_of_forces(saved) if hasattr(run, "rows_of_forces") else [(0, saved)]
+    return run.rows_of_forces(compiled, saved) if hasattr(run, "rows_of_forces") else [(0, saved)]
 
 
 def accelerations(solution) -> np.ndarray:
@@ -225,15 +237,16 @@ def accelerations(solution) -> np.ndarray:
     """
     run = solution._run
     system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
+    touch = with_forces(solution.scene, solution, solution._solved[1], rec.touch)
     out, work = (
         np.zeros((len(rec.state), len(system.bodies), 6)),
         r.new_work(system, run.method.b.size),
     )
     with _kept_turns(system):
-        for first, last in ranges_of(run, len(out)):
+        for first, last in ranges_of(run, run.compiled, len(out)):
             for k in range(first, last):
-                touch = rec.touch[np.searchsorted(rec.touch.saved, k) :]
-                out[k] = acceleration(system, run.options, rec.series.t, rec.state, k, touch, work)
+                own = touch[np.searchsorted(touch["saved"], k) :]
+                out[k] = acceleration(system, run.options, rec.series.t, rec.state, k, own, work)
     return out
 
 
@@ -246,41 +259,43 @@ def acceleration(system, options, t, states, k: int, touch, work) -> np.ndarray:
     return work.body["motion"]
 
 
-def element_reactions(solution) -> np.ndarray:
-    """Return the multipliers of each joint, then of each constraint (T, E, 6), as in the solver."""
+def element_reactions(solution) -> tuple[np.ndarray, dict[int, np.ndarray]]:
+    """Return the reactions of joints on their children, then the multipliers of each constraint (T, E, 6).
+
+    The second result are the values (T,) of dry frictions in joints, by the index of the force.
+    """
     from carom.dynamics.reactions import reactions
 
     run = solution._run
-    system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
-    out = np.zeros((len(rec.state), system.joints.size, 6))
-    work = r.new_work(system, run.method.b.size)
-    with _kept_turns(system):
-        for rows in ranges_of(run, len(out)):
-            touch = rec.touch[np.searchsorted(rec.touch.saved, rows[0]) :]
-            reactions(
-                system, run.options.augmentation, rec.series.t, rec.state, rows, touch, work, out
-            )
-    return out
+    rec, stages = r.trimmed(run.records, run.clock), run.method.b.size
+
+    def solve(compiled, touch) -> np.ndarray:
+        system = compiled.system
+        out, work = np.zeros((len(rec.state), system.joints.size, 6)), r.new_work(system, stages)
+        with _kept_turns(system):
+            for rows in ranges_of(run, compiled, len(out)):
+                part = touch[np.searchsorted(touch["saved"], rows[0]) :]
+                times = rec.series.t, rec.state
+                reactions(system, run.options.augmentation, *times, rows, part, work, out)
+        return on_children(compiled, rec.state, out)
+
+    return with_dry_friction(run, solution, rec.touch, solve)
 
 
-def constraint_forces(solution) -> np.ndarray:
+def multipliers(scene, reactions: np.ndarray) -> np.ndarray:
     """Return the multipliers (T, K) of the rows of all constraints beyond joints."""
-    first = len(solution.scene.joints)
-    out = solution._reactions[:, first:]
-    rows = [out[:, k, : c.rows] for k, c in enumerate(solution.scene.constraints)]
+    out = reactions[:, len(scene.joints) :]
+    rows = [out[:, k, : c.rows] for k, c in enumerate(scene.constraints)]
     return np.concatenate([np.zeros((len(out), 0)), *rows], axis=1)
 
 
-def joint_reactions(solution) -> np.ndarray:
-    """Return force and torque (T, J, 6) on the children, world axes, in the scene's order."""
-    run = solution._run
-    system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
-    out = solution._reactions[:, : len(run.scene.joints)].copy()
-    for j in np.flatnonzero(run.compiled.flipped):  # in the tree parent and child are exchanged
+def on_children(compiled, state, out: np.ndarray) -> np.ndarray:
+    """Return the reactions (T, J, 6) of the solver at states (T, N) as those on the children of the scene."""
+    for j in np.flatnonzero(compiled.flipped):  # in the tree parent and child are exchanged
         out[:, j] *= -1.0
-        joint = system.joints[j]
+        joint = compiled.system.joints[j]
         anchors = [
-            rec.state.x[:, b] + quaternion.rotate(rec.state.Q[:, b], anchor)
+            state.x[:, b] + quaternion.rotate(state.Q[:, b], anchor)
             for b, anchor in (
                 (joint.parent, joint.parent_anchor),
                 (joint.child, joint.child_anchor),

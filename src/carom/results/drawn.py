@@ -10,13 +10,13 @@ from carom.status import Status
 
 KINDS = (
     "overview", "trajectory", "phase", "energy", "impacts", "impact_inside", "hodograph", "contacts",
-    "constraint_errors",
+    "joints", "forces", "constraint_errors",
 )  # fmt: skip
 
 #: argument of each plot function that `what` is passed to
 WHAT = {
     "trajectory": "bodies", "phase": "of", "impacts": "contacts", "contacts": "contacts", "impact_inside": "k",
-    "hodograph": "k",
+    "hodograph": "k", "joints": "joints", "forces": "forces",
 }  # fmt: skip
 
 
@@ -44,10 +44,11 @@ class Drawn:
         ----------
         kind : str
             "overview" (default), "trajectory", "phase", "energy", "impacts", "impact_inside", "hodograph",
-            "contacts" or "constraint_errors": the function of `carom.plots` of this name.
+            "contacts", "joints", "forces" or "constraint_errors": the function of `carom.plots` of this name.
         what : optional
             The parts to draw: names of bodies for "trajectory"; a body, coordinate or joint for "phase"; names
-            of contacts for "impacts" and "contacts"; the index of an impact for "impact_inside" and
+            of contacts for "impacts" and "contacts", of joints for "joints", of forces, motors and contacts for
+            "forces"; the index of an impact for "impact_inside" and
             "hodograph". The other kinds do not use it.
         **options
             Other arguments of that function, for example ``ax`` to draw into existing axes.

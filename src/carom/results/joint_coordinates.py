@@ -16,7 +16,7 @@ from carom.geometry import quaternion
 from carom.scene import joints as j
 from carom.scene.joints import Joint
 
-TURN = 2.0 * math.pi
+TURN, DEGREES = 2.0 * math.pi, 180.0 / math.pi
 Vector = tuple[Any, Any, Any]
 Quaternion = tuple[Any, Any, Any, Any]
 
@@ -47,11 +47,12 @@ def sides_of(joint: Joint) -> Sides:
     frames = (None, None) if joint.frames is None else joint.frames
     parts = zip((joint.parent, joint.child), frames, points)
     axes = [_numbers(d.coordinate_frame(k)[:, 0]) for k in range(len(d.coordinates))]
-    parent, child = (_side(*part) for part in parts)
+    parent, child = (side_of(*part) for part in parts)
     return Sides(d, parent, child, axes)
 
 
-def _side(body, frame, point) -> Side:
+def side_of(body, frame, point) -> Side:
+    """Return the side of a body: in its `frame`, or None: of axes and a `point` in the world at the start."""
     if frame is not None:
         offset, turn = (_numbers(part) for part in frame)
     elif body.index < 0:
@@ -73,7 +74,7 @@ def coordinates(joint: Sides, states, t: np.ndarray | None = None) -> tuple[np.n
     `states` have position, orientation, velocity and angular velocity (T, N, ...), or (N, ...) of one time.
     """
     d, atan2 = joint.definition, math.atan2 if t is None else np.arctan2
-    p, c = (_placed(side, states) for side in (joint.parent, joint.child))
+    p, c = (placed(side, states) for side in (joint.parent, joint.child))
     relative, spin = multiply(conjugate(p.turn), c.turn), subtract(c.spin, p.spin)
     if isinstance(d, j.Spherical):
         turned = quaternion.log(np.array(relative).T)
@@ -117,7 +118,32 @@ def _of_cross(d: j.Universal, relative: Quaternion, turns, spin: Vector, atan2) 
     return [(angle, dot(axis, spin)) for angle, axis in zip(angles, axes)]
 
 
-class _Placed(NamedTuple):
+def direction(joint: Sides, states, k: int) -> Vector:
+    """Return the axis along, or about, which coordinate k changes; it turns with the parent, or the child."""
+    d, second = joint.definition, isinstance(joint.definition, j.Universal) and k == 1
+    axis = joint.axes[k]
+    if isinstance(d, j.Universal):
+        axis = _numbers(d.axis_child if second else d.axis_parent)
+    return rotate(placed(joint.child if second else joint.parent, states).turn, axis)
+
+
+def in_degrees(joint: Joint, q: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return coordinates and rates with angles in degrees and degrees a second."""
+    factors = np.array([DEGREES if unit == "rad" else 1.0 for unit in units(joint)])
+    return q * factors, rate * factors
+
+
+def units(joint: Joint, degrees: bool = False) -> list[str]:
+    """Return the units of the coordinates of a joint; none for one without."""
+    d, angle = joint.definition, "deg" if degrees else "rad"
+    if isinstance(d, j.Distance):
+        return ["m"]
+    if isinstance(d, j.Spherical):
+        return [angle] * 3
+    return [angle if kind == "turn" else "m" for kind in d.coordinates]
+
+
+class Placed(NamedTuple):
     """The state of a side, in world axes."""
 
     turn: Quaternion  # from the axes of the definition
@@ -127,14 +153,15 @@ class _Placed(NamedTuple):
     spin: Vector
 
 
-def _placed(side: Side, states) -> _Placed:
+def placed(side: Side, states) -> Placed:
+    """Return the state of a side."""
     if side.body < 0:
         none = 0.0, 0.0, 0.0
-        return _Placed(side.turn, side.anchor, none, none, none)
+        return Placed(side.turn, side.anchor, none, none, none)
     moves = states.orientation, states.position, states.velocity, states.angular_velocity
     k = side.body
     Q, x, v, w = (a[k].tolist() if a.ndim == 2 else tuple(a[:, k].T) for a in moves)
-    return _Placed(multiply(Q, side.turn), rotate(Q, side.anchor), x, v, w)
+    return Placed(multiply(Q, side.turn), rotate(Q, side.anchor), x, v, w)
 
 
 def of_scene(scene, joint) -> Joint:

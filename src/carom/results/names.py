@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -62,6 +63,35 @@ def row_units(definition: JointDefinition | ConstraintDefinition) -> list[str]:
         kinds = {coordinate_kind(joint, k) for joint, k, _ in definition.terms}
         return [UNITS[kinds.pop()] if len(kinds) == 1 else ""]
     return [""] * definition.rows
+
+
+class Numbers:
+    """Numbers of the contacts of a run, and then of the stops, by name; `Numbers()` is the dict.
+
+    The two sides of a contact may be named in either order, whatever it is called.
+    """
+
+    def __init__(self, scene, pairs):
+        self.scene, self.pairs = scene, pairs
+
+    def __call__(self) -> dict[str, int]:
+        """Return the numbers by name."""
+        return self._known
+
+    def __getstate__(self) -> dict:  # copies of a table go without the scene
+        return {"_known": self._known}
+
+    @cached_property
+    def _known(self) -> dict[str, int]:
+        names = contact_names(self.scene, self.pairs)
+        found: dict[str, int] = {}
+        for k, name in enumerate(names.name.tolist()):
+            found.setdefault(name, k)
+        count = len(self.pairs.body)
+        for k, (a, b) in enumerate(zip(names.body[:count].tolist(), names.other[:count].tolist())):
+            found.setdefault(f"{a}-{b}", k)
+            found.setdefault(f"{b}-{a}", k)
+        return found
 
 
 class ContactNames(NamedTuple):

@@ -131,12 +131,18 @@ class Portable:
 
         return go_on(self, duration, progress, throw)
 
-    def to_xarray(self) -> xr.Dataset:
+    @arguments.known
+    def to_xarray(self, *, degrees: bool = False) -> xr.Dataset:
         """Return the whole run as an `xarray.Dataset`, as `save` writes it and `xarray.open_dataset` reads it.
 
         Its dimensions are time, body, axis, quaternion, contact, contact_axis; impact, event, interval and held
-        (for the tables); and joint, coordinate, row and user_event (`t_events`) if there are any. Each variable
-        has the attributes ``units`` and ``long_name``.
+        (for the tables); and joint, coordinate, joint_impulse, applied (forces), row and user_event
+        (`t_events`) if there are any. Each variable has the attributes ``units`` and ``long_name``.
+
+        Parameters
+        ----------
+        degrees : bool
+            Whether coordinates of joints that are angles are in degrees. Default False: radians.
 
         Raises
         ------
@@ -145,14 +151,20 @@ class Portable:
         """
         from carom.io.files.convert import to_xarray
 
-        return to_xarray(self)
+        return to_xarray(self, degrees)
 
-    def to_pandas(self) -> Frames:
-        """Return the run as a named tuple of six tables (`pandas.DataFrame`).
+    @arguments.known
+    def to_pandas(self, *, degrees: bool = False) -> Frames:
+        """Return the run as a named tuple of nine tables (`pandas.DataFrame`).
 
         The tables are ``bodies`` (one row for each saved time, columns for body and quantity), ``energy``,
-        ``impacts``, ``events``, ``contacts`` and ``forces``. Bodies and contacts are given by name, and vectors
-        have one column for each component.
+        ``impacts``, ``events``, ``contacts``, ``forces`` (of contacts), ``joints``, ``applied_forces`` and
+        ``joint_impulses``. Parts are given by name, and vectors have one column for each component.
+
+        Parameters
+        ----------
+        degrees : bool
+            Whether coordinates of joints that are angles are in degrees. Default False: radians.
 
         Raises
         ------
@@ -161,4 +173,4 @@ class Portable:
         """
         from carom.io.files.convert import to_pandas
 
-        return to_pandas(self)
+        return to_pandas(self, degrees)

@@ -171,7 +171,7 @@ def checked(solution):
 
 def scene_of(states):
     """Return the scene of a solution or state."""
-    return states._scene if hasattr(states, "_scene") else states.scene
+    return states._scene
 
 
 def _actuator(motor: Motor) -> Actuator:
@@ -208,7 +208,7 @@ def controls(states) -> np.ndarray:
         return states._ctrl
     motors = commands(scene_of(states))
     first = first_controls(motors)
-    if hasattr(states, "_scene"):
+    if np.ndim(states.t) == 0:
         return first
     place, u = columns(motors), np.full((len(states.t), len(motors)), np.nan)
     u[0] = first

@@ -271,13 +271,7 @@ class Measured(NamedTuple):
 
 def measured(states) -> Measured:
     """Return the accelerations and the forces of contacts of a solution, or of the state of a run."""
-    if not hasattr(states, "_scene"):
-        return Measured(states._accelerations, states._touch, len(states.pairs.body))
-    if states._measured is None:
-        raise ValueError(
-            f"accelerations and forces must be read from a solution or from run.state, got {states!r}"
-        )
-    return states._measured
+    return Measured(states._accelerations, states._touch, len(states._numbers.pairs.body))
 
 
 def _touches(states):

@@ -70,9 +70,7 @@ def rows_of_forces(
     """Go through ranges of saved rows in which forces stay as they are; write them into the compiled scene."""
     first = 0
     for index in {index for _, index, _ in history}:
-        d = scene.forces[index].definition
-        name = {Actuator: "control", JointForce: "force"}.get(type(d), "vector")
-        put(compiled.system, compiled.laws.get(index), places[index], getattr(d, name))
+        put(compiled.system, compiled.laws.get(index), places[index], stated(scene, index))
     for row, index, value in history:
         if min(row, saved) > first:
             yield first, min(row, saved)
@@ -80,3 +78,20 @@ def rows_of_forces(
         put(compiled.system, compiled.laws.get(index), places[index], value)
     if saved > first:
         yield first, saved
+
+
+def values_of_forces(scene, history: History, saved: int) -> dict[int, np.ndarray]:
+    """Return the values at saved times, (T,) or (T, 3), of the forces that were set, by index."""
+    out: dict[int, np.ndarray] = {}
+    for row, index, value in history:
+        if index not in out:
+            first = np.array(stated(scene, index), dtype=float)
+            out[index] = np.repeat(first[None], saved, axis=0)
+        out[index][row:] = value
+    return out
+
+
+def stated(scene, index: int):
+    """Return the value of a force, or the control of an actuator, until it is set."""
+    d = scene.forces[index].definition
+    return getattr(d, {Actuator: "control", JointForce: "force"}.get(type(d), "vector"))

@@ -18,17 +18,21 @@ from carom.results.event_tables import (
     EventTable,
     ForceTable,
     ImpactTable,
+    JointImpulseTable,
     force_table,
 )
+from carom.results.exerted import rows_of
+from carom.results.joint_coordinates import coordinates, in_degrees, of_scene, sides_of
 from carom.results.ledger import Ledger
-from carom.results.names import ConstraintRows, constraint_rows
+from carom.results.named import Source, view
+from carom.results.names import ConstraintRows, Numbers, constraint_rows
 from carom.results.portable import Portable
 from carom.status import Status
 from carom.stepping.settings import settings_of
 
 if TYPE_CHECKING:
     from carom.results.assemble import Written
-    from carom.results.state import BodyState, SystemState
+    from carom.results.state import SystemState
     from carom.run import Run
     from carom.scene.all_pairs import PairTable
     from carom.scene.scene import Scene
@@ -38,8 +42,10 @@ SIDES = ("right", "left")
 
 @arguments.attributes()
 @dataclass(frozen=True, eq=False)
-class Solution(Portable, Drawn):
+class Solution(Portable, Drawn, Source):
     """The motion of N bodies at T saved times, with K impacts.
+
+    ``solution["name"]`` has the results of one part: a body, a joint, a force, a contact.
 
     Attributes
     ----------
@@ -113,7 +119,7 @@ class Solution(Portable, Drawn):
     [[ 0.     0.    -0.981]]
     >>> solution["body1"].velocity.shape  # the motion of one body
     (201, 3)
-    >>> print(solution.contact_force[-1, 0].round(9) + 0.0)  # it rests
+    >>> print(solution["body1-half_space1"].force[-1].round(9) + 0.0)  # it rests
     [9.81 0.   0.  ]
     >>> bool(abs(solution.ledger.residual).max() < 1e-13)
     True
@@ -177,17 +183,17 @@ class Solution(Portable, Drawn):
     @cached_property
     def impacts(self) -> ImpactTable:
         """One record for each impact."""
-        return self._assemble.impact_table(self)
+        return self._assemble.impact_table(self)._by_name(self._numbers)
 
     @cached_property
     def events(self) -> EventTable:
         """Impacts and changes of persistent contacts, in the order of time."""
-        return self._assemble.event_table(self)
+        return self._assemble.event_table(self)._by_name(self._numbers)
 
     @cached_property
     def contacts(self) -> ContactTable:
         """Intervals of persistent contact."""
-        return self._assemble.intervals(self)
+        return self._assemble.intervals(self)._by_name(self._numbers)
 
     @cached_property
     def ledger(self) -> Ledger:
@@ -195,14 +201,47 @@ class Solution(Portable, Drawn):
         sums = (np.array(self._series[one.name]) for one in fields(Ledger)[2:])
         return Ledger(self.kinetic_energy, self.potential_energy, *sums)
 
-    def __getitem__(self, name: str) -> BodyState | Any:
-        """Return the motion of a body by its name: arrays (T, 3) and (T, 4) in a `BodyState`.
+    def __getitem__(self, name):
+        """Return the results of one part, given by name or as the object, with the time first.
 
-        Of a sensor of a model, what it shows at the saved times, (T, ...).
+        A body is a `BodyState` (``solution["die"].velocity``), a joint a `JointView`
+        (``solution["hinge"].torque``), a force a `ForceView` (``solution["motor"].power``), a constraint a
+        `ConstraintView`, a contact or a stop a `ContactView` (``solution["die-ground"].force``).
+
+        Raises
+        ------
+        KeyError
+            If there are no results of this name; the message suggests the nearest one.
         """
-        from carom.results.state import state_of_body
+        return view(self, name, "solution")
 
-        return state_of_body(self, self.scene, name, "solution")
+    @property
+    def _scene(self) -> Scene:
+        return self.scene
+
+    @cached_property
+    def _numbers(self) -> Numbers:
+        return Numbers(self.scene, self.pairs)
+
+    @cached_property
+    def _exerted(self) -> np.ndarray:
+        return self._assemble.exerted_in(self)
+
+    def _exerted_by(self, force) -> np.ndarray:
+        rows = [k for k, row in enumerate(rows_of(self.scene)) if row.force is force]
+        return self._exerted[:, rows]
+
+    @cached_property
+    def joint_impulses(self) -> JointImpulseTable:
+        """Impulses of the joints in impacts: what a bearing takes when something strikes.
+
+        They are computed from the velocities before and after each impact when they are asked for, some tenths
+        of a millisecond for each. Impacts that were not located (`ImpactTable.located`) have none. If joints
+        are redundant, these are the impulses of least norm, as for `joint_reactions`.
+        """
+        from carom.results.joint_impulses import joint_impulses
+
+        return joint_impulses(self)
 
     @property
     def message(self) -> str:
@@ -226,7 +265,7 @@ class Solution(Portable, Drawn):
         return self._assemble.accelerations(self)
 
     @cached_property
-    def _reactions(self) -> np.ndarray:
+    def _solved(self) -> tuple[np.ndarray, dict[int, np.ndarray]]:
         return self._assemble.element_reactions(self)
 
     @cached_property
@@ -236,7 +275,7 @@ class Solution(Portable, Drawn):
         In the order of `Scene.joints`. If joints are redundant, reactions are not unique: these are the
         reactions of least norm, where each row is weighted by its diagonal entry of A M^-1 A^T.
         """
-        return self._assemble.joint_reactions(self)
+        return self._solved[0][:, : len(self.scene.joints)]
 
     @cached_property
     def constraint_forces(self) -> np.ndarray:
@@ -246,10 +285,10 @@ class Solution(Portable, Drawn):
         force or torque on each joint divided by the factor of the joint. For `Rows`, the factor of each row in
         the constraint force.
         """
-        return self._assemble.constraint_forces(self)
+        return self._assemble.multipliers(self.scene, self._solved[0])
 
     @arguments.known
-    def joint_coordinates(self, joint) -> tuple[np.ndarray, np.ndarray]:
+    def joint_coordinates(self, joint, *, degrees: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """Return (coordinates, rates), each (T, n), of a joint at saved times, computed from the states.
 
         Coordinates are those of the child relative to the parent: 0 at the start, positive along the directions
@@ -282,6 +321,8 @@ class Solution(Portable, Drawn):
         ----------
         joint : Joint or str
             A joint of the scene, or its name.
+        degrees : bool
+            Whether angles and their rates are in degrees. Default False: radians.
 
         Raises
         ------
@@ -290,9 +331,9 @@ class Solution(Portable, Drawn):
         TypeError, ValueError
             If `joint` is not a joint, or belongs to another scene.
         """
-        from carom.results.joint_coordinates import coordinates, of_scene, sides_of
-
-        return coordinates(sides_of(of_scene(self.scene, joint)), self, self.t)
+        joint = of_scene(self.scene, joint)
+        read = coordinates(sides_of(joint), self, self.t)
+        return in_degrees(joint, *read) if checks.flag("degrees", degrees) else read
 
     @cached_property
     def constraint_errors(self) -> tuple[np.ndarray, np.ndarray]:
@@ -381,7 +422,7 @@ class Solution(Portable, Drawn):
         It is smaller than `contact_mode` and `contact_force` in scenes with many contacts, because these have
         an entry for each contact of `pairs` at each saved time.
         """
-        return force_table(self._touch)
+        return force_table(self._touch)._by_name(self._numbers)
 
     @cached_property
     def _contact_sums(self) -> tuple[np.ndarray, np.ndarray]:

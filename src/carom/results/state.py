@@ -3,52 +3,39 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from carom import arguments, checks
 from carom.geometry import quaternion
 from carom.model.arrays import STATE
-from carom.results.joint_coordinates import Sides, coordinates, of_scene, sides_of
-from carom.scene.bodies import Body
-
-if TYPE_CHECKING:
-    from carom.results.sensors import Measured
-    from carom.scene.scene import Scene
+from carom.results.event_tables import ForceTable, force_table
+from carom.results.exerted import exerted_by
+from carom.results.instant import Instant
+from carom.results.joint_coordinates import coordinates, in_degrees, of_scene, sides_of
+from carom.results.named import Source, view
+from carom.results.names import Numbers
+from carom.scene.more_forces import JointFriction
 
 _NONE = np.array([1.0, 0.0, 0.0, 0.0])
+_NONE_SET: dict = {}
+
+
+class _OneTime:
+    """A state as the states of a run of one time."""
+
+    def __init__(self, state):
+        for name in ("position", "orientation", "velocity", "angular_velocity"):
+            setattr(self, name, getattr(state, name)[None])
 
 
 @arguments.attributes()
-class BodyState(NamedTuple):
-    """Position, orientation and velocities of one body, in world axes: at one time, or at T saved times."""
+class SystemState(Source):
+    """The N bodies of a scene at one time. Read only; it stays as it is when the run goes on.
 
-    position: np.ndarray  #: (3,) or (T, 3): mass centre [m]
-    orientation: np.ndarray  #: (4,) or (T, 4): unit quaternion (w, x, y, z), body to world
-    velocity: np.ndarray  #: (3,) or (T, 3) [m/s]
-    angular_velocity: np.ndarray  #: (3,) or (T, 3) [rad/s]
-
-
-def state_of_body(states, scene: Scene, name: str, whose: str) -> BodyState | Any:
-    """Return the part of `states` that belongs to the body with this name; `whose` is for messages.
-
-    A name that no part has may be that of a sensor of the model.
-    """
-    if scene.robot is not None and name not in scene._parts and name in scene.robot.sensors:
-        return scene.robot.sensors[name].of(states)
-    try:
-        part = scene[name]
-    except KeyError as error:
-        raise KeyError(f"{whose}: {error.args[0]}") from None
-    if not isinstance(part, Body):
-        raise KeyError(f"{whose}: {name!r} must be a body, got {checks.shown(part)}")
-    return BodyState(*(getattr(states, field)[..., part.index, :] for field in BodyState._fields))
-
-
-@arguments.attributes()
-class SystemState:
-    """The N bodies of a scene at one time; ``state["die"]`` is one of them, a `BodyState`. Read only.
+    ``state["die"]`` is one of them, a `BodyState`; ``state["hinge"]``, ``state["motor"]`` and
+    ``state["die-ground"]`` are a joint, a force and a contact, as of `Solution`. Forces of joints and motors
+    are computed when they are asked for, which takes some tenths of a millisecond.
 
     Attributes
     ----------
@@ -61,20 +48,20 @@ class SystemState:
     def __init__(
         self,
         run,
-        joints: dict[int, Sides] | None = None,
+        known: dict | None = None,
+        given: dict | None = None,
         ctrl: np.ndarray | None = None,
-        measured: Measured | None = None,
     ):
-        self._joints = {} if joints is None else joints  # joints prepared so far
+        self._known = {} if known is None else known  # joints prepared so far, names of contacts
         clock, rows = run.clock, run.now.view(np.ndarray).copy()
         rows.flags.writeable = False
         self._rows, self._scene, self._to_principal = rows, run.scene, run.to_principal
         self.t = float(clock["now"][0])
         self.kinetic_energy = float(clock["kinetic"][0])
         self.potential_energy = float(clock["potential"][0])
-        self._measured = measured  # accelerations and forces of contacts, for sensors
+        given = _NONE_SET if given is None else given
+        self._instant = Instant(run, rows, self.t, given, self._known)
         self._ctrl = None if ctrl is None else ctrl.copy()
-        self._turns = run.compiled.system.relations.coordinates["reference"].copy()
 
     @classmethod
     def _of_file(cls, scene, t: float, kinetic: float, potential: float, motion) -> SystemState:
@@ -83,9 +70,8 @@ class SystemState:
         rows = np.zeros(len(scene.bodies), STATE)
         rows["x"], rows["Q"], rows["v"], rows["w"] = motion
         rows.flags.writeable = False
-        state._ctrl = state._measured = None
-        state._turns = None  # whole turns of the coordinates that a run counts
-        state._joints, state._rows, state._scene, state._to_principal = {}, rows, scene, _NONE
+        state._known, state._rows, state._scene, state._to_principal = {}, rows, scene, _NONE
+        state._instant = state._ctrl = None
         state.t, state.kinetic_energy, state.potential_energy = t, kinetic, potential
         return state
 
@@ -117,18 +103,82 @@ class SystemState:
     @property
     def turns(self) -> np.ndarray | None:
         """Coordinates (C,) whose whole turns a run counts [rad or m]; None of a state from a file."""
-        return self._turns
+        return None if self._instant is None else self._instant.turns
 
     @property
     def total_energy(self) -> float:
         """Kinetic plus potential energy [J]."""
         return self.kinetic_energy + self.potential_energy
 
-    def __getitem__(self, name: str) -> BodyState:
-        """Return the state of a body, by its name, or what a sensor of the model shows."""
-        return state_of_body(self, self._scene, name, "state")
+    def __getitem__(self, name):
+        """Return the state of a body, a joint, a force or a contact, given by name or as the object.
 
-    def joint_coordinates(self, joint) -> tuple[np.ndarray, np.ndarray]:
+        A name that no part has may be that of a sensor of the model.
+        """
+        return view(self, name, "state")
+
+    @property
+    def _at(self) -> Instant:
+        if self._instant is None:
+            raise ValueError(
+                "forces of a state of a file are not known; read them from the solution"
+            )
+        return self._instant
+
+    @property
+    def _numbers(self) -> Numbers:
+        if self._instant is None:
+            from carom.model.contact_rows import touching_pairs
+
+            return Numbers(self._scene, touching_pairs(self._scene))
+        pairs = self._instant.pairs
+        kept = self._known.get(Numbers)
+        if kept is None or kept.pairs is not pairs:
+            kept = self._known[Numbers] = Numbers(self._scene, pairs)
+        return kept
+
+    @property
+    def _touch(self) -> np.recarray:
+        return self._at.touch
+
+    def _exerted_by(self, force) -> np.ndarray:
+        value = self._at.given.get(force.index)
+        if isinstance(force.definition, JointFriction):
+            value = self._solved[1][force.index][0]
+        return exerted_by(force, self, self.t, value)
+
+    @property
+    def _solved(self):
+        self._at.seen = _OneTime(self)
+        return self._at.solved
+
+    @property
+    def _accelerations(self) -> np.ndarray:
+        self._at.seen = _OneTime(self)
+        return self._at.accelerations
+
+    @property
+    def _reactions(self) -> np.ndarray:
+        return self._solved[0]
+
+    @property
+    def forces(self) -> ForceTable:
+        """Forces at all points of persistent contact, as of `Solution.forces`."""
+        return force_table(self._touch)._by_name(self._numbers)
+
+    @property
+    def joint_reactions(self) -> np.ndarray:
+        """Force and torque (J, 6) of each joint on its child, as of `Solution.joint_reactions`."""
+        return self._reactions[0][: len(self._scene.joints)]
+
+    @property
+    def constraint_forces(self) -> np.ndarray:
+        """Multipliers (K,) of the rows of constraints, as of `Solution.constraint_forces`."""
+        from carom.results.assemble import multipliers
+
+        return multipliers(self._scene, self._reactions)[0]
+
+    def joint_coordinates(self, joint, *, degrees: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """Return coordinates and rates (n,) of a joint, as `Solution.joint_coordinates` does.
 
         Angles are from -pi to pi, because a single time has no whole turns; except those of a `Screw`.
@@ -137,11 +187,14 @@ class SystemState:
         ----------
         joint : Joint or str
             A joint of the scene, or its name.
+        degrees : bool
+            Whether angles are in degrees. Default False: radians.
         """
         joint = of_scene(self._scene, joint)
-        if joint.index not in self._joints:
-            self._joints[joint.index] = sides_of(joint)
-        return coordinates(self._joints[joint.index], self)
+        if joint.index not in self._known:
+            self._known[joint.index] = sides_of(joint)
+        read = coordinates(self._known[joint.index], self)
+        return in_degrees(joint, *read) if checks.flag("degrees", degrees) else read
 
     def __repr__(self) -> str:
         return f"<SystemState: {len(self._rows)} bodies at t = {self.t:.9g} s>"

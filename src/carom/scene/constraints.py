@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 from carom import arguments, checks, fields
 from carom.fields import Function, FunctionOrNone, Integer, NumberOrNone, Value, keep
@@ -15,11 +16,25 @@ from carom.scene.joints import Joint, JointDefinition
 from carom.scene.values import in_scene
 
 
-def coordinate_kind(joint: Joint, coordinate: int, name: str = "joint") -> str:
-    """Return "turn" or "slide", the kind of a joint coordinate; refuse one that the joint does not have."""
-    definition = isinstance(joint, (str, JointDefinition))
-    hint = "; give what add_joint returned" if definition else ""
+def joint_or_name(name: str, joint) -> Any:
+    """Return a joint, or its name, which is looked up when the definition is added to a scene."""
+    if isinstance(joint, str):
+        return checks.text(name, joint)
+    definition = isinstance(joint, JointDefinition)
+    hint = "; give what add_joint returned, or its name" if definition else ""
     checks.instance(name, joint, (Joint,), hint)
+    return joint
+
+
+def coordinate_kind(joint: Joint | str, coordinate: int, name: str = "joint") -> str:
+    """Return "turn" or "slide", the kind of a joint coordinate; refuse one that the joint does not have.
+
+    A joint that is only named has any coordinate until it is known, of the kind "".
+    """
+    joint = joint_or_name(name, joint)
+    if isinstance(joint, str):
+        checks.integer("coordinate", coordinate, least=0)
+        return ""
     own = joint.definition.coordinates
     if not own:
         raise ValueError(
@@ -33,14 +48,20 @@ def coordinate_kind(joint: Joint, coordinate: int, name: str = "joint") -> str:
     return own[coordinate]
 
 
-def distinct_bodies(name: str, bodies: Body | Sequence[Body]) -> tuple[Body, ...]:
-    """Return the bodies as a tuple; refuse an empty sequence and a body that is in it twice."""
-    listed = tuple([bodies] if isinstance(bodies, Body) else checks.listed(name, bodies, "Body"))
-    if not listed or len(set(map(id, listed))) != len(listed):
-        raise ValueError(f"{name} must be at least one body, each once, got {checks.shown(bodies)}")
+def distinct_bodies(name: str, bodies: Body | str | Sequence[Body | str]) -> tuple[Any, ...]:
+    """Return bodies, or their names, as a tuple; refuse an empty sequence and one that is in it twice."""
+    single = isinstance(bodies, (Body, str))
+    listed = tuple([bodies] if single else checks.listed(name, bodies, "Body"))
     for body in listed:
-        checks.instance(name, body, (Body,))
+        checks.instance(name, body, (Body, str))
+    if not listed or len(set(listed)) != len(listed):
+        raise ValueError(f"{name} must be at least one body, each once, got {checks.shown(bodies)}")
     return listed
+
+
+#: fields for a joint and for bodies, which may be given by name
+OneJoint: TypeAlias = Value[Joint, Joint | str]
+Bodies: TypeAlias = Value[tuple[Body, ...], Body | str | Sequence[Body | str]]
 
 
 @arguments.known
@@ -53,13 +74,13 @@ class Coupling:
     Parameters
     ----------
     factors : mapping
-        Factors of the coordinates, none of them 0. A key is a joint, for its first coordinate, or a pair
-        (joint, index of the coordinate).
+        Factors of the coordinates, none of them 0. A key is a joint or its name, for its first coordinate, or a
+        pair (joint, index of the coordinate).
     """
 
     terms: tuple[tuple[Joint, int, float], ...]  #: joint, number of its coordinate, factor
 
-    def __init__(self, factors: Mapping[Joint | tuple[Joint, int], float]):
+    def __init__(self, factors: Mapping[Joint | str | tuple[Joint | str, int], float]):
         if not isinstance(factors, Mapping) or not factors:
             raise ValueError(
                 f"factors must be a mapping from joints to numbers, got {checks.shown(factors)}"
@@ -82,20 +103,20 @@ class Gear(Coupling):
 
     Parameters
     ----------
-    first, second : Joint
-        Two joints with coordinates; the gear acts on the first coordinate of each.
+    first, second : Joint or str
+        Two joints with coordinates, or their names; the gear acts on the first coordinate of each.
     ratio : float
         Rate of the second coordinate divided by that of the first, not 0; negative for spur gears about
         parallel axes. For a joint that turns and a joint that slides (a rack) in metres per radian.
     """
 
-    def __init__(self, first: Joint, second: Joint, ratio: float):
+    def __init__(self, first: Joint | str, second: Joint | str, ratio: float):
         ratio = checks.number("ratio", ratio)
         if ratio == 0.0:
             raise ValueError(f"ratio must not be 0, got {checks.shown(ratio)}")
         for name, joint in (("first", first), ("second", second)):
             coordinate_kind(joint, 0, name)
-        if first is second:
+        if first == second:
             raise ValueError(f"first and second must be two joints, got {first!r} for both")
         super().__init__({first: ratio, second: -1.0})
 
@@ -110,8 +131,8 @@ class Driver:
 
     Parameters
     ----------
-    joint : Joint
-        The driven joint.
+    joint : Joint or str
+        The driven joint, or its name.
     rate : float, optional
         Constant rate: ``q = q(0) + rate t`` [rad/s or m/s].
     motion : callable or scipy.interpolate.PPoly, optional
@@ -122,7 +143,7 @@ class Driver:
         Index of the driven coordinate of the joint.
     """
 
-    joint: Joint
+    joint: OneJoint = Value(joint_or_name)
     rate: NumberOrNone = fields.number(None)
     motion: FunctionOrNone = fields.function(None)
     coordinate: Integer = fields.integer(0, least=0)
@@ -142,8 +163,8 @@ class Rows:
 
     Parameters
     ----------
-    bodies : sequence of Body
-        The n bodies that the rows constrain, each once.
+    bodies : sequence of Body or str
+        The n bodies that the rows constrain, or their names, each once.
     function : callable
         ``function(t, poses) -> (rows, 6 n + 1)``: `poses` (n, 7) has position and orientation (quaternion,
         scalar first, body to world) of each body, world axes. A row of the result has six numbers for each
@@ -157,7 +178,7 @@ class Rows:
         derivative. If it is given, the rows are holonomic, and positions are projected back onto it.
     """
 
-    bodies: Value[tuple[Body, ...], Body | Sequence[Body]] = Value(distinct_bodies)
+    bodies: Bodies = Value(distinct_bodies)
     function: Function = fields.function()
     rows: Integer = fields.integer(least=1, most=6)
     position: FunctionOrNone = fields.function(None)
@@ -209,3 +230,7 @@ class Constraint:
 
 
 __getattr__ = arguments.members_of("carom.constraints", ["Coupling", "Driver", "Gear", "Rows"])
+
+
+def __dir__() -> list[str]:
+    return ["Constraint", "Gear", *(constraint.__name__ for constraint in CONSTRAINTS)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 
@@ -63,7 +64,7 @@ class Contact(ContactLaw):
 
 def initial_gap(contact: Contact) -> float:
     """Return the gap [m] between the two at the start, negative if they overlap."""
-    return _gap(contact.body, contact.other)[0]
+    return gap_between(contact.body, contact.other)[0]
 
 
 def check_gap(contact: Contact) -> None:
@@ -104,7 +105,7 @@ def far(body: Body, other: HalfSpace | StaticBody | Body, x: np.ndarray, y: np.n
 def overlap(body: Body, other: HalfSpace | StaticBody | Body) -> tuple[float, np.ndarray]:
     """Return the depth [m] of a body in the other at the start, 0 if it is rounding, and the normal (3,)."""
     assert body.shape is not None
-    gap, normal = _gap(body, other)
+    gap, normal = gap_between(body, other)
     if isinstance(other, HalfSpace):
         length = body.shape.size + float(np.linalg.norm(body.position - other.point))
     else:
@@ -114,16 +115,17 @@ def overlap(body: Body, other: HalfSpace | StaticBody | Body) -> tuple[float, np
     return (0.0 if gap >= -TOUCH * length else -gap), normal
 
 
-def _gap(body: Body, other: HalfSpace | StaticBody | Body) -> tuple[float, np.ndarray]:
-    """Return the gap [m], negative inside, and the normal (3,) from the other to the body."""
-    assert body.shape is not None
+def gap_between(body: Any, other: Any) -> tuple[float, np.ndarray]:
+    """Return the gap [m], negative inside, and the normal (3,) from the other to the body.
+
+    `body` and `other` have a shape, a position and an orientation; `other` may be a half-space.
+    """
     if isinstance(other, HalfSpace):
         down = quaternion.rotate_back(body.orientation, -other.normal)
         depth = float(body.shape.support(down) @ down)
         return float((body.position - other.point) @ other.normal) - depth, other.normal
     from carom.collision.api import nearest_points  # compiled code, only where bodies meet
 
-    assert other.shape is not None
     here, there = (body.position, body.orientation), (other.position, other.orientation)
     point = nearest_points(body.shape, here, other.shape, there)
     return point.gap, point.normal

@@ -205,3 +205,7 @@ def sides(first) -> tuple[Body | Ground, Body]:
 
 
 __getattr__ = arguments.members_of("carom.forces", [one.__name__ for one in FORCES])
+
+
+def __dir__() -> list[str]:
+    return ["AppliedForce", *(force.__name__ for force in FORCES)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,9 +18,13 @@ from carom.fields import (
     Vector,
     VectorOrNone,
 )
-from carom.scene.bodies import Body
-from carom.scene.constraints import coordinate_kind, distinct_bodies
-from carom.scene.joints import Joint
+from carom.scene.constraints import (
+    Bodies,
+    OneJoint,
+    coordinate_kind,
+    distinct_bodies,
+    joint_or_name,
+)
 from carom.scene.values import apart
 
 
@@ -28,7 +32,7 @@ from carom.scene.values import apart
 class AlongJoint:
     """What acts along a `coordinate` of a joint."""
 
-    joint: Joint
+    joint: OneJoint = Value(joint_or_name)
 
     def __post_init__(self):
         coordinate_kind(self.joint, self.coordinate)  # pyright: ignore[reportAttributeAccessIssue]
@@ -43,7 +47,8 @@ class JointSpring(AlongJoint):
 
     Parameters
     ----------
-    joint : Joint
+    joint : Joint or str
+        The joint, or its name.
     stiffness, damping : float
         For an angle [N m/rad] and [N m s/rad], for a displacement [N/m] and [N s/m]; at least 0. Default 0.
     rest : float
@@ -71,7 +76,8 @@ class JointForce(AlongJoint):
 
     Parameters
     ----------
-    joint : Joint
+    joint : Joint or str
+        The joint, or its name.
     force : float or callable
         Force [N] along a displacement or torque [N m] about an angle: a number, or a function
         ``force(t, q, rate)`` of the time, the coordinate and its rate, plain Python or compiled with Numba.
@@ -150,6 +156,15 @@ class Actuator(AlongJoint):
         """Return F, without its range, for the control that acts; numbers or arrays."""
         return self.gain * control + self.bias[0] + self.bias[1] * length + self.bias[2] * rate
 
+    def force_at(self, control, q, rate):
+        """Return the force along the coordinate, for a control that is not clipped; numbers or arrays."""
+        if self.control_range is not None:
+            control = np.clip(control, *self.control_range)
+        force = self.affine(control, self.gear * q, self.gear * rate)
+        return self.gear * (
+            force if self.force_range is None else np.clip(force, *self.force_range)
+        )
+
     def constant(self, control: float) -> float:
         """Return the part of the force along the coordinate that does not depend on it; of a law, 0."""
         force = self.gain * self.clipped(control) + float(self.bias[0])
@@ -192,7 +207,8 @@ class JointFriction(AlongJoint):
 
     Parameters
     ----------
-    joint : Joint
+    joint : Joint or str
+        The joint, or its name.
     bound : float
         Friction force [N] along a displacement or torque [N m] about an angle, at least 0.
     coordinate : int
@@ -214,7 +230,8 @@ class JointInertia(AlongJoint):
 
     Parameters
     ----------
-    joint : Joint
+    joint : Joint or str
+        The joint, or its name.
     inertia : float
         [kg m^2] for an angle, [kg] for a displacement; at least 0.
     coordinate : int
@@ -272,8 +289,8 @@ class UserForce:
 
     Parameters
     ----------
-    bodies : sequence of Body
-        The n bodies on which the forces act, each once.
+    bodies : sequence of Body or str
+        The n bodies on which the forces act, or their names, each once.
     function : callable
         ``function(t, states) -> (n, 6)``: `states` (n, 13) has position, orientation (quaternion, scalar first,
         body to world), velocity and angular velocity of each body, world axes. The result has a force [N] and a
@@ -284,6 +301,6 @@ class UserForce:
         of the forces is part of `potential_energy`; otherwise their work is in `ledger.loads`.
     """
 
-    bodies: Value[tuple[Body, ...], Body | Sequence[Body]] = Value(distinct_bodies)
+    bodies: Bodies = Value(distinct_bodies)
     function: Function = fields.function()
     potential: FunctionOrNone = fields.function(None)

@@ -16,6 +16,7 @@ from carom.scene.contacts import Contact, check_gap
 from carom.scene.forces import FORCES, AppliedForce, ForceDefinition, force_on, sides
 from carom.scene.joints import JOINTS, Joint, JointDefinition
 from carom.scene.materials import Material
+from carom.scene.named_parts import with_parts
 from carom.scene.pairs import Pairs
 from carom.scene.registry import Derived, Registry
 from carom.scene.shapes import Shape
@@ -317,7 +318,7 @@ class Scene(TouchingPairs):
             Default False: a name that is taken is refused.
         """
         checks.instance("definition", definition, FORCES)
-        definition = self._parts.linked(definition)
+        definition = self._parts.linked(with_parts(definition, self._parts.member))
         named = force_on(definition)
         if named is not None:
             if child is not None or parent is not GROUND:
@@ -346,7 +347,8 @@ class Scene(TouchingPairs):
         Parameters
         ----------
         definition
-            A constraint of `carom.constraints`. Its joints and bodies must belong to this scene.
+            A constraint of `carom.constraints`. Its joints and bodies, given as objects or by name, must belong
+            to this scene.
         name
             Name in the scene. Default ``"constraint1"``, ``"constraint2"``, ...
         replace : bool
@@ -355,7 +357,8 @@ class Scene(TouchingPairs):
         """
         checks.instance("definition", definition, CONSTRAINTS)
         index, name = self._parts.new(Constraint, name, "constraint", replace)
-        return self._parts.add(Constraint(index, name, self._parts.linked(definition)))
+        definition = self._parts.linked(with_parts(definition, self._parts.member))
+        return self._parts.add(Constraint(index, name, definition))
 
     @arguments.known
     def add_stop(
@@ -583,6 +586,9 @@ class Scene(TouchingPairs):
     def __contains__(self, name) -> bool:
         """Return whether a part has this name; or, of a part, whether it is one of this scene."""
         return self._parts.has(name)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return [part.name for part in self._parts]
 
     def validate(self) -> None:
         """Check that the scene can start: it has bodies, and no body penetrates another one or a half-space.

@@ -10,8 +10,9 @@ import numpy as np
 
 from carom import checks
 from carom.io.files.disk import put
-from carom.io.files.layout import EVENT, HELD, IMPACT, INTERVAL, LEDGER
-from carom.io.files.variables import attributes, labelled
+from carom.io.files.layout import EVENT, HELD, IMPACT, INTERVAL, JOINT_IMPULSE, LEDGER
+from carom.io.files.variables import attributes, has_reactions, labelled
+from carom.results.exerted import rows_of
 from carom.results.names import contact_names
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ BODY = {
     "velocity": ("vx", "vy", "vz"),
     "angular_velocity": ("wx", "wy", "wz"),
 }
+WRENCH = ("fx", "fy", "fz", "tx", "ty", "tz")
 ENDS = {"axis": ("x", "y", "z"), "contact_axis": ("n", "t1", "t2")}
 
 
@@ -46,28 +48,45 @@ class Frames(NamedTuple):
     """One row for each interval of persistent contact: contact, feature, start, end, mode."""
     forces: pd.DataFrame
     """One row for each active point and saved time: time, contact, body, other, mode, point, force."""
+    joints: pd.DataFrame
+    """One row for each saved time, columns (joint, quantity): ``joints["hinge"].coordinate``. The quantities
+    are coordinate and rate (with an index if there are several: ``coordinate[0]``), force fx, fy, fz and torque
+    tx, ty, tz."""
+    applied_forces: pd.DataFrame
+    """One row for each saved time, columns (force, quantity): fx, fy, fz and tx, ty, tz on the body, value
+    (along a coordinate of a joint, or the tension of a spring) and power. The name of a user's force that acts
+    on several bodies is followed by that of the body: ``drag.die``."""
+    joint_impulses: pd.DataFrame
+    """One row for each joint and impact: time, impact, joint, impulse, angular impulse."""
 
 
-def to_xarray(solution) -> xr.Dataset:
+def to_xarray(solution, degrees: bool = False) -> xr.Dataset:
     """Return the whole solution as a Dataset."""
-    xarray = checks.need("xarray", "to_xarray", "files")
-    variables = {
-        one.name: xarray.Variable(one.dims, one.data, one.attrs) for one in labelled(solution)
-    }
+    xarray, degrees = checks.need("xarray", "to_xarray", "files"), checks.flag("degrees", degrees)
+    found = labelled(solution, degrees=degrees)
+    variables = {one.name: xarray.Variable(one.dims, one.data, one.attrs) for one in found}
     return xarray.Dataset(variables, attrs=attributes(solution))
 
 
-def to_pandas(solution) -> Frames:
+def to_pandas(solution, degrees: bool = False) -> Frames:
     """Return the tables of a solution."""
-    pandas = checks.need("pandas", "to_pandas", "files")
+    pandas, degrees = checks.need("pandas", "to_pandas", "files"), checks.flag("degrees", degrees)
     scene = solution.scene
     contacts = contact_names(scene, solution.pairs).name.astype(object)
     bodies = np.array([body.name for body in scene.bodies], dtype=object)
     time = pandas.Index(solution.t, name="time")
-    blocks = [getattr(solution, name) for name in BODY]
-    names = [(body, q) for body in bodies for columns in BODY.values() for q in columns]
-    motion = np.concatenate(blocks, axis=2).reshape(len(time), -1)
-    columns = pandas.MultiIndex.from_tuples(names, names=["body", "quantity"])
+
+    def series(kind: str, columns: dict[tuple[str, str], np.ndarray]) -> pd.DataFrame:
+        of = pandas.MultiIndex.from_tuples(list(columns), names=[kind, "quantity"])
+        data = np.stack(list(columns.values()), axis=1) if columns else np.zeros((len(time), 0))
+        return pandas.DataFrame(data, index=time, columns=of if columns else None)
+
+    motion = {
+        (body.name, q): getattr(solution, name)[:, body.index, k]
+        for body in scene.bodies
+        for name, columns in BODY.items()
+        for k, q in enumerate(columns)
+    }
     energy = {"kinetic": solution.kinetic_energy, "potential": solution.potential_energy}
     energy |= {name: getattr(solution.ledger, name) for name in LEDGER}
     tables = [
@@ -85,12 +104,49 @@ def to_pandas(solution) -> Frames:
     forces["body"] = bodies[forces["body"]]
     other = forces["other"]
     forces["other"] = np.where(other < 0, "", bodies[other]) if len(other) else other.astype(object)
-    frames = (pandas.DataFrame(table) for table in (*tables[:3], forces))
+    known = has_reactions(solution)
+    impulses = _expanded(JOINT_IMPULSE, solution.joint_impulses) if known else {}
+    if impulses:
+        impulses["joint"] = solution.joint_impulses.name.astype(object)
     return Frames(
-        pandas.DataFrame(motion, index=time, columns=columns),
-        pandas.DataFrame(energy, index=time),
-        *frames,
+        bodies=series("body", motion),
+        energy=pandas.DataFrame(energy, index=time),
+        impacts=pandas.DataFrame(tables[0]),
+        events=pandas.DataFrame(tables[1]),
+        contacts=pandas.DataFrame(tables[2]),
+        forces=pandas.DataFrame(forces),
+        joints=series("joint", _joints(solution, degrees, known)),
+        applied_forces=series("force", _applied(solution) if known else {}),
+        joint_impulses=pandas.DataFrame(impulses),
     )
+
+
+def _joints(solution, degrees: bool, known: bool) -> dict[tuple[str, str], np.ndarray]:
+    """Return coordinates and rates of joints, and where they are known force and torque."""
+    out = {}
+    for joint in solution.scene.joints:
+        pair = solution.joint_coordinates(joint, degrees=degrees)
+        for name, values in zip(("coordinate", "rate"), pair):
+            many = values.shape[1] > 1
+            for k, column in enumerate(values.T):
+                out[joint.name, f"{name}[{k}]" if many else name] = column
+        if known:
+            parts = solution.joint_reactions[:, joint.index].T
+            out |= {(joint.name, name): one for name, one in zip(WRENCH, parts)}
+    return out
+
+
+def _applied(solution) -> dict[tuple[str, str], np.ndarray]:
+    """Return what forces exert."""
+    rows, data = rows_of(solution.scene), solution._exerted
+    several = {row.force for k, row in enumerate(rows) if k and row.force is rows[k - 1].force}
+    names = [f"{f.name}.{b.name}" if f in several else f.name for f, b in rows]
+    columns = (*WRENCH, "value", "power")
+    return {
+        (name, column): data[:, i, k]
+        for i, name in enumerate(names)
+        for k, column in enumerate(columns)
+    }
 
 
 def _expanded(columns: dict, table) -> dict[str, np.ndarray]:
@@ -135,9 +191,11 @@ def write_tables(path: Path, solution) -> None:
     if kind == ".parquet":
         checks.need("pyarrow", "saving as .parquet", "parquet")
     for name, frame in to_pandas(solution)._asdict().items():
-        if name in ("bodies", "energy"):  # the time is a column as others are
+        if frame.columns.empty or (name == "joint_impulses" and not solution.scene.joints):
+            continue  # of parts that the scene does not have
+        if frame.index.name == "time":  # a column as others are
             frame = frame.reset_index()
-        if name == "bodies":
+        if frame.columns.nlevels > 1:
             frame.columns = [".".join(filter(None, pair)) for pair in frame.columns]
         where = path if name == "bodies" else path.with_suffix(f".{name}{path.suffix}")
         put(where, [_bytes(frame, kind)])

@@ -9,11 +9,11 @@ import numpy as np
 from carom.dynamics.methods import METHODS
 from carom.io.files.checkpoint import Checkpoint, restore
 from carom.model import records as r
-from carom.model.compile import with_pairs
+from carom.model.compile import Compiled, with_pairs
 from carom.model.contact_rows import first_pairs, touching_pairs
 from carom.model.method import IMPLICIT, THREE_FIELD
 from carom.options import Options
-from carom.results.set_forces import History, places, rows_of_forces
+from carom.results.set_forces import History, places, rows_of_forces, values_of_forces
 from carom.scene.all_pairs import PairTable, joined_tables, may_touch, some_pairs
 from carom.scene.scene import Scene
 
@@ -63,13 +63,18 @@ class KeptRun:
             restore(run, self.checkpoint, self.records)
         return run
 
-    def rows_of_forces(self, saved: int):
-        """Go through ranges of saved rows in which forces stay as they are; write them into the scene."""
+    def rows_of_forces(self, compiled: Compiled, saved: int):
+        """Go through ranges of saved rows in which forces stay as they are; write them into the arrays."""
         if self.history is None:
             return [(0, saved)]
-        implicit = METHODS[self.settings["method"]].kind == IMPLICIT
-        at = places(self.scene, self.compiled, implicit)
-        return rows_of_forces(self.history, self.scene, at, self.compiled, saved)
+        own = compiled is self.compiled  # others have springs as forces
+        implicit = own and METHODS[self.settings["method"]].kind == IMPLICIT
+        at = places(self.scene, compiled, implicit)
+        return rows_of_forces(self.history, self.scene, at, compiled, saved)
+
+    def values_of_forces(self) -> dict[int, np.ndarray]:
+        """Return the values at saved times of the forces that were set, by index."""
+        return values_of_forces(self.scene, self.history or [], len(self.records.series))
 
     def need_functions(self, where: str) -> None:
         """Refuse what cannot be done without the functions that a file cannot contain."""

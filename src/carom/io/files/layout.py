@@ -105,6 +105,15 @@ HELD = {
     "vector": (("axis",), "N", "force on the body, world axes"),
 }
 
+#: impulses of joints in impacts
+JOINT_IMPULSE = {
+    "time": ((), "s", "time of the impact"),
+    "impact": ((), "1", "place of the impact in the table of impacts, from 0"),
+    "joint": ((), "1", "place of the joint among all joints, from 0"),
+    "impulse": (("axis",), "N s", "impulse on the child at its anchor, world axes"),
+    "angular_impulse": (("axis",), "N m s", "angular impulse on the child about its anchor"),
+}
+
 LEDGER = {
     "loads": "work of loads, dampers and motors since the start",
     "impacts": "change by impacts since the start",

@@ -18,7 +18,15 @@ from carom import checks
 from carom.io.files import raw
 from carom.io.files.checkpoint import from_index
 from carom.io.files.kept import KeptRun
-from carom.io.files.layout import ENERGIES, EVENT, IMPACT, INTERVAL, LEDGER, MOTION
+from carom.io.files.layout import (
+    ENERGIES,
+    EVENT,
+    IMPACT,
+    INTERVAL,
+    JOINT_IMPULSE,
+    LEDGER,
+    MOTION,
+)
 from carom.io.files.scene_parts import scene_from_text
 from carom.io.files.sealed import Sealed, refusal, unsealed
 from carom.io.files.settings_in_time import from_rows
@@ -27,7 +35,10 @@ from carom.model import records as r
 from carom.options import Options
 from carom.results.assemble import named
 from carom.results.event_tables import ContactTable, EventTable, ImpactTable
+from carom.results.exerted import rows_of
+from carom.results.joint_impulses import of_joints
 from carom.results.ledger import Ledger
+from carom.results.names import Numbers
 from carom.status import Status
 from carom.stepping.settings import checked_settings
 
@@ -36,7 +47,7 @@ DERIVED = ("orientation", *ENERGIES)
 LENGTHS = {"axis": 3, "quaternion": 4, "contact_axis": 3, "contact_axis_2": 3}
 TYPES = ("<f8", "<i8", ">f8", ">i8")
 #: columns of tables that count something
-WHOLE = ("contact", "together", "wedged", "located", "feature")
+WHOLE = ("contact", "together", "wedged", "located", "feature", "impact", "joint")
 
 
 def read(path: Path, functions: Mapping[str, Callable] | None = None) -> dict[str, Any]:
@@ -79,6 +90,7 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
     known = records, checkpoint, missing, attributes, found, history
     run = KeptRun(scene, settings, options, *known)
     check_numbers(records, len(run.pairs.body) + len(scene.stops))
+    names = Numbers(scene, run.pairs)
     motion = {name: arrays.array(name, ("time", *dims)) for name, (dims, _, _) in MOTION.items()}
     derived = {name: motion.pop(name) for name in DERIVED}
     entries = [arrays.array(f"ledger_{name}", ("time",)) for name in LEDGER if name != "residual"]
@@ -96,11 +108,11 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
         **from_file(arrays, index.get("user_events"), scene),
         "cached": {
             **derived,
-            "impacts": _impacts(arrays, scene, run.pairs),
-            "events": EventTable(**arrays.table("event", EVENT)),
-            "contacts": ContactTable(**arrays.table("interval", INTERVAL)),
+            "impacts": _impacts(arrays, scene, run.pairs)._by_name(names),
+            "events": EventTable(**arrays.table("event", EVENT))._by_name(names),
+            "contacts": ContactTable(**arrays.table("interval", INTERVAL))._by_name(names),
             "ledger": Ledger(derived["kinetic_energy"], derived["potential_energy"], *entries),
-            **_cached(arrays),
+            **_cached(arrays, scene),
         },
     }  # fmt: skip
 
@@ -238,14 +250,24 @@ def check_numbers(records: r.Records, contacts: int) -> None:
                 )
 
 
-def _cached(arrays: _Arrays) -> dict[str, Any]:
+def _cached(arrays: _Arrays, scene) -> dict[str, Any]:
     """Return the reactions in the file of a finished run; a kind that the run does not have is empty."""
+    out: dict[str, Any] = {}
+    if "joint_impulse_time" in arrays:
+        out["joint_impulses"] = of_joints(scene, arrays.table("joint_impulse", JOINT_IMPULSE))
+    if "applied_force" in arrays:
+        if arrays.sizes["applied"] != len(rows_of(scene)):
+            raise ValueError(f"it has {arrays.sizes['applied']} rows of forces, for other forces")
+        of, vector = ("time", "applied"), ("time", "applied", "axis")
+        parts = [arrays.array(f"applied_{name}", vector) for name in ("force", "torque")]
+        alone = [arrays.array(f"applied_{name}", of)[..., None] for name in ("value", "power")]
+        out["_exerted"] = np.concatenate([*parts, *alone], axis=2)
     if "position_error" not in arrays:
-        return {}
+        return out
     saved = arrays.sizes["time"]
     names, of = ("position_error", "velocity_error"), ("time", "constraint_row")
     errors = (arrays.array(name, of) for name in names)
-    out: dict[str, Any] = {
+    out |= {
         "joint_reactions": np.zeros((saved, 0, 6)),
         "constraint_forces": np.zeros((saved, 0)),
         "constraint_errors": tuple(errors),

@@ -88,6 +88,7 @@ def _made(parts, part: Any) -> Any:
     if isinstance(part, forces.AppliedForce):
         own = forces.force_on(part.definition) or ()
     for one in own:
+        checks.instance("definition", one, (joints.Joint, bodies.Body))  # no name
         parts.member("definition", one, (joints.Joint, bodies.Body))
     if isinstance(part, stops.Stop):
         parts.member("joint", part.joint, (joints.Joint,))

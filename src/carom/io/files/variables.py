@@ -16,6 +16,7 @@ from carom.io.files.layout import (
     HELD,
     IMPACT,
     INTERVAL,
+    JOINT_IMPULSE,
     LABELS,
     LEDGER,
     MOTION,
@@ -24,14 +25,20 @@ from carom.io.files.layout import (
 )
 from carom.io.files.scene_parts import scene_to_text
 from carom.io.files.user_events import user_events
+from carom.results.exerted import rows_of, unit_of
+from carom.results.joint_coordinates import units
 from carom.results.names import contact_names
-from carom.scene.joints import Distance, Spherical
+
+MOST_IMPACTS = (
+    5000  # for more of them impulses of joints, a third of a millisecond each, must be asked for
+)
 
 
-def labelled(solution, reactions: bool = True) -> list[Variable]:
+def labelled(solution, reactions: bool = True, degrees: bool = False) -> list[Variable]:
     """Return the whole solution as variables.
 
-    With `reactions`, also reactions and coordinates of joints, which are computed from the states.
+    With `reactions`, also reactions, coordinates and impulses of joints, and forces, which are computed from
+    the states; with `degrees`, angles of joints are in degrees.
     """
     scene = solution.scene
     out = [
@@ -48,12 +55,21 @@ def labelled(solution, reactions: bool = True) -> list[Variable]:
     out += table_variables("held", "held", HELD, solution.forces)
     out += user_events(solution)
     out += _contacts(solution)
-    missing = getattr(solution._run, "missing", ())  # functions that a file could not hold
-    if reactions and not (missing and "joint_reactions" not in vars(solution)):
-        out += _joints(solution) + _constraints(solution)
+    if reactions and has_reactions(solution):
+        out += _joints(solution, degrees) + _constraints(solution) + _forces(solution)
     text = np.array(scene_to_text(scene), dtype=object)
     out.append(Variable("scene", (), text, None, "the scene that was simulated, as JSON"))
     return out
+
+
+def has_reactions(solution) -> bool:
+    """Return whether reactions can be computed."""
+    return not missing(solution) or "joint_reactions" in vars(solution)
+
+
+def missing(solution) -> list[str]:
+    """Return the functions of the scene that a file could not contain."""
+    return getattr(solution._run, "missing", [])
 
 
 def attributes(solution) -> dict[str, Any]:
@@ -124,7 +140,7 @@ def _contacts(solution) -> list[Variable]:
     ]  # fmt: skip
 
 
-def _joints(solution) -> list[Variable]:
+def _joints(solution, degrees: bool) -> list[Variable]:
     joints = solution.scene.joints
     if not joints:
         return []
@@ -140,12 +156,16 @@ def _joints(solution) -> list[Variable]:
             "on the child about its anchor, world axes",
         ),
     ]  # fmt: skip
-    labels, units, q, rates = [], [], [], []
+    few = len(solution.impacts) <= MOST_IMPACTS and not missing(solution)
+    if few or "joint_impulses" in vars(solution):
+        of = "joint_impulse"
+        out += table_variables(of, of, JOINT_IMPULSE, solution.joint_impulses)
+    labels, known, q, rates = [], [], [], []
     for joint in joints:
-        value, rate = solution.joint_coordinates(joint)
+        value, rate = solution.joint_coordinates(joint, degrees=degrees)
         number = value.shape[1]
         labels += [joint.name if number == 1 else f"{joint.name}[{k}]" for k in range(number)]
-        units += coordinate_units(joint)
+        known += units(joint, degrees)
         q.append(value)
         rates.append(rate)
     if not labels:
@@ -155,21 +175,11 @@ def _joints(solution) -> list[Variable]:
         *out,
         Variable("coordinate", ("coordinate",), np.array(labels), None, "coordinates of joints"),
         Variable(
-            "coordinate_units", ("coordinate",), np.array(units), None, "units of joint_coordinate"
+            "coordinate_units", ("coordinate",), np.array(known), None, "units of joint_coordinate"
         ),
         Variable("joint_coordinate", series, np.hstack(q), None, "in coordinate_units"),
         Variable("joint_rate", series, np.hstack(rates), None, "in coordinate_units a second"),
     ]
-
-
-def coordinate_units(joint) -> list[str]:
-    """Return the units of the coordinates of a joint; none for one without."""
-    d = joint.definition
-    if isinstance(d, Distance):
-        return ["m"]
-    if isinstance(d, Spherical):
-        return ["rad"] * 3
-    return ["rad" if kind == "turn" else "m" for kind in d.coordinates]
 
 
 def _constraints(solution) -> list[Variable]:
@@ -195,3 +205,24 @@ def _constraints(solution) -> list[Variable]:
             Variable("velocity_error", of, velocity, None, "error, in constraint_unit a second"),
         ]
     return out
+
+
+def _forces(solution) -> list[Variable]:
+    rows, data = rows_of(solution.scene), solution._exerted
+    if not rows:
+        return []
+    names, bodies = (np.array(part) for part in zip(*((f.name, b.name) for f, b in rows)))
+    units = [unit_of(force) for force, _ in rows]
+    of, vector = ("time", "applied"), ("time", "applied", "axis")
+    return [
+        Variable("applied", of[1:], names, None, "applied forces by name, a place for each body"),
+        Variable("applied_body", of[1:], bodies, None, "body on which it acts"),
+        Variable("applied_force", vector, data[..., :3], "N", "on the body, world axes"),
+        Variable("applied_torque", vector, data[..., 3:6], "N m", "on the body, world axes"),
+        Variable("applied_units", of[1:], np.array(units), None, "units of applied_value"),
+        Variable(
+            "applied_value", of, data[..., 6], None,
+            "along a coordinate of a joint, or the tension of a spring, in applied_units; NaN of others",
+        ),
+        Variable("applied_power", of, data[..., 7], "W", "power that it gives to the body"),
+    ]  # fmt: skip

@@ -17,3 +17,7 @@ __all__ = [
     "Sensor",
     "load_model",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

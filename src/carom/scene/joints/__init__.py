@@ -34,3 +34,7 @@ from carom.scene.joints.joint import Joint as Joint
 JOINTS = subclasses_in(globals(), JointDefinition)
 
 __getattr__ = members_of("carom.joints", [joint.__name__ for joint in JOINTS])
+
+
+def __dir__() -> list[str]:
+    return ["Joint", "JointDefinition", *(joint.__name__ for joint in JOINTS)]

@@ -21,3 +21,7 @@ __all__ = [
 gradient = sensitivities  # the name that some look for
 for _name in __all__:  # also found at the function: `carom.gradient.impact_derivative`
     setattr(gradient, _name, globals()[_name])
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -47,3 +47,7 @@ for _name in (
     __all__
 ):  # `carom.identify` is the function, and these are also found at it: `carom.identify.Recording`
     setattr(identify, _name, globals()[_name])
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -6,3 +6,7 @@ from carom.visual.films.film import film
 from carom.visual.films.stage import still
 
 __all__ = ["film", "still"]
+
+
+def __dir__() -> list[str]:
+    return __all__

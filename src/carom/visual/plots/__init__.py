@@ -9,7 +9,9 @@ from carom.visual.plots.ensembles import ensemble
 from carom.visual.plots.errors import constraint_errors
 from carom.visual.plots.glance import overview
 from carom.visual.plots.impacts_over_time import impacts
+from carom.visual.plots.joint_motion import joints
 from carom.visual.plots.layer import impact_inside
+from carom.visual.plots.loads import forces
 from carom.visual.plots.paths import trajectory
 from carom.visual.plots.plane import phase
 from carom.visual.plots.precision import work_precision
@@ -21,11 +23,17 @@ __all__ = [
     "contacts",
     "energy",
     "ensemble",
+    "forces",
     "hodograph",
     "impact_inside",
     "impacts",
+    "joints",
     "overview",
     "phase",
     "trajectory",
     "work_precision",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

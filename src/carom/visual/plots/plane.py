@@ -10,7 +10,7 @@ from carom.visual.plots import figure, style
 
 
 @known
-def phase(solution, of=None, *, axis: str = "z", number: int = 0, ax=None):
+def phase(solution, of=None, *, axis: str = "z", number: int = 0, degrees: bool = False, ax=None):
     """Draw the phase plane of one coordinate: its rate over its value.
 
     For a body or a coordinate of a `GeneralizedSystem`, an impact is a vertical line. For a joint only saved
@@ -27,6 +27,8 @@ def phase(solution, of=None, *, axis: str = "z", number: int = 0, ax=None):
         Axis of the position of a body. Default "z".
     number : int
         Index of the coordinate of a joint, or of the system. Default 0.
+    degrees : bool
+        Whether the angle of a joint is in degrees. Default False: radians.
     ax : Axes, optional
         Axes to draw into. Default: a new figure.
 
@@ -46,7 +48,8 @@ def phase(solution, of=None, *, axis: str = "z", number: int = 0, ax=None):
         words = f"$q_{{{k}}}$", f"$\\dot q_{{{k}}}$ [1/s]"
     else:
         checks.integer("number", number, least=0)
-        q, v, words = _of_scene(solution, of, checks.choice("axis", axis, "xyz"), number)
+        axis, degrees = checks.choice("axis", axis, "xyz"), checks.flag("degrees", degrees)
+        q, v, words = _of_scene(solution, of, axis, number, degrees)
     with figure.drawing(ax, 1, (style.COLUMN, 2.6)) as axes:
         axes.plot(q, v, color=style.BLUE, lw=0.9)
         axes.plot(q[:1], v[:1], "s", color=style.BLUE, ms=4)
@@ -55,20 +58,20 @@ def phase(solution, of=None, *, axis: str = "z", number: int = 0, ax=None):
     return axes
 
 
-def _of_scene(solution, of, axis: str, number: int):
+def _of_scene(solution, of, axis: str, number: int, degrees: bool):
     """Return coordinate, rate and their labels, of a joint or a body."""
-    from carom.io.files.variables import coordinate_units
+    from carom.results.joint_coordinates import units as units_of
 
     scene = solution.scene
-    joints = {joint.name: joint for joint in scene.joints if coordinate_units(joint)}
+    joints = {joint.name: joint for joint in scene.joints if units_of(joint)}
     every = [body.name for body in scene.bodies]
     name = of if isinstance(of, type) else getattr(of, "name", of)
     if name is None:
         name = next(iter(joints), every[0])
     if isinstance(name, str) and name in joints:
-        units = coordinate_units(joints[name])
+        units = units_of(joints[name], degrees)
         k = checks.integer("number", number, least=0, most=len(units) - 1)
-        q, rate = solution.joint_coordinates(name)
+        q, rate = solution.joint_coordinates(name, degrees=degrees)
         words = f"coordinate of {name} [{units[k]}]", f"rate of {name} [{units[k]}/s]"
         return q.reshape(len(q), -1)[:, k], rate.reshape(len(q), -1)[:, k], words
     (b,) = figure.named("of", name, [*every, *joints])

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.geometry.frames import contact_axes, pair_axes
+from carom.results.joint_impulses import world_impulses
 from carom.scene.constraints import coordinate_kind
 
 LISTED = 1000  # impacts in the list: the strongest
@@ -41,17 +41,6 @@ class Inside(NamedTuple):
     velocity: np.ndarray  #: (I, 3) contact axes [m/s]
     force: np.ndarray  #: (I, 3) contact axes [N]
     phases: tuple[str, ...]
-
-
-def world_impulses(solution) -> np.ndarray:
-    """Return the impulse of each impact on the body (K, 3), world axes [N s]; 0 at stops of joints."""
-    impacts, pairs = solution.impacts, solution.pairs
-    out = np.zeros((len(impacts), 3))
-    for k in np.flatnonzero(impacts.contact < len(pairs.body)):  # stops come after contacts
-        flat = 0 <= pairs.plane[impacts.contact[k]] < len(solution.scene.half_spaces)
-        axes = contact_axes if flat else pair_axes
-        out[k] = impacts.impulse[k] @ axes(impacts.normal[k])
-    return out
 
 
 def strikes_of(solution, listed: int = LISTED) -> Strikes:

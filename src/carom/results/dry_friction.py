@@ -1,0 +1,108 @@
+"""Reactions where dry friction acts in joints: a run does not save its forces.
+
+While a joint slips, the force is its bound against the motion. While it sticks, the force is that of a motor at
+rest in the place of the friction; where this exceeds the bound, the joint is about to slip.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from carom._compiled.record_arrays import Columns, table
+from carom.model.compile import compile_scene
+from carom.model.records import TOUCH
+from carom.results import joint_coordinates as jc
+from carom.scene.constraints import Driver, coordinate_kind
+from carom.scene.more_forces import JointFriction
+
+STILL = 1e-9  # of the greatest rate: below it a joint sticks
+ABOVE = 1.0 + 1e-9  # of the bound: a force up to this sticks
+
+
+def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, np.ndarray]]:
+    """Return the reactions (T, E, 6), on the children, and the values (T,) of dry frictions by index.
+
+    Parameters
+    ----------
+    run : the run, with its scene, options and compiled scene
+    states : position, orientation, velocity and angular velocity, (T, N, ...)
+    touch : active points at these times
+    solve : ``solve(compiled, touch)`` returns reactions on the children
+    """
+    scene, times = run.scene, len(states.position)
+    dry = dry_frictions(scene)
+    if not dry:
+        return solve(run.compiled, touch), {}
+    laws: list[Any] = [force.definition for force in dry]
+    joints = [jc.sides_of(d.joint) for d in laws]
+    t = np.arange(times) if times > 1 else None  # rates do not depend on it
+    one = states if times > 1 else _Alone(states)
+    read = [jc.coordinates(joint, one, t)[1] for joint in joints]
+    rate = np.stack([np.atleast_2d(r)[:, d.coordinate] for r, d in zip(read, laws)], axis=1)
+    sticks = np.abs(rate) <= STILL * np.max(np.abs(rate), axis=0)
+    bound = np.array([d.bound for d in laws])
+    value = np.where(sticks, 0.0, -bound * np.sign(rate))
+    while True:
+        values = {force.index: value[:, k] for k, force in enumerate(dry)}
+        full = with_forces(scene, states, values, touch)
+        out = solve(run.compiled, full)
+        for held in np.unique(sticks[np.any(sticks, axis=1)], axis=0):
+            made = scene.copy()
+            for k in np.flatnonzero(held):
+                made.add_constraint(
+                    Driver(laws[k].joint.name, rate=0.0, coordinate=laws[k].coordinate)
+                )
+            rows = np.flatnonzero(np.all(sticks == held, axis=1))
+            first = len(scene.joints) + len(scene.constraints)
+            found = solve(compile_scene(made, run.options), full)[rows]
+            out[rows, :first] = found[:, :first]
+            value[np.ix_(rows, np.flatnonzero(held))] = found[:, first : first + held.sum(), 0]
+        beyond = sticks & (np.abs(value) > ABOVE * bound)
+        if not beyond.any():
+            return out, {force.index: value[:, k] for k, force in enumerate(dry)}
+        value, sticks = np.clip(value, -bound, bound), sticks & ~beyond
+        value[sticks] = 0.0
+
+
+def dry_frictions(scene) -> list:
+    """Return the forces of dry friction in joints."""
+    return [force for force in scene.forces if isinstance(force.definition, JointFriction)]
+
+
+def with_forces(scene, states, values: dict[int, np.ndarray], touch) -> np.recarray:
+    """Return active points, and the values (T,) of dry frictions as such points, in the order of time."""
+    one = states if len(states.position) > 1 else _Alone(states)
+    laws = [(force.definition, values[force.index]) for force in dry_frictions(scene)]
+    points = [_touches(d, jc.sides_of(d.joint), value, one) for d, value in laws]
+    full = np.concatenate([touch, *points])
+    return full[np.argsort(full["saved"], kind="stable")].view(Columns)
+
+
+class _Alone:
+    """The states of one time."""
+
+    def __init__(self, states):
+        for name in ("position", "orientation", "velocity", "angular_velocity"):
+            setattr(self, name, getattr(states, name)[0])
+
+
+def _touches(d: JointFriction, joint: jc.Sides, value: np.ndarray, states) -> np.ndarray:
+    """Return forces along a coordinate as active points, one for each time."""
+    child, parent = (jc.placed(side, states) for side in (joint.child, joint.parent))
+    axis = np.atleast_2d(np.array(jc.direction(joint, states, d.coordinate)).T) * value[:, None]
+    rows = table(TOUCH, len(value))
+    rows["saved"], rows["body"], rows["other"] = (
+        range(len(value)),
+        joint.child.body,
+        joint.parent.body,
+    )
+    if coordinate_kind(d.joint, d.coordinate) == "turn":
+        rows["moment"], rows["other_moment"] = axis, -axis
+        return rows
+    anchor = jc.subtract(jc.add(child.position, child.arm), parent.position)
+    arms = (np.atleast_2d(np.array(arm).T) for arm in (child.arm, anchor))
+    rows["push"] = axis
+    rows["moment"], rows["other_moment"] = (s * np.cross(a, axis) for s, a in zip((1, -1), arms))
+    return rows

@@ -1,0 +1,100 @@
+"""A run at one time: what forces and reactions at this time are computed from, after the run has gone on."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from carom._compiled.record_arrays import copied, table
+from carom.model.arrays import STATE
+
+
+class Instant:
+    """The forces of a run between two steps: `given` has those that were set, by index.
+
+    Contact points, forces that were set and whole turns are copied, which takes some microseconds. Reactions of
+    joints are solved for when they are asked for. `known` keeps what the next instant may need again.
+    """
+
+    def __init__(self, run, states: np.ndarray, t: float, given: dict, known: dict):
+        self.run, self.states, self.t, self.given, self.pairs = run, states, t, given, run.pairs
+        system = run.compiled.system
+        self.touch = touches(run)
+        self.turns = system.relations.coordinates["reference"].copy()
+        if known.get("given") is not given:  # it is replaced where a force is set
+            known["given"], known["loads"] = given, tuple(map(copied, loads(system)))
+        self.loads = known["loads"]
+        self.laws = {index: law.rest for index, law in run.compiled.laws.items()}
+        self.seen: Any = None  # the states, as those of a run of one time
+
+    @cached_property
+    def solved(self) -> tuple[np.ndarray, dict[int, np.ndarray]]:
+        """Reactions of joints on their children, multipliers of constraints (1, E, 6); dry frictions."""
+        from carom.results.dry_friction import with_dry_friction
+
+        return with_dry_friction(
+            self.run, self.seen, self.touch, lambda *given: self.solve(*given)[0]
+        )
+
+    @cached_property
+    def accelerations(self) -> np.ndarray:
+        """Accelerations (N, 6) of all bodies, linear and angular, world axes."""
+        from carom.results.dry_friction import with_forces
+
+        run, values = self.run, self.solved[1]
+        return self.solve(run.compiled, with_forces(run.scene, self.seen, values, self.touch))[1]
+
+    def solve(self, compiled, touch) -> tuple[np.ndarray, np.ndarray]:
+        """Return reactions on children (1, E, 6) and accelerations under forces at active points."""
+        from carom.dynamics.reactions import reactions
+        from carom.model.kept import Kept
+        from carom.model.records import new_work
+        from carom.results.assemble import on_children
+
+        run, system, touch = self.run, compiled.system, copied(touch)
+        touch["saved"] = 1
+        # the second of two equal states: whole turns are counted from those of the first
+        states, times = table(STATE, 2, len(self.states)), np.full(2, self.t)
+        states[:] = self.states
+        out = np.zeros((2, system.joints.size, 6))
+        kept = Kept((system,))  # the run may go on
+        present = {index: law.rest for index, law in compiled.laws.items()}
+        if compiled is run.compiled:
+            system.relations.coordinates["reference"] = self.turns
+        for there, was in zip(loads(system), self.loads):
+            there[:] = was
+        for index, rest in self.laws.items():
+            compiled.laws[index].rest = rest
+        work = new_work(system, run.method.b.size)
+        reactions(system, run.options.augmentation, times, states, (1, 2), touch, work, out)
+        kept.restore()
+        for index, rest in present.items():
+            compiled.laws[index].rest = rest
+        return on_children(compiled, states[1:], out[1:]), np.array(work.body["motion"])
+
+
+def loads(system) -> tuple[np.recarray, np.recarray]:
+    """Return the arrays of a compiled scene that have the forces that a run may set."""
+    return system.loads, system.relations.pushes
+
+
+def touches(run) -> np.recarray:
+    """Return the active points of a run as it stands, as they are saved: rows of saved time 0."""
+    count, clock, records = int(run.active.count[0]), run.clock, run.records
+    if count == 0:
+        return records.touch[:0]
+    saved, end = int(clock["saved"][0]), int(clock["touched"][0])
+    if records.series["t"][saved - 1] != clock["now"][0] or not end >= count:
+        from carom.model.records import with_room
+
+        kept = clock.copy()  # the state was not saved: it is, and the row is forgotten
+        run.records = with_room(records, saved)
+        run.save_now()
+        rows = copied(run.records.touch[int(kept["touched"][0]) : int(clock["touched"][0])])
+        clock[:] = kept
+    else:
+        rows = copied(records.touch[end - count : end])
+    rows["saved"] = 0
+    return rows

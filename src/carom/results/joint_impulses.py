@@ -1,0 +1,246 @@
+"""Impulses of joints in impacts: what a bearing takes when something strikes.
+
+A run keeps the velocities of the bodies before and after each impact, and the impulses P of its contacts. With
+the rows A of joints and constraints at that position
+
+    M (v+ - v-) = G^T P + R + A^T L,
+
+where R are the impulses of inertias along joint coordinates, -I (q'+ - q'-) along each. The multipliers L are
+those of least norm, where each row is weighted by its diagonal entry of A M^-1 A^T, as for reactions of joints.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.record_arrays import table
+from carom.dynamics.mobility import mass_matrix
+from carom.dynamics.reactions import write_rows
+from carom.geometry import quaternion
+from carom.geometry.frames import contact_axes, pair_axes
+from carom.model import records as r
+from carom.model.arrays import INERTIA, STATE
+from carom.model.compile import compile_scene
+from carom.results import joint_coordinates as jc
+from carom.results.dense_output import curves
+from carom.results.event_tables import JointImpulse, JointImpulseTable
+from carom.scene.constraints import coordinate_kind
+from carom.scene.more_forces import JointInertia
+
+TIMES_AT_ONCE = 256  # times at which states are computed in one go
+SMALLEST = 1e-10  # singular value, relative to the greatest, below which rows depend on each other
+
+
+def world_impulses(solution) -> np.ndarray:
+    """Return the impulse of each impact on the body (K, 3), world axes [N s]; 0 at stops of joints."""
+    impacts, pairs = solution.impacts, solution.pairs
+    out = np.zeros((len(impacts), 3))
+    for k in np.flatnonzero(impacts.contact < len(pairs.body)):  # stops come after contacts
+        flat = 0 <= pairs.plane[impacts.contact[k]] < len(solution.scene.half_spaces)
+        axes = contact_axes if flat else pair_axes
+        out[k] = impacts.impulse[k] @ axes(impacts.normal[k])
+    return out
+
+
+def joint_impulses(solution) -> JointImpulseTable:
+    """Return the table of a solution."""
+    scene, rows = solution.scene, []
+    if scene.joints and len(solution.impacts):
+        rows = list(_Mechanism(solution).rows())
+    shapes = {"impulse": (-1, 3), "angular_impulse": (-1, 3)}
+    columns = {
+        name: np.array([row[k] for row in rows], np.int64 if name in ("impact", "joint") else float)
+        for k, name in enumerate(JointImpulse._fields[:-1])
+    }
+    made = {name: np.reshape(column, shapes.get(name, -1)) for name, column in columns.items()}
+    return of_joints(scene, made)
+
+
+def of_joints(scene, columns: dict[str, np.ndarray]) -> JointImpulseTable:
+    """Return a table of columns without names, whose joints are of a scene.
+
+    Raises
+    ------
+    ValueError
+        If the scene does not have a joint.
+    """
+    names, joint = np.array([one.name for one in scene.joints], dtype=str), columns["joint"]
+    if len(joint) and not (joint.min() >= 0 and joint.max() < len(names)):
+        raise ValueError(f"joints must be below {len(names)}, got {joint.max()}")
+    table = JointImpulseTable(**columns, name=names[joint])
+    return table._by_name({name: k for k, name in enumerate(names.tolist())}.copy)
+
+
+class _State(NamedTuple):
+    """A state of all bodies, with orientations of the scene's axes."""
+
+    position: np.ndarray
+    orientation: np.ndarray
+    velocity: np.ndarray
+    angular_velocity: np.ndarray
+
+
+class _Rows(NamedTuple):
+    """The rows of some components: row k of a side is that of an element and a body."""
+
+    bodies: np.ndarray  # (B,) of these components
+    side: np.ndarray  # (S,) side of the solver, and its row
+    of_side: np.ndarray
+    row: np.ndarray  # (S,) row among all rows, and place among `bodies`
+    place: np.ndarray
+    count: int  # of all rows
+    joints: list[tuple[int, slice, int]]  # index, rows, place of the child
+
+
+class _Mechanism:
+    """The joints and constraints of a scene, and the impacts of a run."""
+
+    def __init__(self, solution):
+        run = solution._run
+        self.solution, self.scene, self.push = solution, solution.scene, world_impulses(solution)
+        compiled = compile_scene(solution.scene, run.options, loops=True)  # no joint is flipped
+        self.system, self.work = compiled.system, r.new_work(compiled.system, 1)
+        self.functions, self.to_principal = compiled.functions, compiled.to_principal
+        self.joints = [jc.sides_of(joint) for joint in self.scene.joints]
+        self.children = [joint.child.index for joint in self.scene.joints]
+        self.anchors = np.array([sides.child.anchor for sides in self.joints])
+        self.rotors = [
+            force.definition for force in self.scene.forces
+            if isinstance(force.definition, JointInertia)
+        ]  # fmt: skip
+        self.mass, self.records = mass_matrix(self.system), r.trimmed(run.records, run.clock)
+        self.label, self.known = _components(self.system), {}
+
+    def rows(self):
+        """Yield the rows of all impacts; those of one time are taken together."""
+        event, shots, impacts = self.records.event, self.records.snapshot, self.solution.impacts
+        shots = shots[np.isin(event["kind"], (r.IMPACT, r.JAMS))[shots["event"]]]
+        at = event["time"][shots["event"]]
+        shots, at = shots[np.argsort(at, kind="stable")], np.sort(at)
+        located = np.flatnonzero(impacts.located == 1)
+        times, first = np.unique(impacts.time[located], return_index=True)
+        ends = np.append(first, len(located)).tolist()
+        low, high = (np.searchsorted(at, times, side=side).tolist() for side in ("left", "right"))
+        for begin in range(0, len(times), TIMES_AT_ONCE):
+            part = times[begin : begin + TIMES_AT_ONCE]
+            x, Q, v, w, _ = curves(self.solution, part, "right")
+            for n, t in enumerate(part.tolist()):
+                k = begin + n
+                here = table(STATE, len(self.mass))
+                here["x"], here["Q"], here["v"], here["w"] = x[n], Q[n], v[n], w[n]
+                own = located[ends[k] : ends[k + 1]].tolist()
+                yield from self.of_time(t, own, here, shots[low[k] : high[k]])
+
+    def of_time(self, t: float, mine: list[int], state, shots):
+        """Yield the rows of the impacts of one time, from the states of their bodies before and after."""
+        b = np.asarray(shots["body"])
+        x, Q, *ends = (np.asarray(shots[name]) for name in ("x", "Q", "v0", "w0", "v1", "w1"))
+        (v0, w0, v1, w1), mass = ends, self.mass[b]
+        state["x"][b], state["Q"][b] = x, Q
+        change = np.zeros((len(state), 6))  # of the momenta about the mass centres, world axes
+        spin = quaternion.rotate(Q, mass[:, 3:] * quaternion.rotate_back(Q, w1 - w0))
+        np.add.at(change, b, np.hstack([mass[:, :3] * (v1 - v0), spin]))
+        seen = quaternion.multiply(state["Q"], quaternion.conjugate(self.to_principal))
+        now = _State(np.array(state["x"]), seen, np.array(state["v"]), np.array(state["w"]))
+        moved = np.unique(self.label[b[np.any(change[b] != 0.0, axis=1)]])
+        for i in mine:
+            self.add_contact(i, now, change)
+        if self.rotors:
+            before = now._replace(
+                velocity=now.velocity.copy(), angular_velocity=now.angular_velocity.copy()
+            )
+            for one, (speed, turn) in ((before, (v0[::-1], w0[::-1])), (now, (v1, w1))):
+                order = b if one is now else b[::-1]  # of several impacts the first, or the last
+                one.velocity[order], one.angular_velocity[order] = speed, turn
+            for d in self.rotors:
+                sides = self.joints[d.joint.index]
+                rates = [jc.coordinates(sides, one)[1][d.coordinate] for one in (before, now)]
+                self.take_along(
+                    d.joint, d.coordinate, d.inertia * (rates[0] - rates[1]), now, change
+                )
+        yield from self.solved(t, mine[0], moved, state, now, change)
+
+    def add_contact(self, i: int, state: _State, rest: np.ndarray) -> None:
+        """Take the impulse of impact i from the momenta of its bodies."""
+        impacts, pairs = self.solution.impacts, self.solution.pairs
+        number = int(impacts.contact[i])
+        if number >= len(pairs.body):
+            stop = self.scene.stops[number - len(pairs.body)]
+            along = stop.side * impacts.impulse[i, 0]
+            self.take_along(stop.joint, stop.coordinate, along, state, rest)
+            return
+        for b, sign in ((pairs.body[number], -1.0), (pairs.other[number], 1.0)):
+            if b >= 0:
+                arm = impacts.point[i] - state.position[b]
+                rest[b] += sign * np.append(self.push[i], jc.cross(arm, self.push[i]))
+
+    def take_along(self, joint, k: int, amount: float, state: _State, rest: np.ndarray) -> None:
+        """Take an impulse along a coordinate from the child, and the opposite one from the parent."""
+        sides = self.joints[joint.index]
+        axis = amount * np.array(jc.direction(sides, state, k))
+        place = jc.placed(sides.child, state)
+        anchor = np.add(place.position, place.arm)
+        for body, sign in ((joint.child.index, -1.0), (joint.parent.index, 1.0)):
+            if body >= 0 and coordinate_kind(joint, k) == "turn":
+                rest[body, 3:] += sign * axis
+            elif body >= 0:
+                arm = anchor - state.position[body]
+                rest[body] += sign * np.append(axis, jc.cross(arm, axis))
+
+    def solved(self, t: float, impact: int, moved, state, now: _State, rest: np.ndarray):
+        """Yield the rows of the joints of some components, from the momenta that they have given."""
+        key = tuple(moved.tolist())
+        rows = self.known[key] if key in self.known else self.rows_of(moved)
+        self.known[key] = rows
+        self.work.result[0].time = t
+        write_rows(self.system, state, self.work)
+        if self.functions.failed is not None:
+            raise self.functions.failed
+        A = np.zeros((rows.count, len(rows.bodies), 6))
+        A[rows.row, rows.place] = np.asarray(self.system.solver.sides["A"])[rows.side, rows.of_side]
+        Q, half = np.asarray(state["Q"])[rows.bodies], np.sqrt(self.mass[rows.bodies])
+        scaled, own = A.copy(), rest[rows.bodies]
+        scaled[..., 3:] = quaternion.rotate_back(Q, A[..., 3:])
+        own[:, 3:] = quaternion.rotate_back(Q, own[:, 3:])
+        scaled = (scaled / half).reshape(len(A), -1)
+        weight = np.linalg.norm(scaled, axis=1)  # the square root of the diagonal of A M^-1 A^T
+        weight[weight == 0.0] = 1.0
+        share = np.linalg.lstsq((scaled / weight[:, None]).T, (own / half).ravel(), SMALLEST)[0]
+        share /= weight
+        arms = quaternion.rotate(now.orientation[self.children], self.anchors)
+        for j, part, child in rows.joints:
+            wrench = share[part] @ A[part, child]
+            yield t, impact, j, wrench[:3], wrench[3:] - jc.cross(arms[j], wrench[:3])
+
+    def rows_of(self, moved: np.ndarray) -> _Rows:
+        """Return the rows of all elements in some components."""
+        joints, sides = self.system.joints, self.system.solver.sides
+        element, body = np.asarray(sides["element"]), np.asarray(sides["body"])
+        chosen = (joints.kind[element] != INERTIA) & np.isin(self.label[body], moved)
+        own, bodies = np.unique(element[chosen]), np.flatnonzero(np.isin(self.label, moved))
+        count = joints.rows[own]
+        first = np.zeros(len(joints), dtype=np.int64)
+        first[own] = np.cumsum(count) - count
+        side = np.repeat(np.flatnonzero(chosen), joints.rows[element[chosen]])
+        of_side = np.concatenate([np.arange(n) for n in joints.rows[element[chosen]]])
+        found = []
+        for j in own[own < len(self.joints)].tolist():
+            part = slice(int(first[j]), int(first[j] + joints.rows[j]))
+            found.append((j, part, int(np.searchsorted(bodies, self.children[j]))))
+        row, place = first[element[side]] + of_side, np.searchsorted(bodies, body[side])
+        return _Rows(bodies, side, of_side, row, place, int(count.sum()), found)
+
+
+def _components(system) -> np.ndarray:
+    """Return a label (N,) for each body, the same for those that joints and constraints connect."""
+    label, sides = np.arange(len(system.bodies)), system.solver.sides
+    while True:
+        least = np.full(len(system.joints), len(label))
+        np.minimum.at(least, sides["element"], label[sides["body"]])
+        new = label.copy()
+        np.minimum.at(new, sides["body"], least[sides["element"]])
+        if np.array_equal(new, label):
+            return label
+        label = new
