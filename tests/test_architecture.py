@@ -28,6 +28,7 @@ DOORS = {
     ("results.replay", "run"),
     ("results.drawn", "visual.plots"),
     ("studies.ensembles.result", "visual.plots"),
+    ("results.drawn", "visual.exports"),
 }
 LOOSE = 8
 #: greatest number of lines of each folder, in hundreds: bounds only go down; a new capability states its room
