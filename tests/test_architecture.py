@@ -26,6 +26,7 @@ DOORS = {
     ("results.portable", "io.files.convert"),
     ("results.portable", "io.files.resume"),
     ("results.replay", "run"),
+    ("scene.shown", "visual.notebook"),
     ("results.drawn", "visual.plots"),
     ("studies.ensembles.result", "visual.plots"),
     ("results.drawn", "visual.exports"),

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from carom import arguments, checks
+from carom.scene.shown import Shown
 
 
 @dataclass(frozen=True)
-class Impact:
+class Impact(Shown):
     """The result of an impact. Vectors are in contact axes: normal, tangent 1, tangent 2.
 
     Of several impacts all are arrays, whose first axes are those of the arguments together; `phases` is an

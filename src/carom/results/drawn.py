@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from carom import arguments
+from carom.scene.shown import Shown
 from carom.status import Status
 
 KINDS = (
@@ -23,7 +24,7 @@ WHAT = {
 }  # fmt: skip
 
 
-class Drawn:
+class Drawn(Shown):
     """Base class of solutions. Its method `plot` needs ``carom[plot]``."""
 
     status: Status
