@@ -27,6 +27,7 @@ DOORS = {
     ("results.portable", "io.files.resume"),
     ("results.replay", "run"),
     ("scene.shown", "visual.notebook"),
+    ("scene.shown", "visual.plots"),
     ("results.drawn", "visual.plots"),
     ("studies.ensembles.result", "visual.plots"),
     ("results.drawn", "visual.exports"),

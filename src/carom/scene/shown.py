@@ -1,6 +1,8 @@
-"""What notebooks show of an object: a page, a picture or a table instead of its text."""
+"""How an object shows itself: in notebooks instead of its text, and in plots."""
 
 from __future__ import annotations
+
+from typing import Any
 
 
 def html_of(thing) -> str:
@@ -8,6 +10,13 @@ def html_of(thing) -> str:
     from carom.visual import notebook
 
     return notebook.html_of(thing)
+
+
+def hodograph_of(impact, options: dict[str, Any]):
+    """Draw the hodograph of an impact; return its axes."""
+    from carom.visual import plots
+
+    return plots.hodograph(impact, **options)
 
 
 class Shown:

@@ -26,9 +26,9 @@ from carom.visual.bodies import colour_of
 
 MOST_BYTES = 2_000_000  # of a page: it becomes a part of the notebook
 FRAMES = 1500  # of a run in such a page
-ROWS = 10  # rows of a table that are shown
+SHOWN_ROWS = 10  # rows of a table that are shown
 LISTED_PARTS = 40  # parts of a scene of each kind that are listed
-SIZE = (800, 400)  # pixels of a picture
+PICTURE_SIZE = (800, 400)  # pixels of a picture
 #: nothing of the page reaches the notebook, and nothing of the notebook's style the page
 FRAME = (
     '<iframe srcdoc="{}" sandbox="allow-scripts" title="carom" style="width: 100%; height: 520px; '
@@ -184,7 +184,7 @@ def _still(run, t: float) -> str:
         from carom.visual.films.stage import Stage, pillow
 
         file = io.BytesIO()
-        pillow()[0].fromarray(Stage(run, SIZE).draw(t, clock=False)).save(file, "PNG")
+        pillow()[0].fromarray(Stage(run, PICTURE_SIZE).draw(t, clock=False)).save(file, "PNG")
         return file.getvalue()
 
     return _picture(drawn, f"Bodies at t = {t:g} s")
@@ -208,7 +208,7 @@ def _picture(draw: Callable[[], bytes], words: str) -> str:
         data = base64.b64encode(draw()).decode("ascii")
     except ImportError as error:
         return _said(str(error))
-    look = f'alt="{html.escape(words)}" style="max-width: 100%; width: {SIZE[0]}px"'
+    look = f'alt="{html.escape(words)}" style="max-width: 100%; width: {PICTURE_SIZE[0]}px"'
     return f'<img src="data:image/png;base64,{data}" {look}>'
 
 
@@ -224,7 +224,7 @@ def _swatch(part) -> str:
 
 
 def _first(row: Callable[[int], Any], count: int) -> list:
-    return [row(k) for k in range(min(count, ROWS))]
+    return [row(k) for k in range(min(count, SHOWN_ROWS))]
 
 
 def _table(head: Iterable[str], rows: list, count: int | None = None) -> str:
