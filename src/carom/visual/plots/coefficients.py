@@ -17,7 +17,7 @@ OUTCOMES = (
     ("stick", "sticks", "#cfe3f1"),
     ("slip", "slips throughout", "#ffffff"),
 )
-LEVELS = 8  # lines of equal loss, about
+CONTOURS = 8  # lines of equal loss, about
 
 
 @known
@@ -83,7 +83,7 @@ def e_mu(
             rasterized=True,
         )  # fmt: skip
         if np.nanmax(loss) - np.nanmin(loss) > 1e-9:
-            lines = axes.contour(mu, e, loss, levels=LEVELS, colors=looks.BLACK, linewidths=0.6)
+            lines = axes.contour(mu, e, loss, levels=CONTOURS, colors=looks.BLACK, linewidths=0.6)
             axes.clabel(lines, fontsize="small")
         if (critical := critical_friction(W)) < most:
             axes.axvline(critical, color=looks.RED, lw=1.0, ls=":", label=r"$\mu_\mathrm{crit}$")

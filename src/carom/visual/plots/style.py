@@ -6,9 +6,11 @@ nothing of the caller's matplotlib is touched and no display is needed.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from textwrap import shorten
 from typing import Any
 
 from carom import checks
@@ -60,16 +62,17 @@ def style(chosen="carom"):
     import matplotlib as mpl
     from matplotlib.style import use
 
-    own = isinstance(chosen, str) and chosen == "carom"
-    styles = [SETTINGS, chosen] if isinstance(chosen, Mapping) else chosen
+    styles = SETTINGS if isinstance(chosen, str) and chosen == "carom" else chosen
+    styles = [SETTINGS, chosen] if isinstance(chosen, Mapping) else styles
     with mpl.rc_context():
         try:
             if chosen is not None:
-                use(SETTINGS if own else styles)
-        except (OSError, KeyError, TypeError, ValueError) as error:
+                checks.instance("style", chosen, (str, os.PathLike, Mapping, list))
+                use(styles)
+        except (OSError, LookupError, TypeError, ValueError) as error:
             raise ValueError(
                 'style must be "carom", None, a mapping of settings of matplotlib, or one of its styles, got '
-                f"{checks.shown(chosen)}: {error}"
+                f"{checks.shown(chosen)}: {shorten(str(error), 200)}"
             ) from None
         yield
 
