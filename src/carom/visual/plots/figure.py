@@ -23,8 +23,8 @@ class Look(NamedTuple):
     """The arguments that all plots have: where they draw, and how large and in which style."""
 
     ax: Any
-    figsize: Any
-    style: Any
+    figsize: Any = None
+    style: Any = "carom"
 
     def new(self, size, **options):
         """Return a new figure of pyplot, by default of this `size` [in]."""
@@ -57,7 +57,7 @@ def only(panel, panels: tuple[str, ...], ax) -> int | None:
 
 @contextmanager
 def drawing(
-    look: Look,
+    look: Look | Any,
     count: int = 1,
     size=(style.COLUMN, 2.3),
     compressed=False,
@@ -69,13 +69,14 @@ def drawing(
     Parameters
     ----------
     look : Look
-        The arguments of the plot. Without `ax`, a new figure of pyplot is made, with `count` axes one below the
-        other unless `layout` (arguments of `Figure.subplots`) says otherwise; `compressed` for axes of fixed
-        aspect.
+        The arguments of the plot, or only its `ax`: Axes, or a sequence of `count` of them. Without, a new
+        figure of pyplot is made, with `count` axes one below the other unless `layout` (arguments of
+        `Figure.subplots`) says otherwise; `compressed` for axes of fixed aspect.
     only : int, optional
         Number of the only axes that are seen: what is drawn into the others is thrown away.
     """
     plt = pyplot()
+    look = look if isinstance(look, Look) else Look(look)
     if only is not None:
         from matplotlib.figure import Figure
 
@@ -83,9 +84,8 @@ def drawing(
             parts = np.ravel(Figure().subplots(**layout or {"nrows": count}))
             last, parts[only] = parts[-1], seen
             yield parts
-            if (
-                layout.get("sharex", not layout) and only < count - 1
-            ):  # what the last axes have for all
+            # the last axes have the time for all of them
+            if layout.get("sharex", not layout) and only < count - 1:
                 seen.set(xlabel=last.get_xlabel(), xlim=last.get_xlim())
         return
     from matplotlib.axes import Axes
