@@ -97,6 +97,12 @@ def test_an_impact_draws_itself(thrown):
             np.testing.assert_allclose(a, b, atol=1e-12)
 
 
+def test_several_impacts_have_no_hodograph():
+    several = carom.resolve_impact(np.eye(3), (-1.0, 1.0, 0.0), [0.1, 0.2], 0.5)
+    with pytest.raises(ValueError, match="there must be one impact in space to draw, got several"):
+        several.plot()
+
+
 def test_a_ball_sticks_from_the_friction_of_its_closed_form():
     """Slip 1 m/s ends at the normal impulse 1 / (3.5 mu), which is 1 + e at most."""
     ax = plots.e_mu(np.diag([1.0, 3.5, 3.5]), (-1.0, 1.0, 0.0), points=41)

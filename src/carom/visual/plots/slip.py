@@ -94,6 +94,10 @@ def _record(solution, k):
     if isinstance(solution, (ImpactRecord, CoordinateImpact)):
         return solution
     if isinstance(solution, Impact):
+        if not solution._stated:
+            raise ValueError(
+                "there must be one impact in space to draw, got several, or a plane one (give W (3, 3))"
+            )
         return SimpleNamespace(
             relative_velocity_after=solution.velocity_after, together=1, **solution._stated
         )
