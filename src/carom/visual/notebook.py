@@ -25,7 +25,8 @@ from carom.studies.ensembles.result import Ensemble
 from carom.visual.bodies import colour_of
 
 MOST_BYTES = 2_000_000  # of a page: it becomes a part of the notebook
-FRAMES = 1500  # of a run in such a page
+FRAMES, FEWEST_FRAMES = 1500, 100  # of a run in such a page, at most and at least
+POSE_NUMBERS = 300_000  # numbers of all poses together, with which most pages are small enough
 SHOWN_ROWS = 10  # rows of a table that are shown
 LISTED_PARTS = 40  # parts of a scene of each kind that are listed
 PICTURE_SIZE = (800, 400)  # pixels of a picture
@@ -49,7 +50,8 @@ def _(solution: Solution) -> str:
     from carom.visual.viewer.page import page_text
     from carom.visual.viewer.show import show_of
 
-    text = page_text(show_of(solution, most=FRAMES))
+    fitting = POSE_NUMBERS // (7 * len(solution.scene.bodies))
+    text = page_text(show_of(solution, most=max(FEWEST_FRAMES, min(FRAMES, fitting))))
     size = len(text.encode())
     if size <= MOST_BYTES:
         text = text.replace("&", "&amp;").replace('"', "&quot;")
