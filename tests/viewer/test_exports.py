@@ -21,6 +21,8 @@ def hung():
     ball = scene.add_body(
         carom.Sphere(0.1), mass=1.0, position=(0.3, 0, -1), name="ball", color="red"
     )
+    scene.add_half_space((0, 0, -3), (0, 0, 1), color="#009e73", name="ground")
+    scene.set_contact_default(restitution=0.5)
     spring = carom.forces.Spring(100.0, (0, 0, 0), (0.3, 0, -0.9))
     scene.add_force(spring, carom.GROUND, ball)
     return carom.simulate(scene, 0.5, step=0.01)
@@ -121,8 +123,9 @@ def test_a_spring_reaches_from_end_to_end(hung, tmp_path):
     np.testing.assert_allclose(sizes[:, 2], np.linalg.norm(ends, axis=1), rtol=1e-6)
     _, middle = file.track("spring1", "translation")
     np.testing.assert_allclose(middle, 0.5 * ends, atol=1e-6)
-    names = [one["name"] for one in file.head["materials"]]
-    assert names[0] == "#ff0000"
+    meshes, materials = file.head["meshes"], file.head["materials"]
+    shades = {one["name"]: materials[one["primitives"][0]["material"]]["name"] for one in meshes}
+    assert (shades["ball"], shades["ground"]) == ("#ff0000", "#009e73")
 
 
 def test_frames_of_a_part_of_the_run_at_a_slower_speed(thrown, tmp_path):

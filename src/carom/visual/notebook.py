@@ -219,10 +219,9 @@ def _said(text: str) -> str:
 
 
 def _swatch(part) -> str:
-    """Return a square in the colour of a body."""
-    if not isinstance(part, Body):
-        return ""
-    return f"<span style='color: {colour_of(part)}'>&#9632;</span> "
+    """Return a square in the colour of a part, if it has one."""
+    colour = colour_of(part) if isinstance(part, Body) else getattr(part, "color", None)
+    return f"<span style='color: {colour}'>&#9632;</span> " if colour else ""
 
 
 def _first(row: Callable[[int], Any], count: int) -> list:

@@ -48,7 +48,8 @@ def write_glb(show: Show, path: Path, speed: float) -> None:
         fan = np.array([(0, k, k + 1) for k in range(1, len(plane.corners) - 1)])
         normals = np.broadcast_to(plane.normal, plane.corners.shape)
         piece = (*file.surface(plane.corners, normals), file.indices(fan))
-        mesh = file.mesh(plane.name, ((*piece, file.material(PLANE)),))
+        shade = file.material(rgb(plane.colour) if plane.colour else PLANE)
+        mesh = file.mesh(plane.name, ((*piece, shade),))
         file.node(plane.name, root, mesh)
     rod = Part(*surface(Cylinder(1.0, 1.0), 12), [], "joint")
     for k, link in enumerate(show.links):
