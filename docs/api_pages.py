@@ -50,7 +50,7 @@ TOPICS = {
         "Events that it was asked to look for": ("t_events", "state_events"),
         "How the run ended, and going on": ("status", "success", "message", "warnings", "stats", "simulate"),
         "What was run": ("scene", "settings"),
-        "Files, tables and plots": ("save", "load", "to_xarray", "to_pandas", "plot"),
+        "Files, tables and plots": ("save", "load", "to_xarray", "to_pandas", "plot", "export"),
     },
 }  # fmt: skip
 

@@ -26,8 +26,11 @@ DOORS = {
     ("results.portable", "io.files.convert"),
     ("results.portable", "io.files.resume"),
     ("results.replay", "run"),
+    ("scene.shown", "visual.notebook"),
+    ("scene.shown", "visual.plots"),
     ("results.drawn", "visual.plots"),
     ("studies.ensembles.result", "visual.plots"),
+    ("results.drawn", "visual.exports"),
 }
 LOOSE = 8
 #: greatest number of lines of each folder, in hundreds: bounds only go down; a new capability states its room

@@ -386,6 +386,9 @@ def test_a_result_is_shown_drawn_and_filmed(made, capsys, monkeypatch):
     assert main(["view", str(run), "--export", str(page)]) == EXIT_OK
     assert page.stat().st_size > 20_000
     assert str(page) in capsys.readouterr().out
+    model = made / "die.glb"
+    assert main(["view", str(run), "--export", str(model)]) == EXIT_OK
+    assert model.read_bytes()[:4] == b"glTF"
     for kind in ((), ("energy",), ("contacts",)):  # several axes by name, two, one
         picture = made / f"{len(kind)}.png"
         assert main(["plot", str(run), *kind, "-o", str(picture)]) == EXIT_OK

@@ -23,6 +23,8 @@ def ensemble(run):
     [
         ("matplotlib.pyplot", "plot", lambda run: run.plot()),
         ("PIL", "film", lambda run: carom.films.still(run)),
+        ("pygltflib", "export", lambda run: run.export("run.glb")),
+        ("meshio", "export", lambda run: run.export("run.pvd")),
         ("viser", "view", lambda run: carom.view(run)),
         ("mujoco", "models", lambda run: carom.load_model("<mujoco/>")),
         ("trimesh", "shapes", lambda run: carom.Mesh.load("a.stl")),

@@ -111,6 +111,7 @@ def read(folder):
         ),
     }  # fmt: skip
 
+    drawn = dict(ax=None, figsize=(3.0, 2.0), style="carom")
     look = dict(size=(64, 64), view="front", follow="ball", zoom=1.0)
     found |= {
         "load_model": lambda: (
@@ -151,36 +152,48 @@ def read(folder):
         "visual.surfaces.surface": lambda: (
             surfaces.surface, dict(shape=carom.Sphere(0.1), fineness=8),
         ),
-        "plots.energy": lambda: (plots.energy, dict(solution=solution(), ax=None)),
-        "plots.overview": lambda: (plots.overview, dict(solution=solution())),
-        "plots.impacts": lambda: (plots.impacts, dict(solution=solution(), contacts="ball-floor", ax=None)),
-        "plots.contacts": lambda: (
-            plots.contacts, dict(solution=solution(), contacts="ball-floor", most=4, ax=None),
+        "plots.energy": lambda: (plots.energy, dict(solution=solution(), panel="energy", **drawn)),
+        "plots.overview": lambda: (
+            plots.overview, dict(solution=solution(), figsize=(6.0, 4.0), style="carom"),
         ),
-        "plots.hodograph": lambda: (plots.hodograph, dict(solution=solution(), k=0, flow=False, ax=None)),
+        "plots.e_mu": lambda: (
+            plots.e_mu,
+            dict(inverse_mass=W, velocity=(-1.0, 1.0, 0.0), law="newton", most_friction=1.0, points=3, **drawn),
+        ),
+        "plots.impacts": lambda: (
+            plots.impacts, dict(solution=solution(), contacts="ball-floor", panel="slip", **drawn),
+        ),
+        "plots.contacts": lambda: (
+            plots.contacts, dict(solution=solution(), contacts="ball-floor", most=4, **drawn),
+        ),
+        "plots.hodograph": lambda: (
+            plots.hodograph, dict(solution=solution(), k=0, flow=False, panel="slip", **drawn),
+        ),
         "plots.impact_inside": lambda: (
-            plots.impact_inside, dict(solution=solution(), k=0, steps=4, ax=None),
+            plots.impact_inside, dict(solution=solution(), k=0, steps=4, panel="force", **drawn),
         ),
         "plots.phase": lambda: (
             plots.phase,
-            dict(solution=solution(), of="ball", axis="z", number=0, degrees=False, ax=None),
+            dict(solution=solution(), of="ball", axis="z", number=0, degrees=False, **drawn),
         ),
         "plots.trajectory": lambda: (
             plots.trajectory,
-            dict(solution=solution(), bodies="ball", plane="xz", outlines=[0.0], ground=True, ax=None),
+            dict(solution=solution(), bodies="ball", plane="xz", outlines=[0.0], ground=True, **drawn),
         ),
-        "plots.joints": lambda: (plots.joints, dict(solution=swing(), joints="j", degrees=True, ax=None)),
+        "plots.joints": lambda: (
+            plots.joints, dict(solution=swing(), joints="j", degrees=True, panel="rates", **drawn),
+        ),
         "plots.forces": lambda: (
-            plots.forces, dict(solution=pushed().solution, forces="push", ax=None),
+            plots.forces, dict(solution=pushed().solution, forces="push", **drawn),
         ),
-        "plots.constraint_errors": lambda: (plots.constraint_errors, dict(solution=swing(), ax=None)),
+        "plots.constraint_errors": lambda: (plots.constraint_errors, dict(solution=swing(), **drawn)),
         "plots.ensemble": lambda: (
             plots.ensemble,
-            dict(found=things.runs(), value="ball.z", over="ball.velocity.x", ax=None, label="height",
+            dict(found=things.runs(), value="ball.z", over="ball.velocity.x", **drawn, label="height",
                  colorbar=False),
         ),
         "plots.work_precision": lambda: (
-            plots.work_precision, dict(series={"a": ([1.0], [1.0])}, error="error", ax=None),
+            plots.work_precision, dict(series={"a": ([1.0], [1.0])}, error="error", **drawn),
         ),
     }  # fmt: skip
     return found

@@ -112,6 +112,10 @@ def run(folder):
         "Solution.load": lambda: (carom.Solution.load, dict(path=saved(folder), functions={})),
         "Solution.simulate": lambda: (solution().simulate, dict(duration=0.1, progress=None, throw=True)),
         "Solution.save": lambda: (solution().save, dict(path=folder / "again.nc")),
+        "Solution.export": lambda: (
+            solution().export,
+            dict(path=folder / "run.glb", fps=30.0, speed=1.0, start=0.0, end=0.01),
+        ),
         "Solution.to_xarray": lambda: (solution().to_xarray, dict(degrees=True)),
         "Solution.to_pandas": lambda: (solution().to_pandas, dict(degrees=True)),
         "Solution.evaluate": lambda: (solution().evaluate, dict(t=0.01, side="left")),

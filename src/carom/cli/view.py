@@ -18,8 +18,9 @@ def run(
     export: Annotated[
         Path | None,
         typer.Option(
-            metavar="PAGE.html", show_default=False,
-            help="Write one page that shows the motion without a server, and stop.",
+            metavar="FILE", show_default=False,
+            help="Write a file that shows the motion without a server, and stop: a page (.html), glTF "
+            "(.glb), or VTK for ParaView (.pvd).",
         ),
     ] = None,
     port: Annotated[
@@ -34,10 +35,15 @@ def run(
     For example:
       carom view die.h5
       carom view die.h5 --export die.html
+      carom view die.h5 --export die.glb
       carom view die.h5 --no-open --port 8080
     """
+    from carom import Solution
     from carom import view as look
 
+    if export is not None and export.suffix.lower() in (".glb", ".pvd"):
+        print(Solution.load(file).export(export))
+        return 0
     written = look(file, port=port, open=open and export is None, export=export)
     if export is not None:
         print(written)

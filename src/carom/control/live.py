@@ -160,7 +160,7 @@ class Run:
     @property
     def solution(self) -> Solution:
         """All of the run up to this time; it stays as it is when the run goes on, and `simulate` refuses it."""
-        return solution_of(self._run, self._status, self._applied)
+        return solution_of(self._run, self._status, self._applied.history)
 
     @property
     def ctrl(self) -> Controls:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from carom import arguments, checks
+from carom.scene.shown import Shown, hodograph_of
 
 
 @dataclass(frozen=True)
-class Impact:
+class Impact(Shown):
     """The result of an impact. Vectors are in contact axes: normal, tangent 1, tangent 2.
 
     Of several impacts all are arrays, whose first axes are those of the arguments together; `phases` is an
@@ -50,6 +52,18 @@ class Impact:
     energy_change: float
     phases: tuple[str, ...]
     wedged: bool
+    #: what was stated, by the names of an `ImpactRecord`
+    _stated: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
+
+    def plot(self, **options):
+        """Draw the hodograph of the impact, `carom.plots.hodograph`, and return its axes.
+
+        Parameters
+        ----------
+        **options
+            Other arguments of that function, for example ``panel="slip"`` and ``ax``.
+        """
+        return hodograph_of(self, options)
 
 
 @arguments.known
@@ -120,6 +134,9 @@ def resolve_impact(
     W, u, mu, e, number = checked_impact(inverse_mass, velocity, friction, restitution, law)
     out = np.zeros(o.SIZE)
     raise_for(resolve(W, u, mu, e, number, out))
+    stated = {
+        "inverse_mass": W, "relative_velocity_before": u, "friction": mu, "restitution": e, "law": law,
+    }  # fmt: skip
     return Impact(
         velocity_after=out[o.VELOCITY : o.VELOCITY + 3].copy(),
         impulse=out[o.IMPULSE : o.IMPULSE + 3].copy(),
@@ -130,6 +147,7 @@ def resolve_impact(
         energy_change=float(out[o.ENERGY_CHANGE]),
         phases=phase_names(int(out[o.PHASES])),
         wedged=int(out[o.PHASES]) & o.WEDGED != 0,
+        _stated=stated,
     )
 
 

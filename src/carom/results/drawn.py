@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from carom import arguments
+from carom.scene.shown import Shown
 from carom.status import Status
 
 KINDS = (
@@ -20,7 +24,7 @@ WHAT = {
 }  # fmt: skip
 
 
-class Drawn:
+class Drawn(Shown):
     """Base class of solutions. Its method `plot` needs ``carom[plot]``."""
 
     status: Status
@@ -71,3 +75,58 @@ class Drawn:
                 )
             options = {WHAT[kind]: what, **options}
         return draw(self, **options)
+
+    @arguments.known
+    def export(
+        self,
+        path: str | os.PathLike,
+        *,
+        fps: float | None = None,
+        speed: float = 1.0,
+        start: float | None = None,
+        end: float | None = None,
+    ) -> Path:
+        """Write the motion for another program: Blender, PowerPoint, a browser, ParaView.
+
+        ``.glb``: glTF 2.0, one file with meshes, colours, and an animation of each body, spring and rod. Bodies
+        look as in `carom.view` and `carom.film`; nodes have the names of the bodies. Lengths are in metres. In
+        glTF y is up: the root node turns the vertical of the scene (opposite to gravity, or z without gravity)
+        to y.
+
+        ``.pvd``: a list of times for ParaView, and beside it a folder of VTK files (``.vtu``). Part 0 of each
+        time has the surfaces of the bodies in the world, with the velocity of each point, and for each cell the
+        index of its body, and velocity of the mass centre and angular velocity of this body. Part 1 has contact
+        points: persistent contacts with their forces [N] on the body at the last saved time, and the impacts
+        since the frame before with their impulses [N s], world axes. Part 2 has half-spaces (drawn as far as
+        the motion goes) and static bodies.
+
+        Parameters
+        ----------
+        path : str or path
+            Path of the file with one of these suffixes, in a folder that exists.
+        fps : float, optional
+            Frames per second. Default: the saved times; for ``.glb`` at most 5000 and with states between few
+            saved times, for ``.pvd`` at most 1000. The times of impacts are added in ``.glb``, in which bodies
+            move on straight lines and turn steadily from frame to frame: a turn between two frames must be less
+            than half a rotation.
+        speed : float
+            Seconds of the run per second of the animation; below 1 is slow motion. Default 1. Times in ``.pvd``
+            are those of the run.
+        start, end : float, optional
+            Start and end of the exported part of the run [s]. Default: the whole run.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        ImportError
+            If a package is missing: pygltflib (``.glb``) or meshio (``.pvd``).
+        ValueError
+            If an argument is invalid, or the solution is of a `GeneralizedSystem`.
+        """
+        from carom.visual.exports import export
+
+        return export(self, path, fps, speed, start, end)

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom._compiled.record_arrays import Columns
+from carom.scene.shown import hodograph_of, html_of
 from carom.scene.table import RecordTable, Table
 
 CURVED = 1 << 40  # features of curved pieces are above this number, vertices below
@@ -56,6 +57,19 @@ class ImpactRecord(NamedTuple):
         str  #: name of the half-space or body that it strikes; for a stop the parent of its joint
     )
     unit: str  #: unit of the velocities: "m/s", or "rad/s" for a stop of an angle
+
+    def plot(self, **options):
+        """Draw the hodograph of the impact, `carom.plots.hodograph`, and return its axes.
+
+        Parameters
+        ----------
+        **options
+            Other arguments of that function, for example ``panel="slip"`` and ``ax``.
+        """
+        return hodograph_of(self, options)
+
+    def _repr_html_(self) -> str:
+        return html_of(self)
 
 
 class ImpactTable(RecordTable[ImpactRecord]):

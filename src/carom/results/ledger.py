@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from carom.arguments import attributes
+from carom.scene.shown import Shown
 
 
 @attributes()
 @dataclass(frozen=True, eq=False)
-class Ledger:
+class Ledger(Shown):
     """Energy balance at each saved time, arrays (T,) [J]; all except the first two are sums since the start.
 
     ``kinetic + potential = start + loads + impacts + friction + bounces + residual``

@@ -452,9 +452,7 @@ VIEWS: dict[type, Callable] = {
 
 def view(source: Source, key, whose: str):
     """Return the results of one part, given by name or as the object; `whose` is for messages."""
-    scene, robot = source._scene, source._scene.robot
-    if robot is not None and isinstance(key, str) and key not in scene and key in robot.sensors:
-        return robot.sensors[key].of(source)
+    scene = source._scene
     if isinstance(key, tuple(VIEWS)):
         if key not in scene:
             raise ValueError(
@@ -467,6 +465,8 @@ def view(source: Source, key, whose: str):
         try:
             part = scene[key]
         except KeyError:
+            if scene.robot is not None and key in scene.robot.sensors:
+                return scene.robot.sensors[key].of(source)
             number = source._numbers().get(key)
             if number is not None:
                 return ContactView(source, number)

@@ -21,6 +21,7 @@ from carom.scene.pairs import Pairs
 from carom.scene.registry import Derived, Registry
 from carom.scene.shapes import Shape
 from carom.scene.shapes.mesh import shape_given
+from carom.scene.shown import Shown
 from carom.scene.stops import Stop
 from carom.scene.summary import counts, summary
 from carom.scene.touching import TouchingPairs
@@ -41,7 +42,7 @@ _VALUES = {
 
 @in_scene
 @arguments.known
-class Scene(TouchingPairs):
+class Scene(Shown, TouchingPairs):
     """A system of bodies, half-spaces, contacts, joints and forces, with its initial state.
 
     The ``add_*`` methods check their arguments at once and return the new part, a read-only object. Each part

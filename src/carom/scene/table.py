@@ -11,12 +11,13 @@ import numpy as np
 
 from carom import checks
 from carom.arguments import attributes
+from carom.scene.shown import Shown
 
 Row = TypeVar("Row")
 
 
 @attributes()
-class Table(Generic[Row]):
+class Table(Shown, Generic[Row]):
     """Base class of tables whose columns are arrays: ``len`` is the number of rows, ``table[k]`` is row k.
 
     ``table[3:9]`` and ``table[mask]``, with a boolean array of a value for each row, are tables of these rows.

@@ -86,7 +86,7 @@ def _link(build: Build, t: int, terms: Terms) -> Coordinate:
     link = build.light_link(name, mass, moment, np.zeros(3), motion)
     kind = joints.Prismatic(axis, np.zeros(3))
     joint = build.scene.add_joint(kind, GROUND, link, name=build.names.new(name, "tendon"))
-    factors: dict[Joint | tuple[Joint, int], float] = {(joint, 0): -1.0}
+    factors: dict[Joint | str | tuple[Joint | str, int], float] = {(joint, 0): -1.0}
     for c, factor in terms:
         factors[c.joint, c.index] = factors.get((c.joint, c.index), 0.0) + factor * c.sign
     coupling = constraints.Coupling(factors)

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from carom import checks
 from carom.hints import ending
+from carom.scene.shown import Shown
 from carom.studies.ensembles.outcome import PENDING
 from carom.studies.ensembles.table import WORDS
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Ensemble:
+class Ensemble(Shown):
     """The results of R runs of a scene with N bodies. Each outcome is an attribute with one row for each run.
 
     Attributes

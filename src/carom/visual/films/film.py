@@ -83,11 +83,7 @@ def film(
     checks.scale("fps", fps)
     speed = checks.scale("speed", speed)
     checks.function("progress", progress, optional=True)
-    first, last = float(solution.t[0]), float(solution.t[-1])
-    begin = (
-        first if start is None else checks.number("start", start, least=first, most=last, unit="s")
-    )
-    stop = last if end is None else checks.number("end", end, least=begin, most=last, unit="s")
+    begin, stop = span_of(solution, start, end)
     pillow()
     stage = Stage(solution, size, view, follow, (begin, stop), zoom)
     stage.marks.linger = LINGER * speed
@@ -101,6 +97,16 @@ def film(
 
     (_write_gif if gif else _write_mp4)(path, pictures(), fps)
     return path
+
+
+def span_of(solution, start: float | None, end: float | None) -> tuple[float, float]:
+    """Return the shown part of a run [s]; None: its start, its end."""
+    begin, stop = float(solution.t[0]), float(solution.t[-1])
+    if start is not None:
+        begin = checks.number("start", start, least=begin, most=stop, unit="s")
+    if end is not None:
+        stop = checks.number("end", end, least=begin, most=stop, unit="s")
+    return begin, stop
 
 
 def frame_times(begin: float, end: float, fps: float, speed: float) -> np.ndarray:

@@ -34,7 +34,6 @@ class Stage:
     def __init__(
         self, solution, size=(1280, 720), view="oblique", follow=None, span=None, zoom=1.0
     ):
-        need_bodies(solution, "film")
         self.solution, scene = solution, solution.scene
         self.size = checked_size(size)
         self.zoom = checks.number("zoom", zoom, least=1e-3, most=1e3)

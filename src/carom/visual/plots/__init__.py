@@ -5,6 +5,7 @@ returns the axes; `ensemble` draws the runs of an `Ensemble`.
 """
 
 from carom.visual.plots.balance import energy
+from carom.visual.plots.coefficients import e_mu
 from carom.visual.plots.ensembles import ensemble
 from carom.visual.plots.errors import constraint_errors
 from carom.visual.plots.glance import overview
@@ -21,6 +22,7 @@ from carom.visual.plots.timeline import contacts
 __all__ = [
     "constraint_errors",
     "contacts",
+    "e_mu",
     "energy",
     "ensemble",
     "forces",

@@ -7,12 +7,20 @@ import numpy as np
 from carom import checks
 from carom.studies.ensembles.result import Ensemble
 from carom.studies.ensembles.table import columns, stems
-from carom.visual.plots import style
-from carom.visual.plots.figure import drawing
+from carom.visual.plots import style as looks
+from carom.visual.plots.figure import Look, drawing
 
 
 def ensemble(
-    found: Ensemble, value, over=None, *, ax=None, label: str | None = None, colorbar: bool = True
+    found: Ensemble,
+    value,
+    over=None,
+    *,
+    ax=None,
+    label: str | None = None,
+    colorbar: bool = True,
+    figsize=None,
+    style="carom",
 ):
     """Draw one value of all runs of an ensemble over what was varied.
 
@@ -34,6 +42,11 @@ def ensemble(
         Name of the value. Default: that of its column.
     colorbar : bool
         Whether the colours have a scale. Default True.
+    figsize : (float, float), optional
+        Width and height of a new figure [in].
+    style : optional
+        Style of the plot: "carom" (default), None for your own settings of matplotlib, a mapping of settings to
+        add to those of carom, or what `matplotlib.style.use` takes.
 
     Returns
     -------
@@ -54,14 +67,14 @@ def ensemble(
     if not (isinstance(value, str) and value in ("status", "message")):
         values = np.where(found.outcomes["status"] >= 0, values, np.nan)
     names = _axes(found, over, table)
-    with drawing(ax) as ax:
+    with drawing(Look(ax, figsize, style)) as ax:
         ax.set_xlabel(names[0])
         ax.set_ylabel(label if len(names) == 1 else names[1])
         shown = None
         if set(names) <= set(found.grid):
             x, y, mean = _on_grid(found, names, values)
             if len(names) == 1:
-                ax.plot(x, mean, "o-", color=style.BLUE)
+                ax.plot(x, mean, "o-", color=looks.BLUE)
             else:
                 shown = ax.pcolormesh(
                     _places(x), _places(y), mean.T, shading="nearest", cmap="cividis"
@@ -72,7 +85,7 @@ def ensemble(
         else:
             x = table[names[0]]
             if len(names) == 1:
-                ax.plot(x, values, "o", color=style.BLUE)
+                ax.plot(x, values, "o", color=looks.BLUE)
             else:
                 shown = ax.scatter(x, table[names[1]], c=values, s=8, cmap="cividis")
         if words and len(names) == 1:

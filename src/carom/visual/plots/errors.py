@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from carom.arguments import known
-from carom.visual.plots import figure, style
+from carom.visual.plots import figure
+from carom.visual.plots import style as looks
 
 ORDER = ("m", "rad", "")  # of the units
 
 
 @known
-def constraint_errors(solution, *, ax=None):
+def constraint_errors(solution, *, ax=None, figsize=None, style="carom"):
     """Draw the greatest errors of position and velocity of joints and constraints over time.
 
     Lengths and angles have separate curves. The axis is logarithmic; errors of exactly zero are not shown.
@@ -22,6 +23,11 @@ def constraint_errors(solution, *, ax=None):
         A run with joints or constraints.
     ax : Axes, optional
         Axes to draw into. Default: a new figure.
+    figsize : (float, float), optional
+        Width and height of a new figure [in].
+    style : optional
+        Style of the plot: "carom" (default), None for your own settings of matplotlib, a mapping of settings to
+        add to those of carom, or what `matplotlib.style.use` takes.
 
     Returns
     -------
@@ -40,11 +46,11 @@ def constraint_errors(solution, *, ax=None):
     if not whole and not np.any(position) and not np.any(velocity):
         raise ValueError(f"the system must have constraints, got {solution!r}")
     units = solution.constraint_rows.unit if whole else np.array([""])
-    with figure.drawing(ax, 1, (style.COLUMN, 2.0)) as axes:
+    with figure.drawing(figure.Look(ax, figsize, style), 1, (looks.COLUMN, 2.0)) as axes:
         for unit, dashes in zip(sorted(set(units.tolist()), key=ORDER.index), ("-", "--", ":")):
             for of, error, colour, end in (
-                ("position", position, style.BLUE, ""),
-                ("velocity", velocity, style.RED, "/s"),
+                ("position", position, looks.BLUE, ""),
+                ("velocity", velocity, looks.RED, "/s"),
             ):
                 greatest = error.reshape(len(solution.t), -1)[:, units == unit].max(axis=1)
                 shown = np.where(greatest > 0.0, greatest, np.nan)

@@ -6,36 +6,96 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from difflib import get_close_matches
 from itertools import cycle
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from carom import checks
 from carom.visual.plots import style
 
+LEAST, MOST = 0.5, 50.0  # sizes of a figure [in]
+ALONE = (style.COLUMN, 2.3)  # size of a figure of one panel [in]
 #: of lines that are told apart, in their order
 COLOURS = (style.BLUE, style.RED, style.GREEN, style.ORANGE, style.PURPLE, style.SKY, style.BLACK)
 
 
+class Look(NamedTuple):
+    """The arguments that all plots have: where they draw, and how large and in which style."""
+
+    ax: Any
+    figsize: Any = None
+    style: Any = "carom"
+
+    def new(self, size, **options):
+        """Return a new figure of pyplot, by default of this `size` [in]."""
+        size = size if self.figsize is None else self.size()
+        return pyplot().figure(figsize=size, **options)
+
+    def size(self) -> tuple[float, float]:
+        """Return the size that was asked for [in]."""
+        if self.ax is not None:
+            raise ValueError(
+                f"figsize must be left out with ax, which has a figure, got {checks.shown(self.figsize)}"
+            )
+        two = checks.finite_array("figsize", self.figsize, (2,), "inches")
+        if not np.all((two >= LEAST) & (two <= MOST)):
+            raise ValueError(
+                f"figsize must be two numbers from {LEAST} to {MOST} [in], got {checks.shown(self.figsize)}"
+            )
+        return float(two[0]), float(two[1])
+
+
+def only(panel, panels: tuple[str, ...], ax) -> int | None:
+    """Return the number of the only axes to draw; None for all. A single Axes is that of the first panel."""
+    pyplot()
+    from matplotlib.axes import Axes
+
+    if panel is None:
+        return 0 if isinstance(ax, Axes) else None
+    return panels.index(checks.choice("panel", panel, panels))
+
+
 @contextmanager
 def drawing(
-    ax, count: int = 1, size=(style.COLUMN, 2.3), compressed=False, **layout
+    look: Look | Any,
+    count: int = 1,
+    size=(style.COLUMN, 2.3),
+    compressed=False,
+    only: int | None = None,
+    **layout,
 ) -> Iterator[Any]:
-    """Within this context matplotlib draws in the style of the plots; the axes to draw into.
+    """Within this context matplotlib draws in the style of a plot; the axes to draw into.
 
     Parameters
     ----------
-    ax : Axes, or a sequence of `count` of them, or None
-        The argument of the plot. None: a new figure of pyplot, with `count` axes one below the other unless
-        `layout` (arguments of `Figure.subplots`) says otherwise; `compressed` for axes of fixed aspect.
+    look : Look
+        The arguments of the plot, or only its `ax`: Axes, or a sequence of `count` of them. Without, a new
+        figure of pyplot is made, with `count` axes one below the other unless `layout` (arguments of
+        `Figure.subplots`) says otherwise; `compressed` for axes of fixed aspect.
+    only : int, optional
+        Number of the only axes that are seen: what is drawn into the others is thrown away.
     """
     plt = pyplot()
+    look = look if isinstance(look, Look) else Look(look)
+    if only is not None:
+        from matplotlib.figure import Figure
+
+        with drawing(look, 1, ALONE) as seen:
+            parts = np.ravel(Figure().subplots(**layout or {"nrows": count}))
+            last, parts[only] = parts[-1], seen
+            yield parts
+            # the last axes have the time for all of them
+            if layout.get("sharex", not layout) and only < count - 1:
+                seen.set(xlabel=last.get_xlabel(), xlim=last.get_xlim())
+        return
     from matplotlib.axes import Axes
 
-    figure = None
-    with style.style():
+    figure, ax = None, look.ax
+    if look.figsize is not None:
+        look.size()
+    with style.style(look.style):
         if ax is None:
-            figure = plt.figure(figsize=size, layout="compressed" if compressed else "constrained")
+            figure = look.new(size, layout="compressed" if compressed else "constrained")
             layout = layout or {"nrows": count, "sharex": True}
             parts = np.ravel(figure.subplots(**layout))
             if layout.get("sharex") and count > 1:

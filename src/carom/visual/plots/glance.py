@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from carom.arguments import known
-from carom.visual.plots import figure, style
+from carom.visual.plots import figure
+from carom.visual.plots import style as looks
 from carom.visual.plots.balance import energy
 from carom.visual.plots.errors import constraint_errors
 from carom.visual.plots.paths import trajectory
@@ -16,7 +17,7 @@ LETTERS = 20  # of the name of a contact
 
 
 @known
-def overview(solution) -> dict:
+def overview(solution, *, figsize=None, style="carom") -> dict:
     """Draw an overview of a run: motion, energies, contacts, and errors of joints.
 
     The motion of a `GeneralizedSystem` is drawn as coordinates over time. Contacts are drawn if some touch, and
@@ -26,6 +27,11 @@ def overview(solution) -> dict:
     ----------
     solution : Solution or GeneralizedSolution
         The run.
+    figsize : (float, float), optional
+        Width and height of a new figure [in].
+    style : optional
+        Style of the plot: "carom" (default), None for your own settings of matplotlib, a mapping of settings to
+        add to those of carom, or what `matplotlib.style.use` takes.
 
     Returns
     -------
@@ -42,22 +48,23 @@ def overview(solution) -> dict:
     if below:
         rows.append([below[0], below[-1]])
         heights.append(1.2 if not touched else 0.8 + 0.16 * min(CONTACTS_DRAWN, touching(solution)))
-    plt = figure.pyplot()
-    with style.style():
-        new = plt.figure(figsize=(style.PAGE, sum(heights)), layout="constrained")
+    figure.pyplot()
+    with looks.style(style):
+        size = (looks.PAGE, sum(heights))
+        new = figure.Look(None, figsize, style).new(size, layout="constrained")
         axes = new.subplot_mosaic(rows, height_ratios=heights)
         if whole:
-            trajectory(solution, ax=axes["motion"])
+            trajectory(solution, ax=axes["motion"], style=style)
         else:
             _coordinates(solution, axes["motion"])
-        energy(solution, ax=[axes["energy"], axes["error"]])
+        energy(solution, ax=[axes["energy"], axes["error"]], style=style)
         axes["energy"].tick_params(labelbottom=False)
         if "contacts" in axes:
-            contacts(solution, most=CONTACTS_DRAWN, ax=axes["contacts"])
+            contacts(solution, most=CONTACTS_DRAWN, ax=axes["contacts"], style=style)
             labels = [_short(label.get_text()) for label in axes["contacts"].get_yticklabels()]
             axes["contacts"].set_yticks(axes["contacts"].get_yticks(), labels)
         if "constraints" in axes:
-            constraint_errors(solution, ax=axes["constraints"])
+            constraint_errors(solution, ax=axes["constraints"], style=style)
     return axes
 
 

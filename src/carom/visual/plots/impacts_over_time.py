@@ -5,13 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from carom.arguments import known
-from carom.visual.plots import figure, style
+from carom.visual.plots import figure
+from carom.visual.plots import style as looks
 
 _MARKS = "osD^v<>P"
+PANELS = ("velocity", "slip", "impulse", "energy")
 
 
 @known
-def impacts(solution, *, contacts=None, ax=None):
+def impacts(
+    solution, *, contacts=None, panel: str | None = None, ax=None, figsize=None, style="carom"
+):
     """Draw all impacts over time: normal velocity, slip, impulse and energy loss.
 
     There are four axes. Normal velocity and speed of slip: open marks before and filled marks after the impact,
@@ -25,13 +29,20 @@ def impacts(solution, *, contacts=None, ax=None):
         The run.
     contacts : str or sequence of str, optional
         Contacts, as names or objects. Default: all.
-    ax : sequence of 4 Axes, optional
+    panel : {"velocity", "slip", "impulse", "energy"}, optional
+        Draw only these axes. Default: all; the first if `ax` is a single Axes.
+    ax : Axes or sequence of 4 Axes, optional
         Axes to draw into. Default: a new figure.
+    figsize : (float, float), optional
+        Width and height of a new figure [in].
+    style : optional
+        Style of the plot: "carom" (default), None for your own settings of matplotlib, a mapping of settings to
+        add to those of carom, or what `matplotlib.style.use` takes.
 
     Returns
     -------
     ndarray of 4 Axes
-        Normal velocity, slip, impulses, energy.
+        Normal velocity, slip, impulses, energy; of one panel its Axes.
 
     Raises
     ------
@@ -45,14 +56,16 @@ def impacts(solution, *, contacts=None, ax=None):
     struck = [c for c in chosen if np.any(table.contact == c)]
     if not struck:
         raise ValueError(f"contacts must have an impact to draw, got {contacts!r}, which have none")
-    with figure.drawing(ax, 4, (style.PAGE, 4.0), nrows=2, ncols=2, sharex=True) as axes:
+    only, look = figure.only(panel, PANELS, ax), figure.Look(ax, figsize, style)
+    layout = {"nrows": 2, "ncols": 2, "sharex": True}
+    with figure.drawing(look, 4, (looks.PAGE, 4.0), only=only, **layout) as axes:
         many = len(struck) > 8
         for k, c in enumerate(struck):
-            colour = style.BLUE if many else figure.COLOURS[k % len(figure.COLOURS)]
+            colour = looks.BLUE if many else figure.COLOURS[k % len(figure.COLOURS)]
             label = names[c] if not many else f"{len(struck)} contacts" if not k else None
             _one(axes, table, table.contact == c, colour, "o" if many else _MARKS[k], label)
         normal, slip, impulse, lost = axes
-        normal.axhline(0.0, color=style.BLACK, lw=0.4)
+        normal.axhline(0.0, color=looks.BLACK, lw=0.4)
         speed, push = _units(solution, struck)
         normal.set(ylabel=f"normal velocity [{speed}]")
         slip.set(ylabel=f"slip [{speed}]")
@@ -60,11 +73,18 @@ def impacts(solution, *, contacts=None, ax=None):
         impulse.set(ylabel=f"impulse [{push}]", yscale="log", xlabel="time [s]")
         lost.set(ylabel="energy lost [J]", yscale="log", xlabel="time [s]")
         for one, words in ((normal, ("before", "after")), (impulse, ("tangential", "normal"))):
-            one.plot([], [], "o", mfc="white", mec=style.BLACK, label=words[0])
-            one.plot([], [], "o", color=style.BLACK, label=words[1])
+            one.plot([], [], "o", mfc="white", mec=looks.BLACK, label=words[0])
+            one.plot([], [], "o", color=looks.BLACK, label=words[1])
         for one in (normal, impulse, lost):
             figure.legend(one, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4)
-    return axes
+        if only is not None:  # the names of contacts stand above the energies
+            sources = (lost, axes[only]) if len(struck) > 1 and axes[only] is not lost else ()
+            handles = [h for one in sources for h in one.get_legend_handles_labels()[0]]
+            handles = handles or axes[only].get_legend_handles_labels()[0]
+            if handles:
+                place = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": 2}
+                axes[only].legend(handles=handles, **place)
+    return axes if only is None else axes[only]
 
 
 def _one(axes, table, rows, colour, mark, label) -> None:

@@ -6,13 +6,24 @@ import numpy as np
 
 from carom import checks
 from carom.arguments import known
-from carom.visual.plots import figure, style
+from carom.visual.plots import figure
+from carom.visual.plots import style as looks
 
+PANELS = "coordinates", "rates", "forces", "torques"
 ROUND_OFF = 1e-9  # [m]: torques below this times the greatest force are not seen
 
 
 @known
-def joints(solution, joints=None, *, degrees: bool = False, ax=None):
+def joints(
+    solution,
+    joints=None,
+    *,
+    degrees: bool = False,
+    panel: str | None = None,
+    ax=None,
+    figsize=None,
+    style="carom",
+):
     """Draw joints over time: their coordinates and rates, and the magnitudes of their forces and torques.
 
     Forces and torques are those of `Solution.joint_reactions`: on the child at its anchor.
@@ -25,13 +36,20 @@ def joints(solution, joints=None, *, degrees: bool = False, ax=None):
         Joints, as names or objects. Default: all.
     degrees : bool
         Whether angles are in degrees. Default False: radians.
-    ax : sequence of 4 Axes, optional
+    panel : {"coordinates", "rates", "forces", "torques"}, optional
+        Draw only these axes. Default: all; the first if `ax` is a single Axes.
+    ax : Axes or sequence of 4 Axes, optional
         Axes to draw into. Default: a new figure.
+    figsize : (float, float), optional
+        Width and height of a new figure [in].
+    style : optional
+        Style of the plot: "carom" (default), None for your own settings of matplotlib, a mapping of settings to
+        add to those of carom, or what `matplotlib.style.use` takes.
 
     Returns
     -------
     ndarray of 4 Axes
-        Coordinates, rates, forces, torques.
+        Coordinates, rates, forces, torques; of one panel its Axes.
 
     Raises
     ------
@@ -47,7 +65,9 @@ def joints(solution, joints=None, *, degrees: bool = False, ax=None):
         raise ValueError(f"the scene must have a joint, got {solution!r}")
     chosen = [every[k] for k in figure.named("joints", joints, [joint.name for joint in every])]
     used: set[str] = set()
-    with figure.drawing(ax, 4, (style.PAGE, 3.6), nrows=2, ncols=2, sharex=True) as axes:
+    only, look = figure.only(panel, PANELS, ax), figure.Look(ax, figsize, style)
+    layout = {"nrows": 2, "ncols": 2, "sharex": True}
+    with figure.drawing(look, 4, (looks.PAGE, 3.6), only=only, **layout) as axes:
         lines = figure.colours()
         for joint in chosen:
             view = solution[joint]
@@ -71,5 +91,5 @@ def joints(solution, joints=None, *, degrees: bool = False, ax=None):
             one.set_ylim(bottom=0.0)
         if not axes[3].get_ylim()[1] > ROUND_OFF * axes[2].get_ylim()[1]:
             axes[3].set_ylim(top=1.0)  # torques that are only round-off stay a line at 0
-        figure.legend(axes[0], 1, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4)
-    return axes
+        figure.legend(axes[only or 0], 1, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4)
+    return axes if only is None else axes[only]

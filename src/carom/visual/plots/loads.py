@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from carom.arguments import known
-from carom.visual.plots import figure, style
+from carom.visual.plots import figure
+from carom.visual.plots import style as looks
 
 
 @known
-def forces(solution, forces=None, *, ax=None):
+def forces(solution, forces=None, *, ax=None, figsize=None, style="carom"):
     """Draw forces over time: of springs, motors, other applied forces, and persistent contacts.
 
     Upper axes: forces [N]; lower axes: torques [N m]; axes are left out if there is nothing to draw. What acts
@@ -23,6 +24,11 @@ def forces(solution, forces=None, *, ax=None):
         Forces, motors (`Driver`), contacts and stops, as names or objects. Default: all that act.
     ax : sequence of Axes, optional
         As many Axes as are drawn, one or two. Default: a new figure.
+    figsize : (float, float), optional
+        Width and height of a new figure [in].
+    style : optional
+        Style of the plot: "carom" (default), None for your own settings of matplotlib, a mapping of settings to
+        add to those of carom, or what `matplotlib.style.use` takes.
 
     Returns
     -------
@@ -49,7 +55,8 @@ def forces(solution, forces=None, *, ax=None):
     units = [unit for unit in ("N", "N m") if any(one[1] == unit for one in curves)]
     if not curves:
         raise ValueError(f"there must be a force that acts to draw, got {solution!r}")
-    with figure.drawing(ax, len(units), (style.COLUMN, 0.6 + 1.7 * len(units))) as axes:
+    look = figure.Look(ax, figsize, style)
+    with figure.drawing(look, len(units), (looks.COLUMN, 0.6 + 1.7 * len(units))) as axes:
         axes = np.atleast_1d(axes)
         for one, unit in zip(axes, units):
             lines = figure.colours()

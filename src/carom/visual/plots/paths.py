@@ -8,7 +8,8 @@ from carom import checks
 from carom.arguments import known
 from carom.geometry import quaternion
 from carom.visual.bodies import outline_of, parts_of
-from carom.visual.plots import figure, style
+from carom.visual.plots import figure
+from carom.visual.plots import style as looks
 
 GROUND = "#ececec"
 FLAT = 0.02  # height by width of motion on a level table
@@ -17,7 +18,15 @@ OUTLINES = 200  # outlines: more would cover each other
 
 @known
 def trajectory(
-    solution, bodies=None, *, plane: str | None = None, outlines=None, ground=True, ax=None
+    solution,
+    bodies=None,
+    *,
+    plane: str | None = None,
+    outlines=None,
+    ground=True,
+    ax=None,
+    figsize=None,
+    style="carom",
 ):
     """Draw the paths of mass centres, seen along a coordinate axis.
 
@@ -41,6 +50,11 @@ def trajectory(
         True (default): draw half-spaces and static bodies.
     ax : Axes, optional
         Axes to draw into. Default: a new figure.
+    figsize : (float, float), optional
+        Width and height of a new figure [in].
+    style : optional
+        Style of the plot: "carom" (default), None for your own settings of matplotlib, a mapping of settings to
+        add to those of carom, or what `matplotlib.style.use` takes.
 
     Returns
     -------
@@ -65,7 +79,7 @@ def trajectory(
         size = max(outline_of(scene, body).radius for body in scene.bodies)
         parts = parts_of(scene, 0.5 * float(np.hypot(wide, high)) + size, 48)
     inches = np.clip(2.8 * high / max(wide, 1e-300), 1.0, 3.4) + 0.6  # nearly as the axes are to be
-    with figure.drawing(ax, 1, (style.COLUMN, inches)) as drawn:
+    with figure.drawing(figure.Look(ax, figsize, style), 1, (looks.COLUMN, inches)) as drawn:
         many = len(chosen) > 12
         for body, (colour, line) in zip(chosen, figure.colours()):
             colours[body.index] = colour = body.color or colour
@@ -181,4 +195,4 @@ def _ground(axes, half_space, seen) -> None:
     along, down = reach * np.array([-normal[1], normal[0]]), -reach * normal
     corners = np.array([point - along, point + along, point + along + down, point - along + down])
     # not through add_patch: the matter has no end, and must not count for the limits
-    axes.add_artist(Polygon(corners, facecolor=colour, edgecolor=style.BLACK, lw=0.8, zorder=0))
+    axes.add_artist(Polygon(corners, facecolor=colour, edgecolor=looks.BLACK, lw=0.8, zorder=0))

@@ -6,11 +6,22 @@ import numpy as np
 
 from carom import checks
 from carom.arguments import known
-from carom.visual.plots import figure, style
+from carom.visual.plots import figure
+from carom.visual.plots import style as looks
 
 
 @known
-def phase(solution, of=None, *, axis: str = "z", number: int = 0, degrees: bool = False, ax=None):
+def phase(
+    solution,
+    of=None,
+    *,
+    axis: str = "z",
+    number: int = 0,
+    degrees: bool = False,
+    ax=None,
+    figsize=None,
+    style="carom",
+):
     """Draw the phase plane of one coordinate: its rate over its value.
 
     For a body or a coordinate of a `GeneralizedSystem`, an impact is a vertical line. For a joint only saved
@@ -31,6 +42,11 @@ def phase(solution, of=None, *, axis: str = "z", number: int = 0, degrees: bool 
         Whether the angle of a joint is in degrees. Default False: radians.
     ax : Axes, optional
         Axes to draw into. Default: a new figure.
+    figsize : (float, float), optional
+        Width and height of a new figure [in].
+    style : optional
+        Style of the plot: "carom" (default), None for your own settings of matplotlib, a mapping of settings to
+        add to those of carom, or what `matplotlib.style.use` takes.
 
     Returns
     -------
@@ -50,10 +66,10 @@ def phase(solution, of=None, *, axis: str = "z", number: int = 0, degrees: bool 
         checks.integer("number", number, least=0)
         axis, degrees = checks.choice("axis", axis, "xyz"), checks.flag("degrees", degrees)
         q, v, words = _of_scene(solution, of, axis, number, degrees)
-    with figure.drawing(ax, 1, (style.COLUMN, 2.6)) as axes:
-        axes.plot(q, v, color=style.BLUE, lw=0.9)
-        axes.plot(q[:1], v[:1], "s", color=style.BLUE, ms=4)
-        axes.plot(q[-1:], v[-1:], "o", color=style.BLUE, ms=4)
+    with figure.drawing(figure.Look(ax, figsize, style), 1, (looks.COLUMN, 2.6)) as axes:
+        axes.plot(q, v, color=looks.BLUE, lw=0.9)
+        axes.plot(q[:1], v[:1], "s", color=looks.BLUE, ms=4)
+        axes.plot(q[-1:], v[-1:], "o", color=looks.BLUE, ms=4)
         axes.set(xlabel=words[0], ylabel=words[1])
     return axes
 

@@ -8,13 +8,14 @@ import numpy as np
 
 from carom import checks
 from carom.arguments import known
-from carom.visual.plots import figure, style
+from carom.visual.plots import figure
+from carom.visual.plots import style as looks
 
 _MARKS = "osD^v<>P"
 
 
 @known
-def work_precision(series: Mapping, *, error: str = "error", ax=None):
+def work_precision(series: Mapping, *, error: str = "error", ax=None, figsize=None, style="carom"):
     """Draw errors of several methods over wall time, both on logarithmic axes.
 
     Parameters
@@ -26,6 +27,11 @@ def work_precision(series: Mapping, *, error: str = "error", ax=None):
         Label of the axis of errors, with the unit. Default "error".
     ax : Axes, optional
         Axes to draw into. Default: a new figure.
+    figsize : (float, float), optional
+        Width and height of a new figure [in].
+    style : optional
+        Style of the plot: "carom" (default), None for your own settings of matplotlib, a mapping of settings to
+        add to those of carom, or what `matplotlib.style.use` takes.
 
     Returns
     -------
@@ -41,7 +47,7 @@ def work_precision(series: Mapping, *, error: str = "error", ax=None):
     figure.pyplot()
     from matplotlib.ticker import LogFormatterSciNotation, LogLocator
 
-    with figure.drawing(ax, 1, (style.COLUMN, 2.6)) as axes:
+    with figure.drawing(figure.Look(ax, figsize, style), 1, (looks.COLUMN, 2.6)) as axes:
         for k, (name, (times, errors)) in enumerate(checked.items()):
             colour, mark = figure.COLOURS[k % 7], _MARKS[k % 8]
             axes.plot(times, errors, marker=mark, color=colour, lw=1.0, label=str(name))

@@ -2,18 +2,30 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 
 from carom import checks
 from carom.arguments import known
-from carom.visual.plots import figure, style
+from carom.visual.plots import figure
+from carom.visual.plots import style as looks
 
 FLOW_STEPS = 128  # of the spline through the impact
 FLOW = 0.7  # density of the lines of the flow
 
 
 @known
-def hodograph(solution, k: int = 0, *, flow: bool = True, ax=None):
+def hodograph(
+    solution,
+    k: int = 0,
+    *,
+    flow: bool = True,
+    panel: str | None = None,
+    ax=None,
+    figsize=None,
+    style="carom",
+):
     """Draw the slip velocity during one impact, and the friction force.
 
     Left axes: the path of the slip velocity from before the impact (square) to after it (dot), and its
@@ -24,28 +36,34 @@ def hodograph(solution, k: int = 0, *, flow: bool = True, ax=None):
 
     Parameters
     ----------
-    solution : Solution or GeneralizedSolution
-        The run.
+    solution : Solution, GeneralizedSolution, Impact or ImpactRecord
+        A run, or a single impact: the result of `carom.resolve_impact`, or ``solution.impacts[k]``.
     k : int
-        Index of the impact; negative indices count from the end. Default 0.
+        Index of the impact of a run; negative indices count from the end. Default 0.
     flow : bool
         True (default): draw the grey lines.
-    ax : sequence of 2 Axes, optional
+    panel : {"slip", "friction"}, optional
+        Draw only these axes. Default: all; the first if `ax` is a single Axes.
+    ax : Axes or sequence of 2 Axes, optional
         Axes to draw into. Default: a new figure.
+    figsize : (float, float), optional
+        Width and height of a new figure [in].
+    style : optional
+        Style of the plot: "carom" (default), None for your own settings of matplotlib, a mapping of settings to
+        add to those of carom, or what `matplotlib.style.use` takes.
 
     Returns
     -------
     ndarray of 2 Axes
-        Left and right axes.
+        Left and right axes; of one panel its Axes.
 
     Raises
     ------
     ValueError
         If there is no impact k, it is part of a multiple impact, or its contact has no tangents.
     """
-    figure.is_bodies(solution)
     checks.flag("flow", flow)
-    record = figure.impact(solution, k)
+    record = _record(solution, k)
     W, mu = record.inverse_mass, record.friction
     if record.together > 1:
         raise ValueError(
@@ -59,10 +77,32 @@ def hodograph(solution, k: int = 0, *, flow: bool = True, ax=None):
     path = np.vstack(
         [record.relative_velocity_before[1:], path, record.relative_velocity_after[1:]]
     )
-    with figure.drawing(ax, 2, (style.PAGE, 3.3), ncols=2, compressed=True) as axes:
+    only, look = figure.only(panel, ("slip", "friction"), ax), figure.Look(ax, figsize, style)
+    size = (looks.PAGE, 3.3)
+    with figure.drawing(look, 2, size, compressed=True, only=only, ncols=2) as axes:
         _slip(axes[0], path, W, mu, flow)
         _friction(axes[1], history, mu)
-    return axes
+    return axes if only is None else axes[only]
+
+
+def _record(solution, k):
+    """Return the record of an impact: of impact k of a run, or of a single one."""
+    from carom.generalized.solution import CoordinateImpact
+    from carom.impact.api import Impact
+    from carom.results.event_tables import ImpactRecord
+
+    if isinstance(solution, (ImpactRecord, CoordinateImpact)):
+        return solution
+    if isinstance(solution, Impact):
+        if not solution._stated:
+            raise ValueError(
+                "there must be one impact in space to draw, got several, or a plane one (give W (3, 3))"
+            )
+        return SimpleNamespace(
+            relative_velocity_after=solution.velocity_after, together=1, **solution._stated
+        )
+    figure.is_bodies(solution)
+    return figure.impact(solution, k)
 
 
 def _course(record):
@@ -90,16 +130,16 @@ def _slip(axes, path, W, mu, flow: bool) -> None:
             *(m + grid for m in middle), *rate, density=FLOW, color="#c8c8c8", linewidth=0.6,
             arrowsize=0.6, zorder=0,
         )  # fmt: skip
-    axes.plot(*path.T, color=style.RED, lw=1.8, zorder=3, label="slip")
+    axes.plot(*path.T, color=looks.RED, lw=1.8, zorder=3, label="slip")
     rays = invariant_directions(W, mu)
     drawn = {True: "outgoing ray", False: "incoming ray"}
     for angle, grows in zip(rays.angle, rays.outgoing):
         end = 4.0 * half * np.array([np.cos(angle), np.sin(angle)])
-        axes.plot([0.0, end[0]], [0.0, end[1]], "--" if grows else ":", color=style.BLACK, lw=0.9,
+        axes.plot([0.0, end[0]], [0.0, end[1]], "--" if grows else ":", color=looks.BLACK, lw=0.9,
                   label=drawn.pop(bool(grows), None))  # fmt: skip
-    axes.plot(*path[0], "s", color=style.RED, ms=4.5, zorder=4)
-    axes.plot(*path[-1], "o", color=style.RED, ms=4.5, zorder=4)
-    axes.plot(0.0, 0.0, "+", color=style.BLACK, ms=6, zorder=4)
+    axes.plot(*path[0], "s", color=looks.RED, ms=4.5, zorder=4)
+    axes.plot(*path[-1], "o", color=looks.RED, ms=4.5, zorder=4)
+    axes.plot(0.0, 0.0, "+", color=looks.BLACK, ms=6, zorder=4)
     axes.set(xlabel="slip $u_{t1}$ [m/s]", ylabel="slip $u_{t2}$ [m/s]", aspect="equal")
     axes.set(xlim=middle[0] + half * np.array([-1, 1]), ylim=middle[1] + half * np.array([-1, 1]))
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)
@@ -108,15 +148,15 @@ def _slip(axes, path, W, mu, flow: bool) -> None:
 def _friction(axes, history, mu: float) -> None:
     angle = np.linspace(0.0, 2.0 * np.pi, 181)
     axes.plot(
-        mu * np.cos(angle), mu * np.sin(angle), color=style.GREY, lw=0.8, label=rf"$\mu$ = {mu:g}"
+        mu * np.cos(angle), mu * np.sin(angle), color=looks.GREY, lw=0.8, label=rf"$\mu$ = {mu:g}"
     )
     pressed = history.normal_force > 0.0
     share = history.friction_force[pressed] / history.normal_force[pressed, None]
-    axes.plot(*share.T, ".-", color=style.RED, lw=0.8, ms=3)
+    axes.plot(*share.T, ".-", color=looks.RED, lw=0.8, ms=3)
     if len(share):
-        axes.plot(*share[0], "s", color=style.RED, ms=4.5)
-        axes.plot(*share[-1], "o", color=style.RED, ms=4.5)
-    axes.plot(0.0, 0.0, "+", color=style.BLACK, ms=6)
+        axes.plot(*share[0], "s", color=looks.RED, ms=4.5)
+        axes.plot(*share[-1], "o", color=looks.RED, ms=4.5)
+    axes.plot(0.0, 0.0, "+", color=looks.BLACK, ms=6)
     axes.set(xlabel="friction / normal force, $t_1$", ylabel="friction / normal force, $t_2$")
     reach = 1.15 * mu or 1.0
     axes.set(aspect="equal", xlim=(-reach, reach), ylim=(-reach, reach))

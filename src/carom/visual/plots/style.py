@@ -6,9 +6,14 @@ nothing of the caller's matplotlib is touched and no display is needed.
 
 from __future__ import annotations
 
+import os
+from collections.abc import Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from textwrap import shorten
 from typing import Any
+
+from carom import checks
 
 COLUMN, PAGE = 3.4, 6.9  # widths of one and of two columns [in]
 
@@ -48,11 +53,27 @@ DPI = 250
 
 
 @contextmanager
-def style():
-    """Within this context matplotlib draws in the style of the paper's figures."""
-    import matplotlib as mpl
+def style(chosen="carom"):
+    """Within this context matplotlib draws in a style, by default that of the paper's figures.
 
-    with mpl.rc_context(SETTINGS):
+    Other values are None, for the caller's own settings; a mapping of settings, which are added to those of the
+    paper; and what `matplotlib.style.use` takes, in their place.
+    """
+    import matplotlib as mpl
+    from matplotlib.style import use
+
+    styles = SETTINGS if isinstance(chosen, str) and chosen == "carom" else chosen
+    styles = [SETTINGS, chosen] if isinstance(chosen, Mapping) else styles
+    with mpl.rc_context():
+        try:
+            if chosen is not None:
+                checks.instance("style", chosen, (str, os.PathLike, Mapping, list))
+                use(styles)
+        except (OSError, LookupError, TypeError, ValueError) as error:
+            raise ValueError(
+                'style must be "carom", None, a mapping of settings of matplotlib, or one of its styles, got '
+                f"{checks.shown(chosen)}: {shorten(str(error), 200)}"
+            ) from None
         yield
 
 

@@ -6,13 +6,14 @@ import numpy as np
 
 from carom import checks
 from carom.arguments import known
-from carom.visual.plots import figure, style
+from carom.visual.plots import figure
+from carom.visual.plots import style as looks
 
-MODES = (("slipping", style.ORANGE, 0.62), ("sticking", style.BLUE, 0.34))  # width of the bar
+MODES = (("slipping", looks.ORANGE, 0.62), ("sticking", looks.BLUE, 0.34))  # width of the bar
 
 
 @known
-def contacts(solution, *, contacts=None, most: int = 40, ax=None):
+def contacts(solution, *, contacts=None, most: int = 40, ax=None, figsize=None, style="carom"):
     """Draw the state of each contact over time: ticks at impacts, bars for slip and stick.
 
     While nothing is drawn, the contact is open. A contact with several points may slip at one and stick (or
@@ -28,6 +29,11 @@ def contacts(solution, *, contacts=None, most: int = 40, ax=None):
         Maximum number of rows: the contacts with the most impacts and intervals are drawn. Default 40.
     ax : Axes, optional
         Axes to draw into. Default: a new figure.
+    figsize : (float, float), optional
+        Width and height of a new figure [in].
+    style : optional
+        Style of the plot: "carom" (default), None for your own settings of matplotlib, a mapping of settings to
+        add to those of carom, or what `matplotlib.style.use` takes.
 
     Returns
     -------
@@ -51,7 +57,9 @@ def contacts(solution, *, contacts=None, most: int = 40, ax=None):
         chosen = sorted(sorted(chosen, key=lambda c: -busy[c])[:most])
     if not chosen:
         raise ValueError(f"there must be a contact that touches to draw, got {solution!r}")
-    with figure.drawing(ax, 1, (style.PAGE, 0.75 + 0.22 * min(len(chosen), 40))) as axes:
+    with figure.drawing(
+        figure.Look(ax, figsize, style), 1, (looks.PAGE, 0.75 + 0.22 * min(len(chosen), 40))
+    ) as axes:
         for mode, colour, width in MODES:
             for row, c in enumerate(chosen):
                 bars = [
@@ -63,8 +71,8 @@ def contacts(solution, *, contacts=None, most: int = 40, ax=None):
                 axes.barh([0], [0], color=colour, label=mode)
         for row, c in enumerate(chosen):
             t = struck.time[struck.contact == c]
-            axes.vlines(t, row - 0.4, row + 0.4, color=style.BLACK, lw=0.6)
-        axes.plot([], [], "|", color=style.BLACK, ms=8, label="impact")
+            axes.vlines(t, row - 0.4, row + 0.4, color=looks.BLACK, lw=0.6)
+        axes.plot([], [], "|", color=looks.BLACK, ms=8, label="impact")
         axes.set_yticks(range(len(chosen)), [names[c] for c in chosen])
         room = max(0.0, 0.5 * (2 - len(chosen)))  # one row alone is not to fill tall axes
         axes.set(

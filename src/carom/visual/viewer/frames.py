@@ -35,19 +35,32 @@ class Place(NamedTuple):
 
 
 def frames_of(solution, most: int = MOST_FRAMES) -> Frames:
-    """Return the frames to show: saved times, thinned out to `most`, and times of impacts.
+    """Return the frames to show, at `times_of`."""
+    return frames_at(solution, times_of(solution, most))
+
+
+def times_of(solution, most: int = MOST_FRAMES) -> np.ndarray:
+    """Return the times to show: saved ones, thinned out to `most`, and those of impacts.
 
     If a run has few saved times, `Solution.evaluate` gives states between them. With many bodies there are
     fewer frames, so that the poses are at most 3 million numbers.
     """
     most = max(2, min(most, max(200, VALUES // (7 * solution.position.shape[1]))))
-    times, saved = solution.t, len(solution.t)
-    if saved > most:
-        times = times[np.unique(np.linspace(0, saved - 1, most).round().astype(int))]
-    elif saved > 1 and (between := min(SMOOTH, most) // saved) > 1:
+    times, saved = thinned(solution.t, most), len(solution.t)
+    if 1 < saved <= most and (between := min(SMOOTH, most) // saved) > 1:
         places = np.arange((saved - 1) * between + 1) / between
         times = np.interp(places, np.arange(saved), times)
-    times = np.union1d(times, _moments_of_impacts(solution.impacts, most // 2))
+    return np.union1d(times, moments_of_impacts(solution.impacts, most // 2))
+
+
+def thinned(times: np.ndarray, most: int) -> np.ndarray:
+    """Return at most `most` of some times, evenly chosen."""
+    last = len(times) - 1
+    return times[np.unique(np.linspace(0, last, min(last + 1, most)).round().astype(int))]
+
+
+def frames_at(solution, times: np.ndarray) -> Frames:
+    """Return the poses at some times."""
     return Frames(times, *_poses(solution, times))
 
 
@@ -61,7 +74,7 @@ def _poses(solution, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return x, Q
 
 
-def _moments_of_impacts(impacts, most: int) -> np.ndarray:
+def moments_of_impacts(impacts, most: int) -> np.ndarray:
     """Return the times of the strongest impacts, where paths have corners."""
     strongest = np.argsort(-np.linalg.norm(impacts.impulse, axis=1), kind="stable")
     return impacts.time[strongest[:most]]

@@ -54,15 +54,22 @@ class Show(NamedTuple):
         return words
 
 
-def show_of(what, title: str | None = None, most: int = frames.MOST_FRAMES) -> Show:
-    """Return the show of a solution, or of the file of one."""
+def show_of(
+    what,
+    title: str | None = None,
+    most: int = frames.MOST_FRAMES,
+    times: np.ndarray | None = None,
+) -> Show:
+    """Return the show of a solution, or of the file of one: of `most` frames, or at some `times`."""
     solution = solution_of(what)
     if title is None:
         title = Path(what).stem if isinstance(what, (str, os.PathLike)) else "carom"
     scene = solution.scene
     outlines = [bodies.outline_of(scene, body) for body in scene.bodies]
     sizes = np.array([outline.radius for outline in outlines])
-    moments = frames.frames_of(solution, checks.integer("frames", most, least=2))
+    most = checks.integer("frames", most, least=2)
+    chosen = times is not None
+    moments = frames.frames_at(solution, times) if chosen else frames.frames_of(solution, most)
     place = frames.place_of(solution, moments, outlines, bodies.ground_points(scene))
     return Show(
         title, solution, moments, place, sizes,
