@@ -40,7 +40,14 @@ HUNDREDS = {
     "results": 25, "generalized": 27, "io": 48, "control": 8, "studies": 52, "visual": 40, "baselines": 8,
     "paper": 14, "bench": 10, "cli": 17,
 }  # fmt: skip
-MOST_LINES = 64500
+MOST_LINES = 64300
+#: hundreds of lines beyond these bounds that a capability has brought, by room
+CAPABILITIES = {
+    "results by name, robots, ensembles as tables, scenes that change, exports, notebooks": {
+        "results": 25, "visual": 14, "studies": 9, "scene": 8, "io": 7, "control": 3, "impact": 2,
+        "dynamics": 1, "geometry": 1, "hints": 3,
+    },
+}  # fmt: skip
 
 
 @cache
@@ -159,9 +166,12 @@ def test_rooms_do_not_grow():
     for path in ROOT.rglob("*.py"):
         room = path.relative_to(ROOT).parts[0]
         lines[room] = lines.get(room, 0) + len(path.read_text().splitlines())
-    large = {room: n for room, n in lines.items() if room in HUNDREDS and n > 100 * HUNDREDS[room]}
-    assert not large
-    assert sum(lines.values()) <= MOST_LINES
+    more = {}
+    for rooms in CAPABILITIES.values():
+        more |= {room: more.get(room, 0) + hundreds for room, hundreds in rooms.items()}
+    most = {room: 100 * (hundreds + more.get(room, 0)) for room, hundreds in HUNDREDS.items()}
+    assert {room: n for room, n in lines.items() if n > most.get(room, n)} == {}
+    assert sum(lines.values()) <= MOST_LINES + 100 * sum(more.values())
 
 
 def test_large_records_are_made_by_name():

@@ -73,7 +73,7 @@ def exerted(scene, states, t, given: Mapping[int, Any]) -> np.ndarray:
 
 
 def exerted_by(force: AppliedForce, states, t, value=None) -> np.ndarray:
-    """Return the rows of one force, (T, n, 8) or (n, 8) at one time; `value` is what it was set to."""
+    """Return the rows of one force, (T, n, 8) or (n, 8) at one time; `value` is the one that was set."""
     d = force.definition
     if isinstance(d, UserForce):
         return _of_user(d, states, t)

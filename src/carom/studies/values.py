@@ -37,7 +37,7 @@ FOLLOWERS = ("inertia", "friction_held", "rest_length")
 
 
 class Found(NamedTuple):
-    """A field of a part: of the part itself, or of what it is made of."""
+    """A field of a part, of its definition or of its shape."""
 
     part: Any
     inside: str  # name of the attribute that has the field, "" for the part

@@ -14,7 +14,7 @@ ROW = np.dtype([("row", "<i8"), ("force", "<i8"), ("value", "<f8", 3)])
 
 
 def as_rows(history: list[tuple[int, int, Any]] | None) -> np.ndarray | None:
-    """Return what was set as a table; None for the run of `simulate`."""
+    """Return a table of the forces and controls that were set; None for the run of `simulate`."""
     if history is None:
         return None
     table = np.zeros(len(history), ROW)

@@ -164,7 +164,7 @@ class Mesh(Shape):
 
 
 def shape_given(shape) -> Any:
-    """Return what is given as a shape; an object of trimesh, with vertices and faces, as a `Mesh`."""
+    """Return a shape as it is; an object of trimesh, with vertices and faces, as a `Mesh`."""
     if isinstance(shape, (Shape, type)) or not (
         hasattr(shape, "vertices") and hasattr(shape, "faces")
     ):

@@ -43,7 +43,7 @@ PREFIXES = {"input:": "inputs", "observed:": "observed"}
 
 
 def facts_of(ensemble: Ensemble) -> dict[str, str]:
-    """Return what is known of all runs, as texts."""
+    """Return the attributes of the ensemble, as texts."""
     found = {name: ensemble.about[name] for name in FACTS if name in ensemble.about}
     return {**found, "body_names": json.dumps(body_names(ensemble))}
 

@@ -80,7 +80,7 @@ class _Rows(NamedTuple):
 
 
 def as_mapping(vary) -> Mapping:
-    """Return what is varied by name, also that of a `pandas.DataFrame` with one row for each run."""
+    """Return the varied values by name, also that of a `pandas.DataFrame` with one row for each run."""
     if hasattr(vary, "columns") and hasattr(vary, "iloc"):
         return {name: vary[name].tolist() for name in vary.columns}
     return vary

@@ -87,7 +87,7 @@ class File:
         self.block, self.known, self.channels = bytearray(), {}, []
 
     def once(self, key, make) -> Any:
-        """Return what was made for a key, made at its first use."""
+        """Return the object of a key, made at its first use."""
         if key not in self.known:
             self.known[key] = make()
         return self.known[key]
