@@ -226,7 +226,7 @@ def test_a_finished_run_goes_on(made, capsys):
     runs = [carom.Solution.load(path) for path in (out, straight)]
     np.testing.assert_array_equal(runs[0].position, runs[1].position)
     assert main(["simulate", "--resume", str(out), "-d", "0.1"]) == USAGE
-    assert "duration must be finite and above 0.2" in one_line(capsys)
+    assert "--duration must be finite and above 0.2" in one_line(capsys)
 
 
 def test_the_suffix_of_out_decides(made, capsys):

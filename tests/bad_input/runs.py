@@ -132,7 +132,7 @@ def run(folder):
         ),
         "Ensemble.counts": lambda: (runs().counts, {}),
         "Ensemble.to_pandas": lambda: (runs().to_pandas, {}),
-        "Ensemble.save": lambda: (runs().save, dict(path=folder / "runs.parquet")),
+        "Ensemble.save": lambda: (runs().save, dict(path=folder / "runs.nc")),
         "Ensemble.plot": lambda: (runs().plot, dict(value="ball.z", over="ball.velocity.x")),
         "Grid": lambda: (carom.Grid, dict(values=[0.1, 0.2])),
         "gradient": lambda: (

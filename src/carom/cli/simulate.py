@@ -222,10 +222,13 @@ def _go_on(path: Path, scene, duration: float | None, given: dict[str, Any], sav
         )
     mine = scenes.functions(scenes.load(scene).scene) if scene is not None else None
     with show.progress("resume") as bar:
-        return _with_its_loss(
-            carom.resume, path, until=duration, functions=mine or None, progress=bar,
-            save_seconds=save_seconds,
-        )  # fmt: skip
+        try:
+            return _with_its_loss(
+                carom.resume, path, until=duration, functions=mine or None, progress=bar,
+                save_seconds=save_seconds,
+            )  # fmt: skip
+        except ValueError as error:
+            raise ValueError(str(error).replace("until must", "--duration must")) from error
 
 
 def _end(solution, out: Path | None, scene: Path | None, seconds: float, json: bool) -> int:

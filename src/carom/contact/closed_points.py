@@ -133,7 +133,7 @@ def add_stop(system, active, c, near, state, k, group):
     return k + 1
 
 
-@unit
+@kernel
 def add_touches(system, c, near, rim_time, state, k, group, work) -> int:
     """Add the points of two solids that are within `near`; return the new count, -1 without room.
 

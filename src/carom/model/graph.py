@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import heapq
 from collections import deque
 
 import numpy as np
@@ -83,21 +84,31 @@ def elimination(touching: list[list[int]]) -> tuple[list[int], list[list[int]]]:
     """Order the elements by least degree and return the fill: neighbours of each that come later.
 
     Two elements are neighbours if they share a movable body, as in A M^-1 A^T; `touching` lists the bodies of
-    each. It is the order of SuperLU for the Laplacian of this graph, none of whose entries cancel.
+    each.
     """
-    from scipy.sparse import csc_array
-    from scipy.sparse.linalg import splu
-
-    element = np.repeat(np.arange(len(touching)), [len(bodies) for bodies in touching])
-    shares = csc_array((np.ones(element.size), (element, np.concatenate(touching).astype(int))))
-    graph = -(shares @ shares.T).sign().tocsc()
-    graph.setdiag(1e-3 - 1.0 - graph.sum(axis=0))
-    factor = splu(
-        graph, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-    )
-    order, fill = np.argsort(factor.perm_c), factor.L
-    later: list[list[int]] = [[] for _ in touching]
-    for k, j in enumerate(order):
-        column = fill.indices[fill.indptr[k] : fill.indptr[k + 1]]
-        later[j] = sorted(order[column[column != k]].tolist())
-    return order.tolist(), later
+    count = len(touching)
+    by_body: dict[int, list[int]] = {}
+    for j, bodies in enumerate(touching):
+        for b in bodies:
+            by_body.setdefault(b, []).append(j)
+    near = [set() for _ in range(count)]
+    for joints in by_body.values():
+        for j in joints:
+            near[j].update(joints)
+    for j in range(count):
+        near[j].discard(j)
+    heap = [(len(near[j]), j) for j in range(count)]
+    heapq.heapify(heap)
+    done, order, later = [False] * count, [], [[] for _ in range(count)]
+    while heap:
+        degree, j = heapq.heappop(heap)
+        if done[j] or degree != len(near[j]):
+            continue
+        done[j] = True
+        order.append(j)
+        later[j] = sorted(near[j])
+        for i in near[j]:
+            near[i] |= near[j]
+            near[i] -= {i, j}
+            heapq.heappush(heap, (len(near[i]), i))
+    return order, later
