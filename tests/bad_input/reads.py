@@ -160,6 +160,9 @@ def read(folder):
             plots.e_mu,
             dict(inverse_mass=W, velocity=(-1.0, 1.0, 0.0), law="newton", most_friction=1.0, points=3, **drawn),
         ),
+        "Impact.plot": lambda: (
+            carom.resolve_impact(W, (-1.0, 1.0, 0.0), 0.5, 0.3).plot, dict(panel="slip", **drawn),
+        ),
         "plots.impacts": lambda: (
             plots.impacts, dict(solution=solution(), contacts="ball-floor", panel="slip", **drawn),
         ),
