@@ -50,7 +50,7 @@ def assert_same_motion(one, two):
         np.testing.assert_array_equal(getattr(one, name), getattr(two, name))
     for name in ("impacts", "events", "contacts", "forces"):
         a, b = getattr(one, name), getattr(two, name)
-        for column in vars(a):
+        for column in (name for name in vars(a) if not name.startswith("_")):
             x, y = getattr(a, column), getattr(b, column)
             if column == "contact":
                 x, y = ends(one, x), ends(two, y)

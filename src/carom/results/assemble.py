@@ -246,7 +246,7 @@ def accelerations(solution) -> np.ndarray:
         for first, last in ranges_of(run, run.compiled, len(out)):
             for k in range(first, last):
                 own = touch[np.searchsorted(touch["saved"], k) :]
-                out[k] = acceleration(system, run.options, rec.series.t, rec.state, k, own, work)
+                out[k] = acceleration(system, run.options, solution.t, rec.state, k, own, work)
     return out
 
 
@@ -275,7 +275,7 @@ def element_reactions(solution) -> tuple[np.ndarray, dict[int, np.ndarray]]:
         with _kept_turns(system):
             for rows in ranges_of(run, compiled, len(out)):
                 part = touch[np.searchsorted(touch["saved"], rows[0]) :]
-                times = rec.series.t, rec.state
+                times = solution.t, rec.state
                 reactions(system, run.options.augmentation, *times, rows, part, work, out)
         return on_children(compiled, rec.state, out)
 
@@ -314,7 +314,7 @@ def constraint_errors(solution) -> tuple[np.ndarray, np.ndarray]:
     work = r.new_work(system, run.method.b.size)
     position, velocity = np.zeros((2, len(rec.state), system.joints.size, 6))
     with _kept_turns(system):
-        row_errors(system, rec.series.t, rec.state, work, position, velocity)
+        row_errors(system, solution.t, rec.state, work, position, velocity)
     counts = [len(row_units(part.definition)) for part in constrained(run.scene)]
     rows = np.arange(6) < np.array(counts, dtype=np.int64).reshape(-1, 1)
     position, velocity = (np.abs(e[:, : len(counts)][:, rows]) for e in (position, velocity))

@@ -145,6 +145,9 @@ class _Mechanism:
         seen = quaternion.multiply(state["Q"], quaternion.conjugate(self.to_principal))
         now = _State(np.array(state["x"]), seen, np.array(state["v"]), np.array(state["w"]))
         moved = np.unique(self.label[b[np.any(change[b] != 0.0, axis=1)]])
+        moved = moved[np.isin(moved, self.label[self.system.solver.sides["body"]])]  # by joints
+        if not len(moved):
+            return
         for i in mine:
             self.add_contact(i, now, change)
         if self.rotors:
