@@ -414,8 +414,9 @@ def test_a_scene_of_a_model_that_changes():
     assert model.scene.robot is None
 
 
-CART = """<mujoco><worldbody><body name="cart" pos="0 0 1"><joint name="rail" type="slide" axis="1 0 0" frictionloss="3"/>
-<geom type="box" size=".2 .1 .1" mass="2"/><site name="imu" euler="0 0 90"/></body></worldbody>
+CART = """<mujoco><worldbody><body name="cart" pos="0 0 1"><joint name="rail" type="slide" axis="1 0 0"
+ frictionloss="3"/><geom type="box" size=".2 .1 .1" mass="2"/>
+<site name="imu" euler="0 0 90"/></body></worldbody>
 <actuator><motor name="push" joint="rail" gear="2" RANGE/></actuator>
 <sensor><accelerometer name="shown" site="imu"/><force name="carried" site="imu"/></sensor></mujoco>"""
 
@@ -444,7 +445,8 @@ def test_sensors_and_motors_of_a_joint_with_dry_friction(limit):
     np.testing.assert_allclose(solution["push"].force[rows], push)
 
 
-DRY_WHEEL = """<mujoco><option gravity="0 0 0"/><worldbody><body name="wheel"><joint name="axle" axis="0 0 1" frictionloss="LOSS"/>
+DRY_WHEEL = """<mujoco><option gravity="0 0 0"/><worldbody><body name="wheel">
+<joint name="axle" axis="0 0 1" frictionloss="LOSS"/>
 <geom type="box" size=".2 .1 .1" mass="2"/></body></worldbody>
 <actuator><position name="servo" joint="axle" kp="2" kv=".1" RANGE/></actuator>
 <sensor><frameangacc name="shown" objtype="body" objname="wheel"/></sensor></mujoco>"""

@@ -102,6 +102,7 @@ class Run:
         if not isinstance(scene, Scene):
             raise TypeError(
                 f"scene must be a carom.Scene, a Model or a Solution, got {checks.shown(scene)}"
+                + ("; a model is read by carom.load_model" if isinstance(scene, str) else "")
             )
         settings = checked_settings(
             1.0,
@@ -175,6 +176,7 @@ class Run:
     def ctrl(self, values: ArrayLike) -> None:
         self.ctrl[:] = checks.finite_array("ctrl", values, (len(self._applied.ctrl),))
 
+    @arguments.known
     def set_force(self, force: AppliedForce | str, value: ArrayLike) -> None:
         """Set a force of the scene to a new value, which it keeps until it is set again.
 
@@ -194,6 +196,7 @@ class Run:
         """
         self._applied.set(force, value)
 
+    @arguments.known
     def reset(
         self,
         state: SystemState | None = None,
@@ -245,6 +248,7 @@ class Run:
         if key is not None and len(key.ctrl):
             self.ctrl[: len(key.ctrl)] = key.ctrl
 
+    @arguments.known
     def set_state(
         self,
         state: SystemState | None = None,
@@ -282,6 +286,7 @@ class Run:
             new.move(old, lambda: place(new, begin, qpos, qvel))
         self._stand(new, self._applied.history)
 
+    @arguments.known
     def advance(self, duration: float | None = None) -> None:
         """Go on by so much time.
 
@@ -328,7 +333,8 @@ def _robot(scene: Scene, name: str) -> Robot:
 
 def place(run: Endless, state: SystemState, qpos, qvel) -> None:
     """Write a state, or coordinates of the model in place of its own, into a run before its first step."""
-    checks.instance("state", state, (SystemState,))
+    hint = "; a keyframe is given by keyframe=, and a solution goes on in carom.Run(solution)"
+    checks.instance("state", state, (SystemState,), hint)
     if [b.name for b in state._scene.bodies] != [b.name for b in run.scene.bodies]:
         raise ValueError(f"state must be of the scene of this run, got {state!r}")
     motion = state

@@ -76,8 +76,11 @@ def compile_scene(
         loads=loads, bushings=bushings, contacts=contacts, vertices=touching.vertices,
         solids=touching.solids, hulls=touching.hulls, levels=touching.levels, solver=solver,
     )  # fmt: skip
-    made = system, start, to_principal, flipped, functions
-    return Compiled(*made, *touching[5:], more.laws, coordinates.numbers)
+    return Compiled(
+        system=system, start=start, to_principal=to_principal, flipped=flipped, functions=functions,
+        pairs=touching.pairs, surfaces=touching.surfaces, later=touching.later, laws=more.laws,
+        numbers=coordinates.numbers,
+    )  # fmt: skip
 
 
 def compiled_once(scene: Scene, options: Options, *ways: bool) -> Compiled:

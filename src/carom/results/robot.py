@@ -158,7 +158,8 @@ def checked(solution):
     from carom.results.solution import Solution
     from carom.results.state import SystemState
 
-    checks.instance("solution", solution, (Solution, SystemState))
+    hint = "; of a run give run.state or run.solution"
+    checks.instance("solution", solution, (Solution, SystemState), hint)
     return solution
 
 
@@ -279,9 +280,9 @@ class Robot:
                 )
 
     @cached_property
-    def joints(self) -> dict[str, Coordinate]:
+    def joints(self) -> Mapping[str, Coordinate]:
         """Hinges and slides by name."""
-        return {one.name: one for one in self.coordinates}
+        return Named("hinge or slide", {one.name: one for one in self.coordinates})
 
     @cached_property
     def keyframes(self) -> Mapping[str, Keyframe]:
