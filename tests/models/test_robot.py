@@ -218,7 +218,10 @@ def test_whole_turns():
         run.advance(0.1)
     assert model.joints["axle"].of(run.state)[0] == pytest.approx(21.5, abs=1e-11)
     assert model.qpos(run.solution)[-1, 0] == pytest.approx(21.5, abs=1e-11)
-    run.set_state(qpos=[40.0])
+    run.set_state(qvel=[7.0])
+    assert model.joints["axle"].of(run.state)[0] == pytest.approx(21.5, abs=1e-11)
+    with pytest.warns(carom.MistakeWarning, match="run.solution counts them by less than half"):
+        run.set_state(qpos=[40.0])
     run.advance(0.1)
     assert model.qpos(run.state)[0] == pytest.approx(40.7, abs=1e-11)
 
@@ -458,7 +461,8 @@ def test_forces_of_a_state_have_whole_turns(loss, text):
     """A servo from 10 rad to 1 rad: -18 N m at the start, against friction that slips or sticks."""
     model = carom.load_model(DRY_WHEEL.replace("LOSS", str(loss)).replace("RANGE", text))
     run = carom.Run(model, step=1e-3)
-    run.reset(qpos=[10.0])
+    with pytest.warns(carom.MistakeWarning, match="set by more than half a turn"):
+        run.reset(qpos=[10.0])
     run.ctrl["servo"] = 1.0
     state = run.state
     run.ctrl["servo"] = 0.0
