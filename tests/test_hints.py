@@ -8,11 +8,13 @@ import pytest
 
 import carom
 from carom import hints
+from carom.results.state import SystemState
 
 OWNERS = {
     "Scene": carom.Scene,
     "Run": carom.Run,
     "Solution": carom.Solution,
+    "SystemState": SystemState,
     "Ensemble": carom.Ensemble,
 }
 ENTRIES = [

@@ -137,6 +137,8 @@ _OF_SOLUTION = {
     "it is shown by carom.view(solution)": "show view display",
     "forces of contacts are forces and contact_force, those of joints joint_reactions": "reactions lambda_",
     "coordinates of a joint are joint_coordinates(name)": "qpos qvel joint_angles angle angles joints",
+    "controls of a model are solution.scene.robot.ctrl(solution)": "ctrl control controls",
+    "a sensor of a model is read by its name: solution[name]": "sensors sensor sensordata",
     "bodies are those of its scene: solution.scene.bodies, solution[name]": "bodies body",
 }  # fmt: skip
 _OF_ENSEMBLE = {
@@ -146,7 +148,11 @@ _OF_ENSEMBLE = {
 #: names of classes and modules, with what people call them
 MEMBERS = {
     "Scene": _OF_SCENE,
-    "Run": {"a scene is simulated by carom.simulate(scene, duration), a carom.Run by advance()": "simulate"},
+    "Run": {
+        "a scene is simulated by carom.simulate(scene, duration), a carom.Run by advance()": "simulate",
+        "coordinates of a model are model.qpos(run.state), model.qvel(run.state)": "qpos qvel data",
+    },
+    "SystemState": {"coordinates of a model are model.qpos(state), model.qvel(state)": "qpos qvel"},
     "Solution": _OF_SOLUTION,
     "Ensemble": _OF_ENSEMBLE,
     "carom": {

@@ -352,9 +352,10 @@ def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:
         if not gap >= -options.constraint_tolerance * extent:
             side = "lower" if stop.side > 0.0 else "upper"
             unit = "rad" if stop.joint.definition.coordinates[stop.coordinate] == "turn" else "m"
+            place = round(stop.end + gap / system.contacts.side[first + stop.index], 9)
             raise ValueError(
                 f"stop {stop.name!r} of {stop.joint.name!r} must not be exceeded at the start, where the "
-                f"coordinate is 0 (unless the joint has frames), got {side}={stop.end:g} {unit}"
+                f"coordinate is {place + 0.0:g}, got {side}={stop.end:g} {unit}"
             )
 
 

@@ -186,8 +186,14 @@ def simulate(
     True
     """
     if not isinstance(scene, (Scene, GeneralizedSystem)):
+        meant = {
+            "Model": "; give its scene, model.scene",
+            "Solution": "; it goes on by solution.simulate or carom.Run(solution)",
+            "Run": "; it goes on by its advance()",
+        }
         raise TypeError(
             f"scene must be a carom.Scene or a carom.GeneralizedSystem, got {type(scene).__name__}"
+            + meant.get(type(scene).__name__, "")
         )
     check_handling(progress, throw, save_seconds)
     settings = checked_settings(

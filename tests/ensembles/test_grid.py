@@ -91,7 +91,8 @@ def of_masses(more=None, **settings):
         (lambda: carom.Grid([]), "values must be at least one"),
         (lambda: carom.Grid([[1.0]]), r"values must have shape \(n,\)"),
         (lambda: carom.Grid(["a", 1.0]), "values must be numbers"),
-        (lambda: of_masses(runs=3), "runs must be left out, or 2 = 2, with a grid, got 3"),
+        (lambda: carom.Grid([1.0, 2.0, 1.0]), "values must be different"),
+        (lambda: of_masses(runs=3), "runs must be left out, or 2, got 3"),
         (lambda: of_masses({"die.velocity": np.zeros((3, 3))}), "must have 2 values, one for each"),
     ],
 )

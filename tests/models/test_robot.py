@@ -218,7 +218,10 @@ def test_whole_turns():
         run.advance(0.1)
     assert model.joints["axle"].of(run.state)[0] == pytest.approx(21.5, abs=1e-11)
     assert model.qpos(run.solution)[-1, 0] == pytest.approx(21.5, abs=1e-11)
-    run.set_state(qpos=[40.0])
+    run.set_state(qvel=[7.0])
+    assert model.joints["axle"].of(run.state)[0] == pytest.approx(21.5, abs=1e-11)
+    with pytest.warns(carom.MistakeWarning, match="run.solution counts them by less than half"):
+        run.set_state(qpos=[40.0])
     run.advance(0.1)
     assert model.qpos(run.state)[0] == pytest.approx(40.7, abs=1e-11)
 
@@ -412,3 +415,101 @@ def test_a_scene_of_a_model_that_changes():
     assert run.state["f"] == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
     model.scene.remove("pin", dependents=True)
     assert model.scene.robot is None
+
+
+CART = """<mujoco><worldbody><body name="cart" pos="0 0 1"><joint name="rail" type="slide" axis="1 0 0"
+ frictionloss="3"/><geom type="box" size=".2 .1 .1" mass="2"/>
+<site name="imu" euler="0 0 90"/></body></worldbody>
+<actuator><motor name="push" joint="rail" gear="2" RANGE/></actuator>
+<sensor><accelerometer name="shown" site="imu"/><force name="carried" site="imu"/></sensor></mujoco>"""
+
+
+@pytest.mark.parametrize("limit", [math.inf, 3.0])
+def test_sensors_and_motors_of_a_joint_with_dry_friction(limit):
+    """m a = F - 3 N while the cart slips, 0 while it sticks; with the control of each time, also later."""
+    text = "" if math.isinf(limit) else f'forcerange="-{limit} {limit}"'
+    run = carom.Run(carom.load_model(CART.replace("RANGE", text)), step=0.01)
+    states, aims = [run.state], (0.0, 1.0, 4.0, -1.0, 0.0, 5.0)
+    for aim in aims[1:]:
+        run.ctrl["push"] = aim
+        run.advance(0.1)
+        states.append(run.state)
+    push = 2.0 * np.clip(aims, -limit, limit)
+    a = np.maximum(push - 3.0, 0.0) / 2.0
+    solution = run.solution
+    rows = np.searchsorted(solution.t, [one.t for one in states])
+    for name, exact in {
+        "shown": np.stack([0 * a, -a, 0 * a + G], axis=1),
+        "carried": 2.0 * np.stack([0 * a, -a, 0 * a + G], axis=1),
+    }.items():
+        np.testing.assert_allclose([one[name] for one in states], exact, atol=1e-9)
+        np.testing.assert_allclose(solution[name][rows], exact, atol=1e-9)
+    np.testing.assert_allclose([one["push"].force for one in states], push)
+    np.testing.assert_allclose(solution["push"].force[rows], push)
+
+
+DRY_WHEEL = """<mujoco><option gravity="0 0 0"/><worldbody><body name="wheel">
+<joint name="axle" axis="0 0 1" frictionloss="LOSS"/>
+<geom type="box" size=".2 .1 .1" mass="2"/></body></worldbody>
+<actuator><position name="servo" joint="axle" kp="2" kv=".1" RANGE/></actuator>
+<sensor><frameangacc name="shown" objtype="body" objname="wheel"/></sensor></mujoco>"""
+
+
+@pytest.mark.parametrize("text", ["", 'forcerange="-100 100"'])
+@pytest.mark.parametrize("loss", [5.0, 50.0])
+def test_forces_of_a_state_have_whole_turns(loss, text):
+    """A servo from 10 rad to 1 rad: -18 N m at the start, against friction that slips or sticks."""
+    model = carom.load_model(DRY_WHEEL.replace("LOSS", str(loss)).replace("RANGE", text))
+    run = carom.Run(model, step=1e-3)
+    with pytest.warns(carom.MistakeWarning, match="set by more than half a turn"):
+        run.reset(qpos=[10.0])
+    run.ctrl["servo"] = 1.0
+    state = run.state
+    run.ctrl["servo"] = 0.0
+    run.advance(0.01)
+    assert state["servo"].torque == pytest.approx(-18.0, rel=1e-12)
+    assert state["servo"].coordinate == state["axle"].coordinate == pytest.approx(10.0, rel=1e-12)
+    (dry,) = (one.name for one in model.scene.forces if one.name != "servo")
+    inertia = 2.0 * (0.4**2 + 0.2**2) / 12.0
+    assert state[dry].torque == pytest.approx(min(loss, 18.0), rel=1e-9)
+    assert state["shown"][2] == pytest.approx(-max(18.0 - loss, 0.0) / inertia, rel=1e-9, abs=1e-9)
+
+
+def test_a_wheel_that_sticks_after_whole_turns():
+    """Friction of 5 N m holds a spring of 0.2 N m/rad that was wound up to 3 turns: in state and solution."""
+    scene = carom.Scene(gravity=(0, 0, 0))
+    scene.add_body(mass=2.0, inertia=(1, 1, 1), angular_velocity=(0, 0, 14), name="wheel")
+    axle = carom.joints.Revolute((0, 0, 0), (0, 0, 1))
+    scene.add_joint(axle, carom.GROUND, "wheel", name="axle")
+    scene.add_force(carom.forces.JointSpring("axle", 0.2), name="spring")
+    scene.add_force(carom.forces.JointFriction("axle", 5.0), name="dry")
+    run = carom.Run(scene, step=0.01)
+    run.advance(5.0)
+    q = 25.0 * (math.sqrt(1.0 + 0.2 * 14.0**2 / 25.0) - 1.0)  # k q^2 / 2 + 5 q = 14^2 / 2
+    for view, k in ((run.state, ...), (run.solution, -1)):
+        assert view["axle"].coordinate[k] == pytest.approx(q, rel=1e-6)
+        assert view["spring"].torque[k] == pytest.approx(-0.2 * q, rel=1e-6)
+        assert view["dry"].torque[k] == pytest.approx(0.2 * q, rel=1e-6)
+
+
+def test_a_state_with_friction_that_sticks_beside_a_motor_that_was_set():
+    """A motor of 5 N m on a free axle, and friction that holds another axle against 1 N m."""
+    scene = carom.Scene(gravity=(0, 0, 0))
+    for k, name in enumerate(("free", "held")):
+        scene.add_body(mass=1.0, inertia=(1, 1, 1), position=(k, 0, 0), name=name)
+        axle = carom.joints.Revolute((k, 0, 0), (0, 0, 1))
+        scene.add_joint(axle, carom.GROUND, name, name=f"{name} axle")
+        scene.add_force(carom.forces.JointForce(f"{name} axle", 0.0), name=f"{name} motor")
+    scene.add_force(carom.forces.Torque((0, 2, 0)), "held", name="tilt")
+    scene.add_force(carom.forces.JointFriction("held axle", 3.0), name="dry")
+    run = carom.Run(scene, step=0.01)
+    run.set_force("free motor", 5.0)
+    run.set_force("held motor", 1.0)
+    run.advance(0.1)
+    state = run.state
+    run.set_force("held motor", -2.0)
+    run.set_force("tilt", (0, 0, 0))
+    assert state["dry"].torque == pytest.approx(-1.0, rel=1e-12)
+    assert state["held axle"].torque == pytest.approx([0, -2, 0], abs=1e-12)
+    assert run.state["dry"].torque == pytest.approx(2.0, rel=1e-12)
+    assert run.state["held axle"].torque == pytest.approx([0, 0, 0], abs=1e-12)

@@ -309,3 +309,21 @@ def test_impacts_of_a_system_in_coordinates_are_found_by_name():
 def test_a_table_keeps_its_names_in_a_copy(run):
     again = pickle.loads(pickle.dumps(run.events))
     assert np.array_equal(again["ground-die"].time, run.events.time)
+
+
+@pytest.mark.parametrize("turned", [0, 1])
+def test_a_state_counts_whole_turns_where_a_spring_does(turned):
+    """A cross turns by 9 rad/s about one of its axes, for 2 s: a weak spring has -k q in state and solution."""
+    spin, k = 9.0 * np.eye(3)[turned], 1e-3
+    scene = carom.Scene(gravity=(0, 0, 0))
+    scene.add_body(mass=1.0, inertia=(1, 1, 1), angular_velocity=spin, name="body")
+    cross = joints.Universal((0, 0, 0), axis_parent=(1, 0, 0), axis_child=(0, 1, 0))
+    scene.add_joint(cross, GROUND, "body", name="cross")
+    scene.add_force(forces.JointSpring("cross", k, coordinate=turned), name="spring")
+    live = carom.Run(scene, step=0.01)
+    live.advance(2.0)
+    q = 9.0 * np.sin(np.sqrt(k) * 2.0) / np.sqrt(k)
+    # the tolerance of a step of 0.01 s; a lost turn would be 0.35
+    for one, last in ((live.state, ...), (live.solution, -1)):
+        assert one["spring"].coordinate[last] == pytest.approx(q, rel=1e-6)
+        assert one["spring"].torque[last] == pytest.approx(-k * q, rel=1e-6)

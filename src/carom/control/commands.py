@@ -7,10 +7,11 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import checks
+from carom import arguments, checks
 from carom.control.applied import Applied
 
 
+@arguments.attributes("a control is set by run.ctrl[name] = value")
 class Controls:
     """The controls (nu,) of the actuators of a run: by name, by number, or all at once.
 
@@ -21,6 +22,8 @@ class Controls:
     names : tuple of str
         Names of the actuators, in their order.
     """
+
+    __slots__ = ("_of_run", "names")
 
     def __init__(self, applied: Callable[[], Applied]):
         self._of_run = applied  # a run that is reset has others

@@ -18,6 +18,7 @@ from carom.io.files.checkpoint import capture, state_at_end
 from carom.io.files.kept import KeptRun
 from carom.io.models.model import Model
 from carom.model import records as r
+from carom.model.arrays import REVOLUTE
 from carom.model.compile import attitudes
 from carom.model.method import IMPLICIT
 from carom.options import Options
@@ -34,6 +35,12 @@ from carom.stepping.settings import (
     checked_settings,
     mistakes,
     settings_of,
+)
+
+LOST_TURNS = (
+    "a joint is set by more than half a turn: run.state has its whole turns, "
+    "but run.solution counts them by less than half a turn, so angles, and forces that depend on them, "
+    "differ there; load_model(qpos=...) makes a scene that begins elsewhere"
 )
 
 
@@ -102,6 +109,7 @@ class Run:
         if not isinstance(scene, Scene):
             raise TypeError(
                 f"scene must be a carom.Scene, a Model or a Solution, got {checks.shown(scene)}"
+                + ("; a model is read by carom.load_model" if isinstance(scene, str) else "")
             )
         settings = checked_settings(
             1.0,
@@ -175,6 +183,7 @@ class Run:
     def ctrl(self, values: ArrayLike) -> None:
         self.ctrl[:] = checks.finite_array("ctrl", values, (len(self._applied.ctrl),))
 
+    @arguments.known
     def set_force(self, force: AppliedForce | str, value: ArrayLike) -> None:
         """Set a force of the scene to a new value, which it keeps until it is set again.
 
@@ -194,6 +203,7 @@ class Run:
         """
         self._applied.set(force, value)
 
+    @arguments.known
     def reset(
         self,
         state: SystemState | None = None,
@@ -245,6 +255,7 @@ class Run:
         if key is not None and len(key.ctrl):
             self.ctrl[: len(key.ctrl)] = key.ctrl
 
+    @arguments.known
     def set_state(
         self,
         state: SystemState | None = None,
@@ -279,9 +290,11 @@ class Run:
             new.clock["saved"] = 0
             new.save_now()
         else:
-            new.move(old, lambda: place(new, begin, qpos, qvel))
+            since = self.state.turns
+            new.move(old, lambda: place(new, begin, qpos, qvel, since))
         self._stand(new, self._applied.history)
 
+    @arguments.known
     def advance(self, duration: float | None = None) -> None:
         """Go on by so much time.
 
@@ -326,9 +339,13 @@ def _robot(scene: Scene, name: str) -> Robot:
     return scene.robot
 
 
-def place(run: Endless, state: SystemState, qpos, qvel) -> None:
-    """Write a state, or coordinates of the model in place of its own, into a run before its first step."""
-    checks.instance("state", state, (SystemState,))
+def place(run: Endless, state: SystemState, qpos, qvel, since: Any = 0.0) -> None:
+    """Write a state, or coordinates of the model in place of its own, into a run before its first step.
+
+    `since` are the turns in the last saved state of a solution.
+    """
+    hint = "; a keyframe is given by keyframe=, and a solution goes on in carom.Run(solution)"
+    checks.instance("state", state, (SystemState,), hint)
     if [b.name for b in state._scene.bodies] != [b.name for b in run.scene.bodies]:
         raise ValueError(f"state must be of the scene of this run, got {state!r}")
     motion = state
@@ -342,6 +359,9 @@ def place(run: Endless, state: SystemState, qpos, qvel) -> None:
     if turns is not None:
         for name in ("reference", "begun"):
             run.compiled.system.relations.coordinates[name] = turns
+        angles = run.compiled.system.relations.coordinates["kind"] == REVOLUTE
+        if np.any(np.abs(turns - since)[angles] > np.pi):
+            warnings.warn(LOST_TURNS, MistakeWarning, stacklevel=4)
     run.project()
     run.check(run.scene)
 

@@ -38,6 +38,7 @@ class Compiled(NamedTuple):
     surfaces: Surfaces  # data from which rows of contacts are made
     later: Defaults | None  # pairs of bodies that get rows when they come near each other
     laws: dict[int, Law]  # of actuators that are functions, by the index of the force
+    numbers: dict[tuple[int, int], int]  # of coordinates, by the index of the joint and their own
 
 
 def compile_scene(
@@ -75,7 +76,11 @@ def compile_scene(
         loads=loads, bushings=bushings, contacts=contacts, vertices=touching.vertices,
         solids=touching.solids, hulls=touching.hulls, levels=touching.levels, solver=solver,
     )  # fmt: skip
-    return Compiled(system, start, to_principal, flipped, functions, *touching[5:], more.laws)
+    return Compiled(
+        system=system, start=start, to_principal=to_principal, flipped=flipped, functions=functions,
+        pairs=touching.pairs, surfaces=touching.surfaces, later=touching.later, laws=more.laws,
+        numbers=coordinates.numbers,
+    )  # fmt: skip
 
 
 def compiled_once(scene: Scene, options: Options, *ways: bool) -> Compiled:

@@ -24,15 +24,15 @@ class Coordinates:
     def __init__(self, placement: Placement):
         self.placement = placement
         self.rows: list[np.recarray] = []
-        self._numbers: dict[tuple[int, int], int] = {}
+        self.numbers: dict[tuple[int, int], int] = {}
 
     def number(self, joint: Joint, coordinate: int) -> int:
         """Return the index of a coordinate in the table; a new one is added."""
         key = joint.index, coordinate
-        if key not in self._numbers:
-            self._numbers[key] = len(self.rows)
+        if key not in self.numbers:
+            self.numbers[key] = len(self.rows)
             self.rows.append(self._row(joint, coordinate))
-        return self._numbers[key]
+        return self.numbers[key]
 
     def bodies(self, number: int) -> set[int]:
         """Return the bodies that a coordinate moves."""

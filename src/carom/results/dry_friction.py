@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from carom._compiled.record_arrays import Columns, table
+from carom.model.arrays import RELATION
 from carom.model.compile import compile_scene
 from carom.model.records import TOUCH
 from carom.results import joint_coordinates as jc
@@ -36,11 +37,9 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
     if not dry:
         return solve(run.compiled, touch), {}
     laws: list[Any] = [force.definition for force in dry]
-    joints = [jc.sides_of(d.joint) for d in laws]
-    t = np.arange(times) if times > 1 else None  # rates do not depend on it
-    one = states if times > 1 else _Alone(states)
-    read = [jc.coordinates(joint, one, t)[1] for joint in joints]
-    rate = np.stack([np.atleast_2d(r)[:, d.coordinate] for r, d in zip(read, laws)], axis=1)
+    read = [np.array(states.joint_coordinates(d.joint))[..., d.coordinate] for d in laws]
+    q, rate = np.stack([np.reshape(pair, (2, times)) for pair in read], axis=-1)
+    turns = np.round(q / jc.TURN)
     sticks = np.abs(rate) <= STILL * np.max(np.abs(rate), axis=0)
     bound = np.array([d.bound for d in laws])
     value = np.where(sticks, 0.0, -bound * np.sign(rate))
@@ -48,15 +47,19 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
         values = {force.index: value[:, k] for k, force in enumerate(dry)}
         full = with_forces(scene, states, values, touch)
         out = solve(run.compiled, full)
-        for held in np.unique(sticks[np.any(sticks, axis=1)], axis=0):
+        alike = np.hstack([sticks, np.where(sticks, turns, 0.0)])
+        for each in np.unique(alike[np.any(sticks, axis=1)], axis=0):
+            held = each[: len(laws)] == 1.0
             made = scene.copy()
             for k in np.flatnonzero(held):
                 made.add_constraint(
                     Driver(laws[k].joint.name, rate=0.0, coordinate=laws[k].coordinate)
                 )
-            rows = np.flatnonzero(np.all(sticks == held, axis=1))
+            rows = np.flatnonzero(np.all(alike == each, axis=1))
             first = len(scene.joints) + len(scene.constraints)
-            found = solve(compile_scene(made, run.options), full)[rows]
+            compiled = compile_scene(made, run.options)
+            _turned(compiled.system, jc.TURN * each[len(laws) :][held])
+            found = solve(compiled, full)[rows]
             out[rows, :first] = found[:, :first]
             value[np.ix_(rows, np.flatnonzero(held))] = found[:, first : first + held.sum(), 0]
         beyond = sticks & (np.abs(value) > ABOVE * bound)
@@ -64,6 +67,12 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
             return out, {force.index: value[:, k] for k, force in enumerate(dry)}
         value, sticks = np.clip(value, -bound, bound), sticks & ~beyond
         value[sticks] = 0.0
+
+
+def _turned(system, angles: np.ndarray) -> None:
+    """Let the motors that were added last hold these angles: whole turns are counted from them."""
+    own = system.joints["number"][system.joints["kind"] == RELATION]
+    system.relations.relations["constant"][np.sort(own)[-len(angles) :]] = angles
 
 
 def dry_frictions(scene) -> list:

@@ -173,7 +173,7 @@ def _bushing(force, states, t, value):
 def _along(d, states, t, value):
     """Return what acts along a coordinate of a joint, on the child at its anchor."""
     joint = jc.sides_of(d.joint)
-    q, rate = (a[..., d.coordinate] for a in jc.coordinates(joint, states, _times(t)))
+    q, rate = (a[..., d.coordinate] for a in states.joint_coordinates(d.joint))
     if isinstance(d, JointFriction):
         value = math.nan if value is None else value
     elif isinstance(d, JointSpring):
@@ -203,10 +203,6 @@ def _of_user(d: UserForce, states, t) -> np.ndarray:
     power = np.sum(wrench * read[..., 7:], axis=-1)
     none = np.full((*power.shape, 1), math.nan)
     return np.concatenate([wrench, none, power[..., None]], axis=-1)
-
-
-def _times(t):
-    return None if np.ndim(t) == 0 else t
 
 
 LAWS = {

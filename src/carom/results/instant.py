@@ -23,8 +23,9 @@ class Instant:
         system = run.compiled.system
         self.touch = touches(run)
         self.turns = system.relations.coordinates["reference"].copy()
+        self.numbers = run.compiled.numbers
         if known.get("given") is not given:  # it is replaced where a force is set
-            known["given"], known["loads"] = given, tuple(map(copied, loads(system)))
+            known["given"], known["loads"] = given, tuple(map(np.array, loads(system)))
         self.loads = known["loads"]
         self.laws = {index: law.rest for index, law in run.compiled.laws.items()}
         self.seen: Any = None  # the states, as those of a run of one time
@@ -61,8 +62,9 @@ class Instant:
         out = np.zeros((2, system.joints.size, 6))
         kept = Kept((system,))  # the run may go on
         present = {index: law.rest for index, law in compiled.laws.items()}
-        if compiled is run.compiled:
-            system.relations.coordinates["reference"] = self.turns
+        reference = system.relations.coordinates["reference"]
+        for coordinate, number in self.numbers.items():
+            reference[compiled.numbers[coordinate]] = self.turns[number]
         for there, was in zip(loads(system), self.loads):
             there[:] = was
         for index, rest in self.laws.items():
@@ -75,9 +77,9 @@ class Instant:
         return on_children(compiled, states[1:], out[1:]), np.array(work.body["motion"])
 
 
-def loads(system) -> tuple[np.recarray, np.recarray]:
-    """Return the arrays of a compiled scene that have the forces that a run may set."""
-    return system.loads, system.relations.pushes
+def loads(system) -> tuple[np.ndarray, ...]:
+    """Return the columns of a compiled scene that have the forces that a run may set."""
+    return system.loads["force"], system.loads["torque"], system.relations.pushes["force"]
 
 
 def touches(run) -> np.recarray:

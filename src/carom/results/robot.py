@@ -20,7 +20,7 @@ import numpy as np
 from carom import arguments, checks, fields
 from carom.fields import Integer, Number, Value, Vector, keep
 from carom.geometry import quaternion
-from carom.results.joint_coordinates import TURN, Sides, sides_of
+from carom.results.joint_coordinates import Sides, sides_of
 from carom.scene import joints as j
 from carom.scene.bodies import Body, Ground
 from carom.scene.forces import AppliedForce
@@ -78,13 +78,6 @@ class Coordinate:
         states = checked(solution)
         q, rate = states.joint_coordinates(self.joint.name)
         q, rate = q[..., self.index], rate[..., self.index]
-        turns = getattr(states, "_turns", None)
-        if (
-            turns is not None
-            and self.row >= 0
-            and self.joint.definition.coordinates[self.index] == "turn"
-        ):
-            q = q + TURN * round((turns[self.row] - q) / TURN)
         return self.start + self.sign * q, self.sign * rate
 
 
@@ -165,7 +158,8 @@ def checked(solution):
     from carom.results.solution import Solution
     from carom.results.state import SystemState
 
-    checks.instance("solution", solution, (Solution, SystemState))
+    hint = "; of a run give run.state or run.solution"
+    checks.instance("solution", solution, (Solution, SystemState), hint)
     return solution
 
 
@@ -286,9 +280,9 @@ class Robot:
                 )
 
     @cached_property
-    def joints(self) -> dict[str, Coordinate]:
+    def joints(self) -> Mapping[str, Coordinate]:
         """Hinges and slides by name."""
-        return {one.name: one for one in self.coordinates}
+        return Named("hinge or slide", {one.name: one for one in self.coordinates})
 
     @cached_property
     def keyframes(self) -> Mapping[str, Keyframe]:
@@ -304,11 +298,6 @@ class Robot:
     def sensors(self) -> Mapping[str, Any]:
         """Sensors by name."""
         return Named("sensor", {one.name: one for one in self.readings})
-
-    @cached_property
-    def dynamic(self) -> bool:
-        """Whether a sensor needs accelerations or forces of contacts."""
-        return any(one.dynamic for one in self.readings)
 
     def ctrl(self, solution) -> np.ndarray:
         """Return the controls (T, nu) or (nu,), as MuJoCo's ``data.ctrl``; (T, nu): of the step before."""
@@ -402,7 +391,7 @@ class Robot:
         v = self.qvel(base) if qvel is None else checks.finite_array("qvel", qvel, (self.nv,))
         moved = Motion(
             base.position.copy(), base.orientation.copy(), base.velocity.copy(),
-            base.angular_velocity.copy(), None if base._turns is None else base._turns.copy(),
+            base.angular_velocity.copy(), None if base.turns is None else base.turns.copy(),
         )  # fmt: skip
         x, Q, speed, spin, turns = moved
         for one in self.frees:

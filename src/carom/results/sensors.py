@@ -87,11 +87,6 @@ class Sensor:
     cutoff: Number = fields.number(0.0, least=0.0)
     positive: Flag = fields.flag(False)
 
-    @property
-    def dynamic(self) -> bool:
-        """Whether it needs accelerations or forces of contacts."""
-        return self.kind in DYNAMIC
-
     def of(self, solution) -> Any:
         """Return what it shows: (T, ...) of a `Solution`, at its saved times, or of ``run.state``."""
         shown = READINGS[self.kind](self, checked(solution))
@@ -321,5 +316,3 @@ READINGS: dict[str, Callable[[Sensor, Any], Any]] = {
     "subtreecom": _centre, "subtreelinvel": _drift, "subtreeangmom": _momentum,
     "clock": lambda one, states: states.t, "e_kinetic": lambda one, states: states.kinetic_energy,
 }  # fmt: skip
-#: kinds that need accelerations or forces of contacts
-DYNAMIC = ("accelerometer", "framelinacc", "frameangacc", "touch", "force", "torque")

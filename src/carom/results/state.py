@@ -12,7 +12,7 @@ from carom.model.arrays import STATE
 from carom.results.event_tables import ForceTable, force_table
 from carom.results.exerted import exerted_by
 from carom.results.instant import Instant
-from carom.results.joint_coordinates import coordinates, in_degrees, of_scene, sides_of
+from carom.results.joint_coordinates import TURN, coordinates, in_degrees, of_scene, sides_of
 from carom.results.named import Source, view
 from carom.results.names import Numbers
 from carom.scene.more_forces import JointFriction
@@ -27,6 +27,7 @@ class _OneTime:
     def __init__(self, state):
         for name in ("position", "orientation", "velocity", "angular_velocity"):
             setattr(self, name, getattr(state, name)[None])
+        self.joint_coordinates = state.joint_coordinates
 
 
 @arguments.attributes()
@@ -181,7 +182,8 @@ class SystemState(Source):
     def joint_coordinates(self, joint, *, degrees: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """Return coordinates and rates (n,) of a joint, as `Solution.joint_coordinates` does.
 
-        Angles are from -pi to pi, because a single time has no whole turns; except those of a `Screw`.
+        Angles include whole turns where the run counts them: of coordinates with a spring, an actuator, another
+        force, a stop or a constraint, of a model, and of a `Screw`. Others are from -pi to pi.
 
         Parameters
         ----------
@@ -194,6 +196,10 @@ class SystemState(Source):
         if joint.index not in self._known:
             self._known[joint.index] = sides_of(joint)
         read = coordinates(self._known[joint.index], self)
+        for k, kind in enumerate(joint.definition.coordinates if self._instant else ()):
+            row = self._instant.numbers.get((joint.index, k))
+            if kind == "turn" and row is not None:
+                read[0][k] += TURN * round((self._instant.turns[row] - read[0][k]) / TURN)
         return in_degrees(joint, *read) if checks.flag("degrees", degrees) else read
 
     def __repr__(self) -> str:

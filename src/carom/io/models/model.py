@@ -43,7 +43,7 @@ class Model:
     scene: Scene
     report: Report
     bodies: dict[str, Body | Ground]
-    joints: dict[str, Coordinate]
+    joints: Mapping[str, Coordinate]
     geoms: dict[str, Body | HalfSpace]
     restitution: float
     mujoco: Any

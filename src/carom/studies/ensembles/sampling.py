@@ -52,6 +52,8 @@ class Grid:
         self.values = checks.finite_array("values", values, (None,)) if words is None else words
         if not len(self.values):
             raise ValueError(f"values must be at least one, got {checks.shown(values)}")
+        if len(np.unique(self.values)) < len(self.values):
+            raise ValueError(f"values must be different, got {checks.shown(values)}")
 
     def __repr__(self) -> str:
         return f"Grid({self.values.tolist()})"
@@ -102,8 +104,8 @@ def on_grid(vary: Mapping, runs: int | None) -> tuple[dict, dict[str, np.ndarray
     shape = tuple(map(len, axes.values()))
     count = math.prod(shape)
     if runs is not None and checks.integer("runs", runs, least=1) != count:
-        sizes = " x ".join(map(str, shape))
-        raise ValueError(f"runs must be left out, or {sizes} = {count}, with a grid, got {runs}")
+        sizes = f"{count}, the number of combinations of the grid" if len(shape) > 1 else count
+        raise ValueError(f"runs must be left out, or {sizes}, got {runs}")
     places = np.indices(shape).reshape(len(shape), -1)
     rows = {name: values[place] for (name, values), place in zip(axes.items(), places)}
     made = {}
