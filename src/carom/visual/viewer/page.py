@@ -40,6 +40,10 @@ class Exported(NamedTuple):
 
 
 SUFFIXES = (".html", ".htm")
+#: what writes other files
+OTHERS = dict.fromkeys((".mp4", ".gif"), "; a film is made by carom.film") | dict.fromkeys(
+    (".glb", ".pvd"), "; such a file is made by solution.export"
+)
 
 
 def write_page(
@@ -48,8 +52,8 @@ def write_page(
     """Write the page of a run."""
     where = checks.file_to_write("export", path)
     if where.suffix.lower() not in SUFFIXES:
-        film = "; a film is made by carom.film" if where.suffix.lower() in (".mp4", ".gif") else ""
-        raise ValueError(f"export must end in .html, got {checks.shown(str(where))}{film}")
+        more = OTHERS.get(where.suffix.lower(), "")
+        raise ValueError(f"export must end in .html, got {checks.shown(str(where))}{more}")
     text = page_text(show, follow, speed)
     where.write_text(text, encoding="utf-8")
     return Exported(where, len(text.encode("utf-8")), show.left_out)
