@@ -25,7 +25,7 @@ DIM = 0.85  # brightness of a plane that turns away from the light
 FINER = 2  # pixels of the buffer per pixel of the picture, in each direction
 LINE = 0.0022  # width of an edge, as a fraction of the height of the picture
 RECENT = 0.01  # fraction of the run for which a single picture shows an impulse
-AROUND = 6.0  # distance within which bodies at rest are seen with what is there, in their extents
+AROUND = 8.0  # distance within which bodies at rest are seen with what is there, in their extents
 SAMPLES = 400  # times at which the positions of bodies are used to place the camera
 
 
