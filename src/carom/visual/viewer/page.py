@@ -40,10 +40,8 @@ class Exported(NamedTuple):
 
 
 SUFFIXES = (".html", ".htm")
-#: what writes other files
-OTHERS = dict.fromkeys((".mp4", ".gif"), "; a film is made by carom.film") | dict.fromkeys(
-    (".glb", ".pvd"), "; such a file is made by solution.export"
-)
+FILM, MODEL = "; a film is made by carom.film", "; such a file is made by solution.export"
+OTHERS = {".mp4": FILM, ".gif": FILM, ".glb": MODEL, ".pvd": MODEL}  # what writes other files
 
 
 def write_page(
