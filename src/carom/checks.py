@@ -304,7 +304,7 @@ def instance(name: str, value, kinds: tuple[type, ...], hint: str = "") -> None:
 def shown(value) -> str:
     """Return the text of a value in a message, cut if it is long."""
     try:
-        words = repr(value)
+        words = repr(value.item() if isinstance(value, np.generic) else value)
     except Exception:  # a whole number of more digits than Python writes, or a __repr__ that fails
         return f"a value of type {type(value).__name__}"
     return words if len(words) <= LONGEST else f"{words[: LONGEST // 2]} ... {words[-40:]}"

@@ -221,6 +221,13 @@ def test_errors_say_what_is_there(run, ask, error, message):
         ask(run)
 
 
+def test_texts_say_what_there_is(run):
+    body, joint = run.scene.bodies[0], run.scene.joints[0]
+    assert repr(run[body]).startswith(f"<BodyState of {body.name!r}: position (")
+    assert len(repr(run[body])) < 200
+    assert "coordinate, coordinates, force" in repr(run[joint])
+
+
 def test_names_are_completed(run):
     names = run._ipython_key_completions_()
     assert names[:4] == ["rod", "free", "die", "die-ground"]

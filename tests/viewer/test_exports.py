@@ -22,6 +22,8 @@ def hung():
         carom.Sphere(0.1), mass=1.0, position=(0.3, 0, -1), name="ball", color="red"
     )
     scene.add_half_space((0, 0, -3), (0, 0, 1), color="#009e73", name="ground")
+    for x, name in ((-2, "wall"), (2, "door")):
+        scene.add_static(carom.Box(0.1, 1, 1), position=(x, 0, -2.5), name=name)
     scene.set_contact_default(restitution=0.5)
     spring = carom.forces.Spring(100.0, (0, 0, 0), (0.3, 0, -0.9))
     scene.add_force(spring, carom.GROUND, ball)
@@ -126,6 +128,7 @@ def test_a_spring_reaches_from_end_to_end(hung, tmp_path):
     meshes, materials = file.head["meshes"], file.head["materials"]
     shades = {one["name"]: materials[one["primitives"][0]["material"]]["name"] for one in meshes}
     assert (shades["ball"], shades["ground"]) == ("#ff0000", "#009e73")
+    assert {"wall", "door"} <= set(file.nodes)
 
 
 def test_frames_of_a_part_of_the_run_at_a_slower_speed(thrown, tmp_path):

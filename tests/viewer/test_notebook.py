@@ -62,6 +62,17 @@ def test_a_scene_is_a_picture_of_its_start_and_its_parts():
     assert "img" not in carom.Scene()._repr_html_()
 
 
+def test_the_picture_of_a_scene_has_what_is_near():
+    scene = carom.Scene()
+    scene.add_half_space((0, 0, 0), (0, 0, 1), color="#00ff00")
+    scene.add_static(carom.Box(0.3, 0.3, 0.1), position=(0.3, 0, 0.05), color="#0000ff")
+    scene.add_static(carom.Box(1, 1, 1), position=(90, 0, 0.5))  # too far to be seen
+    scene.add_body(carom.Box(0.1, 0.1, 0.1), mass=1, position=(0, 0, 0.4), color="#ff0000")
+    (picture,) = pictures(scene._repr_html_())
+    strongest = picture.argmax(axis=-1)[np.ptp(picture.astype(int), axis=-1) > 50]
+    assert np.all(np.bincount(strongest) > 0.005 * 400 * 800)
+
+
 def test_without_the_package_for_pictures_its_line_is_shown(monkeypatch):
     monkeypatch.setitem(sys.modules, "PIL", None)
     assert "pip install &quot;carom[film]&quot;" in die()._repr_html_()

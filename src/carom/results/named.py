@@ -92,6 +92,12 @@ class BodyState(_Motion):
         made._source, made._part = source, part
         return made
 
+    def __repr__(self) -> str:
+        if self.position.ndim == 1:
+            return super().__repr__()
+        listed = (f"{name} {getattr(self, name).shape}" for name in self._fields)
+        return f"<BodyState of {self._part.name!r}: {', '.join(listed)}, energies>"
+
     @property
     def kinetic_energy(self):
         """Kinetic energy [J], a number or (T,)."""
@@ -132,7 +138,8 @@ class View:
         return table[self.name]
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__} of {self.name!r}>"
+        listed = ", ".join(n for n in dir(type(self)) if not n.startswith("_") and n != "name")
+        return f"<{type(self).__name__} of {self.name!r}: {listed}>"
 
 
 def _alone(values: np.ndarray):

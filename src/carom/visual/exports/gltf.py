@@ -31,12 +31,14 @@ def write_glb(show: Show, path: Path, speed: float) -> None:
     file.clock((time - time[0]) / speed)
     root = file.node(show.title, turn=to_y(show.place.up))
     looks: dict[int, list[tuple]] = {}
+    statics = iter(show.solution.scene.statics)  # their parts are in the same order
     for part in show.parts:
         pieces = file.pieces(part)
         for b, colour in zip(part.bodies, colours_of(part, show.solution.scene)):
             drawn = tuple((*piece, file.material(rgb(colour), pale)) for piece, pale in pieces)
             if b < 0:
-                file.node("static", root, file.mesh("static", drawn))
+                name = next(statics).name
+                file.node(name, root, file.mesh(name, drawn))
             else:
                 looks.setdefault(b, []).extend(drawn)
     for body in show.solution.scene.bodies:

@@ -25,6 +25,7 @@ DIM = 0.85  # brightness of a plane that turns away from the light
 FINER = 2  # pixels of the buffer per pixel of the picture, in each direction
 LINE = 0.0022  # width of an edge, as a fraction of the height of the picture
 RECENT = 0.01  # fraction of the run for which a single picture shows an impulse
+AROUND = 8.0  # distance within which bodies at rest are seen with what is there, in their extents
 SAMPLES = 400  # times at which the positions of bodies are used to place the camera
 
 
@@ -58,22 +59,37 @@ class Stage:
         width, height = (FINER * n for n in self.size)
         if self.followed is None:
             seen = moving(places, turns)
+            ends = ground_points(self.solution.scene)
             if np.any(seen):
                 seen |= self.radii <= np.max(
                     np.ptp(places[:, seen], axis=(0, 1)) + self.radii[seen].max()
                 )
             else:
                 seen[:] = True
+                ends += self._around(places[0])
             points = [(b, p) for b in np.flatnonzero(seen) for p in self.outlines[b].points]
             reached = [places[:, b] + quaternion.rotate(turns[:, b], p) for b, p in points]
             sizes = np.repeat([self.outlines[b].size for b, _ in points], len(places))
-            ends = ground_points(self.solution.scene)
-            flat, radii = np.vstack([*reached, *ends]), np.append(sizes, np.zeros(len(ends)))
+            flat = np.vstack([*reached, *ends])
+            radii = np.append(sizes, np.zeros(len(flat) - len(sizes)))
         else:
             k = self.followed[0].index
             flat, radii = places[:1, k], 4.0 * self.radii[k : k + 1]
         camera = fitted(self.axes, flat, radii, (width, height))
         return camera._replace(distance=camera.distance / self.zoom)
+
+    def _around(self, places: np.ndarray) -> list[np.ndarray]:
+        """Return points of what bodies at rest at `places` (N, 3) stand near: static bodies, half-spaces."""
+        scene, middle = self.solution.scene, places.mean(axis=0)
+        reach = AROUND * float(np.max(np.linalg.norm(places - middle, axis=1) + self.radii))
+        fixed = [
+            s.position + quaternion.rotate(s.orientation, surface(s.shape)[0])
+            for s in scene.statics
+        ]
+        fixed += [
+            places + np.outer((h.point - places) @ h.normal, h.normal) for h in scene.half_spaces
+        ]
+        return [points[np.linalg.norm(points - middle, axis=1) < reach] for points in fixed]
 
     def _place_models(self) -> None:
         scene = self.solution.scene

@@ -40,6 +40,8 @@ class Exported(NamedTuple):
 
 
 SUFFIXES = (".html", ".htm")
+FILM, MODEL = "; a film is made by carom.film", "; such a file is made by solution.export"
+OTHERS = {".mp4": FILM, ".gif": FILM, ".glb": MODEL, ".pvd": MODEL}  # what writes other files
 
 
 def write_page(
@@ -48,8 +50,8 @@ def write_page(
     """Write the page of a run."""
     where = checks.file_to_write("export", path)
     if where.suffix.lower() not in SUFFIXES:
-        film = "; a film is made by carom.film" if where.suffix.lower() in (".mp4", ".gif") else ""
-        raise ValueError(f"export must end in .html, got {checks.shown(str(where))}{film}")
+        more = OTHERS.get(where.suffix.lower(), "")
+        raise ValueError(f"export must end in .html, got {checks.shown(str(where))}{more}")
     text = page_text(show, follow, speed)
     where.write_text(text, encoding="utf-8")
     return Exported(where, len(text.encode("utf-8")), show.left_out)
