@@ -16,6 +16,8 @@ OWNERS = {
     "Solution": carom.Solution,
     "SystemState": SystemState,
     "Ensemble": carom.Ensemble,
+    "BodyState": carom.results.BodyState,
+    "JointView": carom.results.JointView,
 }
 ENTRIES = [
     (owner, name, ours)

@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Callable, Iterable
 from difflib import get_close_matches
 from functools import wraps
+from inspect import CO_VARKEYWORDS
 from typing import Any, TypeVar, cast
 
 from carom.hints import ALIKE, MEANT, PLACE, ending, of_member
@@ -65,14 +66,15 @@ def _guarded(function: Any, shown: str) -> Any:
     names = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
     by_place, by_name = names[: code.co_argcount], names[code.co_argcount :]
     has, most = frozenset(names), len(by_place)
+    open_ended = bool(code.co_flags & CO_VARKEYWORDS)
     required = [*by_place[: most - len(function.__defaults__ or ())]]
     required += [name for name in by_name if name not in (function.__kwdefaults__ or {})]
 
     @wraps(function)
     def guarded(*args, **kwargs):
-        if not kwargs.keys() <= has:
+        if not kwargs.keys() <= has and not open_ended:
             kwargs = _by_own_names(shown, kwargs, has, by_place[: len(args)])
-        if not kwargs.keys() <= has:
+        if not kwargs.keys() <= has and not open_ended:
             raise TypeError(
                 _unknown(shown, [n for n in names if n not in ("self", "cls")], kwargs, has)
             )
@@ -83,7 +85,8 @@ def _guarded(function: Any, shown: str) -> Any:
             raise TypeError(f"{shown} needs {' and '.join(missing)}: {call}")
         if len(args) > most:
             firsts = ", ".join(name for name in by_place if name not in ("self", "cls"))
-            rest = f"; give the others by name, for example {by_name[0]}=" if by_name else ""
+            rest = f", for example {by_name[0]}=" if by_name else ""
+            rest = f"; give the others by name{rest}" if by_name or open_ended else ""
             if not firsts:
                 raise TypeError(f"{shown} takes its arguments by name, for example {by_name[0]}=")
             raise TypeError(f"{shown} takes only {firsts} without a name{rest}")

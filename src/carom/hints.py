@@ -40,6 +40,7 @@ VALUES = {
     "energy": "total_energy",
     "coordinate": "angle displacement q",
     "rate": "angular_rate qdot",
+    "scale": "unit units",
     "torque": "moment",
     "duration": "T time t tf t_end t_max t_final end tspan t_span",
     "step": "dt h timestep time_step step_size stepsize max_step",
@@ -145,6 +146,14 @@ _OF_ENSEMBLE = {
     'tables are written by save("runs.csv"), or made by to_pandas()': "to_csv to_excel",
     "one run is made again by solution(number)": "runs solutions results trajectories",
 }
+_OF_BODY = {
+    "forces and impacts are those of contacts, joints and springs, by their names: "
+    'solution["die-ground"].force': "force forces torque impacts contacts contact_force",
+    "it is numpy.linalg.norm(velocity, axis=-1)": "speed",
+    "momentum is mass times velocity: scene[name].mass * velocity": "momentum",
+    'angles are made by SciPy: Rotation.from_quat(orientation[..., [1, 2, 3, 0]]).as_euler("xyz")':
+        "euler euler_angles rpy angles",
+}  # fmt: skip
 #: names of classes and modules, with what people call them
 MEMBERS = {
     "Scene": _OF_SCENE,
@@ -155,6 +164,11 @@ MEMBERS = {
     "SystemState": {"coordinates of a model are model.qpos(state), model.qvel(state)": "qpos qvel"},
     "Solution": _OF_SOLUTION,
     "Ensemble": _OF_ENSEMBLE,
+    "BodyState": _OF_BODY,
+    "JointView": {
+        "coordinate": "position", "rate": "velocity speed omega", "force": "reaction reactions load",
+        "impulses": "impulse joint_impulses impacts",
+    },
     "carom": {
         "Scene": "World Simulation Simulator System Space Engine MultibodyPlant ChSystem ChSystemNSC",
         "Sphere": "Ball",

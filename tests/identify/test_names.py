@@ -89,3 +89,27 @@ def test_workers_were_called_threads():
             ball(), [fallen(9.81)], {"restitution": Parameter(0.5, 0.1)}, lambda *pair: 1.0, resamples=0,
             max_evaluations=1, threads=1, seed=np.random.default_rng(1),
         )  # fmt: skip
+
+
+def test_a_stiffness_is_fitted_from_the_start_of_the_scene():
+    # a bob on a spring whose length is without tension at the start: z = -1 - m g/k (1 - cos(w t)), w^2 = k/m
+    def bob(stiffness):
+        scene = carom.Scene()
+        scene.add_body(carom.Sphere(0.05), mass=1.0, position=(0, 0, -1), name="bob")
+        spring = carom.forces.Spring(stiffness, (0, 0, 0), (0, 0, -1))
+        scene.add_force(spring, carom.GROUND, "bob", name="spring")
+        return scene
+
+    z = -1 - 9.81 / 40 * (1 - np.cos(np.sqrt(40) * TIMES))
+    path = np.stack([0 * z, 0 * z, z], axis=1)
+    free = {"spring.stiffness": (30.0, 5.0)}
+    how = {"resamples": 0, "tolerance": 1e-8, "workers": 1}
+    seen = Recording(TIMES, path, [[1, 0, 0, 0]] * 7)
+    fit = carom.identify(bob(30), [seen], free, squared_error(1e-3, 1e-3), **how)
+    assert abs(fit.parameters["spring.stiffness"] - 40) < 1e-4
+    thrown = Recording(
+        TIMES, path, [[1, 0, 0, 0]] * 7, ([0, 0, -1], [1, 0, 0, 0], [0] * 3, [0] * 3)
+    )
+    with pytest.raises(ValueError, match="left out, also of a Recording") as error:
+        carom.identify(bob(30), [thrown], free, squared_error(1e-3, 1e-3), **how)
+    assert not hasattr(error.value, "__notes__")  # no function of the user's has raised it

@@ -169,3 +169,22 @@ def test_gravity_that_may_be_meant(case):
     if case == "spring":
         scene.add_force(carom.forces.Spring(10, (0, 0, 1), (0, 0, 0)), carom.GROUND, ball)
     assert scene.check().remarks == ()
+
+
+def test_a_force_that_a_cell_adds_twice():
+    def cell(scene, **named):
+        scene.add_body(carom.Sphere(0.05), mass=1, name="a", replace=True)
+        spring = carom.forces.Spring(50, (-1, 0, 0), (0, 0, 0))
+        scene.add_force(spring, "a", **named)
+
+    scene = carom.Scene()
+    cell(scene)
+    assert scene.check().remarks == ()
+    cell(scene)
+    (said,) = warned(scene)
+    assert said.startswith("'force2' acts a second time, as another force that is the same")
+    parallel = carom.Scene()  # two that were given names are meant
+    for name in ("left", "right", "right"):
+        cell(parallel, name=name, replace=True)
+    parallel.add_force(carom.forces.Spring(51, (-1, 0, 0), (0, 0, 0)), "a")
+    assert parallel.check().remarks == ()

@@ -7,10 +7,12 @@ row with the compliance 1/I (`carom.dynamics.rotors`), which is one more column 
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import checks
+from carom import arguments, checks
 from carom.dynamics.mobility import dense_rows, mass_matrix
 from carom.dynamics.thresholds import RANK
 from carom.geometry import quaternion
@@ -20,8 +22,10 @@ from carom.model.arrays import INERTIA
 from carom.options import Options
 from carom.scene.bodies import FIXED, Body
 from carom.scene.scene import Scene
+from carom.status import MistakeWarning
 
 
+@arguments.known
 def contact_inverse_mass(
     scene: Scene,
     body: Body | str,
@@ -41,7 +45,7 @@ def contact_inverse_mass(
     body : Body or str
         The body that is struck, or its name.
     point : (3,)
-        The point where it is struck, in the world [m].
+        The point where it is struck, in the world [m]. A `MistakeWarning` says if it is far outside the body.
     normal : (3,)
         Normal of the contact, towards `body`; it is normalised.
     other : Body or str, optional
@@ -84,6 +88,14 @@ def contact_inverse_mass(
         struck += [second] if isinstance(second, Body) else []
     point = checks.finite_array("point", point, (3,), "m")
     axes = contact_axes(checks.unit_vector("normal", normal))
+    shape, arm = struck[0].shape, point - struck[0].position
+    if shape is not None and arm @ arm > 4.0 * shape.size**2:
+        warnings.warn(
+            f"point {tuple(point.tolist())} is far outside {struck[0].name!r} at "
+            f"{tuple(struck[0].position.tolist())}: it is a point of the world, not of body axes",
+            MistakeWarning,
+            stacklevel=3,
+        )
 
     compiled = compile_scene(scene, Options(), loops=True)
     system, start = compiled.system, compiled.start

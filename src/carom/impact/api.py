@@ -168,7 +168,7 @@ def checked_impact(inverse_mass, velocity, friction, restitution, law):
     W = checked_inverse_mass(inverse_mass)
     u = checks.finite_array("velocity", velocity, (3,), "m/s")
     checks.number(
-        "velocity[0] (normal velocity, approach is negative)", u[0], below=0.0, unit="m/s"
+        "velocity[0] (normal velocity, approach is negative)", float(u[0]), below=0.0, unit="m/s"
     )
     mu = checks.number("friction", friction, least=0.0)
     e = checks.number("restitution", restitution, least=0.0, most=1.0)

@@ -18,7 +18,7 @@ from carom.results import joint_coordinates as jc
 from carom.scene.constraints import Driver, coordinate_kind
 from carom.scene.more_forces import JointFriction
 
-STILL = 1e-9  # of the greatest rate: below it a joint sticks
+STILL = 1e-9  # of the speeds of the joint: below it the rate is round-off, and the joint sticks
 ABOVE = 1.0 + 1e-9  # of the bound: a force up to this sticks
 
 
@@ -40,7 +40,7 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
     read = [np.array(states.joint_coordinates(d.joint))[..., d.coordinate] for d in laws]
     q, rate = np.stack([np.reshape(pair, (2, times)) for pair in read], axis=-1)
     turns = np.round(q / jc.TURN)
-    sticks = np.abs(rate) <= STILL * np.max(np.abs(rate), axis=0)
+    sticks = np.abs(rate) <= STILL * np.array([_speed(d, states) for d in laws])
     bound = np.array([d.bound for d in laws])
     value = np.where(sticks, 0.0, -bound * np.sign(rate))
     while True:
@@ -73,6 +73,18 @@ def _turned(system, angles: np.ndarray) -> None:
     """Let the motors that were added last hold these angles: whole turns are counted from them."""
     own = system.joints["number"][system.joints["kind"] == RELATION]
     system.relations.relations["constant"][np.sort(own)[-len(angles) :]] = angles
+
+
+def _speed(d: JointFriction, states) -> float:
+    """Return the greatest speed of the child [rad/s or m/s], or if greater what the friction gives it.
+
+    The work of the bound over a radian, or over the radius of gyration r, is about that of the speed.
+    """
+    child, turns = d.joint.child, coordinate_kind(d.joint, d.coordinate) == "turn"
+    moves = states.angular_velocity if turns else states.velocity
+    moment = float(np.trace(child.inertia))  # about m r^2
+    given = d.bound / moment if turns else d.bound * np.sqrt(moment / child.mass) / child.mass
+    return max(np.sqrt(given), np.max(np.linalg.norm(moves[:, child.index], axis=-1)))
 
 
 def dry_frictions(scene) -> list:

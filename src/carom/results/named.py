@@ -151,6 +151,7 @@ def _alone(values: np.ndarray):
 class JointView(View):
     """Results of one joint: ``solution["hinge"]``, or ``state["hinge"]`` at one time (without T)."""
 
+    @arguments.known
     def coordinates(self, *, degrees: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """Return coordinates and rates, (T, n) each, as `Solution.joint_coordinates` does.
 

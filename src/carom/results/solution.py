@@ -201,6 +201,10 @@ class Solution(Portable, Drawn, Source):
         sums = (np.array(self._series[one.name]) for one in fields(Ledger)[2:])
         return Ledger(self.kinetic_energy, self.potential_energy, *sums)
 
+    def __contains__(self, name) -> bool:
+        """Return whether the scene of this run has a part of this name, or this part."""
+        return name in self.scene
+
     def __getitem__(self, name):
         """Return the results of one part, given by name or as the object, with the time first.
 

@@ -48,6 +48,15 @@ def coordinate_kind(joint: Joint | str, coordinate: int, name: str = "joint") ->
     return own[coordinate]
 
 
+def _constant(name: str, rate) -> float:
+    """Return a constant rate; a function of time is the motion."""
+    if callable(rate):
+        raise ValueError(
+            f"{name} must be a number, got a function; one of time is given as motion="
+        )
+    return checks.number(name, rate)
+
+
 def distinct_bodies(name: str, bodies: Body | str | Sequence[Body | str]) -> tuple[Any, ...]:
     """Return bodies, or their names, as a tuple; refuse an empty sequence and one that is in it twice."""
     single = isinstance(bodies, (Body, str))
@@ -144,7 +153,7 @@ class Driver:
     """
 
     joint: OneJoint = Value(joint_or_name)
-    rate: NumberOrNone = fields.number(None)
+    rate: NumberOrNone = Value(_constant, None)
     motion: FunctionOrNone = fields.function(None)
     coordinate: Integer = fields.integer(0, least=0)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -21,8 +22,9 @@ MOST_NAMES = 6  # names in a sentence
 
 
 def remarks(scene: Scene) -> tuple[str, ...]:
-    """Return sentences about bodies, contacts, gravity and stops that are nearly always a mistake."""
-    return (*_of_untouched(scene), *_of_unsaid(scene), *_of_gravity(scene), *_of_stops(scene))
+    """Return sentences about parts of a scene that are nearly always a mistake."""
+    found = (_of_untouched, _of_unsaid, _of_gravity, _of_stops, _of_doubled)
+    return tuple(sentence for about in found for sentence in about(scene))
 
 
 def _of_untouched(scene: Scene) -> list[str]:
@@ -107,6 +109,24 @@ def _of_stops(scene: Scene) -> list[str]:
     return [
         f"The angle of {_names(found)} is beyond a whole turn ({side}={first.end:g} rad): it is in radians. If "
         f"you mean degrees, give {side}=math.radians({first.end:g})."
+    ]
+
+
+def _of_doubled(scene: Scene) -> list[str]:
+    """Return a sentence about equal forces of which one has no name of its own: a cell that ran twice."""
+    seen, again = set(), []
+    for force in scene.forces:
+        values = vars(force.definition).values()
+        value = (one.tobytes() if isinstance(one, np.ndarray) else str(one) for one in values)
+        key = (force.kind, force.parent, force.child, *value)
+        if key in seen and re.fullmatch(r"force\d+", force.name):
+            again.append(force)
+        seen.add(key)
+    if not again:
+        return []
+    return [
+        f"{_names(again)} acts a second time, as another force that is the same: a cell that runs twice adds "
+        "its parts twice. Give each a name, and replace=True where a cell may run again."
     ]
 
 

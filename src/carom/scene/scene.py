@@ -404,6 +404,7 @@ class Scene(Shown, TouchingPairs):
             Stop(index, name, part, coordinate, lower, upper, restitution, impact_law)
         )
 
+    @arguments.known
     def replace(self, part, **values) -> Any:
         """Replace a part by one with other values, and return it; what refers to it then refers to the new one.
 

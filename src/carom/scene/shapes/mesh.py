@@ -99,6 +99,7 @@ class Mesh(Shape):
         keep(self, convex=convex, _pieces=pieces, _spread=second / volume)
 
     @classmethod
+    @arguments.known
     def load(
         cls, path: str | os.PathLike, *, scale: float = 1.0, parts: Sequence | str | None = None
     ) -> Mesh:

@@ -88,6 +88,10 @@ def _parts(scene, name: str):
     part, _, field = name.rpartition(".")
     if field in (*AXES, *MOMENTS) and part:
         of, own, components, _ = _parts(scene, part)
+        if not components:
+            raise ValueError(
+                f"with_respect_to must end at {part!r}, a number, got {checks.shown(name)}"
+            )
         checks.choice(f"what follows {part!r} in with_respect_to", field, components)
         return of, own, (), components.index(field)
     if not part:

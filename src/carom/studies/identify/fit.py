@@ -112,6 +112,7 @@ def identify(
     space = Space(parameters, scene if isinstance(scene, Scene) else None)
     settings = {"step": step, "options": options, "workers": workers}
     evaluate = Evaluator(scene, recordings, space, objective, progress, **settings)
+    evaluate.scene_of(space.start, recordings[0])  # an error of the scene comes before all runs
     uncertainty = curved = None
     for _ in range(SEARCHES):
         converged, message = search(evaluate, method, restarts, tolerance, max_evaluations)

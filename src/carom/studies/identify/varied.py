@@ -62,8 +62,9 @@ def varied(
         )
     if start is not None and (scene.joints or scene.forces):
         raise ValueError(
-            "start must be left out for a scene with joints or forces, which are placed for its own initial "
-            f"state, got {checks.shown(scene)}; give a function that makes the scene instead"
+            "start must be left out, also of a Recording, for a scene with joints or forces, which are placed "
+            f"for its own initial state, got {checks.shown(scene)}; for another start give a function that "
+            "makes the scene instead"
         )
     if start is not None:
         start = checked_state(start, len(scene.bodies))
