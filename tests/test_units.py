@@ -157,6 +157,15 @@ def test_each_unit_has_one_type_for_all_scenes_and_methods():
         carom.simulate(scene, 0.01, step="auto", throw=False)
     for scene, _ in warmup.contact_scenes().values():
         carom.simulate(scene, 0.02, step=5e-3, throw=False)
+    scene = carom.Scene()
+    rod = scene.add_body(carom.Box(1, 0.02, 0.02), mass=1, position=(0.5, 0, 0))
+    scene.add_joint(carom.joints.Revolute((0, 0, 0), (0, 1, 0)), carom.GROUND, rod, name="hinge")
+    scene.add_force(carom.forces.JointSpring("hinge", stiffness=1.0))
+    run = carom.Run(scene)
+    run.advance(0.05)
+    for seen in (run.state, run.solution, carom.simulate(scene, 0.05)):
+        assert np.shape(seen.joint_reactions)[-1] == 6
+    seen.evaluate(0.02)
     assert len(time_loop.run.overloads) == 1
     ours = {name: made for name, made in UNITS.items() if name.startswith("carom.")}
     assert [name for name, made in ours.items() if len(made.compiled.overloads) > 1] == []

@@ -129,7 +129,7 @@ def test_varied_copies_joints_and_forces():
     copy = varied(scene, inertia_factor=3.0)
     assert [copy.joints[0].parent.name, copy.joints[0].child.name] == ["a", "b"]
     assert copy.forces[0].child is copy["a"]
-    with pytest.raises(ValueError, match="start must be left out for a scene with joints"):
+    with pytest.raises(ValueError, match=r"start must be left out, .* for a scene with joints"):
         varied(
             scene, start=State(np.zeros((2, 3)), np.eye(4)[:2], np.zeros((2, 3)), np.zeros((2, 3)))
         )
