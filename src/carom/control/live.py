@@ -163,7 +163,7 @@ class Run:
     @property
     def state(self) -> SystemState:
         """The state at this time; it stays as it is when the run goes on."""
-        return SystemState(self._run, self._known, self._applied.given, self._applied.ctrl)
+        return SystemState(self._run, self._known, self._applied.given)
 
     @property
     def solution(self) -> Solution:

@@ -235,28 +235,21 @@ def accelerations(solution) -> np.ndarray:
 
     At the time of an impact they are those after it.
     """
+    from carom.dynamics.reactions import reactions
+
     run = solution._run
     system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
     touch = with_forces(solution.scene, solution, solution._solved[1], rec.touch)
-    out, work = (
-        np.zeros((len(rec.state), len(system.bodies), 6)),
-        r.new_work(system, run.method.b.size),
-    )
+    found = np.zeros((len(rec.state), len(system.bodies), 6))
+    out, work = np.zeros((len(found), system.joints.size, 6)), r.new_work(system, run.method.b.size)
+    given = system, run.options.augmentation, solution.t, rec.state
     with _kept_turns(system):
-        for first, last in ranges_of(run, run.compiled, len(out)):
+        for first, last in ranges_of(run, run.compiled, len(found)):
             for k in range(first, last):
                 own = touch[np.searchsorted(touch["saved"], k) :]
-                out[k] = acceleration(system, run.options, solution.t, rec.state, k, own, work)
-    return out
-
-
-def acceleration(system, options, t, states, k: int, touch, work) -> np.ndarray:
-    """Return the accelerations (N, 6) at state k, under the forces `touch` of its contacts."""
-    from carom.dynamics.reactions import reactions
-
-    out = np.zeros((len(states), system.joints.size, 6))
-    reactions(system, options.augmentation, t, states, (k, k + 1), touch, work, out)
-    return work.body["motion"]
+                reactions(*given, (k, k + 1), own, work, out)
+                found[k] = work.body["motion"]
+    return found
 
 
 def element_reactions(solution) -> tuple[np.ndarray, dict[int, np.ndarray]]:

@@ -5,6 +5,7 @@ A view keeps nothing: it reads the arrays of its solution, with the time first, 
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -188,21 +189,21 @@ class JointView(View):
         return self._table("joint_impulses")
 
 
-class _Coordinate:
+class _Coordinate(ABC):
     """What acts along a coordinate of a joint."""
 
     _source: Source
     name: str
 
     @property
-    def _along(self):
+    @abstractmethod
+    def _along(self) -> Any:
         """The definition with the joint."""
-        raise NotImplementedError
 
     @property
-    def _value(self):
+    @abstractmethod
+    def _value(self) -> Any:
         """The force or torque along the coordinate."""
-        raise NotImplementedError
 
     def _coordinate(self, which: int):
         if self._along is None:

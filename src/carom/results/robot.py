@@ -13,21 +13,19 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, is_dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from carom import arguments, checks, fields
 from carom.fields import Integer, Number, Value, Vector, keep
 from carom.geometry import quaternion
-from carom.results.joint_coordinates import Sides, sides_of
-from carom.scene import joints as j
+from carom.results.forward_kinematics import Motion, put_ball, put_child, relative
+from carom.results.joint_coordinates import sides_of
 from carom.scene.bodies import Body, Ground
 from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
 from carom.scene.more_forces import Actuator
-
-UNIT = np.array([1.0, 0.0, 0.0, 0.0])
 
 
 def _array(name: str, value) -> np.ndarray:
@@ -136,7 +134,7 @@ class Motor:
     def control(self, solution) -> Any:
         """Return the control, which is not clipped, as of `Coordinate.of`."""
         states = checked(solution)
-        names = [one.name for one in commands(scene_of(states))]
+        names = [one.name for one in commands(states._scene)]
         return controls(states)[..., names.index(self.name)]
 
     def force(self, solution) -> Any:
@@ -161,11 +159,6 @@ def checked(solution):
     hint = "; of a run give run.state or run.solution"
     checks.instance("solution", solution, (Solution, SystemState), hint)
     return solution
-
-
-def scene_of(states):
-    """Return the scene of a solution or state."""
-    return states._scene
 
 
 def _actuator(motor: Motor) -> Actuator:
@@ -198,13 +191,13 @@ def columns(motors: list[Motor]) -> dict[int, int]:
 
 def controls(states) -> np.ndarray:
     """Return the controls (nu,) of a state, or (T, nu) of a solution: those that acted until each time."""
-    if getattr(states, "_ctrl", None) is not None:
-        return states._ctrl
-    motors = commands(scene_of(states))
-    first = first_controls(motors)
+    motors = commands(states._scene)
+    first, place = first_controls(motors), columns(motors)
     if np.ndim(states.t) == 0:
+        for index in place.keys() & states._given.keys():
+            first[place[index]] = states._given[index]
         return first
-    place, u = columns(motors), np.full((len(states.t), len(motors)), np.nan)
+    u = np.full((len(states.t), len(motors)), np.nan)
     u[0] = first
     for row, index, value in getattr(states._run, "history", None) or ():
         if row < len(u) and index in place:
@@ -229,16 +222,6 @@ class Keyframe:
     qpos: Value[np.ndarray, Any] = Value(_array)
     qvel: Value[np.ndarray, Any] = Value(_array)
     ctrl: Value[np.ndarray, Any] = Value(_array)
-
-
-class Motion(NamedTuple):
-    """Position, orientation, velocity and angular velocity (N, ...) of all bodies, and the turns of joints."""
-
-    position: np.ndarray
-    orientation: np.ndarray
-    velocity: np.ndarray
-    angular_velocity: np.ndarray
-    turns: np.ndarray | None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -316,7 +299,7 @@ class Robot:
         for one in self.coordinates:
             q[..., one.position] = one.of(states)[0]
         for one in self.balls:
-            turned = _relative(one.joint, states)
+            turned = relative(one.joint, states)
             q[..., one.position : one.position + 4] = quaternion.multiply(
                 np.broadcast_to(self._ball_start(one), turned.shape), turned
             )
@@ -368,7 +351,7 @@ class Robot:
 
     def _checked(self, solution):
         """Return states of a scene with the joints and bodies of this model."""
-        other = scene_of(checked(solution)).robot
+        other = checked(solution)._scene.robot
         if other is not self and (other is None or other._parts_by_name != self._parts_by_name):
             raise ValueError(f"solution must be of the scene of this model, got {solution!r}")
         return solution
@@ -413,7 +396,7 @@ class Robot:
                 turned = _unit(of, q[of.position : of.position + 4])
                 turned = quaternion.multiply(quaternion.conjugate(self._ball_start(of)), turned)
                 rates = v[of.velocity : of.velocity + 3]
-                _put_ball(joint, turned, rates, moved)
+                put_ball(joint, turned, rates, moved)
             else:
                 own = np.zeros((2, len(joint.definition.coordinates)))
                 for one in of:
@@ -421,11 +404,11 @@ class Robot:
                         one.sign * (q[one.position] - one.start),
                         one.sign * v[one.velocity],
                     )
-                _put_child(sides_of(joint), own[0], own[1], moved)
+                put_child(sides_of(joint), own[0], own[1], moved)
         for joint, terms in self.lines:
             length = sum(factor * (q[one.position] - one.start) for one, factor in terms)
             rate = sum(factor * v[one.velocity] for one, factor in terms)
-            _put_child(sides_of(joint), np.array([length]), np.array([rate]), moved)
+            put_child(sides_of(joint), np.array([length]), np.array([rate]), moved)
         return moved
 
     def __repr__(self) -> str:
@@ -472,63 +455,3 @@ def _unit(one, q: np.ndarray) -> np.ndarray:
     if not length > 0.0:
         raise ValueError(f"qpos must have a quaternion of {one.name!r}, got 0")
     return q / length
-
-
-def _relative(joint: Joint, states) -> np.ndarray:
-    """Return C0* P0 P* C for the orientations P of the parent and C of the child: 1 at the start."""
-    child = states.orientation[..., joint.child.index, :]
-    start = quaternion.conjugate(joint.child.orientation)
-    turned = np.broadcast_to(start, child.shape)
-    if isinstance(joint.parent, Body):
-        turned = quaternion.multiply(turned, np.broadcast_to(joint.parent.orientation, child.shape))
-        back = quaternion.conjugate(states.orientation[..., joint.parent.index, :])
-        turned = quaternion.multiply(turned, back)
-    return quaternion.multiply(turned, child)
-
-
-def _put_ball(joint: Joint, turned: np.ndarray, rates: np.ndarray, moved: Motion) -> None:
-    """Write the motion of the child of a ball joint: C = P P0* C0 turned, and its rate in its own axes."""
-    P, w = UNIT, np.zeros(3)
-    if isinstance(joint.parent, Body):
-        P = quaternion.multiply(
-            moved.orientation[joint.parent.index], quaternion.conjugate(joint.parent.orientation)
-        )
-        w = moved.angular_velocity[joint.parent.index]
-    C = quaternion.multiply(quaternion.multiply(P, joint.child.orientation), turned)
-    _hang(sides_of(joint), C, w + quaternion.rotate(C, rates), np.zeros(3), np.zeros(3), moved)
-
-
-def _put_child(joint: Sides, q: np.ndarray, rates: np.ndarray, moved: Motion) -> None:
-    """Write the motion of the child of a joint with coordinates q."""
-    P, w = UNIT, np.zeros(3)
-    if joint.parent.body >= 0:
-        P = moved.orientation[joint.parent.body]
-        w = moved.angular_velocity[joint.parent.body]
-    P = quaternion.multiply(P, np.array(joint.parent.turn))
-    turned, spin, shift, speed = UNIT, w.copy(), np.zeros(3), np.zeros(3)
-    axes = [np.array(axis) for axis in joint.axes]
-    if isinstance(joint.definition, j.Universal):
-        axes = [np.asarray(joint.definition.axis_parent), np.asarray(joint.definition.axis_child)]
-    for axis, kind, own, rate in zip(axes, joint.definition.coordinates, q, rates):
-        along = quaternion.rotate(quaternion.multiply(P, turned), axis)
-        if kind == "turn":
-            spin += rate * along
-            turned = quaternion.multiply(turned, quaternion.exp(own * axis))
-        else:  # slides come before a turn about another axis, or go along that of the turn
-            shift += own * along
-            speed += rate * along
-    C = quaternion.multiply(quaternion.multiply(P, turned), quaternion.conjugate(joint.child.turn))
-    _hang(joint, C, spin, shift, speed + np.cross(w, shift), moved)
-
-
-def _hang(joint: Sides, C, spin, shift, speed, moved: Motion) -> None:
-    """Write the motion of a child with this orientation, whose anchor is shifted from that of the parent."""
-    c, p, at, v = joint.child.body, joint.parent.body, np.array(joint.parent.anchor), np.zeros(3)
-    if p >= 0:
-        arm = quaternion.rotate(moved.orientation[p], at)
-        at = moved.position[p] + arm
-        v = moved.velocity[p] + np.cross(moved.angular_velocity[p], arm)
-    arm = quaternion.rotate(C, np.array(joint.child.anchor))
-    moved.orientation[c], moved.angular_velocity[c] = C, spin
-    moved.position[c] = at + shift - arm
-    moved.velocity[c] = v + speed - np.cross(spin, arm)

@@ -16,7 +16,7 @@ import numpy as np
 from carom import checks, fields
 from carom.fields import Flag, Integer, Number, Value, Vector
 from carom.geometry import quaternion
-from carom.results.robot import Coordinate, Motor, checked, scene_of
+from carom.results.robot import Coordinate, Motor, checked
 from carom.scene.bodies import GROUND, Body, Ground
 
 
@@ -157,7 +157,7 @@ def _magnetometer(one: Sensor, states):
 
 def _felt(one: Sensor, states):
     """Return the acceleration of a frame minus gravity: a + alpha x r + w x (w x r) - g."""
-    gravity = scene_of(states).gravity
+    gravity = states._scene.gravity
     if isinstance(one.frame.body, Ground):
         return np.broadcast_to(-gravity, (*states.position.shape[:-2], 3))
     b = one.frame.body.index
@@ -190,7 +190,7 @@ def _motors(one: Sensor, states):
 
 def _ball(rate: bool):
     def read(one: Sensor, states):
-        robot = scene_of(states).robot
+        robot = states._scene.robot
         q = robot.qvel(states) if rate else robot.qpos(states)
         return q[..., one.at : one.at + (3 if rate else 4)]
 
@@ -235,7 +235,7 @@ def _interaction(one: Sensor, states) -> tuple[Any, Any]:
 
     The sum of m (a - g), and of the changes of spin, less that of the forces of contacts.
     """
-    at, gravity = moving(one.frame, states).position, scene_of(states).gravity
+    at, gravity = moving(one.frame, states).position, states._scene.gravity
     force, torque, acceleration = (
         np.zeros(at.shape),
         np.zeros(at.shape),

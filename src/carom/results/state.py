@@ -46,13 +46,7 @@ class SystemState(Source):
         Energies of the whole system [J].
     """
 
-    def __init__(
-        self,
-        run,
-        known: dict | None = None,
-        given: dict | None = None,
-        ctrl: np.ndarray | None = None,
-    ):
+    def __init__(self, run, known: dict | None = None, given: dict | None = None):
         self._known = {} if known is None else known  # joints prepared so far, names of contacts
         clock, rows = run.clock, run.now.view(np.ndarray).copy()
         rows.flags.writeable = False
@@ -62,7 +56,6 @@ class SystemState(Source):
         self.potential_energy = float(clock["potential"][0])
         given = _NONE_SET if given is None else given
         self._instant = Instant(run, rows, self.t, given, self._known)
-        self._ctrl = None if ctrl is None else ctrl.copy()
 
     @classmethod
     def _of_file(cls, scene, t: float, kinetic: float, potential: float, motion) -> SystemState:
@@ -72,7 +65,7 @@ class SystemState(Source):
         rows["x"], rows["Q"], rows["v"], rows["w"] = motion
         rows.flags.writeable = False
         state._known, state._rows, state._scene, state._to_principal = {}, rows, scene, _NONE
-        state._instant = state._ctrl = None
+        state._instant = None
         state.t, state.kinetic_energy, state.potential_energy = t, kinetic, potential
         return state
 
@@ -105,6 +98,11 @@ class SystemState(Source):
     def turns(self) -> np.ndarray | None:
         """Coordinates (C,) whose whole turns a run counts [rad or m]; None of a state from a file."""
         return None if self._instant is None else self._instant.turns
+
+    @property
+    def _given(self) -> dict:
+        """Values of forces and controls that were set in a run, by the index of the force."""
+        return {} if self._instant is None else self._instant.given
 
     @property
     def total_energy(self) -> float:

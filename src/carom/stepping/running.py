@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     from carom.stepping.grid import Grid
 
 
-class Running:
+class Running(ABC):
     """Base class of runs of scenes and of systems in coordinates."""
 
     #: is asked at pauses; True interrupts the run
@@ -42,13 +43,13 @@ class Running:
         """The error that a user-defined function has raised, or None."""
         return self.functions.failed
 
+    @abstractmethod
     def take_steps(self, until: int) -> int:
         """Continue to step number `until`; return a status, or PAUSE."""
-        raise NotImplementedError
 
+    @abstractmethod
     def blame_compiled(self) -> None:
         """Take the failed step once more, with compiled functions called from Python, which notes faults."""
-        raise NotImplementedError
 
     def begin(self) -> float:
         """Return the time from which on the result of a function may have ended the run."""
