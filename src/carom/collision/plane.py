@@ -19,7 +19,7 @@ from carom.geometry.thresholds import ROUND_OFF
 def _seen(a, plane):
     """Return a half-space in axes of a solid: its normal, and the height of the solid's origin above it."""
     x, q, n = a.x, a.Q, plane.normal
-    ux, uy, uz = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
+    ux, uy, uz = rotate_back(q, n)
     return ux, uy, uz, x[0] * n[0] + x[1] * n[1] + x[2] * n[2] - plane.offset
 
 
@@ -56,7 +56,7 @@ def touch_plane(a, plane, hulls, reach, work, out):
     count = spread(found, count)
     for k in range(count):
         p, gap = found[k].on_a, found[k].gap
-        px, py, pz = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+        px, py, pz = rotate(q, p)
         px, py, pz = x[0] + px - r * n[0], x[1] + py - r * n[1], x[2] + pz - r * n[2]
         foot = (px - gap * n[0], py - gap * n[1], pz - gap * n[2])
         put(out[k], gap, (n[0], n[1], n[2]), (px, py, pz), foot, found[k].feature)

@@ -71,14 +71,14 @@ def _kind(core):
 def _in_world(core, a):
     """Return a vector of the world, given in axes of the solid."""
     q = core.q
-    return rotate(q[0], q[1], q[2], q[3], a[0], a[1], a[2])
+    return rotate(q, a)
 
 
 @inlined
 def _own(core, a):
     """Return a vector in axes of the solid, given in the world."""
     q = core.q
-    return rotate_back(q[0], q[1], q[2], q[3], a[0], a[1], a[2])
+    return rotate_back(q, a)
 
 
 @kernel
@@ -212,12 +212,12 @@ def drift_of_solids(system, contact, other_solid, point, state):
     # the bodies
     body = state[contact.body]
     q, va, wa = body.Q, _vector(body.v), _vector(body.w)
-    q_a = multiply(q[0], q[1], q[2], q[3], one.Q[0], one.Q[1], one.Q[2], one.Q[3])
+    q_a = multiply(q, one.Q)
     q_b, vb, wb = (two.Q[0], two.Q[1], two.Q[2], two.Q[3]), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     if contact.other >= 0:
         body = state[contact.other]
         q, vb, wb = body.Q, _vector(body.v), _vector(body.w)
-        q_b = multiply(q[0], q[1], q[2], q[3], two.Q[0], two.Q[1], two.Q[2], two.Q[3])
+        q_b = multiply(q, two.Q)
     # the material points of the cores
     n, ra, rb = _vector(point.axes[0]), one.radius, two.radius
     ua = plus(va, 1.0, cross(wa, plus(point.arm_a, ra, n)))

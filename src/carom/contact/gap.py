@@ -24,8 +24,8 @@ def plane_in_body(contact, state):
     """
     body, n = state[contact.body], contact.axes
     q, w = body.Q, body.w
-    nx, ny, nz = rotate_back(q[0], q[1], q[2], q[3], n[0, 0], n[0, 1], n[0, 2])
-    wx, wy, wz = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
+    nx, ny, nz = rotate_back(q, n[0])
+    wx, wy, wz = rotate_back(q, w)
     cx, cy, cz = cross(nx, ny, nz, wx, wy, wz)
     height = along_normal(contact, body.x) - contact.offset - contact.radius
     return nx, ny, nz, cx, cy, cz, height, along_normal(contact, body.v)

@@ -160,7 +160,7 @@ def buried(system, surface, q, m, above):
 def is_inside(solid, hulls, q, room):
     """Return whether a point in the world is in a static box or hull, or at most `room` outside."""
     x, Q, h = solid.x, solid.Q, solid.half
-    px, py, pz = rotate_back(Q[0], Q[1], Q[2], Q[3], q[0] - x[0], q[1] - x[1], q[2] - x[2])
+    px, py, pz = rotate_back(Q, (q[0] - x[0], q[1] - x[1], q[2] - x[2]))
     if solid.kind == BOX:
         return max(abs(px) - h[0], max(abs(py) - h[1], abs(pz) - h[2])) <= room
     for f in range(solid.first_face, solid.last_face):

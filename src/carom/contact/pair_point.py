@@ -109,7 +109,7 @@ def write_touch(contact, touch, state, point):
 def own_point(contact, touch, state, p):
     """Write the position of a found point on the first body, in axes of that body."""
     q, x, s = state[contact.body].Q, state[contact.body].x, touch.on_a
-    r = rotate_back(q[0], q[1], q[2], q[3], s[0] - x[0], s[1] - x[1], s[2] - x[2])
+    r = rotate_back(q, (s[0] - x[0], s[1] - x[1], s[2] - x[2]))
     p[0], p[1], p[2] = r
 
 
@@ -117,7 +117,7 @@ def own_point(contact, touch, state, p):
 def which_touch(system, contact, count, feature, p, state, work):
     """Return the point that has the feature; if none has it any more, the one nearest to the core point p."""
     q, x = state[contact.body].Q, state[contact.body].x
-    r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    r = rotate(q, p)
     best, chosen = math.inf, 0
     for i in range(count):
         touch = work.touches[i]

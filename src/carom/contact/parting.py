@@ -40,7 +40,7 @@ def height(solid, hulls, x, y, z):
     """Return the support function of a core: the greatest d.p over its points, d in axes of its body."""
     s, o, h, kind = solid.Q, solid.x, solid.half, solid.kind
     base = o[0] * x + o[1] * y + o[2] * z
-    x, y, z = rotate_back(s[0], s[1], s[2], s[3], x, y, z)
+    x, y, z = rotate_back(s, (x, y, z))
     if kind == SEGMENT:
         return base + h[2] * abs(z)
     if kind == BOX:
@@ -71,10 +71,10 @@ def frame_of(contact, side, n, state):
 def seen(n, frame, body):
     """Return n and n x w - k in body axes, and height and rate along n of the mass centre in a frame."""
     q, w, x, v = body.Q, body.w, body.x, body.v
-    mx, my, mz = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
+    mx, my, mz = rotate_back(q, n)
     cx, cy, cz = cross(n[0], n[1], n[2], w[0], w[1], w[2])
     kx, ky, kz, rate = frame
-    cx, cy, cz = rotate_back(q[0], q[1], q[2], q[3], cx - kx, cy - ky, cz - kz)
+    cx, cy, cz = rotate_back(q, (cx - kx, cy - ky, cz - kz))
     z = n[0] * x[0] + n[1] * x[1] + n[2] * x[2]
     rate = n[0] * v[0] + n[1] * v[1] + n[2] * v[2] - rate - x[0] * kx - x[1] * ky - x[2] * kz
     return mx, my, mz, cx, cy, cz, z, rate
@@ -175,8 +175,8 @@ def pose_of(solid, b, state):
     if b < 0:
         return (p[0], p[1], p[2]), (o[0], o[1], o[2], o[3])
     x, q = state[b].x, state[b].Q
-    r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
-    turned = multiply(q[0], q[1], q[2], q[3], o[0], o[1], o[2], o[3])
+    r = rotate(q, p)
+    turned = multiply(q, o)
     return (x[0] + r[0], x[1] + r[1], x[2] + r[2]), turned
 
 
@@ -195,13 +195,13 @@ def widest_face(system, contact, state):
         if solid.kind != BOX:
             continue
         (x, q), (y, _) = (own, beside) if side == 0 else (beside, own)
-        d = rotate_back(q[0], q[1], q[2], q[3], y[0] - x[0], y[1] - x[1], y[2] - x[2])
+        d = rotate_back(q, (y[0] - x[0], y[1] - x[1], y[2] - x[2]))
         for k in range(3):
             if abs(d[k]) <= max(room, 0.0) + solid.half[k]:  # not even its centre has more
                 continue
             f = 1.0 if (d[k] > 0.0) == (side == 1) else -1.0
             e = (f if k == 0 else 0.0, f if k == 1 else 0.0, f if k == 2 else 0.0)
-            m = rotate(q[0], q[1], q[2], q[3], e[0], e[1], e[2])
+            m = rotate(q, e)
             gap = least_gap(system, contact, m, rests, state, 0.0, 0.0)
             if gap > room:
                 room, owner, n = gap, OF_A + side, m

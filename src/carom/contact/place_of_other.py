@@ -27,7 +27,7 @@ def centre_of_other(contact, state):
 def centre_of_piece(b, solid, state):
     """Return position and velocity of the centre of a piece of a body."""
     x, q, p = state[b].x, state[b].Q, solid.x
-    r0, r1, r2 = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    r0, r1, r2 = rotate(q, p)
     v0, v1, v2 = point_velocity(state, b, r0, r1, r2)
     return x[0] + r0, x[1] + r1, x[2] + r2, v0, v1, v2
 

@@ -23,8 +23,8 @@ def in_solid(solid, contact, side, state, n):
     s, a = solid.Q, (n[0], n[1], n[2])
     if side == 0 or contact.static == 0:
         q = state[contact.body if side == 0 else contact.other].Q
-        a = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
-    return rotate_back(s[0], s[1], s[2], s[3], a[0], a[1], a[2])
+        a = rotate_back(q, n)
+    return rotate_back(s, a)
 
 
 @kernel
@@ -49,7 +49,7 @@ def way_round(system, contact, n, arm, p, state):
     if radius == 0.0:
         return 0.0
     q = state[contact.body].Q
-    r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    r = rotate(q, p)
     d = (arm[0] - r[0]) ** 2 + (arm[1] - r[1]) ** 2 + (arm[2] - r[2]) ** 2
     return d / (radius * radius)
 

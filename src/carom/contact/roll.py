@@ -31,13 +31,13 @@ def roll_on_plane(system, contact, feature, point, state):
     """Return (d/dt G) v of a point of a curved solid on a half-space, contact axes."""
     solid, body, E = system.solids[contact.solid], state[contact.body], point.axes
     q, s, w, r = body.Q, solid.Q, body.w, point.arm_a
-    n = rotate_back(q[0], q[1], q[2], q[3], E[0, 0], E[0, 1], E[0, 2])
-    u = rotate_back(s[0], s[1], s[2], s[3], n[0], n[1], n[2])
-    W = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
-    W = rotate_back(s[0], s[1], s[2], s[3], W[0], W[1], W[2])
+    n = rotate_back(q, E[0])
+    u = rotate_back(s, n)
+    W = rotate_back(q, w)
+    W = rotate_back(s, W)
     p = way_of_lowest(solid, feature, u, W)
-    p = rotate(s[0], s[1], s[2], s[3], p[0], p[1], p[2])
-    p = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    p = rotate(s, p)
+    p = rotate(q, p)
     # the ball that enlarges a core does not turn
     c = cross(
         w[0], w[1], w[2],

@@ -73,11 +73,7 @@ def eliminate(system, drop):
         for s in range(solver.column[place], solver.column[place + 1]):
             divide(block[count + s], block[k], pivot, joints[solver.row[s]].rows, n)
         for t in range(solver.update[place], solver.update[place + 1]):
-            i, j = solver.triple[t, 0], solver.triple[t, 1]
-            subtract_product(
-                block[solver.triple[t, 2]], block[count + i], block[count + j], pivot,
-                joints[solver.row[i]].rows, joints[solver.row[j]].rows, n,
-            )  # fmt: skip
+            update_block(system, t, pivot, n)
 
 
 @kernel
@@ -129,16 +125,24 @@ def divide(X, L, pivot, m, n):
 
 
 @kernel
-def subtract_product(S, X, Y, pivot, m, n, q):
-    """S <- S - X D Y^T."""
-    for s in range(q):
+def update_block(system, t, pivot, n):
+    """Subtract a product of two blocks of a column n wide from its block of the factor: S <- S - X D Y^T."""
+    solver, joints, block, triple = (
+        system.solver,
+        system.joints,
+        system.solver.block,
+        system.solver.triple[t],
+    )
+    count, i, j = joints.shape[0], triple[0], triple[1]
+    S, X, Y = block[triple[2]], block[count + i], block[count + j]
+    for s in range(n):
         if pivot[s] == 0.0:
             continue
         d = 1.0 / pivot[s]
-        for i in range(m):
-            t = d * X[i, s]
-            for j in range(n):
-                S[i, j] -= t * Y[j, s]
+        for a in range(joints[solver.row[i]].rows):
+            x = d * X[a, s]
+            for b in range(joints[solver.row[j]].rows):
+                S[a, b] -= x * Y[b, s]
 
 
 @kernel

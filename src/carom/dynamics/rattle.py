@@ -42,35 +42,36 @@ SOLVES = 60  # solves for Lam
 
 
 @inlined
-def rattle_step(method, system, active, start, h, end, work):
-    """Write the state a time h after `start` into `end`; return the work of loads, and a status.
+def rattle_step(model, data, method, h):
+    """Write the state a time h later into `work.trial`; return the work of loads, and a status.
 
     While contacts are active, the explicit method takes the step.
     """
-    if not fly(system, active, start, h, end, work):
+    if not fly(model, data, h):
         return 0.0, 0
-    if any_held(active):
-        return constrained(method, system, active, start, h, end, work)
-    result = work.result[0]
-    whole_step(method.parts, system, start, h, end, work)
+    if any_held(data.active):
+        return constrained(model, data, method, h)
+    result = data.work.result[0]
+    whole_step(method.parts, model.system, data.state, h, data.work)
     if result.code == STALLED:
         result.fallen += 1
-        return constrained(method, system, active, start, h, end, work)
+        return constrained(model, data, method, h)
     return result.applied, NO_CONVERGENCE if result.code == TOO_FAR else 0
 
 
 @unit
-def whole_step(parts, system, start, h, end, work):
+def whole_step(parts, system, start, h, work):
     """Make the parts of a step, one after the other."""
-    applied, code, result, t = 0.0, DONE, work.result[0], work.result[0].start
+    applied, code, result, end = 0.0, DONE, work.result[0], work.trial
+    result.time = result.start
     for b in range(start.shape[0]):
         bound = work.body[b].bound
         copy_state(start[b], work.part[b])
         if system.bodies[b].ballistic == 0:
             bound[0], bound[1], bound[2] = 0.0, 0.0, 0.0
     for s in range(parts.size):
-        p, code = one_part(system, work.part, t, parts[s] * h, end, work)
-        applied, t = applied + p, t + parts[s] * h
+        p, code = one_part(system, work.part, parts[s] * h, end, work)
+        applied += p
         if code != DONE:
             break
         for b in range(start.shape[0]):
@@ -95,26 +96,24 @@ def bound_changes(start, end, h, bound):
 
 
 @kernel
-def one_part(system, start, t, h, end, work):
-    """Make one step of order 2 from the time t; return the work of loads and motors, and how it ended."""
+def one_part(system, start, h, end, work):
+    """Make one step of order 2 from `result.time` on; return the work of loads and motors, and how it ended."""
     result = work.result[0]
-    result.time = t
     total = first_kick(system, start, h, work)
     lost = dropped_rows(system, 0.0)
     least, last, fine = math.inf, math.inf, round_off(system, start)
     for k in range(SOLVES):
         if not move_all(system, start, h, end, work):
             return 0.0, TOO_FAR if k == 0 else STALLED
-        error = error_of_move(system, start, t, h, end, work)
+        error = error_of_move(system, start, h, end, work)
         if error <= 1e-15 or (error <= 100.0 * fine and not error < 0.5 * last):
             break
         if not error < 1e3 * least or k == SOLVES - 1:
             return 0.0, STALLED
         least, last = min(least, error), error
-        result.time = t
         correct(system, start, h, work)
         total += driven_power(system, start, work)  # of an impulse: its work
-    result.time = t + h
+    result.time += h
     total += second_kick(system, h, end, work)
     if dropped_rows(system, 0.0) != lost:
         return 0.0, STALLED

@@ -24,8 +24,8 @@ def solve_free(system, state, biased, near, work):
 def free_body(body, q, work):
     """Write M^-1 wrench of one body into its work record: Newton's law (paper, Eq. (1))."""
     wrench, motion, J = work.wrench, work.motion, body.inertia
-    a = rotate_back(q[0], q[1], q[2], q[3], wrench[3], wrench[4], wrench[5])
-    t = rotate(q[0], q[1], q[2], q[3], a[0] / J[0], a[1] / J[1], a[2] / J[2])
+    a = rotate_back(q, wrench[3:])
+    t = rotate(q, (a[0] / J[0], a[1] / J[1], a[2] / J[2]))
     for k in range(3):
         motion[k] = wrench[k] / body.mass
         motion[3 + k] = t[k]

@@ -24,8 +24,8 @@ def driven_work(system, state, first, clock, records, work) -> float:
         before, body, q = records.snapshot[clock.snapped + b], system.bodies[b], state[b].Q
         v0, w0, v, w = before.v0, before.w0, state[b].v, state[b].w
         motion = work.body[b].motion
-        s = rotate_back(q[0], q[1], q[2], q[3], w0[0], w0[1], w0[2])
-        d = rotate_back(q[0], q[1], q[2], q[3], w[0] - w0[0], w[1] - w0[1], w[2] - w0[2])
+        s = rotate_back(q, w0)
+        d = rotate_back(q, (w[0] - w0[0], w[1] - w0[1], w[2] - w0[2]))
         for k in range(3):
             total += body.mass * v0[k] * (v[k] - v0[k]) + body.inertia[k] * s[k] * d[k]
             motion[k], motion[3 + k] = v0[k], w0[k]

@@ -144,8 +144,7 @@ def strike_one(model, data, method, c):
         hit.code = IMPACT_FAILED
         return
     write_impact(contact, state, point, hit, clock, data.records)
-    out, P = hit.out, layout.IMPULSE
-    spread(system, point, state, out[P], out[P + 1], out[P + 2], work)
+    spread(system, point, state, hit.out[layout.IMPULSE : layout.IMPULSE + 3], work)
     add_velocity(system, point, work, state)
 
 

@@ -108,11 +108,10 @@ def strike_several(model, data, c, k):
         return
     P = multiple.result.impulse
     for i in range(k):
-        n, t1, t2 = P[3 * i], P[3 * i + 1], P[3 * i + 2]
-        if n != 0.0:
+        if P[3 * i] != 0.0:
             contact = system.contacts[group.closed[i].contact]
             write_share(contact, i, k, state, group, multiple, clock, data.records)
-            spread(system, group.points[0][i], state, n, t1, t2, work)
+            spread(system, group.points[0][i], state, P[3 * i : 3 * i + 3], work)
             add_velocity(system, group.points[0][i], work, state)
     most = SUM_ERROR * greatest(3 * k, u)
     for i in range(k):

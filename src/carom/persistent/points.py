@@ -102,7 +102,7 @@ def on_face(contact, active, i, n, state):
     Points on a line, or in other planes, do not tell whether a corner at some distance is closed.
     """
     q, p, level = state[contact.body].Q, active.points[i].point, NORMAL_ERROR * smaller(contact)
-    m, x, y, z, far = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2]), 0.0, 0.0, 0.0, level
+    m, x, y, z, far = rotate_back(q, n), 0.0, 0.0, 0.0, level
     for find_end in (True, False):
         for j in range(active.count[0]):
             other = active.points[j]

@@ -130,7 +130,7 @@ def trial_step(model, data, method):
     work, clock, result = data.work, data.clocks[0], data.work.result[0]
     own, search = work.step[0], work.search[0]
     result.start, result.order = clock.now, controls.order
-    applied, code = step(method, system, active, now, search.dt, work.trial, work)
+    applied, code = step(model, data, method, search.dt)
     search.applied, search.friction, search.code = applied, 0.0, code
     clock.trials += 1
     own.counts[COUNT_TRIALS] += 1.0

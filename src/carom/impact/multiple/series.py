@@ -202,7 +202,7 @@ def _stretch(k, line, S, n):
         if lane[o.SLIPPING, b, 0] > 0.0:
             p = LANES * b
             if n > 0:
-                s = product(line, S[o.S_R], p, g, p, 1, n)
+                s = product(line, S[o.S_R], g, p, n)
                 s = multiply(s, load(lane, o.ONE_OVER * line + p))
                 store(g, n * line + p, multiply(same(-1.0), s))
             for l in range(LANES):
@@ -211,7 +211,7 @@ def _stretch(k, line, S, n):
     if n == 0:
         s = same(1.0 / total)
     else:
-        s = multiply(same(-sigma[0, 0, 0]), product(line, rate, 0, sigma, 0, 1, n))
+        s = multiply(same(-sigma[0, 0, 0]), product(line, rate, sigma, 0, n))
     store(sigma, n * line, s)
 
 
