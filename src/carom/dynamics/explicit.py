@@ -297,3 +297,17 @@ def bound_accelerations_of(work, b, stages):
         angular = max(angular, a[3] * a[3] + a[4] * a[4] + a[5] * a[5])
         spin = max(spin, u[3] * u[3] + u[4] * u[4] + u[5] * u[5])
     bound[0], bound[1], bound[2] = math.sqrt(linear), math.sqrt(angular), math.sqrt(spin)
+
+
+@kernel
+def bound_changes(start, end, h, bound):
+    """Raise the bounds of accelerations and of spin: means over a step, doubled."""
+    linear, angular, spin = 0.0, 0.0, 0.0
+    for k in range(3):
+        a, c = (end.v[k] - start.v[k]) / h, (end.w[k] - start.w[k]) / h
+        linear += a * a
+        angular += c * c
+        spin += max(end.w[k] ** 2, start.w[k] ** 2)
+    bound[0] = max(bound[0], 2.0 * math.sqrt(linear))
+    bound[1] = max(bound[1], 2.0 * math.sqrt(angular))
+    bound[2] = max(bound[2], math.sqrt(spin))

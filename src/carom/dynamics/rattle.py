@@ -28,7 +28,7 @@ from carom._compiled.units import unit
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.discrete_rotation import turn_by_momentum
 from carom.dynamics.elements import driven_power
-from carom.dynamics.explicit import any_held, constrained, copy_state, fly
+from carom.dynamics.explicit import any_held, bound_changes, constrained, copy_state, fly
 from carom.dynamics.kick import add_momentum, first_kick, second_kick
 from carom.dynamics.loops import dropped_rows, solve_factored
 from carom.dynamics.move_error import error_of_move
@@ -79,20 +79,6 @@ def whole_step(parts, system, start, h, work):
                 bound_changes(work.part[b], end[b], parts[s] * h, work.body[b].bound)
                 copy_state(end[b], work.part[b])
     result.applied, result.code = applied, code
-
-
-@kernel
-def bound_changes(start, end, h, bound):
-    """Raise the bounds of accelerations and of spin: means over the part, doubled."""
-    linear, angular, spin = 0.0, 0.0, 0.0
-    for k in range(3):
-        a, c = (end.v[k] - start.v[k]) / h, (end.w[k] - start.w[k]) / h
-        linear += a * a
-        angular += c * c
-        spin += max(end.w[k] ** 2, start.w[k] ** 2)
-    bound[0] = max(bound[0], 2.0 * math.sqrt(linear))
-    bound[1] = max(bound[1], 2.0 * math.sqrt(angular))
-    bound[2] = max(bound[2], math.sqrt(spin))
 
 
 @kernel

@@ -43,7 +43,15 @@ from carom.dynamics.elements import (
     velocity_error,
 )
 from carom.dynamics.energy import spin_momentum
-from carom.dynamics.explicit import any_held, constrained, copy_state, fly, mark_active
+from carom.dynamics.explicit import (
+    any_held,
+    bound_changes,
+    constrained,
+    copy_state,
+    fly,
+    forget_bounds,
+    mark_active,
+)
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.loops import add_reactions, factor, substitute, subtract_rows
 from carom.dynamics.project import project_position, project_velocity
@@ -326,19 +334,11 @@ def position_block(system, method, start, h, end, work):
 
 @kernel
 def leave_for_later(system, start, h, end, work):
-    """Store the momentum of free bodies, and bounds of accelerations (means over the step, doubled)."""
+    """Store the momentum of free bodies, and bounds of accelerations."""
+    forget_bounds(work)
     for b in range(start.shape[0]):
-        linear, angular, spin = 0.0, 0.0, 0.0
-        for k in range(3):
-            a = (end[b].v[k] - start[b].v[k]) / h
-            c = (end[b].w[k] - start[b].w[k]) / h
-            linear += a * a
-            angular += c * c
-            spin += max(end[b].w[k] ** 2, start[b].w[k] ** 2)
-        bound = work.body[b].bound
-        bound[0], bound[1] = 2.0 * math.sqrt(linear), 2.0 * math.sqrt(angular)
-        bound[2] = math.sqrt(spin)
+        memory = work.body[b]
+        bound_changes(start[b], end[b], h, memory.bound)
         if system.bodies[b].isolated == 1:  # the next step uses this momentum, not a new one
-            memory = work.body[b]
             for k in range(3):
                 memory.spin[k], memory.momentum[k] = end[b].w[k], memory.wrench[3 + k]

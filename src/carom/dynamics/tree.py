@@ -299,12 +299,6 @@ def unjoined(mass, row, out):
 @unit
 def solve_tree(system, state, biased, near, work):
     """Write the motion of all bodies; articulate the pose first, unless the last pose is the same or `near`."""
-    walk_tree(system, state, biased, near, work)
-
-
-@kernel
-def walk_tree(system, state, biased, near, work):
-    """Do the same as `solve_tree`, compiled as a part of the caller."""
     if not near and not same_pose(system.solver.workspace, state):
         articulate(system, state)
     respond(system, biased, work)

@@ -11,11 +11,10 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.user_functions import call_function
-from carom.friction.ldl import factor as factor_symmetric
-from carom.friction.ldl import substitute as solve_metric
+from carom.friction import ldl, lu
 from carom.generalized import layout as o
 from carom.generalized.differences import evaluate_parts
-from carom.generalized.linear import add_row, copy_row, dot, factor, substitute
+from carom.generalized.linear import add_row, copy_row, dot
 from carom.model import actions as a
 from carom.status import NOT_FINITE, SINGULAR_METRIC
 
@@ -40,7 +39,7 @@ def find_metric(system, t, x, work):
     n, total = system.n, 0.0
     for i in range(n):
         copy_row(work.M[i], work.L[i], n)
-    factor_symmetric(n, SINGULAR, work.L)
+    ldl.factor(n, SINGULAR, work.L)
     for i in range(n):
         if not 0.0 < work.L[i, i] < math.inf:
             for k in range(n * n):
@@ -151,13 +150,13 @@ def react(system, m, out, work):
     n = system.n
     for r in range(m):
         copy_row(work.D[r], work.Z[r], n)
-        solve_metric(n, work.L, work.Z[r])
+        ldl.substitute(n, work.L, work.Z[r])
     for r in range(m):
         for s in range(m):
             work.K[r, s] = dot(work.R[r], work.Z[s], n)
         work.rhs[r] -= dot(work.R[r], out, n)
-    factor(work.K, work.inverse, m, system.drop)
-    substitute(work.K, work.inverse, work.rhs, m)
+    lu.factor_in_order(work.K, m, work.inverse, system.drop)
+    lu.substitute_in_order(work.K, m, work.inverse, work.rhs)
     for r in range(m):
         add_row(work.rhs[r], work.Z[r], out, n)
 
@@ -175,7 +174,7 @@ def acceleration(system, active, t, x, work, rate):
     evaluate(system, o.CALL_LOADS, t, x, work.loads, work)
     copy_row(work.load, a, n)
     add_row(-1.0, work.c, a, n)
-    solve_metric(n, work.L, a)
+    ldl.substitute(n, work.L, a)
     if system.rows > 0 or persists(active):
         find_rows(system, active, t, x, work)
         react(system, gather(system, active, ACCELERATION, x, work), a, work)

@@ -23,7 +23,7 @@ def unit_vector(k):
     return 1.0 if k == 0 else 0.0, 1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0
 
 
-@kernel
+@inlined
 def multiply(p, q):
     """Return the quaternion product p q (first q, then p)."""
     return (
@@ -34,7 +34,7 @@ def multiply(p, q):
     )
 
 
-@kernel
+@inlined
 def conjugate(q):
     """Return the inverse of a unit quaternion."""
     return q[0], -q[1], -q[2], -q[3]
@@ -47,7 +47,7 @@ def normalize(q):
     return s * q[0], s * q[1], s * q[2], s * q[3]
 
 
-@kernel
+@inlined
 def renormalize(q):
     """Return a quaternion that is nearly of unit length, normalised by one step of Newton's method."""
     s = 1.5 - 0.5 * (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
@@ -68,7 +68,7 @@ def matrix(q):
     )  # fmt: skip
 
 
-@kernel
+@inlined
 def rotate(q, a):
     """Return R a: transform body components to world components."""
     w, x, y, z = q[0], q[1], q[2], q[3]
@@ -81,7 +81,7 @@ def rotate(q, a):
     )
 
 
-@kernel
+@inlined
 def rotate_back(q, a):
     """Return R^T a: transform world components to body components."""
     return rotate(conjugate(q), a)
