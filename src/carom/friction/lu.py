@@ -48,9 +48,7 @@ def exchange(A, n, pivot, k):
     if row != k:
         a, b = A[k], A[row]
         for j in range(n):
-            t = a[j]
-            a[j] = b[j]
-            b[j] = t
+            a[j], b[j] = b[j], a[j]
 
 
 @kernel
@@ -68,10 +66,7 @@ def substitute(A, n, pivot, x):
     """Solve with the factors: replace x[:n] by the solution."""
     for k in range(n):
         row = pivot[k]
-        if row != k:
-            t = x[k]
-            x[k] = x[row]
-            x[row] = t
+        x[k], x[row] = x[row], x[k]
     for i in range(n):
         a, s = A[i], x[i]
         for j in range(i):

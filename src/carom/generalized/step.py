@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, kernel
+from carom.friction import ldl
 from carom.generalized.linear import add_row, copy_row
 from carom.generalized.motion import (
     POSITION,
@@ -17,7 +18,6 @@ from carom.generalized.motion import (
     persists,
     react,
     slip_of,
-    solve_metric,
     terms,
 )
 from carom.model import actions as a
@@ -135,7 +135,7 @@ def return_to_surfaces(system, active, t, x, work):
         code = find_metric(system, t, y, work)
         if code != 0:
             return code
-        solve_metric(n, work.L, work.c)
+        ldl.substitute(n, work.L, work.c)
         add_row(1.0, xi, x, n)
         add_row(-0.5, work.c, x, n)
     return 0 if error <= 1e-9 else CONSTRAINTS_LOST
