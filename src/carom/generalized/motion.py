@@ -88,20 +88,17 @@ def terms(row, x, n):
 
 
 @kernel
-def slip_of(system, c, x, work):
-    """Return the slip (u_1, u_2) of contact c; rows must be those of `x`."""
-    n, rows = system.n, work.G[c]
-    return dot(rows[1], x[n:], n), dot(rows[2], x[n:], n)
+def slip_of(system, heading, c, x, work):
+    """Return the slip (u_1, u_2) of contact c and its direction; rows must be those of `x`.
 
-
-@kernel
-def direction(contact, u1, u2):
-    """Return the direction of slip; if it would reverse within a stage, the direction before."""
-    h1, h2 = contact.heading[0], contact.heading[1]
+    If it would reverse within a stage, it has the direction before.
+    """
+    n, rows, (e1, e2) = system.n, work.G[c], (heading[0], heading[1])
+    u1, u2 = dot(rows[1], x[n:], n), dot(rows[2], x[n:], n)
     size = math.sqrt(u1 * u1 + u2 * u2)
-    if size > 0.0 and u1 * h1 + u2 * h2 > 0.0:
-        return u1 / size, u2 / size
-    return h1, h2
+    if size > 0.0 and u1 * e1 + u2 * e2 > 0.0:
+        e1, e2 = u1 / size, u2 / size
+    return u1, u2, e1, e2
 
 
 @kernel
@@ -134,8 +131,7 @@ def gather(system, active, what, x, work):
             )
             m = add_row_to(work.G[c, r], target, m, work)
         if what == ACCELERATION and contact.mode == a.MODE_SLIP and mu > 0.0:
-            u1, u2 = slip_of(system, c, x, work)
-            e1, e2 = direction(contact, u1, u2)
+            _, _, e1, e2 = slip_of(system, contact.heading, c, x, work)
             add_row(-mu * e1, work.G[c, 1], work.D[first], n)
             add_row(-mu * e2, work.G[c, 2], work.D[first], n)
     return m
@@ -198,8 +194,7 @@ def note_forces(system, active, x, work):
         if contact.mode == a.MODE_STICK:
             force[1], force[2] = work.rhs[m + 1], work.rhs[m + 2]
         else:
-            u1, u2 = slip_of(system, c, x, work)
-            e1, e2 = direction(contact, u1, u2)
+            u1, u2, e1, e2 = slip_of(system, contact.heading, c, x, work)
             force[1], force[2] = -mu * force[0] * e1, -mu * force[0] * e2
             power += force[1] * u1 + force[2] * u2
     return power

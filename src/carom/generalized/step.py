@@ -11,7 +11,6 @@ from carom.generalized.motion import (
     POSITION,
     RATE,
     acceleration,
-    direction,
     find_metric,
     find_rows,
     gather,
@@ -84,8 +83,8 @@ def note_slip_directions(system, active, t, x, work):
     find_rows(system, active, t, x, work)
     for c in range(system.contacts):
         if active[c].mode == a.MODE_SLIP:
-            u1, u2 = slip_of(system, c, x, work)
-            active[c].heading[0], active[c].heading[1] = direction(active[c], u1, u2)
+            heading = active[c].heading
+            _, _, heading[0], heading[1] = slip_of(system, heading, c, x, work)
 
 
 @kernel
@@ -94,18 +93,13 @@ def error_of(system, active, x, work):
     n, worst = system.n, 0.0
     for r in range(system.holonomic):
         work.row_scale[r] = max(work.row_scale[r], terms(work.A[r], x, n))
-        worst = max(worst, relative(work.phi[r], work.row_scale[r]))
+        size = work.row_scale[r]
+        worst = max(worst, abs(work.phi[r]) / (size if size > 0.0 else 1.0))
     for c in range(system.contacts):
         if active[c].mode != a.MODE_OPEN:
             size = max(terms(work.G[c, 0], x, n), work.gap_scale[c])
-            worst = max(worst, relative(work.gap[c], size))
+            worst = max(worst, abs(work.gap[c]) / (size if size > 0.0 else 1.0))
     return worst
-
-
-@kernel
-def relative(error, size):
-    """Return |error| in parts of a size, if there is one."""
-    return abs(error) / size if size > 0.0 else abs(error)
 
 
 @kernel
