@@ -1,9 +1,9 @@
-"""The partner of a body in a contact: another body, a static body, or a half-space."""
+"""Both partners of a contact: a body, and another body, a static body, or a half-space."""
 
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.geometry.rotation import rotate
+from carom.geometry.rotation import multiply, rotate
 from carom.kinematics.wrench import point_velocity
 
 
@@ -11,6 +11,18 @@ from carom.kinematics.wrench import point_velocity
 def on_half_space(contact):
     """Return whether a body touches a half-space."""
     return contact.other < 0 and contact.static == 0
+
+
+@kernel
+def pose_of(solid, b, state):
+    """Return the world position and attitude of a solid; those of a static one, b < 0, are in the table."""
+    p, o = solid.x, solid.Q
+    if b < 0:
+        return (p[0], p[1], p[2]), (o[0], o[1], o[2], o[3])
+    x, q = state[b].x, state[b].Q
+    r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    turned = multiply(q[0], q[1], q[2], q[3], o[0], o[1], o[2], o[3])
+    return (x[0] + r[0], x[1] + r[1], x[2] + r[2]), turned
 
 
 @kernel
