@@ -24,6 +24,13 @@ def touch_plane(a, plane, hulls, reach, work, out):
     plane), and points fixed in the body at quarters of a turn. More points would make a flat impact slow: their
     rows are linearly dependent, so that the points open and close in alternation.
     """
+    plane_unit(a, plane, hulls, reach, work, out)
+    return work.state[0].total
+
+
+@unit
+def plane_unit(a, plane, hulls, reach, work, out):
+    """Do this for `touch_plane` and for kernels: the number of points goes to ``work.state[0].total``."""
     found, x, q, n, r = work.found, a.x, a.Q, plane.normal, a.solid.radius
     ux, uy, uz = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
     seen = ux, uy, uz, x[0] * n[0] + x[1] * n[1] + x[2] * n[2] - plane.offset - r
@@ -38,13 +45,7 @@ def touch_plane(a, plane, hulls, reach, work, out):
         px, py, pz = x[0] + px - r * n[0], x[1] + py - r * n[1], x[2] + pz - r * n[2]
         foot = (px - gap * n[0], py - gap * n[1], pz - gap * n[2])
         put(out[k], gap, (n[0], n[1], n[2]), (px, py, pz), foot, found[k].feature)
-    return count
-
-
-@unit
-def plane_unit(a, plane, hulls, reach, work, out):
-    """Do the same as `touch_plane`, compiled once; the number of points goes to ``work.state[0].total``."""
-    work.state[0].total = touch_plane(a, plane, hulls, reach, work, out)
+    work.state[0].total = count
 
 
 @kernel

@@ -16,10 +16,11 @@ from carom.contact.groups import unite
 from carom.contact.pair_point import find_touches, own_point, smaller, write_touch
 from carom.contact.parting import beside_face
 from carom.contact.place import place_any
-from carom.contact.place_of_other import centre_of_other, centres_of_balls, on_half_space
+from carom.contact.place_of_other import balls, centre_of_other, on_half_space
 from carom.contact.rim import closed_rim, most_of_rim, way_round
 from carom.contact.stop import is_active, place_stop
 from carom.contact.thresholds import REACH, RIM_DISTANCE, RIM_TIME
+from carom.geometry.vectors import dot, minus
 from carom.kinematics.contact_point import place
 from carom.model.arrays import STOP
 
@@ -52,18 +53,15 @@ def concerns(contact, label, work):
 @kernel
 def apart(system, contact, state, near):
     """Return whether the distance of the balls around the two, or around two pieces, is larger than `near`."""
-    x = state[contact.body].x
     if on_half_space(contact):
+        x = state[contact.body].x
         return along_normal(contact, x) - contact.offset - contact.radius - contact.extent > near
-    d = contact.extent + contact.other_extent + near
-    x, y = centres_of_balls(system, contact, state, False)
-    if (x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2 > d * d:
-        return True
-    if contact.part == 0:
-        return False
-    d = system.solids[contact.solid].extent + system.solids[contact.other_solid].extent + near
-    x, y = centres_of_balls(system, contact, state, True)
-    return (x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2 > d * d
+    for pieces in range(1 + contact.part):
+        x, y, radii = balls(system, contact, state, pieces == 1)
+        d = minus(x, y)
+        if dot(d, d) > (radii + near) * (radii + near):
+            return True
+    return False
 
 
 @kernel

@@ -28,32 +28,26 @@ from carom.contact.gap import slow
 from carom.contact.level import related
 from carom.contact.pair_point import find_touches, list_touches, smaller, touch_rate
 from carom.contact.parting import plane_of, stays_beside_face, time_apart
-from carom.contact.place_of_other import centre_of_other, centres_of_balls, on_half_space
+from carom.contact.place_of_other import balls, centre_of_other, on_half_space
 from carom.contact.rim import closed_rim, longest_way, place_of
 from carom.geometry.thresholds import RESOLUTION
+from carom.geometry.vectors import dot, minus
 from carom.kinematics.flight import relative_bound
 from carom.model.workspace import FREE, RESTS
 
 
 @kernel
-def balls_apart(s, u, radii, sign, a):
-    """Return how long two balls with relative position s and velocity u stay apart; -inf if they overlap."""
-    d = math.sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
-    if not d > radii:
-        return -math.inf
-    return reach(d - radii, sign * (s[0] * u[0] + s[1] * u[1] + s[2] * u[2]) / d, a)
-
-
-@kernel
 def balls_clear(system, data, contact, a, pieces):
     """Return whether the balls around both bodies, or two `pieces` of them, stay apart in the trial step."""
-    p, q, time = system.solids[contact.solid], system.solids[contact.other_solid], 0.0
-    radii = p.extent + q.extent if pieces else contact.extent + contact.other_extent
+    time = 0.0
     for side in range(2):
         state, sign = (data.state, 1.0) if side == 0 else (data.work.trial, -1.0)
-        x, y = centres_of_balls(system, contact, state, pieces)
-        s, u = (x[0] - y[0], x[1] - y[1], x[2] - y[2]), (x[3] - y[3], x[4] - y[4], x[5] - y[5])
-        time += balls_apart(s, u, radii, sign, a)
+        x, y, radii = balls(system, contact, state, pieces)
+        s, u = minus(x, y), (x[3] - y[3], x[4] - y[4], x[5] - y[5])
+        d = math.sqrt(dot(s, s))
+        if not d > radii:
+            return False
+        time += reach(d - radii, sign * dot(s, u) / d, a)
     return time >= data.work.search[0].dt
 
 

@@ -45,13 +45,14 @@ def centre_of_piece(b, solid, state):
 
 
 @kernel
-def centres_of_balls(system, contact, state, pieces):
-    """Return positions and velocities of the centres of balls around both bodies, or around two `pieces`."""
-    x, v = state[contact.body].x, state[contact.body].v
-    if not pieces:
-        return (x[0], x[1], x[2], v[0], v[1], v[2]), centre_of_other(contact, state)
+def balls(system, contact, state, pieces):
+    """Return the balls around both bodies, or two `pieces`: centres, with velocities, and sum of radii."""
     p, q = system.solids[contact.solid], system.solids[contact.other_solid]
+    if not pieces:
+        x, v, other = state[contact.body].x, state[contact.body].v, centre_of_other(contact, state)
+        radii = contact.extent + contact.other_extent
+        return (x[0], x[1], x[2], v[0], v[1], v[2]), other, radii
     y = (q.x[0], q.x[1], q.x[2], 0.0, 0.0, 0.0)
     if contact.static == 0:
         y = centre_of_piece(contact.other, q, state)
-    return centre_of_piece(contact.body, p, state), y
+    return centre_of_piece(contact.body, p, state), y, p.extent + q.extent
