@@ -52,6 +52,13 @@ def from_a(s, x, y, z):
 
 
 @inlined
+def point_of_a(s, x, y, z):
+    """Transform a point of A, which may be moved, from its axes to axes of B."""
+    x, y, z = _times(s.R, x, y, z)
+    return x + s.p[0] + s.shift[0], y + s.p[1] + s.shift[1], z + s.p[2] + s.shift[2]
+
+
+@inlined
 def to_world(s, x, y, z):
     """Transform a vector from axes of B to world axes."""
     return _times(s.world, x, y, z)

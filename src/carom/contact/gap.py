@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom.geometry.rotation import cross, rotate_back
+from carom.geometry.rotation import cross, norm, rotate_back
 
 
 @inlined
@@ -62,9 +62,7 @@ def round_off(contact, state):
 @kernel
 def speed_of(b, extent, state):
     """Return a bound of the speed of any point of a body."""
-    v, w = state[b].v, state[b].w
-    s = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
-    return s + extent * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    return norm(state[b].v) + extent * norm(state[b].w)
 
 
 @kernel
@@ -89,9 +87,7 @@ def strike_point(contact, vertices, state, tie, out):
     """
     plane = plane_in_body(contact, state)
     still = slow(contact, state)
-    least, approaching = math.inf, False
-    for i in range(contact.first, contact.last):
-        least = min(least, gap_and_rate(plane, vertices[i])[0])
+    least, approaching = lowest(contact, vertices, state)[0], False
     for i in range(contact.first, contact.last):
         z, rate = gap_and_rate(plane, vertices[i])
         if z <= least + tie and rate < -still:

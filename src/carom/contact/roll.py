@@ -15,7 +15,9 @@ from carom.collision.faces import LOWEST
 from carom.collision.features import vertex_a
 from carom.collision.layout import CYLINDER
 from carom.collision.support import change_of_support
-from carom.geometry.rotation import cross, rotate, rotate_back
+from carom.contact.rim import in_solid
+from carom.geometry.rotation import cross, rotate
+from carom.kinematics.contact_point import in_axes
 
 
 @kernel
@@ -31,10 +33,7 @@ def roll_on_plane(system, contact, feature, point, state):
     """Return (d/dt G) v of a point of a curved solid on a half-space, contact axes."""
     solid, body, E = system.solids[contact.solid], state[contact.body], point.axes
     q, s, w, r = body.Q, solid.Q, body.w, point.arm_a
-    n = rotate_back(q, E[0])
-    u = rotate_back(s, n)
-    W = rotate_back(q, w)
-    W = rotate_back(s, W)
+    u, W = in_solid(solid, contact, 0, state, E[0]), in_solid(solid, contact, 0, state, w)
     p = way_of_lowest(solid, feature, u, W)
     p = rotate(s, p)
     p = rotate(q, p)
@@ -44,8 +43,4 @@ def roll_on_plane(system, contact, feature, point, state):
         r[0] + solid.radius * E[0, 0], r[1] + solid.radius * E[0, 1], r[2] + solid.radius * E[0, 2],
     )  # fmt: skip
     a = cross(w[0], w[1], w[2], c[0] + p[0], c[1] + p[1], c[2] + p[2])
-    return (
-        E[0, 0] * a[0] + E[0, 1] * a[1] + E[0, 2] * a[2],
-        E[1, 0] * a[0] + E[1, 1] * a[1] + E[1, 2] * a[2],
-        E[2, 0] * a[0] + E[2, 1] * a[1] + E[2, 2] * a[2],
-    )
+    return in_axes(point, a[0], a[1], a[2])

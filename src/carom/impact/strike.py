@@ -75,7 +75,7 @@ def strike(model, data, method, c):
     hit.code = onto_surface(system, controls, c, state, work)
     if hit.code != 0:
         return
-    k = gather_closed(system, controls, active, c, state, group, work, True)
+    k = gather_closed(model, data, c, True)
     if k < 0:
         hit.code = TOO_MANY_POINTS
         return

@@ -168,7 +168,7 @@ def errors(system, active, k, state, group, x, work):
             continue
         active_point = active.points[closed_point.active]
         contact = system.contacts[closed_point.contact]
-        place_any(system, contact, closed_point.feature, closed_point.point, state, point, work)
+        place_any(system, closed_point, state, point, work)
         tiny = round_off(contact, state)
         if contact.touches == 1:
             tiny = 4.0 * round_off_of_both(contact, state)
