@@ -107,7 +107,7 @@ def solve_contacts(
     >>> solution.impulse
     array([[ 0.1 , -0.05,  0.  ]])
     """
-    from carom.friction.layout import MESSAGES, SOLVED, new_contact_work
+    from carom.friction.layout import MESSAGES, SOLVED, ContactProblem, new_contact_work
     from carom.friction.residual import measure
     from carom.friction.solve import solve_cones
 
@@ -124,11 +124,10 @@ def solve_contacts(
     code = np.array([KINDS[checks.choice("kind", one, KINDS)] for one in kinds], dtype=np.int64)
     direction = _heading(heading, k)
     p = np.zeros(3 * k) if start is None else _triples("start", start, k, "N s")
+    problem = ContactProblem(W=W, c=c, mu=mu, kind=code, heading=direction)
     with np.errstate(over="ignore", invalid="ignore"):  # the status reports a failure
-        status, residual, iterations = solve_cones(
-            k, W, c, mu, code, direction, p, new_contact_work(k)
-        )
-        _, _, penetration, violation, product = measure(k, W, c, mu, code, direction, p)
+        status, residual, iterations = solve_cones(k, problem, p, new_contact_work(k))
+        _, _, penetration, violation, product = measure(k, problem, p)
         velocity = W @ p + c
     return ContactSolution(
         impulse=(p + 0.0).reshape(k, 3),  # no -0

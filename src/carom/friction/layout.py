@@ -92,6 +92,16 @@ ISLAND_BODY = [("motion", "f8", 6), ("pivot", "i8", 6)]
 DENSE, BY_BODIES = range(2)
 
 
+class ContactProblem(NamedTuple):
+    """The problem w = W p + c of K contacts, with the friction of each; the first k of each array are used."""
+
+    W: np.ndarray  # (3K, 3K) Delassus operator, symmetric; rows (n, t1, t2) of each contact
+    c: np.ndarray  # (3K,) velocity without impulses
+    mu: np.ndarray  # (K,) friction
+    kind: np.ndarray  # (K,) int64: CONE, friction against w_t; SLIDING, p_t = -mu p_n heading; STICKING, w_t = 0
+    heading: np.ndarray  # (K, 2) direction of slip of SLIDING; of a DISC, |p_t| <= heading[i, 0]
+
+
 class ContactWork(NamedTuple):
     """Work arrays of a contact problem of up to K contacts; arrays that its kind does not need are empty."""
 

@@ -161,6 +161,4 @@ def collide(method, controls, contact, hit, history):
 def by_layer(controls, contact, hit, history) -> int:
     """Pass the boundary layer by cubic splines."""
     layer = (contact.width, contact.penetration, controls.layer_steps)
-    return traverse(
-        hit.W, hit.u, hit.friction, hit.restitution, contact.law, layer, history, hit.out
-    )
+    return traverse(hit, contact.law, layer, history)

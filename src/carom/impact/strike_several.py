@@ -78,7 +78,7 @@ def strike_several(model, data, c, k):
     """
     system = model.system
     active, state, group, multiple = data.active, data.state, data.group, data.multiple
-    work, clock, step = data.work, data.clocks[0], data.work.step[0]
+    work, step = data.work, data.work.step[0]
     hit, u = work.hit[0], group.v[U]
     count_blows(model, data, k)
     for i in range(k):
@@ -111,7 +111,7 @@ def strike_several(model, data, c, k):
         n, t1, t2 = P[3 * i], P[3 * i + 1], P[3 * i + 2]
         if n != 0.0:
             contact = system.contacts[group.closed[i].contact]
-            write_share(contact, i, k, state, group, multiple, clock, data.records)
+            write_share(data, contact, i, k)
             spread(system, group.points[0][i], state, n, t1, t2, work)
             add_velocity(system, group.points[0][i], work, state)
     most = SUM_ERROR * greatest(3 * k, u)

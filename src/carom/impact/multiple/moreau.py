@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import by_reference, kernel
 from carom._compiled.units import unit
-from carom.friction.layout import BUDGET, CONE, ENOUGH
+from carom.friction.layout import BUDGET, CONE, ENOUGH, ContactProblem
 from carom.friction.solve import solve_cones
 from carom.friction.strategy import budget
 from carom.geometry.thresholds import SUM_ERROR
@@ -93,7 +93,10 @@ def _once(k, work, smooth):
         kind[i], heading[i, 0], heading[i, 1] = CONE, 0.0, 0.0
     work.cones.mismatch[ENOUGH] = 0.0
     work.cones.count[BUDGET] = budget(k)
-    solve_cones(k, work.matrix[o.MASS], bias, mu, kind, heading, impulse, work.cones)
+    problem = by_reference(
+        ContactProblem(W=work.matrix[o.MASS], c=bias, mu=mu, kind=kind, heading=heading)
+    )
+    solve_cones(k, problem, impulse, work.cones)
     set_velocity(k, work)
     for i in range(k):
         c, a = work.contact[i], 3 * i
