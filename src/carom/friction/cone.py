@@ -58,7 +58,7 @@ def slope(contact, x0, x1, x2):
 
 @kernel
 def nearest(cone, x0, x1, x2):
-    """Return the nearest point of the set of `cone` (kind, mu, h1, h2): cone, ray (1, -mu h), half-space, disc."""
+    """Return the nearest point of the set for (kind, mu, h1, h2): cone, ray (1, -mu h), half-space, or disc."""
     kind, mu, h1, h2 = cone
     if kind == DISC:
         return in_disc(h1, x1, x2)

@@ -98,7 +98,8 @@ class ContactProblem(NamedTuple):
     W: np.ndarray  # (3K, 3K) Delassus operator, symmetric; rows (n, t1, t2) of each contact
     c: np.ndarray  # (3K,) velocity without impulses
     mu: np.ndarray  # (K,) friction
-    kind: np.ndarray  # (K,) int64: CONE, friction against w_t; SLIDING, p_t = -mu p_n heading; STICKING, w_t = 0
+    # (K,) int64: CONE, friction against w_t; SLIDING, p_t = -mu p_n heading; STICKING, w_t = 0; DISC
+    kind: np.ndarray
     heading: np.ndarray  # (K, 2) direction of slip of SLIDING; of a DISC, |p_t| <= heading[i, 0]
 
 

@@ -25,8 +25,8 @@ HERTZ, LINEAR = 1.5, 1.0
 
 
 @unit
-def resolve_group(k, W, u, mu, multiple):
-    """Solve the impact of k points; the clock of the workspace gets its code."""
+def resolve_group(k, W, u, mu, multiple) -> int:
+    """Solve the impact of k points; return its code."""
     contacts = by_reference(
         CornerContacts(
             k=k, others=0, W=W, u=u, friction=mu, restitution=multiple.e, law=multiple.law,
@@ -38,8 +38,7 @@ def resolve_group(k, W, u, mu, multiple):
         given.multiple, given.rtol, exponent_of(k, multiple), given.max_events, given.max_steps,
         given.max_rounds,
     )  # fmt: skip
-    code = resolve_contacts(contacts, settings, multiple.workspace, multiple.result)
-    multiple.workspace.work.clock[0].code = code
+    return resolve_contacts(contacts, settings, multiple.workspace, multiple.result)
 
 
 @kernel
@@ -100,10 +99,10 @@ def strike_several(model, data, c, k):
     passage = multiple.workspace.work.clock[0]
     if model.controls.retry == 1:  # the group can take a time-stepping step instead
         passage.left = int(max(0.0, left(model.controls, step, COUNT_PASSAGES)) / k**3)
-    resolve_group(k, group.W, u, group.mu, multiple)
+    code = resolve_group(k, group.W, u, group.mu, multiple)
     step.counts[COUNT_PASSAGES] += k**3 * multiple.result.summary[0].steps
     step.since += k * multiple.result.summary[0].steps
-    if passage.code != OK or passage.left < 0:
+    if code != OK or passage.left < 0:
         hit.code = IMPACT_FAILED
         return
     P = multiple.result.impulse

@@ -209,9 +209,7 @@ def solve_impulses(model, data, k, h):
             group.mu[i], turning = 1.0, True
     count[NEAR], group.cone.mismatch[ENOUGH], count[BUDGET] = 0, 0.0, budget(k)
     problem = by_reference(
-        ContactProblem(
-            W=group.W, c=group.v[C], mu=group.mu, kind=group.kind, heading=group.heading
-        )
+        ContactProblem(W=group.W, c=group.v[C], mu=group.mu, kind=group.kind, heading=group.heading)
     )
     for _ in range(50 if turning else 1):
         change = bound_turning(model.system, k, group)

@@ -28,9 +28,10 @@ OWN_E, LEAST_E, NO_E, NO_FRICTION = range(4)
 
 
 @unit
-def solve_group(k, work):
-    """Resolve the group; the clock gets its marks and the change of energy in a plastic event."""
-    clock, vector, W, least, most = work.clock[0], work.vector, work.matrix[o.MASS], 1.0, 0.0
+def solve_group(k, work) -> tuple[int, float]:
+    """Resolve the group; return its marks, and the change of energy in a plastic event."""
+    vector, W, least, most = work.vector, work.matrix[o.MASS], 1.0, 0.0
+    marks, change = PLASTIC, 0.0
     for i in range(k):
         least = min(least, work.contact[i].restitution)
         most = max(most, work.contact[i].restitution)
@@ -39,14 +40,13 @@ def solve_group(k, work):
         for i in range(k):
             c = work.contact[i]
             c.e = c.restitution if way == OWN_E else least if way == LEAST_E else 0.0
-        clock.change = _once(k, work, way == NO_FRICTION)
-        clock.code = AT_ONCE if way == OWN_E else AT_ONCE | o.MISSED if way == LEAST_E else PLASTIC
+        change = _once(k, work, way == NO_FRICTION)
+        marks = AT_ONCE if way == OWN_E else AT_ONCE | o.MISSED if way == LEAST_E else PLASTIC
         if sound(
             W, vector[o.U0], vector[o.NOW_U], vector[o.NOW_P], 1.0, (3 * k, VELOCITY_LEFT, GAIN)
         ):
             break
-    if clock.code & PLASTIC == 0:
-        clock.change = 0.0
+    return marks, change if marks & PLASTIC != 0 else 0.0
 
 
 @kernel

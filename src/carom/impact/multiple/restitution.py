@@ -169,14 +169,11 @@ def learn(k, work):
 @kernel
 def run(k, work, settings, rtol, anew):
     """Pass the layer with the coefficients e_* as they are; `rtol` holds from the first unloading."""
-    p, most_events = settings.exponent, settings.max_events * k
     if anew:
         start(k, work)
     else:
-        resume(k, work, p)
-    most = settings.max_steps * k
-    pass_layer(k, work, settings.rtol if anew else rtol, rtol, p, most_events, most)
-    return work.clock[0].code
+        resume(k, work, settings.exponent)
+    return pass_layer(k, work, settings, settings.rtol if anew else rtol, rtol)
 
 
 @kernel
