@@ -72,7 +72,7 @@ def test_bad_input(arguments, words):
     ("options", "words"),
     [
         ({"kind": "slide"}, "did you mean"),
-        ({"kind": ["sliding"]}, "one for each of 2"),
+        ({"kind": ["sliding"]}, "one name or 2 of them"),
         ({"heading": [[1, 1], [0, 0]]}, "unit vectors"),
         ({"start": np.zeros(3)}, "start must have shape"),
     ],

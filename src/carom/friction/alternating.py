@@ -1,4 +1,4 @@
-"""The contact problem by alternating directions: one linear system, then projection onto the friction cones.
+"""The contact problem of a crowd by alternating directions: one linear system, then projection onto the cones.
 
 Two copies of the impulses, p without the cones and z in the cones, are made equal by u (scaled):
 
@@ -16,8 +16,8 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.friction import layout as o
 from carom.friction.cone import nearest, shift
+from carom.friction.island import factor_shifted, solve_shifted
 from carom.friction.newton import copy
-from carom.friction.operators import factor_shifted, solve_shifted
 from carom.friction.residual import residual
 from carom.friction.thresholds import RELAXATION
 

@@ -23,7 +23,6 @@ from carom.friction.layout import (
     DISC,
     ENOUGH,
     ITERATIONS,
-    NEAR,
     SLIDING,
     ContactProblem,
 )
@@ -207,7 +206,7 @@ def solve_impulses(model, data, k, h):
             group.kind[i], group.heading[i, 0] = DISC, h * group.mu[i]
         elif group.closed[i].turns > 0:
             group.mu[i], turning = 1.0, True
-    count[NEAR], group.cone.mismatch[ENOUGH], count[BUDGET] = 0, 0.0, budget(k)
+    group.cone.mismatch[ENOUGH], count[BUDGET] = 0.0, budget(k)
     problem = by_reference(
         ContactProblem(W=group.W, c=group.v[C], mu=group.mu, kind=group.kind, heading=group.heading)
     )

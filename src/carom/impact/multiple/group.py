@@ -170,7 +170,7 @@ def pass_group(k, work, settings, result):
     into_lanes(k, work)
     iterates = any_targets(k, work)
     rtol = max(settings.rtol, COARSE_TOLERANCE) if iterates else settings.rtol
-    ended = run(k, work, settings, rtol, True)
+    ended = run(k, work, settings, rtol)
     if iterates and ended == ENDED:
         ended = iterate_restitution(k, work, settings, result)
     result.steps += work.clock[0].steps

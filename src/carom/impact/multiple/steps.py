@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom._compiled.lanes import blocks, values
+from carom._compiled.lanes import blocks, value_and_slope, values
 from carom._compiled.simd import LANES, add, greatest, larger, load, multiply, same, store, subtract
 from carom._compiled.units import unit
 from carom.geometry.thresholds import ROUND_OFF
@@ -246,7 +246,10 @@ def _has_ended(work, i, sticks, degree, x):
     """Return whether contact `i` has ceased to stick at `x`, or else its slip has turned by a right angle."""
     if sticks:
         return _excess(work.contact[i], i, work.series, degree, x) > 0.0
-    return _along(work.series, i, degree, x) <= 0.0
+    S, b, l = work.series, i // LANES, i % LANES
+    u1, _ = value_and_slope(S[o.S_U1], i, degree, x)
+    u2, _ = value_and_slope(S[o.S_U2], i, degree, x)
+    return u1 * S[o.S_U1, 0, b, l] + u2 * S[o.S_U2, 0, b, l] <= 0.0
 
 
 @kernel
@@ -272,14 +275,3 @@ def _keeps_on(S, p, degree, end):
         s = multiply(add(s, _size(turn)), f)
     left = subtract(s, add(multiply(x, x), multiply(y, y)))
     return greatest(multiply(left, load(S[o.S_LANE], o.ONE_OVER * line + p))) <= 0.0
-
-
-@kernel
-def _along(S, i, degree, x):
-    """Return the component of the slip of contact `i` at `x` along its slip at the start."""
-    b, l = i // LANES, i % LANES
-    p, q = S[o.S_U1, degree, b, l], S[o.S_U2, degree, b, l]
-    for j in range(degree - 1, -1, -1):
-        p = p * x + S[o.S_U1, j, b, l]
-        q = q * x + S[o.S_U2, j, b, l]
-    return p * S[o.S_U1, 0, b, l] + q * S[o.S_U2, 0, b, l]
