@@ -23,7 +23,7 @@ from carom.impact import laws
 from carom.impact import layout as o
 from carom.impact.phase import FIXED, Friction, Span, ratio, replay, shoot
 from carom.impact.phase import write as write_knot
-from carom.impact.resolve import resolve_one, write
+from carom.impact.resolve import resolve, write
 from carom.impact.spline import Contact, force
 from carom.impact.thresholds import NO_RESTITUTION
 
@@ -54,7 +54,7 @@ def traverse(hit, law, layer, history):
     just before the last knot.
     """
     W, u, mu, e, out = hit.W, hit.u, hit.friction, hit.restitution, hit.out
-    code = resolve_one(W, u, mu, e, law, out)
+    code = resolve(W, u, mu, e, law, out)
     if code != o.OK:
         return code
     b, delta, steps = layer

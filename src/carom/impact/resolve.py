@@ -64,12 +64,6 @@ _CURVE = Line(_CURVED, 0.0, 0.0, 0.0)
 
 @entry
 def resolve(W, u, mu, e, law, out):
-    """Solve one impact like `resolve_one`, for calls from Python."""
-    return resolve_one(W, u, mu, e, law, out)
-
-
-@kernel
-def resolve_one(W, u, mu, e, law, out):
     """Solve one impact with inverse mass `W` (3, 3), approach velocity `u` (3,), friction `mu`.
 
     The normal is first, ``u[0] < 0``; `e` and `law` (as in `laws`) give the restitution. Results are written to

@@ -13,7 +13,7 @@ from carom._compiled.decorators import entry
 from carom.impact import layout as o
 from carom.impact.api import Impact, phase_names
 from carom.impact.laws import NUMBERS
-from carom.impact.resolve import resolve_one
+from carom.impact.resolve import resolve
 
 FEW_IMPACTS = 2000  # take ten times as long as a thread to begin
 
@@ -22,7 +22,7 @@ FEW_IMPACTS = 2000  # take ten times as long as a thread to begin
 def resolve_many(W, u, mu, e, law, out):
     """Solve each impact; return the number of the first that failed and its code, or (-1, OK)."""
     for i in range(u.shape[0]):
-        code = resolve_one(W[i], u[i], mu[i], e[i], law[i], out[i])
+        code = resolve(W[i], u[i], mu[i], e[i], law[i], out[i])
         if code != o.OK:
             return i, code
     return -1, o.OK

@@ -13,7 +13,7 @@ from carom.impact.driven import blocked
 from carom.impact.effective_restitution import count_blow, effective_restitution
 from carom.impact.layout import OK
 from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSettings
-from carom.impact.multiple.resolve import resolve_contacts
+from carom.impact.multiple.resolve import resolve_multiple
 from carom.impact.record import write_share
 from carom.impact.thresholds import GROUP_SEED
 from carom.impact.workspace import U
@@ -38,7 +38,7 @@ def resolve_group(k, W, u, mu, multiple) -> int:
         given.multiple, given.rtol, exponent_of(k, multiple), given.max_events, given.max_steps,
         given.max_rounds,
     )  # fmt: skip
-    return resolve_contacts(contacts, settings, multiple.workspace, multiple.result)
+    return resolve_multiple(contacts, settings, multiple.workspace, multiple.result)
 
 
 @kernel

@@ -13,7 +13,7 @@ from carom.impact.multiple.moreau import solve_group
 from carom.impact.multiple.restitution import any_targets, energetic, iterate_restitution, run
 from carom.impact.multiple.series import into_lanes
 from carom.impact.multiple.steps import ENDED
-from carom.impact.resolve import resolve_one
+from carom.impact.resolve import resolve
 from carom.impact.thresholds import COARSE_TOLERANCE
 
 
@@ -191,4 +191,4 @@ def at_once(k, work, result):
 @unit
 def resolve_single(work, mu, e, law) -> int:
     """Resolve the impact of one contact; return its code."""
-    return resolve_one(work.matrix[o.SINGLE], work.vector[o.SINGLE_U], mu, e, law, work.single)
+    return resolve(work.matrix[o.SINGLE], work.vector[o.SINGLE_U], mu, e, law, work.single)

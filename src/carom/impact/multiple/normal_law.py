@@ -55,8 +55,7 @@ def unload(c, d, p_n):
 @kernel
 def load_again(c, p_n):
     """Load again, on the same curve as before."""
-    c.mode = LOAD
-    c.slope, c.rest = c.root, c.d0
+    close(c)
     c.unloading += p_n - c.mark
     c.mark = p_n
 

@@ -24,12 +24,6 @@ from carom.impact.multiple.moreau import sound
 
 @entry
 def resolve_multiple(contacts, settings, workspace, out):
-    """Resolve an impact as `resolve_contacts`, for calls from Python."""
-    return resolve_contacts(contacts, settings, workspace, out)
-
-
-@kernel
-def resolve_contacts(contacts, settings, workspace, out):
     """Resolve an impact of `CornerContacts`; return OK, or BAD_INPUT without a result.
 
     Contacts of one pair strike together, those of different pairs one after another. `settings` are
