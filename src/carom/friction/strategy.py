@@ -27,7 +27,7 @@ def search(work, k):
     """Try one starting point after another; leave the best p and the number of iterations in `work`.
 
     Start 0 seeks the solution of least norm from the given p. Start 1 seeks a solution near the given p,
-    unless p is 0. The others begin after a release and after sweeps, in turn.
+    unless p is 0. The others begin after sweeps and after a release, in turn.
     """
     p, best, given = work.vector[o.ITERATE], work.vector[o.BEST], work.vector[o.GIVEN]
     least, last, cold = math.inf, _STARTS, True
@@ -45,9 +45,9 @@ def search(work, k):
             copy(k, given, p)
         elif start > 1:
             if start % 2 == 0:
-                release(work, k)
+                _smooth(work, k, (start - 2) // 2)
             else:
-                _smooth(work, k, (start - 3) // 2)
+                release(work, k)
         r, goal, tolerance = polished(work, k, start == 0, start % 3 == 2)
         if r < least:
             least = r
