@@ -59,7 +59,7 @@ EYE, AWAY = np.eye(6), np.zeros(6)
         ((EYE, np.zeros(5), 0.5), "velocity must have shape"),
         ((EYE, [], 0.5), "velocity must have shape"),
         ((EYE, np.full(6, np.nan), 0.5), "velocity must be finite"),
-        ((EYE, AWAY, -0.5), "friction must be at least 0"),
+        ((EYE, AWAY, -0.5), "friction must be finite and at least 0"),
         ((EYE, AWAY, [0.5, 0.5, 0.5]), "friction must have shape"),
     ],
 )

@@ -21,7 +21,7 @@ from carom.friction.rays import outgoing, stick_ratio
 from carom.geometry.thresholds import ROUND_OFF
 from carom.impact import laws
 from carom.impact import layout as o
-from carom.impact.phase import FIXED, Friction, Span, ratio, replay, shoot
+from carom.impact.phase import NO_LAW, Friction, Span, ratio, replay, shoot
 from carom.impact.phase import write as write_knot
 from carom.impact.resolve import resolve, write
 from carom.impact.spline import Contact, force
@@ -158,8 +158,8 @@ def _compression(given, accel, out):
     ends = 0.0 <= slip_end_p <= p_c
     if given.timed:
         split = min((out[o.SLIP_END_UN] + v0) / accel, v0 / accel) if ends else -1.0
-        return Span(start, given.steps, v0 / accel, split, FIXED, 0.0)
-    law = FIXED if given.wedged else laws.NEWTON
+        return Span(start, given.steps, v0 / accel, split, NO_LAW, 0.0)
+    law = NO_LAW if given.wedged else laws.NEWTON
     return Span(start, given.steps, p_c, slip_end_p if ends else -1.0, law, 0.0)
 
 
@@ -171,9 +171,9 @@ def _restitution(given, accel, goal, start, slips, out):
     if given.timed:
         length = given.e * -given.u[0] / accel
         split = min(max(out[o.SLIP_END_UN] / accel, 0.0), length) if later else -1.0
-        return Span(start, given.steps, length, split, FIXED, 0.0)
+        return Span(start, given.steps, length, split, NO_LAW, 0.0)
     split = max(out[o.SLIP_END_P] - p_c, 0.0) if later else -1.0
-    law = FIXED if given.wedged else given.law
+    law = NO_LAW if given.wedged else given.law
     return Span(start, given.steps, out[o.IMPULSE] - p_c, split, law, goal)
 
 

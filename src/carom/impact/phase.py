@@ -18,7 +18,7 @@ from carom.impact.thresholds import SHORTEST_PART
 # Columns of `history`, one row for each knot: time, s, velocity, tangential displacement, force after the knot.
 COLUMNS = 10
 
-FIXED = -1  #: in place of a law: the length of the phase is known
+NO_LAW = -1  #: in place of a law: the length of the phase is known
 
 _MAX_STEPS = 10000  # in a phase, beyond the requested number
 
@@ -30,7 +30,7 @@ class Span(NamedTuple):
     steps: int  # of equal length
     length: float  # a first guess if a law ends the phase
     split: float  # where slip ends, -1 if nowhere
-    law: int  # FIXED: none
+    law: int  # or NO_LAW
     goal: float  # value of the law's measure at the end
 
 
@@ -183,7 +183,7 @@ def shoot(contact, span, friction, history, row):
     """Integrate a phase as `run` does; if a law ends it, with the length at which the law reaches its goal."""
     last, length, law = math.inf, span.length, span.law
     result = run(contact, span, friction, history, row)
-    if law == FIXED:
+    if law == NO_LAW:
         return result
     for _ in range(40):
         _, state, at_rest, total, _ = result
