@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.friction.layout import CONE, SLIDING, SOLVED, new_contact_work
+from carom.friction.layout import CONE, SLIDING, SOLVED, ContactProblem, new_contact_work
 from carom.friction.solve import solve_cones
 from carom.generalized.step import project
 from carom.generalized.strike import Strike, rows_of
@@ -128,7 +128,7 @@ class Contacts(Strike):
             W, c0, mu = self.W[np.ix_(rows, rows)], self.c[rows], self.friction[chosen]
             p, heading = np.zeros(3 * k), self.headings(chosen)
             kinds = np.where(heading.any(axis=1), SLIDING, CONE)
-            status, _, _ = solve_cones(k, W, c0, mu, kinds, heading, p, self.cones)
+            status, _, _ = solve_cones(k, ContactProblem(W, c0, mu, kinds, heading), p, self.cones)
             if status != SOLVED:
                 own = W.reshape(k, 3, k, 3)[range(k), 0, range(k)]
                 yields = own[:, 0] - mu * np.sum(heading * own[:, 1:], axis=1)  # W_nn - mu W_nt . e

@@ -7,7 +7,7 @@ Where rows prescribe a speed, a v = b, their impulses Lambda do work, Lambda . b
 
 from __future__ import annotations
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.dynamics.rotors import work_of_change
 from carom.geometry.rotation import rotate_back
@@ -38,17 +38,11 @@ def driven_work(system, state, first, clock, records, work) -> float:
 
 
 @kernel
-def _blocked(system, point, inverse_mass):
+def blocked(system, point, inverse_mass):
     """Return whether prescribed motions block a point along its normal: W_nn is round-off of 1/m."""
+    if not (system.relations.there == 1 and system.solver.kind == LOOPS):
+        return False
     free = 1.0 / system.bodies[point.a].mass
     if point.b >= 0:
         free += 1.0 / system.bodies[point.b].mass
     return inverse_mass <= IMPACT_ERROR * free
-
-
-@inlined
-def blocked(system, point, inverse_mass):
-    """Return whether prescribed motions block a point along its normal: W_nn is round-off of 1/m."""
-    if system.relations.there == 1 and system.solver.kind == LOOPS:
-        return _blocked(system, point, inverse_mass)
-    return False

@@ -19,7 +19,7 @@ from carom.impact.effective_restitution import count_blow, effective_restitution
 from carom.impact.layer import traverse
 from carom.impact.mean_point import as_one
 from carom.impact.record import write_impact
-from carom.impact.resolve import resolve_one
+from carom.impact.resolve import resolve
 from carom.impact.return_map import return_map
 from carom.impact.strike_several import strike_several
 from carom.impact.thresholds import SEED
@@ -153,13 +153,11 @@ def collide(method, controls, contact, hit, history):
     """Solve the impact in work.hit by the method of the run: to round-off, or as in the paper."""
     if method.kind == THREE_FIELD:
         return by_layer(controls, contact, hit, history)
-    return resolve_one(hit.W, hit.u, hit.friction, hit.restitution, contact.law, hit.out)
+    return resolve(hit.W, hit.u, hit.friction, hit.restitution, contact.law, hit.out)
 
 
 @unit
 def by_layer(controls, contact, hit, history) -> int:
     """Pass the boundary layer by cubic splines."""
     layer = (contact.width, contact.penetration, controls.layer_steps)
-    return traverse(
-        hit.W, hit.u, hit.friction, hit.restitution, contact.law, layer, history, hit.out
-    )
+    return traverse(hit, contact.law, layer, history)

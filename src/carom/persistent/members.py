@@ -14,10 +14,18 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import by_reference, kernel
 from carom.dynamics.explicit import combine_body, copy_state, node, note_velocity, stages_within
 from carom.dynamics.several_points import velocities
-from carom.friction.layout import BUDGET, CONE, DISC, ENOUGH, ITERATIONS, NEAR, SLIDING
+from carom.friction.layout import (
+    BUDGET,
+    CONE,
+    DISC,
+    ENOUGH,
+    ITERATIONS,
+    SLIDING,
+    ContactProblem,
+)
 from carom.friction.solve import solve_cones
 from carom.friction.strategy import budget
 from carom.geometry.rotation import normalize
@@ -199,10 +207,13 @@ def solve_impulses(model, data, k, h):
             group.kind[i], group.heading[i, 0] = DISC, h * group.mu[i]
         elif group.closed[i].turns > 0:
             group.mu[i], turning = 1.0, True
-    count[NEAR], group.cone.mismatch[ENOUGH], count[BUDGET] = 0, 0.0, budget(k)
+    group.cone.mismatch[ENOUGH], count[BUDGET] = 0.0, budget(k)
+    problem = by_reference(
+        ContactProblem(W=group.W, c=group.v[C], mu=group.mu, kind=group.kind, heading=group.heading)
+    )
     for _ in range(50 if turning else 1):
         change = bound_turning(model.system, k, group)
-        solve_cones(k, group.W, group.v[C], group.mu, group.kind, group.heading, p, group.cone)
+        solve_cones(k, problem, p, group.cone)
         group.equations.iterations[0] += count[ITERATIONS]
         if turning and not change > 1e-14:
             break
