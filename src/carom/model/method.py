@@ -41,7 +41,8 @@ ESDIRK_ERROR = ESDIRK[5:] - np.array(
         61727 / 225920,
     ]
 )
-#: implicit Euler minus the trapezoidal rule
+#: implicit Euler, and the same minus the trapezoidal rule
+CLOSING = np.array([[0.0, 0.0], [0.0, 1.0]])
 CLOSING_ERROR = np.array([[-0.5, 0.5]])
 
 
@@ -63,7 +64,8 @@ class Method(NamedTuple):
     # a diagonally implicit method of six stages, the first explicit, the last at the end of the step
     stiff: np.ndarray = ESDIRK  # (6, 6)
     stiff_E: np.ndarray = ESDIRK_ERROR  # (1, 6) weights of its error estimate
-    closing_E: np.ndarray = CLOSING_ERROR  # (1, 2) the same of implicit Euler
+    closing: np.ndarray = CLOSING  # (2, 2) the same of one stage: implicit Euler
+    closing_E: np.ndarray = CLOSING_ERROR  # (1, 2)
 
 
 def explicit(A: np.ndarray, b: np.ndarray) -> Method:

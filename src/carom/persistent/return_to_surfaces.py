@@ -93,14 +93,15 @@ def solve_rows(k, n, tiny, group, x):
 
 
 @kernel
-def onto_surfaces(system, active, k, count, state, group, work):
+def onto_surfaces(system, data, k, count, state):
     """Move the bodies of the group back to the surfaces at the loaded points."""
+    group, work = data.group, data.work
     place_closed(system, k, state, group, group.points[1], work)
-    if not mark_rows(system, active, k, group):
+    if not mark_rows(system, data.active, k, group):
         return
     n, x = -1, group.v[RETURN]
     for _ in range(11):
-        if errors(system, active, k, state, group, x, work):
+        if errors(system, data, k, state):
             break
         n = factor_given(k, False, group) if n < 0 else n
         solve_rows(k, n, round_off(system.contacts[group.closed[0].contact], state), group, x)
@@ -124,9 +125,10 @@ def mark_tangents(active, k, group):
 
 
 @kernel
-def onto_tangents(system, active, k, count, state, group, work):
+def onto_tangents(system, data, k, count):
     """Remove the velocities of the bodies of the group that leave surfaces, or places that stick."""
-    mark_tangents(active, k, group)
+    state, group, work = data.work.trial, data.group, data.work
+    mark_tangents(data.active, k, group)
     n, x = factor_given(k, False, group), group.v[RETURN]
     tiny = SUM_ERROR * greatest_speed(system, state, count, group.member)
     for _ in range(2):  # W is that of the last stage
@@ -158,17 +160,17 @@ def give(system, k, count, state, group, work):
 
 
 @kernel
-def errors(system, active, k, state, group, x, work):
+def errors(system, data, k, state):
     """Write the errors of all rows (0 for rows not given); return whether all are round-off."""
-    small = True
+    group, x, small = data.group, data.group.v[RETURN], True
     for i in range(k):
         closed_point, point = group.closed[i], group.points[1][i]
         x[3 * i], x[3 * i + 1], x[3 * i + 2] = 0.0, 0.0, 0.0
         if closed_point.rows == 0:
             continue
-        active_point = active.points[closed_point.active]
-        contact = system.contacts[closed_point.contact]
-        place_any(system, contact, closed_point.feature, closed_point.point, state, point, work)
+        active_point = data.active.points[closed_point.active]
+        contact, feature = system.contacts[closed_point.contact], closed_point.feature
+        place_any(system, contact, feature, closed_point.point, state, point, data.work)
         tiny = round_off(contact, state)
         if contact.touches == 1:
             tiny = 4.0 * round_off_of_both(contact, state)

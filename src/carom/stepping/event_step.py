@@ -28,11 +28,11 @@ from carom.model.allowance import overdone, smooth_count
 from carom.model.arrays import STOP
 from carom.model.controls import LOCATE
 from carom.model.workspace import FREE
-from carom.persistent.active_set import is_active
+from carom.persistent.active_set import place_of
 from carom.persistent.bounces import horizon_of
-from carom.persistent.lifecycle import activate_contact
 from carom.persistent.margins import switch_due
 from carom.persistent.modes import jam_point, turn_modes
+from carom.persistent.several_points import activate_contact
 from carom.persistent.step_control import goes_wild, next_pace, unsolved
 from carom.persistent.thresholds import CUT_RESIDUAL, STOP_RESIDUAL
 from carom.status import NO_CONVERGENCE, NOT_FINITE
@@ -247,7 +247,7 @@ def check_pair(system, controls, active, c, now, work) -> int:
             rate = touch_rate(contact, touch, now)
             if rate < -still:
                 return STRIKE
-            if rate <= still and not is_active(system, active, c, touch, now):
+            if rate <= still and place_of(system, active, c, touch, now) < 0:
                 action = PERSIST
     return action
 
