@@ -11,10 +11,10 @@ from carom.contact.gap import slow
 from carom.contact.groups import label_groups
 from carom.contact.level import related
 from carom.contact.pair_point import find_touches, own_point, smaller, touch_rate
-from carom.contact.place import place_any
 from carom.contact.place_of_other import on_half_space
 from carom.contact.rim import same_point
 from carom.contact.thresholds import REACH
+from carom.kinematics.contact_point import place
 from carom.model.actions import MODE_OPEN, MODE_STICK
 from carom.model.event_rows import begin_event, end_event
 from carom.model.parts_of_system import has_solids
@@ -46,17 +46,16 @@ def clear(active_point):
 
 
 @kernel
-def activate(system, data, closed_point, mode):
-    """Add a closed point to the active set; return its index."""
+def activate(system, data, closed_point):
+    """Add a closed point to the active set, where it sticks at first; return its index."""
     active = data.active
     i = active.count[0]
     active.count[0] = i + 1
     active_point, contact = active.points[i], system.contacts[closed_point.contact]
-    begin_point(active_point, contact, closed_point.contact, closed_point.feature, mode)
+    begin_point(active_point, contact, closed_point.contact, closed_point.feature, MODE_STICK)
     active_point.several = 0
     for k in range(3):
         active_point.point[k] = closed_point.point[k]
-    set_anchor(system, active_point, data.state, data.work)
     if contact.touches == 0:
         active.carries[closed_point.feature] = 1
     active.contact_states[closed_point.contact].leaving = 0
@@ -65,17 +64,11 @@ def activate(system, data, closed_point, mode):
 
 @kernel
 def set_anchor(system, active_point, state, work):
-    """Store the present position of a point, at which it stays while it sticks."""
+    """Store the present position of a vertex, at which it stays while it sticks."""
+    if active_point.touches != 0:
+        return
     point, x = work.placed[0], state[active_point.body].x
-    place_any(
-        system,
-        system.contacts[active_point.contact],
-        active_point.feature,
-        active_point.point,
-        state,
-        point,
-        work,
-    )
+    place(system.contacts[active_point.contact], active_point.point, state, point)
     for k in range(3):
         active_point.anchor[k] = x[k] + point.arm_a[k]
 
@@ -105,12 +98,6 @@ def switch(system, data, i, mode):
         deactivate(active, i)
     kind = OPENS if mode == MODE_OPEN else STICKS if mode == MODE_STICK else SLIPS
     end_event(system, c, kind, state, clock, records)
-
-
-@kernel
-def any_turning(contact):
-    """Return whether a contact has rolling or pivoting friction."""
-    return contact.turning[0] > 0.0 or contact.turning[1] > 0.0
 
 
 @kernel

@@ -24,7 +24,6 @@ from carom.dynamics.elements import driven_power
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER, SUM_ERROR
 from carom.impact.workspace import RETURN, C, U
-from carom.persistent.active_set import any_turning
 from carom.persistent.margins import time_to_stop
 from carom.persistent.return_to_surfaces import factor_given, give, greatest_speed, solve_rows
 from carom.persistent.settle import add_product, greatest
@@ -82,7 +81,8 @@ def name_work(normal, tangential, clock, step):
 @kernel
 def time_without_torque(contact, rate, g, state):
     """Return the time of bounces that are left out, in which rolling and pivoting friction do not act."""
-    bounces = any_turning(contact) and rate > slow(contact, state)
+    turning = max(contact.turning[0], contact.turning[1]) > 0.0
+    bounces = turning and rate > slow(contact, state)
     return time_of_bounces(contact, rate, g) if bounces else 0.0
 
 

@@ -71,16 +71,15 @@ def step_group(model, data, method, label, h):
         result.applied = had + h * method.b[0] * applied
         result.friction = rubbed + h * method.b[0] * friction
         k = explicit_member(model, data, method, label, h)
-        last = method.b.size - (1 if stages_within(method) < method.b.size else 0)
-        if k > 0 and land(model, data, label, k) and review(model, data, label, last, h, True):
+        s = stages_within(method)
+        if k > 0 and land(model, data, label, k) and review(model, data, label, s, h, True):
             note_errors(model, data, method.E, label, k, h)
             note_unnamed(model, data, label, result.friction - rubbed)
             return
         result.stiff = 1
     if not (order > 0 and 0.5 * h * h * push <= closing_size(model, data, label)):
         first_modes(data, label)
-        stages = method.stiff.shape[0]
-        weight = method.stiff[stages - 1, 0]
+        weight = method.stiff[method.stiff.shape[0] - 1, 0]
         result.applied, result.friction = had + h * weight * applied, rubbed + h * weight * friction
         if end_implicitly(model, data, method.stiff, label, h, False):
             note_errors(model, data, method.stiff_E, label, 0, h)

@@ -23,7 +23,7 @@ from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.jam import jams_among
 from carom.persistent.joint_rows import JOINT, place_coordinate, radius_of
 from carom.persistent.margins import greatest_push, set_margins, take_forces, time_to_stop
-from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
+from carom.persistent.return_to_surfaces import greatest_speed, onto_surfaces, onto_tangents
 from carom.persistent.rows import (
     accelerate_freely,
     bodies_of,
@@ -41,13 +41,8 @@ from carom.persistent.thresholds import FEW_REST, FRICTION_LIMIT
 @unit
 def land(model, data, label, k) -> bool:
     """Bring bodies back to joints and surfaces, velocities to the tangents; return whether the joints close."""
-    system, group, work, (count, loaded) = (
-        model.system,
-        data.group,
-        data.work,
-        bodies_of(model, data, label),
-    )
-    end = work.trial
+    system, group, work, end = model.system, data.group, data.work, data.work.trial
+    count, loaded = bodies_of(model, data, label)
     if loaded and not (project_position(system, end, True, 1e-14, work) <= RESOLUTION):
         return False
     show(count, end, group, work)
@@ -57,7 +52,6 @@ def land(model, data, label, k) -> bool:
     if loaded:
         project_velocity(system, end, False, work)
     show(count, end, group, work)
-    place_closed(system, k, end, group, group.points[0], work)
     for i in range(k):
         if group.closed[i].turns == JOINT:
             one = system.relations.frictions[group.closed[i].active]
@@ -129,12 +123,8 @@ def review(model, data, label, s, h, given) -> bool:
     sticks must be within its cones, or slip begins at an event that is located.
     """
     system, active = model.system, data.active
-    end, group, work, (count, loaded) = (
-        data.work.trial,
-        data.group,
-        data.work,
-        bodies_of(model, data, label),
-    )
+    end, group, work = data.work.trial, data.group, data.work
+    count, loaded = bodies_of(model, data, label)
     for m in range(count):
         note_velocity(work.stage[group.member[m]], work.stages[s, group.member[m]])
     accelerate_freely(model, data, loaded, count, s)
@@ -189,8 +179,7 @@ def review(model, data, label, s, h, given) -> bool:
 def solve_end(model, data, label, k, s, h):
     """Write the forces at the end of a step of length h; return whether its modes last, and there are any.
 
-    Stage s has the accelerations before modes change, those that the estimate
-    of the error needs.
+    Stage s has the accelerations before modes change, those that the estimate of the error needs.
     """
     group, work, (count, loaded) = data.group, data.work, bodies_of(model, data, label)
     solved = solve_springs(k, group)
@@ -331,19 +320,14 @@ def come_to_rest(system, data, tolerance, count):
 
     Return whether they were at rest at the start too; then they also have not moved.
     """
-    start, end, group, speed, before = data.state, data.work.trial, data.group, 0.0, 0.0
-    for m in range(count):
-        b = group.member[m]
-        size = system.bodies[b].extent
-        for r in range(3):
-            speed = max(speed, max(abs(end[b].v[r]), size * abs(end[b].w[r])))
-            before = max(before, max(abs(start[b].v[r]), abs(start[b].w[r])))
-    if not speed <= tolerance:
+    start, end, member = data.state, data.work.trial, data.group.member
+    if not greatest_speed(system, end, count, member) <= tolerance:
         return False
+    rested = greatest_speed(system, start, count, member) == 0.0
     for m in range(count):
-        b = group.member[m]
-        if before == 0.0:
+        b = member[m]
+        if rested:
             copy_state(start[b], end[b])
         for r in range(3):
             end[b].v[r], end[b].w[r] = 0.0, 0.0
-    return before == 0.0
+    return rested

@@ -5,32 +5,25 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.model.actions import MODE_OPEN, NOTHING
 from carom.persistent.active_set import refresh_pairs, regroup, switch
-from carom.persistent.events import jam_margin
-from carom.persistent.jam import note_jam, presses
+from carom.persistent.jam import jam_margin, note_jam
+from carom.persistent.rows import bodies_of
 from carom.persistent.thresholds import JAM_MARGIN
 
 
 @kernel
 def jam_point(model, data, i):
-    """Handle a jam of an active point: it presses, and an impact follows; or it opens. Return the action."""
+    """Handle a jam of an active point: it presses (a_n = -k N < 0), and an impact follows; or it opens.
+
+    Return the action.
+    """
     system, active, active_point = model.system, data.active, data.active.points[i]
     k = jam_margin(system, active_point) + JAM_MARGIN * active_point.W[0, 0]
-    if presses(active_point, k):
+    if active_point.force[0] * k > 0.0:
         note_jam(active, active_point)
         return NOTHING
     switch(system, data, i, MODE_OPEN)
     regroup(system, active, data.work)
     return NOTHING
-
-
-@kernel
-def only_free(system, body, work):
-    """Return whether only gravity and contacts act on the bodies of a group, so that it rests as a whole."""
-    label = work.body[body].label
-    for b in range(work.body.shape[0]):
-        if work.body[b].label == label and system.bodies[b].ballistic == 0:
-            return False
-    return True
 
 
 @kernel
@@ -43,8 +36,11 @@ def turn_modes(model, data):
         active_point = active.points[i]
         if active_point.rest == 1:
             continue
-        if active_point.comes_to_rest == 1 and only_free(system, active_point.body, work):
-            active_point.rest = 1
+        if (
+            active_point.comes_to_rest == 1
+        ):  # a group on which only gravity and contacts act rests as a whole
+            _, loaded = bodies_of(model, data, work.body[active_point.body].label)
+            active_point.rest = 0 if loaded else 1
         if active_point.jams == 1:
             note_jam(active, active_point)
         if active_point.next == active_point.mode:

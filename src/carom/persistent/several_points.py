@@ -8,8 +8,6 @@ that with all points closed that do not leave.
 
 from __future__ import annotations
 
-import math
-
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.closed_points import gather_closed
@@ -17,17 +15,16 @@ from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.dynamics.contact_impulse import alone
 from carom.dynamics.energy import energies
-from carom.dynamics.explicit import copy_state
 from carom.dynamics.several_points import inverse_masses
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import RESOLUTION
 from carom.impact.thresholds import VELOCITY_LEFT
 from carom.impact.workspace import ACCELERATIONS, C, P, U
 from carom.kinematics.contact_point import contact_velocity
-from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
+from carom.model.actions import MODE_OPEN, MODE_STICK
 from carom.model.event_rows import begin_event, end_event
 from carom.model.records import PERSISTS
-from carom.persistent.active_set import activate, regroup, set_anchor, switch
+from carom.persistent.active_set import activate, regroup, set_anchor, switch, unite_loaded
 from carom.persistent.bounces import (
     bounces_end,
     end_bounces,
@@ -43,9 +40,9 @@ from carom.persistent.joint_rows import JOINT, add_frictions
 from carom.persistent.margins import take_forces
 from carom.persistent.points import weigh
 from carom.persistent.return_to_surfaces import onto_surfaces
-from carom.persistent.rows import accelerate_freely, bodies_of, slip_of, write_motion
+from carom.persistent.rows import slip_of, write_motion
 from carom.persistent.settle import greatest
-from carom.persistent.start import first_stage
+from carom.persistent.start import accelerate_start, first_stage
 from carom.status import TOO_MANY_POINTS
 
 
@@ -57,6 +54,7 @@ def activate_contact(model, data, c, horizon):
     contact, hit = system.contacts[c], work.hit[0]
     hit.code = 0
     k = gather_closed(system, controls, active, c, state, group, work, False)
+    unite_loaded(system, work)
     label = work.body[contact.body].label
     for i in range(active.count[0]):
         active_point = active.points[i]
@@ -98,7 +96,7 @@ def activate_several(model, data, k, label, horizon):
         begin_event(system, closed_point.contact, closed_point.feature, state, clock, records)
     if stay:
         end_bounces(model, data, k, label, horizon)
-        set_modes(model, data, k)
+        activate_new(model, data, k, new >= 0)
     deactivate_open(model, data, k, label)
     mark_approaching(system, active, k, state, group)
     if stay:
@@ -108,13 +106,10 @@ def activate_several(model, data, k, label, horizon):
 @kernel
 def pose_forces(model, data, k, label):
     """Write u, c = du/dt without contact forces, and the direction of slip, of the k points of the group."""
-    system, controls, state = model.system, model.controls, data.state
-    group, work, last = data.group, data.work, data.work.stages.shape[0] - 1
-    for b in range(state.shape[0]):
-        copy_state(state[b], work.stage[b])
-    count, loaded = bodies_of(model, data, label)
-    accelerate_freely(model, data, loaded, count, last)
-    write_motion(system, k, state, work.stages[last], group, work)
+    system, controls, group, work = model.system, model.controls, data.group, data.work
+    work.result[0].start = data.clocks[0].now
+    accelerate_start(model, data, label)
+    write_motion(system, k, data.state, work.stages[0], group, work)
     still = controls.rest * greatest(3 * k, group.v[C]) * controls.step
     for i in range(k):
         d1, d2, _ = slip_of(system, data, i, still)
@@ -132,11 +127,9 @@ def judge(model, data, k, rows, horizon):
     """
     system, state, group = model.system, data.state, data.group
     for i in range(k):
-        contact, u = system.contacts[group.closed[i].contact], group.v[U][3 * i]
-        group.closed[i].stays, group.closed[i].bounces = (
-            1 if abs(u) <= slow(contact, state) else 0,
-            0.0,
-        )
+        closed_point = group.closed[i]
+        leaves = abs(group.v[U][3 * i]) > slow(system.contacts[closed_point.contact], state)
+        closed_point.stays, closed_point.bounces = 0 if leaves else 1, 0.0
     push = greatest(3 * k, group.v[C])
     for turn in range(k + 1):
         solve_among(system, k, rows, group)
@@ -197,47 +190,26 @@ def leave_unreachable(system, state, k, group):
 
 
 @kernel
-def mode_of(system, i, state, group):
-    """Return whether point i slips or sticks after its bounces were removed."""
-    _, u1, u2 = contact_velocity(group.points[0][i], state)
-    # as `pose_forces` has found with the velocities before
-    still = 10.0 * slow(system.contacts[group.closed[i].contact], state)
-    slips = math.sqrt(u1 * u1 + u2 * u2) > still and group.kind[i] == SLIDING
-    return MODE_SLIP if slips else MODE_STICK
-
-
-@kernel
-def set_modes(model, data, k):
-    """Activate the new points, with an event for each (the first is begun already); set modes of the others."""
-    system = model.system
-    active, state, group, work = data.active, data.state, data.group, data.work
+def activate_new(model, data, k, begun):
+    """Activate the points that stay and are not active, with an event for each; the first may have `begun`."""
+    system, state, group = model.system, data.state, data.group
     clock, records = data.clocks[0], data.records
-    begun, before = True, active.count[0]
-    for i in range(k):
-        closed_point = group.closed[i]
-        if closed_point.stays == 0 or closed_point.active >= 0:
-            continue
-        if not begun:
-            begin_event(system, closed_point.contact, closed_point.feature, state, clock, records)
-        begun = False
-        mode = mode_of(system, i, state, group)
-        closed_point.active = activate(system, data, closed_point, mode)
-        clock.holds += 1
-        records.event[clock.event].mode = mode
-        end_event(system, closed_point.contact, PERSISTS, state, clock, records)
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.stays == 0:
             continue
+        if closed_point.active < 0:
+            if not begun:
+                begin_event(
+                    system, closed_point.contact, closed_point.feature, state, clock, records
+                )
+            begun = False
+            closed_point.active = activate(system, data, closed_point)
+            clock.holds += 1
+            records.event[clock.event].mode = MODE_STICK
+            end_event(system, closed_point.contact, PERSISTS, state, clock, records)
         if closed_point.bounces > model.controls.rest * model.controls.step:
-            active.points[closed_point.active].bounces = closed_point.bounces
-        if closed_point.active >= before:
-            continue
-        active_point, mode = active.points[closed_point.active], mode_of(system, i, state, group)
-        if mode == MODE_STICK:  # from where it has slid to, before the impact
-            set_anchor(system, active_point, state, work)
-        if active_point.mode != mode:
-            switch(system, data, closed_point.active, mode)
+            data.active.points[closed_point.active].bounces = closed_point.bounces
 
 
 @kernel
@@ -245,7 +217,6 @@ def first_forces(model, data, label):
     """Store the forces of all active points of the group, and the modes that they ask for."""
     system, active, group = model.system, data.active, data.group
     work, clock, records = data.work, data.clocks[0], data.records
-    work.result[0].start = clock.now
     k, _, _, _, found = first_stage(model, data, label)
     for i in range(k):
         closed_point = group.closed[i]
@@ -255,10 +226,14 @@ def first_forces(model, data, label):
         take_forces(active_point, i, group)
         if jams_among(i, found, group) == 1:
             note_jam(active, active_point)
-        if closed_point.turns == 0 and active_point.next != active_point.mode:
-            active_point.mode = active_point.next
-            if not correct_mode(system, closed_point, active_point.mode, clock, records):
-                switch(system, data, closed_point.active, active_point.mode)
+        if closed_point.turns > 0:
+            continue
+        mode, before = active_point.next, active_point.mode
+        active_point.mode = mode
+        if mode != before and not correct_mode(system, closed_point, mode, clock, records):
+            switch(system, data, closed_point.active, mode)
+        elif mode == MODE_STICK:  # from where it has slid to, before the impact
+            set_anchor(system, active_point, data.state, work)
     add_forces_of_corners(active, k, group)
     lay_down(model, data, k, label)
 

@@ -49,12 +49,11 @@ def solve_springs(k, group) -> bool:
     C has the accelerations without forces; `kind` says which points slide along `heading`, `loaded` which
     press at first.
     """
-    closed, push = group.closed, greatest(3 * k, group.v[C])
-    for i in range(k):
-        closed[i].rows = rows_of(k, i, group)
+    push, rounds = greatest(3 * k, group.v[C]), 0
     soften(k, group)
-    rounds = 0
     for turn in range(3 * k + 4):
+        for i in range(k):
+            group.closed[i].rows = rows_of(k, i, group)
         n = factor_rows(k, group)
         changed = first_forces(k, n, turn, push, group)
         if changed < 0:
@@ -63,8 +62,6 @@ def solve_springs(k, group) -> bool:
             rounds += 1
             if rounds > SHARES or not grip(k, group):
                 return True
-        for i in range(k):
-            closed[i].rows = rows_of(k, i, group)
     return False
 
 

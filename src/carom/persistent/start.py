@@ -40,25 +40,32 @@ def first_modes(data, label):
 
 
 @kernel
+def accelerate_start(model, data, label):
+    """Write the state at the start of a step to `work.stage`, and as stage 0 accelerations without rows.
+
+    Return the number of bodies of the group, whether they are joined or loaded, and the power of loads.
+    """
+    start, group, work = data.state, data.group, data.work
+    for b in range(start.shape[0]):
+        copy_state(start[b], work.stage[b])
+    count, loaded = bodies_of(model, data, label)
+    for m in range(count):
+        note_velocity(work.stage[group.member[m]], work.stages[0, group.member[m]])
+    work.result[0].time = work.result[0].start
+    return count, loaded, accelerate_freely(model, data, loaded, count, 0)
+
+
+@kernel
 def first_stage(model, data, label):
     """Write the accelerations of a group at the start of a step as stage 0, and the ways of its points.
 
     Return the number of points, the greatest rate at which friction turns a slip, the greatest acceleration by
     friction, its power, and whether the contact problem has a solution. The power of loads is in `work.result`.
     """
-    start, group, work, system = data.state, data.group, data.work, model.system
-    result, controls, (count, loaded) = (
-        work.result[0],
-        model.controls,
-        bodies_of(model, data, label),
-    )
-    for b in range(start.shape[0]):
-        copy_state(start[b], work.stage[b])
-    for m in range(count):
-        note_velocity(work.stage[group.member[m]], work.stages[0, group.member[m]])
+    group, work, system = data.group, data.work, model.system
+    result, controls = work.result[0], model.controls
+    count, loaded, power = accelerate_start(model, data, label)
     first_modes(data, label)
-    result.time = result.start
-    power = accelerate_freely(model, data, loaded, count, 0)
     k = write_rows(model, data, label, 0)
     push = greatest(3 * k, group.v[C])
     known = True
@@ -103,12 +110,8 @@ def note_break_away(system, data, k, push):
 @kernel
 def note_way(model, data, i, still):
     """Store the way of the slip of a point at the start of a step; return whether it is known, if it slips."""
-    system, group, active, closed_point = (
-        model.system,
-        data.group,
-        data.active,
-        data.group.closed[i],
-    )
+    system, group, active = model.system, data.group, data.active
+    closed_point = group.closed[i]
     d1, d2, speed = slip_of(system, data, i, still)
     if closed_point.turns == JOINT:
         keep_way(system, active, closed_point, d1, d2, speed)

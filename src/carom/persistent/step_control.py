@@ -67,11 +67,8 @@ def turns_far(active, start, end, dt):
     """Return whether a body with an active point turns too far in a step."""
     for i in range(active.count[0]):
         active_point = active.points[i]
-        if (
-            active_point.rest == 0
-            and not dt * max(norm(start[active_point.body].w), norm(end[active_point.body].w))
-            <= SAFE_ROTATION
-        ):
+        spin = max(norm(start[active_point.body].w), norm(end[active_point.body].w))
+        if active_point.rest == 0 and not dt * spin <= SAFE_ROTATION:
             return True
     return False
 
