@@ -81,7 +81,7 @@ def activate_several(model, data, k, label, horizon):
     judge(model, data, k, rows, horizon)
     if leave_unreachable(system, state, k, group):
         solve_among(system, k, rows, group)
-    new, stay = -1, False
+    new, stay, first = -1, False, clock.event
     for i in range(k):
         closed_point = group.closed[i]
         stay = stay or closed_point.stays == 1
@@ -100,7 +100,7 @@ def activate_several(model, data, k, label, horizon):
     deactivate_open(model, data, k, label)
     mark_approaching(system, active, k, state, group)
     if stay:
-        first_forces(model, data, label)
+        first_forces(model, data, label, first)
 
 
 @kernel
@@ -213,10 +213,12 @@ def activate_new(model, data, k, begun):
 
 
 @kernel
-def first_forces(model, data, label):
-    """Store the forces of all active points of the group, and the modes that they ask for."""
+def first_forces(model, data, label, first):
+    """Store the forces of all active points of the group, and the modes that they ask for.
+
+    A point that has just become active, by an event from `first` on, begins in its mode.
+    """
     system, active, group = model.system, data.active, data.group
-    work, clock, records = data.work, data.clocks[0], data.records
     k, _, _, _, found = first_stage(model, data, label)
     for i in range(k):
         closed_point = group.closed[i]
@@ -230,21 +232,19 @@ def first_forces(model, data, label):
             continue
         mode, before = active_point.next, active_point.mode
         active_point.mode = mode
-        if mode != before and not correct_mode(system, closed_point, mode, clock, records):
+        if mode != before and not correct_mode(system, data, closed_point, mode, first):
             switch(system, data, closed_point.active, mode)
         elif mode == MODE_STICK:  # from where it has slid to, before the impact
-            set_anchor(system, active_point, data.state, work)
+            set_anchor(system, active_point, data.state, data.work)
     add_forces_of_corners(active, k, group)
     lay_down(model, data, k, label)
 
 
 @kernel
-def correct_mode(system, closed_point, mode, clock, records):
-    """Write the mode of a point that has just become active into its event; return whether there is one."""
-    for i in range(clock.event - 1, -1, -1):
-        event = records.event[i]
-        if event.time < clock.now:
-            break
+def correct_mode(system, data, closed_point, mode, first):
+    """Write the mode of a point into its event from `first` on, if it became active by one; return whether."""
+    for i in range(first, data.clocks[0].event):
+        event = data.records.event[i]
         number = system.contacts[closed_point.contact].number
         same = event.contact == number and event.feature == closed_point.feature
         if same and event.kind == PERSISTS:
