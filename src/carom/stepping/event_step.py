@@ -30,9 +30,9 @@ from carom.model.arrays import STOP
 from carom.model.controls import LOCATE
 from carom.model.workspace import FREE
 from carom.persistent.bounces import horizon_of
-from carom.persistent.lifecycle import activate_contact
 from carom.persistent.margins import switch_due
 from carom.persistent.modes import jam_point, turn_modes
+from carom.persistent.several_points import activate_contact
 from carom.persistent.step_control import goes_wild, next_pace, unsolved
 from carom.persistent.thresholds import CUT_RESIDUAL, STOP_RESIDUAL
 from carom.status import NO_CONVERGENCE, NOT_FINITE
