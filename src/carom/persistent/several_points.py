@@ -5,8 +5,11 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
+from carom.contact.closed_points import apart, concerns
+from carom.contact.depth import least_gap
 from carom.contact.gap import slow
 from carom.contact.groups import members
+from carom.contact.pair_point import smaller
 from carom.dynamics.contact_impulse import alone
 from carom.dynamics.elements import driven_power
 from carom.dynamics.energy import energies
@@ -16,7 +19,8 @@ from carom.geometry.thresholds import REMAINDER, RESOLUTION, SUM_ERROR
 from carom.impact.thresholds import VELOCITY_LEFT
 from carom.impact.workspace import ACCELERATIONS, RETURN, C, P, U
 from carom.kinematics.contact_point import contact_velocity
-from carom.model.actions import MODE_SLIP, MODE_STICK
+from carom.model.actions import MODE_SLIP, MODE_STICK, PUSHED_IN
+from carom.model.arrays import STOP
 from carom.model.event_rows import begin_event, end_event
 from carom.model.records import OPENS, PERSISTS, SLIPS, STICKS
 from carom.persistent.active_set import activate, any_turning, deactivate, set_anchor
@@ -330,7 +334,9 @@ def correct_mode(system, closed_point, mode, clock, records):
 def lay_down(model, data, k, label):
     """Bring the points that press back to the surfaces if they are not on them; name the energy of that.
 
-    A rim that is nearly flat strikes as a flat one (`carom.contact.rim`), with points above the surface.
+    A rim that is nearly flat strikes as a flat one (`carom.contact.rim`), with points above the surface, and
+    so may be the points of a crowd. A contact that this pushes inside is judged next, whether it approaches or
+    not.
     """
     system, active, state = model.system, data.active, data.state
     group, work, clock = data.group, data.work, data.clocks[0]
@@ -343,9 +349,24 @@ def lay_down(model, data, k, label):
         return
     kinetic, potential, _ = energies(system, state, clock.now)
     count = members(work, label, group.member)
+    for c in range(system.contacts.shape[0]):
+        outside = concerns(system.contacts[c], label, work) and not inside(system, c, state, work)
+        active.contact_states[c].seen = 1 if outside else 0
     onto_surfaces(system, active, k, count, state, group, work)
+    for c in range(system.contacts.shape[0]):
+        if active.contact_states[c].seen == 1 and inside(system, c, state, work):
+            active.contact_states[c].near = PUSHED_IN
     after, at_end, _ = energies(system, state, clock.now)
     clock.bounces += after + at_end - kinetic - potential
+
+
+@kernel
+def inside(system, c, state, work):
+    """Return whether the bodies of a contact, which is no stop, penetrate each other."""
+    contact = system.contacts[c]
+    if contact.touches == STOP or apart(system, contact, state, 0.0):
+        return False
+    return least_gap(system, contact, state, work) < -RESOLUTION * smaller(contact)
 
 
 @kernel

@@ -23,7 +23,7 @@ from carom.geometry.rotation import norm
 from carom.impact.strike import strike
 from carom.kinematics.contact_point import contact_velocity
 from carom.model import records as r
-from carom.model.actions import EVENT_GAP, NOTHING, PERSIST, STRIKE
+from carom.model.actions import EVENT_GAP, NOTHING, PERSIST, PUSHED_IN, STRIKE
 from carom.model.allowance import overdone, smooth_count
 from carom.model.arrays import STOP
 from carom.model.controls import LOCATE
@@ -280,6 +280,8 @@ def find_due_contact(system, controls, active, now, work):
             action = check_stop(system, controls, active, contact, c, now, work)
         else:
             action = look_at_vertices(system, controls, active, contact, now)
+        if action == NOTHING and contact_state.near == PUSHED_IN:
+            action = PERSIST
         contact_state.near = 0
         if contact_state.jams == 1:
             contact_state.jams, action = 0, STRIKE
