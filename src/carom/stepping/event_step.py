@@ -200,7 +200,7 @@ def persist(model, data):
         return work.hit[0].code
     if clock.now == 0.0:  # in contact from the start: write it to the first row
         clock.touched = work.step[0].first_touch
-        save_contacts(model.system, data.active, data.state, 0, clock, work, data.records)
+        save_contacts(model, data, 0)
     return 0
 
 

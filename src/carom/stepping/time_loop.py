@@ -150,7 +150,7 @@ def finish_step(model, data, grid):
     if is_saved(grid, clock.step):
         if controls.location == LOCATE:
             watch_depth(system, state, clock.now, data.work, data.watch[0])
-        save(system, data.active, state, clock, data.work, data.records)
+        save(model, data)
     return 0
 
 
