@@ -136,8 +136,8 @@ def test_what_is_refused():
         ValueError, match="material must be given for a body of which some parts have none"
     ):
         block(STEEL, None)
-    with pytest.raises(TypeError, match=r"material of parts\[0\] must be"):
-        Compound([Part(Sphere(1), (0, 0, 0), material="steel")])
+    with pytest.raises(TypeError, match="material must be a Material"):
+        Part(Sphere(1), (0, 0, 0), material="steel")
     scene = block(STEEL, RUBBER)
     scene.set_contact_default()
     floor(scene)

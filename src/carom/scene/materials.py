@@ -29,7 +29,10 @@ COMBINED = ("restitution", "friction", "friction_held", "rolling_friction", "piv
 
 
 def _of_materials(name: str, value) -> tuple[str, ...]:
-    return tuple(checks.choice(name, one, (*COMBINED, "stiffness")) for one in value)
+    return tuple(
+        checks.choice(name, one, (*COMBINED, "stiffness"))
+        for one in checks.listed(name, value, "words")
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -156,7 +159,7 @@ def law_of_parts(law: ContactLaw, first, second, rules: Mapping) -> ContactLaw:
     return ContactLaw(**base | _values(law.of_materials, first, second, rules))
 
 
-def _values(names: Iterable[str], first, second, rules: Mapping) -> dict[str, float]:
+def _values(names: Iterable[str], first, second, rules: Mapping) -> dict[str, Any]:
     """Return some values of the law of two materials."""
     found = {}
     for name in names:

@@ -83,10 +83,11 @@ def body_shape(parts: list[Placed], centre: np.ndarray) -> Shape | None:
         for p in parts
     ]
     if len(moved) == 1:
-        shape, position, turn, _ = moved[0]
-        central = np.linalg.norm(position) <= SAME * shape.size
-        if central and (isinstance(shape, Sphere) or abs(turn @ IDENTITY) >= 1.0 - 1e-15):
-            return shape
+        one = moved[0]
+        central = np.linalg.norm(one.position) <= SAME * one.shape.size
+        straight = abs(one.orientation @ IDENTITY) >= 1.0 - 1e-15
+        if central and (isinstance(one.shape, Sphere) or straight):
+            return one.shape
     return Compound(moved, centroid=(0.0, 0.0, 0.0))
 
 

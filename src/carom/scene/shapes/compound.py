@@ -4,20 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import arguments, checks
-from carom.fields import keep
+from carom import arguments, checks, fields
+from carom.fields import Value, Vector, keep
 from carom.geometry import quaternion
 from carom.geometry.attitude import attitude
 from carom.scene.materials import Material
 from carom.scene.pieces import IDENTITY, Piece, Shape
 
 
-class Part(NamedTuple):
+def _material(name: str, value) -> Material:
+    checks.instance(name, value, (Material,))
+    return value
+
+
+@arguments.known
+@dataclass(frozen=True, eq=False)
+class Part:
     """A part of a `Compound`.
 
     Parameters
@@ -47,9 +54,12 @@ class Part(NamedTuple):
     """
 
     shape: Shape
-    position: ArrayLike
-    orientation: ArrayLike = IDENTITY
-    material: Material | None = None
+    position: Vector = fields.vector(unit="m")
+    orientation: Value[np.ndarray, Any] = Value(attitude, IDENTITY)
+    material: Value[Material | None, Material | None] = Value(_material, None)
+
+    def __post_init__(self):
+        checks.instance("shape", self.shape, (Shape,), "; a shape is needed")
 
 
 @arguments.known
@@ -165,22 +175,22 @@ def _sequence(parts) -> Sequence:
 
 def _part(number: int, part) -> tuple:
     """Return a checked (shape, position, orientation), with the material if there is one."""
+    if isinstance(part, Part):
+        place = part.shape, part.position, part.orientation
+        return place if part.material is None else (*place, part.material)
     name = f"parts[{number}]"
-    if not isinstance(part, Sequence) or isinstance(part, str) or len(part) not in (2, 3, 4):
+    if not isinstance(part, Sequence) or len(part) not in (2, 3):
         raise ValueError(
             f"{name} must be (shape, position), (shape, position, orientation) or a Part, got "
             f"{checks.shown(part)}"
         )
-    shape, position, orientation, material = Part(*part)
+    shape, position, *turn = part
     checks.instance(f"{name}[0]", shape, (Shape,), "; a shape is needed")
     position = checks.finite_array(f"{name}[1]", position, (3,))
-    orientation = attitude(f"{name}[2]", orientation)
+    orientation = attitude(f"{name}[2]", turn[0] if turn else IDENTITY)
     for array in (position, orientation):
         array.setflags(write=False)
-    if material is None:
-        return shape, position, orientation
-    checks.instance(f"material of {name}", material, (Material,))
-    return shape, position, orientation, material
+    return shape, position, orientation
 
 
 def _weights(shapes, volumes, masses) -> np.ndarray:
