@@ -14,7 +14,7 @@ from carom.impact.effective_restitution import count_blow, effective_restitution
 from carom.impact.layout import OK
 from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSettings
 from carom.impact.multiple.resolve import resolve_multiple
-from carom.impact.record import write_share
+from carom.impact.record import note_drive, write_share
 from carom.impact.thresholds import GROUP_SEED
 from carom.impact.workspace import U
 from carom.model.allowance import COUNT_PASSAGES, left
@@ -110,7 +110,9 @@ def strike_several(model, data, c, k):
         if P[3 * i] != 0.0:
             contact = system.contacts[group.closed[i].contact]
             write_share(data, contact, i, k)
-            spread(system, group.points[0][i], state, P[3 * i : 3 * i + 3], work)
+            impulse = P[3 * i : 3 * i + 3]
+            note_drive(system, group.points[0][i], state, impulse, data.clocks[0])
+            spread(system, group.points[0][i], state, impulse, work)
             add_velocity(system, group.points[0][i], work, state)
     most = SUM_ERROR * greatest(3 * k, u)
     for i in range(k):

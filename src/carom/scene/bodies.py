@@ -13,6 +13,13 @@ from carom.fields import Number, Value, Vector, keep
 from carom.geometry.attitude import attitude
 from carom.scene.colors import hex_color
 from carom.scene.materials import Material
+from carom.scene.moving_surfaces import (
+    SurfaceSpin,
+    SurfaceVelocity,
+    check_in_plane,
+    surface_spin,
+    surface_velocity,
+)
 from carom.scene.shapes import SHAPES, Shape
 from carom.scene.values import in_scene
 
@@ -94,6 +101,10 @@ class HalfSpace:
         Material of its surface.
     color : str or None
         Colour ``#rrggbb`` in pages, pictures and films; None: grey.
+    surface_velocity : (3,), callable or None
+        Velocity with which its surface moves in itself [m/s]; see `Scene.add_static`.
+    surface_spin : tuple or None
+        Axis, rate [rad/s] and point, or None for that of the part, about which its surface turns in itself.
     """
 
     index: int
@@ -102,6 +113,11 @@ class HalfSpace:
     normal: Vector = fields.direction()
     material: MaterialOrNone = Value(_material, None)
     color: Color = Value(hex_color, None)
+    surface_velocity: SurfaceVelocity = surface_velocity()
+    surface_spin: SurfaceSpin = surface_spin()
+
+    def __post_init__(self):
+        check_in_plane(self.surface_velocity, self.surface_spin, self.normal)
 
     def __repr__(self) -> str:
         return f"HalfSpace({self.name!r}, point={self.point}, normal={self.normal})"
@@ -126,6 +142,10 @@ class StaticBody:
         Material of its surface.
     color : str or None
         Colour ``#rrggbb`` in pages, pictures and films; None: grey.
+    surface_velocity : (3,), callable or None
+        Velocity with which its surface moves in itself [m/s]; see `Scene.add_static`.
+    surface_spin : tuple or None
+        Axis, rate [rad/s] and point, or None for that of the part, about which its surface turns in itself.
     """
 
     index: int
@@ -135,6 +155,8 @@ class StaticBody:
     orientation: Value[np.ndarray, Any] = Value(attitude)
     material: MaterialOrNone = Value(_material, None)
     color: Color = Value(hex_color, None)
+    surface_velocity: SurfaceVelocity = surface_velocity()
+    surface_spin: SurfaceSpin = surface_spin()
 
     def __post_init__(self):
         checks.instance("shape", self.shape, SHAPES)
