@@ -17,7 +17,7 @@ from carom.model.arrays import CONTACT
 from carom.model.contact_rows import Rows, contact_rows, first_pairs
 from carom.model.cores import Cores, new_cores, singly, swollen_alike
 from carom.model.level_surfaces import find_levels, with_level_rows
-from carom.model.moving_surfaces import moves, write_fields
+from carom.model.moving_surfaces import write_fields
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, meeting
 from carom.scene.contacts import IMPACT_LAWS
@@ -57,7 +57,7 @@ def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool =
     """
     known, later = first_pairs(scene, apart)
     many = later is not None or len(known.body) > FEW_CONTACTS
-    own = scene.statics or any(map(moves, scene.half_spaces)) or any(law.of_materials for law in known.laws)
+    own = scene.statics or any(plane.moves for plane in scene.half_spaces) or any(law.of_materials for law in known.laws)
     if many or own or not scene.gravity.any():  # without gravity, speeds count too
         return _contacts(scene, known, later, to_principal, options)
     # contacts of scenes that differ in their motion, as in many throws, are copies of each other

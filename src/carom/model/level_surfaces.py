@@ -107,7 +107,7 @@ def _laws_of_statics(scene: Scene, pairs: PairTable) -> list[tuple[tuple, tuple]
                 (
                     body, one.friction, one.friction_held, one.restitution, one.stiffness, one.rolling_friction,
                     one.pivoting_friction, str(one.impact_law), str(one.multiple),
-                    other if moves(scene.statics[other - count]) else -1,
+                    other if scene.statics[other - count].moves else -1,
                 )
             )  # fmt: skip
     return [(tuple(sorted(bodies)), tuple(sorted(laws))) for bodies, laws in found]

@@ -16,13 +16,8 @@ from carom.scene.scene import Scene
 Part = HalfSpace | StaticBody
 
 
-def moves(part: Part) -> bool:
-    """Return whether the surface of a part moves in itself."""
-    return part.surface_velocity is not None or part.surface_spin is not None
-
-
 def _parts(scene: Scene) -> list[Part]:
-    return [part for part in (*scene.half_spaces, *scene.statics) if moves(part)]
+    return [part for part in (*scene.half_spaces, *scene.statics) if part.moves]
 
 
 def _axis(part: Part) -> tuple[np.ndarray, object, np.ndarray]:

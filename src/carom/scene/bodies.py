@@ -17,6 +17,7 @@ from carom.scene.moving_surfaces import (
     SurfaceSpin,
     SurfaceVelocity,
     check_in_plane,
+    motion_in_words,
     surface_spin,
     surface_velocity,
 )
@@ -120,7 +121,13 @@ class HalfSpace:
         check_in_plane(self.surface_velocity, self.surface_spin, self.normal)
 
     def __repr__(self) -> str:
-        return f"HalfSpace({self.name!r}, point={self.point}, normal={self.normal})"
+        at = f"point={self.point}, normal={self.normal}"
+        return f"HalfSpace({self.name!r}, {at}{motion_in_words(self)})"
+
+    @property
+    def moves(self) -> bool:
+        """Whether its surface moves in itself."""
+        return self.surface_velocity is not None or self.surface_spin is not None
 
 
 @in_scene
@@ -164,7 +171,13 @@ class StaticBody:
         keep(self, material=whole_material(self.shape, self.material))
 
     def __repr__(self) -> str:
-        return f"StaticBody({self.name!r}, {self.shape!r}, position={self.position})"
+        at = f"{self.shape!r}, position={self.position}"
+        return f"StaticBody({self.name!r}, {at}{motion_in_words(self)})"
+
+    @property
+    def moves(self) -> bool:
+        """Whether its surface moves in itself."""
+        return self.surface_velocity is not None or self.surface_spin is not None
 
 
 def whole_material(shape: Shape, material: Material | None) -> Material | None:

@@ -62,6 +62,16 @@ def is_timed(part: Any) -> bool:
     return callable(part.surface_velocity) or (spin is not None and callable(spin[1]))
 
 
+def motion_in_words(part: Any) -> str:
+    """Return how a surface moves in itself, for the text of its part; nothing if it does not."""
+    velocity, spin = part.surface_velocity, part.surface_spin
+    text = "" if velocity is None else f", surface_velocity={checks.shown(velocity)}"
+    if spin is not None:
+        rate = spin[1] if isinstance(spin[1], float) else checks.shown(spin[1])
+        text += f", surface_spin=({checks.shown(spin[0])}, {rate})"
+    return text
+
+
 def check_in_plane(velocity, spin: Spin | None, normal: np.ndarray) -> None:
     """Refuse a motion of a plane that is not in the plane.
 

@@ -37,7 +37,7 @@ def write_glb(show: Show, path: Path, speed: float) -> None:
         for b, colour in zip(part.bodies, colours_of(part, show.solution.scene)):
             drawn = tuple((*piece, file.material(rgb(colour), pale)) for piece, pale in pieces)
             if b < 0:
-                name = next(statics).name
+                name = getattr(next(statics, None), "name", "arrow")
                 file.node(name, root, file.mesh(name, drawn))
             else:
                 looks.setdefault(b, []).extend(drawn)
