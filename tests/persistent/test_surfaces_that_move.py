@@ -15,7 +15,7 @@ def on_belt(shape, mu, e=0.0, *, height=0.0, velocity=(0, 0, 0), spin=(0, 0, 0),
     """Return a scene of one body on or above the plane z = 0, which moves in itself."""
     scene = carom.Scene()
     belt = scene.add_half_space((0, 0, 0), (0, 0, 1), name="belt", **motion)
-    low = shape.radius if isinstance(shape, carom.Sphere) else shape.size[2] / 2 if False else 0.025
+    low = shape.radius if isinstance(shape, carom.Sphere) else shape.lz / 2
     body = scene.add_body(
         shape, mass=2.0, position=(0, 0, low + height), velocity=velocity, angular_velocity=spin,
         name="body",

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from carom.results.state import SystemState
     from carom.run import Run
     from carom.scene.all_pairs import PairTable
+    from carom.scene.bodies import HalfSpace, StaticBody
     from carom.scene.scene import Scene
 
 SIDES = ("right", "left")
