@@ -40,7 +40,9 @@ def surfaces(scene: carom.Scene, kind: str, speed: float, rng) -> None:
     if kind == "belt":
         scene.add_half_space((0, 0, 0), (0, 0, 1), surface_velocity=along)
     elif kind == "turntable":
-        scene.add_half_space((0, 0, 0), (0, 0, 1), surface_spin=((0, 0, 1), 3.0 * speed, (0.1, 0, 0)))
+        scene.add_half_space(
+            (0, 0, 0), (0, 0, 1), surface_spin=((0, 0, 1), 3.0 * speed, (0.1, 0, 0))
+        )
     elif kind == "shaken belt":
         w = rng.uniform(5.0, 30.0)
         scene.add_half_space(

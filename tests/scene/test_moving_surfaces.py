@@ -15,7 +15,10 @@ def belts():
     belt = scene.add_half_space((0, 0, 0), (0, 0, 1), surface_velocity=(1, 0, 0), name="belt")
     block = scene.add_body(carom.Box(0.1, 0.1, 0.02), mass=1.0, position=(0, 0, 0.01), name="block")
     scene.add_static(
-        carom.Cylinder(0.1, 0.2), position=(2, 0, 0.1), surface_spin=((0, 1, 0), 3.0, (2, 0, 0)), name="roller"
+        carom.Cylinder(0.1, 0.2),
+        position=(2, 0, 0.1),
+        surface_spin=((0, 1, 0), 3.0, (2, 0, 0)),
+        name="roller",
     )
     scene.add_contact(block, belt, friction=0.5, restitution=0.0)
     return scene
@@ -48,10 +51,12 @@ def test_a_function_that_leaves_the_plane_is_refused():
 
 def test_text_copies_and_changes():
     scene = belts()
-    assert "surface_velocity=[1. 0. 0.]" in repr(scene["belt"]) and "surface_spin" in str(scene)
+    assert "surface_velocity=[1. 0. 0.]" in repr(scene["belt"])
+    assert "surface_spin" in str(scene)
     other = scene.copy()
     other.replace("belt", surface_velocity=(2, 0, 0))
-    assert scene["belt"].surface_velocity[0] == 1.0 and other["belt"].surface_velocity[0] == 2.0
+    assert scene["belt"].surface_velocity[0] == 1.0
+    assert other["belt"].surface_velocity[0] == 2.0
     assert not other.replace("belt", surface_velocity=None).moves
 
 
@@ -74,10 +79,16 @@ def turning(t):
 
 def test_ensembles_vary_it_by_name():
     runs = carom.ensemble(
-        belts(), 0.1, step=0.01, vary={"belt.surface_velocity.x": [0.0, 1.0, -1.0]}, executor="serial"
+        belts(),
+        0.1,
+        step=0.01,
+        vary={"belt.surface_velocity.x": [0.0, 1.0, -1.0]},
+        executor="serial",
     )
     x = runs.position[:, 0, 0]
-    assert x[0] == 0.0 and x[1] == pytest.approx(0.5 * 0.5 * 9.81 * 0.01) and x[2] == pytest.approx(-x[1])
+    assert x[0] == 0.0
+    assert x[1] == pytest.approx(0.5 * 0.5 * 9.81 * 0.01)
+    assert x[2] == pytest.approx(-x[1])
 
 
 def test_arrows_lie_on_the_surfaces():
@@ -85,7 +96,8 @@ def test_arrows_lie_on_the_surfaces():
     assert len(parts) == 5  # one on the belt, four on the roller
     assert np.min(parts[0].vertices[:, 2]) == 0.0
     tip = parts[0].vertices[3] - parts[0].vertices.mean(axis=0)
-    assert tip[0] > 0.0 and abs(tip[1]) < 1e-12
+    assert tip[0] > 0.0
+    assert abs(tip[1]) < 1e-12
 
 
 def test_sensitivities_of_moving_planes_are_differences():

@@ -101,7 +101,7 @@ def any_turns(k, points):
 
 @kernel
 def on_drive(k, points):
-    """Return whether one of k points touches a surface that moves in itself: its drive works on bodies at rest."""
+    """Return whether one of k points is on a surface with a drive, which works on bodies at rest too."""
     for i in range(k):
         if points[i].moves == 1:
             return True

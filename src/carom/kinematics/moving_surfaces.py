@@ -1,8 +1,7 @@
 """Surfaces that move in themselves: their velocity field at a time.
 
-A point p of the surface moves with w_0 + rate axis x (p - x_0), while the solid stays where it is. Contacts, and
-points from them, have w_0 - rate axis x x_0 and rate axis, with the rates of both. (Mathematics page,
-surfaces that move.)
+A point p of the surface moves with w_0 + rate axis x (p - x_0), while the solid stays where it is. Contacts,
+and points from them, have w_0 - rate axis x x_0 and rate axis, with the rates of both.
 """
 
 from __future__ import annotations

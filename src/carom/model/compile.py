@@ -14,8 +14,8 @@ from carom.geometry.frames import triad
 from carom.model import graph, solvers
 from carom.model.arrays import BODY, BUSHING, JOINT, KIND, LOAD, SCREW, SPRING, STATE, System
 from carom.model.contacts import Surfaces, compile_contacts, more_contacts
-from carom.model.moving_surfaces import moving_surfaces
 from carom.model.more_forces import MoreForces, Pieces
+from carom.model.moving_surfaces import moving_surfaces
 from carom.model.placement import Placement
 from carom.model.relations import Coordinates, Elements
 from carom.model.stops import with_stops

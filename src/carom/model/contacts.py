@@ -57,7 +57,11 @@ def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool =
     """
     known, later = first_pairs(scene, apart)
     many = later is not None or len(known.body) > FEW_CONTACTS
-    own = scene.statics or any(plane.moves for plane in scene.half_spaces) or any(law.of_materials for law in known.laws)
+    own = (
+        scene.statics
+        or any(plane.moves for plane in scene.half_spaces)
+        or any(law.of_materials for law in known.laws)
+    )
     if many or own or not scene.gravity.any():  # without gravity, speeds count too
         return _contacts(scene, known, later, to_principal, options)
     # contacts of scenes that differ in their motion, as in many throws, are copies of each other

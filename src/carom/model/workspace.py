@@ -75,7 +75,10 @@ POINT = [
     # joint with friction
     ("turns", "i8"),
     ("length", "f8"),  # that converts an angular velocity to a speed
-    ("moves", "i8"),  # 1 if the surface of the other side moves in itself, as `field` says (`CONTACT`)
+    (
+        "moves",
+        "i8",
+    ),  # 1 if the surface of the other side moves in itself, as `field` says (`CONTACT`)
     ("field", "f8", (4, 3)),
 ]
 

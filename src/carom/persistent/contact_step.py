@@ -74,7 +74,7 @@ def step_group(model, data, method, label, h):
         s = stages_within(method)
         if k > 0 and land(model, data, label, k) and review(model, data, label, s, h, True):
             note_errors(model, data, method.E, label, k, h)
-            note_unnamed(model, data, label, result.friction - rubbed)
+            note_unnamed(model, data, label, result.friction - rubbed + result.applied - had)
             return
         result.stiff = 1
     if not (order > 0 and 0.5 * h * h * push <= closing_size(model, data, label)):
@@ -85,7 +85,7 @@ def step_group(model, data, method, label, h):
             note_errors(model, data, method.stiff_E, label, 0, h)
             if order > 0:
                 result.order = min(order, STIFF_ORDER)
-            note_unnamed(model, data, label, result.friction - rubbed)
+            note_unnamed(model, data, label, result.friction - rubbed + result.applied - had)
             return
     first_modes(data, label)
     result.applied, result.friction = had, rubbed

@@ -38,13 +38,13 @@ def weigh(system, b, start, end):
 
 
 @kernel
-def note_unnamed(model, data, label, friction):
-    """Note the change of energy in a step besides the work of friction, relative to the allowed loss.
+def note_unnamed(model, data, label, named):
+    """Note the change of energy in a step besides the `named` work, relative to the allowed loss.
 
     It is known of bodies on which only gravity acts.
     """
     system, start, end, member = model.system, data.state, data.work.trial, data.group.member
-    (count, loaded), lost, may = bodies_of(model, data, label), friction, 0.0
+    (count, loaded), lost, may = bodies_of(model, data, label), named, 0.0
     if loaded:
         return
     g, result = norm(system.gravity), data.work.result[0]

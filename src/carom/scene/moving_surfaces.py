@@ -16,13 +16,17 @@ IN_PLANE = 1e-9
 
 Velocity = np.ndarray | Callable
 Spin = tuple[np.ndarray, float | Callable, np.ndarray | None]
-GivenSpin = tuple[ArrayLike, float | Callable] | tuple[ArrayLike, float | Callable, ArrayLike | None]
+GivenSpin = (
+    tuple[ArrayLike, float | Callable] | tuple[ArrayLike, float | Callable, ArrayLike | None]
+)
 
 
 def _velocity(name: str, value) -> Velocity:
     if callable(value):
         return value
-    return checks.finite_array(name, value, (3,), "m/s, or a function t -> (velocity, acceleration)")
+    return checks.finite_array(
+        name, value, (3,), "m/s, or a function t -> (velocity, acceleration)"
+    )
 
 
 def _spin(name: str, value) -> Spin:

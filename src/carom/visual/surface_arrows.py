@@ -10,7 +10,9 @@ from carom.visual.surfaces import surface
 COUNT, AROUND = 4, 3  # arrows of a solid; of a plane that turns, about its axis
 LONG, THICK = 0.12, 0.012  # length and thickness, as fractions of the size of the region
 #: side view of an arrow of length 1 from its middle: along it, across it
-OUTLINE = np.array([(-0.5, -1.0), (0.1, -1.0), (0.1, -3.0), (0.5, 0.0), (0.1, 3.0), (0.1, 1.0), (-0.5, 1.0)])
+OUTLINE = np.array(
+    [(-0.5, -1.0), (0.1, -1.0), (0.1, -3.0), (0.5, 0.0), (0.1, 3.0), (0.1, 1.0), (-0.5, 1.0)]
+)
 FLAT = np.array([(0, 1, 5), (0, 5, 6), (2, 3, 4)])
 
 
@@ -29,7 +31,9 @@ def arrows_of(scene, radius: float) -> list[tuple[np.ndarray, np.ndarray]]:
         speed = np.linalg.norm(velocity, axis=1)
         chosen = _apart(points, speed)
         made += [
-            _arrow(points[k], normals[k], velocity[k] / speed[k], radius) for k in chosen if speed[k] > 0.0
+            _arrow(points[k], normals[k], velocity[k] / speed[k], radius)
+            for k in chosen
+            if speed[k] > 0.0
         ]
     return made
 
@@ -53,7 +57,9 @@ def _places(part, radius: float) -> tuple[np.ndarray, np.ndarray]:
 def _velocity(part, points: np.ndarray) -> np.ndarray:
     """Return the velocity of the surface at points at the start."""
     velocity, spin = part.surface_velocity, part.surface_spin
-    v = np.asarray(velocity(0.0)[0] if callable(velocity) else velocity if velocity is not None else (0, 0, 0))
+    v = np.asarray(
+        velocity(0.0)[0] if callable(velocity) else velocity if velocity is not None else (0, 0, 0)
+    )
     moved = np.repeat(np.asarray(v, dtype=float)[None], len(points), axis=0)
     if spin is not None:
         axis, rate, own = spin
@@ -80,5 +86,9 @@ def _arrow(point, normal, along, radius: float) -> tuple[np.ndarray, np.ndarray]
     flat = flat + 0.5 * THICK * radius * OUTLINE[:, 1:] * np.cross(normal, along)
     low, high = point + flat, point + flat + THICK * radius * normal
     n = len(OUTLINE)
-    sides = [t for k in range(n) for t in ((k, (k + 1) % n, n + k), ((k + 1) % n, n + (k + 1) % n, n + k))]
+    sides = [
+        t
+        for k in range(n)
+        for t in ((k, (k + 1) % n, n + k), ((k + 1) % n, n + (k + 1) % n, n + k))
+    ]
     return np.concatenate([low, high]), np.concatenate([FLAT[:, ::-1], FLAT + n, sides])
