@@ -18,6 +18,8 @@ from carom.generalized.step import project
 from carom.generalized.strike import Strike, rows_of
 from carom.impact.laws import NUMBERS
 from carom.model import actions as a
+from carom.persistent.thresholds import MOST_BOUNCES
+from carom.scene.restitution import Restitution
 from carom.status import Status
 
 if TYPE_CHECKING:
@@ -33,7 +35,7 @@ class Contacts:
     def __init__(self, run: GeneralizedRun):
         contacts = run.user.contacts
         self.run, self.seen = run, run.made.work
-        self.restitution = np.array([one.restitution for one in contacts])
+        self.restitution = [one.restitution for one in contacts]
         self.friction = np.array([one.friction for one in contacts])
         self.law = np.array([NUMBERS[one.impact_law] for one in contacts], dtype=np.int64)
         self.events: list[tuple[float, str, int]] = []
@@ -145,8 +147,13 @@ class Contacts:
     def stays(self, c: int, draw: float) -> bool:
         """Return whether the bounces of a contact with the acceleration `draw` end within a step."""
         u, still = float(self.u[c, 0]), self.still[c]
-        e = float(self.strike.restitution(c, self.strike.blows[c]))
-        ends = e < 1.0 and 2.0 * u < draw * (1.0 - e) * self.run.moment(draw)
+        e = float(self.strike.restitution([c], self.strike.blows[c], [u])[0])
+        rest, time = u, 0.0
+        if isinstance(law := self.restitution[c], Restitution) and u > still:
+            for _ in range(MOST_BOUNCES):  # as `carom.persistent.bounces` adds them up
+                time, rest = time + 2.0 * rest / draw, rest * e
+                e = float(law(rest))
+        ends = e < 1.0 and 2.0 * rest < draw * (1.0 - e) * (self.run.moment(draw) - time)
         return -10.0 * still <= u and (u <= still or ends)
 
     def set_active(self, chosen: list[int], closed: list[int]) -> int:

@@ -11,6 +11,7 @@ from carom.impact import layout as o
 from carom.impact.laws import GAINING
 from carom.impact.resolve import resolve
 from carom.impact.thresholds import GROUP_SEED, NO_RESTITUTION
+from carom.scene.restitution import Restitution
 from carom.status import Status
 
 if TYPE_CHECKING:
@@ -54,9 +55,13 @@ class Strike:
         self.blows[closed] = np.where(high, 0, self.blows[closed]) + 1
         self.struck[closed] = self.run.reached
 
-    def restitution(self, c, before):
+    def restitution(self, closed: list[int], before, approach):
         """Return e of contacts after a number of blows in a row; 0 if these have left hardly any speed."""
-        e = self.contacts.restitution[c]
+        given = [self.contacts.restitution[c] for c in closed]
+        e = np.array(
+            [float(one(max(v, 0.0))) if isinstance(one, Restitution) else one
+             for one, v in zip(given, approach)]
+        )  # fmt: skip
         return np.where((e < 1.0) & (e**before <= NO_RESTITUTION), 0.0, e)
 
     def together(self, closed: list[int], jams: int) -> int:
@@ -69,7 +74,7 @@ class Strike:
             i = closed.index(jams)
             u[i, 0] = -GROUP_SEED * np.linalg.norm(u[i, 1:])
         self.count(closed)
-        mu, e = here.friction[closed], self.restitution(closed, self.blows[closed] - 1.0)
+        mu, e = here.friction[closed], self.restitution(closed, self.blows[closed] - 1.0, -u[:, 0])
         code, after, p, works, wedged = self.solve(W, u, mu, e, closed)
         if code != o.OK:
             return Status.IMPACT_FAILED

@@ -139,7 +139,7 @@ def strike_one(model, data, method, c):
         hit.code = BLOCKED
         return
     count_blow(system, controls, contact, active.contact_states[c], -hit.u[0], clock.now)
-    hit.restitution = effective_restitution(contact, active.contact_states[c])
+    hit.restitution = effective_restitution(system, contact, active.contact_states[c], -hit.u[0])
     if collide(method, controls, contact, hit, work.history) != layout.OK:
         hit.code = IMPACT_FAILED
         return

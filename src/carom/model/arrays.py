@@ -235,7 +235,10 @@ CONTACT = [
     ("friction", "f8"),
     ("friction_held", "f8"),
     ("turning", "f8", 2),  # rolling and pivoting friction [m]
-    ("restitution", "f8"),
+    ("restitution", "f8"),  # e; NaN if it is a law of the speed of approach, which has the pieces
+    ("restitution_piece", "i8"),  # range of pieces of e over v^exponent, empty if e is a number
+    ("last_restitution_piece", "i8"),
+    ("restitution_exponent", "f8"),
     ("stiffness", "f8"),  # of its boundary layer, relative to the others
     ("extent", "f8"),  # largest distance of the shape from the mass centre
     ("other_extent", "f8"),

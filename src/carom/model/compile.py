@@ -68,8 +68,8 @@ def compile_scene(
     bodies["axes"] = to_principal
     # stops have the numbers after those of all pairs, so no pair may be added later
     may_come = apart and bool(bodies["ballistic"].any()) and not scene.stops
-    touching = compile_contacts(scene, to_principal, options, may_come)
-    contacts = with_stops(scene, touching.rows, coordinates, sizes, options)
+    touching = compile_contacts(scene, to_principal, options, pieces, may_come)
+    contacts = with_stops(scene, touching.rows, elements, options)
     relations = elements.arrays(solver, more)
     system = System(
         bodies=bodies, gravity=np.array(scene.gravity), joints=joints, relations=relations, springs=springs,

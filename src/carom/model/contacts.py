@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -16,10 +17,11 @@ from carom.model.arrays import CONTACT
 from carom.model.contact_rows import Rows, contact_rows, first_pairs
 from carom.model.cores import Cores, new_cores, singly, swollen_alike
 from carom.model.level_surfaces import find_levels, with_level_rows
+from carom.model.more_forces import RESTITUTION, Pieces
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, meeting
 from carom.scene.contacts import IMPACT_LAWS
-from carom.scene.materials import MULTIPLE
+from carom.scene.materials import MULTIPLE, ContactLaw
 from carom.scene.scene import Scene
 from carom.scene.shapes import Shape
 
@@ -31,6 +33,7 @@ class Surfaces(NamedTuple):
     single: Cores  # piece by piece, against each other
     shared: int  # first vertex of `single`, after those of contacts with half-spaces
     place: np.ndarray  # (N,) first solid of each body
+    laws: np.ndarray  # (L, 11) numbers of the laws of all pairs
 
 
 class Contacts(NamedTuple):
@@ -46,7 +49,9 @@ class Contacts(NamedTuple):
     later: Defaults | None  # pairs of bodies that get rows when they come near each other
 
 
-def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool = False) -> Contacts:
+def compile_contacts(
+    scene: Scene, to_principal, options: Options, pieces: Pieces, apart: bool = False
+) -> Contacts:
     """Return the contacts of a scene.
 
     A contact of two bodies has a row for each pair of pieces. Faces of static bodies in one plane have rows of
@@ -69,7 +74,9 @@ def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool =
     ranges = (which.core[end][flat & ~curved].tolist() for end in ("first", "last"))
     own = [grounded.vertices[first:last] for first, last in zip(*ranges)]
     vertices = np.concatenate([*own, single.vertices])
-    surfaces = Surfaces(grounded, single, len(vertices) - len(single.vertices), place)
+    surfaces = Surfaces(
+        grounded, single, len(vertices) - len(single.vertices), place, _numbers(pairs.laws, pieces)
+    )
     rows = _rows(scene, options, pairs, which, surfaces)
     rows, levels = with_level_rows(rows, *find_levels(scene, pairs, place))
     return Contacts(rows, vertices, solids, hulls, levels, known, surfaces, later)
@@ -120,7 +127,7 @@ def _rows(scene, options: Options, pairs: PairTable, which: Rows, surfaces: Surf
     _write_shapes(rows, which)
     _write_ranges(rows, which, surfaces.shared)
     _write_solids(rows, which, surfaces.place)
-    _write_laws(rows, pairs, which)
+    _write_laws(rows, surfaces.laws[pairs.law[which.number]])
     _write_statics(rows, scene)
     extent = rows["extent"]
     rows["still"] = 1e-14 * _speed(scene, extent)
@@ -219,16 +226,25 @@ def _write_solids(rows: np.recarray, which: Rows, place: np.ndarray) -> None:
     rows["other_solid"] = between * (place[rows["other"]] + which.other["piece"])
 
 
-def _write_laws(rows: np.recarray, pairs: PairTable, which: Rows) -> None:
-    """Write the law of each contact to its rows."""
+#: columns of rows that say by which law their pair strikes, in the order of `_numbers`
+OF_LAW = ("friction", "friction_held", "stiffness", "law", "multiple", *RESTITUTION)
+
+
+def _numbers(laws: Sequence[ContactLaw], pieces: Pieces) -> np.ndarray:
+    """Return the numbers (L, 11) of laws; the curves of their restitution are added to the pieces."""
     numbers = [
         (
-            one.friction, one.friction_held, one.restitution, one.stiffness, one.rolling_friction,
-            one.pivoting_friction, IMPACT_LAWS.index(one.impact_law), MULTIPLE.index(one.multiple),
+            one.friction, one.friction_held, one.stiffness, IMPACT_LAWS.index(one.impact_law),
+            MULTIPLE.index(one.multiple), *pieces.add_restitution(one.restitution),
+            one.rolling_friction, one.pivoting_friction,
         )
-        for one in pairs.laws
+        for one in laws
     ]  # fmt: skip
-    law = np.array(numbers, dtype=float).reshape(-1, 8)[pairs.law[which.number]]
-    for k, name in enumerate(("friction", "friction_held", "restitution", "stiffness")):
+    return np.array(numbers, dtype=float).reshape(-1, len(OF_LAW) + 2)
+
+
+def _write_laws(rows: np.recarray, law: np.ndarray) -> None:
+    """Write the law (C, 11) of each contact to its rows."""
+    for k, name in enumerate(OF_LAW):
         rows[name] = law[:, k]
-    rows["turning"], rows["law"], rows["multiple"] = law[:, 4:6], law[:, 6], law[:, 7]
+    rows["turning"] = law[:, len(OF_LAW) :]

@@ -17,8 +17,13 @@ from carom.scene.more_forces import (
     Law,
     UserForce,
 )
+from carom.scene.restitution import Restitution
 
 DEGREE = 5
+#: columns of a contact that say what its restitution is
+RESTITUTION = (
+    "restitution", "restitution_piece", "last_restitution_piece", "restitution_exponent",
+)  # fmt: skip
 
 
 class Pieces:
@@ -41,6 +46,13 @@ class Pieces:
         first = len(self.rows)
         self.rows = np.concatenate([self.rows, pieces]).view(Columns)
         return first, len(self.rows)
+
+    def add_restitution(self, e: float | Restitution, length: float = 1.0) -> tuple[float, ...]:
+        """Return the values of `RESTITUTION` of a row whose speeds are `length` times those of a law."""
+        if not isinstance(e, Restitution):
+            return e, 0, 0, 0.0
+        curve = e.curve.scaled(length)
+        return np.nan, *self.add(curve), curve.exponent
 
 
 class MoreForces:

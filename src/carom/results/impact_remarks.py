@@ -7,7 +7,7 @@ import numpy as np
 from carom.impact import laws
 from carom.impact.layout import PHASE_JAM, PLASTIC
 from carom.model import records as r
-from carom.results.names import contact_name
+from carom.results.names import arms, contact_name, restitution_of
 from carom.status import Remark
 
 #: energy of a jam, of what the run exchanges, below which slip of round-off has jammed (a wheel that rolls)
@@ -16,7 +16,7 @@ _ROUND_OFF = 1e-9
 
 def remarks(rows, events, run) -> tuple[str, ...]:
     """Return a sentence for each kind: how many impacts (`rows`) or `events` of a run, and the first."""
-    said = _gains(rows, run)
+    said = [*_gains(rows, run), *_too_fast(rows, run)]
     jams = events["kind"] == r.JAMS
     if not (jams.any() or (rows["phases"] & (PHASE_JAM | PLASTIC)).any()):
         return tuple(map(Remark, said))
@@ -44,6 +44,26 @@ def remarks(rows, events, run) -> tuple[str, ...]:
 def _place(row, run) -> str:
     name = contact_name(run.scene, run.pairs, int(row["contact"]))
     return f"at t = {row['time']:.6g} s of contact {name!r}"
+
+
+def _too_fast(rows, run) -> list[str]:
+    """Return sentences about impacts that are faster than their law of restitution is stated for."""
+    contacts = run.compiled.system.contacts
+    by_law = np.isnan(contacts["restitution"])
+    said = []
+    for number in np.unique(contacts["number"][by_law]).tolist():
+        law = restitution_of(run.scene, run.pairs, number)
+        arm = arms(contacts[contacts["number"] == number])[0]
+        approach = -rows["before"][:, 0] / arm
+        fast = (rows["contact"] == number) & (approach > law.fastest)
+        if fast.any():
+            k = int(np.argmax(np.where(fast, approach, 0.0)))
+            said.append(
+                f"{np.count_nonzero(fast)} impacts were faster than their law of restitution is stated for "
+                f"({law.fastest:.6g}), at most {approach[k]:.6g} {_place(rows[k], run)}: they had the e of the "
+                "greatest speed for which it is."
+            )
+    return said
 
 
 def _gains(rows, run) -> list[str]:

@@ -11,9 +11,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
+from typing import Any
 
 from carom import arguments, checks
 from carom.fields import Number, NumberOrNone, Value, Word, keep, number, word
+from carom.scene.restitution import Restitution
+from carom.scene.restitution import restitution as number_or_law
 
 IMPACT_LAWS = ("newton", "poisson", "stronge")
 MULTIPLE = ("simultaneous", "sequential")  # in the order of `carom.impact.multiple.layout`
@@ -33,8 +36,8 @@ class ContactLaw:
 
     Attributes
     ----------
-    restitution : float
-        Coefficient of restitution e, from 0 to 1. Default 0.5.
+    restitution : float or Restitution
+        Coefficient of restitution e, from 0 to 1, or its law. Default 0.5.
     friction : float
         Coulomb's friction coefficient mu in impacts, at least 0. Default 0.
     friction_held : float
@@ -53,7 +56,7 @@ class ContactLaw:
         its own, one after another.
     """
 
-    restitution: Number = number(0.5, least=0, most=1)
+    restitution: Value[Any, Any] = number_or_law(0.5)
     friction: Number = number(0.0, least=0)
     friction_held: Value[float, float | None] = number(None, least=0)
     impact_law: Word = word(IMPACT_LAWS, "newton")
@@ -75,7 +78,8 @@ class Material:
     Parameters
     ----------
     restitution, friction
-        e from 0 to 1 and mu at least 0, as for `Scene.add_contact`.
+        e from 0 to 1, or its law, and mu at least 0, as for `Scene.add_contact`. No rule combines two different
+        laws of restitution, or a law and a number: pass that of the pair to `Scene.add_contact`.
     friction_held
         mu in persistent contact, at least 0. Default: `friction`.
     stiffness
@@ -84,7 +88,7 @@ class Material:
         Greatest moment divided by the normal force [m], at least 0. Default 0.
     """
 
-    restitution: Number = number(least=0, most=1)
+    restitution: Value[Any, Any] = number_or_law()
     friction: Number = number(least=0)
     friction_held: NumberOrNone = number(None, least=0)
     stiffness: Number = number(1.0, above=0)
@@ -139,15 +143,22 @@ def law_of(first, second, given: Mapping, default: ContactLaw | None, rules: Map
     return ContactLaw(**{**base, **given})
 
 
-def _combined(name: str, first, second, rules: Mapping) -> float:
+def _combined(name: str, first, second, rules: Mapping) -> Any:
     values = []
     for material in (first.material, second.material):
         value = getattr(material, name)
         values.append(material.friction if value is None else value)
-    if name in rules:
+    law = any(isinstance(value, Restitution) for value in values)
+    if name in rules and not law:
         return RULES[rules[name]](*values)
     if values[0] == values[1]:
         return values[0]
+    if law:
+        raise ValueError(
+            f"{name} must be given for a pair of materials with different laws, which no rule combines: "
+            f"{first.name!r} has {values[0]:g}, {second.name!r} has {values[1]:g}; pass {name} of this pair to "
+            "add_contact"
+        )
     raise ValueError(
         f"combine must be given, the rule for {name} of two materials: {first.name!r} has {values[0]:g}, "
         f"{second.name!r} has {values[1]:g}; choose a rule with "

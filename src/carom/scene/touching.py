@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from itertools import combinations
 
 from carom import arguments, checks
@@ -13,6 +12,7 @@ from carom.scene.contacts import Contact, check_gap
 from carom.scene.materials import ContactLaw, Rule
 from carom.scene.pairs import Pairs
 from carom.scene.registry import Registry
+from carom.scene.restitution import Restitution
 
 One = Body | HalfSpace | StaticBody | str
 Some = One | Sequence[One]
@@ -30,7 +30,7 @@ class TouchingPairs:
         body: One,
         other: One,
         *,
-        restitution: float | None = None,
+        restitution: float | Restitution | None = None,
         friction: float | None = None,
         friction_held: float | None = None,
         impact_law: str | None = None,
@@ -53,7 +53,8 @@ class TouchingPairs:
             body, without penetration at the start. For two bodies the order matters: the normal points from
             `other` to `body`.
         restitution
-            Coefficient of restitution e, from 0 (plastic) to 1 (elastic). Default 0.5.
+            Coefficient of restitution e, from 0 (plastic) to 1 (elastic), or its law, a function of the speed
+            of approach, as ``carom.Restitution.power(0.6)``. Default 0.5.
         friction
             Coulomb's friction coefficient mu, at least 0: the tangent of the greatest slope on which the body
             rests. A large value (50) stands for a contact that does not slip. Default 0.
@@ -107,7 +108,7 @@ class TouchingPairs:
             "multiple": multiple,
         }
         law = self._pairs.law(body, other, given)
-        contact = Contact(index=index, name=name, body=body, other=other, **asdict(law))
+        contact = Contact(index=index, name=name, body=body, other=other, **vars(law))
         check_gap(contact)
         contact = self._parts.add(contact)
         if old is not None:
@@ -119,7 +120,7 @@ class TouchingPairs:
     def set_contact_default(
         self,
         *,
-        restitution: float | None = None,
+        restitution: float | Restitution | None = None,
         friction: float | None = None,
         friction_held: float | None = None,
         impact_law: str = "newton",
