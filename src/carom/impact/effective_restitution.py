@@ -31,7 +31,7 @@ def restitution_at(system, contact, approach):
     """Return the restitution e of a contact at a speed of approach [m/s]."""
     if contact.restitution_piece == contact.last_restitution_piece:
         return contact.restitution
-    return law_at(system.relations.pieces, contact, approach)
+    return law_at(system.curves, contact, approach)
 
 
 @kernel

@@ -236,7 +236,10 @@ CONTACT = [
     ("friction_held", "f8"),
     ("turning", "f8", 2),  # rolling and pivoting friction [m]
     ("restitution", "f8"),  # e; NaN if it is a law of the speed of approach, which has the pieces
-    ("restitution_piece", "i8"),  # range of pieces of e over v^exponent, empty if e is a number
+    (
+        "restitution_piece",
+        "i8",
+    ),  # range of `System.curves`, e over v^exponent; empty if e is a number
     ("last_restitution_piece", "i8"),
     ("restitution_exponent", "f8"),
     ("stiffness", "f8"),  # of its boundary layer, relative to the others
@@ -347,6 +350,7 @@ class System(NamedTuple):
     loads: np.recarray  # LOAD
     bushings: np.recarray  # BUSHING
     contacts: np.recarray  # (C,) CONTACT
+    curves: np.recarray  # PIECE, of restitutions that are laws
     vertices: np.ndarray  # (V, 3) of all contacts, body axes
     solids: np.recarray  # SOLID of `carom.collision`, of bodies that may touch each other
     hulls: Hulls

@@ -50,7 +50,7 @@ class Contacts(NamedTuple):
 
 
 def compile_contacts(
-    scene: Scene, to_principal, options: Options, pieces: Pieces, apart: bool = False
+    scene: Scene, to_principal, options: Options, curves: Pieces, apart: bool = False
 ) -> Contacts:
     """Return the contacts of a scene.
 
@@ -75,7 +75,7 @@ def compile_contacts(
     own = [grounded.vertices[first:last] for first, last in zip(*ranges)]
     vertices = np.concatenate([*own, single.vertices])
     surfaces = Surfaces(
-        grounded, single, len(vertices) - len(single.vertices), place, _numbers(pairs.laws, pieces)
+        grounded, single, len(vertices) - len(single.vertices), place, _numbers(pairs.laws, curves)
     )
     rows = _rows(scene, options, pairs, which, surfaces)
     rows, levels = with_level_rows(rows, *find_levels(scene, pairs, place))
@@ -230,12 +230,12 @@ def _write_solids(rows: np.recarray, which: Rows, place: np.ndarray) -> None:
 OF_LAW = ("friction", "friction_held", "stiffness", "law", "multiple", *RESTITUTION)
 
 
-def _numbers(laws: Sequence[ContactLaw], pieces: Pieces) -> np.ndarray:
-    """Return the numbers (L, 11) of laws; the curves of their restitution are added to the pieces."""
+def _numbers(laws: Sequence[ContactLaw], curves: Pieces) -> np.ndarray:
+    """Return the numbers (L, 11) of laws; those of restitutions that are laws are added to `curves`."""
     numbers = [
         (
             one.friction, one.friction_held, one.stiffness, IMPACT_LAWS.index(one.impact_law),
-            MULTIPLE.index(one.multiple), *pieces.add_restitution(one.restitution),
+            MULTIPLE.index(one.multiple), *curves.add_restitution(one.restitution),
             one.rolling_friction, one.pivoting_friction,
         )
         for one in laws

@@ -6,13 +6,13 @@ import numpy as np
 
 from carom._compiled.record_arrays import Columns, table
 from carom.model.arrays import CONTACT, STOP
-from carom.model.more_forces import RESTITUTION
+from carom.model.more_forces import RESTITUTION, Pieces
 from carom.model.relations import Elements
 from carom.scene.constraints import coordinate_kind
 from carom.scene.materials import IMPACT_LAWS
 
 
-def with_stops(scene, contacts: np.recarray, elements: Elements, options) -> np.recarray:
+def with_stops(scene, contacts: np.recarray, elements: Elements, options, curves: Pieces):
     """Return the contacts, then the stops; the numbers of stops follow those of contacts."""
     if not scene.stops:
         return contacts
@@ -28,7 +28,7 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options) -> np.
         row.offset = row.side * stop.end
         row.law = IMPACT_LAWS.index(stop.impact_law)
         for name, value in zip(
-            RESTITUTION, elements.pieces.add_restitution(stop.restitution, abs(row.side))
+            RESTITUTION, curves.add_restitution(stop.restitution, abs(row.side))
         ):
             row[name] = value
         row.extent = row.other_extent = size

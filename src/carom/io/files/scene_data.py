@@ -39,6 +39,7 @@ from carom.scene.forces import FORCES, AppliedForce
 from carom.scene.joints import JOINTS, Joint
 from carom.scene.materials import ContactLaw, Material
 from carom.scene.pieces import Piece
+from carom.scene.restitution import LAWS
 from carom.scene.shapes import SHAPES
 from carom.scene.stops import Stop
 
@@ -53,6 +54,7 @@ TYPES: dict[str, type[Any]] = {
         *JOINTS,
         *FORCES,
         *CONSTRAINTS,
+        *LAWS,
         Gear,
         ContactLaw,
         Material,
