@@ -8,6 +8,7 @@ from campaigns import (
     bearings,
     crowds,
     forced,
+    laws,
     mechanisms,
     piles,
     rests,
@@ -23,4 +24,5 @@ FAMILIES = {
     "throws": throws.case, "strikes": strikes.case, "mechanisms": mechanisms.case, "forced": forced.case,
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
+    "laws": laws.case,
 }  # fmt: skip

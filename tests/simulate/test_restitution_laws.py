@@ -1,4 +1,4 @@
-"""Restitution as a law of the speed of approach: bounces by recurrence, several contacts, stops, crowds, names."""
+"""Restitution as a law of the speed: bounces by recurrence, several contacts, stops, crowds, names."""
 
 import pickle
 from dataclasses import replace
@@ -79,6 +79,7 @@ def test_power_without_a_cap_bounces_for_ever_at_the_speed_of_e_1():
     found = -solution.impacts.relative_velocity_before[:, 0]
     assert found[1:] == pytest.approx(e * v**0.25 * found[:-1] ** 0.75, rel=1e-9)
     assert found[-1] == pytest.approx(e**4 * v, rel=1e-3)
+    assert "is 1 below a speed of 0.4096, so that bounces never end" in solution.warnings[0]
 
 
 @pytest.mark.parametrize(("c", "rtol"), [(0.35, 1e-6), (0.35, 1e-9), (0.6, 1e-6)])

@@ -74,7 +74,8 @@ def compile_scene(
     system = System(
         bodies=bodies, gravity=np.array(scene.gravity), joints=joints, relations=relations, springs=springs,
         loads=loads, bushings=bushings, contacts=contacts, curves=curves.rows,
-        vertices=touching.vertices, solids=touching.solids, hulls=touching.hulls, levels=touching.levels, solver=solver,
+        vertices=touching.vertices, solids=touching.solids, hulls=touching.hulls,
+        levels=touching.levels, solver=solver,
     )  # fmt: skip
     return Compiled(
         system=system, start=start, to_principal=to_principal, flipped=flipped, functions=functions,

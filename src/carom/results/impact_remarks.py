@@ -8,6 +8,7 @@ from carom.impact import laws
 from carom.impact.layout import PHASE_JAM, PLASTIC
 from carom.model import records as r
 from carom.results.names import arms, contact_name, restitution_of
+from carom.scene.restitution import Restitution
 from carom.status import Remark
 
 #: energy of a jam, of what the run exchanges, below which slip of round-off has jammed (a wheel that rolls)
@@ -53,6 +54,7 @@ def _too_fast(rows, run) -> list[str]:
     said = []
     for number in np.unique(contacts["number"][by_law]).tolist():
         law = restitution_of(run.scene, run.pairs, number)
+        assert isinstance(law, Restitution)
         arm = arms(contacts[contacts["number"] == number])[0]
         approach = -rows["before"][:, 0] / arm
         fast = (rows["contact"] == number) & (approach > law.fastest)

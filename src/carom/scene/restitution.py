@@ -58,6 +58,8 @@ friction=0, impact_law='newton')
 
     #: speed [m/s] up to which the law is stated; faster impacts have the e of this speed
     fastest: ClassVar[Any] = np.inf
+    #: speed [m/s] below which e is 1, so that bounces never end
+    elastic: ClassVar[Any] = 0.0
     _kind: ClassVar[str]
 
     @staticmethod
@@ -76,8 +78,8 @@ friction=0, impact_law='newton')
         exponent : float
             From -1 to 1. Default -1/4, of plastic deformation (Johnson, Contact Mechanics, 1985, section 11.4).
         maximum : float
-            Greatest e, from 0 to 1. Default 1. Without friction and other losses a ball then bounces for ever
-            at the speed at which e reaches 1.
+            Greatest e, from 0 to 1. Default 1: slow impacts are elastic then, and a ball ends bouncing for ever
+            at the speed at which e is 1, ``speed * value**4`` with the default exponent. A run says so.
         """
         return PowerRestitution(value, speed, exponent, maximum)
 
@@ -167,6 +169,13 @@ class PowerRestitution(Restitution):
     _kind = "power"
 
     @property
+    def elastic(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """Speed at which a power that falls with the speed is 1."""
+        if self.maximum < 1.0 or self.exponent >= 0.0 or self.value == 0.0:
+            return 0.0
+        return float(self.speed * np.float64(self.value) ** (-1.0 / self.exponent))
+
+    @property
     def curve(self) -> Curve:
         """One piece, linear in v^q, which ends at `maximum`."""
         factor = self.value * self.speed**-self.exponent
@@ -230,6 +239,11 @@ class TableRestitution(Restitution):
     def fastest(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
         """Last speed of the table."""
         return self.speeds[-1]
+
+    @property
+    def elastic(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """First speed of a table that begins with 1."""
+        return self.speeds[0] if self.values[0] == 1.0 else 0.0
 
     @property
     def curve(self) -> Curve:
