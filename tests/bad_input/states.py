@@ -37,7 +37,7 @@ def stated():
 
     three = (1.0, 0.0, 0.0)
     number = dict(restitution=0.5, friction=0.1, friction_held=0.1, stiffness=1.0, rolling_friction=0.0,
-                  pivoting_friction=0.0)  # fmt: skip
+                  pivoting_friction=0.0, tangential_restitution=0.5)  # fmt: skip
     words = dict(impact_law="newton", multiple="sequential")
     shapes = {
         "Sphere": (carom.Sphere, dict(radius=0.1)),

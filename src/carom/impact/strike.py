@@ -22,6 +22,7 @@ from carom.impact.record import write_impact
 from carom.impact.resolve import resolve_one
 from carom.impact.return_map import return_map
 from carom.impact.strike_several import strike_several
+from carom.impact.tangential import return_slip
 from carom.impact.thresholds import SEED
 from carom.impact.work_mode import restore_work
 from carom.impact.workspace import U
@@ -143,6 +144,8 @@ def strike_one(model, data, method, c):
     if collide(method, controls, contact, hit, work.history) != layout.OK:
         hit.code = IMPACT_FAILED
         return
+    if contact.tangential_restitution != 0.0:
+        return_slip(hit.W, hit.u, hit.friction, contact.tangential_restitution, hit.out)
     write_impact(contact, state, point, hit, clock, data.records)
     out, P = hit.out, layout.IMPULSE
     spread(system, point, state, out[P], out[P + 1], out[P + 2], work)

@@ -242,6 +242,7 @@ CONTACT = [
     ),  # range of `System.curves`, e over v^exponent; empty if e is a number
     ("last_restitution_piece", "i8"),
     ("restitution_exponent", "f8"),
+    ("tangential_restitution", "f8"),
     ("stiffness", "f8"),  # of its boundary layer, relative to the others
     ("extent", "f8"),  # largest distance of the shape from the mass centre
     ("other_extent", "f8"),

@@ -33,7 +33,7 @@ class Surfaces(NamedTuple):
     single: Cores  # piece by piece, against each other
     shared: int  # first vertex of `single`, after those of contacts with half-spaces
     place: np.ndarray  # (N,) first solid of each body
-    laws: np.ndarray  # (L, 11) numbers of the laws of all pairs
+    laws: np.ndarray  # (L, 12) numbers of the laws of all pairs
 
 
 class Contacts(NamedTuple):
@@ -227,16 +227,24 @@ def _write_solids(rows: np.recarray, which: Rows, place: np.ndarray) -> None:
 
 
 #: columns of rows that say by which law their pair strikes, in the order of `_numbers`
-OF_LAW = ("friction", "friction_held", "stiffness", "law", "multiple", *RESTITUTION)
+OF_LAW = (
+    "friction",
+    "friction_held",
+    "stiffness",
+    "law",
+    "multiple",
+    *RESTITUTION,
+    "tangential_restitution",
+)
 
 
 def _numbers(laws: Sequence[ContactLaw], curves: Pieces) -> np.ndarray:
-    """Return the numbers (L, 11) of laws; those of restitutions that are laws are added to `curves`."""
+    """Return the numbers (L, 12) of laws; those of restitutions that are laws are added to `curves`."""
     numbers = [
         (
             one.friction, one.friction_held, one.stiffness, IMPACT_LAWS.index(one.impact_law),
             MULTIPLE.index(one.multiple), *curves.add_restitution(one.restitution),
-            one.rolling_friction, one.pivoting_friction,
+            one.tangential_restitution,             one.rolling_friction, one.pivoting_friction,
         )
         for one in laws
     ]  # fmt: skip
@@ -244,7 +252,7 @@ def _numbers(laws: Sequence[ContactLaw], curves: Pieces) -> np.ndarray:
 
 
 def _write_laws(rows: np.recarray, law: np.ndarray) -> None:
-    """Write the law (C, 11) of each contact to its rows."""
+    """Write the law (C, 12) of each contact to its rows."""
     for k, name in enumerate(OF_LAW):
         rows[name] = law[:, k]
     rows["turning"] = law[:, len(OF_LAW) :]

@@ -105,7 +105,8 @@ def _laws_of_statics(scene: Scene, pairs: PairTable) -> list[tuple[tuple, tuple]
             found[other - count][0].append(body)
             found[other - count][1].append(
                 (
-                    body, one.friction, one.friction_held, *_sortable(one.restitution), one.stiffness,
+                    body, one.friction, one.friction_held, *_sortable(one.restitution),
+                    one.tangential_restitution, one.stiffness,
                     one.rolling_friction, one.pivoting_friction, str(one.impact_law), str(one.multiple),
                 )
             )  # fmt: skip

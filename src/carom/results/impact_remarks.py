@@ -17,7 +17,7 @@ _ROUND_OFF = 1e-9
 
 def remarks(rows, events, run) -> tuple[str, ...]:
     """Return a sentence for each kind: how many impacts (`rows`) or `events` of a run, and the first."""
-    said = [*_gains(rows, run), *_too_fast(rows, run)]
+    said = [*_gains(rows, run), *_too_fast(rows, run), *_without_slip(rows, run)]
     jams = events["kind"] == r.JAMS
     if not (jams.any() or (rows["phases"] & (PHASE_JAM | PLASTIC)).any()):
         return tuple(map(Remark, said))
@@ -66,6 +66,19 @@ def _too_fast(rows, run) -> list[str]:
                 "greatest speed for which it is."
             )
     return said
+
+
+def _without_slip(rows, run) -> list[str]:
+    """Return a sentence about impacts of several contacts, which have no tangential restitution."""
+    contacts = run.compiled.system.contacts
+    rough = np.unique(contacts["number"][contacts["tangential_restitution"] != 0.0])
+    found = rows[np.isin(rows["contact"], rough) & (rows["together"] > 1)]
+    if not len(found):
+        return []
+    return [
+        f"{len(np.unique(found['time']))} impacts of several contacts were without the tangential restitution of "
+        f"their contacts, which only single ones have, the first {_place(found[0], run)}."
+    ]
 
 
 def _gains(rows, run) -> list[str]:

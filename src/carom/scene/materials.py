@@ -27,7 +27,10 @@ RULES: dict[str, Callable[[float, float], float]] = {
     "product": lambda a, b: a * b,
     "geometric": lambda a, b: math.sqrt(a) * math.sqrt(b),
 }
-COMBINED = ("restitution", "friction", "friction_held", "rolling_friction", "pivoting_friction")
+COMBINED = (
+    "restitution", "friction", "friction_held", "rolling_friction", "pivoting_friction",
+    "tangential_restitution",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,6 +54,9 @@ class ContactLaw:
     rolling_friction, pivoting_friction : float
         Greatest moment against rolling, and about the normal, in persistent contact, divided by the normal
         force [m], at least 0. Default 0. Impacts do not use them.
+    tangential_restitution : float
+        e_t from -1 to 1: an impact of this contact alone that ends in stick returns -e_t u_t^-, as far as the
+        friction allows. Default 0.
     multiple : {"simultaneous", "sequential"}
         Impact of the pair while other contacts are closed: simultaneous with theirs (default), or an impact of
         its own, one after another.
@@ -63,6 +69,7 @@ class ContactLaw:
     stiffness: Number = number(1.0, above=0)
     rolling_friction: Number = number(0.0, least=0)
     pivoting_friction: Number = number(0.0, least=0)
+    tangential_restitution: Number = number(0.0, least=-1, most=1)
     multiple: Word = word(MULTIPLE, "simultaneous")
 
     def __post_init__(self):
@@ -86,6 +93,8 @@ class Material:
         Relative stiffness, above 0. Default 1. Two materials act in series: ``2 / (1 / s1 + 1 / s2)``.
     rolling_friction, pivoting_friction
         Greatest moment divided by the normal force [m], at least 0. Default 0.
+    tangential_restitution
+        e_t from -1 to 1, as for `Scene.add_contact`. Default 0.
     """
 
     restitution: Value[Any, Any] = number_or_law()
@@ -94,6 +103,7 @@ class Material:
     stiffness: Number = number(1.0, above=0)
     rolling_friction: Number = number(0.0, least=0)
     pivoting_friction: Number = number(0.0, least=0)
+    tangential_restitution: Number = number(0.0, least=-1, most=1)
 
 
 Rule = str | Mapping[str, str] | None

@@ -37,6 +37,7 @@ class TouchingPairs:
         stiffness: float | None = None,
         rolling_friction: float | None = None,
         pivoting_friction: float | None = None,
+        tangential_restitution: float | None = None,
         multiple: str | None = None,
         name: str | None = None,
         replace: bool = False,
@@ -69,6 +70,10 @@ class TouchingPairs:
             Greatest moment against rolling, and about the normal, in persistent contact, divided by the
             normal force [m]. Default 0. The moments act against relative rotation until it stops; each contact
             point of a face has its own. Impacts do not use them.
+        tangential_restitution
+            Coefficient e_t from -1 to 1. If an impact of this contact alone ends in stick, the pair leaves with
+            -e_t times the slip before it (1 for a super ball), as far as the friction allows, and the energy
+            that friction took. Default 0: it leaves without slip. Impacts of several contacts have 0.
         multiple : {"simultaneous", "sequential"}
             Multiple impact, if other contacts of these bodies are closed too: all contacts simultaneously
             (default), or this pair in an impact of its own, one impact after another, as in a row of balls with
@@ -105,6 +110,7 @@ class TouchingPairs:
             "stiffness": stiffness,
             "rolling_friction": rolling_friction,
             "pivoting_friction": pivoting_friction,
+            "tangential_restitution": tangential_restitution,
             "multiple": multiple,
         }
         law = self._pairs.law(body, other, given)
@@ -127,6 +133,7 @@ class TouchingPairs:
         stiffness: float = 1.0,
         rolling_friction: float = 0.0,
         pivoting_friction: float = 0.0,
+        tangential_restitution: float = 0.0,
         multiple: str = "simultaneous",
         combine: Rule = None,
         all_pairs: bool = True,
@@ -135,7 +142,9 @@ class TouchingPairs:
 
         Parameters
         ----------
-        restitution, friction, friction_held, impact_law, stiffness, rolling_friction, pivoting_friction
+        restitution, friction, friction_held, impact_law, stiffness
+            As for `add_contact`.
+        rolling_friction, pivoting_friction, tangential_restitution
             As for `add_contact`.
         multiple
             As for `add_contact`.
@@ -161,6 +170,7 @@ class TouchingPairs:
             stiffness=stiffness,
             rolling_friction=rolling_friction,
             pivoting_friction=pivoting_friction,
+            tangential_restitution=tangential_restitution,
             multiple=multiple,
         )
         stated = restitution is not None or friction is not None

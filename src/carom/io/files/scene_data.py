@@ -62,7 +62,10 @@ TYPES: dict[str, type[Any]] = {
         *ROBOT,
     )
 }
-LATER = {"color": None}  # fields that files of earlier versions do not have
+LATER = {
+    "color": None,
+    "tangential_restitution": 0.0,
+}  # fields that files of earlier versions do not have
 ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 
 
