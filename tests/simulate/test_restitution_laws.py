@@ -188,6 +188,22 @@ def test_names_files_copies_and_ensembles(tmp_path):
         carom.ensemble(scene, 1.0, vary={"ball-floor.restitution.maximum": [0.5, 1.3]})
 
 
+def test_a_number_of_a_law_is_identified():
+    from carom.studies.identify import Recording, mean_error
+
+    solution = carom.simulate(ball(LAWS["power"]), 1.0)
+    recording = Recording(solution.t, solution.position, solution.orientation)
+    found = carom.identify(
+        ball(replace(LAWS["power"], value=0.6)), [recording],
+        {"ball-floor.restitution.value": (0.6, 0.05)}, mean_error(0.1, 1.0),
+    )  # fmt: skip
+    assert found.parameters["ball-floor.restitution.value"] == pytest.approx(0.5, rel=1e-3)
+    with pytest.raises(ValueError, match="ball-floor.restitution.value"):
+        carom.identify(
+            ball(LAWS["power"]), [recording], {"ball-floor.restitution": (0.5, 0.1)}, mean_error(0.1, 1.0)
+        )  # fmt: skip
+
+
 def saved(solution, folder):
     """Return the path of a run that has been saved."""
     solution.save(folder / "run.nc")

@@ -76,8 +76,8 @@ def _without_slip(rows, run) -> list[str]:
     if not len(found):
         return []
     return [
-        f"{len(np.unique(found['time']))} impacts of several contacts were without the tangential restitution of "
-        f"their contacts, which only single ones have, the first {_place(found[0], run)}."
+        f"{len(np.unique(found['time']))} impacts of several contacts were without the tangential restitution "
+        f"of their contacts, which only single ones have, the first {_place(found[0], run)}."
     ]
 
 

@@ -163,7 +163,7 @@ class PowerRestitution(Restitution):
     """A power of the speed, capped: `Restitution.power`."""
 
     value: Number = number(least=0)
-    speed: Number = Value(partial(checks.scale, unit="m/s"), 1.0)
+    speed: Number = number(1.0, above=0, unit="m/s")
     exponent: Number = number(-0.25, least=-1, most=1)
     maximum: Number = number(1.0, least=0, most=1)
     _kind = "power"
@@ -178,7 +178,8 @@ class PowerRestitution(Restitution):
     @property
     def curve(self) -> Curve:
         """One piece, linear in v^q, which ends at `maximum`."""
-        factor = self.value * self.speed**-self.exponent
+        with np.errstate(over="ignore"):
+            factor = float(self.value * np.float64(self.speed) ** -self.exponent)
         end = self.maximum / factor if factor > 0.0 else 1.0
         if not 0.0 < end < np.inf:  # e = 0, or `maximum` at every speed
             return Curve(1.0, np.array([[min(self.maximum, factor)]]), np.array([0.0, 1.0]))
