@@ -79,7 +79,8 @@ def test_power_without_a_cap_bounces_for_ever_at_the_speed_of_e_1():
     found = -solution.impacts.relative_velocity_before[:, 0]
     assert found[1:] == pytest.approx(e * v**0.25 * found[:-1] ** 0.75, rel=1e-9)
     assert found[-1] == pytest.approx(e**4 * v, rel=1e-3)
-    assert "is 1 below a speed of 0.4096, so that bounces never end" in solution.warnings[0]
+    (said,) = solution.warnings
+    assert "were elastic, or nearly, as their law says below a speed of 0.4096" in said
 
 
 @pytest.mark.parametrize(("c", "rtol"), [(0.35, 1e-6), (0.35, 1e-9), (0.6, 1e-6)])
@@ -198,7 +199,7 @@ def test_a_number_of_a_law_is_identified():
         {"ball-floor.restitution.value": (0.6, 0.05)}, mean_error(0.1, 1.0),
     )  # fmt: skip
     assert found.parameters["ball-floor.restitution.value"] == pytest.approx(0.5, rel=1e-3)
-    with pytest.raises(ValueError, match="ball-floor.restitution.value"):
+    with pytest.raises(ValueError, match="of a vector give components"):
         carom.identify(
             ball(LAWS["power"]), [recording], {"ball-floor.restitution": (0.5, 0.1)}, mean_error(0.1, 1.0)
         )  # fmt: skip

@@ -13,11 +13,13 @@ from carom.status import Remark
 
 #: energy of a jam, of what the run exchanges, below which slip of round-off has jammed (a wheel that rolls)
 _ROUND_OFF = 1e-9
+#: speed: of impacts that count as elastic, by that at which e is 1
+NEARLY = 1.01
 
 
 def remarks(rows, events, run) -> tuple[str, ...]:
     """Return a sentence for each kind: how many impacts (`rows`) or `events` of a run, and the first."""
-    said = [*_gains(rows, run), *_too_fast(rows, run), *_without_slip(rows, run)]
+    said = [*_gains(rows, run), *_of_laws(rows, run), *_without_slip(rows, run)]
     jams = events["kind"] == r.JAMS
     if not (jams.any() or (rows["phases"] & (PHASE_JAM | PLASTIC)).any()):
         return tuple(map(Remark, said))
@@ -47,23 +49,27 @@ def _place(row, run) -> str:
     return f"at t = {row['time']:.6g} s of contact {name!r}"
 
 
-def _too_fast(rows, run) -> list[str]:
-    """Return sentences about impacts that are faster than their law of restitution is stated for."""
-    contacts = run.compiled.system.contacts
-    by_law = np.isnan(contacts["restitution"])
-    said = []
-    for number in np.unique(contacts["number"][by_law]).tolist():
+def _of_laws(rows, run) -> list[str]:
+    """Return sentences about impacts that are faster than their law is stated for, or elastic by it."""
+    contacts, said = run.compiled.system.contacts, []
+    of_law = np.isnan(contacts["restitution"])
+    for number in np.unique(contacts["number"][of_law]).tolist() if of_law.any() else ():
         law = restitution_of(run.scene, run.pairs, number)
         assert isinstance(law, Restitution)
-        arm = arms(contacts[contacts["number"] == number])[0]
-        approach = -rows["before"][:, 0] / arm
-        fast = (rows["contact"] == number) & (approach > law.fastest)
-        if fast.any():
-            k = int(np.argmax(np.where(fast, approach, 0.0)))
+        own = rows[rows["contact"] == number]
+        approach = -own["before"][:, 0] / arms(contacts[contacts["number"] == number])[0]
+        fast = own[approach > law.fastest]
+        if len(fast):
             said.append(
-                f"{np.count_nonzero(fast)} impacts were faster than their law of restitution is stated for "
-                f"({law.fastest:.6g}), at most {approach[k]:.6g} {_place(rows[k], run)}: they had the e of the "
-                "greatest speed for which it is."
+                f"{len(fast)} impacts were faster than their law of restitution is stated for "
+                f"({law.fastest:.6g}), the first {_place(fast[0], run)}: they had the e of that speed."
+            )
+        elastic = own[(approach > 0.0) & (approach < NEARLY * law.elastic)]
+        if len(elastic):
+            said.append(
+                f"{len(elastic)} impacts were elastic, or nearly, as their law says below a speed of "
+                f"{law.elastic:.6g}, the first {_place(elastic[0], run)}. Such bounces never end: for bodies "
+                "that come to rest give Restitution.power(..., maximum=0.9), or a table that begins below 1."
             )
     return said
 
@@ -71,8 +77,10 @@ def _too_fast(rows, run) -> list[str]:
 def _without_slip(rows, run) -> list[str]:
     """Return a sentence about impacts of several contacts, which have no tangential restitution."""
     contacts = run.compiled.system.contacts
-    rough = np.unique(contacts["number"][contacts["tangential_restitution"] != 0.0])
-    found = rows[np.isin(rows["contact"], rough) & (rows["together"] > 1)]
+    rough = contacts["tangential_restitution"] != 0.0
+    if not rough.any():
+        return []
+    found = rows[np.isin(rows["contact"], contacts["number"][rough]) & (rows["together"] > 1)]
     if not len(found):
         return []
     return [

@@ -14,7 +14,6 @@ from carom.scene.all_pairs import meeting
 from carom.scene.bodies import HalfSpace
 from carom.scene.constraints import coordinate_kind
 from carom.scene.forces import Force, Torque
-from carom.scene.restitution import Restitution
 
 if TYPE_CHECKING:
     from carom.scene.scene import Scene
@@ -24,7 +23,7 @@ MOST_NAMES = 6  # names in a sentence
 
 def remarks(scene: Scene) -> tuple[str, ...]:
     """Return sentences about parts of a scene that are nearly always a mistake."""
-    found = (_of_untouched, _of_unsaid, _of_gravity, _of_stops, _of_doubled, _of_elastic)
+    found = (_of_untouched, _of_unsaid, _of_gravity, _of_stops, _of_doubled)
     return tuple(sentence for about in found for sentence in about(scene))
 
 
@@ -89,22 +88,6 @@ def _of_gravity(scene: Scene) -> list[str]:
     return [
         f"Gravity {tuple(gravity.tolist())} points away from {_names(planes)}: bodies do not fall onto it. "
         f"Give gravity={down}, or turn the normal."
-    ]
-
-
-def _of_elastic(scene: Scene) -> list[str]:
-    """Return a sentence about laws of restitution that are 1 at low speeds, if what is thrown up comes back."""
-    found = [
-        part
-        for part in (*scene.contacts, *scene.stops)
-        if isinstance(part.restitution, Restitution) and part.restitution.elastic > 0.0
-    ]
-    if not found or not scene.gravity.any():
-        return []
-    return [
-        f"The restitution of {_names(found)} is 1 below a speed of {found[0].restitution.elastic:g}, so that "
-        "bounces never end. For bodies that come to rest give Restitution.power(..., maximum=0.9), or a table "
-        "that begins below 1."
     ]
 
 
