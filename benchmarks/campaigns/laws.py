@@ -18,9 +18,10 @@ def case(seed: int) -> Case:
     scene, default = made.scene, made.scene.contact_default
     law = restitution(rng)
     for contact in scene.contacts:
-        scene.replace(
-            contact.name, restitution=law if len(scene.contacts) == 1 else restitution(rng)
-        )
+        given = {"restitution": law if len(scene.contacts) == 1 else restitution(rng)}
+        if seed % 5 == 0:
+            given["tangential_restitution"] = rng.uniform(-1.0, 1.0)
+        scene.replace(contact.name, **given)
     if default is not None:
         scene.set_contact_default(
             restitution=law, friction=default.friction, friction_held=default.friction_held,
