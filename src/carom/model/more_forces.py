@@ -17,7 +17,7 @@ from carom.scene.more_forces import (
     Law,
     UserForce,
 )
-from carom.scene.restitution import Restitution
+from carom.scene.restitution import Restitution, curve_of
 
 DEGREE = 5
 #: columns of a contact that say what its restitution is
@@ -51,7 +51,7 @@ class Pieces:
         """Return the values of `RESTITUTION` of a row whose speeds are `length` times those of a law."""
         if not isinstance(e, Restitution):
             return e, 0, 0, 0.0
-        curve = e.curve.scaled(length)
+        curve = curve_of(e).scaled(length)
         return np.nan, *self.add(curve), curve.exponent
 
 

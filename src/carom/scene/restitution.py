@@ -62,6 +62,15 @@ friction=0, impact_law='newton')
     elastic: ClassVar[Any] = 0.0
     _kind: ClassVar[str]
 
+    def __new__(cls, *values, **named):
+        """Refuse a law of no kind."""
+        if cls is Restitution:
+            raise TypeError(
+                "Restitution is made by Restitution.power(value), Restitution.viscoelastic(c) or "
+                "Restitution.table(speeds, values)"
+            )
+        return super().__new__(cls)
+
     @staticmethod
     @arguments.known
     def power(
@@ -126,7 +135,7 @@ friction=0, impact_law='newton')
         v = checks.real_array("speed", speed, "any")
         if not np.all(v >= 0.0):
             raise ValueError(f"speed must be at least 0 [m/s], got {checks.shown(speed)}")
-        q, c, ends = _curve(self)
+        q, c, ends = curve_of(self)
         x = np.clip(np.maximum(v, SLOWEST) ** q, ends[0], ends[-1])
         k = np.clip(np.searchsorted(ends, x, side="right") - 1, 0, len(ends) - 2)
         e = np.zeros_like(x)
@@ -136,7 +145,7 @@ friction=0, impact_law='newton')
 
     def slope(self, speed: float) -> float:
         """Return de/dv [s/m] at a speed of approach [m/s] above 0; 0 where e keeps the value at an end."""
-        q, c, ends = _curve(self)
+        q, c, ends = curve_of(self)
         v = checks.number("speed", speed, above=0.0, unit="m/s")
         x = v**q
         if not ends[0] < x < ends[-1]:
@@ -154,7 +163,8 @@ friction=0, impact_law='newton')
 
 
 @cache
-def _curve(law: Restitution) -> Curve:
+def curve_of(law: Restitution) -> Curve:
+    """Return the curve of a law, made once."""
     return law.curve
 
 
