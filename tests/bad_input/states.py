@@ -68,6 +68,7 @@ def stated():
         "euler": lambda: (carom.euler, dict(axes="zyx", angles=(90.0, 0.0, 30.0))),
         "axis_angle": lambda: (carom.axis_angle, dict(axis=three, angle=90.0)),
         "Material": lambda: (carom.Material, number),
+        "Restitution": lambda: (carom.Restitution.power(0.5), dict(speed=1.0)),
         "Restitution.power": lambda: (
             carom.Restitution.power, dict(value=0.5, speed=1.0, exponent=-0.25, maximum=0.9),
         ),
