@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom._compiled.mould import Mould
 from carom._compiled.record_arrays import table
 from carom.collision.layout import SOLID, Hulls, no_hulls, solid_table
 from carom.collision.level_layout import Levels
@@ -59,6 +60,35 @@ def compile_contacts(
     vertices of equal radius, and one for each curved piece. If bodies move `apart`, more rows may follow later.
     """
     known, later = first_pairs(scene, apart)
+    laws = _numbers(known.laws, curves)
+    many = later is not None or len(known.body) > FEW_CONTACTS
+    if many or scene.statics or not scene.gravity.any():  # without gravity, speeds count too
+        return _contacts(scene, known, later, laws, to_principal, options)
+    # contacts of scenes that differ in their motion, as in many throws, are copies of each other
+    of_pairs = known.body, known.other, known.plane, known.law, laws, to_principal, scene.gravity
+    key = (
+        *(one.tobytes() for one in of_pairs), options.layer_width, options.penetration,
+        *((plane.point.tobytes(), plane.normal.tobytes()) for plane in scene.half_spaces),
+        *(body.shape for body in scene.bodies),
+    )  # fmt: skip
+    mould = _KNOWN.get(key)
+    if mould is not None:
+        return mould.cast()._replace(pairs=known)
+    if len(_KNOWN) >= MOST_KNOWN:
+        _KNOWN.clear()
+    made = _contacts(scene, known, None, laws, to_principal, options)
+    _KNOWN[key] = Mould(made._replace(pairs=None))
+    return made
+
+
+#: contacts by all that they depend on
+_KNOWN: dict[tuple, Mould] = {}
+FEW_CONTACTS = 64  # pairs of a scene whose contacts are kept
+MOST_KNOWN = 64  # such scenes
+
+
+def _contacts(scene: Scene, known: PairTable, later, laws, to_principal, options: Options):
+    """Return the contacts of the pairs `known`."""
     pairs, to_principal = _with_statics(scene, known), _and_of_statics(scene, to_principal)
     meets = pairs.other >= 0
     grounded = new_cores(_shapes(scene, pairs.body[~meets]), swollen_alike, to_principal)
@@ -74,9 +104,7 @@ def compile_contacts(
     ranges = (which.core[end][flat & ~curved].tolist() for end in ("first", "last"))
     own = [grounded.vertices[first:last] for first, last in zip(*ranges)]
     vertices = np.concatenate([*own, single.vertices])
-    surfaces = Surfaces(
-        grounded, single, len(vertices) - len(single.vertices), place, _numbers(pairs.laws, curves)
-    )
+    surfaces = Surfaces(grounded, single, len(vertices) - len(single.vertices), place, laws)
     rows = _rows(scene, options, pairs, which, surfaces)
     rows, levels = with_level_rows(rows, *find_levels(scene, pairs, place))
     return Contacts(rows, vertices, solids, hulls, levels, known, surfaces, later)
@@ -228,14 +256,15 @@ def _write_solids(rows: np.recarray, which: Rows, place: np.ndarray) -> None:
 
 #: columns of rows that say by which law their pair strikes, in the order of `_numbers`
 OF_LAW = (
-    "friction",
-    "friction_held",
-    "stiffness",
-    "law",
-    "multiple",
-    *RESTITUTION,
-    "tangential_restitution",
-)
+    "friction", "friction_held", "stiffness", "law", "multiple", *RESTITUTION, "tangential_restitution",
+)  # fmt: skip
+
+
+def _write_laws(rows: np.recarray, law: np.ndarray) -> None:
+    """Write the law (C, 12) of each contact to its rows."""
+    for k, name in enumerate(OF_LAW):
+        rows[name] = law[:, k]
+    rows["turning"] = law[:, len(OF_LAW) :]
 
 
 def _numbers(laws: Sequence[ContactLaw], curves: Pieces) -> np.ndarray:
@@ -244,15 +273,8 @@ def _numbers(laws: Sequence[ContactLaw], curves: Pieces) -> np.ndarray:
         (
             one.friction, one.friction_held, one.stiffness, IMPACT_LAWS.index(one.impact_law),
             MULTIPLE.index(one.multiple), *curves.add_restitution(one.restitution),
-            one.tangential_restitution,             one.rolling_friction, one.pivoting_friction,
+            one.tangential_restitution, one.rolling_friction, one.pivoting_friction,
         )
         for one in laws
     ]  # fmt: skip
     return np.array(numbers, dtype=float).reshape(-1, len(OF_LAW) + 2)
-
-
-def _write_laws(rows: np.recarray, law: np.ndarray) -> None:
-    """Write the law (C, 12) of each contact to its rows."""
-    for k, name in enumerate(OF_LAW):
-        rows[name] = law[:, k]
-    rows["turning"] = law[:, len(OF_LAW) :]

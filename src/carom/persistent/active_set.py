@@ -13,7 +13,7 @@ from carom.contact.level import related
 from carom.contact.pair_point import find_touches, own_point, smaller, touch_rate
 from carom.contact.place import place_any
 from carom.contact.place_of_other import on_half_space
-from carom.contact.rim import same_point
+from carom.contact.rim import place_of, same_point
 from carom.contact.thresholds import REACH
 from carom.model.parts_of_system import has_solids
 from carom.persistent.thresholds import CUT_RESIDUAL
@@ -57,15 +57,7 @@ def activate(system, active, closed_point, mode, state, work):
 def set_anchor(system, active_point, state, work):
     """Store the present position of a point, at which it stays while it sticks."""
     point, x = work.placed[0], state[active_point.body].x
-    place_any(
-        system,
-        system.contacts[active_point.contact],
-        active_point.feature,
-        active_point.point,
-        state,
-        point,
-        work,
-    )
+    place_any(system, active_point, state, point, work)
     for k in range(3):
         active_point.anchor[k] = x[k] + point.arm_a[k]
 
@@ -121,19 +113,6 @@ def unite_loaded(system, work):
             for i in range(n):
                 if work.body[i].label == label:
                     work.body[i].label = n
-
-
-@kernel
-def is_active(system, active, c, touch, state):
-    """Return whether a given point of contact c is active."""
-    contact = system.contacts[c]
-    for i in range(active.count[0]):
-        active_point = active.points[i]
-        if active_point.contact == c and same_point(
-            system, contact, touch, active_point.feature, active_point.point, state
-        ):
-            return True
-    return False
 
 
 @unit(where=has_solids, otherwise=False)
@@ -192,7 +171,7 @@ def replace_points(system, controls, active, c, mode, state, work):
     for t in range(find_touches(system, contact, state, REACH * smaller(contact), work)):
         touch = work.touches[t]
         free = active.count[0] < active.points.shape[0]
-        if touch.gap > near or is_active(system, active, c, touch, state):
+        if touch.gap > near or place_of(system, active, c, touch, state) >= 0:
             continue
         if touch_rate(contact, touch, state) < -still:
             active.contact_states[c].near = max(active.contact_states[c].near, 0 if plane else 1)

@@ -22,11 +22,10 @@ from carom.status import TOO_MANY_POINTS
 @unit
 def activate_contact(model, data, c, horizon):
     """Make closed points in the group of contact c persistent if they do not approach and satisfy the rule."""
-    system, controls = model.system, model.controls
-    active, state, group, work = data.active, data.state, data.group, data.work
+    system, active, work = model.system, data.active, data.work
     contact, hit = system.contacts[c], work.hit[0]
     hit.code = 0
-    k = gather_closed(system, controls, active, c, state, group, work, False)
+    k = gather_closed(model, data, c, False)
     label = work.body[contact.body].label
     for i in range(active.count[0]):
         active_point = active.points[i]

@@ -14,10 +14,18 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import by_reference, kernel
 from carom.dynamics.explicit import combine_body, copy_state, node, note_velocity, stages_within
 from carom.dynamics.several_points import velocities
-from carom.friction.layout import BUDGET, CONE, DISC, ENOUGH, ITERATIONS, NEAR, SLIDING
+from carom.friction.layout import (
+    BUDGET,
+    CONE,
+    DISC,
+    ENOUGH,
+    ITERATIONS,
+    SLIDING,
+    ContactProblem,
+)
 from carom.friction.solve import solve_cones
 from carom.friction.strategy import budget
 from carom.geometry.rotation import normalize
@@ -40,9 +48,9 @@ def explicit_member(model, data, method, label, loaded, count, h):
     for s in range(1, stages_within(method)):
         for m in range(count):
             b = group.member[m]
-            combine_body(method.A[s], s, h, start[b], work.stages, b, work.stage[b])
+            combine_body(method.A[s, :s], h, start[b], work.stages, b, work.stage[b])
             note_velocity(work.stage[b], work.stages[s, b])
-        result.time = result.start + h * node(method.A[s], s)
+        result.time = result.start + h * node(method.A[s, :s])
         power = accelerate_freely(model, data, loaded, count, s)
         k = write_rows(model, data, label, s)
         if not (set_modes(model.system, data.active, k, group) and solve_springs(k, group)):
@@ -50,9 +58,10 @@ def explicit_member(model, data, method, label, loaded, count, h):
         driven, rubbed = push_bodies(model, data, loaded, k, count, s)
         result.applied += h * method.b[s] * (power + driven)
         result.friction += h * method.b[s] * rubbed
+    weights = method.b[: stages_within(method)]
     for m in range(count):
         b = group.member[m]
-        combine_body(method.b, stages_within(method), h, start[b], work.stages, b, end[b])
+        combine_body(weights, h, start[b], work.stages, b, end[b])
     result.time = result.start + h
     return k
 
@@ -66,10 +75,10 @@ def implicit_member(model, data, method, label, loaded, count, h):
     for s in range(1, stages):
         for m in range(count):
             b = group.member[m]
-            combine_body(A[s], s, h, start[b], work.stages, b, group.base[b])
+            combine_body(A[s, :s], h, start[b], work.stages, b, group.base[b])
             for r in range(6):
                 work.stages[s, b].rate[r] = work.stages[s - 1, b].rate[r]
-        result.time = result.start + h * node(A[s], s + 1)
+        result.time = result.start + h * node(A[s, : s + 1])
         k, power, rubbed = implicit_stage(model, data, label, loaded, count, s, h * A[s, s], False)
         if k < 0:
             return 0
@@ -157,7 +166,7 @@ def move_stage(base, hg, length, stage, out):
     for r in range(3):
         out.x[r] = base.x[r] + hg * stage.speed[r]
     out.Q[0], out.Q[1], out.Q[2], out.Q[3] = normalize(
-        Q[0] + hg * q[0], Q[1] + hg * q[1], Q[2] + hg * q[2], Q[3] + hg * q[3]
+        (Q[0] + hg * q[0], Q[1] + hg * q[1], Q[2] + hg * q[2], Q[3] + hg * q[3])
     )
     return change, size
 
@@ -198,10 +207,13 @@ def solve_impulses(model, data, k, h):
             group.kind[i], group.heading[i, 0] = DISC, h * group.mu[i]
         elif group.closed[i].turns > 0:
             group.mu[i], turning = 1.0, True
-    count[NEAR], group.cone.mismatch[ENOUGH], count[BUDGET] = 0, 0.0, budget(k)
+    group.cone.mismatch[ENOUGH], count[BUDGET] = 0.0, budget(k)
+    problem = by_reference(
+        ContactProblem(W=group.W, c=group.v[C], mu=group.mu, kind=group.kind, heading=group.heading)
+    )
     for _ in range(50 if turning else 1):
         change = bound_turning(model.system, k, group)
-        solve_cones(k, group.W, group.v[C], group.mu, group.kind, group.heading, p, group.cone)
+        solve_cones(k, problem, p, group.cone)
         group.equations.iterations[0] += count[ITERATIONS]
         if turning and not change > 1e-14:
             break

@@ -21,7 +21,7 @@ from carom.contact.closed_points import add_touch, write_closed, write_turning
 from carom.contact.continuous_detection_pair import nearest_touch
 from carom.contact.pair_point import find_touches, list_touches, smaller, which_touch
 from carom.contact.place import place_any
-from carom.contact.rim import same_point
+from carom.contact.rim import place_of, same_point
 from carom.contact.stop import is_active
 from carom.contact.thresholds import ACTIVE_REACH, PLACE_ERROR, REACH
 from carom.dynamics.thresholds import NORMAL_ERROR
@@ -63,12 +63,9 @@ def add_known(system, active, i, state, k, group, work):
     if k == group.closed.shape[0]:
         return k
     active_point, closed_point = active.points[i], group.closed[k]
-    contact = system.contacts[active_point.contact]
     write_closed(active_point.contact, active_point.feature, active_point.point, closed_point)
     closed_point.active, closed_point.own = i, 1
-    place_any(
-        system, contact, active_point.feature, active_point.point, state, group.points[0][k], work
-    )
+    place_any(system, active_point, state, group.points[0][k], work)
     return k + 1
 
 
@@ -80,11 +77,11 @@ def add_pair(system, active, i, state, k, group, work) -> int:
     """
     c = active.points[i].contact
     contact = system.contacts[c]
-    count = list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
-    if not on_face(contact, active, i, nearest_touch(work, count).normal, state):
+    list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+    if not on_face(contact, active, i, nearest_touch(work).normal, state):
         for j in range(i, active.count[0]):
             if active.points[j].contact == c:
-                k = add_nearest(system, active, j, count, state, k, group, work)
+                k = add_nearest(system, active, j, state, k, group, work)
         return k
     k = add_face(system, active, c, i, state, k, group, work)
     for d in range(system.contacts.shape[0] if contact.surface > 0 else 0):
@@ -102,7 +99,7 @@ def on_face(contact, active, i, n, state):
     Points on a line, or in other planes, do not tell whether a corner at some distance is closed.
     """
     q, p, level = state[contact.body].Q, active.points[i].point, NORMAL_ERROR * smaller(contact)
-    m, x, y, z, far = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2]), 0.0, 0.0, 0.0, level
+    m, x, y, z, far = rotate_back(q, n), 0.0, 0.0, 0.0, level
     for find_end in (True, False):
         for j in range(active.count[0]):
             other = active.points[j]
@@ -131,30 +128,19 @@ def add_face(system, active, c, i, state, k, group, work):
     for t in range(count if near < 2.0 * REACH * smaller(contact) else 0):
         if work.touches[t].gap <= near:
             k = add_found(contact, c, work.touches[t], i, state, k, group)
-            note_own(system, active, 0, work.touches[t], state, group.closed[k - 1])
+            own = place_of(system, active, c, work.touches[t], state)
+            if own >= 0:
+                group.closed[k - 1].active, group.closed[k - 1].own = own, 1
     return k
 
 
 @kernel
-def note_own(system, active, first, touch, state, closed_point):
-    """Write the place of a found point among the active ones, if it is there."""
-    contact = system.contacts[closed_point.contact]
-    for j in range(first, active.count[0]):
-        active_point = active.points[j]
-        if active_point.contact == closed_point.contact and same_point(
-            system, contact, touch, active_point.feature, active_point.point, state
-        ):
-            closed_point.active, closed_point.own = j, 1
-            return
-
-
-@kernel
-def add_nearest(system, active, j, count, state, k, group, work):
+def add_nearest(system, active, j, state, k, group, work):
     """Add the found point with the feature of an active one, or the nearest one, if it is not there yet."""
     active_point = active.points[j]
     c = active_point.contact
     contact = system.contacts[c]
-    t = which_touch(system, contact, count, active_point.feature, active_point.point, state, work)
+    t = which_touch(system, contact, active_point.feature, active_point.point, state, work)
     touch = work.touches[t]
     for i in range(k):
         if group.closed[i].contact == c and group.closed[i].feature == touch.feature:

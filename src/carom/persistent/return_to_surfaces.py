@@ -104,7 +104,7 @@ def onto_surfaces(system, active, k, count, state, group, work):
             break
         n = factor_given(k, False, group) if n < 0 else n
         solve_rows(k, n, round_off(system.contacts[group.closed[0].contact], state), group, x)
-        spread_all(system, k, group.points[0], x, count, group.member, state, work)
+        spread_all(system, group.points[0, :k], x, group.member[:count], state, work)
         for m in range(count):
             shift(work.body[group.member[m]].motion, 1.0, state[group.member[m]])
         if system.joints.shape[0] > 0:
@@ -151,7 +151,7 @@ def greatest_speed(system, state, count, member):
 def give(system, k, count, state, group, work):
     """Change velocities of a group by the impulses in RETURN; return whether joints pass them on."""
     p, member = group.v[RETURN], group.member
-    joined = spread_all(system, k, group.points[0], p, count, member, state, work)
+    joined = spread_all(system, group.points[0, :k], p, member[:count], state, work)
     for m in range(count):
         gain(work.body[member[m]].motion, state[member[m]])
     return joined
@@ -168,7 +168,7 @@ def errors(system, active, k, state, group, x, work):
             continue
         active_point = active.points[closed_point.active]
         contact = system.contacts[closed_point.contact]
-        place_any(system, contact, closed_point.feature, closed_point.point, state, point, work)
+        place_any(system, closed_point, state, point, work)
         tiny = round_off(contact, state)
         if contact.touches == 1:
             tiny = 4.0 * round_off_of_both(contact, state)

@@ -156,7 +156,7 @@ def push_bodies(model, data, loaded, k, count, s) -> tuple[float, float]:
     """Add the accelerations by the forces in P to stage s; return the powers of motors and friction."""
     system, group, work = model.system, data.group, data.work
     u, p, power, driven = group.v[U], group.v[P], 0.0, 0.0
-    spread_all(system, k, group.points[0], p, count, group.member, work.stage, work)
+    spread_all(system, group.points[0, :k], p, group.member[:count], work.stage, work)
     if loaded:
         driven = driven_power(system, work.stage, work)
     for m in range(count):
