@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -22,7 +21,8 @@ from carom.model.more_forces import RESTITUTION, Pieces
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, meeting
 from carom.scene.contacts import IMPACT_LAWS
-from carom.scene.materials import MULTIPLE, ContactLaw
+from carom.scene.materials import MULTIPLE, ContactLaw, Material
+from carom.scene.restitution import Restitution
 from carom.scene.scene import Scene
 from carom.scene.shapes import Shape
 
@@ -34,7 +34,7 @@ class Surfaces(NamedTuple):
     single: Cores  # piece by piece, against each other
     shared: int  # first vertex of `single`, after those of contacts with half-spaces
     place: np.ndarray  # (N,) first solid of each body
-    laws: np.ndarray  # (L, 12) numbers of the laws of all pairs
+    curves: Pieces  # of restitutions that are laws
 
 
 class Contacts(NamedTuple):
@@ -60,14 +60,15 @@ def compile_contacts(
     vertices of equal radius, and one for each curved piece. If bodies move `apart`, more rows may follow later.
     """
     known, later = first_pairs(scene, apart)
-    laws = _numbers(known.laws, curves)
+    numbers = _numbers(known.laws, curves)
     many = later is not None or len(known.body) > FEW_CONTACTS
-    if many or scene.statics or not scene.gravity.any():  # without gravity, speeds count too
-        return _contacts(scene, known, later, laws, to_principal, options)
+    own = scene.statics or any(law.of_materials for law in known.laws)
+    if many or own or not scene.gravity.any():  # without gravity, speeds count too
+        return _contacts(scene, known, later, curves, to_principal, options)
     # contacts of scenes that differ in their motion, as in many throws, are copies of each other
-    of_pairs = known.body, known.other, known.plane, known.law, laws, to_principal, scene.gravity
+    of_pairs = known.body, known.other, known.plane, known.law, to_principal, scene.gravity
     key = (
-        *(one.tobytes() for one in of_pairs), options.layer_width, options.penetration,
+        *(one.tobytes() for one in of_pairs), numbers.tobytes(), options.layer_width, options.penetration,
         *((plane.point.tobytes(), plane.normal.tobytes()) for plane in scene.half_spaces),
         *(body.shape for body in scene.bodies),
     )  # fmt: skip
@@ -76,7 +77,7 @@ def compile_contacts(
         return mould.cast()._replace(pairs=known)
     if len(_KNOWN) >= MOST_KNOWN:
         _KNOWN.clear()
-    made = _contacts(scene, known, None, laws, to_principal, options)
+    made = _contacts(scene, known, None, curves, to_principal, options)
     _KNOWN[key] = Mould(made._replace(pairs=None))
     return made
 
@@ -87,7 +88,7 @@ FEW_CONTACTS = 64  # pairs of a scene whose contacts are kept
 MOST_KNOWN = 64  # such scenes
 
 
-def _contacts(scene: Scene, known: PairTable, later, laws, to_principal, options: Options):
+def _contacts(scene: Scene, known: PairTable, later, curves, to_principal, options: Options):
     """Return the contacts of the pairs `known`."""
     pairs, to_principal = _with_statics(scene, known), _and_of_statics(scene, to_principal)
     meets = pairs.other >= 0
@@ -104,7 +105,7 @@ def _contacts(scene: Scene, known: PairTable, later, laws, to_principal, options
     ranges = (which.core[end][flat & ~curved].tolist() for end in ("first", "last"))
     own = [grounded.vertices[first:last] for first, last in zip(*ranges)]
     vertices = np.concatenate([*own, single.vertices])
-    surfaces = Surfaces(grounded, single, len(vertices) - len(single.vertices), place, laws)
+    surfaces = Surfaces(grounded, single, len(vertices) - len(single.vertices), place, curves)
     rows = _rows(scene, options, pairs, which, surfaces)
     rows, levels = with_level_rows(rows, *find_levels(scene, pairs, place))
     return Contacts(rows, vertices, solids, hulls, levels, known, surfaces, later)
@@ -155,7 +156,7 @@ def _rows(scene, options: Options, pairs: PairTable, which: Rows, surfaces: Surf
     _write_shapes(rows, which)
     _write_ranges(rows, which, surfaces.shared)
     _write_solids(rows, which, surfaces.place)
-    _write_laws(rows, surfaces.laws[pairs.law[which.number]])
+    _write_laws(rows, scene, pairs, which, surfaces.curves)
     _write_statics(rows, scene)
     extent = rows["extent"]
     rows["still"] = 1e-14 * _speed(scene, extent)
@@ -260,14 +261,16 @@ OF_LAW = (
 )  # fmt: skip
 
 
-def _write_laws(rows: np.recarray, law: np.ndarray) -> None:
-    """Write the law (C, 12) of each contact to its rows."""
+def _write_laws(rows: np.recarray, scene: Scene, pairs: PairTable, which: Rows, curves: Pieces):
+    """Write the law of each contact to its rows."""
+    laws, of_row = _laws_by_part(scene, pairs, which)
+    law = _numbers(laws, curves)[of_row]
     for k, name in enumerate(OF_LAW):
         rows[name] = law[:, k]
     rows["turning"] = law[:, len(OF_LAW) :]
 
 
-def _numbers(laws: Sequence[ContactLaw], curves: Pieces) -> np.ndarray:
+def _numbers(laws: list[ContactLaw], curves: Pieces) -> np.ndarray:
     """Return the numbers (L, 12) of laws; those of restitutions that are laws are added to `curves`."""
     numbers = [
         (
@@ -278,3 +281,49 @@ def _numbers(laws: Sequence[ContactLaw], curves: Pieces) -> np.ndarray:
         for one in laws
     ]  # fmt: skip
     return np.array(numbers, dtype=float).reshape(-1, len(OF_LAW) + 2)
+
+
+class Surface(NamedTuple):
+    """The surface of a piece of a body."""
+
+    name: str  # of the body
+    material: Material | None
+
+
+def _laws_by_part(scene: Scene, pairs: PairTable, which: Rows) -> tuple[list, np.ndarray]:
+    """Return the different laws, and that of each row by number: pieces may have materials of their own."""
+    laws, of_row = list(pairs.laws), pairs.law[which.number]
+    parts = (*scene.bodies, *scene.statics)
+    by_part = np.array([bool(law.of_materials) for law in laws], dtype=bool)
+    known: dict[tuple, int] = {}
+    for row in np.flatnonzero(by_part[of_row]).tolist() if by_part.any() else ():
+        number = which.number[row]
+        plane, other = pairs.plane[number], pairs.other[number]
+        one = _surface(parts[pairs.body[number]], which.core["piece"][row])
+        if other >= 0:
+            two = _surface(parts[other], which.other["piece"][row])
+        else:
+            two = Surface(scene.half_spaces[plane].name, scene.half_spaces[plane].material)
+        key = (int(of_row[row]), one.material, two.material)
+        if key not in known:
+            known[key] = len(laws)
+            laws.append(
+                _checked(scene._pairs.law_of_parts(laws[key[0]], one, two), laws[key[0]], one)
+            )
+        of_row[row] = known[key]
+    return laws, of_row
+
+
+def _checked(law: ContactLaw, whole: ContactLaw, surface: Surface) -> ContactLaw:
+    """Return the law of two parts; refuse restitutions of parts that are different laws of the speed."""
+    e = law.restitution, whole.restitution
+    if e[0] != e[1] and any(isinstance(one, Restitution) for one in e):
+        raise ValueError(
+            f"restitution must be a number for each part of {surface.name!r}, or one law for all, "
+            f"got {e[0]:g} and {e[1]:g}"
+        )
+    return law
+
+
+def _surface(part, piece: int) -> Surface:
+    return Surface(part.name, part.shape.pieces[piece].material or part.material)

@@ -31,6 +31,7 @@ class Pieces:
 
     def __init__(self):
         self.rows = table(PIECE, 0)
+        self.known: dict[tuple, tuple[float, ...]] = {}  # restitutions
 
     def add(self, curve) -> tuple[int, int]:
         """Add a `scipy.interpolate.PPoly`; return the range of its pieces."""
@@ -51,8 +52,10 @@ class Pieces:
         """Return the values of `RESTITUTION` of a row whose speeds are `length` times those of a law."""
         if not isinstance(e, Restitution):
             return e, 0, 0, 0.0
-        curve = curve_of(e).scaled(length)
-        return np.nan, *self.add(curve), curve.exponent
+        if (e, length) not in self.known:
+            curve = curve_of(e).scaled(length)
+            self.known[e, length] = np.nan, *self.add(curve), curve.exponent
+        return self.known[e, length]
 
 
 class MoreForces:

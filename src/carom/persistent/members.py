@@ -5,7 +5,7 @@ All step the bodies of a group along one right-hand side (`carom.persistent.rows
 
 explicit    the method of the run, with given modes (`carom.persistent.springs`)
 implicit    L-stable, of order 4: Coulomb's law at the velocity of each stage (`carom.persistent.coulomb_stage`)
-closing     implicit Euler, the stiff method of one stage; with impulses, like Moreau.s, where it has none
+closing     implicit Euler, a stiff method of one stage; with impulses, like Moreau.s, where it has none
 
 Each returns whether it has made the step. The work of loads, and of friction, is added to `work.result`.
 """
@@ -33,7 +33,13 @@ from carom.impact.workspace import C, P, U
 from carom.persistent.coulomb_stage import solve_stage
 from carom.persistent.joint_rows import JOINT
 from carom.persistent.rolling_friction import bound_turning
-from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
+from carom.persistent.rows import (
+    accelerate_freely,
+    bodies_of,
+    push_bodies,
+    set_modes,
+    write_rows,
+)
 from carom.persistent.springs import bound_per_force, solve_springs
 from carom.persistent.thresholds import LAST_CHANGE, STAGE_CHANGE
 
@@ -41,10 +47,10 @@ FIXED_POINT = 25  # iterations of the pose of a stage
 
 
 @kernel
-def explicit_member(model, data, method, label, loaded, count, h):
+def explicit_member(model, data, method, label, h):
     """Make the stages of the method of the run; return the number of points at its last one, 0 if modes end."""
     start, end, group, work = data.state, data.work.trial, data.group, data.work
-    result, k = work.result[0], 0
+    (count, loaded), result, k = bodies_of(model, data, label), work.result[0], 0
     for s in range(1, stages_within(method)):
         for m in range(count):
             b = group.member[m]
@@ -67,11 +73,14 @@ def explicit_member(model, data, method, label, loaded, count, h):
 
 
 @kernel
-def implicit_member(model, data, method, label, loaded, count, h):
-    """Make the stages of the stiff method; return the number of points at the end, 0 if one is not solved."""
+def implicit_member(model, data, A, label, h, closes):
+    """Make the stages of the stiff method A; return the number of points at the end, 0 if one is not solved.
+
+    One that `closes` has impulses where its stage has no solution.
+    """
     start, end, group, work = data.state, data.work.trial, data.group, data.work
-    result, A, k = work.result[0], method.stiff, 0
-    stages = A.shape[0]
+    result, k, stages = work.result[0], 0, A.shape[0]
+    count, _ = bodies_of(model, data, label)
     for s in range(1, stages):
         for m in range(count):
             b = group.member[m]
@@ -79,7 +88,7 @@ def implicit_member(model, data, method, label, loaded, count, h):
             for r in range(6):
                 work.stages[s, b].rate[r] = work.stages[s - 1, b].rate[r]
         result.time = result.start + h * node(A[s, : s + 1])
-        k, power, rubbed = implicit_stage(model, data, label, loaded, count, s, h * A[s, s], False)
+        k, power, rubbed = implicit_stage(model, data, label, s, h * A[s, s], closes)
         if k < 0:
             return 0
         result.applied += h * A[stages - 1, s] * power
@@ -91,12 +100,12 @@ def implicit_member(model, data, method, label, loaded, count, h):
 
 
 @kernel
-def implicit_stage(model, data, label, loaded, count, s, hg, closes):
+def implicit_stage(model, data, label, s, hg, closes):
     """Solve for stage s in `work.stage`, from `group.base` without it.
 
     Return the number of points, -1 if there is no solution, and the powers of loads and of friction.
     """
-    group, work = data.group, data.work
+    group, work, (count, loaded) = data.group, data.work, bodies_of(model, data, label)
     k, change, power, rubbed = -1, 0.0, 0.0, 0.0
     iterations = group.equations.iterations
     iterations[0] = 0
@@ -169,27 +178,6 @@ def move_stage(base, hg, length, stage, out):
         (Q[0] + hg * q[0], Q[1] + hg * q[1], Q[2] + hg * q[2], Q[3] + hg * q[3])
     )
     return change, size
-
-
-@kernel
-def closing_member(model, data, label, loaded, count, h):
-    """Make a step of implicit Euler, the stiff method of one stage; return the number of points, 0 if none."""
-    start, end, group, work = data.state, data.work.trial, data.group, data.work
-    result = work.result[0]
-    for m in range(count):
-        b = group.member[m]
-        copy_state(start[b], group.base[b])
-        for r in range(6):
-            work.stages[1, b].rate[r] = work.stages[0, b].rate[r]
-    result.time = result.start + h
-    k, power, rubbed = implicit_stage(model, data, label, loaded, count, 1, h, True)
-    if k < 0:
-        return 0
-    result.applied += h * power
-    result.friction += h * rubbed
-    for m in range(count):
-        copy_state(work.stage[group.member[m]], end[group.member[m]])
-    return k
 
 
 @kernel
