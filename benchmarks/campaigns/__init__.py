@@ -9,6 +9,7 @@ from campaigns import (
     belts,
     crowds,
     forced,
+    laws,
     mechanisms,
     piles,
     rests,
@@ -25,4 +26,5 @@ FAMILIES = {
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
     "belts": belts.case,
+    "laws": laws.case,
 }  # fmt: skip

@@ -47,7 +47,7 @@ def test_a_block_put_on_a_belt_slides_and_then_rides(how):
 
 def test_the_belt_at_rest_sees_the_same_motion():
     rng = np.random.default_rng(4)
-    V, v, w = np.array([1.2, -0.7, 0.0]), np.array([0.3, 0.5, 0.0]), (0.0, 0.0, 3.0)
+    V, v = np.array([1.2, -0.7, 0.0]), np.array([0.3, 0.5, 0.0])
     tilt = rng.normal(size=3)
     moved = on_belt(
         carom.Box(0.1, 0.2, 0.05), 0.3, 0.4, height=0.2, velocity=v, spin=tilt, surface_velocity=V
@@ -59,7 +59,6 @@ def test_the_belt_at_rest_sees_the_same_motion():
     assert np.allclose(a["body"].angular_velocity, b["body"].angular_velocity, atol=1e-6)
     assert np.allclose(a.ledger.impacts, b.ledger.impacts, atol=1e-8)
     assert np.max(np.abs(a.ledger.residual)) < 1e-8
-    del w
 
 
 @pytest.mark.parametrize("mu", [0.05, 0.9])
@@ -79,7 +78,7 @@ def test_a_ball_dropped_on_a_belt_gains_spin_by_the_law_of_impact(mu):
 def test_a_spring_and_constant_friction_slip_steadily():
     mu, V, k = 0.3, 2.0, 50.0
     scene = on_belt(block(), mu, surface_velocity=(V, 0, 0))
-    spring = carom.forces.Spring((-1, 0, 0.025), (0, 0, 0.025), stiffness=k)
+    spring = carom.forces.Spring(k, (-1, 0, 0.025), (0, 0, 0.025))
     scene.add_force(spring, carom.GROUND, "body")
     s = carom.simulate(scene, 2.0, **TIGHT)
     middle, w = mu * 2.0 * G / k, np.sqrt(k / 2.0)
@@ -179,7 +178,6 @@ def test_a_block_rides_on_a_belt_that_speeds_up():
 
 
 def test_a_roller_whose_rate_is_a_function_of_time():
-    # the rate of a constant, and a point beside the axis of the solid, as a velocity
     scene = rollers(30.0)
     scene.replace("left", surface_spin=((0, 1, 0), lambda t: (30.0, 0.0)))
     a, b = (carom.simulate(one, 0.5, step=0.01) for one in (scene, rollers(30.0)))
@@ -188,7 +186,7 @@ def test_a_roller_whose_rate_is_a_function_of_time():
 
 def test_a_belt_moves_a_crowd():
     scene = carom.Scene()
-    belt = scene.add_half_space((0, 0, 0), (0, 0, 1), surface_velocity=(1.0, 0, 0), name="belt")
+    scene.add_half_space((0, 0, 0), (0, 0, 1), surface_velocity=(1.0, 0, 0))
     for k in range(3):
         for j in range(3):
             scene.add_body(
@@ -196,7 +194,6 @@ def test_a_belt_moves_a_crowd():
             )
     scene.set_contact_default(friction=0.6, restitution=0.0)
     s = carom.simulate(scene, 1.0, step=0.005)
-    del belt
     assert s.stats["whole_steps"] > 0
     assert np.allclose(s.velocity[-1, :3, 0], 1.0, atol=1e-3)
     assert np.max(s.ledger.friction) <= 1e-12

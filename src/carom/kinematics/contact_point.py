@@ -94,7 +94,7 @@ def own_rows(point, u):
 
 @kernel
 def own_field(point, state, i):
-    """Return rows of a moving surface at a point, contact axes: velocity (i = 0), its rate in one place (i = 2).
+    """Return rows of a moving surface at a point, contact axes: velocity (i = 0), rate in one place (i = 2).
 
     The surface moves in itself: the normal component counts for nothing.
     """

@@ -39,6 +39,7 @@ from carom.scene.forces import FORCES, AppliedForce
 from carom.scene.joints import JOINTS, Joint
 from carom.scene.materials import ContactLaw, Material
 from carom.scene.pieces import Piece
+from carom.scene.restitution import LAWS
 from carom.scene.shapes import SHAPES
 from carom.scene.stops import Stop
 
@@ -53,6 +54,7 @@ TYPES: dict[str, type[Any]] = {
         *JOINTS,
         *FORCES,
         *CONSTRAINTS,
+        *LAWS,
         Gear,
         ContactLaw,
         Material,
@@ -62,8 +64,8 @@ TYPES: dict[str, type[Any]] = {
 }
 #: fields that files of earlier versions do not have
 LATER: dict[str, Any] = {
-    "color": None, "material": None, "of_materials": {"tuple": []}, "surface_velocity": None,
-    "surface_spin": None,
+    "color": None, "material": None, "of_materials": {"tuple": []}, "tangential_restitution": 0.0,
+    "surface_velocity": None, "surface_spin": None,
 }  # fmt: skip
 ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 
