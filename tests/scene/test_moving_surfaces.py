@@ -51,7 +51,7 @@ def test_a_function_that_leaves_the_plane_is_refused():
 
 def test_text_copies_and_changes():
     scene = belts()
-    assert "surface_velocity=[1. 0. 0.]" in repr(scene["belt"])
+    assert "surface_velocity=(1, 0, 0)" in repr(scene["belt"])
     assert "surface_spin" in str(scene)
     other = scene.copy()
     other.replace("belt", surface_velocity=(2, 0, 0))

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from carom import checks
 from carom.fields import Value
+from carom.scene.values import shown
 
 #: greatest sine of the angle between a velocity and the plane that it is to lie in
 IN_PLANE = 1e-9
@@ -69,11 +70,16 @@ def is_timed(part: Any) -> bool:
 def motion_in_words(part: Any) -> str:
     """Return how a surface moves in itself, for the text of its part; nothing if it does not."""
     velocity, spin = part.surface_velocity, part.surface_spin
-    text = "" if velocity is None else f", surface_velocity={checks.shown(velocity)}"
+    text = "" if velocity is None else f", surface_velocity={_in_words(velocity)}"
     if spin is not None:
-        rate = spin[1] if isinstance(spin[1], float) else checks.shown(spin[1])
-        text += f", surface_spin=({checks.shown(spin[0])}, {rate})"
+        text += f", surface_spin=({', '.join(_in_words(one) for one in spin if one is not None)})"
     return text
+
+
+def _in_words(value: Any) -> str:
+    if callable(value):
+        return checks.shown(value)
+    return f"{value:g}" if isinstance(value, float) else shown(value)
 
 
 def check_in_plane(velocity, spin: Spin | None, normal: np.ndarray) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from carom.geometry import quaternion
 from carom.visual.surfaces import surface
 
-COUNT, AROUND = 4, 3  # arrows of a solid; of a plane that turns, about its axis
+ARROWS, AROUND = 4, 3  # arrows of a solid; of a plane that turns, about its axis
 LONG, THICK = 0.12, 0.012  # length and thickness, as fractions of the size of the region
 #: side view of an arrow of length 1 from its middle: along it, across it
 OUTLINE = np.array(
@@ -72,7 +72,7 @@ def _apart(points: np.ndarray, speed: np.ndarray) -> list[int]:
     """Return the indices of a few of the fastest points, far from each other."""
     fast = np.flatnonzero(speed >= 0.7 * speed.max())
     chosen = [int(fast[0])]
-    while len(chosen) < min(COUNT, len(fast)):
+    while len(chosen) < min(ARROWS, len(fast)):
         away = np.min(np.linalg.norm(points[fast, None] - points[chosen], axis=2), axis=1)
         if not away.max() > 0.0:
             break
