@@ -28,6 +28,7 @@ from carom.scene import (
     Scene,
     Sphere,
     constraints,
+    curves,
     forces,
     joints,
 )
@@ -89,6 +90,7 @@ __all__ = [
     "constraints",
     "contact_inverse_mass",
     "contact_sequence",
+    "curves",
     "ensemble",
     "euler",
     "film",

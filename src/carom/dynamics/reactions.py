@@ -9,6 +9,7 @@ from carom._compiled.units import unit
 from carom.dynamics.elements import (
     acceleration_bias,
     build_rows,
+    force_on_curve,
     position_error,
     prescribed_speeds,
     row_target,
@@ -22,7 +23,8 @@ from carom.dynamics.solve import joint_wrench, solve
 from carom.dynamics.stiff import add_stiff
 from carom.dynamics.tree import joint_wrenches
 from carom.kinematics.coordinate import rate, value
-from carom.model.arrays import FOREST, LOOPS, RELATION
+from carom.kinematics.curve import is_on_curve, seek_feet, seek_foot
+from carom.model.arrays import FOREST, LOOPS, ON_CURVE, RELATION
 from carom.model.parts_of_system import has_relations
 
 
@@ -137,7 +139,7 @@ def follow_turns(system, times, states, k):
         if k == 0:
             c.reference = 0.0
         else:
-            mean = 0.5 * (rate(c, states[k - 1]) + rate(c, states[k]))
+            mean = 0.5 * (rate(system, c, states[k - 1]) + rate(system, c, states[k]))
             c.reference += mean * (times[k] - times[k - 1])
     for j in range(system.joints.shape[0]):
         if system.joints[j].kind == RELATION:
@@ -148,7 +150,10 @@ def follow_turns(system, times, states, k):
                 relations.coordinates[term.coordinate].reference = angle
     for i in range(relations.coordinates.shape[0]):
         c = relations.coordinates[i]
-        c.reference = value(c, states[k])
+        if is_on_curve(c):  # saved states may be far from each other
+            seek_foot(system, c, states[k])
+        else:
+            c.reference = value(system, c, states[k])
 
 
 @entry
@@ -172,6 +177,8 @@ def reactions(system, augment, times, states, rows, touch, work, out):
         solve(system, state, True, work)
         share(system, augment, state, work)
         for j in range(system.joints.shape[0]):
+            if system.joints[j].kind in ON_CURVE:
+                force_on_curve(system, system.joints[j], state, work.joint[j].reaction)
             for i in range(6):
                 out[k, j, i] = work.joint[j].reaction[i]
 
@@ -201,6 +208,7 @@ def saved_turns(system, times, states, out):
 @entry
 def start_errors(system, state, work, position, velocity):
     """Write the errors of position and velocity of each row of each element, (J, 6) each."""
+    seek_feet(system, state)
     for j in range(system.joints.shape[0]):
         position_error(system, j, state, work)
         row_target(system, j, state, work.joint[j].bias, position[j])

@@ -1,0 +1,370 @@
+"""Curves in space for joints: `Spline` through points, and `Curve` of a function.
+
+Every curve becomes a table by arc length s: pieces of degree 5 that agree with the curve in position, direction
+and curvature at their ends, so that the table is C2. There are as many as keep it within `ACCURACY` of the size
+of the curve, and s within `EVEN` of its arc length. Kernels know only this form.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import ArrayLike
+
+from carom import arguments, checks
+from carom.fields import keep
+
+ACCURACY = 1e-12  # error of a table, relative to the size of its curve
+EVEN = 1e-9  # largest difference of |dx/ds| from 1
+DEGREE = 16  # of the polynomials that stand for a function while its table is made
+RESOLVED = 1e-13  # their last coefficients, relative to the size of the curve
+MOST_PANELS = 4096  # of these polynomials
+SLOWEST = 1e-6  # least speed along a parameter, relative to the mean: below it is a cusp
+SHARPEST = 1e-7  # least radius of curvature, relative to the length of the curve
+#: greatest jump between two parts: of the size of the curve, of its direction, of its greatest curvature
+JUMP = np.array([1e-8, 1e-7, 1e-5])
+FAR = 100.0  # weight of a direction across the motion, in squares of the distance of two knots
+ROUND_OFF = 1e-15  # of coordinates
+NODES = chebyshev.chebpts2(DEGREE + 1)
+TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, DEGREE))
+
+
+@arguments.known
+class Curve:
+    """A curve of a function of one parameter, from its start to its end.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(u)`` returns a point (3,) [m]: plain Python, NumPy or SymPy, for a float u. Position,
+        direction and curvature must be continuous; the function may have any speed along u, but not 0.
+    start, end : float
+        Range of u. Default 0 to 1.
+    closed : bool
+        Whether the curve ends where it begins, with the same direction and curvature. Default False.
+
+    Attributes
+    ----------
+    length : float
+        Arc length from the start to the end [m].
+    closed : bool
+    knots : (n + 1,)
+        Arc lengths s at the ends of the n pieces of the table.
+    ends : (n + 1, 3, 3)
+        Position [m], direction and curvature vector [1/m] at the knots.
+
+    Raises
+    ------
+    ValueError
+        If the function is not finite, stops, or has a corner or a jump of the curvature; if a closed curve does
+        not close.
+
+    Notes
+    -----
+    The table differs from the curve by less than 1e-12 of its size, or by round-off.
+
+    Examples
+    --------
+    >>> import math
+    >>> circle = carom.curves.Curve(lambda u: (math.cos(u), math.sin(u), 0.0), 0.0, 2 * math.pi, closed=True)
+    >>> round(circle.length, 9)
+    6.283185307
+    """
+
+    knots: np.ndarray
+    ends: np.ndarray
+    closed: bool
+
+    def __init__(
+        self,
+        function: Callable[[float], Any],
+        start: float = 0.0,
+        end: float = 1.0,
+        closed: bool = False,
+    ):
+        function = checks.function("function", function)
+        start = checks.number("start", start)
+        end = checks.number("end", end, above=start)
+        edges = np.linspace(start, end, 9).tolist()
+        self._put(*_table(lambda u: _points(function, u), edges, closed))
+
+    def _put(self, knots: np.ndarray, ends: np.ndarray, closed: bool) -> None:
+        keep(self, knots=knots, ends=ends, closed=closed)
+
+    def __setattr__(self, name: str, value) -> None:
+        raise AttributeError(f"curves are read-only, got {name} = {checks.shown(value)}")
+
+    def __repr__(self) -> str:
+        closed = ", closed" if self.closed else ""
+        return f"{type(self).__name__}(length={self.length:g} m, {len(self.knots) - 1} pieces{closed})"
+
+    @property
+    def length(self) -> float:
+        """Arc length from the start to the end [m]."""
+        return float(self.knots[-1])
+
+    @cached_property
+    def coefficients(self) -> np.ndarray:
+        """Coefficients (6, n, 3) of the pieces in s - knot, the constant first."""
+        h = np.diff(self.knots)[:, None]
+        (p, v, a), (q, w, b) = np.moveaxis(self.ends[:-1], 1, 0), np.moveaxis(self.ends[1:], 1, 0)
+        d, e, f = q - p - h * v - 0.5 * h * h * a, h * (w - v - h * a), h * h * (b - a)
+        third, fourth = 10.0 * d - 4.0 * e + 0.5 * f, -15.0 * d + 7.0 * e - f
+        fifth = 6.0 * d - 3.0 * e + 0.5 * f
+        return np.stack([p, v, 0.5 * a, third / h**3, fourth / h**4, fifth / h**5])
+
+    @cached_property
+    def normals(self) -> np.ndarray:
+        """Unit vectors (n, 3) across the curve at the start of each piece, which turn as little as possible.
+
+        Those of a closed curve turn evenly about it, so that they close too. (Double reflection: Wang et al.
+        2008.)
+        """
+        x, t = self.ends[:, 0], self.ends[:, 1]
+        out = [np.cross(t[0], np.eye(3)[np.argmin(np.abs(t[0]))])]
+        out[0] /= np.linalg.norm(out[0])
+        for k in range(len(x) - 1):
+            step, n = x[k + 1] - x[k], out[-1]
+            n = n - 2.0 * (step @ n) / (step @ step) * step
+            turned = t[k] - 2.0 * (step @ t[k]) / (step @ step) * step
+            back = t[k + 1] - turned
+            out.append(n - 2.0 * (back @ n) / max(back @ back, 1e-300) * back)
+        normals, last = np.array(out[:-1]), out[-1]
+        if self.closed:
+            angle = math.atan2(last @ np.cross(t[0], out[0]), last @ out[0])
+            turn = -angle * self.knots[:-1, None] / self.length
+            across = np.cross(t[:-1], normals)
+            normals = np.cos(turn) * normals + np.sin(turn) * across
+        return normals
+
+    @property
+    def sharpest(self) -> float:
+        """Largest curvature [1/m] of the curve, at its knots."""
+        return float(np.max(np.linalg.norm(self.ends[:, 2], axis=1)))
+
+    def point(self, s: ArrayLike) -> np.ndarray:
+        """Return the points (..., 3) [m] at arc lengths s (...) [m]; beyond an end, those of the last piece."""
+        return self._at(np.asarray(checks.real_array("s", s, "any"), float))[0]
+
+    def tangent(self, s: ArrayLike) -> np.ndarray:
+        """Return the unit tangents (..., 3) at arc lengths s (...) [m]."""
+        slope = self._at(np.asarray(checks.real_array("s", s, "any"), float))[1]
+        return slope / np.linalg.norm(slope, axis=-1, keepdims=True)
+
+    def nearest(self, point: ArrayLike) -> float:
+        """Return the arc length [m] of the point of the curve that is nearest to a point (3,)."""
+        point = checks.finite_array("point", point, (3,), "m")
+        s = float(self.feet(point[None], np.zeros((1, 3)))[0])
+        return s if self.closed else min(max(s, 0.0), self.length)
+
+    def _at(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return position, first and second derivative at arc lengths."""
+        s = s % self.length if self.closed else s
+        k = np.clip(np.searchsorted(self.knots, s, side="right") - 1, 0, len(self.knots) - 2)
+        t, c = (s - self.knots[k])[..., None], self.coefficients[:, k]
+        value, slope, bend = c[5], np.zeros_like(c[5]), np.zeros_like(c[5])
+        for power in range(4, -1, -1):
+            bend = bend * t + 2.0 * slope
+            slope, value = slope * t + value, value * t + c[power]
+        return value, slope, bend
+
+    def feet(self, points: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+        """Return the arc lengths (K,) of points (K, 3) near the curve, which move along it with a velocity (K, 3).
+
+        Where the curve crosses itself, that of the branch along the velocity.
+        """
+        x, t = self.ends[:, 0], self.ends[:, 1]
+        speed = np.linalg.norm(velocity, axis=1, keepdims=True)
+        moves = speed > 1e-9 * np.max(speed, initial=0.0)
+        heading = np.where(moves, velocity / np.where(moves, speed, 1.0), 0.0)
+        spacing = np.max(np.diff(self.knots)) ** 2
+        s = np.zeros(len(points))
+        for k, point in enumerate(points):
+            across = 1.0 - (t @ heading[k]) ** 2 if moves[k, 0] else 0.0
+            away = np.sum((x - point) ** 2, axis=1) + FAR * spacing * across
+            s[k] = self.knots[np.argmin(away)]
+        for k in range(20):
+            place, slope, bend = self._at(s)
+            e, square = points - place, np.sum(slope**2, axis=1)
+            # the first corrections do without the curvature, which counts near the curve only
+            below = square - (np.sum(e * bend, axis=1) if k > 1 else 0.0)
+            s = s + np.sum(e * slope, axis=1) / np.maximum(below, 0.5 * square)
+        return s
+
+
+@arguments.known
+class Spline(Curve):
+    """A cubic spline (C2) through points.
+
+    Parameters
+    ----------
+    points : (N, 3)
+        Points [m] of the curve, in order: at least 2, and of a closed one at least 3, the first of which is
+        not repeated at the end.
+    closed : bool
+        Whether the curve goes on from the last point to the first. Default False.
+
+    Notes
+    -----
+    The parameter of the spline is the length of the chords; beyond that it is like `Curve`.
+
+    Examples
+    --------
+    >>> rail = carom.curves.Spline([(0, 0, 1), (1, 0, 0), (2, 0, 0.5)])
+    >>> rail.point(0.0)
+    array([0., 0., 1.])
+    """
+
+    def __init__(self, points: ArrayLike, closed: bool = False):
+        from scipy.interpolate import CubicSpline
+
+        points = checks.finite_array("points", points, (None, 3), "m")
+        closed, least = checks.flag("closed", closed), 3 if closed else 2
+        if len(points) < least:
+            kind = "a closed" if closed else "an open"
+            raise ValueError(f"points must be at least {least} of {kind} spline, got {len(points)}")
+        through = np.vstack([points, points[:1]]) if closed else points
+        chords = np.linalg.norm(np.diff(through, axis=0), axis=1)
+        short = int(np.argmin(chords))
+        if not chords[short] > ACCURACY * np.max(np.abs(points)):
+            other = (short + 1) % len(points)
+            again = "; the first point of a closed spline is not repeated" if closed else ""
+            raise ValueError(
+                f"points must differ from the next ones, got {points[short]} for points {short} and "
+                f"{other}{again}"
+            )
+        u = np.concatenate([[0.0], np.cumsum(chords)])
+        spline = CubicSpline(u, through, bc_type="periodic" if closed else "not-a-knot")
+        self._put(*_table(spline, u.tolist(), closed))
+
+
+def _points(function: Callable, u: np.ndarray) -> np.ndarray:
+    """Return the points (K, 3) of a function of the user's."""
+    found = []
+    for one in u.tolist():
+        point = checks.call("function", function, one)
+        try:
+            found.append(np.array([float(x) for x in point]))
+        except (TypeError, ValueError):
+            found.append(np.zeros(0))
+        if found[-1].shape != (3,) or not np.all(np.isfinite(found[-1])):
+            raise ValueError(
+                f"function must return a finite point (3,), got {checks.shown(point)} for {one!r}"
+            )
+    return np.array(found)
+
+
+def _table(
+    function: Callable, edges: Sequence[float], closed: bool
+) -> tuple[np.ndarray, np.ndarray, bool]:
+    """Return knots and ends of the table of a curve that is smooth between the edges of its parameter."""
+    closed, place = checks.flag("closed", closed), np.zeros(3)
+    size = np.ptp(function(np.array(edges)), axis=0).max()
+    panels, left = [], [*zip(edges[:-1], edges[1:])][::-1]
+    while left:
+        a, b = left.pop()
+        values = function(0.5 * (a + b) + 0.5 * (b - a) * NODES)
+        size = max(size, np.ptp(values, axis=0).max())
+        if not size > 0.0:
+            raise ValueError("a curve must have a length above 0, got one point")
+        panel = _panel(values, a, b, size)
+        if panel is not None:
+            panels.append(panel)
+            continue
+        place = values[0]
+        if len(left) + len(panels) > MOST_PANELS or not b - a > 1e-9 * (edges[-1] - edges[0]):
+            raise ValueError(
+                "a curve must be smooth, with continuous curvature and without a cusp, got one that is not "
+                f"near the parameter {0.5 * (a + b):.6g}, the point {checks.shown(place.tolist())}"
+            )
+        left += [(0.5 * (a + b), b), (a, 0.5 * (a + b))]
+    pieces = [panel.pieces(size) for panel in panels]
+    first = np.concatenate([[0.0], np.cumsum([knots[-1] for knots, _ in pieces])])
+    knots = np.concatenate([s[:-1] + at for (s, _), at in zip(pieces, first)] + [first[-1:]])
+    ends = np.concatenate([e[:-1] for _, e in pieces] + [pieces[-1][1][-1:]])
+    bend = np.linalg.norm(ends[:, 2], axis=1)
+    k = int(np.argmax(bend))
+    if not bend[k] * SHARPEST * knots[-1] < 1.0:
+        raise ValueError(
+            f"a curve must have radii of curvature above {SHARPEST:g} of its length, got {1.0 / bend[k]:.3g} m "
+            f"at {checks.shown(ends[k, 0].tolist())}"
+        )
+    scale = JUMP * (size, 1.0, max(1.0 / size, bend.max()))
+    for (_, here), (_, there) in zip(pieces, pieces[1:] + pieces[:closed]):
+        jumps = np.linalg.norm(there[0] - here[-1], axis=1) / scale
+        if not np.max(jumps) < 1.0:
+            what = ("position", "direction", "curvature")[int(np.argmax(jumps))]
+            raise ValueError(
+                f"a curve must be continuous in position, direction and curvature{' where it closes' * closed}, "
+                f"got a jump of its {what} at {checks.shown(here[-1, 0].tolist())}"
+            )
+    if closed:
+        ends[-1] = ends[0]
+    return knots, ends, closed
+
+
+class _Panel(NamedTuple):
+    """A part of a curve as polynomials of a parameter from -1 to 1, by their Chebyshev coefficients."""
+
+    x: np.ndarray  # (n, 3) position and its derivatives
+    d: np.ndarray
+    e: np.ndarray
+    pace: np.ndarray  # (n,) speed
+    way: np.ndarray  # and arc length
+
+    def ends(self, s: np.ndarray) -> np.ndarray:
+        """Return position, direction and curvature vector (K, 3, 3) at arc lengths."""
+        u = 2.0 * s / chebyshev.chebval(1.0, self.way) - 1.0
+        for _ in range(20):
+            step = (chebyshev.chebval(u, self.way) - s) / chebyshev.chebval(u, self.pace)
+            u = np.clip(u - step, -1.0, 1.0)
+            if np.max(np.abs(step)) < 1e-9:  # the next one is the square of it
+                break
+        x, d, e = (chebyshev.chebval(u, one).T for one in (self.x, self.d, self.e))
+        square = np.sum(d**2, axis=1, keepdims=True)
+        t = d / np.sqrt(square)
+        return np.stack([x, t, (e - np.sum(e * t, axis=1, keepdims=True) * t) / square], axis=1)
+
+    def pieces(self, size: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return knots and ends, with as few pieces of equal length as are accurate."""
+        length, count = float(chebyshev.chebval(1.0, self.way)), 1
+        while True:
+            s = np.linspace(0.0, length, count + 1)
+            made = object.__new__(Curve)
+            keep(made, knots=s, ends=self.ends(s), closed=False)
+            between = (s[:-1, None] + length / count * np.array([0.25, 0.5, 0.75])).ravel()
+            place, slope, _ = made._at(between)
+            exact = self.ends(between)[:, 0]
+            off = np.max(np.abs(place - exact)) / max(ACCURACY * size, ROUND_OFF * np.max(np.abs(exact)))
+            uneven = np.max(np.abs(np.linalg.norm(slope, axis=1) - 1.0)) / EVEN
+            if max(off, uneven) <= 1.0 or count >= 256:
+                return s, made.ends
+            count *= 2
+
+
+def _panel(values: np.ndarray, a: float, b: float, size: float) -> _Panel | None:
+    """Return the polynomials through points (n, 3) at `NODES`; None if they do not stand for the curve."""
+    x = TO_COEFFICIENTS @ values
+    d = chebyshev.chebder(x)
+    speed = np.linalg.norm(chebyshev.chebval(NODES, d), axis=0)
+    if not speed.min() > SLOWEST * speed.mean():
+        return None
+    pace, round_off = TO_COEFFICIENTS @ speed, max(RESOLVED * size, ROUND_OFF * np.max(np.abs(values)))
+    # a derivative multiplies round-off by up to the square of the degree
+    if np.max(np.abs(x[-3:])) > round_off or np.max(np.abs(pace[-3:])) > DEGREE**2 * round_off:
+        return None
+    return _Panel(x, d, chebyshev.chebder(d), pace, chebyshev.chebint(pace, lbnd=-1.0))
+
+
+CURVES = (Curve, Spline)
+
+__getattr__ = arguments.members_of("carom.curves", ["Curve", "Spline"])
+
+
+def __dir__() -> list[str]:
+    return ["Curve", "Spline"]
