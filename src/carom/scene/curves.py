@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -20,10 +21,10 @@ from carom import arguments, checks
 from carom.fields import keep
 
 ACCURACY = 1e-12  # error of a table, relative to the size of its curve
-EVEN = 1e-9  # largest difference of |dx/ds| from 1
+EVEN = 1e-10  # largest difference of |dx/ds| from 1
 DEGREE = 16  # of the polynomials that stand for a function while its table is made
 RESOLVED = 1e-13  # their last coefficients, relative to the size of the curve
-MOST_PANELS = 4096  # of these polynomials
+MOST_PANELS, MOST_PIECES = 4096, 256  # of these polynomials, and of pieces for one of them
 SLOWEST = 1e-6  # least speed along a parameter, relative to the mean: below it is a cusp
 SHARPEST = 1e-7  # least radius of curvature, relative to the length of the curve
 #: greatest jump between two parts: of the size of the curve, of its direction, of its greatest curvature
@@ -35,6 +36,7 @@ TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, DEGREE))
 
 
 @arguments.known
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Curve:
     """A curve of a function of one parameter, from its start to its end.
 
@@ -91,13 +93,8 @@ class Curve:
         start = checks.number("start", start)
         end = checks.number("end", end, above=start)
         edges = np.linspace(start, end, 9).tolist()
-        self._put(*_table(lambda u: _points(function, u), edges, closed))
-
-    def _put(self, knots: np.ndarray, ends: np.ndarray, closed: bool) -> None:
-        keep(self, knots=knots, ends=ends, closed=closed)
-
-    def __setattr__(self, name: str, value) -> None:
-        raise AttributeError(f"curves are read-only, got {name} = {checks.shown(value)}")
+        table = _table(lambda u: _points(function, u), edges, checks.flag("closed", closed))
+        keep(self, **table)
 
     def __repr__(self) -> str:
         closed = ", closed" if self.closed else ""
@@ -198,6 +195,7 @@ class Curve:
 
 
 @arguments.known
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Spline(Curve):
     """A cubic spline (C2) through points.
 
@@ -239,8 +237,10 @@ class Spline(Curve):
                 f"{other}{again}"
             )
         u = np.concatenate([[0.0], np.cumsum(chords)])
-        spline = CubicSpline(u, through, bc_type="periodic" if closed else "not-a-knot")
-        self._put(*_table(spline, u.tolist(), closed))
+        bounds = "periodic" if closed else "not-a-knot"
+        table = _table(CubicSpline(u, through - points[0], bc_type=bounds), u.tolist(), closed)
+        table["ends"][:, 0] += points[0]  # small numbers have less round-off
+        keep(self, **table)
 
 
 def _points(function: Callable, u: np.ndarray) -> np.ndarray:
@@ -259,11 +259,8 @@ def _points(function: Callable, u: np.ndarray) -> np.ndarray:
     return np.array(found)
 
 
-def _table(
-    function: Callable, edges: Sequence[float], closed: bool
-) -> tuple[np.ndarray, np.ndarray, bool]:
-    """Return knots and ends of the table of a curve that is smooth between the edges of its parameter."""
-    closed, place = checks.flag("closed", closed), np.zeros(3)
+def _table(function: Callable, edges: Sequence[float], closed: bool) -> dict[str, Any]:
+    """Return the fields of a curve that is smooth between the edges of its parameter."""
     size = np.ptp(function(np.array(edges)), axis=0).max()
     panels, left = [], [*zip(edges[:-1], edges[1:])][::-1]
     while left:
@@ -276,11 +273,10 @@ def _table(
         if panel is not None:
             panels.append(panel)
             continue
-        place = values[0]
         if len(left) + len(panels) > MOST_PANELS or not b - a > 1e-9 * (edges[-1] - edges[0]):
             raise ValueError(
                 "a curve must be smooth, with continuous curvature and without a cusp, got one that is not "
-                f"near the parameter {0.5 * (a + b):.6g}, the point {checks.shown(place.tolist())}"
+                f"near the parameter {0.5 * (a + b):.6g}, the point {checks.shown(values[0].tolist())}"
             )
         left += [(0.5 * (a + b), b), (a, 0.5 * (a + b))]
     pieces = [panel.pieces(size) for panel in panels]
@@ -295,6 +291,7 @@ def _table(
             f"at {checks.shown(ends[k, 0].tolist())}"
         )
     scale = JUMP * (size, 1.0, max(1.0 / size, bend.max()))
+    scale *= 1.0 + 1e-4 * np.max(np.abs(ends[:, 0])) / size  # round-off
     for (_, here), (_, there) in zip(pieces, pieces[1:] + pieces[:closed]):
         jumps = np.linalg.norm(there[0] - here[-1], axis=1) / scale
         if not np.max(jumps) < 1.0:
@@ -305,46 +302,50 @@ def _table(
             )
     if closed:
         ends[-1] = ends[0]
-    return knots, ends, closed
+    return {"knots": knots, "ends": ends, "closed": closed}
 
 
 class _Panel(NamedTuple):
-    """A part of a curve as polynomials of a parameter from -1 to 1, by their Chebyshev coefficients."""
+    """A part of a curve as polynomials of a parameter from -1 to 1."""
 
-    x: np.ndarray  # (n, 3) position and its derivatives
-    d: np.ndarray
-    e: np.ndarray
-    pace: np.ndarray  # (n,) speed
-    way: np.ndarray  # and arc length
+    #: (DEGREE + 2, 11) Chebyshev coefficients of position, first and second derivatives, speed and arc length
+    series: np.ndarray
+    length: float
+
+    def at(self, u: np.ndarray) -> list[np.ndarray]:
+        """Return position, derivatives (K, 3), speed and arc length (K,) at parameters."""
+        return np.split(chebyshev.chebvander(u, DEGREE + 1) @ self.series, (3, 6, 9, 10), axis=1)
 
     def ends(self, s: np.ndarray) -> np.ndarray:
         """Return position, direction and curvature vector (K, 3, 3) at arc lengths."""
-        u = 2.0 * s / chebyshev.chebval(1.0, self.way) - 1.0
+        u, step = 2.0 * s / self.length - 1.0, np.ones(1)
         for _ in range(20):
-            step = (chebyshev.chebval(u, self.way) - s) / chebyshev.chebval(u, self.pace)
-            u = np.clip(u - step, -1.0, 1.0)
-            if np.max(np.abs(step)) < 1e-9:  # the next one is the square of it
+            x, d, e, pace, way = self.at(u)
+            if np.max(np.abs(step)) < 1e-9:  # the error after it is its square
                 break
-        x, d, e = (chebyshev.chebval(u, one).T for one in (self.x, self.d, self.e))
+            step = (way[:, 0] - s) / pace[:, 0]
+            u = np.clip(u - step, -1.0, 1.0)
         square = np.sum(d**2, axis=1, keepdims=True)
         t = d / np.sqrt(square)
         return np.stack([x, t, (e - np.sum(e * t, axis=1, keepdims=True) * t) / square], axis=1)
 
     def pieces(self, size: float) -> tuple[np.ndarray, np.ndarray]:
         """Return knots and ends, with as few pieces of equal length as are accurate."""
-        length, count = float(chebyshev.chebval(1.0, self.way)), 1
+        count = 1
         while True:
-            s = np.linspace(0.0, length, count + 1)
+            s = np.linspace(0.0, self.length, count + 1)
             made = object.__new__(Curve)
             keep(made, knots=s, ends=self.ends(s), closed=False)
-            between = (s[:-1, None] + length / count * np.array([0.25, 0.5, 0.75])).ravel()
+            between = (s[:-1, None] + self.length / count * np.array([0.25, 0.5, 0.75])).ravel()
             place, slope, _ = made._at(between)
             exact = self.ends(between)[:, 0]
             off = np.max(np.abs(place - exact)) / max(ACCURACY * size, ROUND_OFF * np.max(np.abs(exact)))
             uneven = np.max(np.abs(np.linalg.norm(slope, axis=1) - 1.0)) / EVEN
-            if max(off, uneven) <= 1.0 or count >= 256:
+            if max(off, uneven) <= 1.0 or count >= MOST_PIECES:
                 return s, made.ends
-            count *= 2
+            # errors are of the orders 6 and 5
+            growth = 1.1 * max(off ** (1 / 6), uneven ** (1 / 5))
+            count = min(max(count + 1, math.ceil(count * growth)), 8 * count, MOST_PIECES)
 
 
 def _panel(values: np.ndarray, a: float, b: float, size: float) -> _Panel | None:
@@ -358,7 +359,10 @@ def _panel(values: np.ndarray, a: float, b: float, size: float) -> _Panel | None
     # a derivative multiplies round-off by up to the square of the degree
     if np.max(np.abs(x[-3:])) > round_off or np.max(np.abs(pace[-3:])) > DEGREE**2 * round_off:
         return None
-    return _Panel(x, d, chebyshev.chebder(d), pace, chebyshev.chebint(pace, lbnd=-1.0))
+    way, series = chebyshev.chebint(pace, lbnd=-1.0), np.zeros((DEGREE + 2, 11))
+    for first, one in ((0, x), (3, d), (6, chebyshev.chebder(d)), (9, pace[:, None]), (10, way[:, None])):
+        series[: len(one), first : first + one.shape[1]] = one
+    return _Panel(series, float(np.sum(way)))
 
 
 CURVES = (Curve, Spline)
