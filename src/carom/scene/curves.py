@@ -21,7 +21,7 @@ from carom import arguments, checks
 from carom.fields import keep
 
 ACCURACY = 1e-12  # error of a table, relative to the size of its curve
-EVEN = 1e-10  # largest difference of |dx/ds| from 1
+EVEN = 1e-11  # largest difference of |dx/ds| from 1
 DEGREE = 16  # of the polynomials that stand for a function while its table is made
 RESOLVED = 1e-13  # their last coefficients, relative to the size of the curve
 MOST_PANELS, MOST_PIECES = 4096, 256  # of these polynomials, and of pieces for one of them
