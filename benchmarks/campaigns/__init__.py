@@ -10,6 +10,7 @@ from campaigns import (
     forced,
     mechanisms,
     piles,
+    rails,
     rests,
     robots,
     rolls,
@@ -22,5 +23,5 @@ from campaigns import (
 FAMILIES = {
     "throws": throws.case, "strikes": strikes.case, "mechanisms": mechanisms.case, "forced": forced.case,
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
-    "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
+    "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case, "rails": rails.case,
 }  # fmt: skip
