@@ -23,5 +23,6 @@ from campaigns import (
 FAMILIES = {
     "throws": throws.case, "strikes": strikes.case, "mechanisms": mechanisms.case, "forced": forced.case,
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
-    "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case, "rails": rails.case,
+    "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
+    "rails": rails.case,
 }  # fmt: skip

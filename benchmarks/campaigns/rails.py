@@ -9,7 +9,8 @@ from campaigns import draw
 from campaigns.case import Case
 from carom.geometry import quaternion
 
-ON_CURVE, JUMP = 1e-9, 0.05  # distance by the size of the curve; of the coordinate from its rates, by its length
+#: distance from the curve, by its size; difference of the coordinate and its rates, by the length of the curve
+ON_CURVE, JUMP = 1e-9, 0.05
 
 
 def case(seed: int) -> Case:
@@ -24,8 +25,14 @@ def case(seed: int) -> Case:
     parent = carom.GROUND
     if moving:
         middle = curve.ends[:, 0].mean(axis=0)
-        parent = scene.add_body(mass=10.0 ** rng.uniform(-1, 1), inertia=rng.uniform(0.5, 0.8, 3), position=middle)
-        scene.add_force(carom.forces.Spring(50.0, anchor_parent=middle + (0, 0, 2), anchor_child=middle), carom.GROUND, parent)
+        parent = scene.add_body(
+            mass=10.0 ** rng.uniform(-1, 1), inertia=rng.uniform(0.5, 0.8, 3), position=middle
+        )
+        scene.add_force(
+            carom.forces.Spring(50.0, anchor_parent=middle + (0, 0, 2), anchor_child=middle),
+            carom.GROUND,
+            parent,
+        )
     if slot:
         child = scene.add_body(
             mass=10.0 ** rng.uniform(-1, 1), inertia=rng.uniform(0.5, 0.8, 3), velocity=-speed * along,
@@ -35,8 +42,8 @@ def case(seed: int) -> Case:
     else:
         shape = draw.shape(draw.SHAPES[rng.integers(len(draw.SHAPES))], 0.1, rng)
         child = scene.add_body(
-            shape, mass=10.0 ** rng.uniform(-1, 1), position=point + rng.choice((0.0, 0.05)) * rng.normal(size=3),
-            orientation=draw.attitude(rng), velocity=speed * along,
+            shape, mass=10.0 ** rng.uniform(-1, 1), orientation=draw.attitude(rng), velocity=speed * along,
+            position=point + rng.choice((0.0, 0.05)) * rng.normal(size=3),
         )  # fmt: skip
         joint = carom.joints.PointOnCurve(curve, anchor=point)
     rail = scene.add_joint(joint, parent, child, name="rail")
@@ -72,7 +79,9 @@ def _loads(scene, rail, curve, start: float, rng) -> list[str]:
         scene.add_force(carom.forces.JointFriction(rail, 10.0 ** rng.uniform(-2, 1)))
     if rng.random() < 0.3:
         which.append("JointSpring")
-        scene.add_force(carom.forces.JointSpring(rail, 10.0 ** rng.uniform(0, 2), damping=rng.uniform(0, 1)))
+        scene.add_force(
+            carom.forces.JointSpring(rail, 10.0 ** rng.uniform(0, 2), damping=rng.uniform(0, 1))
+        )
     elif curve.closed and rng.random() < 0.2:
         which.append("JointForce")
         scene.add_force(carom.forces.JointForce(rail, rng.normal()))
@@ -86,9 +95,13 @@ def _off(s: carom.Solution, curve, slot: bool) -> float:
     anchor = np.broadcast_to(joint.definition.anchor, (len(s.t), 3))
     if other.index >= 0:
         local = quaternion.rotate_back(other.orientation, joint.definition.anchor - other.position)
-        anchor = s.position[:, other.index] + quaternion.rotate(s.orientation[:, other.index], local)
+        anchor = s.position[:, other.index] + quaternion.rotate(
+            s.orientation[:, other.index], local
+        )
     if owner.index >= 0:
-        turn = quaternion.multiply(s.orientation[:, owner.index], quaternion.conjugate(owner.orientation))
+        turn = quaternion.multiply(
+            s.orientation[:, owner.index], quaternion.conjugate(owner.orientation)
+        )
         anchor = owner.position + quaternion.rotate_back(turn, anchor - s.position[:, owner.index])
     q, rate = s["rail"].coordinate, s["rail"].rate
     place = curve.point(q + curve.nearest(joint.definition.anchor))

@@ -103,7 +103,9 @@ def test_friction_and_a_stop_on_a_straight_spline():
     second = first + speed / up + math.sqrt(2 * (0.5 * speed**2 / up) / down)
     np.testing.assert_allclose(s.impacts.time[:2], (first, second), atol=1e-8)
     before = s.t < first
-    np.testing.assert_allclose(s["wire"].coordinate[before], 0.5 * down * s.t[before] ** 2, atol=1e-8)
+    np.testing.assert_allclose(
+        s["wire"].coordinate[before], 0.5 * down * s.t[before] ** 2, atol=1e-8
+    )
     balance = s.total_energy - s.total_energy[0] - s.ledger.friction - s.ledger.impacts
     np.testing.assert_allclose(balance, 0.0, atol=1e-7)
 
@@ -128,7 +130,9 @@ def test_slot_about_a_point_is_a_rod():
     slot = ring(lambda u: centre + 0.7 * np.array(circle(u)))
     for kind in (carom.joints.CurveOnPoint(slot, pin), carom.joints.Distance(pin, centre)):
         scene = carom.Scene(gravity=(0, 0, -G))
-        plate = scene.add_body(mass=2.0, inertia=(0.1, 0.2, 0.3), position=(0.4, 0, -0.2), name="plate")
+        plate = scene.add_body(
+            mass=2.0, inertia=(0.1, 0.2, 0.3), position=(0.4, 0, -0.2), name="plate"
+        )
         scene.add_joint(kind, carom.GROUND, plate, name="joint")
         s = carom.simulate(scene, 2.0, save_at=np.linspace(0, 2, 21), **FINE)
         found.append((s.position, s.joint_reactions))
@@ -141,7 +145,9 @@ def test_two_bodies_in_frames_and_as_the_scene_places_them():
     found = []
     for framed in (False, True):
         scene = carom.Scene(gravity=(0, 0, -G))
-        wire = scene.add_body(mass=3.0, inertia=(0.5, 0.6, 0.7), angular_velocity=(0.5, 2.0, 0.3), name="wire")
+        wire = scene.add_body(
+            mass=3.0, inertia=(0.5, 0.6, 0.7), angular_velocity=(0.5, 2.0, 0.3), name="wire"
+        )
         start = np.array(knot(0.0))
         bead = scene.add_body(
             mass=1.0, inertia=(0.1, 0.1, 0.1), position=start + (0.1, 0, 0), name="bead",
@@ -151,7 +157,10 @@ def test_two_bodies_in_frames_and_as_the_scene_places_them():
         frames = {}
         if framed:
             given = {"anchor": (0, 0, 0)}
-            frames = {"parent_frame": ((0, 0, 0), (1, 0, 0, 0)), "child_frame": ((-0.1, 0, 0), (1, 0, 0, 0))}
+            frames = {
+                "parent_frame": ((0, 0, 0), (1, 0, 0, 0)),
+                "child_frame": ((-0.1, 0, 0), (1, 0, 0, 0)),
+            }
         joint = carom.joints.PointOnCurve(ring(knot), **given)
         scene.add_joint(joint, wire, bead, name="hole", **frames)
         s = carom.simulate(scene, 1.0)
@@ -169,7 +178,9 @@ def test_file_has_the_curve_and_goes_on_to_the_bit(tmp_path):
     s.save(tmp_path / "wire.nc")
     again = carom.Solution.load(tmp_path / "wire.nc")
     curve, kept = (one.scene["wire"].definition.curve for one in (s, again))
-    assert np.array_equal(curve.ends, kept.ends) and kept.closed and isinstance(kept, type(curve))
+    assert np.array_equal(curve.ends, kept.ends)
+    assert kept.closed
+    assert isinstance(kept, type(curve))
     assert np.array_equal(s["wire"].coordinate, again["wire"].coordinate)
     assert np.array_equal(s["wire"].force, again["wire"].force)
     more, whole = again.simulate(0.5), carom.simulate(scene, 1.0, step=2e-3)
@@ -188,12 +199,13 @@ def test_ensemble_seeks_the_foot_of_each_start():
 
 def test_ends_of_an_open_curve():
     line = carom.curves.Spline([(0, 0, 0), (2, 0, -1)])
-    with pytest.raises(carom.SimulationError, match="passed an end of its curve, which is open") as failed:
+    with pytest.raises(carom.SimulationError, match="passed an end of its curve") as failed:
         carom.simulate(on_wire(line)[0], 3.0)
     end = failed.value.solution
     assert end.status is carom.Status.LEFT_CURVE
     assert end["wire"].coordinate[-1] == pytest.approx(line.length, abs=0.1)
-    for place, what in (((4, 0, -2), "must be on the curve, between -2.23607 m and 0 m"), ((1, 0, 0), "its error")):
+    beyond = "must be on the curve, between -2.23607 m and 0 m"
+    for place, what in (((4, 0, -2), beyond), ((1, 0, 0), "its error")):
         scene = carom.Scene()
         bead = scene.add_body(carom.Sphere(0.1), mass=1.0, position=place)
         scene.add_joint(carom.joints.PointOnCurve(line), carom.GROUND, bead, name="rail")

@@ -35,11 +35,14 @@ def test_pieces_are_continuous_to_the_second_derivative():
     for k in range(3):  # derivatives at the ends of pieces are those at the starts of the next ones
         terms = [c[n] * h ** (n - k) * math.perm(n, k) for n in range(k, 6)]
         scale = np.max(np.abs(c[k])) * math.factorial(k)
-        np.testing.assert_allclose(sum(terms), np.roll(c[k], -1, 0) * math.factorial(k), atol=1e-10 * scale)
+        np.testing.assert_allclose(
+            sum(terms), np.roll(c[k], -1, 0) * math.factorial(k), atol=1e-10 * scale
+        )
     across, tangent = curve.normals, curve.ends[:-1, 1]
     np.testing.assert_allclose(np.linalg.norm(across, axis=1), 1.0, atol=1e-12)
     np.testing.assert_allclose(np.sum(across * tangent, axis=1), 0.0, atol=1e-12)
-    assert np.max(np.linalg.norm(across - np.roll(across, 1, 0), axis=1)) < 0.2  # also where it closes
+    turns = np.linalg.norm(across - np.roll(across, 1, 0), axis=1)
+    assert np.max(turns) < 0.2  # also where it closes
 
 
 def test_spline_goes_through_its_points_and_is_cubic():
@@ -96,5 +99,5 @@ def test_what_is_refused(make, message):
 
 
 def test_a_joint_needs_a_curve():
-    with pytest.raises(TypeError, match="curve must be a Curve, got .*Spline"):
+    with pytest.raises(TypeError, match=r"curve must be a Curve, got .*Spline"):
         carom.joints.PointOnCurve([(0, 0, 0), (1, 0, 0)])

@@ -130,7 +130,8 @@ def note_turns(system, state) -> bool:
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
         c.reference = value(system, c, state)
-        left = left or (is_on_curve(c) and is_beyond(system.relations.curves[c.number], c.reference))
+        if is_on_curve(c):
+            left = left or is_beyond(system.relations.curves[c.number], c.reference)
     return left
 
 

@@ -69,7 +69,8 @@ def relation_bias(system, relation, state, t, out):
     total = prescribed(system.relations, relation, t)[2]
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]
-        total -= term.factor * drift(system, system.relations.coordinates[term.coordinate], state, out)
+        c = system.relations.coordinates[term.coordinate]
+        total -= term.factor * drift(system, c, state, out)
     return total
 
 
@@ -78,4 +79,5 @@ def push_relation(system, relation, state, force, work):
     """Add the wrenches of a multiplier of the row."""
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]
-        push(system, system.relations.coordinates[term.coordinate], state, force * term.factor, work)
+        c = system.relations.coordinates[term.coordinate]
+        push(system, c, state, force * term.factor, work)

@@ -42,7 +42,8 @@ def add_rates(system, state, work):
     """Add the change by the motions of the last solve to the stored rates."""
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
-        rotor.rate += motion_along(system, system.relations.coordinates[rotor.coordinate], state, work)
+        c = system.relations.coordinates[rotor.coordinate]
+        rotor.rate += motion_along(system, c, state, work)
 
 
 @unit(where=has_relations)

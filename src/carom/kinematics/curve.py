@@ -1,7 +1,7 @@
 """Joints of a point on a curve: the foot, its axes, and two rows across the curve.
 
-With the point y in axes of the body of the curve, its foot c(s), (y - c) . c' = 0, and d = y - c: the tangent t,
-normals n_1, n_2 and the curvature vector b of the curve at its foot,
+With the point y in axes of the body of the curve, its foot c(s), (y - c) . c' = 0, d = y - c, the tangent t,
+normals n_1, n_2 and the curvature vector b of the curve at its foot:
 
     error  n_r . d,     rate  n_r . y',     n_r . y'' = (n_r . b) s' (t . y'),     s' = t . y' / (1 - b . d).
 
@@ -18,8 +18,8 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.geometry.thresholds import RESOLUTION, SMALLEST
-from carom.kinematics.thresholds import END_MARGIN
 from carom.kinematics.joints import anchor_speed, child_arm, parent_arm
+from carom.kinematics.thresholds import END_MARGIN
 from carom.kinematics.wrench import add_force
 from carom.model.arrays import CURVE_ON_POINT, POINT_ON_CURVE
 
@@ -123,7 +123,7 @@ def find_foot(system, c, state):
 
 @kernel
 def write_axes(c, one, across, point, state):
-    """Write the axes of a foot, the gap of the point and the curvature; `across` is a vector across the curve."""
+    """Write axes and curvature of a foot, and the gap of the point; `across` is a vector across the curve."""
     side, t, b = 1.0 if c.kind == POINT_ON_CURVE else -1.0, one.slope, one.second
     square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2]
     f = 1.0 / math.sqrt(square)
@@ -136,7 +136,7 @@ def write_axes(c, one, across, point, state):
     for r in range(2):
         if r == 1:
             nx, ny, nz = cross(tx, ty, tz, nx, ny, nz)
-        one.gap[r] = side * (nx * dx + ny * dy + nz * dz) + 0.0 * one.s
+        one.gap[r] = side * (nx * dx + ny * dy + nz * dz) + 0.0 * one.s  # NaN stays
         one.bend[r] = side * (nx * b[0] + ny * b[1] + nz * b[2]) / square
         one.ahead -= one.gap[r] * one.bend[r]
         one.normal[r, 0], one.normal[r, 1], one.normal[r, 2] = to_world(c, state, nx, ny, nz)
@@ -146,7 +146,7 @@ def write_axes(c, one, across, point, state):
 
 @unit
 def seek_foot(system, c, state):
-    """Set the coordinate of a joint to that of its foot on the whole curve, in the lap nearest to the last one.
+    """Set the coordinate of a joint to that of its foot on the whole curve, in the lap nearest to the last.
 
     Where the curve crosses itself, the branch is that along the motion, or that nearest to the last coordinate.
     """
@@ -240,7 +240,7 @@ def curve_bias(c, one, state, out):
 
 @kernel
 def relative_bias(c, state):
-    """Return the bias of the relative acceleration beside the curve, for arms that both end at the point (3)."""
+    """Return the bias of the relative acceleration without the curvature, for arms that end at the point."""
     w = state[c.child].w
     rx, ry, rz = child_arm(c, state)
     tx, ty, tz = cross(w[0], w[1], w[2], rx, ry, rz)

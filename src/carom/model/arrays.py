@@ -27,7 +27,7 @@ REVOLUTE, PRISMATIC = KIND[joints.Revolute], KIND[joints.Prismatic]
 DISTANCE, KNIFE_EDGE = KIND[joints.Distance], KIND[joints.KnifeEdge]
 UNIVERSAL, SCREW = KIND[joints.Universal], KIND[joints.Screw]
 ROLLING_SPHERE, ROLLING_DISC = KIND[joints.RollingSphere], KIND[joints.RollingDisc]
-#: other kinds in the table of joints, whose rows are numbers of their own: a point of the child on a curve of the
+#: kinds in the table of joints whose rows are numbers of their own: a point of the child on a curve of the
 #: parent, and a curve of the child on a point of the parent; a relation of coordinates of joints; rows of the
 #: user's own; a spring and damper as a row, for the implicit step; inertia along a coordinate as a row
 POINT_ON_CURVE, CURVE_ON_POINT = KIND[joints.PointOnCurve], KIND[joints.CurveOnPoint]
@@ -93,8 +93,8 @@ JOINT = [
 #: of the parent's frame, or arc length along a curve (ON_CURVE); either side may be the ground
 COORDINATE = JOINT
 
-#: the curve of a coordinate, with its pieces, and workspace: the point of it (its foot) that is nearest to the point
-#: of the joint in the last state that was asked for, in world axes
+#: the curve of a coordinate with its pieces, and workspace: the foot, which is the point of the curve nearest
+#: to that of the joint, in the last state that was asked for, in world axes
 CURVE = [
     ("first", "i8"),  # range of its pieces
     ("last", "i8"),

@@ -104,7 +104,8 @@ def coordinates(joint: Sides, states, t: np.ndarray | None = None) -> tuple[np.n
         whole = period(d, k)
         if whole > 0.0:
             q, rate = pairs[k]
-            pairs[k] = q - whole * round(q / whole) if t is None else unwrapped(q, rate, t, whole), rate
+            q = q - whole * round(q / whole) if t is None else unwrapped(q, rate, t, whole)
+            pairs[k] = q, rate
     if isinstance(d, j.Screw):  # the displacement gives the angle with all whole turns
         pairs[0] = pairs[1][0] / d.scale(), pairs[0][1]
     none = np.zeros((0,) if t is None else (len(t), 0))
@@ -139,7 +140,7 @@ def _along_curve(joint: Sides, p: Placed, c: Placed) -> tuple[Any, Any]:
 
 
 def _foot(joint: Sides, p: Placed, c: Placed) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return arc length (T,), tangent and velocity (T, 3) of a point along a curve, in axes of its definition."""
+    """Return arc length (T,), tangent and velocity (T, 3) of a point on a curve, in axes of its definition."""
     d: Any = joint.definition
     owner, point = (p, c) if isinstance(d, j.PointOnCurve) else (c, p)
     gap = subtract(add(point.position, point.arm), add(owner.position, owner.arm))
@@ -161,7 +162,9 @@ def direction(joint: Sides, states, k: int) -> Vector:
         p, c = (placed(side, states) for side in (joint.parent, joint.child))
         tangent = _foot(joint, p, c)[1].T
         tangent = tangent if states.position.ndim == 3 else tangent[:, 0]
-        return rotate(p.turn, tangent) if isinstance(d, j.PointOnCurve) else rotate(c.turn, -tangent)
+        if isinstance(d, j.PointOnCurve):
+            return rotate(p.turn, tangent)
+        return rotate(c.turn, -tangent)
     axis = joint.axes[k]
     if isinstance(d, j.Universal):
         axis = _numbers(d.axis_child if second else d.axis_parent)

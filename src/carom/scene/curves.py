@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -97,8 +98,8 @@ class Curve:
         keep(self, **table)
 
     def __repr__(self) -> str:
-        closed = ", closed" if self.closed else ""
-        return f"{type(self).__name__}(length={self.length:g} m, {len(self.knots) - 1} pieces{closed})"
+        pieces = f"{len(self.knots) - 1} pieces{', closed' * self.closed}"
+        return f"{type(self).__name__}(length={self.length:g} m, {pieces})"
 
     @property
     def length(self) -> float:
@@ -171,7 +172,7 @@ class Curve:
         return value, slope, bend
 
     def feet(self, points: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Return the arc lengths (K,) of points (K, 3) near the curve, which move along it with a velocity (K, 3).
+        """Return the arc lengths (K,) of points (K, 3) near the curve, with velocities (K, 3) along it.
 
         Where the curve crosses itself, that of the branch along the velocity.
         """
@@ -262,7 +263,7 @@ def _points(function: Callable, u: np.ndarray) -> np.ndarray:
 def _table(function: Callable, edges: Sequence[float], closed: bool) -> dict[str, Any]:
     """Return the fields of a curve that is smooth between the edges of its parameter."""
     size = np.ptp(function(np.array(edges)), axis=0).max()
-    panels, left = [], [*zip(edges[:-1], edges[1:])][::-1]
+    panels, left = [], [*pairwise(edges)][::-1]
     while left:
         a, b = left.pop()
         values = function(0.5 * (a + b) + 0.5 * (b - a) * NODES)
@@ -292,13 +293,14 @@ def _table(function: Callable, edges: Sequence[float], closed: bool) -> dict[str
         )
     scale = JUMP * (size, 1.0, max(1.0 / size, bend.max()))
     scale *= 1.0 + 1e-4 * np.max(np.abs(ends[:, 0])) / size  # round-off
-    for (_, here), (_, there) in zip(pieces, pieces[1:] + pieces[:closed]):
+    for (_, here), (_, there) in pairwise(pieces + pieces[: int(closed)]):
         jumps = np.linalg.norm(there[0] - here[-1], axis=1) / scale
         if not np.max(jumps) < 1.0:
             what = ("position", "direction", "curvature")[int(np.argmax(jumps))]
+            where = ", also where it closes" if closed else ""
             raise ValueError(
-                f"a curve must be continuous in position, direction and curvature{' where it closes' * closed}, "
-                f"got a jump of its {what} at {checks.shown(here[-1, 0].tolist())}"
+                f"a curve must be continuous in position, direction and curvature{where}, got a jump of "
+                f"its {what} at {checks.shown(here[-1, 0].tolist())}"
             )
     if closed:
         ends[-1] = ends[0]
@@ -339,7 +341,8 @@ class _Panel(NamedTuple):
             between = (s[:-1, None] + self.length / count * np.array([0.25, 0.5, 0.75])).ravel()
             place, slope, _ = made._at(between)
             exact = self.ends(between)[:, 0]
-            off = np.max(np.abs(place - exact)) / max(ACCURACY * size, ROUND_OFF * np.max(np.abs(exact)))
+            round_off = ROUND_OFF * np.max(np.abs(exact))
+            off = np.max(np.abs(place - exact)) / max(ACCURACY * size, round_off)
             uneven = np.max(np.abs(np.linalg.norm(slope, axis=1) - 1.0)) / EVEN
             if max(off, uneven) <= 1.0 or count >= MOST_PIECES:
                 return s, made.ends
@@ -355,13 +358,13 @@ def _panel(values: np.ndarray, a: float, b: float, size: float) -> _Panel | None
     speed = np.linalg.norm(chebyshev.chebval(NODES, d), axis=0)
     if not speed.min() > SLOWEST * speed.mean():
         return None
-    pace, round_off = TO_COEFFICIENTS @ speed, max(RESOLVED * size, ROUND_OFF * np.max(np.abs(values)))
+    pace = TO_COEFFICIENTS @ speed
+    round_off = max(RESOLVED * size, ROUND_OFF * np.max(np.abs(values)))
     # a derivative multiplies round-off by up to the square of the degree
     if np.max(np.abs(x[-3:])) > round_off or np.max(np.abs(pace[-3:])) > DEGREE**2 * round_off:
         return None
-    way, series = chebyshev.chebint(pace, lbnd=-1.0), np.zeros((DEGREE + 2, 11))
-    for first, one in ((0, x), (3, d), (6, chebyshev.chebder(d)), (9, pace[:, None]), (10, way[:, None])):
-        series[: len(one), first : first + one.shape[1]] = one
+    way, columns = chebyshev.chebint(pace, lbnd=-1.0), [*x.T, *d.T, *chebyshev.chebder(d).T, pace]
+    series = np.stack([np.pad(one, (0, DEGREE + 2 - len(one))) for one in [*columns, way]], axis=1)
     return _Panel(series, float(np.sum(way)))
 
 

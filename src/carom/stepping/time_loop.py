@@ -185,7 +185,9 @@ def may_be_whole(code, active):
 
     Forces that grow without bound, mechanisms that lock, and ends of curves are no matter of contacts.
     """
-    return code != BLOCKED and code != LEFT_CURVE and (code != STEP_TOO_SMALL or active.count[0] > 0)
+    if code in (BLOCKED, LEFT_CURVE):
+        return False
+    return code != STEP_TOO_SMALL or active.count[0] > 0
 
 
 @inlined

@@ -104,7 +104,7 @@ def parts_of(scene, radius: float, fineness: int | None = None) -> list[Part]:
             parts.setdefault(key, Part(vertices, triangles, [], look, whole)).bodies.append(
                 body.index
             )
-    rails = [_rail(joint, 0.5 * ROD * radius) for joint in scene.joints if joint.definition.guide == "curve"]
+    rails = [_rail(j, 0.5 * ROD * radius) for j in scene.joints if j.definition.guide == "curve"]
     return [*parts.values(), *(_static(solid, fineness) for solid in scene.statics), *rails]
 
 

@@ -102,7 +102,8 @@ def trajectory(
                 if part.look == "static" and part.shape is not None:
                     _static(drawn, part, seen)
             for curve in ground_curves(scene):
-                drawn.plot(*curve[:, seen].T, color=GROUND, lw=2, zorder=0, scalex=False, scaley=False)
+                still = {"scalex": False, "scaley": False}  # the view is that of the motion
+                drawn.plot(*curve[:, seen].T, color=GROUND, lw=2, zorder=0, **still)
         figure.legend(drawn, loc="best")
     return drawn
 
