@@ -211,3 +211,35 @@ def test_ends_of_an_open_curve():
         scene.add_joint(carom.joints.PointOnCurve(line), carom.GROUND, bead, name="rail")
         with pytest.raises(ValueError, match=f"position violates 'rail'.*{re.escape(what)}"):
             carom.simulate(scene, 0.1)
+
+
+def test_blow_on_a_rail_is_shared_by_contact_and_rail():
+    rail = carom.curves.Spline([(0, 0, 1), (2, 0, 0)])
+    scene = carom.Scene(gravity=(0, 0, -G))
+    ball = scene.add_body(carom.Sphere(0.1), mass=2.0, position=(0, 0, 1), name="ball")
+    scene.add_joint(carom.joints.PointOnCurve(rail), carom.GROUND, ball, name="rail")
+    ground = scene.add_half_space((0, 0, 0.3), (0, 0, 1))
+    scene.add_contact(ball, ground, restitution=0.5, friction=0.0)
+    assert scene.check().degrees_of_freedom == 4
+    s = carom.simulate(scene, 1.0)
+    blow, share = s.impacts[0], s.joint_impulses[0]
+    speed = math.sqrt(2 * G * 0.6) * rail.tangent(0)  # e at the contact is that along the rail
+    change = -1.5 * 2.0 * speed
+    np.testing.assert_allclose(share.impulse + (0, 0, blow.impulse[0]), change, atol=1e-6)
+    assert share.impulse @ rail.tangent(0) == pytest.approx(0.0, abs=1e-9)
+    np.testing.assert_allclose(share.angular_impulse, 0.0, atol=1e-12)
+
+
+def test_other_bodies_make_no_difference():
+    """Islands move with a step of their own, and have copies of the coordinates."""
+    found = []
+    for others in (0, 3):
+        scene, _ = on_wire(ring(knot), 1.0, speed=3.0)
+        ground = scene.add_half_space((0, 0, -9), (0, 0, 1))
+        for k in range(others):
+            ball = scene.add_body(carom.Sphere(0.2), mass=1.0, position=(3.0 + k, 0, -8.0))
+            scene.add_contact(ball, ground, restitution=0.5)
+        s = carom.simulate(scene, 2.0, step=2e-3)
+        found.append((s.position[-1, 0], s["wire"].coordinate[-1], s["wire"].force[-1]))
+    for alone, among in zip(*found):
+        np.testing.assert_allclose(among, alone, rtol=0, atol=1e-9)

@@ -50,7 +50,7 @@ class CurveOnPoint(JointDefinition):
     """A slot on a pin: a curve of the child stays on a point of the parent.
 
     The child rotates freely. The coordinate is the arc length [m] of the point along the curve, as that of
-    `PointOnCurve`, and ends of the curve are treated alike.
+    `PointOnCurve`, and ends of the curve are treated alike. Reactions act on the child at the point.
 
     Parameters
     ----------
