@@ -23,7 +23,7 @@ from carom.fields import keep
 
 ACCURACY = 1e-12  # error of a table, relative to the size of its curve
 EVEN = 1e-11  # largest difference of |dx/ds| from 1
-DEGREE = 16  # of the polynomials that stand for a function while its table is made
+SERIES = 16  # degree of the polynomials that stand for a function while its table is made
 RESOLVED = 1e-13  # their last coefficients, relative to the size of the curve
 MOST_PANELS, MOST_PIECES = 4096, 256  # of these polynomials, and of pieces for one of them
 SLOWEST = 1e-6  # least speed along a parameter, relative to the mean: below it is a cusp
@@ -32,8 +32,8 @@ SHARPEST = 1e-7  # least radius of curvature, relative to the length of the curv
 JUMP = np.array([1e-8, 1e-7, 1e-5])
 FAR = 100.0  # weight of a direction across the motion, in squares of the distance of two knots
 ROUND_OFF = 1e-15  # of coordinates
-NODES = chebyshev.chebpts2(DEGREE + 1)
-TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, DEGREE))
+NODES = chebyshev.chebpts2(SERIES + 1)
+TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, SERIES))
 
 
 @arguments.known
@@ -147,11 +147,11 @@ class Curve:
 
     def point(self, s: ArrayLike) -> np.ndarray:
         """Return the points (..., 3) [m] at arc lengths s (...) [m]; beyond an end, those of the last piece."""
-        return self._at(np.asarray(checks.real_array("s", s, "any"), float))[0]
+        return self._at(_lengths(s))[0]
 
     def tangent(self, s: ArrayLike) -> np.ndarray:
         """Return the unit tangents (..., 3) at arc lengths s (...) [m]."""
-        slope = self._at(np.asarray(checks.real_array("s", s, "any"), float))[1]
+        slope = self._at(_lengths(s))[1]
         return slope / np.linalg.norm(slope, axis=-1, keepdims=True)
 
     def nearest(self, point: ArrayLike) -> float:
@@ -244,6 +244,14 @@ class Spline(Curve):
         keep(self, **table)
 
 
+def _lengths(s: ArrayLike) -> np.ndarray:
+    """Return arc lengths as an array; refuse those that are not finite."""
+    array = checks.real_array("s", s, "any")
+    if not np.all(np.isfinite(array)):
+        raise ValueError(f"s must be finite, got {checks.shown(s)}")
+    return array
+
+
 def _points(function: Callable, u: np.ndarray) -> np.ndarray:
     """Return the points (K, 3) of a function of the user's."""
     found = []
@@ -293,14 +301,15 @@ def _table(function: Callable, edges: Sequence[float], closed: bool) -> dict[str
         )
     scale = JUMP * (size, 1.0, max(1.0 / size, bend.max()))
     scale *= 1.0 + 1e-4 * np.max(np.abs(ends[:, 0])) / size  # round-off
-    for (_, here), (_, there) in pairwise(pieces + pieces[: int(closed)]):
+    for k, ((_, here), (_, there)) in enumerate(pairwise(pieces + pieces[: int(closed)])):
         jumps = np.linalg.norm(there[0] - here[-1], axis=1) / scale
         if not np.max(jumps) < 1.0:
             what = ("position", "direction", "curvature")[int(np.argmax(jumps))]
-            where = ", also where it closes" if closed else ""
+            need = "a curve must be continuous in position, direction and curvature"
+            if k + 1 == len(pieces):
+                need = "closed must be False of a curve whose ends do not meet so"
             raise ValueError(
-                f"a curve must be continuous in position, direction and curvature{where}, got a jump of "
-                f"its {what} at {checks.shown(here[-1, 0].tolist())}"
+                f"{need}, got a jump of its {what} at {checks.shown(here[-1, 0].tolist())}"
             )
     if closed:
         ends[-1] = ends[0]
@@ -310,13 +319,13 @@ def _table(function: Callable, edges: Sequence[float], closed: bool) -> dict[str
 class _Panel(NamedTuple):
     """A part of a curve as polynomials of a parameter from -1 to 1."""
 
-    #: (DEGREE + 2, 11) Chebyshev coefficients of position, first and second derivatives, speed and arc length
+    #: (SERIES + 2, 11) Chebyshev coefficients of position, first and second derivatives, speed and arc length
     series: np.ndarray
     length: float
 
     def at(self, u: np.ndarray) -> list[np.ndarray]:
         """Return position, derivatives (K, 3), speed and arc length (K,) at parameters."""
-        return np.split(chebyshev.chebvander(u, DEGREE + 1) @ self.series, (3, 6, 9, 10), axis=1)
+        return np.split(chebyshev.chebvander(u, SERIES + 1) @ self.series, (3, 6, 9, 10), axis=1)
 
     def ends(self, s: np.ndarray) -> np.ndarray:
         """Return position, direction and curvature vector (K, 3, 3) at arc lengths."""
@@ -361,10 +370,10 @@ def _panel(values: np.ndarray, a: float, b: float, size: float) -> _Panel | None
     pace = TO_COEFFICIENTS @ speed
     round_off = max(RESOLVED * size, ROUND_OFF * np.max(np.abs(values)))
     # a derivative multiplies round-off by up to the square of the degree
-    if np.max(np.abs(x[-3:])) > round_off or np.max(np.abs(pace[-3:])) > DEGREE**2 * round_off:
+    if np.max(np.abs(x[-3:])) > round_off or np.max(np.abs(pace[-3:])) > SERIES**2 * round_off:
         return None
     way, columns = chebyshev.chebint(pace, lbnd=-1.0), [*x.T, *d.T, *chebyshev.chebder(d).T, pace]
-    series = np.stack([np.pad(one, (0, DEGREE + 2 - len(one))) for one in [*columns, way]], axis=1)
+    series = np.stack([np.pad(one, (0, SERIES + 2 - len(one))) for one in [*columns, way]], axis=1)
     return _Panel(series, float(np.sum(way)))
 
 

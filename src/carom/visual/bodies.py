@@ -29,7 +29,7 @@ PIN = 0.15  # of the size of a body: a pin is no thicker
 COLOURS = ("#56B4E9", "#E69F00", "#009E73", "#F0E442", "#CC79A7", "#999999")
 JOINT, STATIC = "#5b6873", "#c3ccd4"
 ROD = 0.012  # radius of rods of bodies without a shape, as a fraction of the size of the region
-RAIL, SIDES = 400, 8  # most points along a curve, and sides of its tube
+RAIL, RING = 400, 8  # most points along a curve, and sides of its tube
 
 
 class Part(NamedTuple):
@@ -117,18 +117,18 @@ def _rail(joint: Joint, thick: float) -> Part:
     t = curve.tangent(s)
     across = curve.normals[k] - np.sum(curve.normals[k] * t, axis=1)[:, None] * t
     across /= np.linalg.norm(across, axis=1)[:, None]
-    angle = 2.0 * np.pi / SIDES * np.arange(SIDES)[:, None, None]
+    angle = 2.0 * np.pi / RING * np.arange(RING)[:, None, None]
     ring = np.cos(angle) * across + np.sin(angle) * np.cross(t, across)
     place, turn = place_of_curve(joint)
     centre = place + quaternion.rotate(turn, curve.point(s))
     tube = (centre + thick * quaternion.rotate(turn, ring)).reshape(-1, 3)
     vertices = np.vstack([tube, centre[[0, -1]]])
-    side, step = np.meshgrid(np.arange(SIDES), np.arange(n - 1), indexing="ij")
-    a, b = side * n + step, (side + 1) % SIDES * n + step
+    side, step = np.meshgrid(np.arange(RING), np.arange(n - 1), indexing="ij")
+    a, b = side * n + step, (side + 1) % RING * n + step
     walls = np.stack([a, b, b + 1, a, b + 1, a + 1], axis=-1).reshape(-1, 3)
-    first, last = np.arange(SIDES) * n, np.arange(SIDES) * n + n - 1
-    caps = [(SIDES * n, b, a) for a, b in zip(first, np.roll(first, -1))]
-    caps += [(SIDES * n + 1, a, b) for a, b in zip(last, np.roll(last, -1))]
+    first, last = np.arange(RING) * n, np.arange(RING) * n + n - 1
+    caps = [(RING * n, b, a) for a, b in zip(first, np.roll(first, -1))]
+    caps += [(RING * n + 1, a, b) for a, b in zip(last, np.roll(last, -1))]
     faces = np.concatenate([walls, np.array(caps)])
     if owner.index < 0:
         return Part(vertices, faces, [-1], "static", None, JOINT)
