@@ -214,9 +214,9 @@ class Spline(Curve):
 
     Examples
     --------
-    >>> rail = carom.curves.Spline([(0, 0, 1), (1, 0, 0), (2, 0, 0.5)])
-    >>> rail.point(0.0)
-    array([0., 0., 1.])
+    >>> rail = carom.curves.Spline([(0, 0, 0), (3, 4, 0), (6, 8, 0)])
+    >>> round(rail.length, 9), round(rail.nearest((3, 4, 0)), 9)
+    (10.0, 5.0)
     """
 
     def __init__(self, points: ArrayLike, closed: bool = False):
