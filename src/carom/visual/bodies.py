@@ -152,14 +152,19 @@ def place_of_curve(joint: Joint) -> tuple[np.ndarray, np.ndarray]:
     return _in_body(owner, np.zeros(3)), turn
 
 
+def ground_rails(scene) -> list[Joint]:
+    """Return the joints whose curves are fixed in the ground."""
+    on_curves = [joint for joint in scene.joints if joint.definition.guide == "curve"]
+    return [joint for joint in on_curves if curve_of(joint)[1].index < 0]
+
+
 def ground_curves(scene, points: int = RAIL) -> list[np.ndarray]:
     """Return points (K, 3) along each curve that is fixed in the ground."""
     out = []
-    for joint in scene.joints:
-        if joint.definition.guide == "curve" and curve_of(joint)[1].index < 0:
-            curve, (place, turn) = curve_of(joint)[0], place_of_curve(joint)
-            s = np.linspace(0.0, curve.length, points)
-            out.append(place + quaternion.rotate(turn, curve.point(s)))
+    for joint in ground_rails(scene):
+        curve, (place, turn) = curve_of(joint)[0], place_of_curve(joint)
+        s = np.linspace(0.0, curve.length, points)
+        out.append(place + quaternion.rotate(turn, curve.point(s)))
     return out
 
 
