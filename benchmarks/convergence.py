@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 import carom
 from carom.bench.problems import planar_die
 from common import OUT, die_scene, pendulum_scene, report, seconds
+from hht import hht_alpha
 
 END_PENDULUM = 2.0
 RATE = 3.0 * 9.81 / 2.0  # of a rod hinged at its end: theta'' = rate cos(theta)
@@ -62,7 +63,7 @@ def pendulum_runs():
         return lambda h: carom.simulate(scene, END_PENDULUM, step=h, method=method)
 
     def hht(h):
-        return carom.baselines.hht_alpha(
+        return hht_alpha(
             [[1.0]], lambda t, q, v: RATE * np.cos(q), [0.0], [0.0], END_PENDULUM, step=h,
             jacobian=lambda t, q, v: (np.array([[-RATE * np.sin(q[0])]]), np.zeros((1, 1))),
         )  # fmt: skip

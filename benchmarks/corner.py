@@ -96,13 +96,13 @@ class Case:
 def compiled_loop():
     """Return a compiled loop over one impact."""
     from carom._compiled.decorators import entry
-    from carom.impact.multiple.resolve import resolve_contacts
+    from carom.impact.multiple.resolve import resolve_multiple
 
     @entry
     def loop(count, contacts, settings, workspace, out):
         code = 0
         for _ in range(count):
-            code = max(code, resolve_contacts(contacts, settings, workspace, out))
+            code = max(code, resolve_multiple(contacts, settings, workspace, out))
         return code
 
     return loop

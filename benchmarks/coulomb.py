@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from carom._compiled.decorators import entry
-from carom.friction.layout import new_contact_work
+from carom.friction.layout import ContactProblem, new_contact_work
 from carom.friction.solve import solve_cones
 from common import clock, report, seconds, spread
 
@@ -41,12 +41,12 @@ def scenes():
 
 
 @entry
-def many_dense(times, k, W, c, mu, kind, heading, start, p, work):
+def many_dense(times, k, problem, start, p, work):
     """Solve `times` times from `start`."""
     for _ in range(times):
         for i in range(3 * k):
             p[i] = start[i]
-        found = solve_cones(k, W, c, mu, kind, heading, p, work)
+        found = solve_cones(k, problem, p, work)
     return found
 
 
@@ -86,7 +86,8 @@ def by_W(island):
     work, p = new_contact_work(k), np.zeros(3 * k)
 
     def solve(times, part, start):
-        return many_dense(times, k, W, part * c, *given, start, p, work), p.copy()
+        problem = ContactProblem(W, part * c, *given)
+        return many_dense(times, k, problem, start, p, work), p.copy()
 
     return measured(solve, k, c)
 

@@ -6,22 +6,23 @@ import numpy as np
 
 import carom
 from carom._compiled.decorators import entry
+from carom._compiled.record_arrays import table
 from carom.bench.problems import corner_impact
 from carom.bench.problems.corner_impact import IMPACTS_TIMED
 from carom.impact.laws import NEWTON, STRONGE
 from carom.impact.layer import traverse
-from carom.impact.layout import SIZE
+from carom.model.workspace import HIT
 from common import ROUNDS, die_scene, report, seconds, spread
 
 US = 1e-6
 
 
 @entry
-def traverse_many(W, u, mu, e, law, history, out):
+def traverse_many(hits, law, history):
     """Pass each impact through the layer; return the number of failures."""
     failed = 0
-    for i in range(u.shape[0]):
-        if traverse(W[i], u[i], mu, e, law, (1e-6, 0.2, 2), history, out) != 0:
+    for i in range(hits.shape[0]):
+        if traverse(hits[i], law, (1e-6, 0.2, 2), history) != 0:
             failed += 1
     return failed
 
@@ -29,10 +30,11 @@ def traverse_many(W, u, mu, e, law, history, out):
 def through_layer(mu: float = 0.2, e: float = 0.5, law: int = NEWTON):
     """Return a function that passes all impacts through the paper's boundary layer, with two spline steps."""
     W, u = corner_impact.impacts()
-    history, out = np.zeros((64, 11)), np.zeros(SIZE)
+    hits, history = table(HIT, len(u)), np.zeros((64, 11))
+    hits["W"], hits["u"], hits["friction"], hits["restitution"] = W, u, mu, e
 
     def run() -> None:
-        assert traverse_many(W, u, mu, e, law, history, out) == 0
+        assert traverse_many(hits, law, history) == 0
 
     return run
 

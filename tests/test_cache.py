@@ -75,7 +75,7 @@ hard = resource.getrlimit(resource.RLIMIT_FSIZE)[1]
 with warnings.catch_warnings(record=True) as said:
     warnings.simplefilter("always")
     resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[1]), hard))
-    print(repr(exp(0.1, 0.2, 0.3)), repr(log(1.0, 0.0, 0.0, 0.0)))
+    print(repr(exp(0.1, 0.2, 0.3)), repr(log((1.0, 0.0, 0.0, 0.0))))
     resource.setrlimit(resource.RLIMIT_FSIZE, (hard, hard))
 print(len(said), *(one.message for one in said))
 """

@@ -1,7 +1,5 @@
 """Calls that compare and show: baselines, fits to recorded motion, models, plots, films."""
 
-import numpy as np
-
 import carom
 from bad_input import things
 from bad_input.things import (
@@ -30,12 +28,6 @@ def read(folder):
         "Mesh.load": lambda: (
             carom.Mesh.load, dict(path=tetrahedron(folder), scale=1.0, parts=[TETRAHEDRON]),
         ),
-        "baselines.hht_alpha": lambda: (
-            baselines.hht_alpha,
-            dict(mass=np.eye(1), force=lambda t, q, v: -q, position=[1.0], velocity=[0.0], duration=0.02,
-                 step=0.01, alpha=0.1, jacobian=lambda t, q, v: (-np.eye(1), np.zeros((1, 1))),
-                 tolerance=1e-12, max_iterations=30),
-        ),
         "baselines.hht_alpha_layer": lambda: (
             baselines.hht_alpha_layer,
             dict(speed=1.0, restitution=0.5, mass=1.0, width=1.0, penetration=0.2, steps=10, alpha=0.0,
@@ -49,19 +41,11 @@ def read(folder):
             baselines.first_completing_steps,
             dict(speed=1.0, restitution=1.0, penetration=0.5, alpha=0.0, most=5),
         ),
-        "baselines.layer_motion": lambda: (
-            baselines.layer_motion,
-            dict(time=[0.0, 0.1], speed=1.0, restitution=0.5, width=1.0, penetration=0.5),
-        ),
         "baselines.moreau_jean": lambda: (
             baselines.moreau_jean, dict(scene=thrown(), duration=0.02, step=0.01, theta=0.5),
         ),
         "baselines.solve_one_contact": lambda: (
             baselines.solve_one_contact, dict(inverse_mass=W, velocity=(-1.0, 1.0, 0.0), friction=0.1),
-        ),
-        "baselines.cone_residual": lambda: (
-            baselines.cone_residual,
-            dict(inverse_mass=W, velocity=(-1.0, 1.0, 0.0), friction=0.1, impulse=(1.0, 0.0, 0.0)),
         ),
         "studies.identify.Parameter": lambda: (
             identify.Parameter, dict(start=0.5, step=0.1, lower=0.0, upper=1.0),

@@ -62,7 +62,7 @@ HANDED_BACK = {
     "studies.identify.Identification",
     "studies.identify.State", "studies.identify.FreeFlight", "studies.identify.RollOut",
     "studies.identify.TrajectoryError",
-    "studies.identify.Uncertainty", "baselines.HHTRun", "baselines.LayerRun", "baselines.MoreauJeanRun",
+    "studies.identify.Uncertainty", "baselines.LayerRun", "baselines.MoreauJeanRun",
     "joints.Joint", "joints.Joint.anchor", "forces.AppliedForce", "constraints.Constraint",
     "Options.as_dict", "studies.identify.Curvature",
     "Body", "HalfSpace", "Ground", "Contact", "Constraint", "AppliedForce", "stops.Stop",

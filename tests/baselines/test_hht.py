@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from carom.baselines import hht_alpha
+from hht import hht_alpha
 
 ONE = np.eye(1)
 

@@ -7,8 +7,8 @@ from carom.baselines import (
     completing_steps,
     first_completing_steps,
     hht_alpha_layer,
-    layer_motion,
 )
+from carom.impact.geometry import NormalMotion
 
 LAYER = dict(mass=0.16, width=1e-3, penetration=0.8)
 SPEED = np.sqrt(2 * 9.81 * 0.4)  # the sphere dropped from 0.4 m
@@ -72,7 +72,8 @@ def test_exact_motion_starts_turns_and_leaves():
     """x_min = (1 - delta) b at T_c = 2 b l / v0; exit at x = b with e v0, after T_c (1 + 1/e)."""
     compression = 2 * 1e-3 * np.log(5.0) / SPEED
     times = compression * np.array([0.0, 1.0, 1.0 + 1.0 / 0.8])
-    x, v = layer_motion(times, SPEED, 0.8, width=1e-3, penetration=0.8)
+    motion = NormalMotion(SPEED, 0.8, 1e-3, 0.8)
+    x, v = motion.x(times), motion.x_rate(times)
     np.testing.assert_allclose(x, [1e-3, 2e-4, 1e-3], rtol=1e-14)
     np.testing.assert_allclose(v, [-SPEED, 0.0, 0.8 * SPEED], rtol=1e-14, atol=1e-14)
 

@@ -5,11 +5,29 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from carom.baselines import cone_residual, solve_one_contact
+from carom.baselines import solve_one_contact
 
 entry = st.floats(-2.0, 2.0, allow_nan=False).map(lambda x: round(x, 6))
 factor = st.lists(entry, min_size=9, max_size=9).map(lambda x: np.reshape(x, (3, 3)))
 velocity = st.lists(entry, min_size=3, max_size=3).map(np.array)
+
+
+def cone_residual(W, c, mu, p):
+    """Return the natural map |p - P_K(p - rho (w + mu |w_t| e_n))| / rho [m/s], rho = 3 / trace W."""
+    rho, w = 3.0 / np.trace(W), W @ p + c
+    w[0] += mu * np.hypot(w[1], w[2])
+    return float(np.linalg.norm(p - project(p - rho * w, mu)) / rho)
+
+
+def project(x, mu):
+    """Return the nearest point of the cone |x_t| <= mu x_n."""
+    slide = float(np.hypot(x[1], x[2]))
+    if mu * slide <= -x[0]:
+        return np.zeros(3)
+    if slide <= mu * x[0]:
+        return x
+    normal = (x[0] + mu * slide) / (1.0 + mu * mu)
+    return np.array([normal, *(mu * normal * x[1:] / slide)])
 
 
 @settings(max_examples=150, deadline=None)

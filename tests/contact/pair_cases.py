@@ -1,5 +1,6 @@
 """Shapes and poses of pairs, and an independent judge of nearest points."""
 
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -54,6 +55,21 @@ def touching(a, b, pose_a, pose_b=ORIGIN, reach=0.0):
     points = out[:count]
     k = int(np.argmin(points.gap))
     return Touch(points, points.gap[k], points.normal[k], points.on_a[k], points.on_b[k])
+
+
+def contact_points(a, b, pose_a, pose_b, reach):
+    """The points of two shapes, of all their pieces: gaps up to the least of two pieces plus `reach`."""
+    solids, hulls = solid_table([a, b])
+    work, out, found = new_pair_work(), new_points(), []
+
+    def placed(solid, pose):
+        x = pose[0] + quaternion.rotate(pose[1], solid.x)
+        return Placed(solid, x, quaternion.multiply(pose[1], solid.Q))
+
+    for one, two in product(solids[solids.body == 0], solids[solids.body == 1]):
+        count = touch(placed(one, pose_a), placed(two, pose_b), hulls, reach, work, out)
+        found.append(out[:count].copy())
+    return np.concatenate(found).view(np.recarray)
 
 
 def support(shape, pose, direction):

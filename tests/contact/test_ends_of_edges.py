@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import carom
-from carom.collision.api import contact_points
+from contact.pair_cases import contact_points
 
 HALF = 0.1
 E_Z = np.array([0.0, 0.0, 1.0])
@@ -57,7 +57,7 @@ def test_points_change_from_mantle_to_rim_where_they_pass_it(seed):
     rng = np.random.default_rng(seed)
     for _ in range(200):
         shapes, poses, inside, gap = crossing(rng)
-        found = contact_points(shapes[0], poses[0], shapes[1], poses[1], 1e-4)
+        found = contact_points(*shapes, *poses, 1e-4)
         assert len(found) == 1
         assert mismatch(shapes, poses, inside, found[0]) < 2e-9
         if inside > 0:

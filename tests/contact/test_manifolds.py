@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from carom.collision.api import contact_points, nearest_points
+from carom.collision.api import nearest_points
 from carom.geometry import quaternion
 from carom.scene import Box, Capsule, Compound, Convex, Cylinder, Sphere
-from contact.pair_cases import ORIGIN, Pose, support, touching, unit
+from contact.pair_cases import ORIGIN, Pose, contact_points, support, touching, unit
 
 REACH = 1e-4
 BOX, SLAB = Box(0.2, 0.3, 0.4), Box(2.0, 2.0, 0.1)
@@ -129,7 +129,7 @@ def test_table_stands_on_its_legs():
     table = Compound([*legs, (Box(1, 1, 0.1), (0, 0, 0.55))])
     q = turned(0, 0, 0.3)
     pose = np.array([0.1, 0.2, 0.05 + table.centroid[2]]), q
-    points = contact_points(table, pose, SLAB, ORIGIN, REACH)
+    points = contact_points(table, SLAB, pose, ORIGIN, REACH)
     near = points[points.gap < REACH]
     assert len(near) == 16
     np.testing.assert_allclose(near.on_b[:, 2], 0.05, atol=1e-15)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.friction.layout import new_contact_work
+from carom.friction.layout import ContactProblem, new_contact_work
 from carom.friction.residual import measure
 from carom.friction.solve import solve_cones
 from references.island_arrays import Island, new_island_work
@@ -166,10 +166,9 @@ def solve(W, c, mu, kind=None, heading=None, start=None, spare=0):
     friction[:k] = mu
     kinds[:k] = 0 if kind is None else kind
     directions[:k] = 0.0 if heading is None else heading
-    result = solve_cones(
-        k, big, vector, friction, kinds, directions, p, new_contact_work(k + spare)
-    )
-    _, *rest = measure(k, big, vector, friction, kinds, directions, p)
+    problem = ContactProblem(big, vector, friction, kinds, directions)
+    result = solve_cones(k, problem, p, new_contact_work(k + spare))
+    _, *rest = measure(k, problem, p)
     assert np.all(p[3 * k :] == 1e3)
     return Solved(*result, p[: 3 * k], W @ p[: 3 * k] + c, *rest)
 

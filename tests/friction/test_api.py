@@ -59,7 +59,7 @@ EYE, AWAY = np.eye(6), np.zeros(6)
         ((EYE, np.zeros(5), 0.5), "velocity must have shape"),
         ((EYE, [], 0.5), "velocity must have shape"),
         ((EYE, np.full(6, np.nan), 0.5), "velocity must be finite"),
-        ((EYE, AWAY, -0.5), "friction must be at least 0"),
+        ((EYE, AWAY, -0.5), "friction must be finite and at least 0"),
         ((EYE, AWAY, [0.5, 0.5, 0.5]), "friction must have shape"),
     ],
 )
@@ -72,7 +72,7 @@ def test_bad_input(arguments, words):
     ("options", "words"),
     [
         ({"kind": "slide"}, "did you mean"),
-        ({"kind": ["sliding"]}, "one for each of 2"),
+        ({"kind": ["sliding"]}, "one name or 2 of them"),
         ({"heading": [[1, 1], [0, 0]]}, "unit vectors"),
         ({"start": np.zeros(3)}, "start must have shape"),
     ],

@@ -51,7 +51,7 @@ def test_share_that_is_solved(mu, least, record_property):
 
 @pytest.mark.parametrize("name", [n[:-2] for n in HARD if n.endswith("_G")])
 def test_saved_hard_problems(name):
-    # found among thousands: the first Newton fails; some need alternating directions or a continuation
+    # found among thousands: the first Newton fails; some need sweeps or a continuation
     rows, mu = HARD[f"{name}_G"], float(name.split("_")[-1])
     c = rows @ HARD[f"{name}_v"]
     result = solve(rows @ rows.T, c, mu)

@@ -6,22 +6,17 @@ import numpy as np
 import pytest
 
 import carom
-from carom.friction.layout import CONE
+from carom.friction.layout import CONE, ContactProblem
 from carom.friction.residual import measure
 
 EYE, NONE = np.eye(3), np.zeros((1, 2))
 
 
 def residual(c, p, mu=0.5, kind=0, heading=NONE, W=EYE):
-    return measure(
-        1,
-        W,
-        np.array(c, float),
-        np.array([mu]),
-        np.array([kind]),
-        np.array(heading, float),
-        np.array(p, float),
+    problem = ContactProblem(
+        W, np.array(c, float), np.array([mu]), np.array([kind]), np.array(heading, float)
     )
+    return measure(1, problem, np.array(p, float))
 
 
 @pytest.mark.plain
@@ -76,9 +71,9 @@ def test_an_open_contact_without_friction_and_slip_is_solved():
     """A stop has a normal row alone. p = 0, w_n > 0 is its solution; a pull p_n < 0 that stops w is none."""
     W, c = np.zeros((3, 3)), np.array([0.3, 0.0, 0.0])
     W[0, 0] = 2.0
-    problem = np.zeros(1), np.full(1, CONE), np.zeros((1, 2))
-    assert measure(1, W, c, *problem, np.zeros(3))[0] == 0.0
-    assert measure(1, W, c, *problem, np.array([-0.15, 0.0, 0.0]))[0] > 0.05
+    problem = ContactProblem(W, c, np.zeros(1), np.full(1, CONE), np.zeros((1, 2)))
+    assert measure(1, problem, np.zeros(3))[0] == 0.0
+    assert measure(1, problem, np.array([-0.15, 0.0, 0.0]))[0] > 0.05
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -69,7 +69,7 @@ def test_log_inverts_exp_at_every_angle(a, q):
     assert_allclose(
         quaternion.log(quaternion.exp(a)), a, rtol=ROUND, atol=1e-15 * np.linalg.norm(a)
     )
-    assert_allclose(rotation.log(*rotation.exp(*a)), a, rtol=ROUND, atol=1e-15 * np.linalg.norm(a))
+    assert_allclose(rotation.log(rotation.exp(*a)), a, rtol=ROUND, atol=1e-15 * np.linalg.norm(a))
     # The other way for every rotation; its angle lies in [0, pi].
     back = quaternion.log(q)
     assert np.linalg.norm(back) <= np.pi * (1 + 1e-15)

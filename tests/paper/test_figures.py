@@ -17,7 +17,7 @@ def test_names_are_those_of_the_paper(figures):
     paper = {
         f"fig{n}" for n in ("2a", "2b", "3a", "3b", "4a", "4b", "4c", "4d", "5a", "5b", "6a", "6b")
     }
-    assert set(figures) == paper | {"real_impacts"}
+    assert set(figures) == paper
 
 
 def test_two_files_and_no_state_left_behind(tmp_path):
@@ -64,11 +64,11 @@ def test_the_whole_book(tmp_path, monkeypatch):
         assert figure.caption
         assert figure.seen()
     names = {path.name for path in written}
-    assert {"index.md", "table.md", "table.csv", "hht.csv", "real_impacts.md"} <= names
-    assert len(list(tmp_path.glob("*.pdf"))) == len(list(tmp_path.glob("*.png"))) == 13
+    assert {"index.md", "table.md", "table.csv", "hht.csv"} <= names
+    assert len(list(tmp_path.glob("*.pdf"))) == len(list(tmp_path.glob("*.png"))) == 12
     index = (tmp_path / "index.md").read_text()
     assert all(f"({name}.png)" in index for name in book.names())
-    assert "{" not in index + (tmp_path / "real_impacts.md").read_text()
+    assert "{" not in index
     head, rule, *body = [x for x in (tmp_path / "table.md").read_text().splitlines() if "|" in x]
     columns = head.count("|")
     assert rule.count("---") == columns - 1

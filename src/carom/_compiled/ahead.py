@@ -28,7 +28,7 @@ from carom._compiled.file_lock import FileLock
 FIRST = (
     "carom.stepping.event_step:advance",
     "carom.impact.strike:strike",
-    "carom.persistent.lifecycle:activate_contact",
+    "carom.persistent.several_points:activate_contact",
     "carom.persistent.contact_step:contact_step",
     "carom.impact.strike_several:resolve_group",
     "carom.dynamics.explicit:whole_step",

@@ -17,11 +17,11 @@ def blocks(k):
 
 
 @kernel
-def product(line, x, p, y, q, first, n):
-    """Return the sums over j = first .. n of x_j y_(n-j), for the blocks at `p` and `q`."""
+def product(line, x, y, p, n):
+    """Return the sums over j = 1 .. n of x_j y_(n-j), for the block at `p`."""
     s = same(0.0)
-    i, j = p + first * line, q + (n - first) * line
-    for _ in range(first, n + 1):
+    i, j = p + line, p + (n - 1) * line
+    for _ in range(n):
         s = add(s, multiply(load(x, i), load(y, j)))
         i += line
         j -= line

@@ -1,4 +1,4 @@
-"""HHT-alpha on the equation of the boundary layer, in the raw gap coordinate x.
+"""HHT-alpha on the equation of the boundary layer, in the raw gap coordinate x (Hilber, Hughes, Taylor 1977).
 
 The layer equation ``(g_11 v)' - L^1_11 g_11 v v - f_1 = 0`` with ``g_11 = m (b/x)^2``,
 ``L^1_11 = -1/x`` and law A, ``f_1 = m a b/x``, is, divided by g_11::
@@ -20,8 +20,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from carom import checks
-from carom.baselines.hht import newmark_constants
-from carom.baselines.layer_exact import checked_layer
+from carom.impact.geometry import NormalMotion
 
 _MOST_INTERVALS = 3  # a run still in the layer after this multiple of the exact duration is stopped
 
@@ -56,6 +55,21 @@ class LayerRun:
     message: str
     iterations: np.ndarray = field(repr=False)
     velocity_error: float
+
+
+def newmark_constants(alpha) -> tuple[float, float, float]:
+    """Return the checked ``alpha``, ``beta = (1 + alpha)^2/4`` and ``gamma = 1/2 + alpha``."""
+    alpha = checks.number("alpha", alpha, least=0.0, most=1.0 / 3.0)
+    return alpha, 0.25 * (1.0 + alpha) ** 2, 0.5 + alpha
+
+
+def checked_layer(speed, restitution, width, penetration) -> NormalMotion:
+    """Return the motion through the layer of checked numbers."""
+    v0, b = checks.scale("speed", speed, "m/s"), checks.scale("width", width, "m")
+    checks.number("restitution", restitution, above=0.0, most=1.0)
+    checks.number("penetration", penetration, above=0.0, below=1.0)
+    e, delta = checks.scale("restitution", restitution), checks.scale("penetration", penetration)
+    return NormalMotion(v0, e, b, delta)
 
 
 def hht_alpha_layer(

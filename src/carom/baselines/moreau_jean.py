@@ -18,9 +18,10 @@ import numpy as np
 
 from carom import checks
 from carom.baselines._body import OneBody, contact_jacobian, lowest_point, read_scene
-from carom.baselines.hht import MOST_STEPS
 from carom.baselines.one_contact import solve_one_contact
 from carom.geometry import quaternion
+
+MOST_STEPS = 1e6  # greatest number of steps of a run, which is in plain Python
 
 
 @dataclass(frozen=True)

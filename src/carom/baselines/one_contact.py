@@ -71,36 +71,3 @@ def solve_one_contact(inverse_mass, velocity, friction) -> np.ndarray:
             return np.array([-c[0] / W[0, 0], 0.0, 0.0])
         high *= 4.0
     return impulse(brentq(excess, 0.0, high, xtol=1e-16 * high))
-
-
-def cone_residual(inverse_mass, velocity, friction, impulse) -> float:
-    """Return the residual [m/s] of an impulse in the contact problem, independent of the solver.
-
-    It is the natural map ``|p - P_K(p - rho (w + mu |w_t| e_n))| / rho`` with ``rho = 3 / trace W``, where P_K
-    is the projection onto the friction cone and ``w + mu |w_t| e_n`` the velocity in De Saxce's form.
-    """
-    W = checks.finite_array("inverse_mass", inverse_mass, (3, 3), "1/kg")
-    c = checks.finite_array("velocity", velocity, (3,), "m/s")
-    p = checks.finite_array("impulse", impulse, (3,), "N s")
-    mu = checks.number("friction", friction, least=0.0)
-    if not np.trace(W) > 0.0:
-        raise ValueError(
-            f"inverse_mass must have a trace above 0, got {checks.shown(inverse_mass)}"
-        )
-    w = W @ p + c
-    w[0] += mu * np.hypot(w[1], w[2])
-    rho = 3.0 / np.trace(W)
-    with np.errstate(over="ignore", invalid="ignore"):
-        residual = float(np.linalg.norm(p - _project(p - rho * w, mu)) / rho)
-    return checks.number("the residual of impulse", residual)
-
-
-def _project(x, mu):
-    """Return the nearest point of the cone ``|x_t| <= mu x_n``."""
-    slide = float(np.hypot(x[1], x[2]))
-    if mu * slide <= -x[0]:
-        return np.zeros(3)
-    if slide <= mu * x[0]:
-        return x
-    normal = (x[0] + mu * slide) / (1.0 + mu * mu)
-    return np.array([normal, mu * normal * x[1] / slide, mu * normal * x[2] / slide])

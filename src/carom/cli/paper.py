@@ -44,8 +44,8 @@ def run(
 ) -> int:  # fmt: skip
     """Reproduce the paper: figures and tables.
 
-    Writes Figs. 2a to 6b as PDF and PNG, the table of numbers (Markdown and CSV), impacts of a real cube, and
-    index.md, a page that shows and explains everything. This takes half a minute, and some minutes at the first
+    Writes Figs. 2a to 6b as PDF and PNG, the table of numbers (Markdown and CSV), and index.md,
+    a page that shows and explains everything. This takes half a minute, and some minutes at the first
     time, because everything has to be compiled.
 
     For example:

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import checks
-from carom._compiled.record_arrays import Columns
 from carom.geometry.attitude import attitude
 
 
@@ -44,28 +43,6 @@ def nearest_points(shape_a, pose_a, shape_b, pose_b) -> PairPoint:
     pose_a, pose_b : ((3,), (4,))
         Position [m] and orientation in the world, as for `Scene.add_body`.
     """
-    best = None
-    for points in _touches(shape_a, pose_a, shape_b, pose_b, 0.0):
-        k = int(np.argmin(points["gap"]))
-        if best is None or points["gap"][k] < best.gap:
-            best = PairPoint(
-                float(points["gap"][k]), *(points[f][k].copy() for f in ("normal", "on_a", "on_b"))
-            )
-    assert best is not None
-    return best
-
-
-def contact_points(shape_a, pose_a, shape_b, pose_b, reach: float) -> np.recarray:
-    """Return the contact points (k,) TOUCH_POINT of two shapes, of all their pieces.
-
-    Arguments as for `nearest_points`. Points have gaps up to the least gap of their pieces plus `reach` [m].
-    """
-    reach = checks.number("reach", reach, least=0, unit="m")
-    return np.concatenate(list(_touches(shape_a, pose_a, shape_b, pose_b, reach))).view(Columns)
-
-
-def _touches(shape_a, pose_a, shape_b, pose_b, reach):
-    """Yield the points of each pair of pieces."""
     from carom.collision.frame import place
     from carom.collision.layout import Placed
     from carom.collision.touch import touch
@@ -74,12 +51,19 @@ def _touches(shape_a, pose_a, shape_b, pose_b, reach):
     solids, hulls = _solids(shape_a, shape_b)
     work, out = _workspace()
     (xa, qa), (xb, qb) = [(np.zeros(3), np.zeros(4)) for _ in range(2)]
+    best = None
     for a in solids[solids.body == 0]:
         place(a, *poses[0], xa, qa)
         for b in solids[solids.body == 1]:
             place(b, *poses[1], xb, qb)
-            count = touch(Placed(a, xa, qa), Placed(b, xb, qb), hulls, reach, work, out)
-            yield out[:count].copy()
+            count = touch(Placed(a, xa, qa), Placed(b, xb, qb), hulls, 0.0, work, out)
+            k = int(np.argmin(out["gap"][:count]))
+            if best is None or out["gap"][k] < best.gap:
+                best = PairPoint(
+                    float(out["gap"][k]), *(out[f][k].copy() for f in ("normal", "on_a", "on_b"))
+                )
+    assert best is not None
+    return best
 
 
 @lru_cache(maxsize=256)

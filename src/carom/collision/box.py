@@ -54,14 +54,21 @@ def point_box(pair):
 @kernel
 def _part(nx, ny, nz):
     """Return the part of a box that has the normal n, and the owner of the normal."""
-    i, j, k = _outside(nx, 0.0), _outside(ny, 0.0), _outside(nz, 0.0)
-    corner, beyond = 4 * (i > 0) + 2 * (j > 0) + (k > 0), abs(i) + abs(j) + abs(k)
+    corner, other, beyond = _corner(nx, ny, nz)
     if beyond == 1:
-        axis = 0 if i != 0 else 1 if j != 0 else 2
+        axis = 0 if nx != 0.0 else 1 if ny != 0.0 else 2
         return face_part(2 * axis + (1 if corner > 0 else 0)), OF_B
     if beyond == 2:
-        return edge_part(corner, corner + (4 if i == 0 else 2 if j == 0 else 1)), NOBODY
+        return edge_part(corner, other), NOBODY
     return OF_SUPPORT, NOBODY
+
+
+@kernel
+def _corner(nx, ny, nz):
+    """Return the corner of a box towards n, the other end of an edge across n, and how many of n are not 0."""
+    corner = 4 * (nx > 0.0) + 2 * (ny > 0.0) + (nz > 0.0)
+    other = corner + (4 if nx == 0.0 else 2 if ny == 0.0 else 1)
+    return corner, other, 1 * (nx != 0.0) + (ny != 0.0) + (nz != 0.0)
 
 
 @kernel
@@ -117,31 +124,20 @@ def segment_box(pair):
         _through(pair, u)
         return
     n, gap = (nx / d, ny / d, nz / d), d - (pair.a.radius + pair.b.radius)
-    put(pair.found[0], gap, n, (ax, ay, az), (bx, by, bz), _feature(ax, ay, az, g, t, h))
+    put(pair.found[0], gap, n, (ax, ay, az), (bx, by, bz), _feature(nx, ny, nz, t, h))
     part, owner = _part(nx, ny, nz)
     put_parts(pair.found[0], owner, OF_SUPPORT if abs(t) == h else edge_part(0, 1), part)
 
 
-@inlined
-def _outside(x, g):
-    """Return -1, 0 or 1: below, within or above [-g, g]."""
-    return (1 if x > g else 0) - (1 if x < -g else 0)
-
-
 @kernel
-def _feature(x, y, z, g, t, h):
+def _feature(nx, ny, nz, t, h):
     """Return the feature: an end of the segment, a vertex of the box, two edges, or 0 for a face of the box."""
-    i, j, k = _outside(x, g[0]), _outside(y, g[1]), _outside(z, g[2])
     if abs(t) == h:
         return of_vertex_a(1 if t > 0.0 else 0)
-    corner = 4 * (i > 0) + 2 * (j > 0) + (k > 0)
-    beyond = abs(i) + abs(j) + abs(k)
+    corner, other, beyond = _corner(nx, ny, nz)
     if beyond == 3:
         return of_vertex_b(corner)
-    if beyond == 2:
-        other = corner + (4 if i == 0 else 2 if j == 0 else 1)
-        return of_edges(0, 1, corner, other)
-    return 0
+    return of_edges(0, 1, corner, other) if beyond == 2 else 0
 
 
 @kernel

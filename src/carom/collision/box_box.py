@@ -107,9 +107,7 @@ def face_or_edges(pair):
     if axis >= 6:
         return edge_pair(pair, best, axis)
     if axis < 3:
-        x = 1.0 if axis == 0 else 0.0
-        y = 1.0 if axis == 1 else 0.0
-        z = 1.0 if axis == 2 else 0.0
+        x, y, z = 1.0 * (axis == 0), 1.0 * (axis == 1), 1.0 * (axis == 2)
     else:
         x, y, z = R[0, axis - 3], R[1, axis - 3], R[2, axis - 3]
     if not x * p[0] + y * p[1] + z * p[2] > 0.0:

@@ -16,8 +16,8 @@ from carom.collision.faces import corner_part
 from carom.collision.found import known, put, put_parts
 from carom.collision.layout import CYLINDER, MOST_CORNERS
 from carom.collision.thresholds import CROSSING, TILT
-from carom.geometry.rotation import cross
 from carom.geometry.thresholds import ROUND_OFF
+from carom.geometry.vectors import cross, dot, minus
 
 
 @inlined
@@ -40,19 +40,17 @@ def _cut(s, ref, source, count, j, tolerance):
     inc, target = 1 - ref, 1 - source
     n, p = s.normal[ref], s.corner[ref, j]
     q = s.corner[ref, (j + 1) % s.count[ref]]
-    ex, ey, ez = q[0] - p[0], q[1] - p[1], q[2] - p[2]
-    mx, my, mz = n[1] * ez - n[2] * ey, n[2] * ex - n[0] * ez, n[0] * ey - n[1] * ex
-    size = math.sqrt(mx * mx + my * my + mz * mz)
+    m = cross(n, minus(q, p))
+    size = math.sqrt(dot(m, m))
     if not size > 0.0:  # two corners coincide
         size = 1.0
-    mx, my, mz = mx / size, my / size, mz / size
+    m = m[0] / size, m[1] / size, m[2] / size
     old, new = s.ring[source], s.ring[target]
     made = 0
     for k in range(count):
         nxt = k + 1 if k + 1 < count else 0
         u, v = old[k], old[nxt]
-        f = (u[0] - p[0]) * mx + (u[1] - p[1]) * my + (u[2] - p[2]) * mz
-        g = (v[0] - p[0]) * mx + (v[1] - p[1]) * my + (v[2] - p[2]) * mz
+        f, g = dot(minus(u, p), m), dot(minus(v, p), m)
         inside, goes_on = f >= -tolerance, g >= -tolerance
         if inside and made < 2 * MOST_CORNERS:
             new[made, 0], new[made, 1], new[made, 2] = u[0], u[1], u[2]
@@ -104,8 +102,7 @@ def _normal(pair, ref, source, k, corners, height):
     if level and kind == of.EDGES and min(i, j) >= 0 and not rims:  # sides of a rim are no edges
         a, b = s.corner[1 - ref, i], s.corner[1 - ref, (i + 1) % s.count[1 - ref]]
         c, d = s.corner[ref, j], s.corner[ref, (j + 1) % s.count[ref]]
-        x, y, z = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-        x, y, z = cross(x, y, z, d[0] - c[0], d[1] - c[1], d[2] - c[2])
+        x, y, z = cross(minus(b, a), minus(d, c))
         size = math.copysign(math.sqrt(x * x + y * y + z * z), x * n[0] + y * n[1] + z * n[2])
         if abs(size) > CROSSING * pair.a.extent * pair.b.extent:
             return (x / size, y / size, z / size), of.NOBODY
@@ -128,7 +125,7 @@ def overlap(pair, ref, least, most, count):
     n = s.normal[ref]
     for k in range(corners):
         x = s.ring[source, k]
-        height = (x[0] - p[0]) * n[0] + (x[1] - p[1]) * n[1] + (x[2] - p[2]) * n[2]
+        height = dot(minus(x, p), n)
         gap, label = height - (pair.a.radius + pair.b.radius), s.label[source, k]
         if least <= gap <= most and count < len(found) and not known(found, count, label):
             m, owner = _normal(pair, ref, source, k, corners, height)

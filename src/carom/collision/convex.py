@@ -28,9 +28,10 @@ from carom.collision.features import (
     of_vertex_b,
 )
 from carom.collision.found import put, put_parts
-from carom.collision.gjk import distance, point_on_b
+from carom.collision.gjk import distance
 from carom.collision.layout import CYLINDER
 from carom.collision.polish import polish
+from carom.collision.simplex import nearest_point
 from carom.collision.support import separation
 from carom.geometry.thresholds import LAST_DIGIT, RESOLUTION, ROUND_OFF
 from carom.geometry.vectors import cross, dot, minus, plus
@@ -63,7 +64,7 @@ def closest(pair):
             owner, value, x, y, z = _normal_of_face(pair, (nx, ny, nz), best, False)
     feature, part_a, part_b = _feature(s), _part(s, 0), _part(s, 1)
     if not curved and (owner != NOBODY or polished == 0):
-        bx, by, bz = point_on_b(s)
+        bx, by, bz = nearest_point(s, s.on_b)
         over = owner != NOBODY and feature == _farthest_vertex(s, owner)
     if owner != NOBODY:
         best, nx, ny, nz = value, x, y, z
@@ -91,7 +92,7 @@ def _normal(pair, size, accuracy):
     if polished == 1:
         b = pair.state.on_b[4]
         return value, (x, y, z), (b[0], b[1], b[2]), 1
-    return best, (nx, ny, nz), point_on_b(pair.state), 0
+    return best, (nx, ny, nz), nearest_point(pair.state, pair.state.on_b), 0
 
 
 @inlined
@@ -192,9 +193,7 @@ def _candidate(s, k):
         f = -1.0 if k & 1 else 1.0
         return f * n[0], f * n[1], f * n[2]
     if k < 12:
-        x = 1.0 if i == 0 else 0.0
-        y = 1.0 if i == 1 else 0.0
-        z = 1.0 if i == 2 else 0.0
+        x, y, z = 1.0 * (i == 0), 1.0 * (i == 1), 1.0 * (i == 2)
     else:
         x, y, z = s.R[0, i], s.R[1, i], s.R[2, i]
     if x * s.p[0] + y * s.p[1] + z * s.p[2] < 0.0:

@@ -11,8 +11,8 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom.collision.farthest import NORMALS, farthest
 from carom.collision.features import OF_FIXED, OF_SUPPORT
-from carom.collision.frame import from_a, to_a
-from carom.collision.layout import BOX, CYLINDER, HULL, MOST_CORNERS, POINT, SEGMENT
+from carom.collision.frame import from_a, point_of_a, to_a
+from carom.collision.layout import BOX, CYLINDER, HULL, MOST_CORNERS, SEGMENT
 
 RIM = 8  # points of a rim
 # number of the point of a rim that is lowest along a normal; fixed points have smaller ones
@@ -36,82 +36,70 @@ def corner_part(solid, number):
 
 
 @kernel
-def _corner(s, side, k, number, x, y, z):
+def _corner(s, side, k, number, p):
     """Write corner k of the face of A (side 0) or B (side 1), given in the solid's own axes."""
+    x, y, z = p
     if side == 0:
-        x, y, z = from_a(s, x, y, z)
-        x, y, z = x + s.p[0] + s.shift[0], y + s.p[1] + s.shift[1], z + s.p[2] + s.shift[2]
+        x, y, z = point_of_a(s, x, y, z)
     row = s.corner[side, k]
     row[0], row[1], row[2] = x, y, z
     s.number[side, k] = number
 
 
 @kernel
-def _set_normal(s, side, x, y, z):
-    """Write the outward normal of the face of A (side 0) or B (side 1), given in the solid's own axes."""
-    if side == 0:
-        x, y, z = from_a(s, x, y, z)
-    s.normal[side, 0], s.normal[side, 1], s.normal[side, 2] = x, y, z
+def _vertex(pair, side, k, number):
+    """Write a vertex of a solid as corner k."""
+    solid = pair.a if side == 0 else pair.b
+    _corner(pair.state, side, k, number, vertex(solid, pair.hulls, number))
 
 
 @kernel
-def _box_face(s, side, half, axis, sense):
-    """Write a face of a box; its corners are numbered as in `carom.scene.Box.vertices`."""
-    j = (axis + 1) % 3
+def _box_face(pair, side, x, y, z):
+    """Write the face of a box whose normal is nearest to (x, y, z); return the cosine."""
+    axis, largest = 2, abs(z)
+    if abs(y) > largest:
+        axis, largest = 1, abs(y)
+    if abs(x) > largest:
+        axis, largest = 0, abs(x)
+    up = (x if axis == 0 else y if axis == 1 else z) > 0.0
+    j, k = (axis + 1) % 3, (axis + 2) % 3
     for n in range(4):  # counter-clockwise about +axis, in reverse order for -axis
-        v = 1.0 if n == 1 or n == 2 else -1.0
-        w = 1.0 if n >= 2 else -1.0
-        if sense < 0.0:
+        v, w = n == 1 or n == 2, n >= 2
+        if not up:
             v, w = w, v
-        x = sense if axis == 0 else v if j == 0 else w
-        y = sense if axis == 1 else v if j == 1 else w
-        z = sense if axis == 2 else v if j == 2 else w
-        number = 4 * (x > 0.0) + 2 * (y > 0.0) + 1 * (z > 0.0)
-        _corner(s, side, n, number, x * half[0], y * half[1], z * half[2])
-    _set_normal(
-        s,
-        side,
-        sense if axis == 0 else 0.0,
-        sense if axis == 1 else 0.0,
-        sense if axis == 2 else 0.0,
-    )
-    s.count[side], s.face[side] = 4, 2 * axis + (1 if sense > 0.0 else 0)
+        _vertex(pair, side, n, (4 >> axis) * up + (4 >> j) * v + (4 >> k) * w)
+    pair.state.count[side], pair.state.face[side] = 4, 2 * axis + up
+    return largest
 
 
 @kernel
 def _hull_face(pair, side, x, y, z):
     """Write the face of a hull whose normal is nearest to (x, y, z); return the cosine."""
-    s, solid, hulls = pair.state, pair.a if side == 0 else pair.b, pair.hulls
+    solid, hulls = pair.a if side == 0 else pair.b, pair.hulls
     cosine, chosen = farthest(solid, hulls, NORMALS, x, y, z)
     number = hulls.candidates[chosen].number
     face = hulls.faces[solid.first_face + number]
     total = face.last - face.first
     count = min(total, MOST_CORNERS)
     for k in range(count):
-        i = hulls.corners[face.first + (k * total) // count]
-        p = hulls.vertices[solid.first + i]
-        _corner(s, side, k, i, p[0], p[1], p[2])
-    _set_normal(s, side, face.normal[0], face.normal[1], face.normal[2])
-    s.count[side], s.face[side] = count, number
+        _vertex(pair, side, k, hulls.corners[face.first + (k * total) // count])
+    pair.state.count[side], pair.state.face[side] = count, number
     return cosine
 
 
 @kernel
-def _cylinder_face(s, side, half, x, y, z):
+def _cylinder_face(pair, side, x, y, z):
     """Write a cap of a cylinder, or a line of its mantle; return the cosine, 0 for the mantle."""
-    across = math.sqrt(x * x + y * y)
+    s, half, across = pair.state, (pair.a if side == 0 else pair.b).half, math.sqrt(x * x + y * y)
     if abs(z) >= HALF_ROOT or not across > 0.0 or half[2] == 0.0:
-        sense = 1.0 if z > 0.0 else -1.0
+        up = z > 0.0
         for k in range(RIM):
-            c, v = rim_point(k)
-            cap = RIM if sense > 0.0 else 0
-            _corner(s, side, k, cap + k, half[0] * c, sense * half[0] * v, sense * half[2])
-        _set_normal(s, side, 0.0, 0.0, sense)
-        s.count[side], s.face[side] = RIM, 1 if sense > 0.0 else 0
+            _vertex(pair, side, k, RIM * up + k)
+        s.count[side], s.face[side] = RIM, 1 * up
         return abs(z)
     c, v = half[0] * x / across, half[0] * y / across
-    _corner(s, side, 0, LOWEST, c, v, -half[2])
-    _corner(s, side, 1, LOWEST + 1, c, v, half[2])
+    _corner(s, side, 0, LOWEST, (c, v, -half[2]))
+    _corner(s, side, 1, LOWEST + 1, (c, v, half[2]))
     s.count[side] = 2
     return 0.0
 
@@ -122,31 +110,26 @@ def load_face(pair, side, x, y, z):
 
     `side` is 0 for A, 1 for B. The cosine is 0 for an edge or a point instead of a face.
     """
-    s, solid = pair.state, pair.a if side == 0 else pair.b
+    s, solid, cosine = pair.state, pair.a if side == 0 else pair.b, 0.0
     if side == 0:
         x, y, z = to_a(s, x, y, z)
-    kind, half = solid.kind, solid.half
-    if kind == BOX:
-        axis, largest = 2, abs(z)
-        if abs(y) > largest:
-            axis, largest = 1, abs(y)
-        if abs(x) > largest:
-            axis, largest = 0, abs(x)
-        value = x if axis == 0 else y if axis == 1 else z
-        _box_face(s, side, half, axis, 1.0 if value > 0.0 else -1.0)
-        return largest
-    if kind == HULL:
-        return _hull_face(pair, side, x, y, z)
-    if kind == CYLINDER:
-        return _cylinder_face(s, side, half, x, y, z)
     s.count[side] = 1
-    if kind == SEGMENT:
-        _corner(s, side, 0, 0, 0.0, 0.0, -half[2])
-        _corner(s, side, 1, 1, 0.0, 0.0, half[2])
+    if solid.kind == BOX:
+        cosine = _box_face(pair, side, x, y, z)
+    elif solid.kind == HULL:
+        cosine = _hull_face(pair, side, x, y, z)
+    elif solid.kind == CYLINDER:
+        cosine = _cylinder_face(pair, side, x, y, z)
+    elif solid.kind == SEGMENT:
+        _vertex(pair, side, 0, 0)
+        _vertex(pair, side, 1, 1)
         s.count[side] = 2
-    elif kind == POINT:
-        _corner(s, side, 0, 0, 0.0, 0.0, 0.0)
-    return 0.0
+    if s.count[side] > 2:
+        x, y, z = normal_of_face(solid, pair.hulls, s.face[side])
+        if side == 0:
+            x, y, z = from_a(s, x, y, z)
+        s.normal[side, 0], s.normal[side, 1], s.normal[side, 2] = x, y, z
+    return cosine
 
 
 @kernel
@@ -172,7 +155,8 @@ def vertex(solid, hulls, i):
     if solid.kind == BOX:
         return h[0] if i & 4 else -h[0], h[1] if i & 2 else -h[1], h[2] if i & 1 else -h[2]
     c, z = rim_point(i)
-    return h[0] * c, h[0] * z if i >= RIM else -h[0] * z, h[2]
+    s = 1.0 if i >= RIM else -1.0
+    return h[0] * c, s * h[0] * z, s * h[2]
 
 
 @kernel

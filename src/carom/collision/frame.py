@@ -14,8 +14,8 @@ from carom.geometry.rotation import matrix, multiply, rotate
 def enter(s, placed_a, placed_b):
     """Write the pose of A in axes of B, and the pose of B, to the workspace `s`."""
     p, q, x, o = placed_a.Q, placed_b.Q, placed_a.x, placed_b.x
-    a = matrix(p[0], p[1], p[2], p[3])
-    b = matrix(q[0], q[1], q[2], q[3])
+    a = matrix(p)
+    b = matrix(q)
     dx, dy, dz = x[0] - o[0], x[1] - o[1], x[2] - o[2]
     for i in range(3):
         u, v, w = b[i], b[3 + i], b[6 + i]  # column i of B
@@ -30,11 +30,9 @@ def enter(s, placed_a, placed_b):
 def place(solid, x, q, out_x, out_q):
     """Write the world pose of a solid whose body has the pose x, q."""
     p, o = solid.x, solid.Q
-    u, v, w = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    u, v, w = rotate(q, p)
     out_x[0], out_x[1], out_x[2] = x[0] + u, x[1] + v, x[2] + w
-    out_q[0], out_q[1], out_q[2], out_q[3] = multiply(
-        q[0], q[1], q[2], q[3], o[0], o[1], o[2], o[3]
-    )
+    out_q[0], out_q[1], out_q[2], out_q[3] = multiply(q, o)
 
 
 @inlined
@@ -51,6 +49,13 @@ def _times(r, x, y, z):
 def from_a(s, x, y, z):
     """Transform a vector from axes of A to axes of B."""
     return _times(s.R, x, y, z)
+
+
+@inlined
+def point_of_a(s, x, y, z):
+    """Transform a point of A, which may be moved, from its axes to axes of B."""
+    x, y, z = _times(s.R, x, y, z)
+    return x + s.p[0] + s.shift[0], y + s.p[1] + s.shift[1], z + s.p[2] + s.shift[2]
 
 
 @inlined

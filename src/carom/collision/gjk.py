@@ -52,18 +52,8 @@ def distance(pair, accuracy, x, y, z):
         new = reduce_simplex(s)
         if new == 0.0:
             return 0.0, 0.0, 0.0, 0.0
-        vx, vy, vz = nearest_point(s)
+        vx, vy, vz = nearest_point(s, s.w)
         if not new < v2:
             break
         v2 = new
     return math.sqrt(vx * vx + vy * vy + vz * vz), vx, vy, vz
-
-
-@kernel
-def point_on_b(s):
-    """Return the nearest point on B, from the weights of the simplex."""
-    x, y, z = 0.0, 0.0, 0.0
-    for k in range(s.points):
-        f, p = s.weight[k], s.on_b[k]
-        x, y, z = x + f * p[0], y + f * p[1], z + f * p[2]
-    return x, y, z

@@ -16,7 +16,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.collision.thresholds import MARGIN
 from carom.geometry.thresholds import RESOLUTION
-from carom.geometry.vectors import dot
+from carom.geometry.vectors import dot, minus, plus
 
 
 @kernel
@@ -39,10 +39,8 @@ def depth_in_face(levels, face, q):
 def face_below(levels, first, last, q, tolerance):
     """Return the first of a range of faces in whose column a point is, -1 for none."""
     for i in range(first, last):
-        face, d2 = levels.faces[i], 0.0
-        for k in range(3):
-            d2 += (q[k] - face.centre[k]) ** 2
-        near = d2 <= (face.reach + tolerance) ** 2
+        face, d = levels.faces[i], minus(q, levels.faces[i].centre)
+        near = dot(d, d) <= (face.reach + tolerance) ** 2
         if near and depth_in_face(levels, face, q) >= -tolerance:
             return i
     return -1
@@ -65,24 +63,22 @@ def distance_from_rim(levels, surface, q):
     least = math.inf
     for i in range(surface.first_rim, surface.last_rim):
         a, b = levels.rims[i].begin, levels.rims[i].end
-        u = (b[0] - a[0], b[1] - a[1], b[2] - a[2])
-        v = (q[0] - a[0], q[1] - a[1], q[2] - a[2])
-        t = max(0.0, min(1.0, dot(u, v) / dot(u, u)))
-        v = (v[0] - t * u[0], v[1] - t * u[1], v[2] - t * u[2])
+        u, v = minus(b, a), minus(q, a)
+        v = plus(v, -max(0.0, min(1.0, dot(u, v) / dot(u, u))), u)
         least = min(least, dot(v, v))
     return math.sqrt(least)
 
 
 @kernel
-def carries(levels, surface, first, last, q, gap, rounding):
-    """Return whether the faces from `first` to `last` carry a point with this foot q and gap.
+def carries(levels, surface, first, last, touch, rounding):
+    """Return whether the faces from `first` to `last` carry a point of a contact.
 
     `rounding` is the radius of curvature of the body there.
 
     A point below the plane is carried if the way out through the plane is the shortest: shorter than that
     through the rim, and than that through the back of the solid.
     """
-    room = MARGIN * surface.tolerance
+    q, gap, room = touch.on_b, touch.gap, MARGIN * surface.tolerance
     i = face_below(levels, first, last, q, room)
     if i < 0:
         return False
@@ -102,8 +98,6 @@ def continues(levels, surface, q, m):
         if face_below(levels, i, i + 1, q, room) < 0:
             continue
         for k in range(face.first, face.last):
-            p = levels.sides[k].corner
-            along = m[0] * (p[0] - q[0]) + m[1] * (p[1] - q[1]) + m[2] * (p[2] - q[2])
-            if along > RESOLUTION * face.reach + room:
+            if dot(m, minus(levels.sides[k].corner, q)) > RESOLUTION * face.reach + room:
                 return True
     return False

@@ -4,69 +4,48 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import entry, inlined, kernel
+from carom._compiled.decorators import entry, kernel
 from carom._compiled.units import unit
-from carom.collision.faces import LOWEST, RIM, rim_point
+from carom.collision.faces import LOWEST, RIM, rim_point, vertex
 from carom.collision.features import of_vertex_a
 from carom.collision.found import put, spread
-from carom.collision.layout import BOX, CYLINDER, HULL, SEGMENT
+from carom.collision.layout import BOX, CYLINDER, SEGMENT
 from carom.collision.support import support
 from carom.geometry.rotation import rotate, rotate_back
 from carom.geometry.thresholds import ROUND_OFF
-
-
-@inlined
-def _seen(a, plane):
-    """Return a half-space in axes of a solid: its normal, and the height of the solid's origin above it."""
-    x, q, n = a.x, a.Q, plane.normal
-    ux, uy, uz = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
-    return ux, uy, uz, x[0] * n[0] + x[1] * n[1] + x[2] * n[2] - plane.offset
-
-
-@entry
-def plane_gap(a, plane, hulls):
-    """Return the distance of a solid from a half-space, negative inside.
-
-    Parameters
-    ----------
-    a : Placed
-    plane : Plane
-    hulls : Hulls
-    """
-    ux, uy, uz, height = _seen(a, plane)
-    px, py, pz, _ = support(a.solid, hulls, -ux, -uy, -uz)
-    return height + (px * ux + py * uy + pz * uz) - a.solid.inner - a.solid.radius
 
 
 @entry
 def touch_plane(a, plane, hulls, reach, work, out):
     """Write the points of the contact of a solid with a half-space to `out` (8,); return how many.
 
-    Arguments are those of `plane_gap` and `touch.touch`. The feature of a vertex is its number. A rim has up to
+    Arguments are those of `touch.touch`, and a `Plane`. The feature of a vertex is its number. A rim has up to
     four points: its lowest point, which moves along the rim in rolling (left out if the rim is flat on the
     plane), and points fixed in the body at quarters of a turn. More points would make a flat impact slow: their
     rows are linearly dependent, so that the points open and close in alternation.
     """
-    found, x, q, n, r = work.found, a.x, a.Q, plane.normal, a.solid.radius
-    ux, uy, uz, height = _seen(a, plane)
-    if a.solid.kind == CYLINDER:
-        count = _rims(a.solid, (ux, uy, uz, height - r), reach, found)
-    else:
-        count = _vertices(a.solid, hulls, (ux, uy, uz, height - r), reach, found)
-    count = spread(found, count)
-    for k in range(count):
-        p, gap = found[k].on_a, found[k].gap
-        px, py, pz = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
-        px, py, pz = x[0] + px - r * n[0], x[1] + py - r * n[1], x[2] + pz - r * n[2]
-        foot = (px - gap * n[0], py - gap * n[1], pz - gap * n[2])
-        put(out[k], gap, (n[0], n[1], n[2]), (px, py, pz), foot, found[k].feature)
-    return count
+    plane_unit(a, plane, hulls, reach, work, out)
+    return work.state[0].total
 
 
 @unit
 def plane_unit(a, plane, hulls, reach, work, out):
-    """Do the same as `touch_plane`, compiled once; the number of points goes to ``work.state[0].total``."""
-    work.state[0].total = touch_plane(a, plane, hulls, reach, work, out)
+    """Do this for `touch_plane` and for kernels: the number of points goes to ``work.state[0].total``."""
+    found, x, q, n, r = work.found, a.x, a.Q, plane.normal, a.solid.radius
+    ux, uy, uz = rotate_back(q, n)
+    seen = ux, uy, uz, x[0] * n[0] + x[1] * n[1] + x[2] * n[2] - plane.offset - r
+    if a.solid.kind == CYLINDER:
+        count = _rims(a.solid, seen, reach, found)
+    else:
+        count = _vertices(a.solid, hulls, seen, reach, found)
+    count = spread(found, count)
+    for k in range(count):
+        p, gap = found[k].on_a, found[k].gap
+        px, py, pz = rotate(q, p)
+        px, py, pz = x[0] + px - r * n[0], x[1] + py - r * n[1], x[2] + pz - r * n[2]
+        foot = (px - gap * n[0], py - gap * n[1], pz - gap * n[2])
+        put(out[k], gap, (n[0], n[1], n[2]), (px, py, pz), foot, found[k].feature)
+    work.state[0].total = count
 
 
 @kernel
@@ -88,22 +67,10 @@ def _vertices(a, hulls, seen, reach, found):
     px, py, pz = px - a.inner * ux, py - a.inner * uy, pz - a.inner * uz
     most = height + px * ux + py * uy + pz * uz
     count = _add(found, 0, seen, (px, py, pz), math.inf, number)
-    most, h = most + reach, a.half
-    if a.kind == SEGMENT:
-        z = h[2] if number == 0 else -h[2]
-        return _add(found, count, seen, (0.0, 0.0, z), most, 1 - number)
-    if a.kind == BOX:
-        for i in range(8):
-            if i != number:
-                x = h[0] if i & 4 else -h[0]
-                y = h[1] if i & 2 else -h[1]
-                z = h[2] if i & 1 else -h[2]
-                count = _add(found, count, seen, (x, y, z), most, i)
-    elif a.kind == HULL:
-        for i in range(a.last - a.first):
-            if i != number:
-                p = hulls.vertices[a.first + i]
-                count = _add(found, count, seen, (p[0], p[1], p[2]), most, i)
+    more = 2 if a.kind == SEGMENT else 8 if a.kind == BOX else a.last - a.first
+    for i in range(more):
+        if i != number:
+            count = _add(found, count, seen, vertex(a, hulls, i), most + reach, i)
     return count
 
 

@@ -13,7 +13,7 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom.collision.faces import LOWEST, vertex
-from carom.collision.frame import from_a, to_a
+from carom.collision.frame import from_a, point_of_a, to_a
 from carom.collision.layout import CYLINDER
 from carom.collision.support import change_of_support, propose, separation
 from carom.collision.thresholds import LEAST_SINE, SAME_DIRECTION
@@ -215,10 +215,7 @@ def _corner(pair, side, number):
         x, y, z = 0.0, 0.0, solid.half[2] if number > LOWEST else -solid.half[2]
     else:
         x, y, z = vertex(solid, pair.hulls, number)
-    if side == 0:
-        x, y, z = from_a(s, x, y, z)
-        x, y, z = x + s.p[0], y + s.p[1], z + s.p[2]
-    return x, y, z
+    return point_of_a(s, x, y, z) if side == 0 else (x, y, z)
 
 
 @kernel

@@ -109,12 +109,12 @@ def move_corner(s, source, target):
 
 
 @kernel
-def nearest_point(s):
-    """Return the point of the simplex that is nearest to the origin, from its weights."""
+def nearest_point(s, rows):
+    """Return the point nearest to the origin, from the weights of the corners; `rows` has these: w or on_b."""
     x, y, z = 0.0, 0.0, 0.0
     for k in range(s.points):
-        f = s.weight[k]
-        x, y, z = x + f * s.w[k, 0], y + f * s.w[k, 1], z + f * s.w[k, 2]
+        f, p = s.weight[k], rows[k]
+        x, y, z = x + f * p[0], y + f * p[1], z + f * p[2]
     return x, y, z
 
 

@@ -7,7 +7,7 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom.collision.faces import LOWEST
 from carom.collision.farthest import VERTICES, farthest
-from carom.collision.frame import from_a, to_a
+from carom.collision.frame import point_of_a, to_a
 from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, SEGMENT
 
 
@@ -78,9 +78,7 @@ def propose(pair, x, y, z):
     s = pair.state
     dx, dy, dz = to_a(s, x, y, z)
     ax, ay, az, i = support(pair.a, pair.hulls, -dx, -dy, -dz)
-    ax, ay, az = from_a(s, ax, ay, az)
-    p, d = s.p, s.shift
-    ax, ay, az = ax + p[0] + d[0], ay + p[1] + d[1], az + p[2] + d[2]
+    ax, ay, az = point_of_a(s, ax, ay, az)
     bx, by, bz, j = support(pair.b, pair.hulls, x, y, z)
     w, on_a, on_b = s.w[4], s.on_a[4], s.on_b[4]
     on_a[0], on_a[1], on_a[2] = ax, ay, az

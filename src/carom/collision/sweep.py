@@ -14,7 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom._compiled.decorators import entry, inlined, kernel
+from carom._compiled.decorators import entry, kernel
+from carom.geometry.vectors import dot, minus
 
 LEVELS = 40  # sizes down to 2^-40 of the largest ball; smaller balls share the last level
 FARTHEST_CELL = 2**62  # bound of the integer coordinates of a cell
@@ -129,16 +130,6 @@ def _hash(e, x, y, z, mask):
     return ((x * 73856093) ^ (y * 19349663) ^ (z * 83492791) ^ (e * 2654435761)) & mask
 
 
-@inlined
-def _overlap(i, j, centres, radii):
-    """Return whether two balls overlap or touch."""
-    u = centres[i, 0] - centres[j, 0]
-    v = centres[i, 1] - centres[j, 1]
-    w = centres[i, 2] - centres[j, 2]
-    r = radii[i] + radii[j]
-    return u * u + v * v + w * w <= r * r
-
-
 @kernel
 def _around(i, e, centres, radii, pairs, work):
     """Write the pairs of ball i with balls of level e in the 27 cells around it."""
@@ -156,7 +147,10 @@ def _around(i, e, centres, radii, pairs, work):
             p = work.place[j]
             # Balls from elsewhere in the grid may share the hashed cell; they are skipped.
             there = p[0] == e and p[1] == x and p[2] == y and p[3] == z
-            if not there or (same and k == 13 and j <= i) or not _overlap(i, j, centres, radii):
+            if not there or (same and k == 13 and j <= i):
+                continue
+            d, r = minus(centres[i], centres[j]), radii[i] + radii[j]
+            if not dot(d, d) <= r * r:
                 continue
             if made[1] < len(pairs):
                 pairs[made[1], 0], pairs[made[1], 1] = min(i, j), max(i, j)

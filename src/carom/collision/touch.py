@@ -42,18 +42,19 @@ def touch(a, b, hulls, reach, work, out):
         The normal points from B to A. The least of the gaps is the distance of the two solids, negative
         where they overlap slightly.
     """
+    touch_unit(a, b, hulls, reach, work, out)
+    return work.state[0].total
+
+
+@unit
+def touch_unit(a, b, hulls, reach, work, out):
+    """Do this for `touch` and for kernels: the number of points goes to ``work.state[0].total``."""
     flip = a.solid.kind > b.solid.kind
     if flip:
         a, b = b, a
     enter(work.state[0], a, b)
     pair = by_reference(Pair(a.solid, b.solid, hulls, work.state[0], work.found))
-    return hand_on(pair, _ordered(pair, reach), flip, out)
-
-
-@unit
-def touch_unit(a, b, hulls, reach, work, out):
-    """Do the same as `touch`, compiled once; the number of points goes to ``work.state[0].total``."""
-    work.state[0].total = touch(a, b, hulls, reach, work, out)
+    work.state[0].total = hand_on(pair, _ordered(pair, reach), flip, out)
 
 
 @kernel

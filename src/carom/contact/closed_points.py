@@ -2,10 +2,12 @@
 
 `gather_closed` lists the closed and the active points of a group of bodies, `persistent.points` those that
 carry an active contact, `stepping.crowd.spots` those that a crowd may reach within a step. A list has `closed`,
-its points, and `points`, the first row of which has their places in the state.
+its points, `points`, the first row of which has their places in the state, and `count`, how many there are.
 """
 
 from __future__ import annotations
+
+import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
@@ -14,10 +16,11 @@ from carom.contact.groups import unite
 from carom.contact.pair_point import find_touches, own_point, smaller, write_touch
 from carom.contact.parting import beside_face
 from carom.contact.place import place_any
-from carom.contact.place_of_other import centre_of_other, centres_of_balls, on_half_space
+from carom.contact.place_of_other import balls, centre_of_other, on_half_space
 from carom.contact.rim import closed_rim, most_of_rim, way_round
 from carom.contact.stop import is_active, place_stop
 from carom.contact.thresholds import REACH, RIM_DISTANCE, RIM_TIME
+from carom.geometry.vectors import dot, minus
 from carom.kinematics.contact_point import place
 from carom.model.arrays import STOP
 
@@ -50,30 +53,30 @@ def concerns(contact, label, work):
 @kernel
 def apart(system, contact, state, near):
     """Return whether the distance of the balls around the two, or around two pieces, is larger than `near`."""
-    x = state[contact.body].x
     if on_half_space(contact):
+        x = state[contact.body].x
         return along_normal(contact, x) - contact.offset - contact.radius - contact.extent > near
-    d = contact.extent + contact.other_extent + near
-    x, y = centres_of_balls(system, contact, state, False)
-    if (x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2 > d * d:
-        return True
-    if contact.part == 0:
-        return False
-    d = system.solids[contact.solid].extent + system.solids[contact.other_solid].extent + near
-    x, y = centres_of_balls(system, contact, state, True)
-    return (x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2 > d * d
+    for pieces in range(1 + contact.part):
+        x, y, radii = balls(system, contact, state, pieces == 1)
+        d = minus(x, y)
+        if dot(d, d) > (radii + near) * (radii + near):
+            return True
+    return False
 
 
 @kernel
-def gather_closed(system, controls, active, c, state, group, work, strikes):
-    """List the points that are closed in `state` together with contact c; return their number, -1 for too many.
+def gather_closed(model, data, c, strikes):
+    """List the points that are closed together with contact c; return their number, -1 for too many.
 
     A point is closed if its gap is within the tolerance of ties or of a located gap, or if it is active. If
     `strikes` is true, points of a nearly flat rim are closed too. Closed points and their positions are written
-    to `group`. Bodies connected by closed points form one group, and all closed points of the group are listed.
+    to `data.group`. Bodies connected by closed points form one group, and all its closed points are listed.
     """
-    first, k, more = system.contacts[c].body, 0, True
-    rim_time = RIM_TIME * controls.step if strikes else 0.0
+    system, active, state = model.system, data.active, data.state
+    group, work = data.group, data.work
+    first, more = system.contacts[c].body, True
+    rim_time = RIM_TIME * model.controls.step if strikes else 0.0
+    group.count[0] = 0
     if system.contacts[c].other >= 0:
         unite(work, first, system.contacts[c].other)
     for i in range(system.contacts.shape[0]):
@@ -85,75 +88,83 @@ def gather_closed(system, controls, active, c, state, group, work, strikes):
             if contact_state.seen == 1 or not concerns(contact, work.body[first].label, work):
                 continue
             contact_state.seen = 1
-            near = closed_within(controls, contact, state)
-            if contact.touches != STOP and apart(system, contact, state, near):
+            near, before = closed_within(model.controls, contact, state), group.count[0]
+            if contact.touches == STOP:
+                near = math.inf if is_active(active, i) else near
+                room = add_stop(system, i, near, state, group)
+            elif apart(system, contact, state, near):
                 continue
-            before = k
-            if contact.touches == 0:
-                k = add_vertices(system, active, i, near, state, k, group)
-            elif contact.touches == STOP:
-                k = add_stop(system, active, i, near, state, k, group)
+            elif contact.touches == 0:
+                room = add_vertices(system, active, i, near, state, group)
             else:
-                k = add_touches(system, i, near, rim_time, state, k, group, work)
-                if k > before and contact.other >= 0:
+                near = find_closed(system, contact, near, rim_time, state, work)
+                room = add_touches(system, i, near, state, group, work)
+                if group.count[0] > before and contact.other >= 0:
                     unite(work, contact.body, contact.other)
                     more = True
-            if k < 0:
+            if not room:
                 return -1
-    note_active(system, active, k, state, group)
-    return k
+    note_active(system, active, group.count[0], state, group)
+    return group.count[0]
 
 
 @kernel
-def add_vertices(system, active, c, near, state, k, group):
-    """Add the vertices within `near` of a half-space, or active; return the new count, -1 without room."""
+def add_vertices(system, active, c, near, state, spots):
+    """Add the vertices within `near` of a half-space, or active, to a list; return whether there is room."""
     contact = system.contacts[c]
     plane = plane_in_body(contact, state)
     for i in range(contact.first, contact.last):
         z, _ = gap_and_rate(plane, system.vertices[i])
         if z <= near or active.carries[i] == 1:
-            if k == group.closed.shape[0]:
-                return -1
-            write_closed(c, i, system.vertices[i], group.closed[k])
-            place(contact, group.closed[k].point, state, group.points[0][k])
-            k += 1
-    return k
+            k = spots.count[0]
+            if k == spots.closed.shape[0]:
+                return False
+            write_closed(c, i, system.vertices[i], spots.closed[k])
+            place(contact, spots.closed[k].point, state, spots.points[0][k])
+            spots.count[0] = k + 1
+    return True
 
 
 @kernel
-def add_stop(system, active, c, near, state, k, group):
-    """Add a stop that is within `near` or active; return the new count, -1 without room."""
-    if k == group.closed.shape[0]:
-        return -1
-    point = group.points[0][k]
+def add_stop(system, c, near, state, spots):
+    """Add a stop that is within `near` to a list; return whether there is room."""
+    k = spots.count[0]
+    if k == spots.closed.shape[0]:
+        return False
+    point = spots.points[0][k]
     place_stop(system, system.contacts[c], state, point)
-    if point.gap > near and not is_active(active, c):
-        return k
-    write_closed(c, 0, point.core, group.closed[k])
-    return k + 1
+    if not point.gap > near:
+        write_closed(c, 0, point.core, spots.closed[k])
+        spots.count[0] = k + 1
+    return True
 
 
 @kernel
-def add_touches(system, c, near, rim_time, state, k, group, work) -> int:
-    """Add the points of two solids that are within `near`; return the new count, -1 without room.
+def find_closed(system, contact, near, rim_time, state, work):
+    """Write the points of two solids that may be within `near`; return the gap up to which they are closed.
 
-    A rim that is flat within `rim_time` counts as flat.
+    It is `near`, or more for a rim that is flat within `rim_time`: this counts as flat.
     """
-    contact = system.contacts[c]
     if beside_face(system, contact, state, max(near, most_of_rim(contact, state, rim_time))):
-        return k
+        work.pair.state[0].total = 0
+        return near
     count = find_touches(system, contact, state, max(near, REACH * smaller(contact)), work)
     if rim_time > 0.0 and count > 0:
-        n = work.touches[0].normal
-        near = max(near, closed_rim(system, contact, n, state, rim_time))
-    for i in range(count):
-        touch = work.touches[i]
+        near = max(near, closed_rim(system, contact, work.touches[0].normal, state, rim_time))
+    return near
+
+
+@kernel
+def add_touches(system, c, near, state, spots, work):
+    """Add the found points of two solids that are within `near`; return whether there is room."""
+    for i in range(work.pair.state[0].total):
+        k, touch = spots.count[0], work.touches[i]
         if touch.gap <= near:
-            if k == group.closed.shape[0]:
-                return -1
-            add_touch(contact, c, touch, state, k, group)
-            k += 1
-    return k
+            if k == spots.closed.shape[0]:
+                return False
+            add_touch(system.contacts[c], c, touch, state, k, spots)
+            spots.count[0] = k + 1
+    return True
 
 
 @kernel
@@ -176,17 +187,12 @@ def is_same_point(system, active_point, point, state) -> bool:
 def note_active(system, active, k, state, group):
     """Store the index of each closed point among the active ones."""
     for i in range(active.count[0]):
-        active_point = active.points[i]
+        one = active.points[i]
         for j in range(k):
-            closed_point = group.closed[j]
-            if (
-                closed_point.contact == active_point.contact
-                and closed_point.feature == active_point.feature
-            ):
-                if active_point.touches != 1 or is_same_point(
-                    system, active_point, group.points[0][j], state
-                ):
-                    closed_point.active = i
+            closed_point, point = group.closed[j], group.points[0][j]
+            same = closed_point.contact == one.contact and closed_point.feature == one.feature
+            if same and (one.touches != 1 or is_same_point(system, one, point, state)):
+                closed_point.active = i
 
 
 @kernel
@@ -196,15 +202,7 @@ def place_closed(system, k, state, group, points, work):
         closed_point = group.closed[i]
         if closed_point.contact < 0:  # friction in a joint
             continue
-        place_any(
-            system,
-            system.contacts[closed_point.contact],
-            closed_point.feature,
-            closed_point.point,
-            state,
-            points[i],
-            work,
-        )
+        place_any(system, closed_point, state, points[i], work)
         if closed_point.turns > 0:
             points[i].turns = closed_point.turns
             points[i].length = smaller(system.contacts[closed_point.contact])

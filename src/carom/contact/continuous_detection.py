@@ -55,42 +55,42 @@ def cubic_clears(z0, rate0, z1, rate1, h, tiny):
 
 
 @inlined
-def ball_clears(system, contact, start, end, h, centre, work):
+def ball_clears(system, data, contact, centre):
     """Return whether the bounding ball of the body does not touch: the first check, usually sufficient."""
     b, margin = contact.body, contact.extent + contact.radius + contact.offset
-    z0, z1 = along_normal(contact, start[b].x) - margin, along_normal(contact, end[b].x) - margin
+    start, end = data.state[b], data.work.trial[b]
+    z0, z1 = along_normal(contact, start.x) - margin, along_normal(contact, end.x) - margin
     if not (z0 > 0.0 and z1 > 0.0):
         return False
-    s0, s1 = along_normal(contact, start[b].v), along_normal(contact, end[b].v)
-    flying = system.bodies[b].ballistic == 1 and work.body[b].status == FREE
+    s0, s1 = along_normal(contact, start.v), along_normal(contact, end.v)
+    flying = system.bodies[b].ballistic == 1 and data.work.body[b].status == FREE
     if flying and (s1 <= 0.0 or s0 >= 0.0):  # the gap is least at an end
         return True
-    return reach(z0, s0, centre) + reach(z1, -s1, centre) >= h
+    return reach(z0, s0, centre) + reach(z1, -s1, centre) >= data.work.search[0].dt
 
 
 @inlined
-def passage(system, controls, active, c, start, h, work):
+def passage(model, data, c):
     """Return CLEAR, BELOW (the end is inside the half-space) or UNSURE, and a time before any contact.
 
-    The end is the trial state. Vertices that carry a persistent contact are left out.
+    The step is the trial step. Vertices that carry a persistent contact are left out.
     """
-    contact, end, leaving = system.contacts[c], work.trial, active.contact_states[c].leaving
+    system, start, work = model.system, data.state, data.work
+    contact, end, h = system.contacts[c], work.trial, work.search[0].dt
     if work.body[contact.body].status == RESTS:
         return CLEAR, h
     centre, a = greatest_acceleration(system, contact, start, work)
-    if ball_clears(system, contact, start, end, h, centre, work):
+    if ball_clears(system, data, contact, centre):
         return CLEAR, h
     verdict, first, flies = CLEAR, h, work.body[contact.body].status == FREE
-    tiny = max(controls.gap * contact.extent, round_off(contact, end))
+    tiny = max(model.controls.gap * contact.extent, round_off(contact, end))
     sag = 0.125 * a * h * h  # bound of the distance of a path from its chord
     smooth = not flies or sag <= RESOLUTION * contact.extent
     before, after = plane_in_body(contact, start), plane_in_body(contact, end)
     for i in range(contact.first, contact.last):
         z0, rate0 = gap_and_rate(before, system.vertices[i])
         z1, rate1 = gap_and_rate(after, system.vertices[i])
-        if min(z0, z1) > sag:
-            continue
-        if active.carries[i] == 1:
+        if min(z0, z1) > sag or data.active.carries[i] == 1:
             continue
         t0 = reach(z0, rate0, a)
         first = min(first, t0)
@@ -103,7 +103,7 @@ def passage(system, controls, active, c, start, h, work):
             verdict == CLEAR
             and t0 + reach(z1, -rate1, a) < h * (1.0 - 1e-12)
             and sag > tiny  # what could be missed is more than the tolerance
-            and leaving == 0
+            and data.active.contact_states[c].leaving == 0
             and not (smooth and cubic_clears(z0, rate0, z1, rate1, h, tiny))
         ):
             verdict = UNSURE

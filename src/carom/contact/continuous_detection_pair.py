@@ -27,58 +27,46 @@ from carom.contact.continuous_detection import (
 from carom.contact.gap import slow
 from carom.contact.level import related
 from carom.contact.pair_point import find_touches, list_touches, smaller, touch_rate
-from carom.contact.parting import stays_beside_face, time_apart
-from carom.contact.place_of_other import centre_of_other, centres_of_balls, on_half_space
-from carom.contact.rim import closed_rim, longest_way, same_point
+from carom.contact.parting import plane_of, stays_beside_face, time_apart
+from carom.contact.place_of_other import balls, centre_of_other, on_half_space
+from carom.contact.rim import closed_rim, longest_way, place_of
 from carom.geometry.thresholds import RESOLUTION
+from carom.geometry.vectors import dot, minus
 from carom.kinematics.flight import relative_bound
 from carom.model.workspace import FREE, RESTS
 
 
 @kernel
-def balls_apart(s, u, radii, sign, a):
-    """Return how long two balls with relative position s and velocity u stay apart; -inf if they overlap."""
-    d = math.sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
-    if not d > radii:
-        return -math.inf
-    return reach(d - radii, sign * (s[0] * u[0] + s[1] * u[1] + s[2] * u[2]) / d, a)
-
-
-@kernel
-def balls_clear(system, contact, start, end, h, a, pieces):
-    """Return whether the balls around both bodies, or two `pieces` of them, stay apart during the step."""
-    p, q, time = system.solids[contact.solid], system.solids[contact.other_solid], 0.0
-    radii = p.extent + q.extent if pieces else contact.extent + contact.other_extent
+def balls_clear(system, data, contact, a, pieces):
+    """Return whether the balls around both bodies, or two `pieces` of them, stay apart in the trial step."""
+    time = 0.0
     for side in range(2):
-        state, sign = (start, 1.0) if side == 0 else (end, -1.0)
-        x, y = centres_of_balls(system, contact, state, pieces)
-        s, u = (x[0] - y[0], x[1] - y[1], x[2] - y[2]), (x[3] - y[3], x[4] - y[4], x[5] - y[5])
-        time += balls_apart(s, u, radii, sign, a)
-    return time >= h
+        state, sign = (data.state, 1.0) if side == 0 else (data.work.trial, -1.0)
+        x, y, radii = balls(system, contact, state, pieces)
+        s, u = minus(x, y), (x[3] - y[3], x[4] - y[4], x[5] - y[5])
+        d = math.sqrt(dot(s, s))
+        if not d > radii:
+            return False
+        time += reach(d - radii, sign * dot(s, u) / d, a)
+    return time >= data.work.search[0].dt
 
 
 @kernel
-def lowest_open(system, contact, c, count, active, state, work):
+def lowest_open(system, data, c, state):
     """Return the least gap of the points in work.touches that are not active, and its rate."""
-    least, rate = math.inf, 0.0
-    for i in range(count):
+    least, rate, work = math.inf, 0.0, data.work
+    for i in range(work.pair.state[0].total):
         touch = work.touches[i]
-        open_ = True
-        for j in range(active.count[0]):
-            active_point = active.points[j]
-            if active_point.contact == c and open_:
-                feature, p = active_point.feature, active_point.point
-                open_ = not same_point(system, contact, touch, feature, p, state)
-        if open_ and touch.gap < least:
-            least, rate = touch.gap, touch_rate(contact, touch, state)
+        if touch.gap < least and place_of(system, data.active, c, touch, state) < 0:
+            least, rate = touch.gap, touch_rate(system.contacts[c], touch, state)
     return least, rate
 
 
 @kernel
-def nearest_touch(work, count):
+def nearest_touch(work):
     """Return the point in work.touches with the least gap."""
     nearest = work.touches[0]
-    for i in range(1, count):
+    for i in range(1, work.pair.state[0].total):
         if work.touches[i].gap < nearest.gap:
             nearest = work.touches[i]
     return nearest
@@ -97,63 +85,64 @@ def flat_rim_strikes(system, contact, state, time, work):
 
 
 @unit
-def lowest_pair(system, contact, c, active, state, work) -> tuple[float, float]:
+def lowest_pair(system, data, c, state) -> tuple[float, float]:
     """Return the least gap of two solids, over points that are not active, and its rate."""
-    count = find_touches(system, contact, state, limits.REACH * smaller(contact), work)
-    return lowest_open(system, contact, c, count, active, state, work)
+    contact = system.contacts[c]
+    find_touches(system, contact, state, limits.REACH * smaller(contact), data.work)
+    return lowest_open(system, data, c, state)
 
 
 @kernel
-def far_apart(system, contact, start, end, h, work):
+def far_apart(system, data, contact):
     """Return the bounds of `relative_bound`, and whether balls around the two stay apart."""
+    start, work = data.state, data.work
     a, b, none = contact.body, contact.other, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     if on_half_space(contact):
         if work.body[a].status == RESTS:
             return none, True
         centre, most = greatest_acceleration(system, contact, start, work)
         bounds = (centre, most, 0.0, 0.0, 0.0, 0.0)
-        return bounds, ball_clears(system, contact, start, end, h, centre, work)
+        return bounds, ball_clears(system, data, contact, centre)
     if work.body[a].status == RESTS and (b < 0 or work.body[b].status == RESTS):
         return none, True
     bounds = relative_bound(system, contact, start, work)
-    clear = balls_clear(system, contact, start, end, h, bounds[0], False)
+    clear = balls_clear(system, data, contact, bounds[0], False)
     if contact.part == 1 and not clear:
-        clear = balls_clear(system, contact, start, end, h, bounds[1], True)
+        clear = balls_clear(system, data, contact, bounds[1], True)
     return bounds, clear
 
 
 @unit
-def passage_pair(system, controls, active, c, start, h, work) -> tuple[int, float]:
+def passage_pair(model, data, c) -> tuple[int, float]:
     """Return CLEAR, BELOW (they overlap at the end), UNSURE or FLAT_RIM, and a time before any contact.
 
-    The end is the trial state. Only steps up to `longest` may follow the lowest point of a wobbling rim along a
+    The step is the trial step. Only steps up to `longest` may follow the lowest point of a wobbling rim along a
     large arc.
     """
-    contact, end, leaving = system.contacts[c], work.trial, active.contact_states[c].leaving
+    system, controls, start, work = model.system, model.controls, data.state, data.work
+    contact, end, h = system.contacts[c], work.trial, work.search[0].dt
     longest = limits.RIM_TIME * controls.step
-    bounds, clear = far_apart(system, contact, start, end, h, work)
+    bounds, clear = far_apart(system, data, contact)
     if clear:
         return CLEAR, h
-    touching = touches_already(system, active, c)
+    touching = touches_already(system, data.active, c)
     flies = work.body[contact.body].status == FREE
     if contact.other >= 0:
         flies = flies and work.body[contact.other].status == FREE
     sag = 0.125 * bounds[1] * h * h
-    short = way_past(contact, start, end, h) <= limits.SAFE_DISPLACEMENT * smaller(contact)
+    short = way_past(contact, data) <= limits.SAFE_DISPLACEMENT * smaller(contact)
     little = short and h * (bounds[3] + bounds[5]) <= limits.SAFE_ROTATION
     smooth = short and (not flies or sag <= RESOLUTION * smaller(contact))
     smooth = smooth or (little and controls.order > 0 and is_integrated(system, contact))
     tiny = 4.0 * max(controls.gap * smaller(contact), round_off_of_both(contact, end))
-    if not touching and stays_beside_face(system, contact, start, end, smooth, tiny, bounds, h):
+    if not touching and stays_beside_face(system, data, contact, smooth, tiny, bounds):
         return CLEAR, h
-    count = find_touches(system, contact, end, limits.REACH * smaller(contact), work)
-    if count == 0:
+    if find_touches(system, contact, end, limits.REACH * smaller(contact), work) == 0:
         hidden = touching or contact.surface > 0
-        return (CLEAR, h) if hidden else passage_hidden(system, contact, start, bounds, h, work)
-    least, rate = lowest_open(system, contact, c, count, active, end, work)
-    nearest = nearest_touch(work, count)
+        return (CLEAR, h) if hidden else passage_hidden(system, data, contact, bounds)
+    least, rate = lowest_open(system, data, c, end)
     if touching:
-        moved = longest_way(system, contact, c, count, active, end, work)
+        moved = longest_way(system, data, c)
         if moved > limits.RIM_STEP and h > longest:
             return UNSURE, 0.0
         if moved > limits.RIM_STEP:
@@ -163,7 +152,7 @@ def passage_pair(system, controls, active, c, start, h, work) -> tuple[int, floa
                 return UNSURE, 0.0
             find_touches(system, contact, end, limits.REACH * smaller(contact), work)
     if not least >= -(tiny if not touching else RESOLUTION * smaller(contact)):
-        before, _ = lowest_pair(system, contact, c, active, start, work)
+        before, _ = lowest_pair(system, data, c, start)
         if before <= tiny:  # they touch already: they separate, or others push them
             if (before < -tiny and least >= before) or (
                 not flies and least >= -RESOLUTION * smaller(contact)
@@ -172,13 +161,13 @@ def passage_pair(system, controls, active, c, start, h, work) -> tuple[int, floa
         return BELOW, 0.0
     if touching:
         return CLEAR, h
-    last = time_apart(system, contact, nearest, -1.0, end, bounds, h)
-    feature = nearest.feature
+    nearest = nearest_touch(work)
+    last, feature = time_apart(system, contact, plane_of(nearest), end, bounds, -h), nearest.feature
     if last >= h:
         return CLEAR, h
-    count = list_touches(system, contact, start, 0.0, work)
-    nearest = nearest_touch(work, count)
-    first = time_apart(system, contact, nearest, 1.0, start, bounds, h)
+    list_touches(system, contact, start, 0.0, work)
+    nearest = nearest_touch(work)
+    first = time_apart(system, contact, plane_of(nearest), start, bounds, h)
     rate0 = touch_rate(contact, nearest, start)
     alike = feature == nearest.feature  # the same points are nearest at both ends
     follows = alike and smooth  # the cubic between both ends describes the gap
@@ -186,10 +175,9 @@ def passage_pair(system, controls, active, c, start, h, work) -> tuple[int, floa
         return CLEAR, first
     bends = sag > tiny or follows or not short
     if little and max(abs(nearest.gap), abs(least)) <= tiny:
-        if max(abs(rate0), abs(rate)) <= slow(
-            contact, end
-        ):  # it slides or rolls along, without a force
+        if max(abs(rate0), abs(rate)) <= slow(contact, end):  # it slides or rolls along, unforced
             return CLEAR, first
+    leaving = data.active.contact_states[c].leaving
     if first + last < h * (1.0 - 1e-12) and bends and leaving == 0:
         return UNSURE, first
     return CLEAR, first
@@ -221,31 +209,32 @@ def touches_already(system, active, c):
 
 
 @kernel
-def passage_hidden(system, contact, start, bounds, h, work):
+def passage_hidden(system, data, contact, bounds):
     """Return the verdict for a solid whose nearest points at the end belong to a level surface.
 
     If they belonged to the same one at the start, the row of the surface decides.
     """
+    start, work, h = data.state, data.work, data.work.search[0].dt
     end, hidden = work.trial, work.pair.state[0].hidden
     if find_touches(system, contact, start, 0.0, work) == 0:
         if work.pair.state[0].hidden == hidden:
             return CLEAR, h
-    count = list_touches(system, contact, end, 0.0, work)
-    last = time_apart(system, contact, nearest_touch(work, count), -1.0, end, bounds, h)
-    count = list_touches(system, contact, start, 0.0, work)
-    first = time_apart(system, contact, nearest_touch(work, count), 1.0, start, bounds, h)
+    list_touches(system, contact, end, 0.0, work)
+    last = time_apart(system, contact, plane_of(nearest_touch(work)), end, bounds, -h)
+    list_touches(system, contact, start, 0.0, work)
+    first = time_apart(system, contact, plane_of(nearest_touch(work)), start, bounds, h)
     bends = 0.125 * bounds[1] * h * h > RESOLUTION * smaller(contact)
-    bends = bends or way_past(contact, start, end, h) > limits.SAFE_DISPLACEMENT * smaller(contact)
+    bends = bends or way_past(contact, data) > limits.SAFE_DISPLACEMENT * smaller(contact)
     return (UNSURE, first) if first + last < h * (1.0 - 1e-12) and bends else (CLEAR, first)
 
 
 @kernel
-def way_past(contact, start, end, h):
-    """Return the relative displacement in a step, from the larger relative velocity of the centres."""
+def way_past(contact, data):
+    """Return the relative displacement in the trial step, from the larger relative velocity of the centres."""
     most = 0.0
     if on_half_space(contact):
         return 0.0
-    for state in (start, end):
+    for state in (data.state, data.work.trial):
         v, y = state[contact.body].v, centre_of_other(contact, state)
         most = max(most, (v[0] - y[3]) ** 2 + (v[1] - y[4]) ** 2 + (v[2] - y[5]) ** 2)
-    return h * math.sqrt(most)
+    return data.work.search[0].dt * math.sqrt(most)

@@ -37,11 +37,12 @@ import numpy as np
 
 from carom._compiled.decorators import inlined, kernel
 from carom.collision.faces import LOWEST, along_edge, normal_of_face
-from carom.collision.features import EDGE, FACE, FIXED, OF_A, OF_B, first_of, second_of
-from carom.collision.layout import CYLINDER, ELLIPSOID
+from carom.collision.features import EDGE, FACE, FIXED, NOBODY, OF_A, OF_B, first_of, second_of
+from carom.collision.layout import CYLINDER, ELLIPSOID, Hulls
 from carom.collision.support import change_of_support
 from carom.collision.thresholds import LEAST_SINE
-from carom.geometry.rotation import multiply, rotate, rotate_back
+from carom.contact.place_of_other import pose_of
+from carom.geometry.rotation import rotate, rotate_back
 from carom.geometry.thresholds import RESOLUTION
 from carom.geometry.vectors import cross, dot, plus
 
@@ -50,6 +51,7 @@ class Core(NamedTuple):
     """The core of a solid at a point of contact, in the world."""
 
     solid: np.record  # SOLID
+    hulls: Hulls
     q: tuple  # its attitude
     part: int  # on which the point lies
     side: float  # 1 for A, -1 for B: its outward normal is -side n
@@ -71,14 +73,14 @@ def _kind(core):
 def _in_world(core, a):
     """Return a vector of the world, given in axes of the solid."""
     q = core.q
-    return rotate(q[0], q[1], q[2], q[3], a[0], a[1], a[2])
+    return rotate(q, a)
 
 
 @inlined
 def _own(core, a):
     """Return a vector in axes of the solid, given in the world."""
     q = core.q
-    return rotate_back(q[0], q[1], q[2], q[3], a[0], a[1], a[2])
+    return rotate_back(q, a)
 
 
 @kernel
@@ -95,9 +97,9 @@ def _bend(core, n, v):
 
 
 @kernel
-def _edge(core, hulls):
+def _edge(core):
     """Return the direction of the edge of a core, in the world."""
-    e = along_edge(core.solid, hulls, first_of(core.part), second_of(core.part))
+    e = along_edge(core.solid, core.hulls, first_of(core.part), second_of(core.part))
     return _in_world(core, e)
 
 
@@ -110,9 +112,9 @@ def _across(n):
 
 
 @kernel
-def _two_edges(a, b, hulls, n):
+def _two_edges(a, b, n):
     """Return n' of two edges, and whether they are not parallel."""
-    e, f = _edge(a, hulls), _edge(b, hulls)
+    e, f = _edge(a), _edge(b)
     s = cross(n, e)
     along, other, sine = -dot(n, cross(a.w, e)), -dot(n, cross(b.w, f)), dot(s, f)
     if not abs(sine) > LEAST_SINE:
@@ -129,11 +131,13 @@ def _bends(a, b, n, d, v):
 
 
 @kernel
-def _free_normal(a, b, hulls, n, d):
-    """Return n' of a normal that no face owns."""
+def _rate_of_normal(a, b, n, d, owner):
+    """Return n'."""
+    if owner != NOBODY:
+        return cross(b.w if owner == OF_B else a.w, n)
     edges = int(_kind(a) == EDGE) + int(_kind(b) == EDGE)  # NumPy adds bools to a bool
     if edges == 2:
-        rate, done = _two_edges(a, b, hulls, n)
+        rate, done = _two_edges(a, b, n)
         if done:
             return rate
     sharp = RESOLUTION * min(a.solid.extent, b.solid.extent)
@@ -142,7 +146,7 @@ def _free_normal(a, b, hulls, n, d):
     rate = plus(rate, 1.0, _bend(b, n, turn_b))
     if edges > 0:
         on_a = _kind(a) == EDGE
-        e, turn = (_edge(a, hulls), turn_a) if on_a else (_edge(b, hulls), turn_b)
+        e, turn = (_edge(a), turn_a) if on_a else (_edge(b), turn_b)
     else:
         e, turn = _across(n), turn_b
     s = cross(n, e)
@@ -157,16 +161,6 @@ def _free_normal(a, b, hulls, n, d):
         along = (dot(e, rate) * stiff - dot(s, rate) * other) / determinant
     across = (dot(s, rate) - along * other) / stiff if stiff > sharp else dot(s, turn)
     return plus((along * e[0], along * e[1], along * e[2]), across, s)
-
-
-@kernel
-def _rate_of_normal(a, b, hulls, n, d, owner):
-    """Return n'."""
-    if owner == OF_B:
-        return cross(b.w, n)
-    if owner == OF_A:
-        return cross(a.w, n)
-    return _free_normal(a, b, hulls, n, d)
 
 
 @kernel
@@ -187,19 +181,19 @@ def _leads(a, b, owner):
 
 
 @kernel
-def _follow(lead, other, hulls, n, d, rate, owner):
+def _follow(lead, other, n, d, rate, owner):
     """Return the velocities of the leading point and of the other one."""
     k = lead.side
     p, step = _along_support(lead, n, rate), (k * d * rate[0], k * d * rate[1], k * d * rate[2])
     if _kind(lead) == EDGE and _kind(other) == EDGE:
-        e, s = _edge(lead, hulls), cross(n, _edge(other, hulls))
+        e, s = _edge(lead), cross(n, _edge(other))
         miss = plus(plus(p, -1.0, step), -1.0, _along_support(other, n, rate))
         sine = dot(s, e)
         if abs(sine) > LEAST_SINE:
             p = plus(p, -dot(s, miss) / sine, e)
     m = n
     if _kind(other) == FACE and owner != (OF_B if k > 0.0 else OF_A):  # a face, perhaps tilted
-        m = _in_world(other, normal_of_face(other.solid, hulls, first_of(other.part)))
+        m = _in_world(other, normal_of_face(other.solid, other.hulls, first_of(other.part)))
     miss = plus(plus(p, -1.0, step), -1.0, other.v)
     q = plus(plus(p, -1.0, step), -dot(m, miss) / dot(m, n), n)
     return p, q
@@ -210,27 +204,25 @@ def drift_of_solids(system, contact, other_solid, point, state):
     """Return (d/dt G) v, in contact axes, of a point of two solids that `pair_point.write_touch` wrote."""
     one, two = system.solids[contact.solid], system.solids[other_solid]
     # the bodies
+    q_a, q_b = pose_of(one, contact.body, state)[1], pose_of(two, contact.other, state)[1]
     body = state[contact.body]
-    q, va, wa = body.Q, _vector(body.v), _vector(body.w)
-    q_a = multiply(q[0], q[1], q[2], q[3], one.Q[0], one.Q[1], one.Q[2], one.Q[3])
-    q_b, vb, wb = (two.Q[0], two.Q[1], two.Q[2], two.Q[3]), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    va, wa, vb, wb = _vector(body.v), _vector(body.w), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     if contact.other >= 0:
         body = state[contact.other]
-        q, vb, wb = body.Q, _vector(body.v), _vector(body.w)
-        q_b = multiply(q[0], q[1], q[2], q[3], two.Q[0], two.Q[1], two.Q[2], two.Q[3])
+        vb, wb = _vector(body.v), _vector(body.w)
     # the material points of the cores
     n, ra, rb = _vector(point.axes[0]), one.radius, two.radius
     ua = plus(va, 1.0, cross(wa, plus(point.arm_a, ra, n)))
     ub = plus(vb, 1.0, cross(wb, plus(point.arm_b, -rb, n)))
-    a = Core(one, q_a, point.parts[0], 1.0, ua, wa)
-    b = Core(two, q_b, point.parts[1], -1.0, ub, wb)
+    a = Core(one, system.hulls, q_a, point.parts[0], 1.0, ua, wa)
+    b = Core(two, system.hulls, q_b, point.parts[1], -1.0, ub, wb)
     # the motion of the normal and of the points
     d, owner = point.gap + ra + rb, point.owner
-    rate = _rate_of_normal(a, b, system.hulls, n, d, owner)
+    rate = _rate_of_normal(a, b, n, d, owner)
     if _leads(a, b, owner):
-        pa, pb = _follow(a, b, system.hulls, n, d, rate, owner)
+        pa, pb = _follow(a, b, n, d, rate, owner)
     else:
-        pb, pa = _follow(b, a, system.hulls, n, d, rate, owner)
+        pb, pa = _follow(b, a, n, d, rate, owner)
     pa, pb = plus(pa, -ra, rate), plus(pb, rb, rate)
     # the rates of the rows
     du = plus(cross(wa, plus(pa, -1.0, va)), -1.0, cross(wb, plus(pb, -1.0, vb)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom.geometry.rotation import cross, rotate_back
+from carom.geometry.rotation import cross, norm, rotate_back
 
 
 @inlined
@@ -24,8 +24,8 @@ def plane_in_body(contact, state):
     """
     body, n = state[contact.body], contact.axes
     q, w = body.Q, body.w
-    nx, ny, nz = rotate_back(q[0], q[1], q[2], q[3], n[0, 0], n[0, 1], n[0, 2])
-    wx, wy, wz = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
+    nx, ny, nz = rotate_back(q, n[0])
+    wx, wy, wz = rotate_back(q, w)
     cx, cy, cz = cross(nx, ny, nz, wx, wy, wz)
     height = along_normal(contact, body.x) - contact.offset - contact.radius
     return nx, ny, nz, cx, cy, cz, height, along_normal(contact, body.v)
@@ -62,9 +62,7 @@ def round_off(contact, state):
 @kernel
 def speed_of(b, extent, state):
     """Return a bound of the speed of any point of a body."""
-    v, w = state[b].v, state[b].w
-    s = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
-    return s + extent * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    return norm(state[b].v) + extent * norm(state[b].w)
 
 
 @kernel
@@ -89,9 +87,7 @@ def strike_point(contact, vertices, state, tie, out):
     """
     plane = plane_in_body(contact, state)
     still = slow(contact, state)
-    least, approaching = math.inf, False
-    for i in range(contact.first, contact.last):
-        least = min(least, gap_and_rate(plane, vertices[i])[0])
+    least, approaching = lowest(contact, vertices, state)[0], False
     for i in range(contact.first, contact.last):
         z, rate = gap_and_rate(plane, vertices[i])
         if z <= least + tie and rate < -still:

@@ -6,13 +6,6 @@ from carom._compiled.decorators import kernel
 
 
 @kernel
-def label_components(system, work):
-    """Give each body the number of its component in the graph of joints."""
-    for b in range(work.body.shape[0]):
-        work.body[b].label = system.bodies[b].component
-
-
-@kernel
 def unite(work, a, b):
     """Join the groups of two bodies."""
     g, h = work.body[a].label, work.body[b].label
@@ -25,7 +18,8 @@ def unite(work, a, b):
 @kernel
 def label_groups(system, active, work):
     """Give each body the number of its group, where joints and persistent contacts connect bodies."""
-    label_components(system, work)
+    for b in range(work.body.shape[0]):
+        work.body[b].label = system.bodies[b].component
     for i in range(active.count[0]):
         active_point = active.points[i]
         if active_point.other >= 0:

@@ -24,6 +24,7 @@ from carom.collision.thresholds import MARGIN
 from carom.contact.thresholds import BACK_SIDE, DEPTH
 from carom.geometry.rotation import rotate_back
 from carom.geometry.thresholds import ROUND_OFF
+from carom.geometry.vectors import dot, minus
 
 
 @unit
@@ -59,7 +60,7 @@ def on_surface(system, contact, touch):
     touch.surface = contact.surface
     first, last = contact.first_level, contact.last_level
     rounding = rounding_of(system.solids[contact.solid])
-    if not carries(levels, surface, first, last, q, touch.gap, rounding):
+    if not carries(levels, surface, first, last, touch, rounding):
         return False
     face = levels.faces[face_below(levels, first, last, q, MARGIN * surface.tolerance)]
     for k in range(face.first_own, face.last_own):
@@ -70,9 +71,9 @@ def on_surface(system, contact, touch):
 
 
 @kernel
-def solid_left(system, contact, touch):
+def solid_left(system, contact, q):
     """Return the static solid nearest to a point of the row of a surface that is not above it, else -1."""
-    levels, surface, q = system.levels, system.levels.surfaces[contact.surface - 1], touch.on_b
+    levels, surface = system.levels, system.levels.surfaces[contact.surface - 1]
     room = MARGIN * surface.tolerance
     if face_below(levels, surface.first, surface.last, q, room) >= 0:
         return -1
@@ -88,8 +89,7 @@ def solid_beyond(system, contact, point, state):
     n, e, x, r = point.axes[0], surface.normal, state[contact.body].x, point.arm_a
     q = (x[0] + r[0], x[1] + r[1], x[2] + r[2])
     if n[0] * e[0] + n[1] * e[1] + n[2] * e[2] > 1.0 - ROUND_OFF:
-        if face_below(levels, surface.first, surface.last, q, MARGIN * surface.tolerance) >= 0:
-            return -1
+        return solid_left(system, contact, q)
     return levels.faces[nearest_face(levels, contact.first_level, contact.last_level, q)].solid
 
 
@@ -129,7 +129,7 @@ def hides(system, contact, s, touch):
     flat = along > 1.0 - ROUND_OFF
     if flat and touch.feature >> 60 in (0, VERTEX_A):
         rounding = rounding_of(system.solids[contact.solid])
-        return carries(levels, surface, surface.first, surface.last, q, touch.gap, rounding)
+        return carries(levels, surface, surface.first, surface.last, touch, rounding)
     if distance_from_rim(levels, surface, q) > 2.0 * room or continues(levels, surface, q, m):
         return True
     if flat and levels.faces[below].solid != contact.other_solid:  # the other solid has it
@@ -147,10 +147,8 @@ def buried(system, surface, q, m, above):
     levels, room = system.levels, MARGIN * surface.tolerance
     p = q[0] + DEPTH * room * m[0], q[1] + DEPTH * room * m[1], q[2] + DEPTH * room * m[2]
     for i in range(surface.first, surface.last):
-        face, d2 = levels.faces[i], 0.0
-        for k in range(3):
-            d2 += (q[k] - face.centre[k]) ** 2
-        near = d2 <= (face.reach + face.thickness) ** 2 and -above <= 0.5 * face.thickness
+        face, d = levels.faces[i], minus(q, levels.faces[i].centre)
+        near = dot(d, d) <= (face.reach + face.thickness) ** 2 and -above <= 0.5 * face.thickness
         if near and is_inside(system.solids[face.solid], system.hulls, p, room):
             return True
     return False
@@ -160,7 +158,7 @@ def buried(system, surface, q, m, above):
 def is_inside(solid, hulls, q, room):
     """Return whether a point in the world is in a static box or hull, or at most `room` outside."""
     x, Q, h = solid.x, solid.Q, solid.half
-    px, py, pz = rotate_back(Q[0], Q[1], Q[2], Q[3], q[0] - x[0], q[1] - x[1], q[2] - x[2])
+    px, py, pz = rotate_back(Q, (q[0] - x[0], q[1] - x[1], q[2] - x[2]))
     if solid.kind == BOX:
         return max(abs(px) - h[0], max(abs(py) - h[1], abs(pz) - h[2])) <= room
     for f in range(solid.first_face, solid.last_face):

@@ -9,18 +9,18 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.collision.frame import place
 from carom.collision.layout import Placed, Plane
 from carom.collision.plane import plane_unit
 from carom.collision.touch import touch_unit
 from carom.contact.drift import drift_of_solids
 from carom.contact.level import keep_real_touches, solid_beyond, solid_left
-from carom.contact.place_of_other import on_half_space
+from carom.contact.place_of_other import on_half_space, pose_of
 from carom.contact.rim import same_point
 from carom.contact.roll import roll_on_plane
 from carom.contact.thresholds import ACTIVE_REACH
-from carom.geometry.rotation import rotate, rotate_back
+from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.geometry.thresholds import ROUND_OFF
+from carom.geometry.vectors import dot, minus
 from carom.kinematics.wrench import point_velocity
 from carom.model.workspace import STATIC
 
@@ -37,21 +37,15 @@ def find_touches(system, contact, state, reach, work):
 @kernel
 def list_touches(system, contact, state, reach, work):
     """Write all points of a contact into work.touches, also hidden ones; return how many."""
-    solid, body, pose = system.solids[contact.solid], state[contact.body], work.solid_pose
-    place(solid, body.x, body.Q, pose[0, :3], pose[0, 3:])
-    a = Placed(solid, pose[0, :3], pose[0, 3:])
+    solid, pose = system.solids[contact.solid], work.solid_pose
+    x, q = pose_of(solid, contact.body, state)
+    pose[0, 0], pose[0, 1], pose[0, 2] = x
+    pose[0, 3], pose[0, 4], pose[0, 5], pose[0, 6] = q
     if on_half_space(contact):
-        plane = Plane(contact.axes[0], contact.offset)
+        plane, a = Plane(contact.axes[0], contact.offset), Placed(solid, pose[0, :3], pose[0, 3:])
         plane_unit(a, plane, system.hulls, reach, work.pair, work.touches)
     else:
-        other = system.solids[contact.other_solid]
-        if contact.static == 1:
-            list_on_solid(system, contact, contact.other_solid, reach, work)
-            return work.pair.state[0].total
-        body = state[contact.other]
-        place(other, body.x, body.Q, pose[1, :3], pose[1, 3:])
-        b = Placed(other, pose[1, :3], pose[1, 3:])
-        touch_unit(a, b, system.hulls, reach, work.pair, work.touches)
+        list_on_solid(system, contact, contact.other_solid, state, reach, work)
     return work.pair.state[0].total
 
 
@@ -76,9 +70,7 @@ def tangents(n0, n1, n2, axes):
     t0, t1, t2 = s * t0, s * t1, s * t2
     axes[0, 0], axes[0, 1], axes[0, 2] = n0, n1, n2
     axes[1, 0], axes[1, 1], axes[1, 2] = t0, t1, t2
-    axes[2, 0] = n1 * t2 - n2 * t1
-    axes[2, 1] = n2 * t0 - n0 * t2
-    axes[2, 2] = n0 * t1 - n1 * t0
+    axes[2, 0], axes[2, 1], axes[2, 2] = cross(n0, n1, n2, t0, t1, t2)
 
 
 @kernel
@@ -109,17 +101,17 @@ def write_touch(contact, touch, state, point):
 def own_point(contact, touch, state, p):
     """Write the position of a found point on the first body, in axes of that body."""
     q, x, s = state[contact.body].Q, state[contact.body].x, touch.on_a
-    r = rotate_back(q[0], q[1], q[2], q[3], s[0] - x[0], s[1] - x[1], s[2] - x[2])
+    r = rotate_back(q, (s[0] - x[0], s[1] - x[1], s[2] - x[2]))
     p[0], p[1], p[2] = r
 
 
 @kernel
-def which_touch(system, contact, count, feature, p, state, work):
+def which_touch(system, contact, feature, p, state, work):
     """Return the point that has the feature; if none has it any more, the one nearest to the core point p."""
     q, x = state[contact.body].Q, state[contact.body].x
-    r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    r = rotate(q, p)
     best, chosen = math.inf, 0
-    for i in range(count):
+    for i in range(work.pair.state[0].total):
         touch = work.touches[i]
         if same_point(system, contact, touch, feature, p, state):
             return i
@@ -131,61 +123,44 @@ def which_touch(system, contact, count, feature, p, state, work):
     return chosen
 
 
-@kernel
-def touch_of_active(system, contact, feature, p, state, work):
+@unit
+def touch_of_active(system, contact, feature, p, state, work) -> int:
     """Write the points of a contact, and return the one that has a feature, or that replaces it.
 
     A point of a level surface that has passed its rim is replaced by one of the solid that it has left.
     """
-    count = list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
-    i = which_touch(system, contact, count, feature, p, state, work)
+    list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+    i = which_touch(system, contact, feature, p, state, work)
     if contact.surface == 0:
         return i
-    solid = solid_left(system, contact, work.touches[i])
+    solid = solid_left(system, contact, work.touches[i].on_b)
     if solid < 0:
         return i
-    list_on_solid(system, contact, solid, ACTIVE_REACH * smaller(contact), work)
-    return which_touch(system, contact, work.pair.state[0].total, feature, p, state, work)
+    list_on_solid(system, contact, solid, state, ACTIVE_REACH * smaller(contact), work)
+    return which_touch(system, contact, feature, p, state, work)
 
 
 @kernel
-def list_on_solid(system, contact, solid, reach, work):
-    """Write the points of a body, whose pose is in work.solid_pose, and a static solid into work.touches."""
-    pose, other = work.solid_pose, system.solids[solid]
-    for k in range(4):
-        pose[1, 3 + k] = other.Q[k]
-        if k < 3:
-            pose[1, k] = other.x[k]
+def list_on_solid(system, contact, other_solid, state, reach, work):
+    """Write the points of a body, whose pose is in work.solid_pose, and another solid into work.touches."""
+    pose, other = work.solid_pose, system.solids[other_solid]
+    x, q = pose_of(other, contact.other, state)
+    pose[1, 0], pose[1, 1], pose[1, 2] = x
+    pose[1, 3], pose[1, 4], pose[1, 5], pose[1, 6] = q
     a = Placed(system.solids[contact.solid], pose[0, :3], pose[0, 3:])
     b = Placed(other, pose[1, :3], pose[1, 3:])
     touch_unit(a, b, system.hulls, reach, work.pair, work.touches)
 
 
-@unit
-def place_pair(system, contact, feature, p, state, point, work):
-    """Write the found point that has the feature, or the point that replaces it."""
-    i = touch_of_active(system, contact, feature, p, state, work)
-    write_touch(contact, work.touches[i], state, point)
-
-
 @kernel
 def touch_rate(contact, touch, state):
     """Return the rate of the gap at a found point."""
-    n = touch.normal
-    ux, uy, uz = slip_velocity(contact, touch, state)
-    return n[0] * ux + n[1] * uy + n[2] * uz
-
-
-@kernel
-def slip_velocity(contact, touch, state):
-    """Return the velocity of the first body relative to the other at a point, in the world."""
-    x, p = state[contact.body].x, touch.on_a
-    ax, ay, az = point_velocity(state, contact.body, p[0] - x[0], p[1] - x[1], p[2] - x[2])
-    if contact.other < 0:
-        return ax, ay, az
-    x, p = state[contact.other].x, touch.on_b
-    bx, by, bz = point_velocity(state, contact.other, p[0] - x[0], p[1] - x[1], p[2] - x[2])
-    return ax - bx, ay - by, az - bz
+    n, x, p = touch.normal, state[contact.body].x, touch.on_a
+    u = point_velocity(state, contact.body, p[0] - x[0], p[1] - x[1], p[2] - x[2])
+    if contact.other >= 0:
+        x, p = state[contact.other].x, touch.on_b
+        u = minus(u, point_velocity(state, contact.other, p[0] - x[0], p[1] - x[1], p[2] - x[2]))
+    return dot(n, u)
 
 
 @unit

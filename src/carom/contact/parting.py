@@ -27,8 +27,8 @@ from carom._compiled.decorators import kernel
 from carom.collision.farthest import VERTICES, farthest
 from carom.collision.features import NOBODY, OF_A
 from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, SEGMENT
-from carom.contact.place_of_other import centre_of_other, on_half_space
-from carom.geometry.rotation import cross, multiply, rotate, rotate_back
+from carom.contact.place_of_other import centre_of_other, on_half_space, pose_of
+from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.kinematics.flight import core_extent
 
 MOST_HALVINGS = 30  # largest number of halvings of the step, until the bound is above zero
@@ -40,7 +40,7 @@ def height(solid, hulls, x, y, z):
     """Return the support function of a core: the greatest d.p over its points, d in axes of its body."""
     s, o, h, kind = solid.Q, solid.x, solid.half, solid.kind
     base = o[0] * x + o[1] * y + o[2] * z
-    x, y, z = rotate_back(s[0], s[1], s[2], s[3], x, y, z)
+    x, y, z = rotate_back(s, (x, y, z))
     if kind == SEGMENT:
         return base + h[2] * abs(z)
     if kind == BOX:
@@ -57,68 +57,67 @@ def height(solid, hulls, x, y, z):
 
 @kernel
 def frame_of(contact, side, n, state):
-    """Return k = n x w and n.v - x.k of the body (side 0) or the other one (1); zero of a plane at rest (2)."""
+    """Return n, and k = n x w and n.v - x.k of the body (side 0) or the other one (1): 0 at rest (2)."""
     b = contact.body if side == 0 else contact.other
     if side == 2 or b < 0:
-        return 0.0, 0.0, 0.0, 0.0
+        return n, (0.0, 0.0, 0.0), 0.0
     x, v, w = state[b].x, state[b].v, state[b].w
     k = cross(n[0], n[1], n[2], w[0], w[1], w[2])
     rate = n[0] * v[0] + n[1] * v[1] + n[2] * v[2]
-    return k[0], k[1], k[2], rate - x[0] * k[0] - x[1] * k[1] - x[2] * k[2]
+    return n, k, rate - x[0] * k[0] - x[1] * k[1] - x[2] * k[2]
 
 
 @kernel
-def seen(n, frame, body):
+def seen(frame, body):
     """Return n and n x w - k in body axes, and height and rate along n of the mass centre in a frame."""
-    q, w, x, v = body.Q, body.w, body.x, body.v
-    mx, my, mz = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
+    q, w, x, v, (n, k, rate) = body.Q, body.w, body.x, body.v, frame
+    mx, my, mz = rotate_back(q, n)
     cx, cy, cz = cross(n[0], n[1], n[2], w[0], w[1], w[2])
-    kx, ky, kz, rate = frame
-    cx, cy, cz = rotate_back(q[0], q[1], q[2], q[3], cx - kx, cy - ky, cz - kz)
+    cx, cy, cz = rotate_back(q, (cx - k[0], cy - k[1], cz - k[2]))
     z = n[0] * x[0] + n[1] * x[1] + n[2] * x[2]
-    rate = n[0] * v[0] + n[1] * v[1] + n[2] * v[2] - rate - x[0] * kx - x[1] * ky - x[2] * kz
+    rate = n[0] * v[0] + n[1] * v[1] + n[2] * v[2] - rate - x[0] * k[0] - x[1] * k[1] - x[2] * k[2]
     return mx, my, mz, cx, cy, cz, z, rate
 
 
 @kernel
-def least_gap(system, contact, n, frame, state, t, a):
+def least_gap(system, contact, frame, state, t, a):
     """Return F(t), negative t for the past; a bounds the relative acceleration of any two points."""
-    m = seen(n, frame, state[contact.body])
+    m = seen(frame, state[contact.body])
     hulls, solid = system.hulls, system.solids[contact.solid]
     gap = m[6] + t * m[7] - contact.radius - 0.5 * a * t * t
     gap -= height(solid, hulls, -m[0] - t * m[3], -m[1] - t * m[4], -m[2] - t * m[5])
     if on_half_space(contact):
         return gap - contact.offset
-    solid, k = system.solids[contact.other_solid], frame
+    solid, (n, k, rate) = system.solids[contact.other_solid], frame
     if contact.static == 1:
         d = height(solid, hulls, n[0] - t * k[0], n[1] - t * k[1], n[2] - t * k[2])
-        return gap + t * k[3] - d
-    m = seen(n, frame, state[contact.other])
+        return gap + t * rate - d
+    m = seen(frame, state[contact.other])
     gap -= m[6] + t * m[7]
     return gap - height(solid, hulls, m[0] + t * m[3], m[1] + t * m[4], m[2] + t * m[5])
 
 
 @kernel
-def time_parted(system, contact, n, frame, sign, state, a, h):
-    """Return for how long, up to h, all points of two cores stay apart along n; sign -1: in the past.
+def time_parted(system, contact, frame, state, a, h):
+    """Return for how long, up to h, all points of two cores stay apart along n; h < 0: in the past.
 
     They may touch at the beginning, for instance after an impact: because F is concave, F > 0 at a time t is
     enough for all earlier times.
     """
-    g = least_gap(system, contact, n, frame, state, sign * h, a)
+    g = least_gap(system, contact, frame, state, h, a)
     if g >= 0.0:
-        return h
+        return abs(h)
     t, end = h, h
     for _ in range(MOST_HALVINGS):
         t *= 0.5
-        f = least_gap(system, contact, n, frame, state, sign * t, a)
+        f = least_gap(system, contact, frame, state, t, a)
         if f > 0.0:
             for _ in range(CHORDS):
                 t += (end - t) * f / (f - g)
-                f = least_gap(system, contact, n, frame, state, sign * t, a)
+                f = least_gap(system, contact, frame, state, t, a)
                 if not f > 0.0:  # the root itself, to round-off
                     break
-            return t
+            return abs(t)
         end, g = t, f
     return 0.0
 
@@ -137,7 +136,7 @@ def bound_in_frame(system, contact, side, bounds, state, h):
     r = core_extent(system.solids[contact.other_solid if side == 0 else contact.solid])
     if contact.static == 1:  # the table has its place in the world
         r = contact.other_extent
-    d = math.sqrt((x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2) + speed * h + r
+    d = math.sqrt((x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2) + speed * abs(h) + r
     centres, _, turn, spin, other_turn, other_spin = bounds
     if side == 1:
         turn, spin, other_turn, other_spin = other_turn, other_spin, turn, spin
@@ -145,49 +144,37 @@ def bound_in_frame(system, contact, side, bounds, state, h):
 
 
 @kernel
-def time_apart(system, contact, touch, sign, state, bounds, h):
-    """Return how long, up to h, two solids stay apart beside the plane of a point; sign -1: in the past.
+def time_apart(system, contact, plane, state, bounds, h):
+    """Return how long, up to h, two solids stay apart beside a plane; h < 0: in the past.
 
-    The plane rests, or moves with the body that owns its normal, whichever lasts longer. `bounds` are those of
-    `relative_bound`.
+    `plane` is its normal and the owner of this. It rests, or moves with its owner, whichever lasts longer.
+    `bounds` are those of `relative_bound`.
     """
-    n = (touch.normal[0], touch.normal[1], touch.normal[2])
-    return time_beside(system, contact, n, touch.owner, sign, state, bounds, h)
-
-
-@kernel
-def time_beside(system, contact, n, owner, sign, state, bounds, h):
-    """Return the same for a plane with the normal n of an owner."""
-    rests = frame_of(contact, 2, n, state)
-    time = time_parted(system, contact, n, rests, sign, state, bounds[1], h)
+    n, owner = plane
+    time = time_parted(system, contact, frame_of(contact, 2, n, state), state, bounds[1], h)
     for side in range(0 if on_half_space(contact) else 2 - contact.static):
-        if time < h and (owner == NOBODY or owner == OF_A + side):
-            frame = frame_of(contact, side, n, state)
+        if time < abs(h) and (owner == NOBODY or owner == OF_A + side):
             a = bound_in_frame(system, contact, side, bounds, state, h)
-            time = max(time, time_parted(system, contact, n, frame, sign, state, a, h))
+            frame = frame_of(contact, side, n, state)
+            time = max(time, time_parted(system, contact, frame, state, a, h))
     return time
 
 
 @kernel
-def pose_of(solid, b, state):
-    """Return the world position and attitude of a solid; those of a static one, b < 0, are in the table."""
-    p, o = solid.x, solid.Q
-    if b < 0:
-        return (p[0], p[1], p[2]), (o[0], o[1], o[2], o[3])
-    x, q = state[b].x, state[b].Q
-    r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
-    turned = multiply(q[0], q[1], q[2], q[3], o[0], o[1], o[2], o[3])
-    return (x[0] + r[0], x[1] + r[1], x[2] + r[2]), turned
+def plane_of(touch):
+    """Return the plane between the two points of a contact."""
+    n = touch.normal
+    return (n[0], n[1], n[2]), touch.owner
 
 
 @kernel
 def widest_face(system, contact, state):
-    """Return the normal, out of the other solid, of the face of a box beside which two solids have most room.
+    """Return the plane of the face of a box beside which two solids have most room: normal and owner.
 
-    And its owner, its number and the room, below 0 if no face separates them. Such a plane is known without a
+    And the number of the face, and the room, below 0 if no face separates them. Such a plane is known without a
     search for nearest points: a body in a ring of boxes is near all of them, and touches one or two.
     """
-    room, owner, face, n, rests = -math.inf, NOBODY, 0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
+    room, owner, face, n = -math.inf, NOBODY, 0, (0.0, 0.0, 0.0)
     own = pose_of(system.solids[contact.solid], contact.body, state)
     beside = pose_of(system.solids[contact.other_solid], contact.other, state)
     for side in range(2):
@@ -195,18 +182,18 @@ def widest_face(system, contact, state):
         if solid.kind != BOX:
             continue
         (x, q), (y, _) = (own, beside) if side == 0 else (beside, own)
-        d = rotate_back(q[0], q[1], q[2], q[3], y[0] - x[0], y[1] - x[1], y[2] - x[2])
+        d = rotate_back(q, (y[0] - x[0], y[1] - x[1], y[2] - x[2]))
         for k in range(3):
             if abs(d[k]) <= max(room, 0.0) + solid.half[k]:  # not even its centre has more
                 continue
             f = 1.0 if (d[k] > 0.0) == (side == 1) else -1.0
             e = (f if k == 0 else 0.0, f if k == 1 else 0.0, f if k == 2 else 0.0)
-            m = rotate(q[0], q[1], q[2], q[3], e[0], e[1], e[2])
-            gap = least_gap(system, contact, m, rests, state, 0.0, 0.0)
+            m = rotate(q, e)
+            gap = least_gap(system, contact, frame_of(contact, 2, m, state), state, 0.0, 0.0)
             if gap > room:
                 room, owner, n = gap, OF_A + side, m
                 face = k if f > 0.0 else 3 + k
-    return n, owner, face, room
+    return (n, owner), face, room
 
 
 @kernel
@@ -214,13 +201,12 @@ def beside_face(system, contact, state, near):
     """Return whether a face of a box shows that the gap of two solids is above `near`."""
     if on_half_space(contact) or contact.surface > 0:
         return False
-    _, _, _, room = widest_face(system, contact, state)
-    return room > near
+    return widest_face(system, contact, state)[2] > near
 
 
 @kernel
-def stays_beside_face(system, contact, start, end, smooth, tiny, bounds, h):
-    """Return whether faces of boxes show that two solids stay apart in a step.
+def stays_beside_face(system, data, contact, smooth, tiny, bounds):
+    """Return whether faces of boxes show that two solids stay apart in the trial step.
 
     If the motion is `smooth` and the face the same, the cubic with the gap and rate of both ends decides, to
     `tiny`: its control points are F(h/3), of the start and back from the end, with a = 0. Else the plane must
@@ -228,18 +214,19 @@ def stays_beside_face(system, contact, start, end, smooth, tiny, bounds, h):
     """
     if on_half_space(contact) or contact.surface > 0:
         return False
-    n, owner, face, room = widest_face(system, contact, start)
-    m, other, last, left = widest_face(system, contact, end)
+    start, end, h = data.state, data.work.trial, data.work.search[0].dt
+    plane, face, room = widest_face(system, contact, start)
+    other, last, left = widest_face(system, contact, end)
     if not min(room, left) >= -tiny:
         return False
-    if smooth and owner == other and face == last:
-        side, third = owner - OF_A, h / 3.0
-        moving = frame_of(contact, side, n, start)
-        if least_gap(system, contact, n, moving, start, third, 0.0) >= -tiny:
-            moving = frame_of(contact, side, m, end)
-            if least_gap(system, contact, m, moving, end, -third, 0.0) >= -tiny:
+    if smooth and plane[1] == other[1] and face == last:
+        side, third = plane[1] - OF_A, h / 3.0
+        frame = frame_of(contact, side, plane[0], start)
+        if least_gap(system, contact, frame, start, third, 0.0) >= -tiny:
+            frame = frame_of(contact, side, other[0], end)
+            if least_gap(system, contact, frame, end, -third, 0.0) >= -tiny:
                 return True
     if not min(room, left) > 0.0:
         return False
-    time = time_beside(system, contact, n, owner, 1.0, start, bounds, h)
-    return time >= h or time + time_beside(system, contact, m, other, -1.0, end, bounds, h) >= h
+    time = time_apart(system, contact, plane, start, bounds, h)
+    return time >= h or time + time_apart(system, contact, other, end, bounds, -h) >= h

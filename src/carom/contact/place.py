@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.contact.pair_point import drift, place_pair
+from carom.contact.pair_point import drift, touch_of_active, write_touch
 from carom.contact.stop import place_stop, stop_drift
 from carom.kinematics.contact_point import place
 from carom.model.arrays import STOP
 
 
 @kernel
-def place_any(system, contact, feature, p, state, point, work):
-    """Write the contact point of a feature: the core point p, a stop, or a point found by `carom.collision`."""
+def place_any(system, known, state, point, work):
+    """Write the contact point in a state of an active or a listed one, or the point that replaces it."""
+    contact, p = system.contacts[known.contact], known.point
     if contact.touches == 0:
         place(contact, p, state, point)
     elif contact.touches == STOP:
         place_stop(system, contact, state, point)
     else:
-        place_pair(system, contact, feature, p, state, point, work)
+        i = touch_of_active(system, contact, known.feature, p, state, work)
+        write_touch(contact, work.touches[i], state, point)
 
 
 @kernel

@@ -1,9 +1,9 @@
-"""The partner of a body in a contact: another body, a static body, or a half-space."""
+"""Both partners of a contact: a body, and another body, a static body, or a half-space."""
 
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.geometry.rotation import rotate
+from carom.geometry.rotation import multiply, rotate
 from carom.kinematics.wrench import point_velocity
 
 
@@ -11,6 +11,18 @@ from carom.kinematics.wrench import point_velocity
 def on_half_space(contact):
     """Return whether a body touches a half-space."""
     return contact.other < 0 and contact.static == 0
+
+
+@kernel
+def pose_of(solid, b, state):
+    """Return the world position and attitude of a solid; those of a static one, b < 0, are in the table."""
+    p, o = solid.x, solid.Q
+    if b < 0:
+        return (p[0], p[1], p[2]), (o[0], o[1], o[2], o[3])
+    x, q = state[b].x, state[b].Q
+    r = rotate(q, p)
+    turned = multiply(q, o)
+    return (x[0] + r[0], x[1] + r[1], x[2] + r[2]), turned
 
 
 @kernel
@@ -27,19 +39,20 @@ def centre_of_other(contact, state):
 def centre_of_piece(b, solid, state):
     """Return position and velocity of the centre of a piece of a body."""
     x, q, p = state[b].x, state[b].Q, solid.x
-    r0, r1, r2 = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    r0, r1, r2 = rotate(q, p)
     v0, v1, v2 = point_velocity(state, b, r0, r1, r2)
     return x[0] + r0, x[1] + r1, x[2] + r2, v0, v1, v2
 
 
 @kernel
-def centres_of_balls(system, contact, state, pieces):
-    """Return positions and velocities of the centres of balls around both bodies, or around two `pieces`."""
-    x, v = state[contact.body].x, state[contact.body].v
-    if not pieces:
-        return (x[0], x[1], x[2], v[0], v[1], v[2]), centre_of_other(contact, state)
+def balls(system, contact, state, pieces):
+    """Return the balls around both bodies, or two `pieces`: centres, with velocities, and sum of radii."""
     p, q = system.solids[contact.solid], system.solids[contact.other_solid]
+    if not pieces:
+        x, v, other = state[contact.body].x, state[contact.body].v, centre_of_other(contact, state)
+        radii = contact.extent + contact.other_extent
+        return (x[0], x[1], x[2], v[0], v[1], v[2]), other, radii
     y = (q.x[0], q.x[1], q.x[2], 0.0, 0.0, 0.0)
     if contact.static == 0:
         y = centre_of_piece(contact.other, q, state)
-    return centre_of_piece(contact.body, p, state), y
+    return centre_of_piece(contact.body, p, state), y, p.extent + q.extent

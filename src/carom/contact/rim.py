@@ -14,7 +14,7 @@ from carom._compiled.decorators import kernel
 from carom.collision.layout import CYLINDER
 from carom.contact.place_of_other import on_half_space
 from carom.contact.thresholds import FLAT_RIM, RIM_DISTANCE
-from carom.geometry.rotation import rotate, rotate_back
+from carom.geometry.rotation import norm, rotate, rotate_back
 
 
 @kernel
@@ -23,8 +23,8 @@ def in_solid(solid, contact, side, state, n):
     s, a = solid.Q, (n[0], n[1], n[2])
     if side == 0 or contact.static == 0:
         q = state[contact.body if side == 0 else contact.other].Q
-        a = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
-    return rotate_back(s[0], s[1], s[2], s[3], a[0], a[1], a[2])
+        a = rotate_back(q, n)
+    return rotate_back(s, a)
 
 
 @kernel
@@ -49,7 +49,7 @@ def way_round(system, contact, n, arm, p, state):
     if radius == 0.0:
         return 0.0
     q = state[contact.body].Q
-    r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    r = rotate(q, p)
     d = (arm[0] - r[0]) ** 2 + (arm[1] - r[1]) ** 2 + (arm[2] - r[2]) ** 2
     return d / (radius * radius)
 
@@ -69,18 +69,27 @@ def same_point(system, contact, touch, feature, p, state):
 
 
 @kernel
-def longest_way(system, contact, c, count, active, state, work):
-    """Return the largest `way_round` between the active points of a contact and their present positions."""
-    longest = 0.0
-    for j in range(active.count[0]):
-        active_point = active.points[j]
-        if active_point.contact == c:
-            for i in range(count):
-                touch = work.touches[i]
-                if touch.feature == active_point.feature:
-                    longest = max(
-                        longest, way_to(system, contact, touch, active_point.point, state)
-                    )
+def place_of(system, active, c, touch, state):
+    """Return the place of a found point of contact c among the active points, -1 if it is not active."""
+    for i in range(active.count[0]):
+        one = active.points[i]
+        if one.contact == c:
+            if same_point(system, system.contacts[c], touch, one.feature, one.point, state):
+                return i
+    return -1
+
+
+@kernel
+def longest_way(system, data, c):
+    """Return the largest `way_round` of a trial step from the active points of a contact to those found."""
+    longest, work = 0.0, data.work
+    for j in range(data.active.count[0]):
+        one = data.active.points[j]
+        for i in range(work.pair.state[0].total if one.contact == c else 0):
+            touch = work.touches[i]
+            if touch.feature == one.feature:
+                way = way_to(system, system.contacts[c], touch, one.point, work.trial)
+                longest = max(longest, way)
     return longest
 
 
@@ -102,9 +111,7 @@ def closed_rim(system, contact, n, state, time):
 @kernel
 def most_of_rim(contact, state, time):
     """Return an upper bound of `closed_rim`, with the size of the body in the place of its radius."""
-    w = state[contact.body].w
-    spin = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    spin = norm(state[contact.body].w)
     if contact.other >= 0:
-        w = state[contact.other].w
-        spin += math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+        spin += norm(state[contact.other].w)
     return 2.0 * max(contact.extent, contact.other_extent) * time * spin

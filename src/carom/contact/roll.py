@@ -15,7 +15,9 @@ from carom.collision.faces import LOWEST
 from carom.collision.features import vertex_a
 from carom.collision.layout import CYLINDER
 from carom.collision.support import change_of_support
-from carom.geometry.rotation import cross, rotate, rotate_back
+from carom.contact.rim import in_solid
+from carom.geometry.rotation import cross, rotate
+from carom.kinematics.contact_point import in_axes
 
 
 @kernel
@@ -31,21 +33,14 @@ def roll_on_plane(system, contact, feature, point, state):
     """Return (d/dt G) v of a point of a curved solid on a half-space, contact axes."""
     solid, body, E = system.solids[contact.solid], state[contact.body], point.axes
     q, s, w, r = body.Q, solid.Q, body.w, point.arm_a
-    n = rotate_back(q[0], q[1], q[2], q[3], E[0, 0], E[0, 1], E[0, 2])
-    u = rotate_back(s[0], s[1], s[2], s[3], n[0], n[1], n[2])
-    W = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
-    W = rotate_back(s[0], s[1], s[2], s[3], W[0], W[1], W[2])
+    u, W = in_solid(solid, contact, 0, state, E[0]), in_solid(solid, contact, 0, state, w)
     p = way_of_lowest(solid, feature, u, W)
-    p = rotate(s[0], s[1], s[2], s[3], p[0], p[1], p[2])
-    p = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    p = rotate(s, p)
+    p = rotate(q, p)
     # the ball that enlarges a core does not turn
     c = cross(
         w[0], w[1], w[2],
         r[0] + solid.radius * E[0, 0], r[1] + solid.radius * E[0, 1], r[2] + solid.radius * E[0, 2],
     )  # fmt: skip
     a = cross(w[0], w[1], w[2], c[0] + p[0], c[1] + p[1], c[2] + p[2])
-    return (
-        E[0, 0] * a[0] + E[0, 1] * a[1] + E[0, 2] * a[2],
-        E[1, 0] * a[0] + E[1, 1] * a[1] + E[1, 2] * a[2],
-        E[2, 0] * a[0] + E[2, 1] * a[1] + E[2, 2] * a[2],
-    )
+    return in_axes(point, a[0], a[1], a[2])

@@ -65,31 +65,33 @@ def is_active(active, c):
 
 
 @kernel
-def check_stop(system, controls, active, contact, c, now, work):
+def check_stop(model, data, c):
     """Return the action that a closed stop asks for."""
-    z, rate = stop_gap(system, contact, now, work)
-    still = slow(contact, now)
-    if z > controls.tie * contact.extent or rate > still:
+    contact = model.system.contacts[c]
+    z, rate = stop_gap(model.system, contact, data.state, data.work)
+    still = slow(contact, data.state)
+    if z > model.controls.tie * contact.extent or rate > still:
         return NOTHING
     if rate < -still:
         return STRIKE
-    return NOTHING if is_active(active, c) else PERSIST
+    return NOTHING if is_active(data.active, c) else PERSIST
 
 
 @kernel
-def passage_stop(system, controls, active, c, start, h, work):
+def passage_stop(model, data, c):
     """Return CLEAR, BELOW or UNSURE, and a time before any contact, from the cubic to the trial state."""
-    contact, end, leaving = system.contacts[c], work.trial, active.contact_states[c].leaving
-    if is_active(active, c):
+    contact, work, h = model.system.contacts[c], data.work, data.work.search[0].dt
+    if is_active(data.active, c):
         return CLEAR, h
-    z0, rate0 = stop_gap(system, contact, start, work)
-    z1, rate1 = stop_gap(system, contact, end, work)
-    tiny = max(controls.gap * contact.extent, round_off(contact, end))
+    z0, rate0 = stop_gap(model.system, contact, data.state, work)
+    z1, rate1 = stop_gap(model.system, contact, work.trial, work)
+    tiny = max(model.controls.gap * contact.extent, round_off(contact, work.trial))
     if not (z1 >= -tiny):
         slightly = z1 >= -RESOLUTION * contact.extent
         if z0 <= tiny and (slightly or (z0 < -tiny and z1 >= z0)):
             return CLEAR, 0.0
         return BELOW, 2.0 * safe_time(z0, rate0, z1, rate1, h, tiny)
+    leaving = data.active.contact_states[c].leaving
     if leaving == 0 and not cubic_clears(z0, rate0, z1, rate1, h, tiny):
         return UNSURE, 0.0
     return CLEAR, h

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.geometry.rotation import cross, log, multiply, rotate, rotate_back
+from carom.geometry.rotation import conjugate, cross, log, multiply, rotate, rotate_back
 from carom.kinematics.wrench import add_force, point, point_velocity
 
 
@@ -23,8 +23,7 @@ def attitude(state, b, frame):
     """Return the quaternion from the axes of a mount, given in those of body b (-1: ground), to the world."""
     if b < 0:
         return frame[0], frame[1], frame[2], frame[3]
-    q = state[b].Q
-    return multiply(q[0], q[1], q[2], q[3], frame[0], frame[1], frame[2], frame[3])
+    return multiply(state[b].Q, frame)
 
 
 @kernel
@@ -35,9 +34,8 @@ def displacement(bushing, state):
     b = attitude(state, c, bushing.child_frame)
     _, _, _, px, py, pz = point(state, p, bushing.parent_anchor)
     _, _, _, qx, qy, qz = point(state, c, bushing.child_anchor)
-    d = rotate_back(a[0], a[1], a[2], a[3], qx - px, qy - py, qz - pz)
-    r = multiply(a[0], -a[1], -a[2], -a[3], b[0], b[1], b[2], b[3])
-    t = log(r[0], r[1], r[2], r[3])
+    d = rotate_back(a, (qx - px, qy - py, qz - pz))
+    t = log(multiply(conjugate(a), b))
     return d[0], d[1], d[2], t[0], t[1], t[2]
 
 
@@ -71,16 +69,14 @@ def add_bushing(bushing, state, work):
     wx, wy, wz = state[c].w[0], state[c].w[1], state[c].w[2]
     if p >= 0:
         wx, wy, wz = wx - state[p].w[0], wy - state[p].w[1], wz - state[p].w[2]
-    u = rotate_back(a[0], a[1], a[2], a[3], ux - vx, uy - vy, uz - vz)
-    w = rotate_back(a[0], a[1], a[2], a[3], wx, wy, wz)
+    u = rotate_back(a, (ux - vx, uy - vy, uz - vz))
+    w = rotate_back(a, (wx, wy, wz))
     K, C, D = bushing.stiffness, bushing.damping, bushing.turn_damping
     m = turn_moment(bushing, t0, t1, t2)
-    f0, f1, f2 = K[0] * d0 + C[0] * u[0], K[1] * d1 + C[1] * u[1], K[2] * d2 + C[2] * u[2]
-    m0, m1, m2 = m[0] + D[0] * w[0], m[1] + D[1] * w[1], m[2] + D[2] * w[2]
-    fx, fy, fz = rotate(a[0], a[1], a[2], a[3], f0, f1, f2)
-    mx, my, mz = rotate(a[0], a[1], a[2], a[3], m0, m1, m2)
-    add_force(work, c, rx, ry, rz, -fx, -fy, -fz)
-    add_force(work, p, sx, sy, sz, fx, fy, fz)
+    f = rotate(a, (K[0] * d0 + C[0] * u[0], K[1] * d1 + C[1] * u[1], K[2] * d2 + C[2] * u[2]))
+    mx, my, mz = rotate(a, (m[0] + D[0] * w[0], m[1] + D[1] * w[1], m[2] + D[2] * w[2]))
+    add_force(work, c, (rx, ry, rz), (-f[0], -f[1], -f[2]))
+    add_force(work, p, (sx, sy, sz), f)
     add_torque(work, c, -mx, -my, -mz)
     add_torque(work, p, mx, my, mz)
     power = 0.0

@@ -19,17 +19,17 @@ def alone(system, point):
 
 
 @kernel
-def spread(system, point, state, ln, l1, l2, work):
-    """Write motion = P G^T (ln, l1, l2) of all bodies, or of those at the point if they have no joints."""
+def spread(system, point, state, p, work):
+    """Write motion = P G^T p of all bodies, or of those at the point if they have no joints."""
     if not alone(system, point):
         clear_wrenches(work)
-        add_impulse(point, ln, l1, l2, work)
+        add_impulse(point, p, work)
         solve(system, state, False, work)
         return
     clear_wrench(work.body[point.a])
     if point.b >= 0:
         clear_wrench(work.body[point.b])
-    add_impulse(point, ln, l1, l2, work)
+    add_impulse(point, p, work)
     free_body(system.bodies[point.a], state[point.a].Q, work.body[point.a])
     if point.b >= 0:
         free_body(system.bodies[point.b], state[point.b].Q, work.body[point.b])
@@ -44,9 +44,9 @@ def acts(turns, r):
 
 
 @kernel
-def add_impulse(point, ln, l1, l2, work):
-    """Add G^T (ln, l1, l2) to the wrenches."""
-    E, r, s = point.axes, point.arm_a, point.arm_b
+def add_impulse(point, p, work):
+    """Add G^T p of an impulse p = (p_n, p_t1, p_t2) to the wrenches."""
+    E, ln, l1, l2 = point.axes, p[0], p[1], p[2]
     if point.turns == 3:
         for k in range(3):
             torque = point.length * ln * E[0, k]
@@ -70,8 +70,8 @@ def add_impulse(point, ln, l1, l2, work):
     fx = E[0, 0] * ln + E[1, 0] * l1 + E[2, 0] * l2
     fy = E[0, 1] * ln + E[1, 1] * l1 + E[2, 1] * l2
     fz = E[0, 2] * ln + E[1, 2] * l1 + E[2, 2] * l2
-    add_force(work, point.a, r[0], r[1], r[2], fx, fy, fz)
-    add_force(work, point.b, s[0], s[1], s[2], -fx, -fy, -fz)
+    add_force(work, point.a, point.arm_a, (fx, fy, fz))
+    add_force(work, point.b, point.arm_b, (-fx, -fy, -fz))
 
 
 @kernel

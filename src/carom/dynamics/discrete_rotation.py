@@ -21,7 +21,7 @@ from carom.geometry.rotation import cross, multiply, normalize, rotate_back
 def turn_by_momentum(body, q, h, momenta, out):
     """Write the attitude after a time h; momenta[3:6] is l. Returns False if it turns too far."""
     J = body.inertia
-    m = rotate_back(q[0], q[1], q[2], q[3], momenta[3], momenta[4], momenta[5])
+    m = rotate_back(q, momenta[3:])
     g = (0.5 * h * m[0], 0.5 * h * m[1], 0.5 * h * m[2])
     b = (g[0] / J[0], g[1] / J[1], g[2] / J[2])
     last, done = math.inf, False
@@ -40,8 +40,7 @@ def turn_by_momentum(body, q, h, momenta, out):
     if not done:
         return False
     a = math.sqrt(1.0 - (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]))
-    t = multiply(q[0], q[1], q[2], q[3], a, b[0], b[1], b[2])
-    out[0], out[1], out[2], out[3] = normalize(t[0], t[1], t[2], t[3])
+    out[0], out[1], out[2], out[3] = normalize(multiply(q, (a, b[0], b[1], b[2])))
     return True
 
 

@@ -13,7 +13,7 @@ from carom.geometry.rotation import norm, rotate, rotate_back
 def kinetic_of(body, state):
     """Return the kinetic energy of a body [J]."""
     q, v, w, J = state.Q, state.v, state.w, body.inertia
-    W = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
+    W = rotate_back(q, w)
     total = body.mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
     return 0.5 * (total + J[0] * W[0] * W[0] + J[1] * W[1] * W[1] + J[2] * W[2] * W[2])
 
@@ -28,11 +28,10 @@ def kinetic_energy(system, state):
 
 
 @kernel
-def spin_momentum(body, q, w0, w1, w2):
+def spin_momentum(body, q, w):
     """Return the angular momentum J w of a body about its centre, world axes."""
-    J = body.inertia
-    a = rotate_back(q[0], q[1], q[2], q[3], w0, w1, w2)
-    return rotate(q[0], q[1], q[2], q[3], J[0] * a[0], J[1] * a[1], J[2] * a[2])
+    J, W = body.inertia, rotate_back(q, w)
+    return rotate(q, (J[0] * W[0], J[1] * W[1], J[2] * W[2]))
 
 
 @kernel

@@ -29,13 +29,11 @@ MOST_PARTS = 100  # of a step, each with at most `STAGE_TURN` a stage
 
 
 @inlined
-def explicit_step(method, system, active, start, h, end, work):
-    """Write the state a time h after `start` into `end`; return the work of loads, and a status."""
+def explicit_step(model, data, method, h):
+    """Write the state a time h later into `work.trial`; return the work of loads, and a status."""
     if method.E.shape[0] > 0:
-        forget_misses(work)
-    if not fly(system, active, start, h, end, work):
-        return 0.0, 0
-    return constrained(method, system, active, start, h, end, work)
+        forget_misses(data.work)
+    return constrained(model, data, method, h) if fly(model, data, h) else (0.0, 0)
 
 
 @inlined
@@ -48,38 +46,39 @@ def any_held(active):
 
 
 @inlined
-def constrained(method, system, active, start, h, end, work):
+def constrained(model, data, method, h):
     """Step the bodies that are joined, loaded or in contact; return the same as `explicit_step`."""
-    whole_step(method, system, active, start, h, end, work)
-    result = work.result[0]
+    whole_step(model, data, method, h)
+    result = data.work.result[0]
     return result.applied, result.code
 
 
 @unit
-def whole_step(method, system, active, start, h, end, work):
+def whole_step(model, data, method, h):
     """Take a step at once, or in parts in which no body turns far.
 
     The length of a part depends only on its start, so that the end is a continuous function of h.
     """
-    result = work.result[0]
-    begin, left, first = result.start, h, start
+    work, result = data.work, data.work.result[0]
+    begin, left, first = result.start, h, data.state
     stages, estimates = method.b.size, method.E.shape[0] > 0
     applied = 0.0
     forget_bounds(work)
     for part in range(MOST_PARTS):
         dt = left
         if not estimates and part < MOST_PARTS - 1:
-            dt = min(left, STAGE_TURN * stages / max(fastest_spin(system, first, work), SMALLEST))
+            spin = fastest_spin(model.system, first, work)
+            dt = min(left, STAGE_TURN * stages / max(spin, SMALLEST))
         result.begin = begin + (h - left)
-        with_care(method, system, active, first, dt, end, work)
+        with_care(model, data, method, first, dt)
         applied += result.applied
         left -= dt
         if not (left > 0.0 and result.code == 0):
             break
         result.parts += 1
         first = work.part
-        for b in range(start.shape[0]):
-            copy_state(end[b], first[b])
+        for b in range(first.shape[0]):
+            copy_state(work.trial[b], first[b])
     result.applied = applied
 
 
@@ -95,37 +94,37 @@ def fastest_spin(system, state, work):
 
 
 @kernel
-def with_care(tableau, system, active, start, h, end, work):
+def with_care(model, data, method, start, h):
     """Take a step; take it again with care if a stage was near a singular position (`singular_positions`)."""
-    result = work.result[0]
+    work = data.work
     for care in (False, True):
-        applied, code, least, most = constrained_step(
-            tableau, system, active, start, care, h, end, work
-        )
-        if not is_singular(system, least, most):
+        applied, code, least, most = constrained_step(model, data, method, start, care, h)
+        if not is_singular(model.system, least, most):
             break
         if not care:
             forget_misses(work)  # the first attempt does not count
-    result.applied, result.code = applied, code
+    work.result[0].applied, work.result[0].code = applied, code
 
 
 @inlined
-def fly(system, active, start, h, end, work):
+def fly(model, data, h):
     """Move the bodies in free flight, keep those at rest; return whether joined or loaded bodies remain.
 
     Those in persistent contact are left to `carom.persistent.contact_step`, with all joined and loaded bodies
     if one of these is among them, or if joints have dry friction.
     """
-    mark_active(active, work)
+    system, start, work = model.system, data.state, data.work
+    mark_active(data.active, work)
     pending, held = False, rubs(system)
     for b in range(system.bodies.shape[0]):
         status = work.body[b].status
         if status == RESTS:
-            copy_state(start[b], end[b])
+            copy_state(start[b], work.trial[b])
         elif system.bodies[b].ballistic == 0:
             pending, held = True, held or status == HELD
         elif status == FREE:
-            free_flight(system.bodies[b], system.gravity, h, start[b], end[b], work.body[b])
+            body, end = system.bodies[b], work.trial[b]
+            free_flight(body, system.gravity, h, start[b], end, work.body[b])
     work.result[0].held = 1 if held else 0
     return pending and not held
 
@@ -159,22 +158,23 @@ def mark_active(active, work):
 
 
 @kernel
-def constrained_step(tableau, system, active, start, care, h, end, work):
-    """Step the bodies that are joined, loaded or in contact from `result.begin`; the others have reached `end`.
+def constrained_step(model, data, method, start, care, h):
+    """Step the bodies that are joined, loaded or in contact from `result.begin`; others are in `work.trial`.
 
     With `care` the stages return to the joints first, and `pass_round` treats those in singular positions. A
     last stage without weight is at the end of the step (`known_end`). Return the work of loads, a status,
     and the least and the greatest number of rows that stages left out, or nearly left out.
     """
-    A, weight, E, t0 = tableau.A, tableau.b, tableau.E, work.result[0].begin
-    stages, last, stage = weight.size, stages_within(tableau), work.stage
+    system, work, stage = model.system, data.work, data.work.stage
+    A, weight, E, t0 = method.A, method.b, method.E, work.result[0].begin
+    stages, last = weight.size, stages_within(method)
     applied, least, most = 0.0, EVERY_ROW, 0
-    keeps = last < stages and not care and of_state_alone(system, active)
+    keeps = last < stages and not care and of_state_alone(system, data.active)
     for s in range(last + 1):
-        combine(weight if s == last else A[s], s, h, start, work.stages, stage)
-        work.result[0].time = t0 + h if s == last else t0 + h * node(A[s], s)
+        combine(weight[:last] if s == last else A[s, :s], h, start, work.stages, stage)
+        work.result[0].time = t0 + h if s == last else t0 + h * node(A[s, :s])
         if s == last:
-            if not return_to_joints(system, stage, end, work):
+            if not return_to_joints(system, stage, work):
                 return applied, CONSTRAINTS_LOST, least, most
             if s == stages:
                 break
@@ -189,7 +189,7 @@ def constrained_step(tableau, system, active, start, care, h, end, work):
         dropped = dropped_rows(system, SINGULARITY)
         least, most = min(least, dropped), max(most, dropped)
         if care:
-            pass_round(system, stage, end, work, work.stages[s])
+            pass_round(system, work, work.stages[s])
         applied += h * weight[s] * work.result[0].power
     if keeps:
         keep_end(stage, work.stages[last], work)
@@ -199,7 +199,7 @@ def constrained_step(tableau, system, active, start, care, h, end, work):
         note_misses(system, E, h, work)
     for b in range(stage.shape[0]):
         if steps(system, b, work):
-            copy_state(stage[b], end[b])
+            copy_state(stage[b], work.trial[b])
     return applied, 0, least, most
 
 
@@ -211,14 +211,14 @@ def stages_within(method):
 
 
 @kernel
-def return_to_joints(system, state, end, work):
-    """Bring the end of a step to the joints and surfaces, beside bodies that have reached theirs in `end`.
+def return_to_joints(system, state, work):
+    """Bring the end of a step to the joints and surfaces, beside the ends of other bodies in `work.trial`.
 
     Return whether the joints could be closed.
     """
     for b in range(state.shape[0]):
         if not steps(system, b, work):
-            copy_state(end[b], state[b])
+            copy_state(work.trial[b], state[b])
     if not (project_position(system, state, True, 1e-14, work) <= RESOLUTION):
         return False
     project_velocity(system, state, False, work)
@@ -231,42 +231,41 @@ def note_velocity(state, rates):
     speed, turn, v, w, Q = rates.speed, rates.turn, state.v, state.w, state.Q
     for k in range(3):
         speed[k], speed[3 + k] = v[k], w[k]
-    d = multiply(0.0, 0.5 * w[0], 0.5 * w[1], 0.5 * w[2], Q[0], Q[1], Q[2], Q[3])
-    turn[0], turn[1], turn[2], turn[3] = d
+    turn[0], turn[1], turn[2], turn[3] = multiply((0.0, 0.5 * w[0], 0.5 * w[1], 0.5 * w[2]), Q)
 
 
 @kernel
-def node(weights, count):
-    """Return the time of a stage within the step, from 0 to 1."""
+def node(weights):
+    """Return the time of a stage within the step, from 0 to 1, from its weights of the stages before."""
     total = 0.0
-    for r in range(count):
+    for r in range(weights.size):
         total += weights[r]
     return total
 
 
 @kernel
-def combine(weight, count, h, start, stages, out):
-    """Write start + h sum of weight[r] * derivative of stage r, r < count."""
+def combine(weights, h, start, stages, out):
+    """Write start + h sum of weights[r] * derivative of stage r, for all bodies."""
     for b in range(start.shape[0]):
-        combine_body(weight, count, h, start[b], stages, b, out[b])
+        combine_body(weights, h, start[b], stages, b, out[b])
 
 
 @kernel
-def combine_body(weight, count, h, start, stages, b, out):
-    """Write the same for one body."""
+def combine_body(weights, h, start, stages, b, out):
+    """Write the same for body b."""
     x, v, w, Q = start.x, start.v, start.w, start.Q
     x0, x1, x2, v0, v1, v2, w0, w1, w2 = x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2]
     q0, q1, q2, q3 = Q[0], Q[1], Q[2], Q[3]
-    for r in range(count):
-        a = h * weight[r]
+    for r in range(weights.size):
+        a = h * weights[r]
         if a != 0.0:
             u, d, c = stages[r, b].speed, stages[r, b].turn, stages[r, b].rate
             x0, x1, x2 = x0 + a * u[0], x1 + a * u[1], x2 + a * u[2]
             q0, q1, q2, q3 = q0 + a * d[0], q1 + a * d[1], q2 + a * d[2], q3 + a * d[3]
             v0, v1, v2 = v0 + a * c[0], v1 + a * c[1], v2 + a * c[2]
             w0, w1, w2 = w0 + a * c[3], w1 + a * c[4], w2 + a * c[5]
-    if count > 0:
-        q0, q1, q2, q3 = normalize(q0, q1, q2, q3)
+    if weights.size > 0:
+        q0, q1, q2, q3 = normalize((q0, q1, q2, q3))
     x, v, w, Q = out.x, out.v, out.w, out.Q
     x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2] = x0, x1, x2, v0, v1, v2, w0, w1, w2
     Q[0], Q[1], Q[2], Q[3] = q0, q1, q2, q3
@@ -298,3 +297,17 @@ def bound_accelerations_of(work, b, stages):
         angular = max(angular, a[3] * a[3] + a[4] * a[4] + a[5] * a[5])
         spin = max(spin, u[3] * u[3] + u[4] * u[4] + u[5] * u[5])
     bound[0], bound[1], bound[2] = math.sqrt(linear), math.sqrt(angular), math.sqrt(spin)
+
+
+@kernel
+def bound_changes(start, end, h, bound):
+    """Raise the bounds of accelerations and of spin: means over a step, doubled."""
+    linear, angular, spin = 0.0, 0.0, 0.0
+    for k in range(3):
+        a, c = (end.v[k] - start.v[k]) / h, (end.w[k] - start.w[k]) / h
+        linear += a * a
+        angular += c * c
+        spin += max(end.w[k] ** 2, start.w[k] ** 2)
+    bound[0] = max(bound[0], 2.0 * math.sqrt(linear))
+    bound[1] = max(bound[1], 2.0 * math.sqrt(angular))
+    bound[2] = max(bound[2], math.sqrt(spin))

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from carom._compiled.decorators import entry, kernel
 from carom.dynamics.bushing import attitude
+from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.solve import solve
 from carom.dynamics.stiff import line_of
-from carom.geometry.rotation import rotate
+from carom.geometry.rotation import rotate, unit_vector
 from carom.kinematics.coordinate import push, rate, value
 from carom.kinematics.wrench import add_force, point
 
@@ -23,26 +24,17 @@ def unit_force(system, state, kind, number, axis, work):
     if kind == SPRINGS:
         one = system.springs[number]
         ex, ey, ez, _, ax, ay, az, bx, by, bz = line_of(one, state)
-        add_force(work, one.child, bx, by, bz, ex, ey, ez)
-        add_force(work, one.parent, ax, ay, az, -ex, -ey, -ez)
+        add_force(work, one.child, (bx, by, bz), (ex, ey, ez))
+        add_force(work, one.parent, (ax, ay, az), (-ex, -ey, -ez))
         return 0.0, 0.0
     one = system.bushings[number]
-    q = attitude(state, one.parent, one.parent_frame)
-    k = axis % 3
-    ex, ey, ez = rotate(
-        q[0],
-        q[1],
-        q[2],
-        q[3],
-        1.0 if k == 0 else 0.0,
-        1.0 if k == 1 else 0.0,
-        1.0 if k == 2 else 0.0,
-    )
+    axes = attitude(state, one.parent, one.parent_frame)
+    ex, ey, ez = rotate(axes, unit_vector(axis % 3))
     ax, ay, az, px, py, pz = point(state, one.parent, one.parent_anchor)
     bx, by, bz, qx, qy, qz = point(state, one.child, one.child_anchor)
     if axis < 3:  # both forces act at the child's anchor
-        add_force(work, one.child, bx, by, bz, ex, ey, ez)
-        add_force(work, one.parent, ax + qx - px, ay + qy - py, az + qz - pz, -ex, -ey, -ez)
+        add_force(work, one.child, (bx, by, bz), (ex, ey, ez))
+        add_force(work, one.parent, (ax + qx - px, ay + qy - py, az + qz - pz), (-ex, -ey, -ez))
         return 0.0, 0.0
     for side in range(2):
         b, s = (one.child, 1.0) if side == 0 else (one.parent, -1.0)
@@ -55,21 +47,17 @@ def unit_force(system, state, kind, number, axis, work):
 
 
 @entry
-def write_force_rows(system, state, chosen, work, rows, motions, values):
-    """Write rows J and M^-1 J^T beside the joints (n, N, 6), and coordinates with their rates (n, 2).
+def write_force_rows(system, state, chosen, work, rows, values):
+    """Write rows J and M^-1 J^T beside the joints (2, n, N, 6), and coordinates with their rates (n, 2).
 
     `chosen` (n, 3) has kind, number, and axis of a mount.
     """
     for i in range(chosen.shape[0]):
-        for b in range(system.bodies.shape[0]):
-            for k in range(6):
-                work.body[b].wrench[k] = 0.0
+        clear_wrenches(work)
         q, speed = unit_force(system, state, chosen[i, 0], chosen[i, 1], chosen[i, 2], work)
         values[i, 0], values[i, 1] = q, speed
-        for b in range(system.bodies.shape[0]):
-            for k in range(6):
-                rows[i, b, k] = work.body[b].wrench[k]
         solve(system, state, False, work)
         for b in range(system.bodies.shape[0]):
             for k in range(6):
-                motions[i, b, k] = work.body[b].motion[k]
+                rows[0, i, b, k] = work.body[b].wrench[k]
+                rows[1, i, b, k] = work.body[b].motion[k]

@@ -27,8 +27,8 @@ def add_spring(system, spring, state, work):
     rate = dx * (ux - sx) + dy * (uy - sy) + dz * (uz - sz)
     drag = spring.damping * rate
     f = tension(system, spring, length) + drag
-    add_force(work, c, bx, by, bz, -f * dx, -f * dy, -f * dz)
-    add_force(work, p, ax, ay, az, f * dx, f * dy, f * dz)
+    add_force(work, c, (bx, by, bz), (-f * dx, -f * dy, -f * dz))
+    add_force(work, p, (ax, ay, az), (f * dx, f * dy, f * dz))
     return -drag * rate
 
 
@@ -38,7 +38,7 @@ def add_load(load, state, work):
     b, w = load.body, state[load.body].w
     f, t = arm(state, load.frame, load.force), arm(state, load.frame, load.torque)
     rx, ry, rz, _px, _py, _pz = point(state, b, load.anchor)
-    add_force(work, b, rx, ry, rz, f[0], f[1], f[2])
+    add_force(work, b, (rx, ry, rz), f)
     ux, uy, uz = point_velocity(state, b, rx, ry, rz)
     power = f[0] * ux + f[1] * uy + f[2] * uz
     wrench = work.body[b].wrench
@@ -62,9 +62,9 @@ def applied_wrenches(system, state, gyroscopic, work):
             wrench[3 + k] = 0.0
         if gyroscopic and body.isotropic == 0:
             J, q, w = body.inertia, state[b].Q, state[b].w
-            W = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
+            W = rotate_back(q, w)
             tx, ty, tz = cross(J[0] * W[0], J[1] * W[1], J[2] * W[2], W[0], W[1], W[2])
-            wrench[3], wrench[4], wrench[5] = rotate(q[0], q[1], q[2], q[3], tx, ty, tz)
+            wrench[3], wrench[4], wrench[5] = rotate(q, (tx, ty, tz))
     power = 0.0
     for i in range(system.springs.shape[0]):
         power += add_spring(system, system.springs[i], state, work)

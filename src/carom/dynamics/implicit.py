@@ -39,23 +39,23 @@ GAMMA = 1.0 - math.sqrt(0.5)
 
 
 @inlined
-def implicit_step(method, system, active, start, h, end, work):
-    """Write the state a time h after `start` into `end`; return the work of loads, and a status.
+def implicit_step(model, data, method, h):
+    """Write the state a time h later into `work.trial`; return the work of loads, and a status.
 
     While contacts are active, the explicit method takes the step.
     """
-    if not fly(system, active, start, h, end, work):
+    if not fly(model, data, h):
         return 0.0, 0
-    if any_held(active):
-        return constrained(method, system, active, start, h, end, work)
-    whole_step(system, start, h, end, work)
-    return work.result[0].applied, work.result[0].code
+    if any_held(data.active):
+        return constrained(model, data, method, h)
+    whole_step(model.system, data.state, h, data.work)
+    return data.work.result[0].applied, data.work.result[0].code
 
 
 @unit
-def whole_step(system, start, h, end, work):
+def whole_step(system, start, h, work):
     """Make the two stages, and return to the joints."""
-    result, stage = work.result[0], work.stage
+    result, stage, end = work.result[0], work.stage, work.trial
     result.code = 0
     result.time = result.start
     power = accelerate(system, start, h, 0, work)

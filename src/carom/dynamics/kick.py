@@ -10,12 +10,13 @@ import math
 from carom._compiled.decorators import kernel
 from carom.dynamics.acceleration import bias_joints
 from carom.dynamics.elements import driven_power
+from carom.dynamics.energy import spin_momentum
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.project import project_velocity
 from carom.dynamics.solve import free_body, solve
-from carom.geometry.rotation import cross, rotate, rotate_back
+from carom.geometry.rotation import cross
 
-SUBSTITUTIONS = 60  # substitutions
+SUBSTITUTIONS = 60  # for the velocities at the end
 
 
 @kernel
@@ -30,7 +31,7 @@ def first_kick(system, start, h, work):
     solve(system, start, True, work)
     for b in range(start.shape[0]):
         body, push, w = system.bodies[b], work.body[b].push, start[b].w
-        l = times_inertia(body, start[b].Q, w[0], w[1], w[2])
+        l = spin_momentum(body, start[b].Q, w)
         t = cross(w[0], w[1], w[2], l[0], l[1], l[2])
         for k in range(3):
             push[k], push[3 + k] = body.mass * start[b].v[k], l[k] + 0.5 * h * t[k]
@@ -39,18 +40,10 @@ def first_kick(system, start, h, work):
 
 
 @kernel
-def times_inertia(body, q, wx, wy, wz):
-    """Return the spatial angular momentum of a body with the angular velocity w (world)."""
-    W = rotate_back(q[0], q[1], q[2], q[3], wx, wy, wz)
-    J = body.inertia
-    return rotate(q[0], q[1], q[2], q[3], J[0] * W[0], J[1] * W[1], J[2] * W[2])
-
-
-@kernel
 def add_momentum(body, q, factor, memory):
     """Add factor times M motion to the momenta of a body."""
     motion, push = memory.motion, memory.push
-    l = times_inertia(body, q, motion[3], motion[4], motion[5])
+    l = spin_momentum(body, q, motion[3:])
     for k in range(3):
         push[k] += factor * body.mass * motion[k]
         push[3 + k] += factor * l[k]

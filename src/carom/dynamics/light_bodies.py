@@ -79,8 +79,7 @@ def factor_light(system, state, work):
         n, root, rest = joints[k].rows, solver.digits[k, 0], solver.digits[k, 1]
         factor_block(high[k], low[k], solver.rows[k], root, rest, n)
         for s in range(solver.column[place], solver.column[place + 1]):
-            m, c = joints[solver.row[s]].rows, count + s
-            divide(high[c], low[c], high[k], low[k], root, rest, m, n)
+            divide(solver, count + s, k, joints[solver.row[s]].rows, n)
         for t in range(solver.update[place], solver.update[place + 1]):
             update_block(solver, joints, t, n)
 
@@ -112,7 +111,7 @@ def scaled_rows(system, state):
         body, q, A, U = system.bodies[side.body], state[side.body].Q, side.A, side.Y
         root = 1.0 / math.sqrt(body.mass)
         for r in range(system.joints[side.element].rows):
-            t = rotate_back(q[0], q[1], q[2], q[3], A[r, 3], A[r, 4], A[r, 5])
+            t = rotate_back(q, A[r, 3:])
             for k in range(3):
                 U[r, k], U[r, 3 + k] = root * A[r, k], t[k] / math.sqrt(body.inertia[k])
 
@@ -163,14 +162,17 @@ def factor_block(high, low, row, root, rest, n):
 
 
 @kernel
-def divide(Xh, Xl, high, low, root, rest, m, n):
-    """X <- X L^-T for a block below the diagonal block L."""
+def divide(solver, c, k, m, n):
+    """X <- X L^-T for a block c, (m, n), below the diagonal block k."""
+    high, low, root, rest = solver.fine[0], solver.fine[1], solver.digits[k, 0], solver.digits[k, 1]
     for i in range(m):
-        for k in range(n):
-            x, y = Xh[i, k], Xl[i, k]
-            for s in range(k):
-                x, y = subtract_product(x, y, Xh[i, s], Xl[i, s], high[k, s], low[k, s])
-            Xh[i, k], Xl[i, k] = multiply(x, y, root[k], rest[k])
+        for j in range(n):
+            x, y = high[c, i, j], low[c, i, j]
+            for s in range(j):
+                x, y = subtract_product(
+                    x, y, high[c, i, s], low[c, i, s], high[k, j, s], low[k, j, s]
+                )
+            high[c, i, j], low[c, i, j] = multiply(x, y, root[j], rest[j])
 
 
 @kernel
@@ -222,7 +224,7 @@ def solve_light(system, state, biased, work):
     y = solver.scaled
     for b in range(system.bodies.shape[0]):
         body, f, q = system.bodies[b], work.body[b].wrench, y[b, 2]
-        t = rotate_back(q[0], q[1], q[2], q[3], f[3], f[4], f[5])
+        t = rotate_back(q, f[3:])
         for k in range(3):
             y[b, 0, k] = f[k] / math.sqrt(body.mass)
             y[b, 0, 3 + k] = t[k] / math.sqrt(body.inertia[k])
@@ -251,9 +253,7 @@ def solve_light(system, state, biased, work):
     for b in range(system.bodies.shape[0]):
         body, out, q = system.bodies[b], work.body[b].motion, y[b, 2]
         J, a = body.inertia, y[b, 0]
-        t = rotate(
-            q[0], q[1], q[2], q[3],
-            a[3] / math.sqrt(J[0]), a[4] / math.sqrt(J[1]), a[5] / math.sqrt(J[2]),
-        )  # fmt: skip
+        t = (a[3] / math.sqrt(J[0]), a[4] / math.sqrt(J[1]), a[5] / math.sqrt(J[2]))
+        t = rotate(q, t)
         for k in range(3):
             out[k], out[3 + k] = a[k] / math.sqrt(body.mass), t[k]

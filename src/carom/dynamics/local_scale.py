@@ -94,7 +94,7 @@ def greatest_pull(system, controls, state, work) -> float:
     solve(system, state, False, work)
     for b in range(state.shape[0]):
         body, a, q, J = system.bodies[b], work.body[b].motion, state[b].Q, system.bodies[b].inertia
-        w = rotate_back(q[0], q[1], q[2], q[3], a[3], a[4], a[5])
+        w = rotate_back(q, a[3:])
         turning = math.sqrt((J[0] * w[0]) ** 2 + (J[1] * w[1]) ** 2 + (J[2] * w[2]) ** 2)
         turning *= body.extent / max(J[0], max(J[1], J[2]))  # a turn about a thin axis moves little
         pull = max(pull, norm(a[:3]) + turning)

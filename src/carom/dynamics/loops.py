@@ -15,6 +15,7 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom.dynamics.elements import build_rows, row_target
+from carom.friction import ldl
 from carom.kinematics.rows import times_inverse_mass
 from carom.model.arrays import LOOPS
 
@@ -60,24 +61,21 @@ def gather(system):
 
 @kernel
 def eliminate(system, drop):
-    """Factor the blocks in place; pivots are compared with the diagonals in `weight`."""
+    """Factor the blocks in place; pivots are compared with the diagonals in `weight`.
+
+    A diagonal block has L below its diagonal and D on it, and `pivot` 1/D, or 0 for a row that is left out.
+    """
     solver, joints, block = system.solver, system.joints, system.solver.block
-    count = joints.shape[0]
-    for place in range(count):
+    for place in range(joints.shape[0]):
         k = solver.order[place]
-        n, pivot = joints[k].rows, solver.rows[k].pivot
-        factor_diagonal(block[k], pivot, solver.rows[k].weight, n, drop)
-        if solver.rows[k].off == 1:
-            for r in range(n):
-                pivot[r] = 0.0
+        n, row = joints[k].rows, solver.rows[k]
+        for r in range(n):
+            ldl.eliminate(n, r, math.inf if row.off == 1 else drop * row.weight[r], block[k])
+            row.pivot[r] = 1.0 / block[k, r, r] if block[k, r, r] > 0.0 else 0.0
         for s in range(solver.column[place], solver.column[place + 1]):
-            divide(block[count + s], block[k], pivot, joints[solver.row[s]].rows, n)
+            divide(block[joints.shape[0] + s], block[k], row.pivot, joints[solver.row[s]].rows, n)
         for t in range(solver.update[place], solver.update[place + 1]):
-            i, j = solver.triple[t, 0], solver.triple[t, 1]
-            subtract_product(
-                block[solver.triple[t, 2]], block[count + i], block[count + j], pivot,
-                joints[solver.row[i]].rows, joints[solver.row[j]].rows, n,
-            )  # fmt: skip
+            update_block(system, t, k)
 
 
 @kernel
@@ -100,45 +98,27 @@ def add_product(S, Y, A, m, n):
 
 
 @kernel
-def factor_diagonal(S, pivot, diagonal, n, drop):
-    """Factor S = L D L^T in place (unit L below the diagonal); pivot = 1/D, or 0 for a dropped row."""
-    for k in range(n):
-        d = S[k, k]
-        for s in range(k):
-            if pivot[s] != 0.0:
-                d -= S[k, s] * S[k, s] / pivot[s]
-        pivot[k] = 1.0 / d if d > drop * diagonal[k] else 0.0
-        for i in range(k + 1, n):
-            t = S[i, k]
-            for s in range(k):
-                if pivot[s] != 0.0:
-                    t -= S[i, s] * S[k, s] / pivot[s]
-            S[i, k] = t * pivot[k]
-
-
-@kernel
 def divide(X, L, pivot, m, n):
     """X <- X L^-T D^-1 for a block below the diagonal block L, so that it contains entries of unit L."""
     for i in range(m):
         for k in range(n):
-            t = X[i, k]
             for s in range(k):
-                if pivot[s] != 0.0:
-                    t -= X[i, s] * L[k, s] / pivot[s]
-            X[i, k] = t * pivot[k]
+                X[i, k] -= X[i, s] * L[k, s]
+        for k in range(n):
+            X[i, k] *= pivot[k]
 
 
 @kernel
-def subtract_product(S, X, Y, pivot, m, n, q):
-    """S <- S - X D Y^T."""
-    for s in range(q):
-        if pivot[s] == 0.0:
-            continue
-        d = 1.0 / pivot[s]
-        for i in range(m):
-            t = d * X[i, s]
-            for j in range(n):
-                S[i, j] -= t * Y[j, s]
+def update_block(system, t, k):
+    """Subtract a product of two blocks of the column of element k from its block: S <- S - X D Y^T."""
+    solver, joints, block = system.solver, system.joints, system.solver.block
+    count, i, j = joints.shape[0], solver.triple[t, 0], solver.triple[t, 1]
+    S, X, Y = block[solver.triple[t, 2]], block[count + i], block[count + j]
+    for s in range(joints[k].rows):
+        for a in range(joints[solver.row[i]].rows):
+            x = block[k, s, s] * X[a, s]
+            for b in range(joints[solver.row[j]].rows):
+                S[a, b] -= x * Y[b, s]
 
 
 @kernel

@@ -12,7 +12,7 @@ from carom._compiled.units import unit
 from carom._compiled.user_functions import call_function
 from carom.dynamics.curve import curve, find_piece
 from carom.dynamics.thresholds import ROTATION
-from carom.geometry.rotation import multiply
+from carom.geometry.rotation import conjugate, multiply
 from carom.kinematics.coordinate import push, rate, value
 from carom.kinematics.curve import is_beyond, is_on_curve
 from carom.model.arrays import PRISMATIC
@@ -41,7 +41,7 @@ def read_states(system, force, state):
         for k in range(3):
             read[i + k] = state[b].x[k]
             read[i + 7 + k], read[i + 10 + k] = state[b].v[k], state[b].w[k]
-        q = multiply(Q[0], Q[1], Q[2], Q[3], a[0], -a[1], -a[2], -a[3])
+        q = multiply(Q, conjugate(a))
         read[i + 3], read[i + 4], read[i + 5], read[i + 6] = q
         i += 13
 

@@ -16,17 +16,22 @@ from carom._compiled.units import unit
 from carom.dynamics.elements import velocity_error
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.project import largest_position_error
-from carom.geometry.rotation import log, multiply, rotate, rotate_back
+from carom.geometry.rotation import conjugate, log, multiply, rotate, rotate_back
 from carom.kinematics.joints import axis
 from carom.model.arrays import KNIFE_EDGE, OWN_ROWS, ROLLING, SLIDING, USER_ROWS
 from carom.model.parts_of_system import has_joints
 
 
 @unit(where=has_joints, otherwise=0.0)
-def error_of_move(system, start, t, h, end, work) -> float:
-    """Write minus the errors at the end, in axes of the start, as biases of elements; return the largest."""
+def error_of_move(system, start, h, end, work) -> float:
+    """Write minus the errors at the end, in axes of the start, as biases of elements; return the largest.
+
+    The time of the start is `result.time`.
+    """
+    t, ready = work.result[0].time, False
     work.result[0].time = t + h
-    error, ready = largest_position_error(system, end, work), False
+    error = largest_position_error(system, end, work)
+    work.result[0].time = t
     for j in range(system.joints.shape[0]):
         joint, bias = system.joints[j], work.joint[j].bias
         if joint.kind < OWN_ROWS and joint.kind != KNIFE_EDGE and joint.parent >= 0:
@@ -38,7 +43,7 @@ def error_of_move(system, start, t, h, end, work) -> float:
             if not ready:
                 mean_velocities(system, start, h, end, work.mean)
                 ready = True
-            e = mean_error(system, j, start, t, h, end, work)
+            e = mean_error(system, j, start, h, end, work)
             error = max(error, e / system.bodies[joint.child].extent)
     return error
 
@@ -46,8 +51,7 @@ def error_of_move(system, start, t, h, end, work) -> float:
 @kernel
 def turn_on(p, q, a):
     """Rotate the vector a with the body from attitude q to attitude p."""
-    bx, by, bz = rotate_back(q[0], q[1], q[2], q[3], a[0], a[1], a[2])
-    a[0], a[1], a[2] = rotate(p[0], p[1], p[2], p[3], bx, by, bz)
+    a[0], a[1], a[2] = rotate(p, rotate_back(q, a))
 
 
 @kernel
@@ -65,8 +69,7 @@ def mean_velocities(system, start, h, end, first):
         if system.bodies[b].ballistic == 1:
             continue
         p, q = start[b].Q, end[b].Q
-        r = multiply(q[0], q[1], q[2], q[3], p[0], -p[1], -p[2], -p[3])
-        a = log(r[0], r[1], r[2], r[3])
+        a = log(multiply(q, conjugate(p)))
         copy_state(start[b], first[b])
         for k in range(3):
             end[b].v[k], end[b].w[k] = (end[b].x[k] - start[b].x[k]) / h, a[k] / h
@@ -74,14 +77,14 @@ def mean_velocities(system, start, h, end, first):
 
 
 @kernel
-def mean_error(system, j, start, t, h, end, work):
+def mean_error(system, j, start, h, end, work):
     """Add to the bias of an element minus the mean error of its velocity, times h; return its size.
 
     For rolling it is the part along the plane, in axes of the parent; for a blade, that along its lateral
     direction.
     """
     joint, record = system.joints[j], work.joint[j]
-    bias, target = record.bias, record.target
+    bias, target, t = record.bias, record.target, work.result[0].time
     for k in range(6):
         target[k] = bias[k]
     most = 0.0
@@ -93,6 +96,7 @@ def mean_error(system, j, start, t, h, end, work):
             along_rows(joint, start, state, bias)
         for k in range(6):
             target[k] -= 0.5 * h * bias[k]
+    work.result[0].time = t
     for k in range(6):
         bias[k] = target[k]
         most = max(most, abs(bias[k]))

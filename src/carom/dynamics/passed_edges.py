@@ -57,8 +57,8 @@ def jump_of_normal(active_point, point, start, end):
     x, y, z = n[0], n[1], n[2]
     if b >= 0:
         q, Q = start[b].Q, end[b].Q
-        x, y, z = rotate_back(q[0], q[1], q[2], q[3], x, y, z)
-        x, y, z = rotate(Q[0], Q[1], Q[2], Q[3], x, y, z)
+        x, y, z = rotate_back(q, (x, y, z))
+        x, y, z = rotate(Q, (x, y, z))
     return max(abs(x - m[0]), max(abs(y - m[1]), abs(z - m[2])))
 
 

@@ -28,7 +28,7 @@ from carom._compiled.units import unit
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.discrete_rotation import turn_by_momentum
 from carom.dynamics.elements import driven_power
-from carom.dynamics.explicit import any_held, constrained, copy_state, fly
+from carom.dynamics.explicit import any_held, bound_changes, constrained, copy_state, fly
 from carom.dynamics.kick import add_momentum, first_kick, second_kick
 from carom.dynamics.loops import dropped_rows, solve_factored
 from carom.dynamics.move_error import error_of_move
@@ -42,35 +42,36 @@ SOLVES = 60  # solves for Lam
 
 
 @inlined
-def rattle_step(method, system, active, start, h, end, work):
-    """Write the state a time h after `start` into `end`; return the work of loads, and a status.
+def rattle_step(model, data, method, h):
+    """Write the state a time h later into `work.trial`; return the work of loads, and a status.
 
     While contacts are active, the explicit method takes the step.
     """
-    if not fly(system, active, start, h, end, work):
+    if not fly(model, data, h):
         return 0.0, 0
-    if any_held(active):
-        return constrained(method, system, active, start, h, end, work)
-    result = work.result[0]
-    whole_step(method.parts, system, start, h, end, work)
+    if any_held(data.active):
+        return constrained(model, data, method, h)
+    result = data.work.result[0]
+    whole_step(method.parts, model.system, data.state, h, data.work)
     if result.code == STALLED:
         result.fallen += 1
-        return constrained(method, system, active, start, h, end, work)
+        return constrained(model, data, method, h)
     return result.applied, NO_CONVERGENCE if result.code == TOO_FAR else 0
 
 
 @unit
-def whole_step(parts, system, start, h, end, work):
+def whole_step(parts, system, start, h, work):
     """Make the parts of a step, one after the other."""
-    applied, code, result, t = 0.0, DONE, work.result[0], work.result[0].start
+    applied, code, result, end = 0.0, DONE, work.result[0], work.trial
+    result.time = result.start
     for b in range(start.shape[0]):
         bound = work.body[b].bound
         copy_state(start[b], work.part[b])
         if system.bodies[b].ballistic == 0:
             bound[0], bound[1], bound[2] = 0.0, 0.0, 0.0
     for s in range(parts.size):
-        p, code = one_part(system, work.part, t, parts[s] * h, end, work)
-        applied, t = applied + p, t + parts[s] * h
+        p, code = one_part(system, work.part, parts[s] * h, end, work)
+        applied += p
         if code != DONE:
             break
         for b in range(start.shape[0]):
@@ -81,40 +82,24 @@ def whole_step(parts, system, start, h, end, work):
 
 
 @kernel
-def bound_changes(start, end, h, bound):
-    """Raise the bounds of accelerations and of spin: means over the part, doubled."""
-    linear, angular, spin = 0.0, 0.0, 0.0
-    for k in range(3):
-        a, c = (end.v[k] - start.v[k]) / h, (end.w[k] - start.w[k]) / h
-        linear += a * a
-        angular += c * c
-        spin += max(end.w[k] ** 2, start.w[k] ** 2)
-    bound[0] = max(bound[0], 2.0 * math.sqrt(linear))
-    bound[1] = max(bound[1], 2.0 * math.sqrt(angular))
-    bound[2] = max(bound[2], math.sqrt(spin))
-
-
-@kernel
-def one_part(system, start, t, h, end, work):
-    """Make one step of order 2 from the time t; return the work of loads and motors, and how it ended."""
+def one_part(system, start, h, end, work):
+    """Make one step of order 2 from `result.time` on; return the work of loads and motors, and how it ended."""
     result = work.result[0]
-    result.time = t
     total = first_kick(system, start, h, work)
     lost = dropped_rows(system, 0.0)
     least, last, fine = math.inf, math.inf, round_off(system, start)
     for k in range(SOLVES):
         if not move_all(system, start, h, end, work):
             return 0.0, TOO_FAR if k == 0 else STALLED
-        error = error_of_move(system, start, t, h, end, work)
+        error = error_of_move(system, start, h, end, work)
         if error <= 1e-15 or (error <= 100.0 * fine and not error < 0.5 * last):
             break
         if not error < 1e3 * least or k == SOLVES - 1:
             return 0.0, STALLED
         least, last = min(least, error), error
-        result.time = t
         correct(system, start, h, work)
         total += driven_power(system, start, work)  # of an impulse: its work
-    result.time = t + h
+    result.time += h
     total += second_kick(system, h, end, work)
     if dropped_rows(system, 0.0) != lost:
         return 0.0, STALLED

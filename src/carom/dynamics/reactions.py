@@ -6,6 +6,7 @@ import numpy as np
 
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.units import unit
+from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.elements import (
     acceleration_bias,
     build_rows,
@@ -26,12 +27,6 @@ from carom.kinematics.coordinate import rate, value
 from carom.kinematics.curve import is_on_curve, seek_feet, seek_foot
 from carom.model.arrays import FOREST, LOOPS, ON_CURVE, RELATION
 from carom.model.parts_of_system import has_relations
-
-
-@kernel
-def of_forest(system, augment, state, work):
-    """Write the reactions of a forest, which are unique."""
-    joint_wrenches(system, work)
 
 
 @kernel
@@ -81,9 +76,7 @@ def least_norm(system, augment, state, work):
 @kernel
 def push_multipliers(system, work):
     """Write minus the wrench of the multipliers of the last solve on each body into its wrench."""
-    for b in range(system.bodies.shape[0]):
-        for k in range(6):
-            work.body[b].wrench[k] = 0.0
+    clear_wrenches(work)
     for i in range(system.solver.sides.shape[0]):
         side = system.solver.sides[i]
         A, wrench = side.A, work.body[side.body].wrench
@@ -108,7 +101,7 @@ def share(system, augment, state, work):
     Wrenches and biases must be written before.
     """
     if system.solver.kind == FOREST:
-        of_forest(system, augment, state, work)
+        joint_wrenches(system, work)
     elif system.solver.kind == LOOPS:
         least_norm(system, augment, state, work)
 
@@ -128,7 +121,7 @@ def add_touch(touch, work):
 
 
 @unit(where=has_relations)
-def follow_turns(system, times, states, k):
+def follow_turns(system, saved, k):
     """Count the whole turns of all angles at saved state k, from those at the state before.
 
     The angle of a motor is the prescribed one; others change by the mean of the rates at both times.
@@ -139,34 +132,34 @@ def follow_turns(system, times, states, k):
         if k == 0:
             c.reference = 0.0
         else:
-            mean = 0.5 * (rate(system, c, states[k - 1]) + rate(system, c, states[k]))
-            c.reference += mean * (times[k] - times[k - 1])
+            mean = 0.5 * (rate(system, c, saved.state[k - 1]) + rate(system, c, saved.state[k]))
+            c.reference += mean * (saved.series[k].t - saved.series[k - 1].t)
     for j in range(system.joints.shape[0]):
         if system.joints[j].kind == RELATION:
             relation = relations.relations[system.joints[j].number]
             if relation.last - relation.first == 1:
                 term = relations.terms[relation.first]
-                angle = prescribed(relations, relation, times[k])[0] / term.factor
+                angle = prescribed(relations, relation, saved.series[k].t)[0] / term.factor
                 relations.coordinates[term.coordinate].reference = angle
     for i in range(relations.coordinates.shape[0]):
         c = relations.coordinates[i]
         if is_on_curve(c):  # saved states may be far from each other
-            seek_foot(system, c, states[k])
+            seek_foot(system, c, saved.state[k])
         else:
-            c.reference = value(system, c, states[k])
+            c.reference = value(system, c, saved.state[k])
 
 
 @entry
-def reactions(system, augment, times, states, rows, touch, work, out):
+def reactions(system, augment, saved, rows, work, out):
     """Write the wrench (T, J, 6) of each joint on its child at the saved states `rows[0]` to `rows[1]`.
 
-    Earlier states must have been treated before, because whole turns of angles are counted; `touch` begins with
-    the first of these states.
+    Of the records `saved` these are series, state and touch. Earlier states must have been treated before,
+    because whole turns of angles are counted; touches begin with the first of these states.
     """
-    h = 0
+    h, touch = 0, saved.touch
     for k in range(rows[0], rows[1]):
-        state, work.result[0].time = states[k], times[k]
-        follow_turns(system, times, states, k)
+        state, work.result[0].time = saved.state[k], saved.series[k].t
+        follow_turns(system, saved, k)
         applied_wrenches(system, state, True, work)
         add_stiff(system, state, work)
         while h < touch.shape[0] and touch[h].saved == k:
@@ -184,29 +177,25 @@ def reactions(system, augment, times, states, rows, touch, work, out):
 
 
 @entry
-def row_errors(system, times, states, work, position, velocity):
+def row_errors(system, saved, work, position, velocity):
     """Write the errors of position and velocity of each row of each element at saved states, (T, J, 6) each."""
-    for k in range(states.shape[0]):
-        state, work.result[0].time = states[k], times[k]
-        follow_turns(system, times, states, k)
-        for j in range(system.joints.shape[0]):
-            position_error(system, j, state, work)
-            row_target(system, j, state, work.joint[j].bias, position[k, j])
-            velocity_error(system, j, state, work)
-            row_target(system, j, state, work.joint[j].bias, velocity[k, j])
+    for k in range(saved.state.shape[0]):
+        work.result[0].time = saved.series[k].t
+        follow_turns(system, saved, k)
+        errors_at(system, saved.state[k], work, position[k], velocity[k])
 
 
 @entry
-def saved_turns(system, times, states, out):
+def saved_turns(system, saved, out):
     """Write the joint angles (T, C) at saved states that relations use, including whole turns."""
-    for k in range(states.shape[0]):
-        follow_turns(system, times, states, k)
+    for k in range(saved.state.shape[0]):
+        follow_turns(system, saved, k)
         for i in range(system.relations.coordinates.shape[0]):
             out[k, i] = system.relations.coordinates[i].reference
 
 
-@entry
-def start_errors(system, state, work, position, velocity):
+@kernel
+def errors_at(system, state, work, position, velocity):
     """Write the errors of position and velocity of each row of each element, (J, 6) each."""
     seek_feet(system, state)
     for j in range(system.joints.shape[0]):
@@ -214,6 +203,12 @@ def start_errors(system, state, work, position, velocity):
         row_target(system, j, state, work.joint[j].bias, position[j])
         velocity_error(system, j, state, work)
         row_target(system, j, state, work.joint[j].bias, velocity[j])
+
+
+@entry
+def start_errors(system, state, work, position, velocity):
+    """Do the same, called from Python."""
+    errors_at(system, state, work, position, velocity)
 
 
 @entry

@@ -5,7 +5,7 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.dynamics.contact_impulse import acts, add_impulse, alone, clear_wrenches, spread
 from carom.dynamics.solve import free_body, solve
-from carom.geometry.rotation import cross
+from carom.geometry.rotation import cross, unit_vector
 from carom.kinematics.contact_point import (
     contact_acceleration,
     contact_motion,
@@ -65,8 +65,7 @@ def inverse_masses(system, k, points, state, work, W):
                 for row in range(3 * k):
                     W[row, m] = 0.0
                 continue
-            e0, e1, e2 = 1.0 if r == 0 else 0.0, 1.0 if r == 1 else 0.0, 1.0 if r == 2 else 0.0
-            spread(system, points[j], state, e0, e1, e2, work)
+            spread(system, points[j], state, unit_vector(r), work)
             for i in range(k):
                 W[3 * i, m], W[3 * i + 1, m], W[3 * i + 2, m] = contact_motion(points[i], work)
         if alone(system, points[j]):
@@ -120,18 +119,18 @@ def inverse_masses_of_one(body, k, points, state, W):
 
 
 @kernel
-def spread_all(system, k, points, p, count, member, state, work):
-    """Write motion = P G^T p of the bodies of a group, of all k points; return whether joints take part."""
+def spread_all(system, points, p, member, state, work):
+    """Write motion = P G^T p of the bodies of a group, of all its points; return whether joints take part."""
     joined = False
-    for m in range(count):
+    for m in range(member.shape[0]):
         joined = joined or system.bodies[member[m]].isolated == 0
     clear_wrenches(work)
-    for i in range(k):
-        add_impulse(points[i], p[3 * i], p[3 * i + 1], p[3 * i + 2], work)
+    for i in range(points.shape[0]):
+        add_impulse(points[i], p[3 * i : 3 * i + 3], work)
     if joined:
         solve(system, state, False, work)
     else:
-        for m in range(count):
+        for m in range(member.shape[0]):
             b = member[m]
             free_body(system.bodies[b], state[b].Q, work.body[b])
     return joined

@@ -54,18 +54,18 @@ def _is_singular(system, least, most):
 
 
 @unit(where=has_loops)
-def pass_round(system, stage, sums, work, rates):
+def pass_round(system, work, rates):
     """Write the accelerations of a stage in a singular position from those before and after it on its path.
 
-    `sums` is workspace: the velocities of the bodies that step. If all positions on the path are singular, the
-    accelerations do not change.
+    If all positions on the path are singular, the accelerations do not change.
     """
     dropped, usual, result = dropped_rows(system, SINGULARITY), system.solver.usual, work.result[0]
     if dropped <= usual[0]:
         return
+    stage, sums = work.stage, work.trial
     pace, time, reach = turning_pace(system, stage), result.time, SINGULAR_TURN
     for _ in range(LONGER_TIMES if pace > 0.0 else 0):
-        power, most = _sum_rates(system, stage, sums, work, rates, reach, pace)
+        power, most = _sum_rates(system, work, rates, reach, pace)
         result.time = time
         if most > usual[0]:
             reach *= SINGULAR_GROWTH
@@ -92,11 +92,13 @@ def turning_pace(system, stage):
 
 
 @kernel
-def _sum_rates(system, stage, sums, work, rates, reach, pace):
+def _sum_rates(system, work, rates, reach, pace):
     """Write the weighted sums of the accelerations before and after, with T = reach/pace.
 
-    Return the same sum of power, and the greatest number of rows that were left out.
+    They are the velocities in `work.trial` of the bodies that step, whose end is not known yet. Return the same
+    sum of power, and the greatest number of rows that were left out.
     """
+    stage, sums = work.stage, work.trial
     power, most, time = 0.0, 0, work.result[0].time
     for b in range(stage.shape[0]):
         if steps(system, b, work):

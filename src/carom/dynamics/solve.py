@@ -8,7 +8,7 @@ from carom.dynamics.light_bodies import factor_light, solve_light
 from carom.dynamics.loops import factor, solve_factored
 from carom.dynamics.tree import solve_tree
 from carom.geometry.rotation import rotate, rotate_back
-from carom.kinematics.pose import keep_pose, same_pose
+from carom.kinematics.pose import keep_poses, same_pose
 from carom.kinematics.rows import direction
 from carom.model.arrays import FOREST, NO_JOINTS, OWN_ROWS
 
@@ -24,8 +24,8 @@ def solve_free(system, state, biased, near, work):
 def free_body(body, q, work):
     """Write M^-1 wrench of one body into its work record: Newton's law (paper, Eq. (1))."""
     wrench, motion, J = work.wrench, work.motion, body.inertia
-    a = rotate_back(q[0], q[1], q[2], q[3], wrench[3], wrench[4], wrench[5])
-    t = rotate(q[0], q[1], q[2], q[3], a[0] / J[0], a[1] / J[1], a[2] / J[2])
+    a = rotate_back(q, wrench[3:])
+    t = rotate(q, (a[0] / J[0], a[1] / J[1], a[2] / J[2]))
     for k in range(3):
         motion[k] = wrench[k] / body.mass
         motion[3 + k] = t[k]
@@ -34,25 +34,26 @@ def free_body(body, q, work):
 @unit
 def solve_loops(system, state, biased, near, work):
     """Solve with closed loops: factor in this position, solve, and write the wrench of each joint."""
-    poses = system.solver.pose
-    if not near and not same_pose(poses, state):
+    if not near and not same_pose(system.solver.pose, state):
         factor(system, state, 0.0, work)
-        for b in range(poses.shape[0]):
-            keep_pose(state[b], poses[b])
+        keep_poses(state, system.solver.pose)
     solve_factored(system, state, biased, work)
-    for j in range(system.joints.shape[0]):
-        joint_wrench(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
+    joint_wrenches(system, state, work)
 
 
 @unit
 def solve_spread(system, state, biased, near, work):
     """Do the same for masses that differ by many orders."""
-    poses = system.solver.pose
-    if not near and not same_pose(poses, state):
+    if not near and not same_pose(system.solver.pose, state):
         factor_light(system, state, work)
-        for b in range(poses.shape[0]):
-            keep_pose(state[b], poses[b])
+        keep_poses(state, system.solver.pose)
     solve_light(system, state, biased, work)
+    joint_wrenches(system, state, work)
+
+
+@kernel
+def joint_wrenches(system, state, work):
+    """Write the wrench of each joint by the multipliers of the last solve."""
     for j in range(system.joints.shape[0]):
         joint_wrench(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
 

@@ -12,21 +12,21 @@ from carom.model.method import IMPLICIT, RATTLE, RUNGE_KUTTA
 
 
 @inlined
-def step(method, system, active, start, h, end, work):
-    """Write the state a time h after `start` into `end`.
+def step(model, data, method, h):
+    """Write the state a time h later into `work.trial`.
 
     Return the work of loads without potential, and 0 or the number of a `Status`.
     """
     if method.kind == RUNGE_KUTTA:
-        return explicit_step(method, system, active, start, h, end, work)
-    return other_step(method, system, active, start, h, end, work)
+        return explicit_step(model, data, method, h)
+    return other_step(model, data, method, h)
 
 
 @unit
-def other_step(method, system, active, start, h, end, work) -> tuple[float, int]:
-    """Write the state at the end of a step by a method that is not explicit."""
+def other_step(model, data, method, h) -> tuple[float, int]:
+    """Do the same by a method that is not explicit."""
     if method.kind == RATTLE:
-        return rattle_step(method, system, active, start, h, end, work)
+        return rattle_step(model, data, method, h)
     if method.kind == IMPLICIT:
-        return implicit_step(method, system, active, start, h, end, work)
-    return three_field_step(method, system, active, start, h, end, work)
+        return implicit_step(model, data, method, h)
+    return three_field_step(model, data, method, h)

@@ -99,8 +99,8 @@ def add_stiff(system, state, work) -> float:
             push(system, system.relations.coordinates[one.coordinate], state, f, work)
             continue
         ex, ey, ez, _, ax, ay, az, bx, by, bz = line_of(one, state)
-        add_force(work, one.child, bx, by, bz, f * ex, f * ey, f * ez)
-        add_force(work, one.parent, ax, ay, az, -f * ex, -f * ey, -f * ez)
+        add_force(work, one.child, (bx, by, bz), (f * ex, f * ey, f * ez))
+        add_force(work, one.parent, (ax, ay, az), (-f * ex, -f * ey, -f * ez))
     return power
 
 

@@ -42,7 +42,16 @@ from carom.dynamics.elements import (
     row_target,
     velocity_error,
 )
-from carom.dynamics.explicit import any_held, constrained, copy_state, fly, mark_active
+from carom.dynamics.energy import spin_momentum
+from carom.dynamics.explicit import (
+    any_held,
+    bound_changes,
+    constrained,
+    copy_state,
+    fly,
+    forget_bounds,
+    mark_active,
+)
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.loops import add_reactions, factor, substitute, subtract_rows
 from carom.dynamics.project import project_position, project_velocity
@@ -59,13 +68,14 @@ PASSES = 10  # block iterations in which multipliers at the middle take over fro
 
 
 @unit
-def three_field_step(method, system, active, start, h, end, work) -> tuple[float, int]:
-    """Write the state a time h after `start` into `end`; return the work of loads, and a status."""
-    if any_held(active):
-        if not fly(system, active, start, h, end, work):
+def three_field_step(model, data, method, h) -> tuple[float, int]:
+    """Write the state a time h later into `work.trial`; return the work of loads, and a status."""
+    system, start, work, end = model.system, data.state, data.work, data.work.trial
+    if any_held(data.active):
+        if not fly(model, data, h):
             return 0.0, 0
-        return constrained(method, system, active, start, h, end, work)
-    mark_active(active, work)
+        return constrained(model, data, method, h)
+    mark_active(data.active, work)
     first_guess(system, start, h, end, work)
     if method.ode == 1:
         start_rates(system, start, work)
@@ -112,8 +122,8 @@ def first_guess(system, start, h, end, work):
 def mean_turn(start, end):
     """Return the mean of the body-frame angular velocities of a body at both ends."""
     p, q = start.Q, end.Q
-    W0 = rotate_back(p[0], p[1], p[2], p[3], start.w[0], start.w[1], start.w[2])
-    W1 = rotate_back(q[0], q[1], q[2], q[3], end.w[0], end.w[1], end.w[2])
+    W0 = rotate_back(p, start.w)
+    W1 = rotate_back(q, end.w)
     return 0.5 * (W0[0] + W1[0]), 0.5 * (W0[1] + W1[1]), 0.5 * (W0[2] + W1[2])
 
 
@@ -121,7 +131,7 @@ def mean_turn(start, end):
 def move_along(start, end, h, out):
     """Write into `out` the pose Exp at `start` of h vbar, vbar the mean velocity of both records."""
     W, q = mean_turn(start, end), start.Q
-    w = rotate(q[0], q[1], q[2], q[3], W[0], W[1], W[2])
+    w = rotate(q, W)
     for k in range(3):
         out.x[k] = start.x[k] + 0.5 * h * (start.v[k] + end.v[k])
     for k in range(4):
@@ -136,13 +146,13 @@ def middle_of_arc(start, h, end, middle):
         W = mean_turn(start[b], end[b])
         move_along(start[b], end[b], 0.5 * h, middle[b])
         q, w = middle[b].Q, middle[b].w
-        w[0], w[1], w[2] = rotate(q[0], q[1], q[2], q[3], W[0], W[1], W[2])
+        w[0], w[1], w[2] = rotate(q, W)
         for k in range(3):
             middle[b].v[k] = 0.5 * (start[b].v[k] + end[b].v[k])
 
 
 @kernel
-def take_up_momentum(J, q, w, memory):
+def take_up_momentum(body, q, w, memory):
     """Write the spatial momentum into `memory`, unless the momentum of the last step there belongs to w.
 
     Computed anew from Q and w at each step, it would drift by the round-off of each step, which has always the
@@ -151,8 +161,7 @@ def take_up_momentum(J, q, w, memory):
     spin, l = memory.spin, memory.momentum
     if spin[0] == w[0] and spin[1] == w[1] and spin[2] == w[2]:
         return
-    W = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
-    l[0], l[1], l[2] = rotate(q[0], q[1], q[2], q[3], J[0] * W[0], J[1] * W[1], J[2] * W[2])
+    l[0], l[1], l[2] = spin_momentum(body, q, w)
 
 
 @kernel
@@ -167,7 +176,7 @@ def momenta(system, start, h, work):
     for b in range(system.bodies.shape[0]):
         body, wrench, l = system.bodies[b], work.body[b].wrench, work.body[b].momentum
         J = body.inertia
-        take_up_momentum(J, start[b].Q, start[b].w, work.body[b])
+        take_up_momentum(body, start[b].Q, start[b].w, work.body[b])
         for k in range(3):
             wrench[k] = h * wrench[k] + body.mass * start[b].v[k]
             wrench[3 + k] = h * wrench[3 + k] + l[k]
@@ -194,8 +203,8 @@ def add_row_impulses(system, j, state, multiplier, work):
         d = direction(joint, r, state)
         s = multiplier[r]
         fx, fy, fz = s * d[3], s * d[4], s * d[5]
-        add_force(work, c, cx, cy, cz, fx, fy, fz)
-        add_force(work, p, px, py, pz, -fx, -fy, -fz)
+        add_force(work, c, (cx, cy, cz), (fx, fy, fz))
+        add_force(work, p, (px, py, pz), (-fx, -fy, -fz))
         for k in range(3):
             work.body[c].wrench[3 + k] += s * d[k]
             if p >= 0:
@@ -226,7 +235,7 @@ def velocity_block_loops(system, method, h, end, work):
         rhs = system.solver.rows[j].rhs
         prescribed_speeds(system, j, end, work, rhs)
         if method.ode == 1:
-            wanted_rate(system, j, method, h, end, work, rhs)
+            wanted_rate(system, j, method, h, end, work)
     subtract_rows(system, work)
     substitute(system)
     add_reactions(system, work)
@@ -290,9 +299,9 @@ def start_rates(system, start, work):
 
 
 @kernel
-def wanted_rate(system, j, method, h, end, work, rhs):
-    """Add r = (phi'_0 - (beta^2/h) phi)/(1 + 2 zeta beta) of the rows of an element to rhs."""
-    record = work.joint[j]
+def wanted_rate(system, j, method, h, end, work):
+    """Add r = (phi'_0 - (beta^2/h) phi)/(1 + 2 zeta beta) of the rows of an element to their rhs."""
+    record, rhs = work.joint[j], system.solver.rows[j].rhs
     position_error(system, j, end, work)
     row_target(system, j, end, record.bias, record.reaction)
     divisor = 1.0 + 2.0 * method.zeta * method.beta
@@ -325,19 +334,11 @@ def position_block(system, method, start, h, end, work):
 
 @kernel
 def leave_for_later(system, start, h, end, work):
-    """Store the momentum of free bodies, and bounds of accelerations (means over the step, doubled)."""
+    """Store the momentum of free bodies, and bounds of accelerations."""
+    forget_bounds(work)
     for b in range(start.shape[0]):
-        linear, angular, spin = 0.0, 0.0, 0.0
-        for k in range(3):
-            a = (end[b].v[k] - start[b].v[k]) / h
-            c = (end[b].w[k] - start[b].w[k]) / h
-            linear += a * a
-            angular += c * c
-            spin += max(end[b].w[k] ** 2, start[b].w[k] ** 2)
-        bound = work.body[b].bound
-        bound[0], bound[1] = 2.0 * math.sqrt(linear), 2.0 * math.sqrt(angular)
-        bound[2] = math.sqrt(spin)
+        memory = work.body[b]
+        bound_changes(start[b], end[b], h, memory.bound)
         if system.bodies[b].isolated == 1:  # the next step uses this momentum, not a new one
-            memory = work.body[b]
             for k in range(3):
                 memory.spin[k], memory.momentum[k] = end[b].w[k], memory.wrench[3 + k]

@@ -50,7 +50,7 @@ def own_inertia(body, state, row):
     """Start the row of a body: its pose, and its own inertia in world axes."""
     keep_pose(state, row)
     q, m, i = state.Q, body.mass, body.inertia
-    R = matrix(q[0], q[1], q[2], q[3])
+    R = matrix(q)
     xx, xy, xz, yy, yz, zz = spin_tensor(R, (i[0], i[1], i[2]))
     row[7], row[8], row[9], row[10], row[11], row[12] = xx, xy, xz, yy, yz, zz
     row[19], row[20], row[21], row[22], row[23], row[24] = m, 0.0, 0.0, m, 0.0, m
@@ -299,12 +299,6 @@ def unjoined(mass, row, out):
 @unit
 def solve_tree(system, state, biased, near, work):
     """Write the motion of all bodies; articulate the pose first, unless the last pose is the same or `near`."""
-    walk_tree(system, state, biased, near, work)
-
-
-@kernel
-def walk_tree(system, state, biased, near, work):
-    """Do the same as `solve_tree`, compiled as a part of the caller."""
     if not near and not same_pose(system.solver.workspace, state):
         articulate(system, state)
     respond(system, biased, work)

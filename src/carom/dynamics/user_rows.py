@@ -16,7 +16,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom._compiled.user_functions import call_function
 from carom.dynamics.thresholds import DISPLACEMENT
-from carom.geometry.rotation import multiply, turn
+from carom.geometry.rotation import conjugate, multiply, turn
 from carom.kinematics.rows import mass_row
 
 
@@ -33,7 +33,7 @@ def read_poses(system, j, state, t, ahead):
         q = read[i + 3 : i + 7]
         q[0], q[1], q[2], q[3] = Q[0], Q[1], Q[2], Q[3]
         turn(q, ahead * w[0], ahead * w[1], ahead * w[2])
-        q[0], q[1], q[2], q[3] = multiply(q[0], q[1], q[2], q[3], a[0], -a[1], -a[2], -a[3])
+        q[0], q[1], q[2], q[3] = multiply(q, conjugate(a))
         i += 7
     return user
 

@@ -1,4 +1,4 @@
-"""The contact problem by alternating directions: one linear system, then projection onto the friction cones.
+"""The contact problem of a crowd by alternating directions: one linear system, then projection onto the cones.
 
 Two copies of the impulses, p without the cones and z in the cones, are made equal by u (scaled):
 
@@ -16,8 +16,8 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.friction import layout as o
 from carom.friction.cone import nearest, shift
+from carom.friction.island import factor_shifted, solve_shifted
 from carom.friction.newton import copy
-from carom.friction.operators import factor_shifted, solve_shifted
 from carom.friction.residual import residual
 from carom.friction.thresholds import RELAXATION
 
@@ -60,7 +60,7 @@ def begin(work, k, rho):
     for i in range(k):
         n = 3 * i
         t = work.contact[i]
-        s = shift(t.kind, t.mu, t.h1, t.h2, w[n + 1], w[n + 2])
+        s = shift((t.kind, t.mu, t.h1, t.h2), w[n + 1], w[n + 2])
         u[n], u[n + 1], u[n + 2] = -(w[n] + s) / rho, -w[n + 1] / rho, -w[n + 2] / rho
 
 
@@ -70,7 +70,7 @@ def iterate(work, k, rho, z, u):
     x, c = work.vector[o.RHS], work.vector[o.BIAS]
     for i in range(k):
         n, t = 3 * i, work.contact[i]
-        s = rho * shift(t.kind, t.mu, t.h1, t.h2, u[n + 1], u[n + 2])
+        s = rho * shift((t.kind, t.mu, t.h1, t.h2), u[n + 1], u[n + 2])
         x[n] = rho * (z[n] - u[n]) - c[n] - s
         x[n + 1] = rho * (z[n + 1] - u[n + 1]) - c[n + 1]
         x[n + 2] = rho * (z[n + 2] - u[n + 2]) - c[n + 2]
@@ -80,5 +80,5 @@ def iterate(work, k, rho, z, u):
         x0 = z[n] + u[n] + RELAXATION * (x[n] - z[n])
         x1 = z[n + 1] + u[n + 1] + RELAXATION * (x[n + 1] - z[n + 1])
         x2 = z[n + 2] + u[n + 2] + RELAXATION * (x[n + 2] - z[n + 2])
-        z[n], z[n + 1], z[n + 2] = y = nearest(t.kind, t.mu, t.h1, t.h2, x0, x1, x2)
+        z[n], z[n + 1], z[n + 2] = y = nearest((t.kind, t.mu, t.h1, t.h2), x0, x1, x2)
         u[n], u[n + 1], u[n + 2] = x0 - y[0], x1 - y[1], x2 - y[2]

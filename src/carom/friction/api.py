@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from carom import arguments, checks
-from carom.friction.checks import checked_inverse_masses
+from carom.friction.checks import checked_inverse_masses, codes, per_contact
 
 KINDS = {"coulomb": 0, "sliding": 1, "sticking": 2}
 
@@ -32,7 +32,7 @@ class ContactSolution:
     complementarity : float
         Greatest ``|p_n w_n|`` [J].
     iterations : int
-        Number of Newton steps, sweeps and alternating steps; 0 for one contact, which is solved in closed form.
+        Number of Newton steps and sweeps; 0 for one contact, which is solved in closed form.
     converged : bool
         Whether the residual is below 1e-10 of the greatest entry of the given velocity, plus 50 times the
         round-off of the greatest ``(|W| |p|)_i``. In most problems it is at round-off.
@@ -88,7 +88,8 @@ def solve_contacts(
     -----
     Mathematics page, §3.2. One contact is solved exactly. Several contacts are solved by a semi-smooth Newton
     method on the equations of Alart and Curnier [1]_ with a proximal term. If it does not converge, it starts
-    again from Gauss-Seidel sweeps, or from an alternating direction method on the form of de Saxce [2]_.
+    again from Gauss-Seidel sweeps, or from a strong proximal term that is then reduced. The residual is that of
+    the form of de Saxce [2]_.
     Impulses are in general not unique. If Newton's method converges at once, the impulses of least norm (in
     units in which all contacts have the same effective mass) are returned: four equal ones for a box at rest on
     a face. For large friction, velocities can also differ between solutions; for one contact the solution
@@ -107,28 +108,21 @@ def solve_contacts(
     >>> solution.impulse
     array([[ 0.1 , -0.05,  0.  ]])
     """
-    from carom.friction.layout import MESSAGES, SOLVED, new_contact_work
+    from carom.friction.layout import MESSAGES, SOLVED, ContactProblem, new_contact_work
     from carom.friction.residual import measure
     from carom.friction.solve import solve_cones
 
     c = _triples("velocity", velocity, None, "m/s")
     k = len(c) // 3
     W = checked_inverse_masses(inverse_mass, k)
-    mu = checks.real_array("friction", friction, "() or (k,)")
-    mu = checks.finite_array("friction", np.full(k, mu) if mu.ndim == 0 else mu, (k,))
-    if np.any(mu < 0.0):
-        raise ValueError(f"friction must be at least 0, got {checks.shown(friction)}")
-    kinds = [kind] * k if isinstance(kind, str) else checks.listed("kind", kind, "names")
-    if len(kinds) != k:
-        raise ValueError(f"kind must be one for each of {k} contacts, got {len(kinds)}")
-    code = np.array([KINDS[checks.choice("kind", one, KINDS)] for one in kinds], dtype=np.int64)
+    mu = per_contact("friction", friction, k, least=0.0)
+    code = codes("kind", kind, k, KINDS)
     direction = _heading(heading, k)
     p = np.zeros(3 * k) if start is None else _triples("start", start, k, "N s")
+    problem = ContactProblem(W=W, c=c, mu=mu, kind=code, heading=direction)
     with np.errstate(over="ignore", invalid="ignore"):  # the status reports a failure
-        status, residual, iterations = solve_cones(
-            k, W, c, mu, code, direction, p, new_contact_work(k)
-        )
-        _, _, penetration, violation, product = measure(k, W, c, mu, code, direction, p)
+        status, residual, iterations = solve_cones(k, problem, p, new_contact_work(k))
+        _, _, penetration, violation, product = measure(k, problem, p)
         velocity = W @ p + c
     return ContactSolution(
         impulse=(p + 0.0).reshape(k, 3),  # no -0

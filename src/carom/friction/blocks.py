@@ -58,10 +58,7 @@ def _divide(X, A, pivot):
                 x[j] -= x[k] * A[k, j]
         for k in range(5, -1, -1):
             row = pivot[k]
-            if row != k:
-                t = x[k]
-                x[k] = x[row]
-                x[row] = t
+            x[k], x[row] = x[row], x[k]
 
 
 @kernel

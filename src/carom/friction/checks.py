@@ -19,9 +19,13 @@ def checked_inverse_masses(inverse_mass, k: int) -> np.ndarray:
             f"inverse_mass must have shape {(3 * k, 3 * k)} [1/kg], as velocity is of {k} contacts, got shape "
             f"{np.shape(inverse_mass)}"
         )
-    size = np.max(np.abs(W))
-    if not np.max(np.abs(W - W.T)) <= 1e-9 * size:
-        raise ValueError(f"inverse_mass must be symmetric, got {checks.shown(inverse_mass)}")
+    return semidefinite(W)
+
+
+def semidefinite(W: np.ndarray) -> np.ndarray:
+    """Return an inverse mass W (n, n), symmetric; raise ValueError unless it is positive semidefinite."""
+    if not np.max(np.abs(W - W.T)) <= 1e-9 * np.max(np.abs(W)):
+        raise ValueError(f"inverse_mass must be symmetric, got {checks.shown(W)}")
     W = np.ascontiguousarray(0.5 * (W + W.T))
     least, *_, most = np.linalg.eigvalsh(W)
     if not least >= -1e-9 * most:
@@ -29,6 +33,14 @@ def checked_inverse_masses(inverse_mass, k: int) -> np.ndarray:
             f"inverse_mass must be positive semidefinite, got an eigenvalue {least:.6g} [1/kg]"
         )
     return W
+
+
+def codes(name: str, value, k: int, known: dict[str, int]) -> np.ndarray:
+    """Return the numbers of `value`, one name or k of them."""
+    names = [value] * k if isinstance(value, str) else checks.listed(name, value, "names")
+    if len(names) != k:
+        raise ValueError(f"{name} must be one name or {k} of them, got {checks.shown(value)}")
+    return np.array([known[checks.choice(name, one, known)] for one in names], dtype=np.int64)
 
 
 def per_contact(name: str, value, k: int, **bounds) -> np.ndarray:

@@ -57,8 +57,9 @@ def slope(contact, x0, x1, x2):
 
 
 @kernel
-def nearest(kind, mu, h1, h2, x0, x1, x2):
-    """Return the nearest point of the set for `kind`: cone, ray (1, -mu h), half-space, or disc."""
+def nearest(cone, x0, x1, x2):
+    """Return the nearest point of the set for (kind, mu, h1, h2): cone, ray (1, -mu h), half-space, or disc."""
+    kind, mu, h1, h2 = cone
     if kind == DISC:
         return in_disc(h1, x1, x2)
     if kind == CONE:
@@ -85,8 +86,9 @@ def in_disc(radius, x1, x2):
 
 
 @kernel
-def shift(kind, mu, h1, h2, w1, w2):
+def shift(cone, w1, w2):
     """Return the term added to w_n so that w lies in the dual of the set of allowed impulses (de Saxce)."""
+    kind, mu, h1, h2 = cone
     if kind == CONE:
         return mu * math.sqrt(w1 * w1 + w2 * w2)
     if kind == SLIDING:

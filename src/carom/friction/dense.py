@@ -1,4 +1,4 @@
-"""Full matrix W: products, sweeps, and the linear systems of Newton and of alternating directions."""
+"""Full matrix W: products, sweeps, and the linear systems of Newton's method."""
 
 from __future__ import annotations
 
@@ -137,20 +137,3 @@ def solve_newton(work, k):
     substitute(work.matrix, rows, work.pivot, rhs)
     for q in range(rows):
         step[work.active[q]] = rhs[q]
-
-
-@kernel
-def factor_shifted(work, k, sigma):
-    """Factor W + sigma."""
-    for i in range(3 * k):
-        row, out = work.W[i], work.matrix[i]
-        for j in range(3 * k):
-            out[j] = row[j]
-        out[i] += sigma
-    factor(work.matrix, 3 * k, work.pivot, 0.0)
-
-
-@kernel
-def solve_shifted(work, k):
-    """Replace the right-hand side r by (W + sigma)^-1 r."""
-    substitute(work.matrix, 3 * k, work.pivot, work.vector[o.RHS])

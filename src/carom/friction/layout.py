@@ -52,8 +52,7 @@ VECTORS = 11
 # Places in `count`, the numbers of a search.
 ITERATIONS = 0
 FACTOR_ROWS = 1  # rows of the present factors, -1 if there are none
-NEAR = 2  # 1: seek the solution near the start, not the one of least norm
-BUDGET = 3  # approximate greatest number of iterations of a search; 0: no limit
+BUDGET = 2  # approximate greatest number of iterations of a search; 0: no limit
 
 # Place in `mismatch` of a tolerance for |f|, and for the residual relative to c; 0: round-off.
 ENOUGH = 1
@@ -92,13 +91,24 @@ ISLAND_BODY = [("motion", "f8", 6), ("pivot", "i8", 6)]
 DENSE, BY_BODIES = range(2)
 
 
+class ContactProblem(NamedTuple):
+    """The problem w = W p + c of K contacts, with the friction of each; the first k of each array are used."""
+
+    W: np.ndarray  # (3K, 3K) Delassus operator, symmetric; rows (n, t1, t2) of each contact
+    c: np.ndarray  # (3K,) velocity without impulses
+    mu: np.ndarray  # (K,) friction
+    # (K,) int64: CONE, friction against w_t; SLIDING, p_t = -mu p_n heading; STICKING, w_t = 0; DISC
+    kind: np.ndarray
+    heading: np.ndarray  # (K, 2) direction of slip of SLIDING; of a DISC, |p_t| <= heading[i, 0]
+
+
 class ContactWork(NamedTuple):
     """Work arrays of a contact problem of up to K contacts; arrays that its kind does not need are empty."""
 
     kind: int  # DENSE or BY_BODIES
     contact: np.recarray  # (K,) CONTACT
     vector: np.ndarray  # (VECTORS, 3K)
-    count: np.ndarray  # (4,) int64
+    count: np.ndarray  # (3,) int64
     mismatch: np.ndarray  # (2,) |f| that Newton reached, and the tolerance ENOUGH
     # DENSE
     W: np.ndarray  # (3K, 3K) scaled: each diagonal block has trace 3
@@ -122,7 +132,7 @@ def new_contact_work(capacity: int) -> ContactWork:
     n = 3 * contacts
     whole = partial(np.zeros, dtype=np.int64)
     return ContactWork(
-        kind=DENSE, contact=table(CONTACT, contacts), vector=np.zeros((VECTORS, n)), count=whole(4),
+        kind=DENSE, contact=table(CONTACT, contacts), vector=np.zeros((VECTORS, n)), count=whole(3),
         mismatch=np.zeros(2), W=np.zeros((n, n)), matrix=np.zeros((n, n)), pivot=whole(n),
         active=whole(n), link=table(LINK, 0), other=table(OTHER, 0), body=table(ISLAND_BODY, 0),
         place=table(PLACE, 0), later=whole(0), target=whole((0, 3)), block=np.zeros((0, 6, 6)),

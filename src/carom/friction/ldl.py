@@ -13,17 +13,22 @@ def factor(n, drop, L):
     impulse of its own.
     """
     for j in range(n):
-        d = L[j, j]
-        most = drop * d
+        eliminate(n, j, drop * L[j, j], L)
+
+
+@kernel
+def eliminate(n, j, least, L):
+    """Turn column j into that of the factor, after those before it; a pivot that is not above `least` is 0."""
+    d = L[j, j]
+    for s in range(j):
+        d -= L[j, s] * L[j, s] * L[s, s]
+    kept = d > least
+    L[j, j] = d if kept else 0.0
+    for i in range(j + 1, n):
+        t = L[i, j]
         for s in range(j):
-            d -= L[j, s] * L[j, s] * L[s, s]
-        kept = d > most
-        L[j, j] = d if kept else 0.0
-        for i in range(j + 1, n):
-            t = L[i, j]
-            for s in range(j):
-                t -= L[i, s] * L[j, s] * L[s, s]
-            L[i, j] = t / d if kept else 0.0
+            t -= L[i, s] * L[j, s] * L[s, s]
+        L[i, j] = t / d if kept else 0.0
 
 
 @kernel

@@ -53,21 +53,3 @@ def solve(work, k):
         dense.solve_newton(work, k)
     else:
         island.solve_newton(work, k)
-
-
-@inlined
-def factor_shifted(work, k, sigma):
-    """Factor W + sigma."""
-    if work.kind == DENSE:
-        dense.factor_shifted(work, k, sigma)
-    else:
-        island.factor_shifted(work, k, sigma)
-
-
-@inlined
-def solve_shifted(work, k):
-    """Replace the right-hand side by (W + sigma)^-1 times it."""
-    if work.kind == DENSE:
-        dense.solve_shifted(work, k)
-    else:
-        island.solve_shifted(work, k)

@@ -23,13 +23,13 @@ NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @entry
-def measure(k, W, c, mu, kind, heading, p):
+def measure(k, problem, p):
     """Return (residual, tolerance, penetration, cone violation, complementarity), the greatest of k contacts.
 
     Penetration is -w_n [m/s]. Cone violation is |p_t| - mu p_n, or |p_t + mu p_n heading|, or -p_n [N s].
     Complementarity is |p_n w_n| [J].
     """
-    greatest = NOTHING
+    W, c, greatest = problem.W, problem.c, NOTHING
     for i in range(k):
         n = 3 * i
         w0, s0 = _row(k, W, c, p, n)
@@ -37,7 +37,7 @@ def measure(k, W, c, mu, kind, heading, p):
         w2, s2 = _row(k, W, c, p, n + 2)
         trace = W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2]
         scale = trace, max(abs(c[n]), abs(c[n + 1]), abs(c[n + 2])), max(s0, s1, s2)
-        cone = kind[i], mu[i], heading[i, 0], heading[i, 1]
+        cone = problem.kind[i], problem.mu[i], problem.heading[i, 0], problem.heading[i, 1]
         greatest = with_contact(greatest, cone, scale, (p[n], p[n + 1], p[n + 2]), (w0, w1, w2))
     return summary(greatest)
 
@@ -62,8 +62,8 @@ def with_contact(greatest, cone, scale, p, w):
     kind, mu, h1, h2 = cone
     (p0, p1, p2), (w0, w1, w2) = p, w
     rho = 3.0 / scale[0] if scale[0] > 0.0 else 1.0
-    x0 = p0 - rho * (w0 + shift(kind, mu, h1, h2, w1, w2))
-    y0, y1, y2 = nearest(kind, mu, h1, h2, x0, p1 - rho * w1, p2 - rho * w2)
+    x0 = p0 - rho * (w0 + shift(cone, w1, w2))
+    y0, y1, y2 = nearest(cone, x0, p1 - rho * w1, p2 - rho * w2)
     d0, d1, d2 = p0 - y0, p1 - y1, p2 - y2
     r = math.sqrt(d0 * d0 + d1 * d1 + d2 * d2) / rho
     if not r <= worst and worst == worst:  # NaN replaces any number, and stays
@@ -95,8 +95,9 @@ def residual(work, k):
     worst, largest = 0.0, 0.0
     for i in range(k):
         t, n = work.contact[i], 3 * i
-        x0 = p[n] - w[n] - shift(t.kind, t.mu, t.h1, t.h2, w[n + 1], w[n + 2])
-        y0, y1, y2 = nearest(t.kind, t.mu, t.h1, t.h2, x0, p[n + 1] - w[n + 1], p[n + 2] - w[n + 2])
+        cone = t.kind, t.mu, t.h1, t.h2
+        x0 = p[n] - w[n] - shift(cone, w[n + 1], w[n + 2])
+        y0, y1, y2 = nearest(cone, x0, p[n + 1] - w[n + 1], p[n + 2] - w[n + 2])
         d0, d1, d2 = p[n] - y0, p[n + 1] - y1, p[n + 2] - y2
         r = math.sqrt(d0 * d0 + d1 * d1 + d2 * d2) / t.scale
         if not r <= worst and worst == worst:  # NaN replaces any number, and stays

@@ -14,19 +14,17 @@ from carom.friction.strategy import search
 
 
 @entry
-def solve_cones(k, W, c, mu, kind, heading, p, workspace):
+def solve_cones(k, problem, p, workspace):
     """Solve w = W p + c, 0 <= p_n _|_ w_n >= 0 with Coulomb friction; return (status, residual, iterations).
 
-    Arrays have rows (n, t1, t2) for K >= k contacts, of which the first k are used. `W` (3K, 3K) is
-    symmetric, `c` (3K,) the velocity without impulses, `mu` (K,) the friction, `p` (3K,) the first guess and
-    then the solution, `workspace` from `layout.new_contact_work(K)`. `kind` (K,) int64: CONE, friction against
-    w_t; SLIDING, p_t = -mu p_n heading, `heading` (K, 2); STICKING, w_t = 0 with any tangential impulse, even
-    if p_n = 0; DISC, friction |p_t| <= `heading[i, 0]`. Status: SOLVED; NOT_SOLVED, p is the best result found;
-    BAD_PROBLEM, p is 0. The residual is that of `residual.measure`.
+    `problem` is a `ContactProblem` of K >= k contacts, `p` (3K,) the first guess and then the solution,
+    `workspace` from `layout.new_contact_work(K)`. Contacts of the kind STICKING have any tangential impulse,
+    even if p_n = 0. Status: SOLVED; NOT_SOLVED, p is the best result found; BAD_PROBLEM, p is 0. The residual
+    is that of `residual.measure`.
     """
     if k == 0:
         return SOLVED, 0.0, 0
-    gamma = _load(workspace, k, W, c, mu, kind, heading, p)
+    gamma = _load(workspace, k, problem, p)
     if not math.isfinite(gamma):
         for i in range(3 * k):
             p[i] = 0.0
@@ -40,24 +38,24 @@ def solve_cones(k, W, c, mu, kind, heading, p, workspace):
         iterations = workspace.count[o.ITERATIONS]
     for i in range(3 * k):
         p[i] = gamma * workspace.contact[i // 3].scale * q[i]
-    residual, tolerance, _, _, _ = measure(k, W, c, mu, kind, heading, p)
+    residual, tolerance, _, _, _ = measure(k, problem, p)
     return SOLVED if residual <= tolerance else NOT_SOLVED, residual, iterations
 
 
 @kernel
-def _load(work, k, W, c, mu, kind, heading, p):
+def _load(work, k, problem, p):
     """Write the problem in scaled variables; return gamma, or NaN if the input is bad.
 
     p_i = gamma s_i q_i, w_i = gamma v_i / s_i with s_i^2 = 3 / trace W_ii, so that each diagonal block
     has trace 3, and gamma such that the greatest entry of the scaled c is 1. The three rows of a contact
     have one scale, so that its cone does not change. Units and ratios of masses have no effect on the solver.
     """
-    total = 0.0
+    W, kind, heading, total = problem.W, problem.kind, problem.heading, 0.0
     for i in range(k):
         n = 3 * i
         trace = W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2]
         along = (heading[i, 0], heading[i, 1])
-        if not set_contact(work.contact[i], mu[i], kind[i], along, trace):
+        if not set_contact(work.contact[i], problem.mu[i], kind[i], along, trace):
             return math.nan
     for i in range(3 * k):
         s = work.contact[i // 3].scale
@@ -67,7 +65,7 @@ def _load(work, k, W, c, mu, kind, heading, p):
             total += out[j]
     if not math.isfinite(total):
         return math.nan
-    gamma = scale_vectors(work, k, c, p)
+    gamma = scale_vectors(work, k, problem.c, p)
     for i in range(k):
         if kind[i] == DISC:  # its radius is an impulse
             work.contact[i].h1 /= gamma * work.contact[i].scale

@@ -8,7 +8,6 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.friction import layout as o
 from carom.friction import thresholds as limits
-from carom.friction.alternating import alternate
 from carom.friction.cone import project
 from carom.friction.newton import copy, largest_impulse, newton
 from carom.friction.operators import sweep
@@ -19,8 +18,7 @@ _POLISH = 8  # greatest number of rounds, each with a new proximal centre
 _STARTS = 20  # greatest number of starting points
 _EXTRA = 2  # further starting points if the tolerance is satisfied, but not round-off; or a hundred times that
 _FIRST_SWEEPS = 25  # at first; twice as many each time, up to
-_MOST_SWEEPS = 200
-_ALTERNATIONS = 300
+_MOST_SWEEPS = 800
 _RELEASES = 60
 
 
@@ -28,9 +26,8 @@ _RELEASES = 60
 def search(work, k):
     """Try one starting point after another; leave the best p and the number of iterations in `work`.
 
-    Start 0 seeks the solution of least norm from the given p (or a near one if that is required). Start 1
-    seeks a solution near the given p, unless p is 0. The others begin after sweeps, after alternating
-    directions, and after a release, in turn.
+    Start 0 seeks the solution of least norm from the given p. Start 1 seeks a solution near the given p,
+    unless p is 0. The others begin after sweeps and after a release, in turn.
     """
     p, best, given = work.vector[o.ITERATE], work.vector[o.BEST], work.vector[o.GIVEN]
     least, last, cold = math.inf, _STARTS, True
@@ -47,10 +44,11 @@ def search(work, k):
                 continue
             copy(k, given, p)
         elif start > 1:
-            _approach(work, k, (start - 2) % 3, (start - 2) // 3)
-        r, goal, tolerance = polished(
-            work, k, start == 0 and work.count[o.NEAR] == 0, start % 3 == 2
-        )
+            if start % 2 == 0:
+                _smooth(work, k, (start - 2) // 2)
+            else:
+                release(work, k)
+        r, goal, tolerance = polished(work, k, start == 0, start % 3 == 2)
         if r < least:
             least = r
             copy(k, p, best)
@@ -82,31 +80,17 @@ def spent(work):
 
 
 @kernel
-def _approach(work, k, method, again):
-    """Move p to another starting point for Newton by a method; `again` counts its earlier uses."""
-    if method == 0:
-        sweeps = min(_FIRST_SWEEPS * 2**again, _MOST_SWEEPS)
-        for i in range(sweeps):
-            sweep(work, k, i % 2 == 1)
-        work.count[o.ITERATIONS] += sweeps
-    elif method == 1:
-        p = work.vector[o.ITERATE]
-        if again == 0:
-            for i in range(3 * k):
-                p[i] = 0.0
-        sigma = 0.01 * 10.0 ** ((again + 1) % 3)
-        alternate(work, k, sigma, 0.0, _ALTERNATIONS, _ALTERNATIONS)
-        work.count[o.ITERATIONS] += _ALTERNATIONS
-    else:
-        release(work, k, 0.0)
+def _smooth(work, k, again):
+    """Move p to another starting point by sweeps; `again` counts the earlier ones."""
+    sweeps = min(_FIRST_SWEEPS * 2**again, _MOST_SWEEPS)
+    for i in range(sweeps):
+        sweep(work, k, i % 2 == 1)
+    work.count[o.ITERATIONS] += sweeps
 
 
 @kernel
-def release(work, k, enough):
-    """Apply Newton's method with a strong proximal term, which is weakened as long as the method succeeds.
-
-    It ends when the residual is at most `enough`, which may happen before the term is weak.
-    """
+def release(work, k):
+    """Apply Newton's method with a strong proximal term, which is weakened as long as the method succeeds."""
     p, kept, centre = work.vector[o.ITERATE], work.vector[o.START_BEST], work.vector[o.CENTRE]
     copy(k, p, kept)
     eps = limits.RELEASE_START
@@ -120,8 +104,6 @@ def release(work, k, enough):
         if work.mismatch[0] < 1e-8:
             copy(k, p, kept)
             eps *= limits.RELEASE_FACTOR
-            if enough > 0.0 and residual(work, k)[0] <= enough:
-                break
         else:
             eps /= limits.RELEASE_FACTOR
         if not 10.0 * limits.PROXIMAL < eps < 10.0 * limits.RELEASE_START:

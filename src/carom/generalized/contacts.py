@@ -12,66 +12,27 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.friction.layout import CONE, SLIDING, SOLVED, new_contact_work
+from carom.friction.layout import CONE, SLIDING, SOLVED, ContactProblem, new_contact_work
 from carom.friction.solve import solve_cones
 from carom.generalized.step import project
 from carom.generalized.strike import Strike, rows_of
-from carom.impact.laws import NUMBERS
 from carom.model import actions as a
 from carom.status import Status
 
 if TYPE_CHECKING:
     from carom.generalized.run import GeneralizedRun
 
-STILL = 1e-12  # relative to the speeds of a contact: a relative velocity that is round-off
 CONTACT_ROUNDS = 50
 
 
-class Contacts:
+class Contacts(Strike):
     """The contacts of a run, with their active set and their events."""
 
     def __init__(self, run: GeneralizedRun):
-        contacts = run.user.contacts
-        self.run, self.seen = run, run.made.work
-        self.restitution = np.array([one.restitution for one in contacts])
-        self.friction = np.array([one.friction for one in contacts])
-        self.law = np.array([NUMBERS[one.impact_law] for one in contacts], dtype=np.int64)
-        self.events: list[tuple[float, str, int]] = []
-        self.strike = Strike(self)
-        self.light = 0.0  # kinetic energy that the loads give in a step: less is round-off
+        super().__init__(run)
         self.cones: Any = None  # workspace of the contact problem, made when it is first needed
         # the event that is handled: its kind, its persistent contact, and the contacts before it
         self.kind, self.marked, self.was = 0, -1, run.active
-
-    def note(self, what: str, contact: int) -> None:
-        """Write an event."""
-        self.events.append((self.run.reached, what, contact))
-
-    # --- quantities of the state ---------------------------------------------------------------
-
-    def look(self) -> int:
-        """Evaluate the state without forces of contacts, and the speeds that count as 0; return a status."""
-        run, seen, v = self.run, self.seen, self.run.x[self.run.n :]
-        code = run.made.compute(run.x, run.reached)
-        P = np.linalg.inv(seen.M)
-        push = np.sqrt(max(seen.load @ P @ seen.load, 0.0)) * run.plan.step
-        self.light = max(self.light, 0.5 * push**2)
-        if len(seen.A):
-            Y = P @ seen.A.T
-            P = P - Y @ np.linalg.pinv(seen.A @ Y, rcond=run.system.drop, hermitian=True) @ Y.T
-        self.G, self.P = seen.G.reshape(-1, run.n).copy(), 0.5 * (P + P.T)
-        W = self.G @ self.P @ self.G.T
-        self.W, self.c = 0.5 * (W + W.T), self.G @ seen.a + seen.G_rate.ravel()
-        self.u, self.free = (self.G @ v).reshape(-1, 3), seen.a.copy()
-        self.slip = np.linalg.norm(self.u[:, 1:], axis=1)
-        self.W_ii = np.diag(self.W).reshape(-1, 3)
-        size = np.sqrt(np.maximum(self.W_ii.sum(axis=1), 0.0))
-        self.still = STILL * size * max(np.sqrt(max(v @ seen.M @ v, 0.0)), push)
-        return code
-
-    def active(self) -> list[int]:
-        """Return the persistent contacts."""
-        return np.flatnonzero(self.run.active.mode).tolist()
 
     def closed(self, struck: int) -> list[int]:
         """Return the closed contacts: persistent, just located, or with a gap that counts as zero."""
@@ -92,7 +53,7 @@ class Contacts:
         if code != 0:
             return code
         closed = self.closed(struck)
-        code = self.strike.all(closed, self.marked if kind == a.EVENT_JAM else -1)
+        code = self.strike(closed, self.marked if kind == a.EVENT_JAM else -1)
         if code == 0 and run.options.hold:
             code = self.set_active(self.chosen(closed, struck), closed)
         if code == 0:
@@ -131,7 +92,8 @@ class Contacts:
         """Return the closed contacts that stay active or become active."""
         W, size = self.W, self.free @ self.seen.M @ self.free
         gone = self.marked if self.kind == a.EVENT_SEPARATE else -1
-        kept = [c for c in self.active() if c != gone and not self.u[c, 0] > 10.0 * self.still[c]]
+        held = np.flatnonzero(self.run.active.mode).tolist()
+        kept = [c for c in held if c != gone and not self.u[c, 0] > 10.0 * self.still[c]]
         for c in sorted(set(closed) - {gone} - set(kept), key=lambda c: abs(self.u[c, 0])):
             normal = 3 * np.array(kept, dtype=int)  # others keep their normal velocities
             press = np.linalg.pinv(W[np.ix_(normal, normal)], rcond=self.run.system.drop)
@@ -145,7 +107,7 @@ class Contacts:
     def stays(self, c: int, draw: float) -> bool:
         """Return whether the bounces of a contact with the acceleration `draw` end within a step."""
         u, still = float(self.u[c, 0]), self.still[c]
-        e = float(self.strike.restitution(c, self.strike.blows[c]))
+        e = float(self.restitution_after(c, self.blows[c]))
         ends = e < 1.0 and 2.0 * u < draw * (1.0 - e) * self.run.moment(draw)
         return -10.0 * still <= u and (u <= still or ends)
 
@@ -166,12 +128,12 @@ class Contacts:
             W, c0, mu = self.W[np.ix_(rows, rows)], self.c[rows], self.friction[chosen]
             p, heading = np.zeros(3 * k), self.headings(chosen)
             kinds = np.where(heading.any(axis=1), SLIDING, CONE)
-            status, _, _ = solve_cones(k, W, c0, mu, kinds, heading, p, self.cones)
+            status, _, _ = solve_cones(k, ContactProblem(W, c0, mu, kinds, heading), p, self.cones)
             if status != SOLVED:
                 own = W.reshape(k, 3, k, 3)[range(k), 0, range(k)]
                 yields = own[:, 0] - mu * np.sum(heading * own[:, 1:], axis=1)  # W_nn - mu W_nt . e
                 jams = [c for c, left in zip(chosen, yields) if left <= 0.0]
-                code = self.strike.all(chosen, jams[0]) if jams else Status.NO_CONVERGENCE
+                code = self.strike(chosen, jams[0]) if jams else Status.NO_CONVERGENCE
                 if code != 0:
                     return code
                 chosen = [c for c in chosen if not self.u[c, 0] > 10.0 * self.still[c]]

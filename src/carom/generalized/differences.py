@@ -43,13 +43,13 @@ def evaluate_parts(system, which, t, x, work):
         evaluate_loads(system, t, x, work)
     elif which == o.CALL_ROWS:
         phi, A, rate = work.phi, work.A, work.A_rate
-        evaluate_rows(system.part[o.OF_CONSTRAINT], t, x, phi, A, rate, work)
-        evaluate_rows(system.part[o.OF_ROWS], t, x, phi, A[h:], rate[h:], work)
+        evaluate_rows(system.part[o.OF_CONSTRAINT], t, x, (phi, A, rate), work)
+        evaluate_rows(system.part[o.OF_ROWS], t, x, (phi, A[h:], rate[h:]), work)
     else:
         for c in range(system.contacts):
             gap, G, rate, part = work.gap[c:], work.G[c], work.G_rate[c], o.OF_CONTACT + 2 * c
-            evaluate_rows(system.part[part], t, x, gap, G, rate, work)
-            evaluate_rows(system.part[part + 1], t, x, gap, G[1:], rate[1:], work)
+            evaluate_rows(system.part[part], t, x, (gap, G, rate), work)
+            evaluate_rows(system.part[part + 1], t, x, (gap, G[1:], rate[1:]), work)
 
 
 @kernel
@@ -85,23 +85,24 @@ def evaluate_loads(system, t, x, work):
 
 
 @kernel
-def evaluate_rows(part, t, x, values, out, rates, work):
+def evaluate_rows(part, t, x, out, work):
     """Write values, rows A and (dA/dt) v of a function and its derivative; of rows alone, the last two."""
+    values, A, rates = out
     n, m, v = work.point.size, part[2], x[work.point.size :]
     if part[0] != 0:
         call_function(part[0], t, work.point, values)
     if part[1] != 0:
-        call_function(part[1], t, work.point, out)
-        differ((part[1], m * n), t, x, v, along(x, STEP), _FIRST, work.slope, work)
+        call_function(part[1], t, work.point, A)
+        differ((part[1], m * n, t), x, (v, along(x, STEP), _FIRST), work.slope, work)
         for i in range(m):
             rates[i] = dot(work.slope[i * n :], v, n)
     elif part[0] != 0:
         find_slope(part, t, x, n, work)
         for i in range(m):
             for j in range(n):
-                out[i, j] = work.slope[j * m + i]
+                A[i, j] = work.slope[j * m + i]
         h = along(x, STEP_TWICE)
-        differ((part[0], m), t, x, v, h, _SECOND, rates, work)
+        differ((part[0], m, t), x, (v, h, _SECOND), rates, work)
         for i in range(m if h > 0.0 else 0):
             rates[i] /= h
 
@@ -116,7 +117,7 @@ def find_slope(part, t, x, n, work):
     for k in range(n):
         axis[k] = 1.0
         h = STEP * max(1.0, abs(x[k]))
-        differ((part[0], part[2]), t, x, axis, h, _FIRST, work.slope[k * part[2] :], work)
+        differ((part[0], part[2], t), x, (axis, h, _FIRST), work.slope[k * part[2] :], work)
         axis[k] = 0.0
 
 
@@ -130,9 +131,13 @@ def along(x, part):
 
 
 @kernel
-def differ(function, t, x, way, h, weight, out, work):
-    """Write sum_s weight_s f_i(q + s h way) / h of a function: its address, number of results; 0 for h = 0."""
-    (address, m), q, y, n = function, work.point, work.sample, work.point.size
+def differ(function, x, stencil, out, work):
+    """Write sum_s weight_s f_i(q + s h way) / h of a function: its address, number of results, time.
+
+    The stencil is the way, h and the weights; it gives 0 for h = 0.
+    """
+    (address, m, t), (way, h, weight), q, y = function, stencil, work.point, work.sample
+    n = q.size
     for i in range(m):
         out[i] = 0.0
     for s in range(-2, 3 if h > 0.0 else -2):

@@ -59,7 +59,7 @@ def find_margins(motion, t):
             margin[a.EVENT_CONE, c] = mu * force[0] - pull
             nothing[a.EVENT_CONE, c] = CONE_ROUND_OFF * most
         elif mu > 0.0:
-            u1, u2 = slip_of(system, c, end, work)
+            u1, u2, _, _ = slip_of(system, contact.heading, c, end, work)
             margin[a.EVENT_REVERSE, c] = u1 * contact.heading[0] + u2 * contact.heading[1]
             margin[a.EVENT_JAM, c] = contact.yields
     return code

@@ -11,11 +11,10 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.user_functions import call_function
-from carom.friction.ldl import factor as factor_symmetric
-from carom.friction.ldl import substitute as solve_metric
+from carom.friction import ldl, lu
 from carom.generalized import layout as o
 from carom.generalized.differences import evaluate_parts
-from carom.generalized.linear import add_row, copy_row, dot, factor, substitute
+from carom.generalized.linear import add_row, copy_row, dot
 from carom.model import actions as a
 from carom.status import NOT_FINITE, SINGULAR_METRIC
 
@@ -40,7 +39,7 @@ def find_metric(system, t, x, work):
     n, total = system.n, 0.0
     for i in range(n):
         copy_row(work.M[i], work.L[i], n)
-    factor_symmetric(n, SINGULAR, work.L)
+    ldl.factor(n, SINGULAR, work.L)
     for i in range(n):
         if not 0.0 < work.L[i, i] < math.inf:
             for k in range(n * n):
@@ -89,20 +88,17 @@ def terms(row, x, n):
 
 
 @kernel
-def slip_of(system, c, x, work):
-    """Return the slip (u_1, u_2) of contact c; rows must be those of `x`."""
-    n, rows = system.n, work.G[c]
-    return dot(rows[1], x[n:], n), dot(rows[2], x[n:], n)
+def slip_of(system, heading, c, x, work):
+    """Return the slip (u_1, u_2) of contact c and its direction; rows must be those of `x`.
 
-
-@kernel
-def direction(contact, u1, u2):
-    """Return the direction of slip; if it would reverse within a stage, the direction before."""
-    h1, h2 = contact.heading[0], contact.heading[1]
+    If it would reverse within a stage, it has the direction before.
+    """
+    n, rows, (e1, e2) = system.n, work.G[c], (heading[0], heading[1])
+    u1, u2 = dot(rows[1], x[n:], n), dot(rows[2], x[n:], n)
     size = math.sqrt(u1 * u1 + u2 * u2)
-    if size > 0.0 and u1 * h1 + u2 * h2 > 0.0:
-        return u1 / size, u2 / size
-    return h1, h2
+    if size > 0.0 and u1 * e1 + u2 * e2 > 0.0:
+        e1, e2 = u1 / size, u2 / size
+    return u1, u2, e1, e2
 
 
 @kernel
@@ -135,8 +131,7 @@ def gather(system, active, what, x, work):
             )
             m = add_row_to(work.G[c, r], target, m, work)
         if what == ACCELERATION and contact.mode == a.MODE_SLIP and mu > 0.0:
-            u1, u2 = slip_of(system, c, x, work)
-            e1, e2 = direction(contact, u1, u2)
+            _, _, e1, e2 = slip_of(system, contact.heading, c, x, work)
             add_row(-mu * e1, work.G[c, 1], work.D[first], n)
             add_row(-mu * e2, work.G[c, 2], work.D[first], n)
     return m
@@ -151,13 +146,13 @@ def react(system, m, out, work):
     n = system.n
     for r in range(m):
         copy_row(work.D[r], work.Z[r], n)
-        solve_metric(n, work.L, work.Z[r])
+        ldl.substitute(n, work.L, work.Z[r])
     for r in range(m):
         for s in range(m):
             work.K[r, s] = dot(work.R[r], work.Z[s], n)
         work.rhs[r] -= dot(work.R[r], out, n)
-    factor(work.K, work.inverse, m, system.drop)
-    substitute(work.K, work.inverse, work.rhs, m)
+    lu.factor_in_order(work.K, m, work.inverse, system.drop)
+    lu.substitute_in_order(work.K, m, work.inverse, work.rhs)
     for r in range(m):
         add_row(work.rhs[r], work.Z[r], out, n)
 
@@ -175,7 +170,7 @@ def acceleration(system, active, t, x, work, rate):
     evaluate(system, o.CALL_LOADS, t, x, work.loads, work)
     copy_row(work.load, a, n)
     add_row(-1.0, work.c, a, n)
-    solve_metric(n, work.L, a)
+    ldl.substitute(n, work.L, a)
     if system.rows > 0 or persists(active):
         find_rows(system, active, t, x, work)
         react(system, gather(system, active, ACCELERATION, x, work), a, work)
@@ -199,8 +194,7 @@ def note_forces(system, active, x, work):
         if contact.mode == a.MODE_STICK:
             force[1], force[2] = work.rhs[m + 1], work.rhs[m + 2]
         else:
-            u1, u2 = slip_of(system, c, x, work)
-            e1, e2 = direction(contact, u1, u2)
+            u1, u2, e1, e2 = slip_of(system, contact.heading, c, x, work)
             force[1], force[2] = -mu * force[0] * e1, -mu * force[0] * e2
             power += force[1] * u1 + force[2] * u2
     return power

@@ -137,7 +137,7 @@ class GeneralizedSolution(Drawn):
         return cls(
             t=t, q=states[:, :n].copy(), v=states[:, n:].copy(), kinetic_energy=ledger.kinetic,
             potential_energy=ledger.potential,
-            impacts=impact_table(run.contacts.strike.records, n)._by_name(names),
+            impacts=impact_table(run.contacts.records, n)._by_name(names),
             events=EventTable(*events)._by_name(names), ledger=ledger, status=status, warnings=warnings,
             stats=run.counted(), system=run.user, settings=run.settings,
             _run=run,

@@ -5,19 +5,18 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, kernel
+from carom.friction import ldl
 from carom.generalized.linear import add_row, copy_row
 from carom.generalized.motion import (
     POSITION,
     RATE,
     acceleration,
-    direction,
     find_metric,
     find_rows,
     gather,
     persists,
     react,
     slip_of,
-    solve_metric,
     terms,
 )
 from carom.model import actions as a
@@ -84,8 +83,8 @@ def note_slip_directions(system, active, t, x, work):
     find_rows(system, active, t, x, work)
     for c in range(system.contacts):
         if active[c].mode == a.MODE_SLIP:
-            u1, u2 = slip_of(system, c, x, work)
-            active[c].heading[0], active[c].heading[1] = direction(active[c], u1, u2)
+            heading = active[c].heading
+            _, _, heading[0], heading[1] = slip_of(system, heading, c, x, work)
 
 
 @kernel
@@ -94,18 +93,13 @@ def error_of(system, active, x, work):
     n, worst = system.n, 0.0
     for r in range(system.holonomic):
         work.row_scale[r] = max(work.row_scale[r], terms(work.A[r], x, n))
-        worst = max(worst, relative(work.phi[r], work.row_scale[r]))
+        size = work.row_scale[r]
+        worst = max(worst, abs(work.phi[r]) / (size if size > 0.0 else 1.0))
     for c in range(system.contacts):
         if active[c].mode != a.MODE_OPEN:
             size = max(terms(work.G[c, 0], x, n), work.gap_scale[c])
-            worst = max(worst, relative(work.gap[c], size))
+            worst = max(worst, abs(work.gap[c]) / (size if size > 0.0 else 1.0))
     return worst
-
-
-@kernel
-def relative(error, size):
-    """Return |error| in parts of a size, if there is one."""
-    return abs(error) / size if size > 0.0 else abs(error)
 
 
 @kernel
@@ -135,7 +129,7 @@ def return_to_surfaces(system, active, t, x, work):
         code = find_metric(system, t, y, work)
         if code != 0:
             return code
-        solve_metric(n, work.L, work.c)
+        ldl.substitute(n, work.L, work.c)
         add_row(1.0, xi, x, n)
         add_row(-0.5, work.c, x, n)
     return 0 if error <= 1e-9 else CONSTRAINTS_LOST

@@ -8,14 +8,15 @@ import numpy as np
 
 from carom.generalized.solution import CoordinateImpact
 from carom.impact import layout as o
-from carom.impact.laws import GAINING
+from carom.impact.laws import GAINING, NUMBERS
 from carom.impact.resolve import resolve
 from carom.impact.thresholds import GROUP_SEED, NO_RESTITUTION
 from carom.status import Status
 
 if TYPE_CHECKING:
-    from carom.generalized.contacts import Contacts
+    from carom.generalized.run import GeneralizedRun
 
+STILL = 1e-12  # relative to the speeds of a contact: a relative velocity that is round-off
 BLOWS = 200  # impacts at one instant
 
 
@@ -25,20 +26,49 @@ def rows_of(contacts: list[int]) -> np.ndarray:
 
 
 class Strike:
-    """Solver of the impacts of a run, with their records."""
+    """The contacts of a run at one state, the solver of their impacts, and its records."""
 
-    def __init__(self, contacts: Contacts):
-        self.contacts, self.run = contacts, contacts.run
+    def __init__(self, run: GeneralizedRun):
+        contacts = run.user.contacts
+        self.run, self.seen = run, run.made.work
+        self.restitution = np.array([one.restitution for one in contacts])
+        self.friction = np.array([one.friction for one in contacts])
+        self.law = np.array([NUMBERS[one.impact_law] for one in contacts], dtype=np.int64)
+        self.events: list[tuple[float, str, int]] = []
+        self.light = 0.0  # kinetic energy that the loads give in a step: less is round-off
         self.records: list[CoordinateImpact] = []
-        self.blows = np.zeros(len(contacts.law), dtype=np.int64)
-        self.struck = np.zeros(len(contacts.law))  # time of the last impact
+        self.blows = np.zeros(len(contacts), dtype=np.int64)
+        self.struck = np.zeros(len(contacts))  # time of the last impact
         self.room: Any = None  # workspace for several contacts, made when it is first needed
 
-    def all(self, closed: list[int], jams: int = -1) -> int:
+    def note(self, what: str, contact: int) -> None:
+        """Write an event."""
+        self.events.append((self.run.reached, what, contact))
+
+    def look(self) -> int:
+        """Evaluate the state without forces of contacts, and the speeds that count as 0; return a status."""
+        run, seen, v = self.run, self.seen, self.run.x[self.run.n :]
+        code = run.made.compute(run.x, run.reached)
+        P = np.linalg.inv(seen.M)
+        push = np.sqrt(max(seen.load @ P @ seen.load, 0.0)) * run.plan.step
+        self.light = max(self.light, 0.5 * push**2)
+        if len(seen.A):
+            Y = P @ seen.A.T
+            P = P - Y @ np.linalg.pinv(seen.A @ Y, rcond=run.system.drop, hermitian=True) @ Y.T
+        self.G, self.P = seen.G.reshape(-1, run.n).copy(), 0.5 * (P + P.T)
+        W = self.G @ self.P @ self.G.T
+        self.W, self.c = 0.5 * (W + W.T), self.G @ seen.a + seen.G_rate.ravel()
+        self.u, self.free = (self.G @ v).reshape(-1, 3), seen.a.copy()
+        self.slip = np.linalg.norm(self.u[:, 1:], axis=1)
+        self.W_ii = np.diag(self.W).reshape(-1, 3)
+        size = np.sqrt(np.maximum(self.W_ii.sum(axis=1), 0.0))
+        self.still = STILL * size * max(np.sqrt(max(v @ seen.M @ v, 0.0)), push)
+        return code
+
+    def strike(self, closed: list[int], jams: int = -1) -> int:
         """Resolve impacts until no closed contact approaches; return a status."""
-        here = self.contacts
         for _ in range(BLOWS):
-            approach = any(here.u[c, 0] < -here.still[c] for c in closed)
+            approach = any(self.u[c, 0] < -self.still[c] for c in closed)
             if not approach and jams < 0:
                 return 0
             code, jams = self.together(closed, -1 if approach else jams), -1
@@ -48,55 +78,55 @@ class Strike:
 
     def count(self, closed: list[int]) -> None:
         """Count blows: in a row are those after a bounce below the tolerances, or shorter than a given step."""
-        here, plan, since = self.contacts, self.run.plan, self.run.reached - self.struck[closed]
-        fallen = -here.u[closed, 0] * since
+        plan, since = self.run.plan, self.run.reached - self.struck[closed]
+        fallen = -self.u[closed, 0] * since
         high = fallen > plan.atol + plan.rtol if plan.order else since > plan.step
         self.blows[closed] = np.where(high, 0, self.blows[closed]) + 1
         self.struck[closed] = self.run.reached
 
-    def restitution(self, c, before):
+    def restitution_after(self, c, before):
         """Return e of contacts after a number of blows in a row; 0 if these have left hardly any speed."""
-        e = self.contacts.restitution[c]
+        e = self.restitution[c]
         return np.where((e < 1.0) & (e**before <= NO_RESTITUTION), 0.0, e)
 
     def together(self, closed: list[int], jams: int) -> int:
         """Change the velocities by the impact of closed contacts; return a status."""
-        here, run, k, rows = self.contacts, self.run, len(closed), rows_of(closed)
-        M, v, W = here.seen.M, run.x[run.n :].copy(), here.W[np.ix_(rows, rows)]
-        u = here.u[closed]
-        u[np.abs(u[:, 0]) <= here.still[closed], 0] = 0.0
+        run, k, rows = self.run, len(closed), rows_of(closed)
+        M, v, W = self.seen.M, run.x[run.n :].copy(), self.W[np.ix_(rows, rows)]
+        u = self.u[closed]
+        u[np.abs(u[:, 0]) <= self.still[closed], 0] = 0.0
         if jams >= 0:
             i = closed.index(jams)
             u[i, 0] = -GROUP_SEED * np.linalg.norm(u[i, 1:])
         self.count(closed)
-        mu, e = here.friction[closed], self.restitution(closed, self.blows[closed] - 1.0)
+        mu, e = self.friction[closed], self.restitution_after(closed, self.blows[closed] - 1.0)
         code, after, p, works, wedged = self.solve(W, u, mu, e, closed)
         if code != o.OK:
             return Status.IMPACT_FAILED
-        run.x[run.n :] += here.P @ (here.G[rows].T @ p.ravel())
+        run.x[run.n :] += self.P @ (self.G[rows].T @ p.ravel())
         run.clock[0].impacts += 0.5 * (run.x[run.n :] - v) @ M @ (run.x[run.n :] + v)
         for i in np.flatnonzero(np.any(p != 0.0, axis=1)):
             own, parts = slice(3 * i, 3 * i + 3), works[:, i].tolist()
             change = parts[0] + parts[1] - parts[2]
-            if here.law[closed[i]] in GAINING and mu[i] > 0.0:
+            if self.law[closed[i]] in GAINING and mu[i] > 0.0:
                 run.clock[0].given += max(change, 0.0)
-            here.note("impact", closed[i])
+            self.note("impact", closed[i])
             self.records.append(CoordinateImpact(
                 run.reached, closed[i], run.x[: run.n].copy(), u[i], after[i], p[i],
                 change, run.user.contacts[closed[i]].impact_law, W[own, own],
                 float(e[i]), float(mu[i]), *parts, together=k, wedged=int(wedged[i] != 0),
             ))  # fmt: skip
-        return here.look()
+        return self.look()
 
     def solve(self, W, u, mu, e, closed):
         """Return code, velocities (k, 3), impulses (k, 3), works (3, k) and wedged (k,) of an impact.
 
         Of several contacts it is a multiple impact (mathematics page, part 2).
         """
-        law = self.contacts.law[closed]
+        law = self.law[closed]
         if len(closed) == 1:
             out = np.zeros((o.SIZE, 1))
-            out[o.STILL] = self.contacts.still[closed]
+            out[o.STILL] = self.still[closed]
             code = resolve(W, u[0].copy(), mu[0], e[0], law[0], out[:, 0])
             after, p = (out[at : at + 3].T for at in (o.VELOCITY, o.IMPULSE))
             works, phases = out[[o.WORK_C, o.WORK_R, o.FRICTION_LOSS]], out[o.PHASES].astype(int)

@@ -1,49 +1,63 @@
 """Rotations as unit quaternions (w, x, y, z) and 3x3 matrices, in scalars: kernels.
 
-`R(Q)` transforms body components to world components. Arguments are scalars, results are tuples of scalars.
+`R(Q)` transforms body components to world components. A quaternion, and the vector that it rotates, is an
+array or a tuple; results are tuples of scalars.
 """
 
 from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import entry, inlined
+from carom._compiled.decorators import entry, inlined, kernel
 
 
-@entry
+@kernel
 def cross(ax, ay, az, bx, by, bz):
     """Return a x b."""
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
-@entry
-def multiply(aw, ax, ay, az, bw, bx, by, bz):
-    """Return the quaternion product a b (first b, then a)."""
+@kernel
+def unit_vector(k):
+    """Return the unit vector along axis k."""
+    return 1.0 if k == 0 else 0.0, 1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0
+
+
+@inlined
+def multiply(p, q):
+    """Return the quaternion product p q (first q, then p)."""
     return (
-        aw * bw - ax * bx - ay * by - az * bz,
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
+        p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
+        p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+        p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
+        p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0],
     )
 
 
-@entry
-def normalize(w, x, y, z):
+@inlined
+def conjugate(q):
+    """Return the inverse of a unit quaternion."""
+    return q[0], -q[1], -q[2], -q[3]
+
+
+@kernel
+def normalize(q):
     """Return the quaternion divided by its length."""
-    s = 1.0 / math.sqrt(w * w + x * x + y * y + z * z)
-    return s * w, s * x, s * y, s * z
+    s = 1.0 / math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
+    return s * q[0], s * q[1], s * q[2], s * q[3]
 
 
-@entry
-def renormalize(w, x, y, z):
+@inlined
+def renormalize(q):
     """Return a quaternion that is nearly of unit length, normalised by one step of Newton's method."""
-    s = 1.5 - 0.5 * (w * w + x * x + y * y + z * z)
-    return s * w, s * x, s * y, s * z
+    s = 1.5 - 0.5 * (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
+    return s * q[0], s * q[1], s * q[2], s * q[3]
 
 
-@entry
-def matrix(w, x, y, z):
+@kernel
+def matrix(q):
     """Return the nine entries, row by row, of the rotation matrix of a unit quaternion."""
+    w, x, y, z = q[0], q[1], q[2], q[3]
     xx, yy, zz = x * x, y * y, z * z
     xy, xz, yz = x * y, x * z, y * z
     wx, wy, wz = w * x, w * y, w * z
@@ -54,21 +68,23 @@ def matrix(w, x, y, z):
     )  # fmt: skip
 
 
-@entry
-def rotate(w, x, y, z, ax, ay, az):
+@inlined
+def rotate(q, a):
     """Return R a: transform body components to world components."""
-    tx, ty, tz = 2.0 * (y * az - z * ay), 2.0 * (z * ax - x * az), 2.0 * (x * ay - y * ax)
+    w, x, y, z = q[0], q[1], q[2], q[3]
+    tx, ty = 2.0 * (y * a[2] - z * a[1]), 2.0 * (z * a[0] - x * a[2])
+    tz = 2.0 * (x * a[1] - y * a[0])
     return (
-        ax + w * tx + y * tz - z * ty,
-        ay + w * ty + z * tx - x * tz,
-        az + w * tz + x * ty - y * tx,
+        a[0] + w * tx + y * tz - z * ty,
+        a[1] + w * ty + z * tx - x * tz,
+        a[2] + w * tz + x * ty - y * tx,
     )
 
 
-@entry
-def rotate_back(w, x, y, z, ax, ay, az):
+@inlined
+def rotate_back(q, a):
     """Return R^T a: transform world components to body components."""
-    return rotate(w, -x, -y, -z, ax, ay, az)
+    return rotate(conjugate(q), a)
 
 
 @entry
@@ -97,20 +113,19 @@ def exp(ax, ay, az):
 @inlined
 def turn(Q, ax, ay, az):
     """Turn an attitude, (4,), by a rotation vector in world axes: Q <- exp(a) Q."""
-    r = exp(ax, ay, az)
-    q = multiply(r[0], r[1], r[2], r[3], Q[0], Q[1], Q[2], Q[3])
-    Q[0], Q[1], Q[2], Q[3] = renormalize(q[0], q[1], q[2], q[3])
+    Q[0], Q[1], Q[2], Q[3] = renormalize(multiply(exp(ax, ay, az), Q))
 
 
-@entry
+@kernel
 def norm(a):
     """Return the length of a vector (3,)."""
     return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
 @entry
-def log(w, x, y, z):
+def log(q):
     """Return the rotation vector of a unit quaternion, its angle in [0, pi]; safe at 0 and pi."""
+    w, x, y, z = q[0], q[1], q[2], q[3]
     if w < 0.0:
         w, x, y, z = -w, -x, -y, -z
     s2 = x * x + y * y + z * z
@@ -122,7 +137,7 @@ def log(w, x, y, z):
     return f * x, f * y, f * z
 
 
-@entry
+@kernel
 def spin_tensor(R, i):
     """Return the six entries xx, xy, xz, yy, yz, zz of R diag(i) R^T, with R as returned by `matrix`."""
     return (

@@ -7,7 +7,7 @@ Where rows prescribe a speed, a v = b, their impulses Lambda do work, Lambda . b
 
 from __future__ import annotations
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.dynamics.rotors import work_of_change
 from carom.geometry.rotation import rotate_back
@@ -24,8 +24,8 @@ def driven_work(system, state, first, clock, records, work) -> float:
         before, body, q = records.snapshot[clock.snapped + b], system.bodies[b], state[b].Q
         v0, w0, v, w = before.v0, before.w0, state[b].v, state[b].w
         motion = work.body[b].motion
-        s = rotate_back(q[0], q[1], q[2], q[3], w0[0], w0[1], w0[2])
-        d = rotate_back(q[0], q[1], q[2], q[3], w[0] - w0[0], w[1] - w0[1], w[2] - w0[2])
+        s = rotate_back(q, w0)
+        d = rotate_back(q, (w[0] - w0[0], w[1] - w0[1], w[2] - w0[2]))
         for k in range(3):
             total += body.mass * v0[k] * (v[k] - v0[k]) + body.inertia[k] * s[k] * d[k]
             motion[k], motion[3 + k] = v0[k], w0[k]
@@ -38,17 +38,11 @@ def driven_work(system, state, first, clock, records, work) -> float:
 
 
 @kernel
-def _blocked(system, point, inverse_mass):
+def blocked(system, point, inverse_mass):
     """Return whether prescribed motions block a point along its normal: W_nn is round-off of 1/m."""
+    if not (system.relations.there == 1 and system.solver.kind == LOOPS):
+        return False
     free = 1.0 / system.bodies[point.a].mass
     if point.b >= 0:
         free += 1.0 / system.bodies[point.b].mass
     return inverse_mass <= IMPACT_ERROR * free
-
-
-@inlined
-def blocked(system, point, inverse_mass):
-    """Return whether prescribed motions block a point along its normal: W_nn is round-off of 1/m."""
-    if system.relations.there == 1 and system.solver.kind == LOOPS:
-        return _blocked(system, point, inverse_mass)
-    return False

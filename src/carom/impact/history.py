@@ -140,20 +140,23 @@ def impact_layer(
     >>> print(layer.velocity_after)
     [0.5   0.475 0.   ]
     """
+    from carom._compiled.record_arrays import table
     from carom.impact import layout as o
     from carom.impact.layer import traverse
     from carom.impact.phase import COLUMNS
+    from carom.model.workspace import HIT
 
     W, u, mu, e, number = checked_impact(inverse_mass, velocity, friction, restitution, law)
     delta = checks.number("penetration", penetration, above=0.0, below=1.0)
     b = checks.number("width", width, above=0.0, unit="m")
     steps = checks.integer("steps", steps, least=2, most=MOST_STEPS)
-    out = np.zeros(o.SIZE)
-    rows = np.zeros((steps + 32, COLUMNS))
-    raise_for(traverse(W, u, mu, e, number, (b, delta, steps), rows, out))
+    hit = table(HIT, 1)[0]
+    hit.W, hit.u, hit.friction, hit.restitution = W, u, mu, e
+    out, rows = hit.out, np.zeros((steps + 32, COLUMNS))
+    raise_for(traverse(hit, number, (b, delta, steps), rows))
     if out[o.KNOTS] > len(rows):  # steps were halved: there are more knots than foreseen
         rows = np.zeros((int(out[o.KNOTS]), COLUMNS))
-        raise_for(traverse(W, u, mu, e, number, (b, delta, steps), rows, out))
+        raise_for(traverse(hit, number, (b, delta, steps), rows))
     rows = rows[: int(out[o.KNOTS])]
     return LayerHistory(
         t=rows[:, 0].copy(),

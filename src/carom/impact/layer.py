@@ -21,9 +21,9 @@ from carom.friction.rays import outgoing, stick_ratio
 from carom.geometry.thresholds import ROUND_OFF
 from carom.impact import laws
 from carom.impact import layout as o
-from carom.impact.phase import Friction, Span, ratio, replay, run, shoot
+from carom.impact.phase import NO_LAW, Friction, Span, ratio, replay, shoot
 from carom.impact.phase import write as write_knot
-from carom.impact.resolve import resolve_one, write
+from carom.impact.resolve import resolve, write
 from carom.impact.spline import Contact, force
 from carom.impact.thresholds import NO_RESTITUTION
 
@@ -45,15 +45,16 @@ class Passage(NamedTuple):
 
 
 @entry
-def traverse(W, u, mu, e, law, layer, history, out):
-    """Integrate one impact through the layer (width b, penetration delta, steps of the spline).
+def traverse(hit, law, layer, history):
+    """Integrate the impact `hit` through the layer (width b, penetration delta, steps of the spline).
 
-    The arguments are those of `resolve`, with the same `out`. Compression and restitution have half of the
-    steps each (at least one). Knots are written to the rows of `history` (t, s, u_n, u_1, u_2, x^2, x^3, N,
+    Its W, u, friction, restitution and `out` are those of `resolve`. Compression and restitution have half of
+    the steps each (at least one). Knots are written to the rows of `history` (t, s, u_n, u_1, u_2, x^2, x^3, N,
     T_1, T_2), as many as it has, and their number to ``out[KNOTS]``. Forces are those just after the knot, and
     just before the last knot.
     """
-    code = resolve_one(W, u, mu, e, law, out)
+    W, u, mu, e, out = hit.W, hit.u, hit.friction, hit.restitution, hit.out
+    code = resolve(W, u, mu, e, law, out)
     if code != o.OK:
         return code
     b, delta, steps = layer
@@ -98,16 +99,19 @@ def _pass(given, history, out):
 
     # Compression, from u_n = -v0 to 0.
     accel = 0.5 * v0 * v0 / depth if timed else 0.0
-    ok, end, fixed, total, row = _compress(given, accel, friction, history, out)
+    contact = Contact(given.m, given.mu, accel)
+    ok, end, fixed, total, row = shoot(
+        contact, _compression(given, accel, out), friction, history, 0
+    )
     if ok == 0:
         return o.SPLINE_FAILED
     before = (u[1], u[2], u[0])
     # In stick u_t is exactly 0, without the round-off of W (1, tau).
     state = (0.0, 0.0, 0.0) if fixed and sticks else (end[0], end[1], 0.0)
     work_c, loss = _works(given, before, state, total)
-    C = P = (total[3], total[4], total[5])
+    C, R = (total[3], total[4], total[5]), (0.0, 0.0, 0.0)
     factor, work_r = 1.0 if timed else -work_c / depth, 0.0
-    time = v0 / accel if timed else P[0] / factor
+    time = v0 / accel if timed else C[0] / factor
     place = (-depth, total[1] / factor, total[2] / factor)
     replay(history, 0, row, (0.0, 0.0, 0.0, 0.0), factor)
 
@@ -117,9 +121,9 @@ def _pass(given, history, out):
         first, before = row, state
         accel *= e * e
         goal = laws.goal(given.law, e, v0, C[0], work_c)
-        ok, end, fixed, total, row = _restore(
-            given, accel, goal, before, friction, history, row, out
-        )
+        contact = Contact(given.m, given.mu, accel)
+        span = _restitution(given, accel, goal, before, not fixed, out)
+        ok, end, fixed, total, row = shoot(contact, span, friction, history, row)
         if ok == 0:
             return o.SPLINE_FAILED
         friction = Friction(fixed, friction.t1, friction.t2)
@@ -127,7 +131,7 @@ def _pass(given, history, out):
         state = (0.0, 0.0, u_n) if fixed and sticks else (end[0], end[1], u_n)
         work_r, lost = _works(given, before, state, total)
         loss += lost
-        P = (C[0] + total[3], C[1] + total[4], C[2] + total[5])
+        R = (total[3], total[4], total[5])
         if given.wedged and not work_r > ROUND_OFF * -work_c:
             row = first  # an impulse that moves nothing takes no time
         else:
@@ -137,46 +141,40 @@ def _pass(given, history, out):
             place = (0.0, place[1] + total[1] / factor, place[2] + total[2] / factor)
 
     # The last knot, and the results.
-    contact = Contact(given.m, given.mu, accel)
     t1, t2 = ratio(contact, friction, state)
     normal, _ = force(contact, t1, t2)
     row = write_knot(history, row, time, state, place, (normal * factor, t1, t2))
-    after = (state[0], state[1], state[2], 0.0, 0.0, 0.0, 0.0, work_r)
-    write(out, 1.0, 1.0, u, after, P, (C[0], C[1], C[2], loss, work_c))
+    after = (state[0], state[1], state[2], R[0], R[1], R[2], 0.0, work_r)
+    write(out, 1.0, 1.0, u, after, (C[0], C[1], C[2], loss, work_c))
     out[o.STEPS], out[o.DURATION], out[o.KNOTS] = row - 1, time, row
     return o.OK
 
 
 @kernel
-def _compress(given, accel, friction, history, out):
-    """Integrate compression (see `run`)."""
+def _compression(given, accel, out):
+    """Return the phase of compression."""
     slip_end_p, p_c, v0 = out[o.SLIP_END_P], out[o.P_C], -given.u[0]
-    contact, start = Contact(given.m, given.mu, accel), (given.u[1], given.u[2], given.u[0])
+    start = (given.u[1], given.u[2], given.u[0])
     ends = 0.0 <= slip_end_p <= p_c
     if given.timed:
         split = min((out[o.SLIP_END_UN] + v0) / accel, v0 / accel) if ends else -1.0
-        return run(contact, Span(start, given.steps, v0 / accel, split), friction, history, 0)
-    span = Span(start, given.steps, p_c, slip_end_p if ends else -1.0)
-    if given.wedged:
-        return run(contact, span, friction, history, 0)
-    return shoot(contact, laws.NEWTON, 0.0, span, friction, history, 0)
+        return Span(start, given.steps, v0 / accel, split, NO_LAW, 0.0)
+    law = NO_LAW if given.wedged else laws.NEWTON
+    return Span(start, given.steps, p_c, slip_end_p if ends else -1.0, law, 0.0)
 
 
 @kernel
-def _restore(given, accel, goal, start, friction, history, row, out):
-    """Integrate restitution (see `run`)."""
+def _restitution(given, accel, goal, start, slips, out):
+    """Return the phase of restitution from `start`, where the contact still `slips` or not."""
     p_c = out[o.P_C]
-    contact = Contact(given.m, given.mu, accel)
-    later = out[o.SLIP_END_P] >= 0.0 and not friction.fixed
+    later = out[o.SLIP_END_P] >= 0.0 and slips
     if given.timed:
         length = given.e * -given.u[0] / accel
         split = min(max(out[o.SLIP_END_UN] / accel, 0.0), length) if later else -1.0
-        return run(contact, Span(start, given.steps, length, split), friction, history, row)
+        return Span(start, given.steps, length, split, NO_LAW, 0.0)
     split = max(out[o.SLIP_END_P] - p_c, 0.0) if later else -1.0
-    span = Span(start, given.steps, out[o.IMPULSE] - p_c, split)
-    if given.wedged:
-        return run(contact, span, friction, history, row)
-    return shoot(contact, given.law, goal, span, friction, history, row)
+    law = NO_LAW if given.wedged else given.law
+    return Span(start, given.steps, out[o.IMPULSE] - p_c, split, law, goal)
 
 
 @kernel

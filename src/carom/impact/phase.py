@@ -18,16 +18,20 @@ from carom.impact.thresholds import SHORTEST_PART
 # Columns of `history`, one row for each knot: time, s, velocity, tangential displacement, force after the knot.
 COLUMNS = 10
 
+NO_LAW = -1  #: in place of a law: the length of the phase is known
+
 _MAX_STEPS = 10000  # in a phase, beyond the requested number
 
 
 class Span(NamedTuple):
-    """A phase to integrate."""
+    """A phase to integrate, which its length ends or, in the normal impulse, a law."""
 
     start: tuple  # (u_1, u_2, u_n)
     steps: int  # of equal length
-    length: float
+    length: float  # a first guess if a law ends the phase
     split: float  # where slip ends, -1 if nowhere
+    law: int  # or NO_LAW
+    goal: float  # value of the law's measure at the end
 
 
 class Friction(NamedTuple):
@@ -69,6 +73,7 @@ def run(contact, span, friction, history, row):
     the integrals (displacement n, t1, t2; impulse n, t1, t2; friction loss), and the next row.
     """
     state, total, q = span.start, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 0.0
+    shortest = SHORTEST_PART * span.length
     n, length, split = span.steps, span.length, span.split
     limit = row + n + _MAX_STEPS
     for i in range(n):
@@ -84,12 +89,12 @@ def run(contact, span, friction, history, row):
                     return 0, state, friction.fixed, total, row
                 place = (total[0], total[1], total[2])
                 row = write(history, row, q, state, place, (normal, t1, t2))
-                shortest = SHORTEST_PART * length
-                ok, d, to_rest, state, total = _advance(
-                    contact, friction, state, total, whole, to_rest, shortest
+                ok, d, to_rest, new, gained = _advance(
+                    contact, friction, state, whole, to_rest, shortest
                 )
                 if ok == 0:
                     return 0, state, friction.fixed, total, row
+                state, total = new, _plus(total, gained)
                 q = q + d if d < whole else stop
             if to_rest:
                 state, total = _stopped(contact, state, total)
@@ -98,10 +103,10 @@ def run(contact, span, friction, history, row):
 
 
 @kernel
-def _advance(contact, friction, state, total, d, to_rest, shortest):
+def _advance(contact, friction, state, d, to_rest, shortest):
     """Take a step of at most `d`; `to_rest` says that slip is known to end with it.
 
-    Return 1 if it was solved, its length, whether slip has ended with it, the new state and integrals.
+    Return 1 if it was solved, its length, whether slip has ended with it, the new state and the integrals.
     """
     m, (x, y, u_n) = contact.m, state
     t1, t2 = ratio(contact, friction, state)
@@ -114,7 +119,7 @@ def _advance(contact, friction, state, total, d, to_rest, shortest):
         if ok == 0:
             # Slip ends here, earlier than in the impact solver, because of the error of the spline.
             if not abs(x) + abs(y) <= 1e3 * step.length * (abs(ax) + abs(ay)):
-                return 0, d, to_rest, state, total
+                return 0, d, to_rest, state, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
             straight = to_rest = True
         elif step.length < d:
             to_rest = False
@@ -123,15 +128,19 @@ def _advance(contact, friction, state, total, d, to_rest, shortest):
         ux, uy = x + d * ax, y + d * ay
         step = Step((x, y), (ux, uy), (0.5 * (x + ux), 0.5 * (y + uy)), d)
     ip, i1, i2, il, gain, moment = quadratures(contact, step, straight, (t1, t2))
-    sigma, dx, dy, p, p1, p2, loss = total
-    total = (
-        sigma + (d * u_n + moment), dx + d * step.mean[0], dy + d * step.mean[1],
-        p + ip, p1 + i1, p2 + i2, loss + il,
-    )  # fmt: skip
     # The velocity at the end of the step, equal to W P to round-off.
     x += m[1] * ip + m[3] * i1 + m[4] * i2
     y += m[2] * ip + m[4] * i1 + m[5] * i2
-    return 1, d, to_rest, (x, y, u_n + gain), total
+    gained = d * u_n + moment, d * step.mean[0], d * step.mean[1], ip, i1, i2, il
+    return 1, d, to_rest, (x, y, u_n + gain), gained
+
+
+@kernel
+def _plus(total, gained):
+    """Return the sum of the integrals of two parts."""
+    a0, a1, a2, a3, a4, a5, a6 = total
+    b0, b1, b2, b3, b4, b5, b6 = gained
+    return a0 + b0, a1 + b1, a2 + b2, a3 + b3, a4 + b4, a5 + b5, a6 + b6
 
 
 @kernel
@@ -166,27 +175,28 @@ def _stopped(contact, state, total):
         dp = (m[1] * r1 + m[2] * r2) / (m[0] - m[1] * k1 - m[2] * k2)
         d1, d2 = -r1 - dp * k1, -r2 - dp * k2
     u_n += m[0] * dp + m[1] * d1 + m[2] * d2
-    sigma, dx, dy, p, p1, p2, loss = total
-    return (0.0, 0.0, u_n), (sigma, dx, dy, p + dp, p1 + d1, p2 + d2, loss)
+    return (0.0, 0.0, u_n), _plus(total, (0.0, 0.0, 0.0, dp, d1, d2, 0.0))
 
 
 @kernel
-def shoot(contact, law, goal, span, friction, history, row):
-    """Integrate a phase in the normal impulse until `law` reaches its `goal`; the length is a first guess."""
-    last, length = math.inf, span.length
+def shoot(contact, span, friction, history, row):
+    """Integrate a phase as `run` does; if a law ends it, with the length at which the law reaches its goal."""
+    last, length, law = math.inf, span.length, span.law
     result = run(contact, span, friction, history, row)
+    if law == NO_LAW:
+        return result
     for _ in range(40):
         _, state, at_rest, total, _ = result
         t1, t2 = ratio(contact, Friction(at_rest, friction.t1, friction.t2), state)
         _, k = force(contact, t1, t2)
-        left = laws.remaining(law, goal, state[2], total[3], total[0])
+        left = laws.remaining(law, span.goal, state[2], total[3], total[0])
         change = left / laws.rate(law, state[2], k)
         if abs(change) <= 4e-16 * length or (abs(change) <= 1e-12 * length and abs(change) >= last):
             return result
         if not abs(change) < 0.5 * length:
             break
         length, last = length + change, abs(change)
-        longer = Span(span.start, span.steps, length, span.split)
+        longer = Span(span.start, span.steps, length, span.split, law, span.goal)
         result = run(contact, longer, friction, history, row)
     return 0, result[1], result[2], result[3], result[4]
 

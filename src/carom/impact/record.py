@@ -66,11 +66,12 @@ def write_impact(contact, state, point, hit, clock, records):
 
 
 @kernel
-def write_share(contact, i, k, state, group, multiple, clock, records):
+def write_share(data, contact, i, k):
     """Write the share of point i in an impact of k points.
 
     A loss that its law does not allow, at e = 1 without friction, is no entry of the ledger.
     """
+    group, multiple, clock, records = data.group, data.multiple, data.clocks[0], data.records
     result, n = multiple.result, 3 * i
     taken, returned, loss = result.compression[i], result.restitution[i], result.friction[i]
     phases = layout.WEDGED if result.wedged[i] != 0 else 0
@@ -82,7 +83,7 @@ def write_share(contact, i, k, state, group, multiple, clock, records):
         impulse=three(result.impulse, n), compression=taken, restitution=returned, friction=loss,
         change=taken + returned - loss, phases=phases, duration=0.0,
     )  # fmt: skip
-    write_blow(contact, group.points[0][i], state, blow, clock, records)
+    write_blow(contact, group.points[0][i], data.state, blow, clock, records)
     if not (phases & layout.PLASTIC != 0 and multiple.e[i] == 1.0 and group.mu[i] == 0.0):
         clock.impacts += blow.change
 

@@ -64,12 +64,6 @@ _CURVE = Line(_CURVED, 0.0, 0.0, 0.0)
 
 @entry
 def resolve(W, u, mu, e, law, out):
-    """Solve one impact like `resolve_one`, for calls from Python."""
-    return resolve_one(W, u, mu, e, law, out)
-
-
-@kernel
-def resolve_one(W, u, mu, e, law, out):
     """Solve one impact with inverse mass `W` (3, 3), approach velocity `u` (3,), friction `mu`.
 
     The normal is first, ``u[0] < 0``; `e` and `law` (as in `laws`) give the restitution. Results are written to
@@ -91,10 +85,9 @@ def resolve_one(W, u, mu, e, law, out):
     if code != o.OK:
         return code
     s = (s[0], s[1], max(0.0, s[2]), s[3], s[4], s[5], s[6], s[7])
-    P = (before[0] + s[3], before[1] + s[4], before[2] + s[5])
-    if not 0.0 < P[0] < math.inf:
+    if not 0.0 < before[0] + s[3] < math.inf:
         return o.NO_END
-    write(out, v, w, (u0, u1, u2), s, P, before)
+    write(out, v, w, (u0, u1, u2), s, before)
     out[o.PHASES] = phases
     out[o.STEPS] = steps
     out[o.SLIP_END_P] = slip_end[0] * (v / w) if slip_end[0] >= 0.0 else -1.0
@@ -229,7 +222,7 @@ def _along_curve(contact, phase, s):
     h = min(h, 4.0 * max(end, unit) / r)
     new = moved(m, mu, s, t, h)
     if laws.remaining(law, goal, new[2], new[3], new[7]) <= 0.0:
-        return land(m, mu, law, goal, s, new, t, h), _AT_GOAL, marks
+        return land(contact, phase, s, new, t, h), _AT_GOAL, marks
     if phase.restitution and drowned(m, new[3], new[4], new[5], phase.taken):
         return new, _CAUGHT, marks | o.WEDGED
     slips = math.sqrt(new[0] * new[0] + new[1] * new[1]) > 1e-3 * ROUND_OFF * size
@@ -289,9 +282,9 @@ def _without_slip(m, s, size):
 
 
 @kernel
-def write(out, v, w, u, s, P, before):
+def write(out, v, w, u, s, before):
     """Write velocities, impulses and works; the arguments are in units of `v` for velocity and `w` for W."""
-    p, p1, p2 = P
+    p, p1, p2 = before[0] + s[3], before[1] + s[4], before[2] + s[5]
     one, work = v / w, v * (v / w)
     out[o.VELOCITY], out[o.VELOCITY + 1], out[o.VELOCITY + 2] = s[2] * v, s[0] * v, s[1] * v
     out[o.IMPULSE], out[o.IMPULSE + 1], out[o.IMPULSE + 2] = p * one, p1 * one, p2 * one

@@ -38,7 +38,7 @@ def return_map(system, contact, state, work, tie, tolerance):
             if rho >= -tolerance and (iteration > 0 or rho <= tolerance):
                 return iteration
         place(contact, core, state, point)
-        spread(system, point, state, 1.0, 0.0, 0.0, work)
+        spread(system, point, state, (1.0, 0.0, 0.0), work)
         w_nn = contact_motion(point, work)[0]
         if not w_nn > 0.0:
             return -1

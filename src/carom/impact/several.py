@@ -13,7 +13,7 @@ from carom._compiled.decorators import entry
 from carom.impact import layout as o
 from carom.impact.api import Impact, phase_names
 from carom.impact.laws import NUMBERS
-from carom.impact.resolve import resolve_one
+from carom.impact.resolve import resolve
 
 FEW_IMPACTS = 2000  # take ten times as long as a thread to begin
 
@@ -22,7 +22,7 @@ FEW_IMPACTS = 2000  # take ten times as long as a thread to begin
 def resolve_many(W, u, mu, e, law, out):
     """Solve each impact; return the number of the first that failed and its code, or (-1, OK)."""
     for i in range(u.shape[0]):
-        code = resolve_one(W[i], u[i], mu[i], e[i], law[i], out[i])
+        code = resolve(W[i], u[i], mu[i], e[i], law[i], out[i])
         if code != o.OK:
             return i, code
     return -1, o.OK
@@ -33,12 +33,8 @@ def resolve_several(inverse_mass, velocity, friction, restitution, law) -> Impac
     W = _checked_inverse_masses(inverse_mass)
     k = W.shape[-1]
     u = checks.vectors("velocity", velocity, k)
-    _all(
-        "velocity[..., 0] (normal velocity, approach is negative)",
-        u[..., 0],
-        "below 0",
-        u[..., 0] < 0,
-    )
+    name = "velocity[..., 0] (normal velocity, approach is negative)"
+    _all(name, u[..., 0], "below 0", u[..., 0] < 0)
     mu = _numbers("friction", friction, "at least 0", lambda a: a >= 0)
     e = _numbers("restitution", restitution, "from 0 to 1", lambda a: (a >= 0) & (a <= 1))
     names = np.asarray(law, dtype=object)
@@ -54,10 +50,7 @@ def resolve_several(inverse_mass, velocity, friction, restitution, law) -> Impac
             f"(broadcast), got {', '.join(map(str, parts))}"
         ) from None
     n = int(np.prod(shape))
-    full, speed = (
-        np.zeros((n, 3, 3)),
-        np.zeros((n, 3)),
-    )  # nothing moves along the second tangent of a plane
+    full, speed = np.zeros((n, 3, 3)), np.zeros((n, 3))  # of a plane, 0 along its second tangent
     full[:, :k, :k] = np.broadcast_to(W, (*shape, k, k)).reshape(n, k, k)
     speed[:, :k] = np.broadcast_to(u, (*shape, k)).reshape(n, k)
     mu, e, number = (

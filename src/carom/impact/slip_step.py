@@ -40,11 +40,12 @@ def moved(m, mu, s, t, h):
 
 
 @kernel
-def land(m, mu, law, goal, start, end, t, h):
-    """Return the state at which the goal is reached, from the series `t` between `start` and `end`, `h` later.
+def land(contact, phase, start, end, t, h):
+    """Return the state at the goal of the phase, from the series `t` between `start` and `end`, `h` later.
 
     Newton's iteration is kept between the last point before the goal and the first point after it.
     """
+    m, mu, law, goal = contact.m, contact.mu, phase.law, phase.goal
     low, high = 0.0, h
     left = laws.remaining(law, goal, start[2], start[3], start[7])
     first = left

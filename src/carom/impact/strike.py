@@ -19,7 +19,7 @@ from carom.impact.effective_restitution import count_blow, effective_restitution
 from carom.impact.layer import traverse
 from carom.impact.mean_point import as_one
 from carom.impact.record import write_impact
-from carom.impact.resolve import resolve_one
+from carom.impact.resolve import resolve
 from carom.impact.return_map import return_map
 from carom.impact.strike_several import strike_several
 from carom.impact.thresholds import SEED
@@ -75,7 +75,7 @@ def strike(model, data, method, c):
     hit.code = onto_surface(system, controls, c, state, work)
     if hit.code != 0:
         return
-    k = gather_closed(system, controls, active, c, state, group, work, True)
+    k = gather_closed(model, data, c, True)
     if k < 0:
         hit.code = TOO_MANY_POINTS
         return
@@ -144,8 +144,7 @@ def strike_one(model, data, method, c):
         hit.code = IMPACT_FAILED
         return
     write_impact(contact, state, point, hit, clock, data.records)
-    out, P = hit.out, layout.IMPULSE
-    spread(system, point, state, out[P], out[P + 1], out[P + 2], work)
+    spread(system, point, state, hit.out[layout.IMPULSE : layout.IMPULSE + 3], work)
     add_velocity(system, point, work, state)
 
 
@@ -154,13 +153,11 @@ def collide(method, controls, contact, hit, history):
     """Solve the impact in work.hit by the method of the run: to round-off, or as in the paper."""
     if method.kind == THREE_FIELD:
         return by_layer(controls, contact, hit, history)
-    return resolve_one(hit.W, hit.u, hit.friction, hit.restitution, contact.law, hit.out)
+    return resolve(hit.W, hit.u, hit.friction, hit.restitution, contact.law, hit.out)
 
 
 @unit
 def by_layer(controls, contact, hit, history) -> int:
     """Pass the boundary layer by cubic splines."""
     layer = (contact.width, contact.penetration, controls.layer_steps)
-    return traverse(
-        hit.W, hit.u, hit.friction, hit.restitution, contact.law, layer, history, hit.out
-    )
+    return traverse(hit, contact.law, layer, history)

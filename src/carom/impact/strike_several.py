@@ -13,7 +13,7 @@ from carom.impact.driven import blocked
 from carom.impact.effective_restitution import count_blow, effective_restitution
 from carom.impact.layout import OK
 from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSettings
-from carom.impact.multiple.resolve import resolve_contacts
+from carom.impact.multiple.resolve import resolve_multiple
 from carom.impact.record import write_share
 from carom.impact.thresholds import GROUP_SEED
 from carom.impact.workspace import U
@@ -25,8 +25,8 @@ HERTZ, LINEAR = 1.5, 1.0
 
 
 @unit
-def resolve_group(k, W, u, mu, multiple):
-    """Solve the impact of k points; the clock of the workspace gets its code."""
+def resolve_group(k, W, u, mu, multiple) -> int:
+    """Solve the impact of k points; return its code."""
     contacts = by_reference(
         CornerContacts(
             k=k, others=0, W=W, u=u, friction=mu, restitution=multiple.e, law=multiple.law,
@@ -38,8 +38,7 @@ def resolve_group(k, W, u, mu, multiple):
         given.multiple, given.rtol, exponent_of(k, multiple), given.max_events, given.max_steps,
         given.max_rounds,
     )  # fmt: skip
-    code = resolve_contacts(contacts, settings, multiple.workspace, multiple.result)
-    multiple.workspace.work.clock[0].code = code
+    return resolve_multiple(contacts, settings, multiple.workspace, multiple.result)
 
 
 @kernel
@@ -78,7 +77,7 @@ def strike_several(model, data, c, k):
     """
     system = model.system
     active, state, group, multiple = data.active, data.state, data.group, data.multiple
-    work, clock, step = data.work, data.clocks[0], data.work.step[0]
+    work, step = data.work, data.work.step[0]
     hit, u = work.hit[0], group.v[U]
     count_blows(model, data, k)
     for i in range(k):
@@ -100,19 +99,18 @@ def strike_several(model, data, c, k):
     passage = multiple.workspace.work.clock[0]
     if model.controls.retry == 1:  # the group can take a time-stepping step instead
         passage.left = int(max(0.0, left(model.controls, step, COUNT_PASSAGES)) / k**3)
-    resolve_group(k, group.W, u, group.mu, multiple)
+    code = resolve_group(k, group.W, u, group.mu, multiple)
     step.counts[COUNT_PASSAGES] += k**3 * multiple.result.summary[0].steps
     step.since += k * multiple.result.summary[0].steps
-    if passage.code != OK or passage.left < 0:
+    if code != OK or passage.left < 0:
         hit.code = IMPACT_FAILED
         return
     P = multiple.result.impulse
     for i in range(k):
-        n, t1, t2 = P[3 * i], P[3 * i + 1], P[3 * i + 2]
-        if n != 0.0:
+        if P[3 * i] != 0.0:
             contact = system.contacts[group.closed[i].contact]
-            write_share(contact, i, k, state, group, multiple, clock, data.records)
-            spread(system, group.points[0][i], state, n, t1, t2, work)
+            write_share(data, contact, i, k)
+            spread(system, group.points[0][i], state, P[3 * i : 3 * i + 3], work)
             add_velocity(system, group.points[0][i], work, state)
     most = SUM_ERROR * greatest(3 * k, u)
     for i in range(k):

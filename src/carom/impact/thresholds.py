@@ -26,6 +26,7 @@ LAYER_STEP = 0.05  #: time of the fastest contact: first step through the layer
 LASTING_STEP = 0.01  #: time of the fastest contact: a group at rest for two such steps is wedged
 LONGEST_STEP = 4.0  #: time of the fastest contact: longest step of series
 STRETCHED_STEP = 40.0  #: time of the fastest contact: the same where time is stretched
+SLIP_SHARE = 1e-3  #: tolerance: for the slip in the problem of friction of a stage
 SERIES_SHARE = 0.01  #: tolerance: for a series of low order: its last terms do not bound the error
 STAGE_ACCURACY = 1e-10  #: 1: least useful tolerance of steps by stages (order four)
 STIFFNESS = 3000.0  #: rate of the fastest contact: of a slow direction, from which on stages cost less

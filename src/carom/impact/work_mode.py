@@ -21,8 +21,8 @@ def restore_work(system, contact, state, drop, work):
     place(contact, hit.point, state, point)
     un = contact_velocity(point, state)[0]
     if un < 0.0:
-        spread(system, point, state, 1.0, 0.0, 0.0, work)
+        spread(system, point, state, (1.0, 0.0, 0.0), work)
         w_nn = contact_motion(point, work)[0]
         new = -math.sqrt(max(un * un + 2.0 * w_nn * drop, 0.0))
-        spread(system, point, state, (new - un) / w_nn, 0.0, 0.0, work)
+        spread(system, point, state, ((new - un) / w_nn, 0.0, 0.0), work)
         add_velocity(system, point, work, state)

@@ -71,6 +71,7 @@ class Group(NamedTuple):
     """
 
     closed: np.recarray  # (K,) CLOSED_POINT
+    count: np.ndarray  # (1,) those that `contact.closed_points` has listed
     points: np.recarray  # (2, K) POINT: of the present state; of the end of a step
     v: np.ndarray  # (5, 3K) vectors
     W: np.ndarray  # (3K, 3K) inverse mass
@@ -116,7 +117,8 @@ def new_group(system: System, more: bool = False) -> Group:
     """Return the workspace for the largest group of `system`; `more` says that contacts may be added."""
     n, k = system.bodies.size, capacity(system, more)
     return Group(
-        closed=table(CLOSED_POINT, k), points=table(POINT, 2, k), v=np.zeros((5, 3 * k)),
+        closed=table(CLOSED_POINT, k), count=np.zeros(1, dtype=np.int64),
+        points=table(POINT, 2, k), v=np.zeros((5, 3 * k)),
         W=np.zeros((3 * k, 3 * k)), idle=np.zeros((2, k, k)), mu=np.zeros(k),
         kind=np.zeros(k, dtype=np.int64), heading=np.zeros((k, 2)), member=np.zeros(n, dtype=np.int64),
         base=table(STATE, n), free=table(STATE, n),

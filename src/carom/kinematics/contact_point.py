@@ -16,7 +16,7 @@ def place(contact, p, state, point):
     """Write the contact point of the core point p (body axes) on a half-space, touching or not."""
     b, n, r = contact.body, contact.axes, contact.radius
     q, x, core, arm, axes = state[b].Q, state[b].x, point.core, point.arm_a, point.axes
-    core[0], core[1], core[2] = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    core[0], core[1], core[2] = rotate(q, p)
     point.a, point.b, point.turns = b, -1, 0
     gap = -contact.offset
     for k in range(3):

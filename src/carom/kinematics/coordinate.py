@@ -100,9 +100,9 @@ def push(system, c, state, force, work):
     fx, fy, fz = force * ax, force * ay, force * az
     if c.kind != REVOLUTE:
         rx, ry, rz = child_arm(c, state)
-        add_force(work, c.child, rx, ry, rz, fx, fy, fz)
+        add_force(work, c.child, (rx, ry, rz), (fx, fy, fz))
         rx, ry, rz = parent_arm(c, state)
-        add_force(work, c.parent, rx, ry, rz, -fx, -fy, -fz)
+        add_force(work, c.parent, (rx, ry, rz), (-fx, -fy, -fz))
         return
     for side in range(2):
         b, s = (c.child, 1.0) if side == 0 else (c.parent, -1.0)

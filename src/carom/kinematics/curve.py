@@ -51,30 +51,24 @@ def polynomial(c, k, s):
 
 
 @kernel
-def to_owner(c, state, x, y, z):
+def to_owner(c, state, vector):
     """Return a world vector in axes of the body of the curve (-1: the ground)."""
     owner = c.parent if c.kind == POINT_ON_CURVE else c.child
-    if owner < 0:
-        return x, y, z
-    q = state[owner].Q
-    return rotate_back(q[0], q[1], q[2], q[3], x, y, z)
+    return vector if owner < 0 else rotate_back(state[owner].Q, vector)
 
 
 @kernel
-def to_world(c, state, x, y, z):
+def to_world(c, state, vector):
     """Return a vector in axes of the body of the curve in world axes."""
     owner = c.parent if c.kind == POINT_ON_CURVE else c.child
-    if owner < 0:
-        return x, y, z
-    q = state[owner].Q
-    return rotate(q[0], q[1], q[2], q[3], x, y, z)
+    return vector if owner < 0 else rotate(state[owner].Q, vector)
 
 
 @kernel
 def point_of(c, state):
     """Return the point of the joint in axes of the body of the curve, from its centre."""
-    rx, ry, rz = parent_arm(c, state) if c.kind == POINT_ON_CURVE else child_arm(c, state)
-    return to_owner(c, state, rx, ry, rz)
+    arm = parent_arm(c, state) if c.kind == POINT_ON_CURVE else child_arm(c, state)
+    return to_owner(c, state, arm)
 
 
 @kernel
@@ -139,9 +133,9 @@ def write_axes(c, one, across, point, state):
         one.gap[r] = side * (nx * dx + ny * dy + nz * dz) + 0.0 * one.s  # NaN stays
         one.bend[r] = side * (nx * b[0] + ny * b[1] + nz * b[2]) / square
         one.ahead -= one.gap[r] * one.bend[r]
-        one.normal[r, 0], one.normal[r, 1], one.normal[r, 2] = to_world(c, state, nx, ny, nz)
+        one.normal[r, 0], one.normal[r, 1], one.normal[r, 2] = to_world(c, state, (nx, ny, nz))
     a = one.along
-    a[0], a[1], a[2] = to_world(c, state, side * tx, side * ty, side * tz)
+    a[0], a[1], a[2] = to_world(c, state, (side * tx, side * ty, side * tz))
 
 
 @unit
@@ -152,8 +146,7 @@ def seek_foot(system, c, state):
     """
     one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
     point, before = point_of(c, state), c.reference
-    ux, uy, uz = anchor_speed(c, state)
-    u = to_owner(c, state, ux, uy, uz)
+    u = to_owner(c, state, anchor_speed(c, state))
     speed, least, found = dot(u, u), math.inf, before
     for i in range(one.first, one.last):
         end = pieces[i + 1].start if i + 1 < one.last else one.high
@@ -277,11 +270,9 @@ def curve_rows(c, one, state, side):
 @kernel
 def push_across(c, one, state, multiplier, work):
     """Add the wrenches of the multipliers of both rows at the last foot."""
-    fx, fy, fz = force_across(one, multiplier)
-    rx, ry, rz = child_arm(c, state)
-    add_force(work, c.child, rx, ry, rz, fx, fy, fz)
-    rx, ry, rz = parent_arm(c, state)
-    add_force(work, c.parent, rx, ry, rz, -fx, -fy, -fz)
+    f = force_across(one, multiplier)
+    add_force(work, c.child, child_arm(c, state), f)
+    add_force(work, c.parent, parent_arm(c, state), (-f[0], -f[1], -f[2]))
 
 
 @kernel

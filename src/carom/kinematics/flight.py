@@ -62,7 +62,7 @@ def board(J, q, w, memory):
     if knows(memory, 1, q, w):
         note(memory, 0, attitude_now, spin_now, memory.age[1, 0], memory.age[1, 1])
         return
-    W = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
+    W = rotate_back(q, w)
     begin_top(J, q, W, memory)
     note(memory, 0, attitude_now, spin_now, 0.0, 0.0)
 
@@ -75,11 +75,9 @@ def tumble(J, h, q0, w0, memory):
     t = age + more
     more -= t - age  # round-off of the sum if age is larger; else a part of the round-off of h
     turn, b = attitude(memory, t)
-    q = memory.turn
-    q = multiply(q[0], q[1], q[2], q[3], turn[0], turn[1], turn[2], turn[3])
-    q = renormalize(q[0], q[1], q[2], q[3])
+    q = renormalize(multiply(memory.turn, turn))
     L = memory.magnitude
-    w = rotate(q[0], q[1], q[2], q[3], L * b[0] / J[0], L * b[1] / J[1], L * b[2] / J[2])
+    w = rotate(q, (L * b[0] / J[0], L * b[1] / J[1], L * b[2] / J[2]))
     note(memory, 1, q, w, t, more)
     return q, w
 
@@ -97,11 +95,9 @@ def point_bound(body, q, w, memory):
 def free_rates(body, g, state, rate):
     """Write the accelerations (linear, angular; world) of a body in free flight: J dW/dt = (J W) x W."""
     q, J = state.Q, body.inertia
-    W = rotate_back(q[0], q[1], q[2], q[3], state.w[0], state.w[1], state.w[2])
-    a = rotate(
-        q[0], q[1], q[2], q[3], (J[1] - J[2]) * W[1] * W[2] / J[0],
-        (J[2] - J[0]) * W[2] * W[0] / J[1], (J[0] - J[1]) * W[0] * W[1] / J[2],
-    )  # fmt: skip
+    W = rotate_back(q, state.w)
+    a, b = (J[1] - J[2]) * W[1] * W[2] / J[0], (J[2] - J[0]) * W[2] * W[0] / J[1]
+    a = rotate(q, (a, b, (J[0] - J[1]) * W[0] * W[1] / J[2]))
     for k in range(3):
         rate[k], rate[3 + k] = g[k], a[k]
 

@@ -12,14 +12,13 @@ from carom.model.workspace import BODY_WORK
 
 
 @entry
-def tumble_all(J, Q, w, t, memory, attitude, spin):
-    """Write attitudes (K, 4) and angular velocities (K, 3) at times t (K,) after the states Q, w."""
+def tumble_all(J, attitude, spin, t, memory):
+    """Replace attitudes (K, 4) and angular velocities (K, 3) by those after the times t (K,)."""
     for k in range(t.shape[0]):
-        q, u = tumble(
-            J, t[k], (Q[k, 0], Q[k, 1], Q[k, 2], Q[k, 3]), (w[k, 0], w[k, 1], w[k, 2]), memory[0]
-        )
+        q, w = attitude[k], spin[k]
+        q, w = tumble(J, t[k], (q[0], q[1], q[2], q[3]), (w[0], w[1], w[2]), memory[0])
         attitude[k, 0], attitude[k, 1], attitude[k, 2], attitude[k, 3] = q
-        spin[k, 0], spin[k, 1], spin[k, 2] = u
+        spin[k, 0], spin[k, 1], spin[k, 2] = w
 
 
 def torque_free(moments, Q, w, t) -> tuple[np.ndarray, np.ndarray]:
@@ -36,9 +35,9 @@ def torque_free(moments, Q, w, t) -> tuple[np.ndarray, np.ndarray]:
         Times after these states [s], positive or negative.
     """
     J = np.array(moments, dtype=np.float64)
-    Q, w, t = (np.ascontiguousarray(a, dtype=np.float64) for a in (Q, w, t))
+    t = np.ascontiguousarray(t, dtype=np.float64)
+    attitude, spin = (np.array(a, dtype=np.float64, order="C") for a in (Q, w))
     if np.ptp(J) == 0.0:
-        return quaternion.multiply(quaternion.exp(t[:, None] * w), Q), w.copy()
-    attitude, spin = np.empty_like(Q), np.empty_like(w)
-    tumble_all(tuple(J.tolist()), Q, w, t, table(BODY_WORK, 1), attitude, spin)
+        return quaternion.multiply(quaternion.exp(t[:, None] * spin), attitude), spin
+    tumble_all(tuple(J.tolist()), attitude, spin, t, table(BODY_WORK, 1))
     return attitude, spin

@@ -39,7 +39,7 @@ def arm(state, b, local):
     if b < 0:
         return local[0], local[1], local[2]
     q = state[b].Q
-    return rotate(q[0], q[1], q[2], q[3], local[0], local[1], local[2])
+    return rotate(q, local)
 
 
 @kernel
@@ -48,7 +48,7 @@ def axis(state, b, frame, k):
     if b < 0:
         return frame[0, k], frame[1, k], frame[2, k]
     q = state[b].Q
-    return rotate(q[0], q[1], q[2], q[3], frame[0, k], frame[1, k], frame[2, k])
+    return rotate(q, (frame[0, k], frame[1, k], frame[2, k]))
 
 
 @kernel

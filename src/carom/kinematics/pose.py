@@ -18,6 +18,13 @@ def keep_pose(body, row):
 
 
 @kernel
+def keep_poses(state, rows):
+    """Write the poses of all bodies into as many rows as there are."""
+    for b in range(rows.shape[0]):
+        keep_pose(state[b], rows[b])
+
+
+@kernel
 def same_pose(rows, state):
     """Return whether the poses in the rows are those of the state; False for no rows, or NaN."""
     for b in range(rows.shape[0]):

@@ -69,7 +69,7 @@ def inverse_inertia(body, q):
     """Return the inverse inertia (xx, xy, xz, yy, yz, zz) of a body in world axes."""
     J = body.inertia
     i = (1.0 / J[0], 1.0 / J[1], 1.0 / J[2])
-    return spin_tensor(matrix(q[0], q[1], q[2], q[3]), i)
+    return spin_tensor(matrix(q), i)
 
 
 @kernel

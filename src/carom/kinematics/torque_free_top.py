@@ -23,7 +23,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.geometry.elliptic import carlson, quarter_period
-from carom.geometry.rotation import multiply
+from carom.geometry.rotation import conjugate, multiply
 
 #: how the elliptic functions are computed: k = 0 to round-off, theta series in z, or in i z
 CIRCLE, NOME, COMPLEMENT = range(3)
@@ -58,7 +58,7 @@ def begin_top(J, q, W, top):
     if size > 0.0:
         constants(J, (m[0] / size, m[1] / size, m[2] / size), size, top)
     turn, _ = attitude(top, 0.0)
-    q = multiply(q[0], q[1], q[2], q[3], turn[0], -turn[1], -turn[2], -turn[3])
+    q = multiply(q, conjugate(turn))
     top.turn[0], top.turn[1], top.turn[2], top.turn[3] = q
 
 

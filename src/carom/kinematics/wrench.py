@@ -28,15 +28,12 @@ def point_velocity(state, b, rx, ry, rz):
 
 
 @kernel
-def add_force(work, b, rx, ry, rz, fx, fy, fz):
+def add_force(work, b, r, f):
     """Add the force f at arm r to the wrench on body b (-1: ground)."""
     if b < 0:
         return
     wrench = work.body[b].wrench
-    tx, ty, tz = cross(rx, ry, rz, fx, fy, fz)
-    wrench[0] += fx
-    wrench[1] += fy
-    wrench[2] += fz
-    wrench[3] += tx
-    wrench[4] += ty
-    wrench[5] += tz
+    torque = cross(r[0], r[1], r[2], f[0], f[1], f[2])
+    for k in range(3):
+        wrench[k] += f[k]
+        wrench[3 + k] += torque[k]

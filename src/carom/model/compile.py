@@ -140,7 +140,8 @@ def _start(scene):
 
 def attitudes(orientation: np.ndarray, to_principal: np.ndarray) -> np.ndarray:
     """Return the quaternions (N, 4) from principal axes to the world of bodies with these orientations."""
-    Q = quaternion.multiply(orientation, to_principal)
+    same = (to_principal[..., 0] == 1.0).all()
+    Q = orientation + 0.0 if same else quaternion.multiply(orientation, to_principal)
     return Q / np.sqrt(np.add.reduce(Q * Q, axis=1, keepdims=True))
 
 

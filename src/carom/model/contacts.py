@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom._compiled.mould import Mould
 from carom._compiled.record_arrays import table
 from carom.collision.layout import SOLID, Hulls, no_hulls, solid_table
 from carom.collision.level_layout import Levels
@@ -54,6 +55,34 @@ def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool =
     vertices of equal radius, and one for each curved piece. If bodies move `apart`, more rows may follow later.
     """
     known, later = first_pairs(scene, apart)
+    many = later is not None or len(known.body) > FEW_CONTACTS
+    if many or scene.statics or not scene.gravity.any():  # without gravity, speeds count too
+        return _contacts(scene, known, later, to_principal, options)
+    # contacts of scenes that differ in their motion, as in many throws, are copies of each other
+    of_pairs = known.body, known.other, known.plane, known.law, to_principal, scene.gravity
+    key = (
+        *(one.tobytes() for one in of_pairs), *_numbers(known), options.layer_width, options.penetration,
+        *((plane.point.tobytes(), plane.normal.tobytes()) for plane in scene.half_spaces),
+        *(body.shape for body in scene.bodies),
+    )  # fmt: skip
+    mould = _KNOWN.get(key)
+    if mould is not None:
+        return mould.cast()._replace(pairs=known)
+    if len(_KNOWN) >= MOST_KNOWN:
+        _KNOWN.clear()
+    made = _contacts(scene, known, None, to_principal, options)
+    _KNOWN[key] = Mould(made._replace(pairs=None))
+    return made
+
+
+#: contacts by all that they depend on
+_KNOWN: dict[tuple, Mould] = {}
+FEW_CONTACTS = 64  # pairs of a scene whose contacts are kept
+MOST_KNOWN = 64  # such scenes
+
+
+def _contacts(scene: Scene, known: PairTable, later, to_principal, options: Options) -> Contacts:
+    """Return the contacts of the pairs `known`."""
     pairs, to_principal = _with_statics(scene, known), _and_of_statics(scene, to_principal)
     meets = pairs.other >= 0
     grounded = new_cores(_shapes(scene, pairs.body[~meets]), swollen_alike, to_principal)
@@ -221,14 +250,18 @@ def _write_solids(rows: np.recarray, which: Rows, place: np.ndarray) -> None:
 
 def _write_laws(rows: np.recarray, pairs: PairTable, which: Rows) -> None:
     """Write the law of each contact to its rows."""
-    numbers = [
+    law = np.array(_numbers(pairs), dtype=float).reshape(-1, 8)[pairs.law[which.number]]
+    for k, name in enumerate(("friction", "friction_held", "restitution", "stiffness")):
+        rows[name] = law[:, k]
+    rows["turning"], rows["law"], rows["multiple"] = law[:, 4:6], law[:, 6], law[:, 7]
+
+
+def _numbers(pairs: PairTable) -> list[tuple]:
+    """Return the numbers of each law."""
+    return [
         (
             one.friction, one.friction_held, one.restitution, one.stiffness, one.rolling_friction,
             one.pivoting_friction, IMPACT_LAWS.index(one.impact_law), MULTIPLE.index(one.multiple),
         )
         for one in pairs.laws
     ]  # fmt: skip
-    law = np.array(numbers, dtype=float).reshape(-1, 8)[pairs.law[which.number]]
-    for k, name in enumerate(("friction", "friction_held", "restitution", "stiffness")):
-        rows[name] = law[:, k]
-    rows["turning"], rows["law"], rows["multiple"] = law[:, 4:6], law[:, 6], law[:, 7]

@@ -124,9 +124,8 @@ class Elements:
         """Add inertias along coordinates as rows, for closed loops."""
         for rotor in self.rotors:
             coordinate = int(rotor.coordinate[0])
-            self._add(
-                arrays.INERTIA, 1, len(self.relations), sorted(self.coordinates.bodies(coordinate))
-            )
+            bodies = sorted(self.coordinates.bodies(coordinate))
+            self._add(arrays.INERTIA, 1, len(self.relations), bodies)
             self.relations.append(table(arrays.RELATION_ROW, 1))
             self.terms.append([(coordinate, 1.0)])
 
@@ -209,14 +208,10 @@ class Elements:
             (arrays.FRICTION, more.frictions), (arrays.ROTOR, self.rotors),
         )  # fmt: skip
         curves = self.coordinates.curves
-        named, (read, write) = (
-            np.array(more.named, np.int64),
-            np.zeros((2, max(self.width, more.width))),
-        )
-        relations, user = (
-            _joined(arrays.RELATION_ROW, self.relations),
-            _joined(arrays.USER_ROW, self.user),
-        )
+        named = np.array(more.named, np.int64)
+        read, write = np.zeros((2, max(self.width, more.width)))
+        relations = _joined(arrays.RELATION_ROW, self.relations)
+        user = _joined(arrays.USER_ROW, self.user)
         tables = relations, listed, user, self.pieces.rows, *(_joined(*one) for one in forces)
         tables += _joined(arrays.CURVE, curves.rows), _joined(arrays.CURVE_PIECE, curves.pieces)
         return arrays.Relations._make([1, rows, *tables, named, read, write])

@@ -1,1 +1,1 @@
-"""The paper, reproduced: its figures, its numbers, and impacts of a real cube (``carom paper``)."""
+"""The paper, reproduced: its figures and its numbers (``carom paper``)."""

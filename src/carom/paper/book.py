@@ -1,4 +1,4 @@
-"""The whole reproduction of the paper in one folder: figures, tables, real impacts, and an index page."""
+"""The whole reproduction of the paper in one folder: figures, tables, and an index page."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ def names() -> tuple[str, ...]:
 
 def figures() -> dict:
     """Return all figures by name."""
-    from carom.paper import layer, planar, real_figure, spatial, sphere
+    from carom.paper import layer, planar, spatial, sphere
 
-    parts = (sphere, layer, planar, spatial, real_figure)
-    return {figure.name: figure for part in parts for figure in part.FIGURES}
+    return {
+        figure.name: figure for part in (sphere, layer, planar, spatial) for figure in part.FIGURES
+    }
 
 
 def make(
@@ -31,7 +32,7 @@ def make(
     wanted: Sequence[str] | None = None,
     progress: Callable[[str], None] = lambda what: None,
 ) -> list[Path]:
-    """Write figures, and, if no figures were chosen, the tables and pages too.
+    """Write figures, and, if no figures were chosen, the tables and their page too.
 
     Parameters
     ----------
@@ -57,12 +58,10 @@ def make(
         with style():
             written += save(known[name].draw(), folder, name)
     if not wanted:
-        from carom.paper import real_figure, table
+        from carom.paper import table
 
         progress("table")
         written += table.write(folder)
-        progress("pages")
-        written += real_figure.write(folder)
         written.append(folder / "index.md")
         written[-1].write_text(_index(known), encoding="utf-8")
     return written
@@ -70,7 +69,7 @@ def make(
 
 def parts(wanted: Sequence[str] | None = None) -> int:
     """Return the number of calls that `make` makes to its progress function."""
-    return len(wanted) if wanted else len(names()) + 2
+    return len(wanted) if wanted else len(names()) + 1
 
 
 def _index(known: dict) -> str:

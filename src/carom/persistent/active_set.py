@@ -11,11 +11,14 @@ from carom.contact.gap import slow
 from carom.contact.groups import label_groups
 from carom.contact.level import related
 from carom.contact.pair_point import find_touches, own_point, smaller, touch_rate
-from carom.contact.place import place_any
 from carom.contact.place_of_other import on_half_space
-from carom.contact.rim import same_point
+from carom.contact.rim import place_of, same_point
 from carom.contact.thresholds import REACH
+from carom.kinematics.contact_point import place
+from carom.model.actions import MODE_OPEN, MODE_STICK
+from carom.model.event_rows import begin_event, end_event
 from carom.model.parts_of_system import has_solids
+from carom.model.records import OPENS, SLIPS, STICKS
 from carom.persistent.thresholds import CUT_RESIDUAL
 
 
@@ -26,27 +29,33 @@ def begin_point(active_point, contact, c, feature, mode):
     active_point.body, active_point.other = contact.body, contact.other
     active_point.touches = contact.touches
     active_point.mode, active_point.next, active_point.rest, active_point.several = mode, mode, 0, 1
-    active_point.jams, active_point.due, active_point.lift, active_point.grip = 0, 0, 1.0, 1.0
-    active_point.comes_to_rest, active_point.stop, active_point.bounces = 0, math.inf, 0.0
-    active_point.turn_stop[0], active_point.turn_stop[1] = math.inf, math.inf
+    active_point.due, active_point.bounces = 0, 0.0
     active_point.heading[0], active_point.heading[1] = 0.0, 0.0
-    for k in range(3):
-        active_point.force[k], active_point.torque[k] = 0.0, 0.0
-        for j in range(3):
-            active_point.W[k, j] = 0.0
+    active_point.W[:] = 0.0
+    clear(active_point)
 
 
 @kernel
-def activate(system, active, closed_point, mode, state, work):
-    """Add a closed point to the active set; return its index."""
+def clear(active_point):
+    """Take force, margins and stops from an active point."""
+    active_point.stop, active_point.jams, active_point.comes_to_rest = math.inf, 0, 0
+    active_point.lift, active_point.grip = 1.0, 1.0
+    active_point.turn_stop[0], active_point.turn_stop[1] = math.inf, math.inf
+    for r in range(3):
+        active_point.force[r], active_point.torque[r] = 0.0, 0.0
+
+
+@kernel
+def activate(system, data, closed_point):
+    """Add a closed point to the active set, where it sticks at first; return its index."""
+    active = data.active
     i = active.count[0]
     active.count[0] = i + 1
     active_point, contact = active.points[i], system.contacts[closed_point.contact]
-    begin_point(active_point, contact, closed_point.contact, closed_point.feature, mode)
+    begin_point(active_point, contact, closed_point.contact, closed_point.feature, MODE_STICK)
     active_point.several = 0
     for k in range(3):
         active_point.point[k] = closed_point.point[k]
-    set_anchor(system, active_point, state, work)
     if contact.touches == 0:
         active.carries[closed_point.feature] = 1
     active.contact_states[closed_point.contact].leaving = 0
@@ -55,17 +64,11 @@ def activate(system, active, closed_point, mode, state, work):
 
 @kernel
 def set_anchor(system, active_point, state, work):
-    """Store the present position of a point, at which it stays while it sticks."""
+    """Store the present position of a vertex, at which it stays while it sticks."""
+    if active_point.touches != 0:
+        return
     point, x = work.placed[0], state[active_point.body].x
-    place_any(
-        system,
-        system.contacts[active_point.contact],
-        active_point.feature,
-        active_point.point,
-        state,
-        point,
-        work,
-    )
+    place(system.contacts[active_point.contact], active_point.point, state, point)
     for k in range(3):
         active_point.anchor[k] = x[k] + point.arm_a[k]
 
@@ -83,9 +86,18 @@ def deactivate(active, i):
 
 
 @kernel
-def any_turning(contact):
-    """Return whether a contact has rolling or pivoting friction."""
-    return contact.turning[0] > 0.0 or contact.turning[1] > 0.0
+def switch(system, data, i, mode):
+    """Give active point i a mode, or take it from the active set (MODE_OPEN), with an event."""
+    active, state, clock, records = data.active, data.state, data.clocks[0], data.records
+    active_point, c = active.points[i], active.points[i].contact
+    begin_event(system, c, active_point.feature, state, clock, records)
+    active_point.mode = mode
+    if mode == MODE_STICK:
+        set_anchor(system, active_point, state, data.work)
+    elif mode == MODE_OPEN:
+        deactivate(active, i)
+    kind = OPENS if mode == MODE_OPEN else STICKS if mode == MODE_STICK else SLIPS
+    end_event(system, c, kind, state, clock, records)
 
 
 @kernel
@@ -123,26 +135,14 @@ def unite_loaded(system, work):
                     work.body[i].label = n
 
 
-@kernel
-def is_active(system, active, c, touch, state):
-    """Return whether a given point of contact c is active."""
-    contact = system.contacts[c]
-    for i in range(active.count[0]):
-        active_point = active.points[i]
-        if active_point.contact == c and same_point(
-            system, contact, touch, active_point.feature, active_point.point, state
-        ):
-            return True
-    return False
-
-
 @unit(where=has_solids, otherwise=False)
-def refresh_pairs(system, controls, active, state, work) -> bool:
+def refresh_pairs(system, controls, data) -> bool:
     """Replace points whose features no longer exist by the points of the new features.
 
     When faces slide on each other, the corners of their overlap change, and the active set must follow. The
     present positions of the other points are stored. Return whether the set has changed.
     """
+    active, state, work = data.active, data.state, data.work
     changed, i = False, 0
     while i < active.count[0]:
         active_point = active.points[i]
@@ -168,7 +168,7 @@ def refresh_pairs(system, controls, active, state, work) -> bool:
         changed = True
         for d in range(system.contacts.shape[0]):
             if related(system, c, d):
-                replace_points(system, controls, active, d, mode, state, work)
+                replace_points(system, controls, data, d, mode)
         for j in range(before, active.count[0]):  # they share its force, until the next step
             for r in range(3):
                 active.points[j].force[r] = force[r] / (active.count[0] - before)
@@ -176,13 +176,13 @@ def refresh_pairs(system, controls, active, state, work) -> bool:
 
 
 @kernel
-def replace_points(system, controls, active, c, mode, state, work):
+def replace_points(system, controls, data, c, mode):
     """Activate the closed points of contact c, in place of a point that no longer exists.
 
     Points that approach faster than a contact problem may leave unsolved are not persistent: of two bodies they
     strike (the edge of a cam whose flat top becomes level with its follower).
     """
-    contact = system.contacts[c]
+    active, state, work, contact = data.active, data.state, data.work, system.contacts[c]
     near, still = closed_within(controls, contact, state), 10.0 * slow(contact, state)
     if apart(system, contact, state, near):
         return
@@ -192,18 +192,12 @@ def replace_points(system, controls, active, c, mode, state, work):
     for t in range(find_touches(system, contact, state, REACH * smaller(contact), work)):
         touch = work.touches[t]
         free = active.count[0] < active.points.shape[0]
-        if touch.gap > near or is_active(system, active, c, touch, state):
+        if touch.gap > near or place_of(system, active, c, touch, state) >= 0:
             continue
         if touch_rate(contact, touch, state) < -still:
             active.contact_states[c].near = max(active.contact_states[c].near, 0 if plane else 1)
         elif free:
-            activate_touch(contact, c, touch, mode, state, active)
-
-
-@kernel
-def activate_touch(contact, c, touch, mode, state, active):
-    """Add a given point to the active set, without an event."""
-    active_point = active.points[active.count[0]]
-    active.count[0] += 1
-    begin_point(active_point, contact, c, touch.feature, mode)
-    own_point(contact, touch, state, active_point.point)
+            active_point = active.points[active.count[0]]
+            active.count[0] += 1
+            begin_point(active_point, contact, c, touch.feature, mode)
+            own_point(contact, touch, state, active_point.point)

@@ -17,8 +17,18 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
+from carom.contact.gap import slow
+from carom.contact.groups import members
 from carom.contact.pair_point import smaller
-from carom.persistent.thresholds import PLASTIC_SPEED
+from carom.dynamics.elements import driven_power
+from carom.friction.layout import CONE, SLIDING
+from carom.geometry.thresholds import REMAINDER, SUM_ERROR
+from carom.impact.workspace import RETURN, C, U
+from carom.persistent.margins import time_to_stop
+from carom.persistent.return_to_surfaces import factor_given, give, greatest_speed, solve_rows
+from carom.persistent.settle import add_product, greatest
+from carom.persistent.springs import given
+from carom.persistent.thresholds import PLASTIC_SPEED, REST_SHARE
 
 
 @kernel
@@ -66,3 +76,91 @@ def name_work(normal, tangential, clock, step):
         clock.bounces += normal
         clock.friction += tangential
         step.owed += tangential
+
+
+@kernel
+def time_without_torque(contact, rate, g, state):
+    """Return the time of bounces that are left out, in which rolling and pivoting friction do not act."""
+    turning = max(contact.turning[0], contact.turning[1]) > 0.0
+    bounces = turning and rate > slow(contact, state)
+    return time_of_bounces(contact, rate, g) if bounces else 0.0
+
+
+@kernel
+def end_bounces(model, data, k, label, horizon):
+    """Remove the normal velocities of the points that stay, in the kinetic metric.
+
+    The slip of a point without slip is removed too; otherwise the point would stick with the slip that the
+    impulse gives it. If slip lasts, friction acts with the impulse. Velocities of round-off
+    size, a small fraction of the speed before, become 0, however large the forces are (the point of a rim that
+    is nearly flat moves along the rim with 1e13 m/s^2).
+    """
+    system, controls = model.system, model.controls
+    state, group, work, clock = data.state, data.group, data.work, data.clocks[0]
+    count = members(work, label, group.member)
+    speed = greatest_speed(system, state, count, group.member)
+    still = 1e-12 * speed
+    for i in range(3 * k):
+        still = max(still, controls.rest * controls.step * abs(group.v[C][i]))
+    still = min(still, REST_SHARE * speed)
+    for i in range(k):
+        contact = system.contacts[group.closed[i].contact]
+        end = horizon_of(contact, controls, -group.v[C][3 * i], horizon)
+        if not time_to_stop(i, group) > end:  # friction ends with the slip
+            group.heading[i, 0], group.heading[i, 1] = 0.0, 0.0
+    find_pull(k, 1, SUM_ERROR * speed, group)
+    normal, tangential = work_of_pull(k, group)
+    if normal > 0.0 or not normal + tangential <= spare(
+        clock, work.step[0]
+    ):  # neighbours push each other out
+        find_pull(k, 0, SUM_ERROR * speed, group)
+        normal, tangential = work_of_pull(k, group)
+    name_work(normal, tangential, clock, work.step[0])
+    if give(system, k, count, state, group, work):
+        clock.loads += driven_power(system, state, work)  # of an impulse: its work
+    if greatest_speed(system, state, count, group.member) <= still:
+        for m in range(count):
+            b = group.member[m]
+            for r in range(3):
+                state[b].v[r], state[b].w[r] = 0.0, 0.0
+
+
+@kernel
+def work_of_pull(k, group):
+    """Return the work of the impulses in RETURN: half of each times its velocities before and after."""
+    x, u = group.v[RETURN], group.v[U]
+    normal, tangential = 0.0, 0.0
+    for i in range(3 * k):
+        if x[i] == 0.0:
+            continue
+        if given(group, i):
+            normal += 0.5 * x[i] * u[i]
+        else:
+            tangential += 0.5 * x[i] * (u[i] + velocity_after(i, k, group))
+    return normal, tangential
+
+
+@kernel
+def find_pull(k, friction, tiny, group):
+    """Write the impulses that remove the velocities to RETURN: with friction (1) if they exist."""
+    x = group.v[RETURN]
+    for i in range(k):  # the normal of a point that stays is removed, and its tangents if it sticks
+        closed_point = group.closed[i]
+        closed_point.rows = 0 if closed_point.stays == 0 else 3 if group.kind[i] == CONE else 1
+    for with_friction in range(friction, -1, -1):
+        n = factor_given(k, with_friction == 1, group)
+        for i in range(3 * k):
+            x[i] = group.v[U][i]
+        left = solve_rows(k, n, tiny, group, x)
+        for i in range(k if with_friction == 1 else 0):
+            if group.closed[i].rows == 1 and group.kind[i] == SLIDING:
+                for r in range(2):
+                    x[3 * i + 1 + r] = -group.mu[i] * group.heading[i, r] * x[3 * i]
+        if left <= max(tiny, REMAINDER * greatest(3 * k, group.v[U])):
+            return
+
+
+@kernel
+def velocity_after(q, k, group):
+    """Return the velocity of row q after the impulses in RETURN."""
+    return add_product(group.v[U][q], 3 * k, group.W[q], group.v[RETURN])

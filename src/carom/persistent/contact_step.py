@@ -13,15 +13,16 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
+from carom.contact.groups import members
 from carom.dynamics.adapt import allowed_error, note_miss
 from carom.dynamics.explicit import CONSTRAINTS_LOST, bound_accelerations_of, rubs, stages_within
 from carom.dynamics.thresholds import ERROR_SHARE
 from carom.model.actions import MODE_OPEN
 from carom.persistent.finish import land, note_modes, review
-from carom.persistent.members import closing_member, explicit_member, implicit_member
-from carom.persistent.rows import beyond_stop, bodies_of
+from carom.persistent.members import explicit_member, implicit_member
+from carom.persistent.rows import beyond_stop
 from carom.persistent.start import first_modes, first_stage
-from carom.persistent.step_control import unnamed
+from carom.persistent.step_control import note_unnamed
 from carom.persistent.thresholds import FALLS, STIFF_SLIP
 
 STIFF_ORDER, CLOSING_ORDER = 4, 2
@@ -59,58 +60,60 @@ def seen(active, i, label, work):
 @kernel
 def step_group(model, data, method, label, h):
     """Step one group: by the explicit member while modes last, else by the implicit one or the closing one."""
-    system, controls, work, clock = model.system, model.controls, data.work, data.clocks[0]
-    group, result = data.group, data.work.result[0]
-    count, loaded = bodies_of(model, data, label)
-    k, rate, push, friction, _ = first_stage(model, data, label, loaded, count)
+    work, group, clock, order = data.work, data.group, data.clocks[0], model.controls.order
+    result = work.result[0]
+    k, rate, push, friction, _ = first_stage(model, data, label)
     applied = result.power  # powers at the start
     had, rubbed = result.applied, result.friction
     clock.contact_steps += 1
     work.step[0].since += 5.0 * k * stages_within(method)
-    order = controls.order
     if h * rate <= STIFF_SLIP and not (result.stiff == 1 and work.search[0].again == 1):
         result.applied = had + h * method.b[0] * applied
         result.friction = rubbed + h * method.b[0] * friction
-        k, s = explicit_member(model, data, method, label, loaded, count, h), method.b.size
-        s = s - 1 if stages_within(method) < s else s
-        if k > 0 and land(model, data, loaded, k, count):
-            if review(model, data, label, loaded, count, s, h, True):
-                note_errors(model, data, method.E, k, count, h)
-                check(model, data, loaded, count, result.friction - rubbed)
-                return
+        k = explicit_member(model, data, method, label, h)
+        s = stages_within(method)
+        if k > 0 and land(model, data, label, k) and review(model, data, label, s, h, True):
+            note_errors(model, data, method.E, label, k, h)
+            note_unnamed(model, data, label, result.friction - rubbed)
+            return
         result.stiff = 1
-    size = closing_size(system, controls, count, group)
-    if not (order > 0 and 0.5 * h * h * push <= size):
+    if not (order > 0 and 0.5 * h * h * push <= closing_size(model, data, label)):
         first_modes(data, label)
         weight = method.stiff[method.stiff.shape[0] - 1, 0]
         result.applied, result.friction = had + h * weight * applied, rubbed + h * weight * friction
-        k = implicit_member(model, data, method, label, loaded, count, h)
-        if k > 0:
-            note_modes(model, data, k, h)
-            if land(model, data, loaded, k, count):
-                review(model, data, label, loaded, count, method.stiff.shape[0], h, False)
-                note_errors(model, data, method.stiff_E, 0, count, h)
-                if order > 0:
-                    result.order = min(order, STIFF_ORDER)
-                check(model, data, loaded, count, result.friction - rubbed)
-                return
+        if end_implicitly(model, data, method.stiff, label, h, False):
+            note_errors(model, data, method.stiff_E, label, 0, h)
+            if order > 0:
+                result.order = min(order, STIFF_ORDER)
+            note_unnamed(model, data, label, result.friction - rubbed)
+            return
     first_modes(data, label)
     result.applied, result.friction = had, rubbed
-    k = closing_member(model, data, label, loaded, count, h)
-    note_modes(model, data, k, h)
-    if k == 0 or not land(model, data, loaded, k, count):
+    if not end_implicitly(model, data, method.closing, label, h, True):
         result.code = CONSTRAINTS_LOST
         return
-    review(model, data, label, loaded, count, 2, h, False)
     lets_go = order > 0 and opens(data, label)
     if lets_go:
-        note_errors(model, data, method.closing_E, 0, count, h)
-    for m in range(count):
+        note_errors(model, data, method.closing_E, label, 0, h)
+    for m in range(members(work, label, group.member)):
         miss, b = work.body[group.member[m]].miss, group.member[m]
         bound_accelerations_of(work, b, 2)
         miss[0], miss[1] = max(miss[0], 0.5 * h * h * push), 0.0
     if order > 0:
         result.order = 1 if lets_go else CLOSING_ORDER
+
+
+@kernel
+def end_implicitly(model, data, A, label, h, closes):
+    """Step a group by the stiff method A, and write its end; return whether there is one."""
+    k = implicit_member(model, data, A, label, h, closes)
+    if k == 0:
+        return False
+    note_modes(model, data, k, h)
+    if not land(model, data, label, k):
+        return False
+    review(model, data, label, A.shape[0], h, False)
+    return True
 
 
 @kernel
@@ -129,23 +132,23 @@ def opens(data, label):
 
 
 @kernel
-def closing_size(system, controls, count, group):
+def closing_size(model, data, label):
     """Return the displacement by friction [m] that a closing step may neglect."""
-    least = math.inf
-    for m in range(count):
-        size = system.bodies[group.member[m]].extent
+    controls, member, least = model.controls, data.group.member, math.inf
+    for m in range(members(data.work, label, member)):
+        size = model.system.bodies[member[m]].extent
         least = min(least, ERROR_SHARE * allowed_error(controls.rtol, controls.atol, size, 0.0))
     return least
 
 
 @kernel
-def note_errors(model, data, E, k, count, h):
+def note_errors(model, data, E, label, k, h):
     """Write the errors of the bodies of a group by its stages, and bounds of their accelerations.
 
     Slip of k points that has passed its stop, under friction of its old direction, is an error of velocity.
     """
     system, controls, group, work = model.system, model.controls, data.group, data.work
-    for m in range(count):
+    for m in range(members(work, label, group.member)):
         b, longest = group.member[m], math.inf
         work.body[b].bound[:3] = 0.0
         bound_accelerations_of(work, b, E.shape[1])
@@ -158,15 +161,3 @@ def note_errors(model, data, E, k, count, h):
                 if b == group.points[0][i].a or b == group.points[0][i].b:
                     passed = T * beyond_stop(system, data.active, i, group)
                     work.body[b].miss[0] = max(work.body[b].miss[0], passed)
-
-
-@kernel
-def check(model, data, loaded, count, friction):
-    """Note the energy that no force explains, of bodies on which only gravity acts."""
-    if loaded:
-        return
-    work, group = data.work, data.group
-    over = unnamed(
-        model.system, model.controls, data.state, work.trial, friction, count, group.member
-    )
-    work.result[0].unnamed = max(work.result[0].unnamed, over)

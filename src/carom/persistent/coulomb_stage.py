@@ -15,15 +15,13 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.friction import lu
-from carom.friction.layout import SLIDING
-from carom.impact.thresholds import GROUP_ERROR
+from carom.friction.layout import CONE, SLIDING
 from carom.impact.workspace import C, P, U
 from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import JOINT, is_driven, radius_of
 from carom.persistent.settle import dot, greatest, settle
 from carom.persistent.sharing import find_idle, share
-from carom.persistent.springs import compliance_of, moves
+from carom.persistent.springs import factor, moves, note_accelerations, unload
 
 STAGE_ITERATIONS, HALVES, TOGETHER = 40, 6, 3
 
@@ -51,28 +49,31 @@ def solve_stage(k, hg, group):
 
 
 @kernel
-def change_loads(k, turn, group):
-    """Unload springs that pull, or load one whose point approaches; return whether there is one.
+def solve_forces(k, group):
+    """Write the forces of the points that stay closed, and the accelerations of all k points.
 
-    In the first turns all that pull, then that which pulls most.
+    Slip goes on along the headings that are known. Return whether there is a solution.
     """
-    p, closed, most, worst, found = group.v[P], group.closed, 0.0, 0.0, False
-    push = largest(k, group)
     for i in range(k):
-        if closed[i].turns == 0:
-            most, worst = max(most, p[3 * i]), min(worst, p[3 * i])
-    limit = -GROUP_ERROR * most if turn < TOGETHER else min(worst, -GROUP_ERROR * most)
+        if group.kind[i] == SLIDING and group.heading[i, 0] == 0.0 and group.heading[i, 1] == 0.0:
+            group.kind[i] = CONE
+    found = solve_stage(k, 0.0, group)
+    note_accelerations(k, group)
+    return found
+
+
+@kernel
+def change_loads(k, turn, group):
+    """Unload springs that pull, or load one whose point approaches; return whether there is one."""
+    closed, p, push = group.closed, group.v[P], largest(k, group)
+    if unload(k, turn < TOGETHER, group) > 0:
+        return True
     for i in range(k):
-        if closed[i].turns == 0 and closed[i].loaded == 1 and p[3 * i] < 0.0 and p[3 * i] <= limit:
-            closed[i].loaded, found = 0, True
-            for row in range(3 * i, 3 * i + 3):
-                p[row] = 0.0
-    for i in range(0 if found else k):
         if closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0:
             if dot(3 * k, group.W[3 * i], p) + group.v[C][3 * i] < -limits.SETTLED_SHARE * push:
                 closed[i].loaded = 1
                 return True
-    return found
+    return False
 
 
 @kernel
@@ -115,7 +116,7 @@ def newton(k, hg, halves, idle, group):
     Halved steps can stop where discs meet, between stick and slip; whole steps then go on.
     """
     n, p, equations = list_unknowns(k, group), group.v[P], group.equations
-    rows, before, r, L = equations.rows, equations.before, equations.r, equations.factor
+    rows, before, r = equations.rows, equations.before, equations.r
     push, slip = largest(k, group), 0.0
     for i in range(k):
         slip = max(slip, max(abs(group.v[U][3 * i + 1]), abs(group.v[U][3 * i + 2])))
@@ -126,11 +127,8 @@ def newton(k, hg, halves, idle, group):
             return True
         equations.iterations[0] += 1
         for i in range(n):
-            for j in range(n):
-                L[i, j] = equations.A[i, j]
-            L[i, i] += limits.PROXIMAL_SPRING * compliance_of(group, rows[i])
             r[i], before[i] = -r[i], p[rows[i]]
-        lu.factor(L, n, equations.pivot, 0.0)
+        factor(n, rows, group)
         asked, force = 0.01 * max(enough, limits.LINEAR_SHARE * size), greatest(3 * k, p)
         rest = settle(n, 0.0, asked, limits.FORCE_ERROR * push, force, equations)
         part, best = 1.0, size

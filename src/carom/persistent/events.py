@@ -18,25 +18,14 @@ from carom.model.actions import (
     MODE_OPEN,
     MODE_SLIP,
 )
-from carom.persistent.jam import yields
-from carom.persistent.thresholds import JAM_MARGIN
+from carom.persistent.jam import jam_margin
+from carom.persistent.margins import margin
 
 
 @kernel
 def contact_event_value(system, active_point, kind):
     """Return the event function `kind` with the forces of the end of the step."""
-    if kind == EVENT_SEPARATE:
-        return active_point.lift
-    if kind == EVENT_CONE:
-        return active_point.grip
-    return jam_margin(system, active_point)
-
-
-@kernel
-def jam_margin(system, active_point):
-    """Return k of a point that slips along its heading, above that at which it counts as jammed."""
-    d, mu = active_point.heading, system.contacts[active_point.contact].friction_held
-    return yields(active_point.W, mu, d[0], d[1]) - JAM_MARGIN * active_point.W[0, 0]
+    return jam_margin(system, active_point) if kind == EVENT_JAM else margin(active_point, kind)
 
 
 @inlined

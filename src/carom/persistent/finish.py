@@ -18,12 +18,20 @@ from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER, RESOLUTION
 from carom.impact.workspace import ACCELERATIONS, C, P, U
 from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
-from carom.persistent.forces import solve_forces, take_forces, time_to_stop
+from carom.persistent.active_set import clear
+from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.jam import jams_among
 from carom.persistent.joint_rows import JOINT, place_coordinate, radius_of
-from carom.persistent.margins import greatest_push, set_margins
-from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
-from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
+from carom.persistent.margins import greatest_push, set_margins, take_forces, time_to_stop
+from carom.persistent.return_to_surfaces import greatest_speed, onto_surfaces, onto_tangents
+from carom.persistent.rows import (
+    accelerate_freely,
+    bodies_of,
+    keep_way,
+    push_bodies,
+    set_modes,
+    write_rows,
+)
 from carom.persistent.settle import greatest
 from carom.persistent.springs import solve_springs
 from carom.persistent.step_control import rest_speed
@@ -31,26 +39,25 @@ from carom.persistent.thresholds import FEW_REST, FRICTION_LIMIT
 
 
 @unit
-def land(model, data, loaded, k, count) -> bool:
+def land(model, data, label, k) -> bool:
     """Bring bodies back to joints and surfaces, velocities to the tangents; return whether the joints close."""
-    system, active, group, work = model.system, data.active, data.group, data.work
-    end = work.trial
+    system, group, work, end = model.system, data.group, data.work, data.work.trial
+    count, loaded = bodies_of(model, data, label)
     if loaded and not (project_position(system, end, True, 1e-14, work) <= RESOLUTION):
         return False
     show(count, end, group, work)
     place_closed(system, k, end, group, group.points[0], work)
-    note_passed(system, active, k, group, data.state, end)
-    onto_surfaces(system, active, k, count, end, group, work)
+    note_passed(system, data.active, k, group, data.state, end)
+    onto_surfaces(system, data, k, count, end)
     if loaded:
         project_velocity(system, end, False, work)
     show(count, end, group, work)
-    place_closed(system, k, end, group, group.points[0], work)
     for i in range(k):
         if group.closed[i].turns == JOINT:
             one = system.relations.frictions[group.closed[i].active]
             c = system.relations.coordinates[one.coordinate]
             place_coordinate(system, c, end, group.points[0][i])
-    onto_tangents(system, active, k, count, end, group, work)
+    onto_tangents(system, data, k, count)
     show(count, end, group, work)
     return True
 
@@ -83,20 +90,11 @@ def note_modes(model, data, k, h):
         if closed_point.own == 0:
             continue
         slides = group.kind[i] == SLIDING and slip > 0.0
-        if closed_point.turns == JOINT:
-            one = model.system.relations.frictions[closed_point.active]
-            one.next = 0 if not slides else 1 if u[3 * i + 1] > 0.0 else -1
-            one.speed = slip
-            continue
-        active_point = active.points[closed_point.active]
         d1, d2 = u[3 * i + 1] / slip if slides else 0.0, u[3 * i + 2] / slip if slides else 0.0
-        if closed_point.turns == 0:
-            if group.mu[i] > 0.0:
-                active_point.next = MODE_SLIP if group.kind[i] == SLIDING else MODE_STICK
-            active_point.heading[0], active_point.heading[1], active_point.speed = d1, d2, slip
-        else:
-            way = active_point.turning[closed_point.turns - 1]
-            way[0], way[1], way[2] = d1, d2, slip if slides else 0.0
+        keep_way(model.system, active, closed_point, d1, d2, slip if slides else 0.0)
+        if closed_point.turns == 0 and group.mu[i] > 0.0:
+            next_mode = MODE_SLIP if group.kind[i] == SLIDING else MODE_STICK
+            active.points[closed_point.active].next = next_mode
 
 
 @kernel
@@ -119,14 +117,15 @@ def turns_back(i, h, group):
 
 
 @unit
-def review(model, data, label, loaded, count, s, h, given) -> bool:
+def review(model, data, label, s, h, given) -> bool:
     """Write forces, margins and modes at the end of a step, in `work.stage`; return whether given modes lasted.
 
     The accelerations there are those of stage s. With `given` modes, slip must not have turned back, and what
     sticks must be within its cones, or slip begins at an event that is located.
     """
-    system, controls, active = model.system, model.controls, data.active
-    start, end, group, work = data.state, data.work.trial, data.group, data.work
+    system, active = model.system, data.active
+    end, group, work = data.work.trial, data.group, data.work
+    count, loaded = bodies_of(model, data, label)
     for m in range(count):
         note_velocity(work.stage[group.member[m]], work.stages[s, group.member[m]])
     accelerate_freely(model, data, loaded, count, s)
@@ -135,14 +134,13 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
     same = set_modes(system, active, k, group)
     if given and not same:
         return False
-    gain = h * push
-    tolerance = rest_speed(controls, gain, work.result[0].residual, k, FEW_REST)
-    lasts, found = solve_end(model, data, loaded, k, count, s, tolerance * controls.step / h, h)
+    tolerance = rest_of(model, data, k, h)
+    lasts, found = solve_end(model, data, label, k, s, h)
     located = greatest_push(k, group)
     for i in range(active.count[0]):
         if work.body[active.points[i].body].label == label:
-            clear(active.points[i])
-    at_rest = come_to_rest(system, tolerance, start, end, count, group)
+            clear(active.points[i])  # it has a force only if it is among the points found
+    at_rest = come_to_rest(system, data, tolerance, count)
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.own == 0:
@@ -167,7 +165,7 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
                 if work.search[0].active == 0:
                     return False
                 active_point.next = MODE_SLIP
-        still = max(1e-6 * gain, 10.0 * slow(system.contacts[closed_point.contact], end))
+        still = max(1e-6 * (h * push), 10.0 * slow(system.contacts[closed_point.contact], end))
         end_mode(active_point, i, still, at_rest, group)
         set_margins(active_point, i, located, group)
         if not given:
@@ -179,21 +177,20 @@ def review(model, data, label, loaded, count, s, h, given) -> bool:
 
 
 @kernel
-def solve_end(model, data, loaded, k, count, s, still, h):
+def solve_end(model, data, label, k, s, h):
     """Write the forces at the end of a step of length h; return whether its modes last, and there are any.
 
-    Slip slower than `still` ends. Stage s has the accelerations before modes change, those that the estimate
-    of the error needs.
+    Stage s has the accelerations before modes change, those that the estimate of the error needs.
     """
-    group = data.group
+    group, work, (count, loaded) = data.group, data.work, bodies_of(model, data, label)
     solved = solve_springs(k, group)
     if solved:
         push_bodies(model, data, loaded, k, count, s)
         lasts = within_cones(k, group)
-        if stick_where_slip_ends(model, data, k, h, still):
-            onto_tangents(model.system, data.active, k, count, data.work.trial, group, data.work)
-            velocities(k, group.points[0], data.work.trial, group.v[U])
-            show(count, data.work.trial, group, data.work)
+        if stick_where_slip_ends(model, data, k, h):
+            onto_tangents(model.system, data, k, count)
+            velocities(k, group.points[0], work.trial, group.v[U])
+            show(count, work.trial, group, work)
             lasts = True
         if lasts:
             return True, True
@@ -201,6 +198,13 @@ def solve_end(model, data, loaded, k, count, s, still, h):
     if not solved:
         push_bodies(model, data, loaded, k, count, s)
     return False, found
+
+
+@kernel
+def rest_of(model, data, k, h):
+    """Return the speed below which the bodies of k points are at rest at the end of a step of length h."""
+    push = greatest(3 * k, data.group.v[C])
+    return rest_speed(model.controls, h * push, data.work.result[0].residual, k, FEW_REST)
 
 
 @kernel
@@ -226,17 +230,6 @@ def add_forces_of_corners(active, k, group):
 
 
 @kernel
-def clear(active_point):
-    """Take the force from an active point: it has one only if it is among the points found."""
-    active_point.stop, active_point.jams, active_point.lift = math.inf, 0, 1.0
-    active_point.grip = 1.0
-    active_point.comes_to_rest = 0
-    for r in range(3):
-        active_point.force[r], active_point.torque[r] = 0.0, 0.0
-    active_point.turn_stop[0], active_point.turn_stop[1] = math.inf, math.inf
-
-
-@kernel
 def gains(i, push, group):
     """Return whether a point accelerates along its surface."""
     a = group.v[ACCELERATIONS]
@@ -259,13 +252,14 @@ def within_cones(k, group):
 
 
 @kernel
-def stick_where_slip_ends(model, data, k, h, still):
+def stick_where_slip_ends(model, data, k, h):
     """Let points stick whose slip ends within a part of the tolerance; return whether friction holds them.
 
-    A step of length h has gone to the stop that was predicted at its start, or the slip is `still`.
+    A step of length h has gone to the stop that was predicted at its start, or the slip is that of rest.
     Forces and accelerations are those of stick then.
     """
     controls, group, active, found = model.controls, data.group, data.active, False
+    still = rest_of(model, data, k, h) * controls.step / h
     for i in range(k):
         closed_point = group.closed[i]
         closed_point.stays = 0
@@ -293,16 +287,10 @@ def stick_where_slip_ends(model, data, k, h, still):
     if sticks == 0:
         return False
     for i in range(k):
-        closed_point = group.closed[i]
-        if closed_point.stays == 1:
-            if closed_point.turns == JOINT:
-                model.system.relations.frictions[closed_point.active].next = 0
-                continue
-            active_point = active.points[closed_point.active]
-            if closed_point.turns == 0:
-                active_point.next = MODE_STICK
-            else:
-                active_point.turning[closed_point.turns - 1, 2] = 0.0
+        if group.closed[i].stays == 1:
+            keep_way(model.system, active, group.closed[i], 0.0, 0.0, 0.0)
+            if group.closed[i].turns == 0:
+                active.points[group.closed[i].active].next = MODE_STICK
     return True
 
 
@@ -328,24 +316,19 @@ def note_residual(active, k, group, work):
 
 
 @kernel
-def come_to_rest(system, tolerance, start, end, count, group):
+def come_to_rest(system, data, tolerance, count):
     """Stop the bodies exactly if all their speeds at the end are below the tolerance.
 
     Return whether they were at rest at the start too; then they also have not moved.
     """
-    speed, before = 0.0, 0.0
-    for m in range(count):
-        b = group.member[m]
-        size = system.bodies[b].extent
-        for r in range(3):
-            speed = max(speed, max(abs(end[b].v[r]), size * abs(end[b].w[r])))
-            before = max(before, max(abs(start[b].v[r]), abs(start[b].w[r])))
-    if not speed <= tolerance:
+    start, end, member = data.state, data.work.trial, data.group.member
+    if not greatest_speed(system, end, count, member) <= tolerance:
         return False
+    rested = greatest_speed(system, start, count, member) == 0.0
     for m in range(count):
-        b = group.member[m]
-        if before == 0.0:
+        b = member[m]
+        if rested:
             copy_state(start[b], end[b])
         for r in range(3):
             end[b].v[r], end[b].w[r] = 0.0, 0.0
-    return before == 0.0
+    return rested

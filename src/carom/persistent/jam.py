@@ -15,21 +15,20 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction.layout import SLIDING
+from carom.persistent.thresholds import JAM_MARGIN
 
 
 @kernel
-def yields(W, mu, u1, u2):
-    """Return k = da_n/dN, a_n the normal acceleration of a point that slips along (u1, u2)."""
-    speed = math.sqrt(u1 * u1 + u2 * u2)
-    if not speed > 0.0:
-        return W[0, 0]
-    return W[0, 0] - mu * (W[0, 1] * u1 + W[0, 2] * u2) / speed
-
-
-@kernel
-def presses(active_point, k):
-    """Return whether a_n = -k N < 0, with the N that would keep the point closed."""
-    return active_point.force[0] * k > 0.0
+def jam_margin(system, active_point):
+    """Return k of a point that slips along its heading, above that at which it counts as jammed."""
+    d, W, mu = (
+        active_point.heading,
+        active_point.W,
+        system.contacts[active_point.contact].friction_held,
+    )
+    speed = math.sqrt(d[0] * d[0] + d[1] * d[1])
+    along = mu * (W[0, 1] * d[0] + W[0, 2] * d[1]) / speed if speed > 0.0 else 0.0
+    return W[0, 0] - along - JAM_MARGIN * W[0, 0]
 
 
 @kernel

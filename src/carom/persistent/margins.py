@@ -1,4 +1,4 @@
-"""Margins of active points at the end of a step: their distances from opening and from slip.
+"""Forces and margins of active points at the end of a step: their distances from opening, slip and stops.
 
 Forces of several points need not be unique, but accelerations are. So a point opens if its normal acceleration
 is positive, and slips if its tangential one is not zero. Before that, its force gives the distance:
@@ -13,8 +13,10 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.impact.workspace import ACCELERATIONS, C, P
+from carom.friction.layout import SLIDING
+from carom.impact.workspace import ACCELERATIONS, C, P, U
 from carom.model.actions import EVENT_JAM, EVENT_SEPARATE, MODE_OPEN, MODE_SLIP, MODE_STICK
+from carom.persistent.rolling_friction import take_torque
 from carom.persistent.settle import greatest
 from carom.persistent.thresholds import EVENT_ERROR, EVENT_MARGIN, NO_MARGIN
 
@@ -32,6 +34,30 @@ def greatest_push(k, group):
             if group.closed[j].contact == a.contact and group.closed[j].turns == 0:
                 return 0.0
     return greatest(3 * k, group.v[C])
+
+
+@kernel
+def time_to_stop(i, group):
+    """Return the time until slip of point i stops at its present deceleration."""
+    d1, d2 = group.heading[i, 0], group.heading[i, 1]
+    speed = group.v[U][3 * i + 1] * d1 + group.v[U][3 * i + 2] * d2
+    rate = group.v[ACCELERATIONS][3 * i + 1] * d1 + group.v[ACCELERATIONS][3 * i + 2] * d2
+    return speed / -rate if group.kind[i] == SLIDING and rate < 0.0 else math.inf
+
+
+@kernel
+def take_forces(active_point, i, group):
+    """Write force and W of the closed point i to its active point, and when slip stops; or its torque."""
+    turns = group.closed[i].turns
+    if turns > 0:
+        active_point.turn_stop[turns - 1] = time_to_stop(i, group)
+        take_torque(active_point, i, group)
+        return
+    active_point.stop = time_to_stop(i, group)
+    for r in range(3):
+        active_point.force[r] = group.v[P][3 * i + r]
+        for j in range(3):
+            active_point.W[r, j] = group.W[3 * i + r, 3 * i + j]
 
 
 @kernel

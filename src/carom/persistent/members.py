@@ -5,7 +5,7 @@ All step the bodies of a group along one right-hand side (`carom.persistent.rows
 
 explicit    the method of the run, with given modes (`carom.persistent.springs`)
 implicit    L-stable, of order 4: Coulomb's law at the velocity of each stage (`carom.persistent.coulomb_stage`)
-closing     implicit Euler, the stiff method of one stage; with impulses, like Moreau.s, where it has none
+closing     implicit Euler, a stiff method of one stage; with impulses, like Moreau.s, where it has none
 
 Each returns whether it has made the step. The work of loads, and of friction, is added to `work.result`.
 """
@@ -14,10 +14,18 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import by_reference, kernel
 from carom.dynamics.explicit import combine_body, copy_state, node, note_velocity, stages_within
 from carom.dynamics.several_points import velocities
-from carom.friction.layout import BUDGET, CONE, DISC, ENOUGH, ITERATIONS, NEAR, SLIDING
+from carom.friction.layout import (
+    BUDGET,
+    CONE,
+    DISC,
+    ENOUGH,
+    ITERATIONS,
+    SLIDING,
+    ContactProblem,
+)
 from carom.friction.solve import solve_cones
 from carom.friction.strategy import budget
 from carom.geometry.rotation import normalize
@@ -25,7 +33,13 @@ from carom.impact.workspace import C, P, U
 from carom.persistent.coulomb_stage import solve_stage
 from carom.persistent.joint_rows import JOINT
 from carom.persistent.rolling_friction import bound_turning
-from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
+from carom.persistent.rows import (
+    accelerate_freely,
+    bodies_of,
+    push_bodies,
+    set_modes,
+    write_rows,
+)
 from carom.persistent.springs import bound_per_force, solve_springs
 from carom.persistent.thresholds import LAST_CHANGE, STAGE_CHANGE
 
@@ -33,16 +47,16 @@ FIXED_POINT = 25  # iterations of the pose of a stage
 
 
 @kernel
-def explicit_member(model, data, method, label, loaded, count, h):
+def explicit_member(model, data, method, label, h):
     """Make the stages of the method of the run; return the number of points at its last one, 0 if modes end."""
     start, end, group, work = data.state, data.work.trial, data.group, data.work
-    result, k = work.result[0], 0
+    (count, loaded), result, k = bodies_of(model, data, label), work.result[0], 0
     for s in range(1, stages_within(method)):
         for m in range(count):
             b = group.member[m]
-            combine_body(method.A[s], s, h, start[b], work.stages, b, work.stage[b])
+            combine_body(method.A[s, :s], h, start[b], work.stages, b, work.stage[b])
             note_velocity(work.stage[b], work.stages[s, b])
-        result.time = result.start + h * node(method.A[s], s)
+        result.time = result.start + h * node(method.A[s, :s])
         power = accelerate_freely(model, data, loaded, count, s)
         k = write_rows(model, data, label, s)
         if not (set_modes(model.system, data.active, k, group) and solve_springs(k, group)):
@@ -50,27 +64,31 @@ def explicit_member(model, data, method, label, loaded, count, h):
         driven, rubbed = push_bodies(model, data, loaded, k, count, s)
         result.applied += h * method.b[s] * (power + driven)
         result.friction += h * method.b[s] * rubbed
+    weights = method.b[: stages_within(method)]
     for m in range(count):
         b = group.member[m]
-        combine_body(method.b, stages_within(method), h, start[b], work.stages, b, end[b])
+        combine_body(weights, h, start[b], work.stages, b, end[b])
     result.time = result.start + h
     return k
 
 
 @kernel
-def implicit_member(model, data, method, label, loaded, count, h):
-    """Make the stages of the stiff method; return the number of points at the end, 0 if one is not solved."""
+def implicit_member(model, data, A, label, h, closes):
+    """Make the stages of the stiff method A; return the number of points at the end, 0 if one is not solved.
+
+    One that `closes` has impulses where its stage has no solution.
+    """
     start, end, group, work = data.state, data.work.trial, data.group, data.work
-    result, A, k = work.result[0], method.stiff, 0
-    stages = A.shape[0]
+    result, k, stages = work.result[0], 0, A.shape[0]
+    count, _ = bodies_of(model, data, label)
     for s in range(1, stages):
         for m in range(count):
             b = group.member[m]
-            combine_body(A[s], s, h, start[b], work.stages, b, group.base[b])
+            combine_body(A[s, :s], h, start[b], work.stages, b, group.base[b])
             for r in range(6):
                 work.stages[s, b].rate[r] = work.stages[s - 1, b].rate[r]
-        result.time = result.start + h * node(A[s], s + 1)
-        k, power, rubbed = implicit_stage(model, data, label, loaded, count, s, h * A[s, s], False)
+        result.time = result.start + h * node(A[s, : s + 1])
+        k, power, rubbed = implicit_stage(model, data, label, s, h * A[s, s], closes)
         if k < 0:
             return 0
         result.applied += h * A[stages - 1, s] * power
@@ -82,12 +100,12 @@ def implicit_member(model, data, method, label, loaded, count, h):
 
 
 @kernel
-def implicit_stage(model, data, label, loaded, count, s, hg, closes):
+def implicit_stage(model, data, label, s, hg, closes):
     """Solve for stage s in `work.stage`, from `group.base` without it.
 
     Return the number of points, -1 if there is no solution, and the powers of loads and of friction.
     """
-    group, work = data.group, data.work
+    group, work, (count, loaded) = data.group, data.work, bodies_of(model, data, label)
     k, change, power, rubbed = -1, 0.0, 0.0, 0.0
     iterations = group.equations.iterations
     iterations[0] = 0
@@ -157,30 +175,9 @@ def move_stage(base, hg, length, stage, out):
     for r in range(3):
         out.x[r] = base.x[r] + hg * stage.speed[r]
     out.Q[0], out.Q[1], out.Q[2], out.Q[3] = normalize(
-        Q[0] + hg * q[0], Q[1] + hg * q[1], Q[2] + hg * q[2], Q[3] + hg * q[3]
+        (Q[0] + hg * q[0], Q[1] + hg * q[1], Q[2] + hg * q[2], Q[3] + hg * q[3])
     )
     return change, size
-
-
-@kernel
-def closing_member(model, data, label, loaded, count, h):
-    """Make a step of implicit Euler, the stiff method of one stage; return the number of points, 0 if none."""
-    start, end, group, work = data.state, data.work.trial, data.group, data.work
-    result = work.result[0]
-    for m in range(count):
-        b = group.member[m]
-        copy_state(start[b], group.base[b])
-        for r in range(6):
-            work.stages[1, b].rate[r] = work.stages[0, b].rate[r]
-    result.time = result.start + h
-    k, power, rubbed = implicit_stage(model, data, label, loaded, count, 1, h, True)
-    if k < 0:
-        return 0
-    result.applied += h * power
-    result.friction += h * rubbed
-    for m in range(count):
-        copy_state(work.stage[group.member[m]], end[group.member[m]])
-    return k
 
 
 @kernel
@@ -198,10 +195,13 @@ def solve_impulses(model, data, k, h):
             group.kind[i], group.heading[i, 0] = DISC, h * group.mu[i]
         elif group.closed[i].turns > 0:
             group.mu[i], turning = 1.0, True
-    count[NEAR], group.cone.mismatch[ENOUGH], count[BUDGET] = 0, 0.0, budget(k)
+    group.cone.mismatch[ENOUGH], count[BUDGET] = 0.0, budget(k)
+    problem = by_reference(
+        ContactProblem(W=group.W, c=group.v[C], mu=group.mu, kind=group.kind, heading=group.heading)
+    )
     for _ in range(50 if turning else 1):
         change = bound_turning(model.system, k, group)
-        solve_cones(k, group.W, group.v[C], group.mu, group.kind, group.heading, p, group.cone)
+        solve_cones(k, problem, p, group.cone)
         group.equations.iterations[0] += count[ITERATIONS]
         if turning and not change > 1e-14:
             break

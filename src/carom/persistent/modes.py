@@ -3,72 +3,49 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.model import records as r
-from carom.model.actions import MODE_OPEN, MODE_STICK, NOTHING
-from carom.model.event_rows import begin_event, end_event
-from carom.persistent.active_set import deactivate, refresh_pairs, regroup, set_anchor
-from carom.persistent.events import jam_margin
-from carom.persistent.jam import note_jam, presses
+from carom.model.actions import MODE_OPEN, NOTHING
+from carom.persistent.active_set import refresh_pairs, regroup, switch
+from carom.persistent.jam import jam_margin, note_jam
+from carom.persistent.rows import bodies_of
 from carom.persistent.thresholds import JAM_MARGIN
 
 
 @kernel
 def jam_point(model, data, i):
-    """Handle a jam of an active point: it presses, and an impact follows; or it opens. Return the action."""
-    system = model.system
-    active, now, work, clock = data.active, data.state, data.work, data.clocks[0]
-    records = data.records
-    active_point = active.points[i]
+    """Handle a jam of an active point: it presses (a_n = -k N < 0), and an impact follows; or it opens.
+
+    Return the action.
+    """
+    system, active, active_point = model.system, data.active, data.active.points[i]
     k = jam_margin(system, active_point) + JAM_MARGIN * active_point.W[0, 0]
-    if presses(active_point, k):
+    if active_point.force[0] * k > 0.0:
         note_jam(active, active_point)
         return NOTHING
-    c = active_point.contact
-    begin_event(system, c, active_point.feature, now, clock, records)
-    deactivate(active, i)
-    regroup(system, active, work)
-    end_event(system, c, r.OPENS, now, clock, records)
+    switch(system, data, i, MODE_OPEN)
+    regroup(system, active, data.work)
     return NOTHING
-
-
-@kernel
-def only_free(system, body, work):
-    """Return whether only gravity and contacts act on the bodies of a group, so that it rests as a whole."""
-    label = work.body[body].label
-    for b in range(work.body.shape[0]):
-        if work.body[b].label == label and system.bodies[b].ballistic == 0:
-            return False
-    return True
 
 
 @kernel
 def turn_modes(model, data):
     """Set the modes of several active points at the end of a step, and record its residual."""
-    system, controls = model.system, model.controls
-    active, now, work, clock = data.active, data.state, data.work, data.clocks[0]
-    records = data.records
+    system, active, work, clock = model.system, data.active, data.work, data.clocks[0]
     changed = False
     clock.residual = max(clock.residual, work.result[0].residual)
     for i in range(active.count[0] - 1, -1, -1):
         active_point = active.points[i]
         if active_point.rest == 1:
             continue
-        if active_point.comes_to_rest == 1 and only_free(system, active_point.body, work):
-            active_point.rest = 1
+        if (
+            active_point.comes_to_rest == 1
+        ):  # a group on which only gravity and contacts act rests as a whole
+            _, loaded = bodies_of(model, data, work.body[active_point.body].label)
+            active_point.rest = 0 if loaded else 1
         if active_point.jams == 1:
             note_jam(active, active_point)
         if active_point.next == active_point.mode:
             continue
-        changed, c = True, active_point.contact
-        begin_event(system, c, active_point.feature, now, clock, records)
-        if active_point.next == MODE_OPEN:
-            deactivate(active, i)
-            end_event(system, c, r.OPENS, now, clock, records)
-        else:
-            active_point.mode = active_point.next
-            if active_point.mode == MODE_STICK:
-                set_anchor(system, active_point, now, work)
-            kind = r.STICKS if active_point.mode == MODE_STICK else r.SLIPS
-            end_event(system, c, kind, now, clock, records)
-    if refresh_pairs(system, controls, active, now, work) or changed:
+        changed = True
+        switch(system, data, i, active_point.next)
+    if refresh_pairs(system, model.controls, data) or changed:
         regroup(system, active, work)

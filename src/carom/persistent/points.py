@@ -21,7 +21,7 @@ from carom.contact.closed_points import add_touch, write_closed, write_turning
 from carom.contact.continuous_detection_pair import nearest_touch
 from carom.contact.pair_point import find_touches, list_touches, smaller, which_touch
 from carom.contact.place import place_any
-from carom.contact.rim import same_point
+from carom.contact.rim import place_of, same_point
 from carom.contact.stop import is_active
 from carom.contact.thresholds import ACTIVE_REACH, PLACE_ERROR, REACH
 from carom.dynamics.thresholds import NORMAL_ERROR
@@ -31,19 +31,19 @@ from carom.persistent.joint_rows import add_frictions
 
 
 @kernel
-def find_points(system, active, label, state, group, work):
-    """List the points of all pairs of a group in a state, then friction of other kinds; return the number."""
-    k = 0
+def find_points(system, data, label):
+    """List the points of all pairs of a group in `work.stage`, then other friction; return the number."""
+    active, group, work, k = data.active, data.group, data.work, 0
     for i in range(active.count[0]):
         active_point = active.points[i]
         if work.body[active_point.body].label != label:
             continue
         if active_point.touches != 1:
-            k = add_known(system, active, i, state, k, group, work)
+            k = add_known(system, data, i, k)
         elif is_first(active, i):
-            k = add_pair(system, active, i, state, k, group, work)
+            k = add_pair(system, data, i, k)
     k = add_turning(system, active, k, group)
-    k = add_frictions(system, label, state, k, group, work)
+    k = add_frictions(system, label, work.stage, k, group, work)
     weigh(system, k, group)
     return k
 
@@ -58,40 +58,39 @@ def is_first(active, i):
 
 
 @kernel
-def add_known(system, active, i, state, k, group, work):
+def add_known(system, data, i, k):
     """Add a vertex on a half-space, or a stop; return the new count."""
+    group, work, one = data.group, data.work, data.active.points[i]
     if k == group.closed.shape[0]:
         return k
-    active_point, closed_point = active.points[i], group.closed[k]
-    contact = system.contacts[active_point.contact]
-    write_closed(active_point.contact, active_point.feature, active_point.point, closed_point)
+    closed_point = group.closed[k]
+    write_closed(one.contact, one.feature, one.point, closed_point)
     closed_point.active, closed_point.own = i, 1
-    place_any(
-        system, contact, active_point.feature, active_point.point, state, group.points[0][k], work
-    )
+    place_any(system, one, work.stage, group.points[0][k], work)
     return k + 1
 
 
 @unit
-def add_pair(system, active, i, state, k, group, work) -> int:
+def add_pair(system, data, i, k) -> int:
     """Add the points of two solids: of a face all its corners, else those of the active features.
 
     Return the new count.
     """
+    active, state, work = data.active, data.work.stage, data.work
     c = active.points[i].contact
     contact = system.contacts[c]
-    count = list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
-    if not on_face(contact, active, i, nearest_touch(work, count).normal, state):
+    list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+    if not on_face(contact, active, i, nearest_touch(work).normal, state):
         for j in range(i, active.count[0]):
             if active.points[j].contact == c:
-                k = add_nearest(system, active, j, count, state, k, group, work)
+                k = add_nearest(system, data, j, k)
         return k
-    k = add_face(system, active, c, i, state, k, group, work)
+    k = add_face(system, data, c, i, k)
     for d in range(system.contacts.shape[0] if contact.surface > 0 else 0):
         other = system.contacts[d]  # another part of the level surface, with a friction of its own
         beside = d != c and other.body == contact.body and other.surface == contact.surface
         if beside and not is_active(active, d):
-            k = add_face(system, active, d, i, state, k, group, work)
+            k = add_face(system, data, d, i, k)
     return k
 
 
@@ -102,7 +101,7 @@ def on_face(contact, active, i, n, state):
     Points on a line, or in other planes, do not tell whether a corner at some distance is closed.
     """
     q, p, level = state[contact.body].Q, active.points[i].point, NORMAL_ERROR * smaller(contact)
-    m, x, y, z, far = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2]), 0.0, 0.0, 0.0, level
+    m, x, y, z, far = rotate_back(q, n), 0.0, 0.0, 0.0, level
     for find_end in (True, False):
         for j in range(active.count[0]):
             other = active.points[j]
@@ -122,55 +121,45 @@ def on_face(contact, active, i, n, state):
 
 
 @kernel
-def add_face(system, active, c, i, state, k, group, work):
+def add_face(system, data, c, i, k):
     """Add all corners of a face; the active point i stands for those that are not active."""
-    contact, near = system.contacts[c], math.inf
+    state, work, contact, near = data.work.stage, data.work, system.contacts[c], math.inf
     count = find_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
     for t in range(count):
         near = min(near, work.touches[t].gap + REACH * smaller(contact))
     for t in range(count if near < 2.0 * REACH * smaller(contact) else 0):
         if work.touches[t].gap <= near:
-            k = add_found(contact, c, work.touches[t], i, state, k, group)
-            note_own(system, active, 0, work.touches[t], state, group.closed[k - 1])
+            k = add_found(system, data, c, work.touches[t], i, k)
+            own = place_of(system, data.active, c, work.touches[t], state)
+            if own >= 0:
+                data.group.closed[k - 1].active, data.group.closed[k - 1].own = own, 1
     return k
 
 
 @kernel
-def note_own(system, active, first, touch, state, closed_point):
-    """Write the place of a found point among the active ones, if it is there."""
-    contact = system.contacts[closed_point.contact]
-    for j in range(first, active.count[0]):
-        active_point = active.points[j]
-        if active_point.contact == closed_point.contact and same_point(
-            system, contact, touch, active_point.feature, active_point.point, state
-        ):
-            closed_point.active, closed_point.own = j, 1
-            return
-
-
-@kernel
-def add_nearest(system, active, j, count, state, k, group, work):
+def add_nearest(system, data, j, k):
     """Add the found point with the feature of an active one, or the nearest one, if it is not there yet."""
-    active_point = active.points[j]
-    c = active_point.contact
+    one, state, group, work = data.active.points[j], data.work.stage, data.group, data.work
+    c = one.contact
     contact = system.contacts[c]
-    t = which_touch(system, contact, count, active_point.feature, active_point.point, state, work)
+    t = which_touch(system, contact, one.feature, one.point, state, work)
     touch = work.touches[t]
     for i in range(k):
         if group.closed[i].contact == c and group.closed[i].feature == touch.feature:
             if same_point(system, contact, touch, touch.feature, group.closed[i].point, state):
                 return k
-    k = add_found(contact, c, touch, j, state, k, group)
+    k = add_found(system, data, c, touch, j, k)
     group.closed[k - 1].own = 1
     return k
 
 
 @kernel
-def add_found(contact, c, touch, j, state, k, group):
-    """Add a found point, with the active point j to stand for it; return the new count."""
+def add_found(system, data, c, touch, j, k):
+    """Add a found point, with the active point j of its pair to stand for it; return the new count."""
+    group = data.group
     if k == group.closed.shape[0]:
         return k
-    add_touch(contact, c, touch, state, k, group)
+    add_touch(system.contacts[c], c, touch, data.work.stage, k, group)
     group.closed[k].active, group.closed[k].own = j, 0
     return k + 1
 

@@ -14,7 +14,6 @@ import math
 from carom._compiled.decorators import kernel
 from carom.contact.closed_points import place_closed, round_off_of_both
 from carom.contact.gap import round_off
-from carom.contact.place import place_any
 from carom.dynamics.contact_impulse import gain
 from carom.dynamics.passed_edges import has_passed
 from carom.dynamics.project import project_position, shift
@@ -43,7 +42,7 @@ def mark_rows(system, active, k, group):
         if group.closed[i].turns > 0:
             continue
         active_point, p, q = active.points[group.closed[i].active], group.v[P], 3 * i
-        if group.points[1][i].gap < -1e-12 * system.contacts[active_point.contact].extent:
+        if group.points[0][i].gap < -1e-12 * system.contacts[active_point.contact].extent:
             some = True
             group.closed[i].rows = 1
         if p[q] > 0.0 and not has_passed(active, i, group):
@@ -93,22 +92,23 @@ def solve_rows(k, n, tiny, group, x):
 
 
 @kernel
-def onto_surfaces(system, active, k, count, state, group, work):
-    """Move the bodies of the group back to the surfaces at the loaded points."""
-    place_closed(system, k, state, group, group.points[1], work)
-    if not mark_rows(system, active, k, group):
+def onto_surfaces(system, data, k, count, state):
+    """Move the bodies of the group back to the surfaces at the loaded points, which are placed in `state`."""
+    group, work, points = data.group, data.work, data.group.points[0]
+    if not mark_rows(system, data.active, k, group):
         return
     n, x = -1, group.v[RETURN]
     for _ in range(11):
-        if errors(system, active, k, state, group, x, work):
+        if errors(system, data, k, state):
             break
         n = factor_given(k, False, group) if n < 0 else n
         solve_rows(k, n, round_off(system.contacts[group.closed[0].contact], state), group, x)
-        spread_all(system, k, group.points[0], x, count, group.member, state, work)
+        spread_all(system, group.points[0, :k], x, group.member[:count], state, work)
         for m in range(count):
             shift(work.body[group.member[m]].motion, 1.0, state[group.member[m]])
         if system.joints.shape[0] > 0:
             project_position(system, state, False, 1e-14, work)
+        place_closed(system, k, state, group, points, work)
 
 
 @kernel
@@ -124,9 +124,10 @@ def mark_tangents(active, k, group):
 
 
 @kernel
-def onto_tangents(system, active, k, count, state, group, work):
+def onto_tangents(system, data, k, count):
     """Remove the velocities of the bodies of the group that leave surfaces, or places that stick."""
-    mark_tangents(active, k, group)
+    state, group, work = data.work.trial, data.group, data.work
+    mark_tangents(data.active, k, group)
     n, x = factor_given(k, False, group), group.v[RETURN]
     tiny = SUM_ERROR * greatest_speed(system, state, count, group.member)
     for _ in range(2):  # W is that of the last stage
@@ -151,24 +152,23 @@ def greatest_speed(system, state, count, member):
 def give(system, k, count, state, group, work):
     """Change velocities of a group by the impulses in RETURN; return whether joints pass them on."""
     p, member = group.v[RETURN], group.member
-    joined = spread_all(system, k, group.points[0], p, count, member, state, work)
+    joined = spread_all(system, group.points[0, :k], p, member[:count], state, work)
     for m in range(count):
         gain(work.body[member[m]].motion, state[member[m]])
     return joined
 
 
 @kernel
-def errors(system, active, k, state, group, x, work):
+def errors(system, data, k, state):
     """Write the errors of all rows (0 for rows not given); return whether all are round-off."""
-    small = True
+    group, x, small = data.group, data.group.v[RETURN], True
     for i in range(k):
-        closed_point, point = group.closed[i], group.points[1][i]
+        closed_point, point = group.closed[i], group.points[0][i]
         x[3 * i], x[3 * i + 1], x[3 * i + 2] = 0.0, 0.0, 0.0
         if closed_point.rows == 0:
             continue
-        active_point = active.points[closed_point.active]
+        active_point = data.active.points[closed_point.active]
         contact = system.contacts[closed_point.contact]
-        place_any(system, contact, closed_point.feature, closed_point.point, state, point, work)
         tiny = round_off(contact, state)
         if contact.touches == 1:
             tiny = 4.0 * round_off_of_both(contact, state)

@@ -12,6 +12,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
+from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.contact.place import drift_of
 from carom.dynamics.acceleration import accelerate, acceleration
@@ -22,7 +23,13 @@ from carom.geometry.thresholds import REMAINDER
 from carom.impact.workspace import C, P, U
 from carom.kinematics.flight import free_rates
 from carom.model.actions import MODE_SLIP
-from carom.persistent.joint_rows import JOINT, PIVOT, drift_of_coordinate, is_driven
+from carom.persistent.joint_rows import (
+    JOINT,
+    PIVOT,
+    drift_of_coordinate,
+    is_driven,
+    mode_of_joint,
+)
 from carom.persistent.points import find_points
 from carom.persistent.springs import bound_per_force
 from carom.persistent.thresholds import SLIP_COSINE, STOPPED_SLIP
@@ -61,7 +68,7 @@ def write_rows(model, data, label, s) -> int:
     """
     system, group, work = model.system, data.group, data.work
     points, state = group.points[0], work.stage
-    k = find_points(system, data.active, label, state, group, work)
+    k = find_points(system, data, label)
     inverse_masses(system, k, points, state, work, group.W)
     write_motion(system, k, state, work.stages[s], group, work)
     return k
@@ -138,6 +145,34 @@ def beyond_stop(system, active, i, group):
 
 
 @kernel
+def slip_of(system, data, i, still):
+    """Return direction and speed of the slip of a point; no direction below `still`, or round-off."""
+    group, closed_point, state = data.group, data.group.closed[i], data.state
+    u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
+    speed = math.hypot(u1, u2)
+    if closed_point.turns == JOINT:
+        return float(mode_of_joint(system, closed_point.active, u1, still, state)), 0.0, speed
+    if speed > max(10.0 * slow(system.contacts[closed_point.contact], state), still):
+        return u1 / speed, u2 / speed, speed
+    return 0.0, 0.0, speed
+
+
+@kernel
+def keep_way(system, active, closed_point, d1, d2, speed):
+    """Keep direction and speed of the slip of a point, joint or torque for the next step; zeros if it holds."""
+    if closed_point.turns == JOINT:
+        one = system.relations.frictions[closed_point.active]
+        one.next, one.speed = 1 if d1 > 0.0 else -1 if d1 < 0.0 else 0, speed
+        return
+    active_point = active.points[closed_point.active]
+    if closed_point.turns > 0:
+        way = active_point.turning[closed_point.turns - 1]
+        way[0], way[1], way[2] = d1, d2, speed
+        return
+    active_point.heading[0], active_point.heading[1], active_point.speed = d1, d2, speed
+
+
+@kernel
 def way_of(system, active, closed_point):
     """Return whether a point slips (or rolls, or pivots), and direction and speed at the start of the step."""
     if closed_point.turns == JOINT:
@@ -156,7 +191,7 @@ def push_bodies(model, data, loaded, k, count, s) -> tuple[float, float]:
     """Add the accelerations by the forces in P to stage s; return the powers of motors and friction."""
     system, group, work = model.system, data.group, data.work
     u, p, power, driven = group.v[U], group.v[P], 0.0, 0.0
-    spread_all(system, k, group.points[0], p, count, group.member, work.stage, work)
+    spread_all(system, group.points[0, :k], p, group.member[:count], work.stage, work)
     if loaded:
         driven = driven_power(system, work.stage, work)
     for m in range(count):

@@ -1,43 +1,69 @@
-"""Several closed points of one group: the points that become persistent, and the points that open."""
+"""Closed points of one group: which of them become persistent, and which open.
+
+A contact becomes persistent if its bounces end within the step (`carom.persistent.bounces`): its velocity is
+removed in the kinetic metric, and its energy is added to the ledger. There is no threshold of speed: with a
+smaller step the contact becomes persistent later. If several points are closed, the acceleration of each is
+that with all points closed that do not leave.
+"""
 
 from __future__ import annotations
 
-import math
-
 from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
+from carom.contact.closed_points import gather_closed
 from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.dynamics.contact_impulse import alone
-from carom.dynamics.elements import driven_power
 from carom.dynamics.energy import energies
 from carom.dynamics.several_points import inverse_masses
 from carom.friction.layout import CONE, SLIDING
-from carom.geometry.thresholds import REMAINDER, RESOLUTION, SUM_ERROR
+from carom.geometry.thresholds import RESOLUTION
 from carom.impact.thresholds import VELOCITY_LEFT
-from carom.impact.workspace import ACCELERATIONS, RETURN, C, P, U
+from carom.impact.workspace import ACCELERATIONS, C, P, U
 from carom.kinematics.contact_point import contact_velocity
-from carom.model.actions import MODE_SLIP, MODE_STICK
+from carom.model.actions import MODE_OPEN, MODE_STICK
 from carom.model.event_rows import begin_event, end_event
-from carom.model.records import OPENS, PERSISTS, SLIPS, STICKS
-from carom.persistent.active_set import activate, any_turning, deactivate, set_anchor
-from carom.persistent.bounces import bounces_end, horizon_of, name_work, spare, time_of_bounces
+from carom.model.records import PERSISTS
+from carom.persistent.active_set import activate, regroup, set_anchor, switch, unite_loaded
+from carom.persistent.bounces import (
+    bounces_end,
+    end_bounces,
+    find_pull,
+    horizon_of,
+    time_without_torque,
+    velocity_after,
+)
+from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.finish import add_forces_of_corners
-from carom.persistent.forces import pose_forces, solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among, note_jam
 from carom.persistent.joint_rows import JOINT, add_frictions
+from carom.persistent.margins import take_forces
 from carom.persistent.points import weigh
-from carom.persistent.return_to_surfaces import (
-    factor_given,
-    give,
-    greatest_speed,
-    onto_surfaces,
-    solve_rows,
-)
-from carom.persistent.rows import bodies_of
-from carom.persistent.settle import add_product, greatest
-from carom.persistent.springs import given
-from carom.persistent.start import first_stage
-from carom.persistent.thresholds import REST_SHARE
+from carom.persistent.return_to_surfaces import onto_surfaces
+from carom.persistent.rows import slip_of, write_motion
+from carom.persistent.settle import greatest
+from carom.persistent.start import accelerate_start, first_stage
+from carom.status import TOO_MANY_POINTS
+
+
+@unit
+def activate_contact(model, data, c, horizon):
+    """Make closed points in the group of contact c persistent if they do not approach and satisfy the rule."""
+    system, active, work = model.system, data.active, data.work
+    contact, hit = system.contacts[c], work.hit[0]
+    hit.code = 0
+    k = gather_closed(model, data, c, False)
+    unite_loaded(system, work)
+    label = work.body[contact.body].label
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        if work.body[active_point.body].label == label:
+            active_point.rest = 0  # together with the new one
+    if k < 0:
+        hit.code = TOO_MANY_POINTS
+    elif k > 0:
+        activate_several(model, data, k, label, horizon)
+    regroup(system, active, work)
 
 
 @kernel
@@ -54,7 +80,7 @@ def activate_several(model, data, k, label, horizon):
     judge(model, data, k, rows, horizon)
     if leave_unreachable(system, state, k, group):
         solve_among(system, k, rows, group)
-    new, stay = -1, False
+    new, stay, first = -1, False, clock.event
     for i in range(k):
         closed_point = group.closed[i]
         stay = stay or closed_point.stays == 1
@@ -69,11 +95,25 @@ def activate_several(model, data, k, label, horizon):
         begin_event(system, closed_point.contact, closed_point.feature, state, clock, records)
     if stay:
         end_bounces(model, data, k, label, horizon)
-        set_modes(model, data, k)
+        activate_new(model, data, k, new >= 0)
     deactivate_open(model, data, k, label)
     mark_approaching(system, active, k, state, group)
     if stay:
-        first_forces(model, data, label)
+        first_forces(model, data, label, first)
+
+
+@kernel
+def pose_forces(model, data, k, label):
+    """Write u, c = du/dt without contact forces, and the direction of slip, of the k points of the group."""
+    system, controls, group, work = model.system, model.controls, data.group, data.work
+    work.result[0].start = data.clocks[0].now
+    accelerate_start(model, data, label)
+    write_motion(system, k, data.state, work.stages[0], group, work)
+    still = controls.rest * greatest(3 * k, group.v[C]) * controls.step
+    for i in range(k):
+        d1, d2, _ = slip_of(system, data, i, still)
+        group.kind[i] = SLIDING if d1 != 0.0 or d2 != 0.0 else CONE
+        group.heading[i, 0], group.heading[i, 1] = d1, d2
 
 
 @kernel
@@ -86,11 +126,9 @@ def judge(model, data, k, rows, horizon):
     """
     system, state, group = model.system, data.state, data.group
     for i in range(k):
-        contact, u = system.contacts[group.closed[i].contact], group.v[U][3 * i]
-        group.closed[i].stays, group.closed[i].bounces = (
-            1 if abs(u) <= slow(contact, state) else 0,
-            0.0,
-        )
+        closed_point = group.closed[i]
+        leaves = abs(group.v[U][3 * i]) > slow(system.contacts[closed_point.contact], state)
+        closed_point.stays, closed_point.bounces = 0 if leaves else 1, 0.0
     push = greatest(3 * k, group.v[C])
     for turn in range(k + 1):
         solve_among(system, k, rows, group)
@@ -151,147 +189,36 @@ def leave_unreachable(system, state, k, group):
 
 
 @kernel
-def velocity_after(q, k, group):
-    """Return the velocity of row q after the impulses in RETURN."""
-    return add_product(group.v[U][q], 3 * k, group.W[q], group.v[RETURN])
-
-
-@kernel
-def time_without_torque(contact, rate, g, state):
-    """Return the time of bounces that are left out, in which rolling and pivoting friction do not act."""
-    bounces = any_turning(contact) and rate > slow(contact, state)
-    return time_of_bounces(contact, rate, g) if bounces else 0.0
-
-
-@kernel
-def end_bounces(model, data, k, label, horizon):
-    """Remove the normal velocities of the points that stay, in the kinetic metric.
-
-    The slip of a point without slip is removed too; otherwise the point would stick with the slip that the
-    impulse gives it. If slip lasts, friction acts with the impulse. Velocities of round-off
-    size, a small fraction of the speed before, become 0, however large the forces are (the point of a rim that
-    is nearly flat moves along the rim with 1e13 m/s^2).
-    """
-    system, controls = model.system, model.controls
-    state, group, work, clock = data.state, data.group, data.work, data.clocks[0]
-    count = members(work, label, group.member)
-    speed = greatest_speed(system, state, count, group.member)
-    still = 1e-12 * speed
-    for i in range(3 * k):
-        still = max(still, controls.rest * controls.step * abs(group.v[C][i]))
-    still = min(still, REST_SHARE * speed)
-    for i in range(k):
-        contact = system.contacts[group.closed[i].contact]
-        end = horizon_of(contact, controls, -group.v[C][3 * i], horizon)
-        if not time_to_stop(i, group) > end:  # friction ends with the slip
-            group.heading[i, 0], group.heading[i, 1] = 0.0, 0.0
-    find_pull(k, 1, SUM_ERROR * speed, group)
-    normal, tangential = work_of_pull(k, group)
-    if normal > 0.0 or not normal + tangential <= spare(
-        clock, work.step[0]
-    ):  # neighbours push each other out
-        find_pull(k, 0, SUM_ERROR * speed, group)
-        normal, tangential = work_of_pull(k, group)
-    name_work(normal, tangential, clock, work.step[0])
-    if give(system, k, count, state, group, work):
-        clock.loads += driven_power(system, state, work)  # of an impulse: its work
-    if greatest_speed(system, state, count, group.member) <= still:
-        for m in range(count):
-            b = group.member[m]
-            for r in range(3):
-                state[b].v[r], state[b].w[r] = 0.0, 0.0
-
-
-@kernel
-def work_of_pull(k, group):
-    """Return the work of the impulses in RETURN: half of each times its velocities before and after."""
-    x, u = group.v[RETURN], group.v[U]
-    normal, tangential = 0.0, 0.0
-    for i in range(3 * k):
-        if x[i] == 0.0:
-            continue
-        if given(group, i):
-            normal += 0.5 * x[i] * u[i]
-        else:
-            tangential += 0.5 * x[i] * (u[i] + velocity_after(i, k, group))
-    return normal, tangential
-
-
-@kernel
-def find_pull(k, friction, tiny, group):
-    """Write the impulses that remove the velocities to RETURN: with friction (1) if they exist."""
-    x = group.v[RETURN]
-    for i in range(k):  # the normal of a point that stays is removed, and its tangents if it sticks
-        closed_point = group.closed[i]
-        closed_point.rows = 0 if closed_point.stays == 0 else 3 if group.kind[i] == CONE else 1
-    for with_friction in range(friction, -1, -1):
-        n = factor_given(k, with_friction == 1, group)
-        for i in range(3 * k):
-            x[i] = group.v[U][i]
-        left = solve_rows(k, n, tiny, group, x)
-        for i in range(k if with_friction == 1 else 0):
-            if group.closed[i].rows == 1 and group.kind[i] == SLIDING:
-                for r in range(2):
-                    x[3 * i + 1 + r] = -group.mu[i] * group.heading[i, r] * x[3 * i]
-        if left <= max(tiny, REMAINDER * greatest(3 * k, group.v[U])):
-            return
-
-
-@kernel
-def mode_of(system, i, state, group):
-    """Return whether point i slips or sticks after its bounces were removed."""
-    _, u1, u2 = contact_velocity(group.points[0][i], state)
-    # as `pose_forces` has found with the velocities before
-    still = 10.0 * slow(system.contacts[group.closed[i].contact], state)
-    slips = math.sqrt(u1 * u1 + u2 * u2) > still and group.kind[i] == SLIDING
-    return MODE_SLIP if slips else MODE_STICK
-
-
-@kernel
-def set_modes(model, data, k):
-    """Activate the new points, with an event for each (the first is begun already); set modes of the others."""
-    system = model.system
-    active, state, group, work = data.active, data.state, data.group, data.work
+def activate_new(model, data, k, begun):
+    """Activate the points that stay and are not active, with an event for each; the first may have `begun`."""
+    system, state, group = model.system, data.state, data.group
     clock, records = data.clocks[0], data.records
-    begun, before = True, active.count[0]
-    for i in range(k):
-        closed_point = group.closed[i]
-        if closed_point.stays == 0 or closed_point.active >= 0:
-            continue
-        if not begun:
-            begin_event(system, closed_point.contact, closed_point.feature, state, clock, records)
-        begun = False
-        mode = mode_of(system, i, state, group)
-        closed_point.active = activate(system, active, closed_point, mode, state, work)
-        clock.holds += 1
-        records.event[clock.event].mode = mode
-        end_event(system, closed_point.contact, PERSISTS, state, clock, records)
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.stays == 0:
             continue
+        if closed_point.active < 0:
+            if not begun:
+                begin_event(
+                    system, closed_point.contact, closed_point.feature, state, clock, records
+                )
+            begun = False
+            closed_point.active = activate(system, data, closed_point)
+            clock.holds += 1
+            records.event[clock.event].mode = MODE_STICK
+            end_event(system, closed_point.contact, PERSISTS, state, clock, records)
         if closed_point.bounces > model.controls.rest * model.controls.step:
-            active.points[closed_point.active].bounces = closed_point.bounces
-        if closed_point.active >= before:
-            continue
-        active_point, mode = active.points[closed_point.active], mode_of(system, i, state, group)
-        if mode == MODE_STICK:  # from where it has slid to, before the impact
-            set_anchor(system, active_point, state, work)
-        if active_point.mode != mode:
-            active_point.mode = mode
-            begin_event(system, closed_point.contact, closed_point.feature, state, clock, records)
-            kind = SLIPS if mode == MODE_SLIP else STICKS
-            end_event(system, closed_point.contact, kind, state, clock, records)
+            data.active.points[closed_point.active].bounces = closed_point.bounces
 
 
 @kernel
-def first_forces(model, data, label):
-    """Store the forces of all active points of the group, and the modes that they ask for."""
-    system, active, state = model.system, data.active, data.state
-    group, work, clock, records = data.group, data.work, data.clocks[0], data.records
-    count, loaded = bodies_of(model, data, label)
-    work.result[0].start = clock.now
-    k, _, _, _, found = first_stage(model, data, label, loaded, count)
+def first_forces(model, data, label, first):
+    """Store the forces of all active points of the group, and the modes that they ask for.
+
+    A point that has just become active, by an event from `first` on, begins in its mode.
+    """
+    system, active, group = model.system, data.active, data.group
+    k, _, _, _, found = first_stage(model, data, label)
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.own == 0 or closed_point.turns == JOINT:
@@ -300,24 +227,23 @@ def first_forces(model, data, label):
         take_forces(active_point, i, group)
         if jams_among(i, found, group) == 1:
             note_jam(active, active_point)
-        if closed_point.turns == 0 and active_point.next != active_point.mode:
-            active_point.mode = active_point.next
-            if not correct_mode(system, closed_point, active_point.mode, clock, records):
-                begin_event(
-                    system, closed_point.contact, closed_point.feature, state, clock, records
-                )
-                end_event(system, closed_point.contact, SLIPS, state, clock, records)
+        if closed_point.turns > 0:
+            continue
+        mode, before = active_point.next, active_point.mode
+        active_point.mode = mode
+        if mode != before and not correct_mode(system, data, closed_point, mode, first):
+            switch(system, data, closed_point.active, mode)
+        elif mode == MODE_STICK:  # from where it has slid to, before the impact
+            set_anchor(system, active_point, data.state, data.work)
     add_forces_of_corners(active, k, group)
     lay_down(model, data, k, label)
 
 
 @kernel
-def correct_mode(system, closed_point, mode, clock, records):
-    """Write the mode of a point that has just become active into its event; return whether there is one."""
-    for i in range(clock.event - 1, -1, -1):
-        event = records.event[i]
-        if event.time < clock.now:
-            break
+def correct_mode(system, data, closed_point, mode, first):
+    """Write the mode of a point into its event from `first` on, if it became active by one; return whether."""
+    for i in range(first, data.clocks[0].event):
+        event = data.records.event[i]
         number = system.contacts[closed_point.contact].number
         same = event.contact == number and event.feature == closed_point.feature
         if same and event.kind == PERSISTS:
@@ -332,9 +258,7 @@ def lay_down(model, data, k, label):
 
     A rim that is nearly flat strikes as a flat one (`carom.contact.rim`), with points above the surface.
     """
-    system, active, state = model.system, data.active, data.state
-    group, work, clock = data.group, data.work, data.clocks[0]
-    off = False
+    system, state, group, clock, off = model.system, data.state, data.group, data.clocks[0], False
     for i in range(k):
         if group.closed[i].turns == 0 and group.v[P][3 * i] > 0.0:
             size = system.contacts[group.closed[i].contact].extent
@@ -342,8 +266,8 @@ def lay_down(model, data, k, label):
     if not off:
         return
     kinetic, potential, _ = energies(system, state, clock.now)
-    count = members(work, label, group.member)
-    onto_surfaces(system, active, k, count, state, group, work)
+    count = members(data.work, label, group.member)
+    onto_surfaces(system, data, k, count, state)
     after, at_end, _ = energies(system, state, clock.now)
     clock.bounces += after + at_end - kinetic - potential
 
@@ -364,23 +288,14 @@ def mark_approaching(system, active, k, state, group):
 @kernel
 def deactivate_open(model, data, k, label):
     """Remove the active points of the group that do not stay."""
-    system = model.system
-    active, state, group, work = data.active, data.state, data.group, data.work
-    clock, records = data.clocks[0], data.records
+    active, group = data.active, data.group
     for j in range(active.count[0] - 1, -1, -1):
-        active_point = active.points[j]
-        if work.body[active_point.body].label != label:
+        one = active.points[j]
+        if data.work.body[one.body].label != label:
             continue
         for i in range(k):
             closed_point = group.closed[i]
-            if (
-                closed_point.contact == active_point.contact
-                and closed_point.feature == active_point.feature
-                and closed_point.stays == 0
-            ):
-                begin_event(
-                    system, closed_point.contact, closed_point.feature, state, clock, records
-                )
-                deactivate(active, j)
-                end_event(system, closed_point.contact, OPENS, state, clock, records)
+            same = closed_point.contact == one.contact and closed_point.feature == one.feature
+            if same and closed_point.stays == 0:
+                switch(model.system, data, j, MODE_OPEN)
                 break

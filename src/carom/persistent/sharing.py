@@ -17,7 +17,7 @@ from carom.friction import lu
 from carom.geometry.thresholds import REMAINDER
 from carom.impact.workspace import P
 from carom.persistent.joint_rows import radius_of
-from carom.persistent.springs import SHARES, compliance_of, grip, soften
+from carom.persistent.springs import SHARES, factor, grip, soften
 from carom.persistent.thresholds import FREEDOM_ERROR, PROXIMAL_SPRING
 
 SQUARES = 3  # of the projector
@@ -30,19 +30,18 @@ def find_idle(k, group):
     ((W + eps S)^-1 eps S)^m, for the normal rows of what presses, has it for a limit.
     """
     equations, closed, W, n, size = group.equations, group.closed, group.W, 0, 0.0
-    rows, L, x, Y, Z = equations.chosen, equations.factor, equations.x, group.idle[0], group.idle[1]
+    rows, x, Y, Z = equations.chosen, equations.x, group.idle[0], group.idle[1]
     for i in range(k):
         if closed[i].turns == 0 and closed[i].loaded == 1:
             rows[n], n, size = 3 * i, n + 1, max(size, closed[i].spring)
     for i in range(n):
         for j in range(n):
-            L[i, j] = W[rows[i], rows[j]]
-        L[i, i] += PROXIMAL_SPRING * closed[rows[i] // 3].spring
-    lu.factor(L, n, equations.pivot, 0.0)
+            equations.A[i, j] = W[rows[i], rows[j]]
+    factor(n, rows, group)
     for j in range(n):
         for i in range(n):
             x[i] = PROXIMAL_SPRING * closed[rows[j] // 3].spring if i == j else 0.0
-        lu.substitute(L, n, equations.pivot, x)
+        lu.substitute(equations.factor, n, equations.pivot, x)
         for i in range(n):
             Y[rows[i] // 3, rows[j] // 3] = x[i]
     for _ in range(SQUARES):
@@ -69,8 +68,7 @@ def share(k, n, group):
     its pose: normal ones, and what sticks where others already hold it (a floor, and a hand that pushes).
     """
     equations, p, W, m = group.equations, group.v[P], group.W, 0
-    rows, chosen, L = equations.rows, equations.chosen, equations.factor
-    x, r = equations.x, equations.r
+    rows, chosen, x, r = equations.rows, equations.chosen, equations.x, equations.r
     for i in range(n):
         whole = sticks(group, rows[i] // 3)
         group.closed[rows[i] // 3].rows = 3 if whole else 1
@@ -79,16 +77,14 @@ def share(k, n, group):
     for i in range(m):
         r[i] = 0.0
         for j in range(m):
+            equations.A[i, j] = W[chosen[i], chosen[j]]
             r[i] += W[chosen[i], chosen[j]] * p[chosen[j]]
     soften(k, group)
     for _ in range(SHARES):
         for i in range(m):
             x[i] = r[i]
-            for j in range(m):
-                L[i, j] = W[chosen[i], chosen[j]]
-            L[i, i] += PROXIMAL_SPRING * compliance_of(group, chosen[i])
-        lu.factor(L, m, equations.pivot, 0.0)
-        lu.substitute(L, m, equations.pivot, x)
+        factor(m, chosen, group)
+        lu.substitute(equations.factor, m, equations.pivot, x)
         for i in range(m):
             p[chosen[i]] = x[i]
         if not grip(k, group):

@@ -49,12 +49,11 @@ def solve_springs(k, group) -> bool:
     C has the accelerations without forces; `kind` says which points slide along `heading`, `loaded` which
     press at first.
     """
-    closed, push = group.closed, greatest(3 * k, group.v[C])
-    for i in range(k):
-        closed[i].rows = rows_of(k, i, group)
+    push, rounds = greatest(3 * k, group.v[C]), 0
     soften(k, group)
-    rounds = 0
     for turn in range(3 * k + 4):
+        for i in range(k):
+            group.closed[i].rows = rows_of(k, i, group)
         n = factor_rows(k, group)
         changed = first_forces(k, n, turn, push, group)
         if changed < 0:
@@ -63,8 +62,6 @@ def solve_springs(k, group) -> bool:
             rounds += 1
             if rounds > SHARES or not grip(k, group):
                 return True
-        for i in range(k):
-            closed[i].rows = rows_of(k, i, group)
     return False
 
 
@@ -95,13 +92,23 @@ def rows_of(k, i, group):
 def factor_rows(k, group):
     """List the given rows, write R P F^T and the factor of R P F^T + eps S; return their number."""
     equations, n = group.equations, list_given(k, group)
-    rows, L, A = equations.rows, equations.factor, equations.A
+    rows, A = equations.rows, equations.A
     for i in range(n):
         for j in range(n):
-            L[i, j] = A[i, j] = response(k, group, rows[i], rows[j])
-        L[i, i] += limits.PROXIMAL_SPRING * compliance_of(group, rows[i])
-    lu.factor(L, n, equations.pivot, 0.0)
+            A[i, j] = response(k, group, rows[i], rows[j])
+    factor(n, rows, group)
     return n
+
+
+@kernel
+def factor(n, rows, group):
+    """Write the factor of A + eps S, with the compliances S of the given rows."""
+    A, L = group.equations.A, group.equations.factor
+    for i in range(n):
+        for j in range(n):
+            L[i, j] = A[i, j]
+        L[i, i] += limits.PROXIMAL_SPRING * compliance_of(group, rows[i])
+    lu.factor(L, n, group.equations.pivot, 0.0)
 
 
 @kernel
@@ -219,7 +226,10 @@ def first_forces(k, n, turn, push, group):
     changed = load(k, n, push, group)
     if changed > 0 and turn < 2 * k:
         return changed
-    return changed + unload(k, turn, group)
+    changed += unload(k, turn < k, group)
+    if changed == 0:
+        note_accelerations(k, group)
+    return changed
 
 
 @kernel
@@ -252,22 +262,18 @@ def load(k, n, push, group):
 
 
 @kernel
-def unload(k, turn, group):
-    """Unload the springs that pull, after many turns only that which pulls most; note the accelerations."""
-    p, closed, most, worst, which, count = group.v[P], group.closed, 0.0, 0.0, -1, 0
+def unload(k, together, group):
+    """Unload the springs that pull, all `together` or those that pull most; return how many."""
+    p, closed, most, worst, count = group.v[P], group.closed, 0.0, 0.0, 0
     for i in range(k):
         if closed[i].turns == 0:
-            most = max(most, p[3 * i])
+            most, worst = max(most, p[3 * i]), min(worst, p[3 * i])
+    limit = -GROUP_ERROR * most if together else min(worst, -GROUP_ERROR * most)
     for i in range(k):
-        if closed[i].turns == 0 and closed[i].loaded == 1 and p[3 * i] < -GROUP_ERROR * most:
-            if turn < k:
-                closed[i].loaded, count = 0, count + 1
-            elif p[3 * i] < worst:
-                worst, which = p[3 * i], i
-    if which >= 0:
-        closed[which].loaded, count = 0, 1
-    if count == 0:
-        note_accelerations(k, group)
+        if closed[i].turns == 0 and closed[i].loaded == 1 and p[3 * i] < 0.0 and p[3 * i] <= limit:
+            closed[i].loaded, count = 0, count + 1
+            for row in range(3 * i, 3 * i + 3):
+                p[row] = 0.0
     return count
 
 

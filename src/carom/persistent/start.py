@@ -9,16 +9,23 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.contact.gap import slow
 from carom.dynamics.explicit import copy_state, note_velocity
 from carom.dynamics.passed_edges import note_normal
 from carom.friction.layout import SLIDING
 from carom.impact.workspace import C, P, U
 from carom.model.actions import MODE_SLIP, MODE_STICK
+from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.finish import gains, within_cones
-from carom.persistent.forces import solve_forces
-from carom.persistent.joint_rows import JOINT, mode_of_joint, radius_of
-from carom.persistent.rows import accelerate_freely, push_bodies, set_modes, write_rows
+from carom.persistent.joint_rows import JOINT, radius_of
+from carom.persistent.rows import (
+    accelerate_freely,
+    bodies_of,
+    keep_way,
+    push_bodies,
+    set_modes,
+    slip_of,
+    write_rows,
+)
 from carom.persistent.settle import greatest
 from carom.persistent.springs import solve_springs
 
@@ -33,21 +40,32 @@ def first_modes(data, label):
 
 
 @kernel
-def first_stage(model, data, label, loaded, count):
+def accelerate_start(model, data, label):
+    """Write the state at the start of a step to `work.stage`, and as stage 0 accelerations without rows.
+
+    Return the number of bodies of the group, whether they are joined or loaded, and the power of loads.
+    """
+    start, group, work = data.state, data.group, data.work
+    for b in range(start.shape[0]):
+        copy_state(start[b], work.stage[b])
+    count, loaded = bodies_of(model, data, label)
+    for m in range(count):
+        note_velocity(work.stage[group.member[m]], work.stages[0, group.member[m]])
+    work.result[0].time = work.result[0].start
+    return count, loaded, accelerate_freely(model, data, loaded, count, 0)
+
+
+@kernel
+def first_stage(model, data, label):
     """Write the accelerations of a group at the start of a step as stage 0, and the ways of its points.
 
     Return the number of points, the greatest rate at which friction turns a slip, the greatest acceleration by
     friction, its power, and whether the contact problem has a solution. The power of loads is in `work.result`.
     """
-    start, group, work, system = data.state, data.group, data.work, model.system
+    group, work, system = data.group, data.work, model.system
     result, controls = work.result[0], model.controls
-    for b in range(start.shape[0]):
-        copy_state(start[b], work.stage[b])
-    for m in range(count):
-        note_velocity(work.stage[group.member[m]], work.stages[0, group.member[m]])
+    count, loaded, power = accelerate_start(model, data, label)
     first_modes(data, label)
-    result.time = result.start
-    power = accelerate_freely(model, data, loaded, count, 0)
     k = write_rows(model, data, label, 0)
     push = greatest(3 * k, group.v[C])
     known = True
@@ -92,24 +110,17 @@ def note_break_away(system, data, k, push):
 @kernel
 def note_way(model, data, i, still):
     """Store the way of the slip of a point at the start of a step; return whether it is known, if it slips."""
-    group, active = data.group, data.active
+    system, group, active = model.system, data.group, data.active
     closed_point = group.closed[i]
-    u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
-    speed = math.hypot(u1, u2)
+    d1, d2, speed = slip_of(system, data, i, still)
     if closed_point.turns == JOINT:
-        one = model.system.relations.frictions[closed_point.active]
-        one.next = mode_of_joint(model.system, closed_point.active, u1, still, data.state)
-        one.speed = speed
+        keep_way(system, active, closed_point, d1, d2, speed)
         return True
-    active_point = active.points[closed_point.active]
-    contact = model.system.contacts[closed_point.contact]
-    moves = speed > max(10.0 * slow(contact, data.state), still)
-    d1, d2 = u1 / speed if moves else 0.0, u2 / speed if moves else 0.0
+    active_point, moves = active.points[closed_point.active], d1 != 0.0 or d2 != 0.0
     if closed_point.own == 0:
         return moves or active_point.next != MODE_SLIP or group.mu[i] == 0.0
     if closed_point.turns > 0:
-        way = active_point.turning[closed_point.turns - 1]
-        way[0], way[1], way[2] = d1, d2, speed if moves else 0.0
+        keep_way(system, active, closed_point, d1, d2, speed if moves else 0.0)
         return True
     if moves and active_point.mode != MODE_SLIP:
         active_point.next = MODE_SLIP  # a corner that has come since: the velocity decides
@@ -117,8 +128,7 @@ def note_way(model, data, i, still):
     if slips and not moves and group.mu[i] > 0.0:  # it has stopped
         active_point.next = MODE_STICK
     note_normal(group.points[0][i], active_point)
-    active_point.heading[0], active_point.heading[1] = d1 if slips else 0.0, d2 if slips else 0.0
-    active_point.speed = speed
+    keep_way(system, active, closed_point, d1 if slips else 0.0, d2 if slips else 0.0, speed)
     return moves or not slips or group.mu[i] == 0.0
 
 

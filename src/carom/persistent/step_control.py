@@ -14,6 +14,7 @@ from carom.dynamics.energy import kinetic_of
 from carom.dynamics.thresholds import RTOL
 from carom.geometry.rotation import norm
 from carom.persistent import thresholds as limits
+from carom.persistent.rows import bodies_of
 
 
 @kernel
@@ -23,13 +24,6 @@ def lost_by(system, b, start, end):
     for k in range(3):
         lost += body.mass * g[k] * (end[b].x[k] - start[b].x[k])
     return lost - kinetic_of(body, end[b])
-
-
-@kernel
-def may_lose(system, b, start, part):
-    """Return a part of the kinetic energy of a body and of its weight times its size."""
-    body = system.bodies[b]
-    return part * (kinetic_of(body, start[b]) + body.mass * norm(system.gravity) * body.extent)
 
 
 @kernel
@@ -44,10 +38,17 @@ def weigh(system, b, start, end):
 
 
 @kernel
-def unnamed(system, controls, start, end, friction, count, member):
-    """Return the change of energy in the step besides the work of friction, relative to the allowed loss."""
-    lost, may = friction, 0.0
-    fall = 0.5 * limits.FALL_LOSS * (controls.step * norm(system.gravity)) ** 2
+def note_unnamed(model, data, label, friction):
+    """Note the change of energy in a step besides the work of friction, relative to the allowed loss.
+
+    It is known of bodies on which only gravity acts.
+    """
+    system, start, end, member = model.system, data.state, data.work.trial, data.group.member
+    (count, loaded), lost, may = bodies_of(model, data, label), friction, 0.0
+    if loaded:
+        return
+    g, result = norm(system.gravity), data.work.result[0]
+    fall = 0.5 * limits.FALL_LOSS * (model.controls.step * g) ** 2
     for m in range(count):
         b = member[m]
         body = system.bodies[b]
@@ -55,8 +56,10 @@ def unnamed(system, controls, start, end, friction, count, member):
         may += limits.MOTION_LOSS * kinetic_of(body, start[b])
         may += min(body.mass * fall, limits.SIZE_LOSS * weigh(system, b, start, end))
     if count == 1:
-        may = may_lose(system, member[0], start, limits.BODY_LOSS)
-    return abs(lost) / may if may > 0.0 else 0.0
+        body = system.bodies[member[0]]
+        may = kinetic_of(body, start[member[0]]) + body.mass * g * body.extent
+        may *= limits.BODY_LOSS
+    result.unnamed = max(result.unnamed, abs(lost) / may if may > 0.0 else 0.0)
 
 
 @kernel
@@ -64,11 +67,8 @@ def turns_far(active, start, end, dt):
     """Return whether a body with an active point turns too far in a step."""
     for i in range(active.count[0]):
         active_point = active.points[i]
-        if (
-            active_point.rest == 0
-            and not dt * max(norm(start[active_point.body].w), norm(end[active_point.body].w))
-            <= SAFE_ROTATION
-        ):
+        spin = max(norm(start[active_point.body].w), norm(end[active_point.body].w))
+        if active_point.rest == 0 and not dt * spin <= SAFE_ROTATION:
             return True
     return False
 

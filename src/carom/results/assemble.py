@@ -242,12 +242,12 @@ def accelerations(solution) -> np.ndarray:
     touch = with_forces(solution.scene, solution, solution._solved[1], rec.touch)
     found = np.zeros((len(rec.state), len(system.bodies), 6))
     out, work = np.zeros((len(found), system.joints.size, 6)), r.new_work(system, run.method.b.size)
-    given = system, run.options.augmentation, solution.t, rec.state
+    augment = run.options.augmentation
     with _kept_turns(system):
         for first, last in ranges_of(run, run.compiled, len(found)):
             for k in range(first, last):
-                own = touch[np.searchsorted(touch["saved"], k) :]
-                reactions(*given, (k, k + 1), own, work, out)
+                rec = rec._replace(touch=touch[np.searchsorted(touch["saved"], k) :])
+                reactions(system, augment, rec, (k, k + 1), work, out)
                 found[k] = work.body["motion"]
     return found
 
@@ -267,9 +267,8 @@ def element_reactions(solution) -> tuple[np.ndarray, dict[int, np.ndarray]]:
         out, work = np.zeros((len(rec.state), system.joints.size, 6)), r.new_work(system, stages)
         with _kept_turns(system):
             for rows in ranges_of(run, compiled, len(out)):
-                part = touch[np.searchsorted(touch["saved"], rows[0]) :]
-                times = solution.t, rec.state
-                reactions(system, run.options.augmentation, *times, rows, part, work, out)
+                part = rec._replace(touch=touch[np.searchsorted(touch["saved"], rows[0]) :])
+                reactions(system, run.options.augmentation, part, rows, work, out)
         return on_children(compiled, rec.state, out)
 
     return with_dry_friction(run, solution, rec.touch, solve)
@@ -307,7 +306,7 @@ def constraint_errors(solution) -> tuple[np.ndarray, np.ndarray]:
     work = r.new_work(system, run.method.b.size)
     position, velocity = np.zeros((2, len(rec.state), system.joints.size, 6))
     with _kept_turns(system):
-        row_errors(system, solution.t, rec.state, work, position, velocity)
+        row_errors(system, rec, work, position, velocity)
     counts = [len(row_units(part.definition)) for part in constrained(run.scene)]
     rows = np.arange(6) < np.array(counts, dtype=np.int64).reshape(-1, 1)
     position, velocity = (np.abs(e[:, : len(counts)][:, rows]) for e in (position, velocity))

@@ -51,14 +51,14 @@ class Instant:
         """Return reactions on children (1, E, 6) and accelerations under forces at active points."""
         from carom.dynamics.reactions import reactions
         from carom.model.kept import Kept
-        from carom.model.records import new_work
+        from carom.model.records import SERIES, new_work
         from carom.results.assemble import on_children
 
         run, system, touch = self.run, compiled.system, copied(touch)
         touch["saved"] = 1
         # the second of two equal states: whole turns are counted from those of the first
-        states, times = table(STATE, 2, len(self.states)), np.full(2, self.t)
-        states[:] = self.states
+        states, series = table(STATE, 2, len(self.states)), table(SERIES, 2)
+        states[:], series["t"] = self.states, self.t
         out = np.zeros((2, system.joints.size, 6))
         kept = Kept((system,))  # the run may go on
         present = {index: law.rest for index, law in compiled.laws.items()}
@@ -70,7 +70,8 @@ class Instant:
         for index, rest in self.laws.items():
             compiled.laws[index].rest = rest
         work = new_work(system, run.method.b.size)
-        reactions(system, run.options.augmentation, times, states, (1, 2), touch, work, out)
+        saved = run.records._replace(series=series, state=states, touch=touch)
+        reactions(system, run.options.augmentation, saved, (1, 2), work, out)
         kept.restore()
         for index, rest in present.items():
             compiled.laws[index].rest = rest

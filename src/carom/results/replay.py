@@ -43,9 +43,7 @@ class Replay:
         relations = self.run.compiled.system.relations
         self.turns = np.zeros((len(written.state), len(relations.coordinates)))
         if self.turns.size:
-            saved_turns(
-                self.run.compiled.system, written.series.t.copy(), written.state, self.turns
-            )
+            saved_turns(self.run.compiled.system, written, self.turns)
         self.first = Snapshot(self.run)
         self.size = self.run.bodies["extent"]
         rtol, atol = self.run.tolerances or (RTOL, RTOL * float(np.min(self.size)))

@@ -130,11 +130,10 @@ def force_rows(system, state, forces: list[Force], t: float):
     """Return J and M^-1 J^T of the forces beside the joints, (n, N, 6) each, and their coordinates (n, 2)."""
     work, n = r.new_work(system, 1), len(forces)
     work.result[0].time = t
-    J, motions = np.zeros((2, n, len(system.bodies), 6))
-    values = np.zeros((n, 2))
+    rows, values = np.zeros((2, n, len(system.bodies), 6)), np.zeros((n, 2))
     places = np.array([force.place for force in forces], dtype=np.int64)
-    write_force_rows(system, state, places, work, J, motions, values)
-    return J, motions, values
+    write_force_rows(system, state, places, work, rows, values)
+    return *rows, values
 
 
 def gains(function, t: float, q: float, rate: float) -> tuple[float, float]:

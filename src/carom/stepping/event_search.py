@@ -27,17 +27,18 @@ NEWTON_STEPS = 6  # steps to the root of a cubic from a near start
 
 
 @inlined
-def detect_event(system, controls, active, now, dt, work):
+def detect_event(model, data):
     """Return the first event of the trial step: verdict, event, contact, a time before it."""
+    system, active = model.system, data.active
     found, which, low = CLEAR, -1, 0.0
     for c in range(active.contact_states.shape[0]):
         contact = system.contacts[c]
         if contact.touches == 0:
-            verdict, first = passage(system, controls, active, c, now, dt, work)
+            verdict, first = passage(model, data, c)
         elif contact.touches == STOP:
-            verdict, first = passage_stop(system, controls, active, c, now, dt, work)
+            verdict, first = passage_stop(model, data, c)
         else:
-            verdict, first = passage_pair(system, controls, active, c, now, dt, work)
+            verdict, first = passage_pair(model, data, c)
         if verdict in (UNSURE, FLAT_RIM):
             return verdict, EVENT_GAP, c, 0.0
         if verdict == BELOW and found == CLEAR:
@@ -46,24 +47,26 @@ def detect_event(system, controls, active, now, dt, work):
             active.contact_states[c].leaving = 0
     if found == BELOW:
         return BELOW, EVENT_GAP, which, low
-    kind, i = find_contact_event(system, active, work)
+    kind, i = find_contact_event(system, active, data.work)
     if i >= 0:
         return BELOW, kind, i, 0.0
     return CLEAR, EVENT_GAP, -1, 0.0
 
 
 @kernel
-def event_value(system, controls, active, search, state, work):
-    """Return the event function and, for a gap, its rate; contact forces are those of `state`."""
+def event_value(model, data):
+    """Return the event function at the end of the trial step and, for a gap, its rate."""
+    system, active, work = model.system, data.active, data.work
+    search, state = work.search[0], work.trial
     if search.kind == EVENT_GAP:
         contact = system.contacts[search.contact]
-        search.tolerance = max(controls.gap * smaller(contact), round_off(contact, state))
+        search.tolerance = max(model.controls.gap * smaller(contact), round_off(contact, state))
         if contact.touches == 0:
             return lowest(contact, system.vertices, state)
         if contact.touches == STOP:
             return stop_gap(system, contact, state, work)
         search.tolerance = 4.0 * max(search.tolerance, round_off_of_both(contact, state))
-        return lowest_pair(system, contact, search.contact, active, state, work)
+        return lowest_pair(system, data, search.contact, state)
     if search.kind != EVENT_JAM and active.points[search.contact].several == 1:
         search.tolerance = EVENT_ERROR
     return contact_event_value(system, active.points[search.contact], search.kind), 0.0

@@ -15,6 +15,7 @@ from carom.contact.continuous_detection import greatest_acceleration
 from carom.contact.gap import gap_and_rate, plane_in_body, slow
 from carom.contact.pair_point import find_touches, smaller, touch_rate
 from carom.contact.parting import beside_face
+from carom.contact.rim import place_of
 from carom.contact.stop import check_stop
 from carom.contact.thresholds import REACH
 from carom.dynamics.explicit import copy_state
@@ -28,11 +29,10 @@ from carom.model.allowance import overdone, smooth_count
 from carom.model.arrays import STOP
 from carom.model.controls import LOCATE
 from carom.model.workspace import FREE
-from carom.persistent.active_set import is_active
 from carom.persistent.bounces import horizon_of
-from carom.persistent.lifecycle import activate_contact
 from carom.persistent.margins import switch_due
 from carom.persistent.modes import jam_point, turn_modes
+from carom.persistent.several_points import activate_contact
 from carom.persistent.step_control import goes_wild, next_pace, unsolved
 from carom.persistent.thresholds import CUT_RESIDUAL, STOP_RESIDUAL
 from carom.status import LEFT_CURVE, NO_CONVERGENCE, NOT_FINITE
@@ -98,7 +98,7 @@ def due_action(model, data):
     search.horizon = search.left if exact(controls) else controls.step
     if step.paused == 1:
         return NOTHING
-    action, c = find_due_contact(model.system, controls, data.active, data.state, data.work)
+    action, c = find_due_contact(model, data)
     if action != NOTHING:
         search.contact = c
     return action
@@ -248,7 +248,7 @@ def check_pair(system, controls, active, c, now, work) -> int:
             rate = touch_rate(contact, touch, now)
             if rate < -still:
                 return STRIKE
-            if rate <= still and not is_active(system, active, c, touch, now):
+            if rate <= still and place_of(system, active, c, touch, now) < 0:
                 action = PERSIST
     return action
 
@@ -269,16 +269,17 @@ def look_at_vertices(system, controls, active, contact, now):
 
 
 @inlined
-def find_due_contact(system, controls, active, now, work):
+def find_due_contact(model, data):
     """Find a closed point that is not active, at the start or after an event, and the action that it needs."""
+    system, controls, active, now = model.system, model.controls, data.active, data.state
     for c in range(active.contact_states.shape[0]):
         contact_state, contact = active.contact_states[c], system.contacts[c]
         if contact_state.near == 0:
             continue
         if contact.touches == 1:
-            action = check_pair(system, controls, active, c, now, work)
+            action = check_pair(system, controls, active, c, now, data.work)
         elif contact.touches == STOP:
-            action = check_stop(system, controls, active, contact, c, now, work)
+            action = check_stop(model, data, c)
         else:
             action = look_at_vertices(system, controls, active, contact, now)
         contact_state.near = 0

@@ -71,7 +71,7 @@ def save_contacts(system, active, now, k, clock, work, records):
     for i in range(active.count[0]):
         active_point, point, touch = active.points[i], work.placed[0], records.touch[clock.touched]
         contact = system.contacts[active_point.contact]
-        place_any(system, contact, active_point.feature, active_point.point, now, point, work)
+        place_any(system, active_point, now, point, work)
         E, arm, other, f = point.axes, point.arm_a, point.arm_b, active_point.force
         touch.saved, touch.contact, touch.feature = k, contact.number, active_point.feature
         touch.mode, touch.body = active_point.mode, system.bodies[active_point.body].number

@@ -130,7 +130,7 @@ def trial_step(model, data, method):
     work, clock, result = data.work, data.clocks[0], data.work.result[0]
     own, search = work.step[0], work.search[0]
     result.start, result.order = clock.now, controls.order
-    applied, code = step(method, system, active, now, search.dt, work.trial, work)
+    applied, code = step(model, data, method, search.dt)
     search.applied, search.friction, search.code = applied, 0.0, code
     clock.trials += 1
     own.counts[COUNT_TRIALS] += 1.0
@@ -179,8 +179,8 @@ def fits(model, data):
 @inlined
 def is_root(model, data):
     """Return 0 if the end of the trial step is the event of the search; otherwise ONCE_MORE or a code."""
-    system, controls, work, search = model.system, model.controls, data.work, data.work.search[0]
-    f, rate = event_value(system, controls, data.active, search, work.trial, work)
+    search = data.work.search[0]
+    f, rate = event_value(model, data)
     state = update_bracket(search, search.dt, f, rate)
     if state < 0:
         return NOT_FINITE
@@ -208,7 +208,7 @@ def event_within(model, data):
         return halve(model, data, True)
 
     # does an event lie inside?
-    verdict, kind, other, low = detect_event(system, controls, active, now, search.dt, work)
+    verdict, kind, other, low = detect_event(model, data)
     if verdict == FLAT_RIM:  # its points strike together at the present position
         search.pending, search.contact, search.horizon = STRIKE, other, search.left
         return 0
@@ -255,7 +255,7 @@ def bracket(model, data):
     if search.kind == EVENT_GAP and controls.location != LOCATE:
         search.found = 1
         return 0
-    f, rate = event_value(system, controls, data.active, search, work.trial, work)
+    f, rate = event_value(model, data)
     update_bracket(search, search.dt, f, rate)
     dt = next_trial(search)
     if search.kind == EVENT_GAP and system.contacts[search.contact].touches == 0:

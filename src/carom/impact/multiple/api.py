@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from carom import arguments, checks
-from carom.friction.checks import checked_inverse_masses, per_contact
+from carom.friction.checks import checked_inverse_masses, codes, per_contact
 
 
 @dataclass(frozen=True)
@@ -141,10 +141,7 @@ def resolve_impacts(
     mu = per_contact("friction", friction, k, least=0.0)
     e = per_contact("restitution", restitution, k, least=0.0, most=1.0)
     kappa = per_contact("stiffness", 1.0 if stiffness is None else stiffness, k, above=0.0)
-    names = [law] * k if isinstance(law, str) else checks.listed("law", law, "names")
-    if len(names) != k:
-        raise ValueError(f"law must be one name or {k} of them, got {checks.shown(law)}")
-    numbers = np.array([NUMBERS[checks.choice("law", name, NUMBERS)] for name in names])
+    numbers = codes("law", law, k, NUMBERS)
     settings = MultipleSettings(
         multiple=MULTIPLE[checks.choice("multiple", multiple, MULTIPLE)],
         rtol=checks.number("rtol", rtol, least=1e-12, most=1e-2),

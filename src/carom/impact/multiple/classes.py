@@ -158,37 +158,43 @@ def _same_kind(contacts, i, j, tolerance):
 @kernel
 def _same_coupling(contacts, count, i, j, index):
     """Return whether contacts i and j are coupled to each class in the same way."""
-    k, W, cls = contacts.k, contacts.W, index[o.CLASS]
+    W, cls = contacts.W, index[o.CLASS]
     for q in range(count):
         tolerance = GROUP_ERROR * _coupling_scale(W, j, index[o.FIRST_MEMBER, q])
         for r in range(3):
             for s in range(3):
-                difference = _difference(k, W[3 * i + r], W[3 * j + r], s, q, cls[j] == q, cls)
+                difference = _difference(contacts, 3 * i + r, 3 * j + r, s, q, cls)
                 if not abs(difference) <= tolerance:
                     return False
     return True
 
 
 @kernel
-def _difference(k, row, other, s, q, own, cls):
-    """Return the difference of two rows of W, summed over class `q`; if `own`, with members that leave it."""
-    total = 0.0
-    for b in range(k):
+def _difference(contacts, a, c, s, q, cls):
+    """Return the difference of rows `a` and `c` of W in component `s`, summed over class `q`.
+
+    If it is the class of these rows, with the members that leave it.
+    """
+    row, other, own, total = contacts.W[a], contacts.W[c], cls[c // 3] == q, 0.0
+    for b in range(contacts.k):
         if cls[b] == q or (own and cls[b] < 0):
             total += row[3 * b + s] - other[3 * b + s]
     return total
 
 
 @kernel
-def class_coupling(k, W, index, p, q, r, s):
-    """Return the entry (r, s) of W between classes p and q: sum_ij W_ij / (m_p m_q)."""
-    total = 0.0
-    for i in range(k):
-        if index[o.CLASS, i] == p:
-            for j in range(k):
-                if index[o.CLASS, j] == q:
-                    total += W[3 * i + r, 3 * j + s]
-    return total / (index[o.CLASS_SIZE, p] * index[o.CLASS_SIZE, q])
+def couple(contacts, index, a, b, mass):
+    """Write W between the members a and b of a group, classes p and q: sum_ij W_ij / (m_p m_q)."""
+    W, cls, p, q = contacts.W, index[o.CLASS], index[o.MEMBER, a], index[o.MEMBER, b]
+    size = index[o.CLASS_SIZE, p] * index[o.CLASS_SIZE, q]
+    for r in range(3):
+        for s in range(3):
+            total = 0.0
+            for i in range(contacts.k):
+                for j in range(contacts.k if cls[i] == p else 0):
+                    if cls[j] == q:
+                        total += W[3 * i + r, 3 * j + s]
+            mass[3 * a + r, 3 * b + s] = total / size
 
 
 @kernel

@@ -7,23 +7,24 @@ from carom._compiled.units import unit
 from carom.impact import laws
 from carom.impact import layout as one
 from carom.impact.multiple import layout as o
-from carom.impact.multiple.classes import class_coupling, parts_others
+from carom.impact.multiple.classes import couple, parts_others
 from carom.impact.multiple.layer import start
 from carom.impact.multiple.moreau import solve_group
 from carom.impact.multiple.restitution import any_targets, energetic, iterate_restitution, run
 from carom.impact.multiple.series import into_lanes
 from carom.impact.multiple.steps import ENDED
-from carom.impact.resolve import resolve_one
+from carom.impact.resolve import resolve
 from carom.impact.thresholds import COARSE_TOLERANCE
 
 
 @kernel
-def strike_group(g, contacts, still, by_newton, settings, workspace, out):
+def strike_group(g, contacts, still, by_newton, settings, workspace):
     """Resolve the classes of group `g`; write impulses and works of their contacts.
 
     `by_newton` says that they are one contact problem, without the passage of the layer.
     """
-    work, summary = workspace.work, out.summary[0]
+    work, out = workspace.work, workspace.blow.result
+    summary = out.summary[0]
     n = _gather(g, contacts, still, summary.classes, work)
     if n == 0 or (n == 1 and not by_newton and _exactly(contacts, still, work, out) == one.OK):
         return
@@ -63,12 +64,7 @@ def _gather(g, contacts, still, classes, work):
         return 0
     for a in range(n):
         for b in range(n):
-            p, q = index[o.MEMBER, a], index[o.MEMBER, b]
-            for r in range(3):
-                for s in range(3):
-                    work.matrix[o.MASS, 3 * a + r, 3 * b + s] = class_coupling(
-                        contacts.k, contacts.W, index, p, q, r, s
-                    )
+            couple(contacts, index, a, b, work.matrix[o.MASS])
     return n
 
 
@@ -127,14 +123,14 @@ def _exactly(contacts, still, work, out):
         before[r] = contacts.u[3 * i + r] if r == 0 or mu > 0.0 else 0.0
         for s in range(3):
             W[r, s] = work.matrix[o.MASS, r, s]
-    single, clock, summary = work.single, work.clock, out.summary[0]
+    single, summary = work.single, out.summary[0]
     single[one.STILL] = still
     several = parts or contacts.others > 0
-    resolve_single(clock, W, before, mu, e, law, single)
-    if several and clock[0].code == one.OK and single[one.WORK_R] > -single[one.WORK_C]:
-        resolve_single(clock, W, before, mu, 1.0, laws.STRONGE, single)
+    code = resolve_single(work, mu, e, law)
+    if several and code == one.OK and single[one.WORK_R] > -single[one.WORK_C]:
+        code = resolve_single(work, mu, 1.0, laws.STRONGE)
         summary.marks |= o.CAPPED
-    if clock[0].code != one.OK:
+    if code != one.OK:
         return o.NOT_RESOLVED
     share = 1.0 / index[o.CLASS_SIZE, q]
     for j in range(contacts.k):
@@ -174,7 +170,7 @@ def pass_group(k, work, settings, result):
     into_lanes(k, work)
     iterates = any_targets(k, work)
     rtol = max(settings.rtol, COARSE_TOLERANCE) if iterates else settings.rtol
-    ended = run(k, work, settings, rtol, True)
+    ended = run(k, work, settings, rtol)
     if iterates and ended == ENDED:
         ended = iterate_restitution(k, work, settings, result)
     result.steps += work.clock[0].steps
@@ -187,12 +183,12 @@ def pass_group(k, work, settings, result):
 @kernel
 def at_once(k, work, result):
     """Resolve the group as one contact problem."""
-    solve_group(k, work)
-    result.plastic_change += work.clock[0].change
-    result.marks |= work.clock[0].code
+    marks, change = solve_group(k, work)
+    result.plastic_change += change
+    result.marks |= marks
 
 
 @unit
-def resolve_single(clock, W, u, mu, e, law, out):
-    """Resolve one impact into `out`; the clock gets its code."""
-    clock[0].code = resolve_one(W, u, mu, e, law, out)
+def resolve_single(work, mu, e, law) -> int:
+    """Resolve the impact of one contact; return its code."""
+    return resolve(work.matrix[o.SINGLE], work.vector[o.SINGLE_U], mu, e, law, work.single)

@@ -211,12 +211,6 @@ CLOCK = [
     ("stiff", "i8"),  # implicit steps to take before series are tried again
     ("saved_stiff", "i8"),
     ("left", "i8"),  # steps that the impact may still take; below 0 it was stopped
-    # results of the units
-    ("error", "f8"),
-    ("change", "f8"),
-    ("code", "i8"),
-    ("length", "f8"),
-    ("changes", "i8"),
 ]
 
 

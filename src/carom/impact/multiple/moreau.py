@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import by_reference, kernel
 from carom._compiled.units import unit
-from carom.friction.layout import BUDGET, CONE, ENOUGH
+from carom.friction.layout import BUDGET, ENOUGH, ContactProblem
 from carom.friction.solve import solve_cones
 from carom.friction.strategy import budget
 from carom.geometry.thresholds import SUM_ERROR
@@ -28,9 +28,10 @@ OWN_E, LEAST_E, NO_E, NO_FRICTION = range(4)
 
 
 @unit
-def solve_group(k, work):
-    """Resolve the group; the clock gets its marks and the change of energy in a plastic event."""
-    clock, vector, W, least, most = work.clock[0], work.vector, work.matrix[o.MASS], 1.0, 0.0
+def solve_group(k, work) -> tuple[int, float]:
+    """Resolve the group; return its marks, and the change of energy in a plastic event."""
+    vector, W, least, most = work.vector, work.matrix[o.MASS], 1.0, 0.0
+    marks, change = PLASTIC, 0.0
     for i in range(k):
         least = min(least, work.contact[i].restitution)
         most = max(most, work.contact[i].restitution)
@@ -39,14 +40,13 @@ def solve_group(k, work):
         for i in range(k):
             c = work.contact[i]
             c.e = c.restitution if way == OWN_E else least if way == LEAST_E else 0.0
-        clock.change = _once(k, work, way == NO_FRICTION)
-        clock.code = AT_ONCE if way == OWN_E else AT_ONCE | o.MISSED if way == LEAST_E else PLASTIC
+        change = _once(k, work, way == NO_FRICTION)
+        marks = AT_ONCE if way == OWN_E else AT_ONCE | o.MISSED if way == LEAST_E else PLASTIC
         if sound(
             W, vector[o.U0], vector[o.NOW_U], vector[o.NOW_P], 1.0, (3 * k, VELOCITY_LEFT, GAIN)
         ):
             break
-    if clock.code & PLASTIC == 0:
-        clock.change = 0.0
+    return marks, change if marks & PLASTIC != 0 else 0.0
 
 
 @kernel
@@ -83,6 +83,7 @@ def round_off(n, row, impulse):
 def _once(k, work, smooth):
     """Solve the contact problem, `smooth` without friction; return the change of energy."""
     vector, heading, total = work.vector, work.heading, 0.0
+    # kinds and headings stay 0: cones
     before, bias, u, impulse = vector[o.U0], vector[o.MOREAU_C], vector[o.NOW_U], vector[o.NOW_P]
     mu, kind = vector[o.MOREAU_MU], work.index[o.MOREAU_KIND]
     for i in range(3 * k):
@@ -90,10 +91,12 @@ def _once(k, work, smooth):
     for i in range(k):
         bias[3 * i] += work.contact[i].e * min(0.0, bias[3 * i])
         mu[i] = 0.0 if smooth else work.contact[i].mu
-        kind[i], heading[i, 0], heading[i, 1] = CONE, 0.0, 0.0
     work.cones.mismatch[ENOUGH] = 0.0
     work.cones.count[BUDGET] = budget(k)
-    solve_cones(k, work.matrix[o.MASS], bias, mu, kind, heading, impulse, work.cones)
+    problem = by_reference(
+        ContactProblem(W=work.matrix[o.MASS], c=bias, mu=mu, kind=kind, heading=heading)
+    )
+    solve_cones(k, problem, impulse, work.cones)
     set_velocity(k, work)
     for i in range(k):
         c, a = work.contact[i], 3 * i

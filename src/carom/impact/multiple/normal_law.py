@@ -55,8 +55,7 @@ def unload(c, d, p_n):
 @kernel
 def load_again(c, p_n):
     """Load again, on the same curve as before."""
-    c.mode = LOAD
-    c.slope, c.rest = c.root, c.d0
+    close(c)
     c.unloading += p_n - c.mark
     c.mark = p_n
 
@@ -142,8 +141,7 @@ def find_changes(k, work, degree, end, when):
             for i in range(k):
                 c, b, l = work.contact[i], i // LANES, i % LANES
                 if gauge(c, d[b, l], u[b, l]) > IMPACT_ERROR:
-                    over = c.rest - d[b, l] > d[b, l] - c.d0 - c.most
-                    when[i] = _root(c, i, over, work.series, degree, a, x)
+                    when[i] = _root(work, i, degree, a, x)
                     first = min(first, when[i])
             break
         a = x
@@ -168,8 +166,14 @@ def _gauge_and_slope(c, i, over, series, degree, x):
 
 
 @kernel
-def _root(c, i, over, series, degree, a, b):
-    """Return where the gauge exceeds round-off between a and b: Newton's iteration with bisection."""
+def _root(work, i, degree, a, b):
+    """Return where the gauge of contact `i` exceeds round-off between a and b, at which `evaluate` was.
+
+    By Newton's iteration with bisection.
+    """
+    c, series = work.contact[i], work.series
+    d = series[o.S_AT, o.AT_D, i // LANES, i % LANES]
+    over = c.rest - d > d - c.d0 - c.most
     g, _ = _gauge_and_slope(c, i, over, series, degree, a)
     if g >= 0.0:
         return a

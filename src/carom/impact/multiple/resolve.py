@@ -24,12 +24,6 @@ from carom.impact.multiple.moreau import sound
 
 @entry
 def resolve_multiple(contacts, settings, workspace, out):
-    """Resolve an impact as `resolve_contacts`, for calls from Python."""
-    return resolve_contacts(contacts, settings, workspace, out)
-
-
-@kernel
-def resolve_contacts(contacts, settings, workspace, out):
     """Resolve an impact of `CornerContacts`; return OK, or BAD_INPUT without a result.
 
     Contacts of one pair strike together, those of different pairs one after another. `settings` are
@@ -56,7 +50,7 @@ def resolve_contacts(contacts, settings, workspace, out):
                 law=blow.law[0], stiffness=blow.given[o.BLOW_STIFFNESS], pair=blow.law[1],
             )
         )  # fmt: skip
-        _together(part, scale, settings, workspace, blow.result)
+        _together(part, scale, settings, workspace)
         take(contacts, m, blow, out)
         count += 1
         if ends or workspace.work.clock[0].left < 0:
@@ -70,11 +64,11 @@ def resolve_contacts(contacts, settings, workspace, out):
 
 
 @kernel
-def _together(contacts, scale, settings, workspace, out):
+def _together(contacts, scale, settings, workspace):
     """Resolve an impact of contacts that strike together; `scale` is the greatest velocity of all contacts."""
+    work, out = workspace.work, workspace.blow.result
     k, still, result = contacts.k, limits.IMPACT_ERROR * scale, out.summary[0]
     _clear(contacts, out)
-    work = workspace.work
     index, clean = work.index, work.matrix[o.CLEAN]
     acting = by_reference(
         CornerContacts(
@@ -89,7 +83,7 @@ def _together(contacts, scale, settings, workspace, out):
     by_newton = settings.multiple == o.BY_NEWTON
     while True:
         for g in range(groups):
-            strike_group(g, acting, still, by_newton, settings, workspace, out)
+            strike_group(g, acting, still, by_newton, settings, workspace)
             if work.clock[0].left < 0:
                 return  # it was stopped: there is no result
         _finish(contacts, out)

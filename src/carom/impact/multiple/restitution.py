@@ -167,16 +167,17 @@ def learn(k, work):
 
 
 @kernel
-def run(k, work, settings, rtol, anew):
-    """Pass the layer with the coefficients e_* as they are; `rtol` holds from the first unloading."""
-    p, most_events = settings.exponent, settings.max_events * k
+def run(k, work, settings, rtol):
+    """Pass the layer with the coefficients e_* as they are; `rtol` holds from the first unloading.
+
+    If the state there was saved, continue from it: it does not depend on e_*.
+    """
+    anew = work.clock[0].branched == 0
     if anew:
         start(k, work)
     else:
-        resume(k, work, p)
-    most = settings.max_steps * k
-    pass_layer(k, work, settings.rtol if anew else rtol, rtol, p, most_events, most)
-    return work.clock[0].code
+        resume(k, work, settings.exponent)
+    return pass_layer(k, work, settings, settings.rtol if anew else rtol, rtol)
 
 
 @kernel
@@ -192,19 +193,19 @@ def iterate_restitution(k, work, settings, result):
     ended = ENDED
     worst, capped = misses(k, work, v[o.OUT_F])
     if not worst > tolerance:  # the first passage was coarse
-        ended = again(k, work, settings, settings.rtol)
+        ended = run(k, work, settings, settings.rtol)
         worst, capped = misses(k, work, v[o.OUT_F])
     keep_best(k, work)
     best, stale, rounds = worst, 0, 0
     while worst > tolerance and rounds < settings.max_rounds and ended == ENDED:
         improve(k, work)
         rtol = max(settings.rtol, min(limits.COARSE_TOLERANCE, 0.01 * worst))
-        ended = again(k, work, settings, rtol)
+        ended = run(k, work, settings, rtol)
         rounds += 1
         worst, capped = misses(k, work, v[o.OUT_NEW])
         if not worst > tolerance and rtol > settings.rtol:
             rtol = settings.rtol
-            ended = again(k, work, settings, rtol)
+            ended = run(k, work, settings, rtol)
             worst, capped = misses(k, work, v[o.OUT_NEW])
         learn(k, work)
         stale += 1
@@ -225,13 +226,7 @@ def iterate_restitution(k, work, settings, result):
             back_to_best(k, work)
         else:
             energetic(k, work)
-        return again(k, work, settings, settings.rtol)
+        return run(k, work, settings, settings.rtol)
     if capped:
         result.marks |= o.CAPPED
     return ended
-
-
-@kernel
-def again(k, work, settings, rtol):
-    """Pass the layer with other coefficients, from the first unloading if its state was saved."""
-    return run(k, work, settings, rtol, work.clock[0].branched == 0)

@@ -105,7 +105,7 @@ def begin(k, work, stretched):
 
 
 @inlined
-def expand(k, z, closed, work, first, degree, stretched):
+def expand(k, z, closed, work, first, degree):
     """Write the series of velocity, impulse and depth of orders `first` + 1 to `degree`.
 
     Orders up to `first` are known; `z` contacts stick (see `friction`).
@@ -113,7 +113,7 @@ def expand(k, z, closed, work, first, degree, stretched):
     S, lane = work.series, work.series[o.S_LANE]
     line = S.shape[2] * LANES
     un, u1, u2, d, normal = S[o.S_U], S[o.S_U1], S[o.S_U2], S[o.S_D], S[o.S_N]
-    q, sigma = S[o.S_Q], S[o.S_SIGMA]
+    q, sigma, stretched = S[o.S_Q], S[o.S_SIGMA], work.clock[0].stretched == 1
     f = S[o.S_FS] if stretched else S[o.S_F]
     for n in range(first, degree):
         step = same(1.0 / (n + 1))
@@ -155,7 +155,7 @@ def expand(k, z, closed, work, first, degree, stretched):
             store(S[o.S_P1], at, multiply(back, x))
             store(S[o.S_P2], at, multiply(back, y))
             store(S[o.S_LOSS], at, multiply(step, heat))
-        _answer(k, closed, line, S, work.columns, work.index[o.CLOSED], n + 1)
+        _answer(k, closed, work, n + 1)
         if z > 0:
             _hold(k, z, work, n + 1)
 
@@ -202,7 +202,7 @@ def _stretch(k, line, S, n):
         if lane[o.SLIPPING, b, 0] > 0.0:
             p = LANES * b
             if n > 0:
-                s = product(line, S[o.S_R], p, g, p, 1, n)
+                s = product(line, S[o.S_R], g, p, n)
                 s = multiply(s, load(lane, o.ONE_OVER * line + p))
                 store(g, n * line + p, multiply(same(-1.0), s))
             for l in range(LANES):
@@ -211,13 +211,15 @@ def _stretch(k, line, S, n):
     if n == 0:
         s = same(1.0 / total)
     else:
-        s = multiply(same(-sigma[0, 0, 0]), product(line, rate, 0, sigma, 0, 1, n))
+        s = multiply(same(-sigma[0, 0, 0]), product(line, rate, sigma, 0, n))
     store(sigma, n * line, s)
 
 
 @inlined
-def _answer(k, closed, line, S, columns, slot, n):
+def _answer(k, closed, work, n):
     """Write order `n` of the velocities: W times the impulses of the closed contacts."""
+    S, columns, slot = work.series, work.columns, work.index[o.CLOSED]
+    line = S.shape[2] * LANES
     row, b0 = 3 * line, n * line  # `row`: length of a column of W
     for b in range(blocks(k)):
         p = LANES * b

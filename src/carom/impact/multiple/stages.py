@@ -20,7 +20,14 @@ from carom.impact.multiple import layout as o
 from carom.impact.multiple import normal_law as law
 from carom.impact.multiple.friction import gather_discs, solve_discs
 from carom.impact.multiple.layer import set_velocity
-from carom.impact.thresholds import CHANGE_TOLERANCE, INSTANT, INSTANT_STEP, SHORTEST_PART, SLIP_END
+from carom.impact.thresholds import (
+    CHANGE_TOLERANCE,
+    INSTANT,
+    INSTANT_STEP,
+    SHORTEST_PART,
+    SLIP_END,
+    SLIP_SHARE,
+)
 
 EXPLICIT = np.array([
     [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -52,30 +59,21 @@ DEFECT = WEIGHTS - np.array([
 
 
 @unit
-def by_stages(k, work, rtol, p):
-    """Take an implicit step, cut at the first change of mode; the clock gets its length and any change."""
-    m = gather_discs(k, work)
-    work.clock[0].stretched = 0
-    h, changes = stages_step(k, m, work, rtol, p)
-    work.clock[0].length, work.clock[0].changes = h, 1 if changes else 0
-
-
-@kernel
-def stages_step(k, m, work, rtol, p):
+def by_stages(k, work, rtol, p) -> tuple[float, bool]:
     """Take an implicit step, cut at the first change of mode; return its length and whether a mode changes."""
-    clock, when, tolerance = work.clock[0], work.vector[o.WHEN], 1e-3 * rtol
-    h, slow = clock.step, max(SLIP_END, 0.01 * rtol)
-    present_forces(k, m, work, h, p, slow, tolerance)
+    m, clock, when = gather_discs(k, work), work.clock[0], work.vector[o.WHEN]
+    clock.stretched = 0
+    h, slow = clock.step, slip_at_rest(rtol)
+    present_forces(k, m, work, h, p, rtol)
     while True:
-        implicit_step(k, m, work, h, p, tolerance)
+        error = implicit_step(k, m, work, h, p, rtol)
         clock.steps += 1
         allowed = rtol
         if regime_changes(m, work, slow):
             allowed *= CHANGE_TOLERANCE
-        if not (clock.error > allowed and h > SHORTEST_PART):
+        if not (error > allowed and h > SHORTEST_PART):
             break
-        h *= max(0.2, 0.9 * (allowed / clock.error) ** 0.25)
-    error = clock.error
+        h *= max(0.2, 0.9 * (allowed / error) ** 0.25)
     clock.step = h * (5.0 if error < 1e-3 * rtol else 0.9 * (rtol / error) ** 0.25)
     clock.step = min(clock.step, 0.5)
     interpolate(k, work, h)
@@ -83,7 +81,7 @@ def stages_step(k, m, work, rtol, p):
     changes = first <= h
     if changes:
         if first > INSTANT:
-            h = _land(k, m, work, first, p, tolerance, 0.1 * rtol)
+            h = _land(k, m, work, first, p, rtol)
             for i in range(k):  # times of changes, relative to the new length of the step
                 when[i] -= first - h
         else:
@@ -95,7 +93,13 @@ def stages_step(k, m, work, rtol, p):
 
 
 @kernel
-def _land(k, m, work, h, p, tolerance, residual):
+def slip_at_rest(rtol):
+    """Return the slip that counts as rest."""
+    return max(SLIP_END, 0.01 * rtol)
+
+
+@kernel
+def _land(k, m, work, h, p, rtol):
     """Step to the change of mode near `h`, by Newton's iteration for the length of the step."""
     when, lead = work.vector[o.WHEN], 0
     for i in range(k):
@@ -103,7 +107,7 @@ def _land(k, m, work, h, p, tolerance, residual):
             lead = i
     c = work.contact[lead]
     for turn in range(5):
-        implicit_step(k, m, work, h, p, tolerance)
+        implicit_step(k, m, work, h, p, rtol)
         work.clock[0].steps += 1
         d, u_n = work.vector[o.NEW_D, lead], work.vector[o.NEW_U, 3 * lead]
         if c.mode == law.OPEN:
@@ -117,7 +121,7 @@ def _land(k, m, work, h, p, tolerance, residual):
             g, rate = c.rest - d, u_n
         else:
             g, rate = d - c.d0 - c.most, -u_n
-        if not abs(g) > residual or turn == 4:
+        if not abs(g) > 0.1 * rtol or turn == 4:
             break
         new = h - g / rate
         if not 0.5 * h < new < 1.5 * h:
@@ -153,11 +157,11 @@ def set_regime(m, work, slow):
 
 
 @unit
-def implicit_step(k, m, work, h, p, tolerance):
-    """Step from (d, P, u) by `h` to the new state; the clock gets the error.
+def implicit_step(k, m, work, h, p, rtol) -> float:
+    """Step from (d, P, u) by `h` to the new state; return the error.
 
-    ``work.stage[FORCE, 0]`` has the present forces; `m` discs are gathered. `tolerance` is for the tangential
-    velocity in the problem of friction. At the end ``work.stage[FORCE, 5]`` has the forces of the new instant.
+    ``work.stage[FORCE, 0]`` has the present forces; `m` discs are gathered. At the end
+    ``work.stage[FORCE, 5]`` has the forces of the new instant.
     """
     n = 3 * k
     force, rate, W = work.stage[o.FORCE], work.stage[o.STAGE], work.matrix[o.MASS]
@@ -182,7 +186,7 @@ def implicit_step(k, m, work, h, p, tolerance):
             u1[i] = u[i]
         add_product(n, W, q, u1)
         if m > 0:
-            add_friction(k, m, work, GAMMA * h, force[s], u1, tolerance)
+            add_friction(k, m, work, s, GAMMA * h, rtol)
         for i in range(k):
             a = 3 * i
             rate[s, i] = -u1[a]
@@ -207,15 +211,15 @@ def implicit_step(k, m, work, h, p, tolerance):
             wrong += DEFECT[s] * rate[s, i]
         vector[o.NEW_D, i] = vector[o.D, i] + h * total
         worst = max(worst, h * abs(wrong))
-    work.clock[0].error = worst
+    return worst
 
 
 @kernel
-def present_forces(k, m, work, h, p, slow, tolerance):
+def present_forces(k, m, work, h, p, rtol):
     """Write the forces of this instant; `m` discs are gathered.
 
-    For a contact that slips, T = -mu N u_t/|u_t|; for contacts at rest (slower than `slow`), T is the solution
-    of §2.3. Both are limits of the friction for the velocity a moment ahead, as this moment tends to 0.
+    For a contact that slips, T = -mu N u_t/|u_t|; for contacts at rest, T is the solution of §2.3. Both are
+    limits of the friction for the velocity a moment ahead, as this moment tends to 0.
     """
     vector, force, moment = work.vector, work.stage[o.FORCE, 0], INSTANT_STEP * h
     u, ahead, q = vector[o.NOW_U], vector[o.NEW_U], vector[o.SCRATCH]
@@ -223,20 +227,20 @@ def present_forces(k, m, work, h, p, slow, tolerance):
     for i in range(k):
         n = 3 * i
         slip = math.sqrt(u[n + 1] * u[n + 1] + u[n + 2] * u[n + 2])
-        moves = 0.0 if work.contact[i].sticks == 1 or not slip > slow else 1.0
+        moves = 0.0 if work.contact[i].sticks == 1 or not slip > slip_at_rest(rtol) else 1.0
         for r in range(3):
             q[n + r] = moment * force[n + r]
             ahead[n + r] = u[n + r] if r == 0 else moves * u[n + r]
     add_product(3 * k, work.matrix[o.MASS], q, ahead)
     if m > 0:
-        solve_discs(m, work, moment, force, ahead, tolerance * INSTANT_STEP)
+        solve_discs(m, work, moment, force, ahead, SLIP_SHARE * rtol * INSTANT_STEP)
 
 
 @kernel
-def add_friction(k, m, work, step, force, u, tolerance):
-    """Add friction of `m` discs to `force`, and its effect within `step` to `u`."""
-    slot = work.index[o.IN_DISC]
-    solve_discs(m, work, step, force, u, tolerance)
+def add_friction(k, m, work, s, step, rtol):
+    """Add friction of `m` discs to the forces of stage `s`, and its effect within `step` to its velocity."""
+    slot, force, u = work.index[o.IN_DISC], work.stage[o.FORCE, s], work.vector[o.NEW_U]
+    solve_discs(m, work, step, force, u, SLIP_SHARE * rtol)
     for s in range(m):
         a = 3 * slot[s] + 1
         x, y = step * force[a], step * force[a + 1]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom._compiled.lanes import blocks, values
+from carom._compiled.lanes import blocks, value_and_slope, values
 from carom._compiled.simd import LANES, add, greatest, larger, load, multiply, same, store, subtract
 from carom._compiled.units import unit
 from carom.geometry.thresholds import ROUND_OFF
@@ -26,14 +26,13 @@ _FEWER = 2  # orders of the series that are left out if it reaches a change of m
 _SAMPLES = 5
 
 
-@kernel
-def traverse(k, work, rtol, later, p, max_events, max_steps):
+@unit
+def pass_layer(k, work, settings, rtol, later) -> int:
     """Continue to the end of the event; return ENDED, or TRAPPED after too many changes of mode or steps.
 
     The tolerance is `rtol`, and `later` once the state at the first unloading is saved.
     """
-    clock = work.clock[0]
-    when = work.vector[o.WHEN]
+    clock, when, p = work.clock[0], work.vector[o.WHEN], settings.exponent
     set_velocity(k, work)
     first_events, first_steps, h = clock.events, clock.steps, 0.0
     while True:
@@ -41,8 +40,8 @@ def traverse(k, work, rtol, later, p, max_events, max_steps):
             set_velocity(k, work)
             return ENDED
         if (
-            clock.events - first_events > max_events
-            or clock.steps - first_steps > max_steps
+            clock.events - first_events > settings.max_events * k
+            or clock.steps - first_steps > settings.max_steps * k
             or clock.steps > clock.left
             or not clock.step > 0.0
         ):
@@ -53,8 +52,7 @@ def traverse(k, work, rtol, later, p, max_events, max_steps):
         if h < 0.0:
             # as accurate as series
             fine = max(0.1 * rtol, min(rtol, limits.STAGE_ACCURACY)) if p == 1.0 else rtol
-            by_stages(k, work, fine, p)
-            h, changes = clock.length, clock.changes == 1
+            h, changes = by_stages(k, work, fine, p)
             clock.stiff = clock.stiff - 1 if clock.stiff > 0 else _STIFF_STEPS - 1
         if changes:
             latest = h + limits.INSTANT
@@ -64,12 +62,6 @@ def traverse(k, work, rtol, later, p, max_events, max_steps):
                 rtol = later
             law.change_modes(k, work, when, latest, p, clock.idle > 2 * k)
             clock.events += 1
-
-
-@unit
-def pass_layer(k, work, rtol, later, p, max_events, max_steps):
-    """Traverse the layer; the clock gets the code."""
-    work.clock[0].code = traverse(k, work, rtol, later, p, max_events, max_steps)
 
 
 @inlined
@@ -101,7 +93,7 @@ def series_step(k, work, rtol):
     most = taylor.degree_for(rtol)
     known, degree, h = 0, most - _FEWER, 0.0
     while True:  # only as many orders as the next change of mode needs
-        taylor.expand(k, z, closed, work, known, degree, stretched)
+        taylor.expand(k, z, closed, work, known, degree)
         if known == 0 and stretched and _stiff(k, work):
             return -1.0, False
         known = degree
@@ -254,7 +246,10 @@ def _has_ended(work, i, sticks, degree, x):
     """Return whether contact `i` has ceased to stick at `x`, or else its slip has turned by a right angle."""
     if sticks:
         return _excess(work.contact[i], i, work.series, degree, x) > 0.0
-    return _along(work.series, i, degree, x) <= 0.0
+    S, b, l = work.series, i // LANES, i % LANES
+    u1, _ = value_and_slope(S[o.S_U1], i, degree, x)
+    u2, _ = value_and_slope(S[o.S_U2], i, degree, x)
+    return u1 * S[o.S_U1, 0, b, l] + u2 * S[o.S_U2, 0, b, l] <= 0.0
 
 
 @kernel
@@ -280,14 +275,3 @@ def _keeps_on(S, p, degree, end):
         s = multiply(add(s, _size(turn)), f)
     left = subtract(s, add(multiply(x, x), multiply(y, y)))
     return greatest(multiply(left, load(S[o.S_LANE], o.ONE_OVER * line + p))) <= 0.0
-
-
-@kernel
-def _along(S, i, degree, x):
-    """Return the component of the slip of contact `i` at `x` along its slip at the start."""
-    b, l = i // LANES, i % LANES
-    p, q = S[o.S_U1, degree, b, l], S[o.S_U2, degree, b, l]
-    for j in range(degree - 1, -1, -1):
-        p = p * x + S[o.S_U1, j, b, l]
-        q = q * x + S[o.S_U2, j, b, l]
-    return p * S[o.S_U1, 0, b, l] + q * S[o.S_U2, 0, b, l]

@@ -62,8 +62,8 @@ def take_out(system, gained, flight, end):
     for m in range(end.shape[0]):
         body, q, v, w = system.bodies[m], end[m].Q, end[m].v, end[m].w
         d, t = flight[m].v, flight[m].w
-        l = spin_momentum(body, q, w[0], w[1], w[2])
-        k = spin_momentum(body, q, w[0] - t[0], w[1] - t[1], w[2] - t[2])
+        l = spin_momentum(body, q, w)
+        k = spin_momentum(body, q, (w[0] - t[0], w[1] - t[1], w[2] - t[2]))
         if moves(end[m]):
             for j in range(3):
                 a += 0.5 * (body.mass * (v[j] - d[j]) ** 2 + k[j] * (w[j] - t[j]))

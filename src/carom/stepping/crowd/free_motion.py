@@ -9,7 +9,7 @@ from carom.dynamics.forces import applied_wrenches, difference_of_loads
 from carom.dynamics.project import shift
 from carom.dynamics.solve import solve
 from carom.dynamics.step import step
-from carom.geometry.rotation import log, multiply, turn
+from carom.geometry.rotation import conjugate, log, multiply, turn
 from carom.kinematics.coordinate import rate
 from carom.kinematics.flight import free_flight
 from carom.persistent.contact_step import contact_step
@@ -39,7 +39,7 @@ def fly(model, data, method, h, loaded, cut):
     if loaded:
         count, active.count[0] = active.count[0], 0
         work.result[0].start = work.step[0].begin + work.step[0].spent
-        applied, code = step(method, system, active, now, h, work.trial, work)
+        applied, code = step(model, data, method, h)
         search.applied, search.friction = applied, 0.0
         if rubs(system) and code == 0:
             contact_step(model, data, method, h)
@@ -66,8 +66,7 @@ def fly(model, data, method, h, loaded, cut):
 def halfway(start, end, out):
     """Write the middle state of a body: mean position and velocities, half the rotation."""
     p, q, Q = start.Q, end.Q, out.Q
-    t = multiply(q[0], q[1], q[2], q[3], p[0], -p[1], -p[2], -p[3])
-    a = log(t[0], t[1], t[2], t[3])
+    a = log(multiply(q, conjugate(p)))
     Q[0], Q[1], Q[2], Q[3] = p[0], p[1], p[2], p[3]
     turn(Q, 0.5 * a[0], 0.5 * a[1], 0.5 * a[2])
     for k in range(3):

@@ -195,6 +195,6 @@ def respin(system, flight, end):
         if system.bodies[b].isotropic == 1:
             continue
         q, w, J = end[b].Q, end[b].w, system.bodies[b].inertia
-        l = spin_momentum(system.bodies[b], flight[b].Q, w[0], w[1], w[2])
-        a = rotate_back(q[0], q[1], q[2], q[3], l[0], l[1], l[2])
-        w[0], w[1], w[2] = rotate(q[0], q[1], q[2], q[3], a[0] / J[0], a[1] / J[1], a[2] / J[2])
+        l = spin_momentum(system.bodies[b], flight[b].Q, w)
+        a = rotate_back(q, l)
+        w[0], w[1], w[2] = rotate(q, (a[0] / J[0], a[1] / J[1], a[2] / J[2]))

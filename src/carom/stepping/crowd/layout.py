@@ -56,6 +56,7 @@ class Crowd(NamedTuple):
     """Up to K points of N bodies, and up to P active points. Vectors have rows n, t1, t2 for each point."""
 
     closed: np.recarray  # (K,) SPOT
+    count: np.ndarray  # (1,) those in use, while they are listed
     points: np.recarray  # (2, K) POINT: in the middle of the step; at its end
     c: np.ndarray  # (3K,) velocities without impulses minus their bounds
     p: np.ndarray  # (3K,) impulses
@@ -96,7 +97,8 @@ def new_crowd(bodies: int, active: int, points: int, joined: int = 0) -> Crowd:
     )  # fmt: skip
     flight, flight_middle, middle, pressed = table(STATE, 4, bodies)
     return Crowd(
-        closed=table(SPOT, points), points=table(POINT, 2, points), c=np.zeros(3 * points),
+        closed=table(SPOT, points), count=whole(1), points=table(POINT, 2, points),
+        c=np.zeros(3 * points),
         p=np.zeros(3 * points), lift=np.zeros(points), bouncing=np.zeros(3 * points),
         problem=problem, mixing=new_mixing(points), graph=graph, flight=flight,
         flight_middle=flight_middle, middle=middle, pressed=pressed,

@@ -14,6 +14,7 @@ from carom.friction import layout as o
 from carom.friction.island import impart
 from carom.friction.layout import CONE
 from carom.friction.solve import inverse_mass_of, scale_link
+from carom.geometry.rotation import unit_vector
 
 
 @kernel
@@ -57,7 +58,7 @@ def spread_impulses(system, k, crowd, work):
     clear_wrenches(work)
     for i in range(k):
         p = crowd.p
-        add_impulse(crowd.points[0][i], p[3 * i], p[3 * i + 1], p[3 * i + 2], work)
+        add_impulse(crowd.points[0][i], p[3 * i : 3 * i + 3], work)
     solve(system, crowd.flight, False, work)
 
 
@@ -80,8 +81,7 @@ def write_rows(system, point, crowd, link, first, work):
             other[last].body = b
             last += 1
     for r in range(3):
-        e0, e1, e2 = 1.0 if r == 0 else 0.0, 1.0 if r == 1 else 0.0, 1.0 if r == 2 else 0.0
-        spread(system, point, crowd.flight, e0, e1, e2, work)
+        spread(system, point, crowd.flight, unit_vector(r), work)
         for side in range(2):
             if link.body[side] >= 0:
                 G, Y, memory = link.rows[side], link.response[side], work.body[link.body[side]]

@@ -10,6 +10,7 @@ from carom.contact.closed_points import (
     add_touches,
     add_vertices,
     apart,
+    find_closed,
     write_turning,
 )
 from carom.contact.depth import least_gap
@@ -42,36 +43,37 @@ def gather(system, active, h, fall, wide, state, crowd, work):
     is allowed. A single body may turn so that its other end falls at twice its speed; three times is allowed.
     If a point was missed, the distances are multiplied by `wide`.
     """
-    k, quicker, flight = 0, wide * (3.0 if state.shape[0] == 1 else 1.0), crowd.flight
+    quicker, flight, crowd.count[0] = wide * (3.0 if state.shape[0] == 1 else 1.0), crowd.flight, 0
     chain(system, active, crowd)
     for c in range(system.contacts.shape[0]):
-        contact, first = system.contacts[c], k
+        contact, first, room = system.contacts[c], crowd.count[0], True
         if contact.touches == STOP:
             if reaches_stop(system, contact, h, wide * fall, state, crowd, work):
-                k = add_stop(system, active, c, math.inf, state, k, crowd)
+                room = add_stop(system, c, math.inf, state, crowd)
         else:
             speed = max(closing_speed(contact, state), closing_speed(contact, flight))
             if wide > 1.0:  # also with the velocities from the impulses found before
                 speed = max(speed, closing_speed(contact, work.trial))
             reach = h * (quicker * speed + 2.0 * wide * fall * h)
-            k = add_points(system, active, c, reach, state, k, crowd, work)
-        for i in range(first, k):
+            room = add_points(system, active, c, reach, state, crowd, work)
+        for i in range(first, crowd.count[0]):
             crowd.closed[i].gap = crowd.points[0][i].gap
             find_active(active, crowd.closed[i], crowd)
-        k = add_turning(system, first, k, crowd)
-        if k < 0:
+        if not (room and add_turning(system, first, crowd)):
             return -1
-    return k
+    return crowd.count[0]
 
 
 @kernel
-def add_points(system, active, c, reach, state, k, crowd, work):
-    """Add the points of a contact that are within reach; return the new count, -1 without room."""
-    if apart(system, system.contacts[c], state, reach):
-        return k
-    if system.contacts[c].touches == 0:
-        return add_vertices(system, active, c, reach, state, k, crowd)
-    return add_touches(system, c, reach, 0.0, state, k, crowd, work)
+def add_points(system, active, c, reach, state, crowd, work):
+    """Add the points of a contact that are within reach; return whether there is room."""
+    contact = system.contacts[c]
+    if apart(system, contact, state, reach):
+        return True
+    if contact.touches == 0:
+        return add_vertices(system, active, c, reach, state, crowd)
+    find_closed(system, contact, reach, 0.0, state, work)
+    return add_touches(system, c, reach, state, crowd, work)
 
 
 @kernel
@@ -80,32 +82,32 @@ def gather_sunk(system, active, k, depth, end, crowd, work):
 
     Return the new count, -1 if there is no room.
     """
-    last = k
+    crowd.count[0] = k
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
         if contact.touches == STOP or apart(system, contact, end, 0.0):
             continue
         if least_gap(system, contact, end, work) >= -depth * smaller(contact):
             continue
-        last = add_points(system, active, c, 0.0, end, last, crowd, work)
-        if last < 0:
+        if not add_points(system, active, c, 0.0, end, crowd, work):
             return -1
-    return last
+    return crowd.count[0]
 
 
 @kernel
-def add_turning(system, first, k, crowd):
-    """Add rolling and pivoting friction of the spots from `first`; return the new count, -1 without room."""
-    for i in range(first, k):
+def add_turning(system, first, crowd):
+    """Add rolling and pivoting friction of the spots from `first`; return whether there is room."""
+    for i in range(first, crowd.count[0]):
         spot = crowd.closed[i]
         for turns in range(1, 3):
             if system.contacts[spot.contact].turning[turns - 1] > 0.0:
+                k = crowd.count[0]
                 if k == crowd.closed.shape[0]:
-                    return -1
+                    return False
                 write_turning(i, turns, spot, crowd.closed[k])
                 crowd.closed[k].gap = spot.gap
-                k += 1
-    return k
+                crowd.count[0] = k + 1
+    return True
 
 
 @kernel
@@ -159,10 +161,10 @@ def place_all(system, first_spot, k, state, crowd, points, work):
             i += 1
             continue
         first = i
-        count = list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+        list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
         while i < k and crowd.closed[i].contact == c:
             spot = crowd.closed[i]
-            t = which_touch(system, contact, count, spot.feature, spot.point, state, work)
+            t = which_touch(system, contact, spot.feature, spot.point, state, work)
             write_touch(contact, work.touches[t], state, points[i])
             points[i].turns, points[i].length = spot.turns, smaller(contact)
             i += 1

@@ -20,8 +20,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from carom import checks
-
-MOST_STEPS = 1e6  # greatest number of steps of a run, which is in plain Python
+from carom.baselines.hht_layer import newmark_constants
+from carom.baselines.moreau_jean import MOST_STEPS
 
 
 @dataclass(frozen=True)
@@ -50,12 +50,6 @@ class HHTRun:
     success: bool
     message: str
     iterations: np.ndarray = field(repr=False)
-
-
-def newmark_constants(alpha) -> tuple[float, float, float]:
-    """Return the checked ``alpha``, ``beta = (1 + alpha)^2/4`` and ``gamma = 1/2 + alpha``."""
-    alpha = checks.number("alpha", alpha, least=0.0, most=1.0 / 3.0)
-    return alpha, 0.25 * (1.0 + alpha) ** 2, 0.5 + alpha
 
 
 def hht_alpha(
