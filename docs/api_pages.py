@@ -13,7 +13,7 @@ HEADING = re.compile(r"^(\w[\w ]*)\n-{3,}$", re.MULTILINE)
 CALLED = {
     "Scene", "Options", "Material", "GeneralizedSystem", "UniformOrientation", "Grid", "Recording", "Parameter",
     "State", "Run",
-    "Sphere", "Box", "Capsule", "Cylinder", "Disc", "Ellipsoid", "Convex", "Mesh", "Compound",
+    "Sphere", "Box", "Capsule", "Cylinder", "Disc", "Ellipsoid", "Convex", "Mesh", "Compound", "Part",
     "Revolute", "Spherical", "Prismatic", "Cylindrical", "Screw", "Universal", "Planar", "PointOnLine",
     "PointOnPlane", "Fixed", "Distance", "KnifeEdge", "RollingSphere", "RollingDisc",
     "Gear", "Coupling", "Driver", "Rows",

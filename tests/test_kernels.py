@@ -57,18 +57,12 @@ def test_python_calls_no_inner_kernel(path):
     assert not called & names
 
 
-#: rooms whose kernels may have more than six parameters. It only gets shorter
-WIDE = {
-    "collision", "contact", "friction", "generalized", "impact", "model", "persistent", "stepping",
-}  # fmt: skip
-
-
 def test_a_kernel_has_at_most_six_parameters():
     wide = {
         f"{module(path)}.{node.name}"
         for path in SOURCE.rglob("*.py")
         for node in ast.parse(path.read_text()).body
         if isinstance(node, ast.FunctionDef) and decorators(node) & COMPILED
-        if len(node.args.args) > 6 and path.relative_to(SOURCE).parts[0] not in WIDE
+        if len(node.args.args) > 6
     }
     assert wide == set()

@@ -203,11 +203,7 @@ class Run(Running):
 
     def save_now(self) -> None:
         """Write the present state into the records."""
-        state = (
-            self.compiled.system, self.active, self.now, self.clock, self.work, self.records,
-            self.watch,
-        )  # fmt: skip
-        self.call(record.save_now, *state)
+        self.call(record.save_now, self.model, self.data)
 
     def grow(self, what: int) -> None:
         """Lengthen arrays that are full; `what` says which."""

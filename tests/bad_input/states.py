@@ -53,10 +53,16 @@ def stated():
             dict(parts=[(carom.Sphere(0.1), three), (carom.Sphere(0.1), (-1.0, 0, 0))], masses=[1.0, 2.0],
                  centroid=None),
         ),
+        "Part": (
+            carom.Part,
+            dict(shape=carom.Sphere(0.1), position=three, orientation=(1, 0, 0, 0), material=None),
+        ),
     }  # fmt: skip
     found = {}
     for name, (kind, given) in shapes.items():
         found[name] = lambda kind=kind, given=given: (kind, given)
+        if name == "Part":
+            continue
         found[f"{name}.inertia"] = lambda kind=kind, given=given: (
             kind(**given).inertia,
             dict(mass=1.0),
@@ -68,7 +74,7 @@ def stated():
         "euler": lambda: (carom.euler, dict(axes="zyx", angles=(90.0, 0.0, 30.0))),
         "axis_angle": lambda: (carom.axis_angle, dict(axis=three, angle=90.0)),
         "Material": lambda: (carom.Material, number),
-        "ContactLaw": lambda: (carom.scene.ContactLaw, {**number, **words}),
+        "ContactLaw": lambda: (carom.scene.ContactLaw, {**number, **words, "of_materials": ("friction",)}),
         "Options": lambda: (
             carom.Options, carom.Options(layer_width=1e-6, max_step=0.1, corner_exponent=1.5).as_dict()
         ),

@@ -175,3 +175,40 @@ def test_a_limit_that_the_start_is_beyond_is_moved():
     model = carom.load_model(LIMITED, keyframe=1)
     assert model.scene["hinge:lower"].lower == 0.0
     assert "starts beyond its lower limit, by 0.302" in str(model.report)
+
+
+TWO_SOLES = """
+<mujoco>
+  <worldbody>
+    <geom name="floor" type="plane" size="5 5 1" friction=".1"/>
+    <body name="slides" pos="0 0 .05"><freejoint/>
+      <geom type="box" size=".05 .05 .05" pos="-.05 0 0" friction=".1" mass=".5"/>
+      <geom type="box" size=".05 .05 .05" pos=".05 0 0" friction=".5" mass=".5"/></body>
+    <body name="other" pos="0 2 .05"><freejoint/>
+      <geom type="box" size=".05 .05 .05" friction=".3"/></body>
+  </worldbody>{more}
+</mujoco>"""
+
+
+def test_geoms_keep_their_friction():
+    model = carom.load_model(TWO_SOLES.format(more=""))
+    frictions = [piece.material.friction for piece in model.scene["slides"].shape.pieces]
+    assert frictions == [0.1, 0.5]
+    assert model.scene.contact_law("other", "floor").friction == 0.3
+    assert not any("differs" in entry.what for entry in model.report)
+    model.scene.validate()
+
+
+def test_a_pair_of_geoms_overrides_their_materials():
+    more = '<contact><pair geom1="front" geom2="floor" friction=".2 .2 .01 .01 .01"/></contact>'
+    text = TWO_SOLES.format(more=more).replace('pos=".05 0 0"', 'pos=".05 0 0" name="front"')
+    model = carom.load_model(text)
+    law = next(c for c in model.scene.contacts if c.other.name == "floor")
+    assert (law.body.name, law.friction) == ("slides", 0.2)
+    assert any("differs" in entry.what for entry in model.report)
+
+
+def test_friction_of_the_caller_is_that_of_all_geoms():
+    scene = carom.load_model(TWO_SOLES.format(more=""), friction=0.6).scene
+    assert scene.contact_law("slides", "floor").friction == 0.6
+    assert scene["slides"].material is None

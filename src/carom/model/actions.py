@@ -1,6 +1,9 @@
 """Codes of the loop: actions on a closed point, modes of a persistent contact, and events that end a motion."""
 
 NOTHING, STRIKE, PERSIST = range(3)
+PUSHED_IN = (
+    2  # `near` of a contact that a return of other points to their surfaces has pushed inside
+)
 
 MODE_OPEN, MODE_SLIP, MODE_STICK = range(3)
 

@@ -68,18 +68,19 @@ def begin_count(controls, work):
 
 
 @kernel
-def end_count(controls, number, work):
-    """Store the counts for the bodies of an island, less what is allowed for the time of step `number`.
+def end_count(controls, work):
+    """Store the counts for the bodies of an island, less what is allowed for the time of the step.
 
-    A step as a crowd saves nothing for the next try to move event by event, which has at least one part.
+    A step as a crowd leaves at most one part for the next step event by event: what a large island has not used
+    in many steps is not for the one in which it becomes small.
     """
     for kind in range(COUNTS if controls.retry == 1 else 0):
-        done, most = work.step[0].counts[kind], part(controls, kind) * SAVED
-        more = part(controls, kind) * refilled(controls, work.step[0].length)
+        each, crowd = part(controls, kind), kind < COUNT_BLOCKS and work.step[0].crowd == 1
+        rest = min(work.step[0].counts[kind], each * SAVED)
+        rest -= each * refilled(controls, work.step[0].length)
+        least = each * (SAVED - 1.0) if crowd else 0.0
         for b in range(work.body.shape[0]):
-            whole = kind < COUNT_BLOCKS and work.body[b].whole_until > number
-            rest = min(done, most - more) if whole else min(done, most) - more
-            work.body[b].counts[kind] = max(0.0, rest)
+            work.body[b].counts[kind] = max(least, rest)
 
 
 @kernel

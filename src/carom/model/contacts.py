@@ -20,7 +20,7 @@ from carom.model.level_surfaces import find_levels, with_level_rows
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, meeting
 from carom.scene.contacts import IMPACT_LAWS
-from carom.scene.materials import MULTIPLE
+from carom.scene.materials import MULTIPLE, ContactLaw, Material
 from carom.scene.scene import Scene
 from carom.scene.shapes import Shape
 
@@ -56,12 +56,13 @@ def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool =
     """
     known, later = first_pairs(scene, apart)
     many = later is not None or len(known.body) > FEW_CONTACTS
-    if many or scene.statics or not scene.gravity.any():  # without gravity, speeds count too
+    own = scene.statics or any(law.of_materials for law in known.laws)
+    if many or own or not scene.gravity.any():  # without gravity, speeds count too
         return _contacts(scene, known, later, to_principal, options)
     # contacts of scenes that differ in their motion, as in many throws, are copies of each other
     of_pairs = known.body, known.other, known.plane, known.law, to_principal, scene.gravity
     key = (
-        *(one.tobytes() for one in of_pairs), *_numbers(known), options.layer_width, options.penetration,
+        *(one.tobytes() for one in of_pairs), *_numbers(known.laws), options.layer_width, options.penetration,
         *((plane.point.tobytes(), plane.normal.tobytes()) for plane in scene.half_spaces),
         *(body.shape for body in scene.bodies),
     )  # fmt: skip
@@ -149,7 +150,7 @@ def _rows(scene, options: Options, pairs: PairTable, which: Rows, surfaces: Surf
     _write_shapes(rows, which)
     _write_ranges(rows, which, surfaces.shared)
     _write_solids(rows, which, surfaces.place)
-    _write_laws(rows, pairs, which)
+    _write_laws(rows, scene, pairs, which)
     _write_statics(rows, scene)
     extent = rows["extent"]
     rows["still"] = 1e-14 * _speed(scene, extent)
@@ -248,20 +249,54 @@ def _write_solids(rows: np.recarray, which: Rows, place: np.ndarray) -> None:
     rows["other_solid"] = between * (place[rows["other"]] + which.other["piece"])
 
 
-def _write_laws(rows: np.recarray, pairs: PairTable, which: Rows) -> None:
+def _write_laws(rows: np.recarray, scene: Scene, pairs: PairTable, which: Rows) -> None:
     """Write the law of each contact to its rows."""
-    law = np.array(_numbers(pairs), dtype=float).reshape(-1, 8)[pairs.law[which.number]]
+    laws, of_row = _laws_by_part(scene, pairs, which)
+    law = np.array(_numbers(laws), dtype=float).reshape(-1, 8)[of_row]
     for k, name in enumerate(("friction", "friction_held", "restitution", "stiffness")):
         rows[name] = law[:, k]
     rows["turning"], rows["law"], rows["multiple"] = law[:, 4:6], law[:, 6], law[:, 7]
 
 
-def _numbers(pairs: PairTable) -> list[tuple]:
+def _numbers(laws: list[ContactLaw]) -> list[tuple]:
     """Return the numbers of each law."""
     return [
         (
             one.friction, one.friction_held, one.restitution, one.stiffness, one.rolling_friction,
             one.pivoting_friction, IMPACT_LAWS.index(one.impact_law), MULTIPLE.index(one.multiple),
         )
-        for one in pairs.laws
+        for one in laws
     ]  # fmt: skip
+
+
+class Surface(NamedTuple):
+    """The surface of a piece of a body."""
+
+    name: str  # of the body
+    material: Material | None
+
+
+def _laws_by_part(scene: Scene, pairs: PairTable, which: Rows) -> tuple[list, np.ndarray]:
+    """Return the different laws, and that of each row by number: pieces may have materials of their own."""
+    laws, of_row = list(pairs.laws), pairs.law[which.number]
+    parts = (*scene.bodies, *scene.statics)
+    by_part = np.array([bool(law.of_materials) for law in laws], dtype=bool)
+    known: dict[tuple, int] = {}
+    for row in np.flatnonzero(by_part[of_row]).tolist() if by_part.any() else ():
+        number = which.number[row]
+        plane, other = pairs.plane[number], pairs.other[number]
+        one = _surface(parts[pairs.body[number]], which.core["piece"][row])
+        if other >= 0:
+            two = _surface(parts[other], which.other["piece"][row])
+        else:
+            two = Surface(scene.half_spaces[plane].name, scene.half_spaces[plane].material)
+        key = (int(of_row[row]), one.material, two.material)
+        if key not in known:
+            known[key] = len(laws)
+            laws.append(scene._pairs.law_of_parts(laws[key[0]], one, two))
+        of_row[row] = known[key]
+    return laws, of_row
+
+
+def _surface(part, piece: int) -> Surface:
+    return Surface(part.name, part.shape.pieces[piece].material or part.material)

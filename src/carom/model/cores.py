@@ -44,11 +44,11 @@ def singly(pieces: Sequence[Piece]) -> list[list[int]]:
 
 
 def swollen_alike(pieces: Sequence[Piece]) -> list[list[int]]:
-    """Group pieces with vertices by radius, then each curved piece alone, for contacts with half-spaces."""
-    alike: dict[float, list[int]] = {}
+    """Group pieces with vertices by radius and material, then each curved piece alone, for half-spaces."""
+    alike: dict[tuple, list[int]] = {}
     for k, piece in enumerate(pieces):
         if piece.corners is not None:
-            alike.setdefault(piece.radius, []).append(k)
+            alike.setdefault((piece.radius, piece.material), []).append(k)
     return [*alike.values(), *([k] for k, piece in enumerate(pieces) if piece.corners is None)]
 
 

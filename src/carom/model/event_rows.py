@@ -45,10 +45,11 @@ def end_event(system, c, kind, state, clock, records):
 
 
 @kernel
-def note_event(system, c, feature, kind, mode, clock, records):
+def note_event(model, data, c, feature, kind, mode):
     """Write an event of a crowd, without snapshots: states are not interpolated up to it."""
-    event = records.event[clock.event]
+    clock = data.clocks[0]
+    event = data.records.event[clock.event]
     event.time, event.saved, event.first = clock.now, clock.saved, clock.snapped
-    event.contact, event.feature = system.contacts[c].number, feature
+    event.contact, event.feature = model.system.contacts[c].number, feature
     event.kind, event.mode = kind, mode
     clock.event += 1

@@ -47,6 +47,7 @@ class Face(NamedTuple):
 
     solid: int
     static: int  # number of the static body
+    material: str  # of its piece, in words, so that materials have an order
     size: float  # of the solid
     thickness: float  # of the solid below the face
     normal: np.ndarray  # (3,)
@@ -81,13 +82,13 @@ def find_levels(scene: Scene, pairs: PairTable, place: np.ndarray) -> tuple[Leve
         rims = _rims([faces[i] for i in group])
         if len(rims[1]) == sum(len(faces[i].corners) for i in group):  # no edge is between two
             continue
-        group = sorted(group, key=lambda i: laws[faces[i].static][1])
+        group = sorted(group, key=lambda i: (laws[faces[i].static][1], faces[i].material))
         surfaces.append(([faces[i] for i in group], *rims))
     if not surfaces:
         return no_levels(), []
     at = 0
     for s, (members, *_) in enumerate(surfaces):
-        keys = [laws[face.static][1] for face in members]
+        keys = [(laws[face.static][1], face.material) for face in members]
         changes = [k for k in range(1, len(keys)) if keys[k] != keys[k - 1]]
         for first, last in zip([0, *changes], [*changes, len(keys)]):
             regions.append(Region(s, at + first, at + last))
@@ -138,8 +139,9 @@ def _face(solid: int, static: int, piece: Piece, every: np.ndarray, corners: np.
     levels = np.sum(inward * corners, axis=1)
     thickness = float(np.max((centre - every) @ normal))
     return Face(
-        solid=solid, static=static, size=piece.extent, thickness=thickness, normal=normal,
-        corners=corners, inward=inward, levels=levels, centre=centre, reach=reach,
+        solid=solid, static=static, material=repr(piece.material), size=piece.extent,
+        thickness=thickness, normal=normal, corners=corners, inward=inward, levels=levels,
+        centre=centre, reach=reach,
     )  # fmt: skip
 
 

@@ -13,7 +13,8 @@ from carom.model.arrays import STATE
 #: state of a contact between events
 CONTACT_STATE = [
     ("seen", "i8"),  # workspace: mark while a group is gathered; in a crowd 1 + first active point
-    ("near", "i8"),  # 1 if the last event concerns it: it is checked before the next step
+    # 1 if the last event concerns it: it is checked before the next step; PUSHED_IN: it is judged in any case
+    ("near", "i8"),
     ("jams", "i8"),  # 1 if an active point of it jams: an impact without collision must follow
     ("leaving", "i8"),  # 1 if the body lifts off without speed: it may touch at the start
     ("blows", "i8"),  # impacts in a row, after low bounces

@@ -10,9 +10,11 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.contact.closed_points import gather_closed
+from carom.contact.closed_points import apart, concerns, gather_closed
+from carom.contact.depth import least_gap
 from carom.contact.gap import slow
 from carom.contact.groups import members
+from carom.contact.pair_point import smaller
 from carom.dynamics.contact_impulse import alone
 from carom.dynamics.energy import energies
 from carom.dynamics.several_points import inverse_masses
@@ -21,7 +23,8 @@ from carom.geometry.thresholds import RESOLUTION
 from carom.impact.thresholds import VELOCITY_LEFT
 from carom.impact.workspace import ACCELERATIONS, C, P, U
 from carom.kinematics.contact_point import contact_velocity
-from carom.model.actions import MODE_OPEN, MODE_STICK
+from carom.model.actions import MODE_OPEN, MODE_STICK, PUSHED_IN
+from carom.model.arrays import STOP
 from carom.model.event_rows import begin_event, end_event
 from carom.model.records import PERSISTS
 from carom.persistent.active_set import activate, regroup, set_anchor, switch, unite_loaded
@@ -256,7 +259,9 @@ def correct_mode(system, data, closed_point, mode, first):
 def lay_down(model, data, k, label):
     """Bring the points that press back to the surfaces if they are not on them; name the energy of that.
 
-    A rim that is nearly flat strikes as a flat one (`carom.contact.rim`), with points above the surface.
+    A rim that is nearly flat strikes as a flat one (`carom.contact.rim`), with points above the surface, and
+    so may be the points of a crowd. A contact that this pushes inside is judged next, whether it approaches or
+    not.
     """
     system, state, group, clock, off = model.system, data.state, data.group, data.clocks[0], False
     for i in range(k):
@@ -266,10 +271,26 @@ def lay_down(model, data, k, label):
     if not off:
         return
     kinetic, potential, _ = energies(system, state, clock.now)
-    count = members(data.work, label, group.member)
+    active, work = data.active, data.work
+    count = members(work, label, group.member)
+    for c in range(system.contacts.shape[0]):
+        outside = concerns(system.contacts[c], label, work) and not inside(system, c, state, work)
+        active.contact_states[c].seen = 1 if outside else 0
     onto_surfaces(system, data, k, count, state)
+    for c in range(system.contacts.shape[0]):
+        if active.contact_states[c].seen == 1 and inside(system, c, state, work):
+            active.contact_states[c].near = PUSHED_IN
     after, at_end, _ = energies(system, state, clock.now)
     clock.bounces += after + at_end - kinetic - potential
+
+
+@kernel
+def inside(system, c, state, work):
+    """Return whether the bodies of a contact, which is no stop, penetrate each other."""
+    contact = system.contacts[c]
+    if contact.touches == STOP or apart(system, contact, state, 0.0):
+        return False
+    return least_gap(system, contact, state, work) < -RESOLUTION * smaller(contact)
 
 
 @kernel

@@ -24,5 +24,6 @@ from carom.scene.shapes import Cylinder as Cylinder
 from carom.scene.shapes import Disc as Disc
 from carom.scene.shapes import Ellipsoid as Ellipsoid
 from carom.scene.shapes import Mesh as Mesh
+from carom.scene.shapes import Part as Part
 from carom.scene.shapes import Shape as Shape
 from carom.scene.shapes import Sphere as Sphere

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import checks, fields
-from carom.fields import Number, Value, Vector
+from carom.fields import Number, Value, Vector, keep
 from carom.geometry.attitude import attitude
 from carom.scene.colors import hex_color
 from carom.scene.materials import Material
@@ -70,6 +70,7 @@ class Body:
     def __post_init__(self):
         if self.shape is not None:
             checks.instance("shape", self.shape, SHAPES)
+            keep(self, material=whole_material(self.shape, self.material))
 
     def __repr__(self) -> str:
         return f"Body({self.name!r}, {self.shape!r}, mass={self.mass:g})"
@@ -138,9 +139,23 @@ class StaticBody:
     def __post_init__(self):
         checks.instance("shape", self.shape, SHAPES)
         _ = self.shape.pieces  # refused by a shape that has nothing to touch with
+        keep(self, material=whole_material(self.shape, self.material))
 
     def __repr__(self) -> str:
         return f"StaticBody({self.name!r}, {self.shape!r}, position={self.position})"
+
+
+def whole_material(shape: Shape, material: Material | None) -> Material | None:
+    """Return the material of a body: the given one, or that of its first part if all parts have their own."""
+    if material is not None or not shape.has_materials:
+        return material
+    bare = [k for k, piece in enumerate(shape.pieces) if piece.material is None]
+    if bare:
+        raise ValueError(
+            "material must be given for a body of which some parts have none of their own, got None for "
+            f"{shape!r} with {len(bare)} such pieces of {len(shape.pieces)}"
+        )
+    return shape.pieces[0].material
 
 
 #: classes that a body may touch besides other bodies

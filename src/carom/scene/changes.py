@@ -142,6 +142,8 @@ def renewed(part, values: dict[str, Any]) -> Any:
         own = _of_body(part, own)
     if isinstance(part, Contact) and "friction" in own and part.friction_held == part.friction:
         own = {"friction_held": None, **own}  # then it is the new friction
+    if isinstance(part, Contact):
+        own["of_materials"] = tuple(name for name in part.of_materials if name not in own)
     if "definition" in own:
         kinds = JOINTS if isinstance(part, Joint) else (type(definition),)
         checks.instance("definition", own["definition"], kinds)

@@ -57,7 +57,7 @@ class Contact(ContactLaw):
         values = ", ".join(
             f"{name}={value!r}" if isinstance(value, str) else f"{name}={value:g}"
             for name, value in law.items()
-            if name in shown or value != getattr(plain, name)
+            if name in shown or (value != getattr(plain, name) and name != "of_materials")
         )
         return f"Contact({self.name!r}, {values})"
 

@@ -9,8 +9,9 @@ Unreal), product (Bullet), max (MuJoCo), geometric mean for friction with max fo
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields
+from typing import Any
 
 from carom import arguments, checks
 from carom.fields import Number, NumberOrNone, Value, Word, keep, number, word
@@ -25,6 +26,13 @@ RULES: dict[str, Callable[[float, float], float]] = {
     "geometric": lambda a, b: math.sqrt(a) * math.sqrt(b),
 }
 COMBINED = ("restitution", "friction", "friction_held", "rolling_friction", "pivoting_friction")
+
+
+def _of_materials(name: str, value) -> tuple[str, ...]:
+    return tuple(
+        checks.choice(name, one, (*COMBINED, "stiffness"))
+        for one in checks.listed(name, value, "words")
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,6 +59,9 @@ class ContactLaw:
     multiple : {"simultaneous", "sequential"}
         Impact of the pair while other contacts are closed: simultaneous with theirs (default), or an impact of
         its own, one after another.
+    of_materials : tuple of str
+        Names of the values that come from materials, if a part of a `Compound` has a material of its own: each
+        two parts then have their own values, and those of the law are for the materials of the bodies.
     """
 
     restitution: Number = number(0.5, least=0, most=1)
@@ -61,6 +72,7 @@ class ContactLaw:
     rolling_friction: Number = number(0.0, least=0)
     pivoting_friction: Number = number(0.0, least=0)
     multiple: Word = word(MULTIPLE, "simultaneous")
+    of_materials: Value[tuple[str, ...], Iterable[str]] = Value(_of_materials, ())
 
     def __post_init__(self):
         if self.friction_held is None:
@@ -126,10 +138,12 @@ def law_of(first, second, given: Mapping, default: ContactLaw | None, rules: Map
     base = {f.name: getattr(default, f.name) for f in fields(ContactLaw)}
     one, two = first.material, second.material
     if one is not None and two is not None:
-        base["stiffness"] = 2.0 / (1.0 / one.stiffness + 1.0 / two.stiffness)
-        for name in COMBINED:
-            if name not in given:
-                base[name] = _combined(name, first, second, rules)
+        open_ones = tuple(name for name in ("stiffness", *COMBINED) if name not in given)
+        base |= _values(open_ones, first, second, rules)
+        if any(
+            getattr(part, "shape", None) and part.shape.has_materials for part in (first, second)
+        ):
+            base["of_materials"] = open_ones
     elif (one is not None or two is not None) and not {"restitution", "friction"} <= set(given):
         has, lacks = (first, second) if one is not None else (second, first)
         raise ValueError(
@@ -137,6 +151,23 @@ def law_of(first, second, given: Mapping, default: ContactLaw | None, rules: Map
             f"{lacks.name!r} has none; give it a material, or pass restitution and friction to add_contact"
         )
     return ContactLaw(**{**base, **given})
+
+
+def law_of_parts(law: ContactLaw, first, second, rules: Mapping) -> ContactLaw:
+    """Return the law of two parts, each with a material and a name, from that of their bodies."""
+    base: dict[str, Any] = {f.name: getattr(law, f.name) for f in fields(ContactLaw)}
+    return ContactLaw(**base | _values(law.of_materials, first, second, rules))
+
+
+def _values(names: Iterable[str], first, second, rules: Mapping) -> dict[str, Any]:
+    """Return some values of the law of two materials."""
+    found = {}
+    for name in names:
+        if name == "stiffness":
+            found[name] = 2.0 / (1.0 / first.material.stiffness + 1.0 / second.material.stiffness)
+        else:
+            found[name] = _combined(name, first, second, rules)
+    return found
 
 
 def _combined(name: str, first, second, rules: Mapping) -> float:

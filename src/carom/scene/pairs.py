@@ -21,7 +21,7 @@ from carom.scene.all_pairs import (
 from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.contacts import Contact, check_overlap
 from carom.scene.joints import Joint
-from carom.scene.materials import ContactLaw, checked_rule, law_of
+from carom.scene.materials import ContactLaw, checked_rule, law_of, law_of_parts
 from carom.scene.registry import Registry
 
 
@@ -109,6 +109,10 @@ class Pairs:
     def law(self, body, other, given) -> ContactLaw:
         """Return the law of a pair for which some values are given."""
         return law_of(body, other, given, self._values, self._rules)
+
+    def law_of_parts(self, law: ContactLaw, one, two) -> ContactLaw:
+        """Return the law of two parts with materials, from that of their bodies."""
+        return law_of_parts(law, one, two, self._rules)
 
     def default_law(self, body: Body, other) -> ContactLaw | None:
         """Return the default law of a pair; None if the pair does not touch by default."""

@@ -14,6 +14,7 @@ from carom import checks
 from carom.fields import keep
 from carom.geometry import quaternion
 from carom.geometry.cells import Cells, cells_of
+from carom.scene.materials import Material
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
 #: of the corners of a box
@@ -43,6 +44,8 @@ class Piece:
         Faces of a hull: outward unit normal and the indices of its vertices, counter-clockwise from outside.
     position, orientation : (3,), (4,)
         Position and orientation of the piece in the axes of the body.
+    material : Material or None
+        Material of the surface of the piece; None: that of its body.
     """
 
     kind: str
@@ -54,6 +57,7 @@ class Piece:
     faces: tuple = ()
     position: np.ndarray = field(default_factory=lambda: np.zeros(3))
     orientation: np.ndarray = field(default_factory=lambda: np.array(IDENTITY))
+    material: Material | None = None
 
     def __post_init__(self):
         keep(self, half=np.array(self.half, dtype=float))
@@ -99,12 +103,15 @@ class Piece:
         core = core + self.radius * d
         return self.position + quaternion.rotate(self.orientation, core)
 
-    def placed(self, position: np.ndarray, orientation: np.ndarray) -> Piece:
-        """Return the piece of a part that has this place in a body."""
+    def placed(
+        self, position: np.ndarray, orientation: np.ndarray, material: Material | None = None
+    ) -> Piece:
+        """Return the piece of a part that has this place in a body; `material` if it has none of its own."""
         return replace(
             self,
             position=position + quaternion.rotate(orientation, self.position),
             orientation=quaternion.multiply(orientation, self.orientation),
+            material=self.material or material,
         )
 
 
@@ -115,6 +122,7 @@ class Shape(ABC):
     a point from the mass centre.
     """
 
+    has_materials = False  # of its parts
     if TYPE_CHECKING:
         volume: Any
         size: Any

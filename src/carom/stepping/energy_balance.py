@@ -200,16 +200,16 @@ def may_give(system, number):
 
 
 @inlined
-def imbalance(system, active, start, end, named, t, h, watch):
+def imbalance(model, data, named, t, h):
     """Return the energy error of a step as a fraction of the allowed one, and whether the step multiplies it.
 
     Bodies on which only gravity acts are exact in flight; in persistent contact `carom.persistent.step_control`
     checks them.
     """
     loaded = False
-    for b in range(start.shape[0]):
-        loaded = loaded or system.bodies[b].ballistic == 0
-    return unbalanced(system, active, start, end, named, t, h, watch) if loaded else (0.0, False)
+    for b in range(data.state.shape[0]):
+        loaded = loaded or model.system.bodies[b].ballistic == 0
+    return unbalanced(model, data, named, t, h) if loaded else (0.0, False)
 
 
 @kernel
@@ -224,21 +224,22 @@ def speeds_known(system, state, h):
 
 
 @kernel
-def unbalanced(system, active, start, end, named, t, h, watch):
+def unbalanced(model, data, named, t, h):
     """Return the result of `imbalance` for joined or loaded bodies; `named` is the work of loads and friction.
 
     A step multiplies energy if its unexplained gain is as large as the energy that it exchanges, and above the
     tolerance. Explicit methods do so with springs and dampers that are too stiff for the step. The work that
     the forces could do over the allowed error of positions is no error of energy.
     """
-    before, low, _ = energies(system, start, t)
+    system, end, watch = model.system, data.work.trial, data.watch[0]
+    before, low, _ = energies(system, data.state, t)
     after, high, size = energies(system, end, t + h)
     gain = after + high - before - low - named
     exchanged = before + after + abs(high - low) + abs(named)
     known = limits.ENERGY_ROUND_OFF * size + speeds_known(system, end, h) + watch.able
     tolerated = watch.tolerance * watch.exchanged + known
     grows = not (gain <= limits.ENERGY_GAIN * exchanged + tolerated)
-    share = watch.share * (limits.ACTIVE_SHARE if active.count[0] > 0 else 1.0)
+    share = watch.share * (limits.ACTIVE_SHARE if data.active.count[0] > 0 else 1.0)
     may = share * max(watch.exchanged, exchanged) + known
     if not abs(gain) < math.inf:
         return math.inf, grows
@@ -253,7 +254,7 @@ def off_balance(model, data):
     that round-off or a force that jumps does not cut all steps of a run. Forces grow without bound before a
     jam, so steps towards a jam are halved without a shortest length.
     """
-    system, controls, active, work = model.system, model.controls, data.active, data.work
+    controls, active, work = model.controls, data.active, data.work
     result, search, clock, watch = work.result[0], work.search[0], data.clocks[0], data.watch[0]
     dt, named = search.dt, search.applied + search.friction
     shortest, careful = dt <= limits.SHORTEST_STEP * controls.step, search.pace < math.inf
@@ -261,7 +262,7 @@ def off_balance(model, data):
     if active.count[0] == 0:
         result.unnamed = 0.0
     watch.able = max(watch.able, work.step[0].able)
-    off, grows = imbalance(system, active, data.state, work.trial, named, clock.now, dt, watch)
+    off, grows = imbalance(model, data, named, clock.now, dt)
     result.unnamed = max(result.unnamed, off)
     cut = grows or off > (CUT_SHARE if careful else 1.0)
     if (cut and not shortest) or (grows and (jams or search.active == 1)):

@@ -24,7 +24,7 @@ from carom.geometry.rotation import norm
 from carom.impact.strike import strike
 from carom.kinematics.contact_point import contact_velocity
 from carom.model import records as r
-from carom.model.actions import EVENT_GAP, NOTHING, PERSIST, STRIKE
+from carom.model.actions import EVENT_GAP, NOTHING, PERSIST, PUSHED_IN, STRIKE
 from carom.model.allowance import overdone, smooth_count
 from carom.model.arrays import STOP
 from carom.model.controls import LOCATE
@@ -201,7 +201,7 @@ def persist(model, data):
         return work.hit[0].code
     if clock.now == 0.0:  # in contact from the start: write it to the first row
         clock.touched = work.step[0].first_touch
-        save_contacts(model.system, data.active, data.state, 0, clock, work, data.records)
+        save_contacts(model, data, 0)
     return 0
 
 
@@ -282,6 +282,8 @@ def find_due_contact(model, data):
             action = check_stop(model, data, c)
         else:
             action = look_at_vertices(system, controls, active, contact, now)
+        if action == NOTHING and contact_state.near == PUSHED_IN:
+            action = PERSIST
         contact_state.near = 0
         if contact_state.jams == 1:
             contact_state.jams, action = 0, STRIKE

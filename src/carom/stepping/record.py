@@ -41,17 +41,19 @@ def grow(step, what):
 
 
 @entry
-def save_now(system, active, now, clocks, work, records, watch):
+def save_now(model, data):
     """Write the present state: at the start, and after a failure."""
-    note_energies(system, now, clocks[0])
-    if clocks[0].saved == 0:
-        begin_watch(system, now, clocks[0].now, watch[0])
-    save(system, active, now, clocks[0], work, records)
+    system, now, clock = model.system, data.state, data.clocks[0]
+    note_energies(system, now, clock)
+    if clock.saved == 0:
+        begin_watch(system, now, clock.now, data.watch[0])
+    save(model, data)
 
 
 @inlined
-def save(system, active, now, clock, work, records):
+def save(model, data):
     """Write the present state into the next row."""
+    now, clock, records = data.state, data.clocks[0], data.records
     k = clock.saved
     row = records.series[k]
     row.t, row.kinetic, row.potential = clock.now, clock.kinetic, clock.potential
@@ -60,14 +62,16 @@ def save(system, active, now, clock, work, records):
     row.residual, clock.residual = clock.residual, 0.0
     for b in range(now.shape[0]):
         copy_state(now[b], records.state[k, b])
-    if active.count[0] > 0:
-        save_contacts(system, active, now, k, clock, work, records)
+    if data.active.count[0] > 0:
+        save_contacts(model, data, k)
     clock.saved += 1
 
 
 @kernel
-def save_contacts(system, active, now, k, clock, work, records):
+def save_contacts(model, data, k):
     """Write forces and moments of all active points at saved time k."""
+    system, active, now, work = model.system, data.active, data.state, data.work
+    clock, records = data.clocks[0], data.records
     for i in range(active.count[0]):
         active_point, point, touch = active.points[i], work.placed[0], records.touch[clock.touched]
         contact = system.contacts[active_point.contact]

@@ -78,7 +78,7 @@ def step_single(model, data, method, start):
         if code == 0 and data.crowd.closed.shape[0] >= SPOTS:  # a crowd leaves no groups
             regroup(model.system, data.active, data.work)
         if code == 0:
-            end_count(controls, data.clocks[0].step, data.work)
+            end_count(controls, data.work)
             note_gain(controls, step, data.watch[0])
     return REPEAT if code != 0 and retry_single(model, data, start, code) else code
 
@@ -118,7 +118,7 @@ def step_apart(model, data, method, islands) -> int:
         part = by_reference(Model(by_reference(system), controls))
         code = move_island(part, own, method)
         if code == 0:
-            end_count(controls, data.clocks[0].step, own.work)
+            end_count(controls, own.work)
             note_gain(controls, step, data.watch[0])
             parts.leave(own.active, islands)
     return REPEAT if code != 0 and retry_apart(model, data, islands, code) else code
@@ -150,7 +150,7 @@ def finish_step(model, data, grid):
     if is_saved(grid, clock.step):
         if controls.location == LOCATE:
             watch_depth(system, state, clock.now, data.work, data.watch[0])
-        save(system, data.active, state, clock, data.work, data.records)
+        save(model, data)
     return 0
 
 

@@ -57,7 +57,7 @@ def surface(shape, fineness: int = 32) -> tuple[np.ndarray, np.ndarray]:
     if isinstance(shape, Compound):
         return _union(
             (*surface(part, 4 * n), position - shape.centroid, orientation)
-            for part, position, orientation in shape.parts
+            for part, position, orientation, *_ in shape.parts
         )
     if len(shape.pieces) == 1:
         return _of_piece(shape.pieces[0], n)

@@ -19,6 +19,7 @@ from carom import checks
 from carom.scene import bodies, contacts, forces, joints, stops
 from carom.scene.constraints import CONSTRAINTS, Constraint, Coupling, Gear, coordinate_kind
 from carom.scene.curves import Curve, Spline
+from carom.scene.materials import Material
 from carom.scene.pieces import Piece, Shape
 from carom.scene.scene import Scene
 from carom.scene.shapes.compound import Compound
@@ -165,10 +166,12 @@ def _check_compound(shape: Compound) -> None:
     """Raise for a compound whose fields do not fit each other."""
     if not isinstance(shape.parts, tuple) or not shape.parts:
         raise ValueError("parts must be a tuple of at least one")
-    for part, position, orientation in shape.parts:
+    for part, position, orientation, *material in shape.parts:
         checks.instance("a part", part, (Shape,))
         checks.finite_array("position of a part", position, (3,))
         checks.unit_quaternion("orientation of a part", orientation)
+        for one in material:
+            checks.instance("material of a part", one, (Material,))
     _solid(shape, flat=True)
     if not shape._pieces:
         raise ValueError("_pieces must be at least one")
@@ -184,6 +187,7 @@ def _check_piece(piece: Piece) -> None:
         checks.number(name, getattr(piece, name), least=0.0)
     checks.finite_array("position", piece.position, (3,))
     checks.unit_quaternion("orientation", piece.orientation)
+    checks.instance("material", piece.material, (Material, type(None)))
     vertices = _rows("vertices", piece.vertices, 4 if piece.kind == "hull" else 0)
     if piece.kind == "hull":
         _check_faces(piece.faces, len(vertices))

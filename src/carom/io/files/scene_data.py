@@ -62,7 +62,8 @@ TYPES: dict[str, type[Any]] = {
         *ROBOT,
     )
 }
-LATER = {"color": None}  # fields that files of earlier versions do not have
+#: fields that files of earlier versions do not have
+LATER: dict[str, Any] = {"color": None, "material": None, "of_materials": {"tuple": []}}
 ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 
 
@@ -131,7 +132,7 @@ class Encoder:
     def _record(self, record, where: str) -> dict:
         values = {}
         for field in fields(record):
-            if field.name in LATER and isinstance(record, FIXED) and record.color is None:
+            if field.name in LATER and _is_as_before(record, field.name):
                 continue
             name = field.name if field.name == "definition" else f"{where}.{field.name}"
             below = where if field.name == "definition" else name
@@ -200,6 +201,15 @@ class Decoder:
             return self.given[name]
         self.missing.append(name)
         return MissingFunction(name, data["was"])
+
+
+def _is_as_before(record, name: str) -> bool:
+    """Return whether a later field has the value that it has where it is left out."""
+    if isinstance(record, FIXED):
+        return name == "color" and record.color is None
+    if isinstance(record, Piece):
+        return record.material is None
+    return isinstance(record, ContactLaw) and name == "of_materials" and not record.of_materials
 
 
 def _number(value) -> Any:

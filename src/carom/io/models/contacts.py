@@ -6,6 +6,8 @@ from collections import Counter
 from itertools import combinations
 from typing import Any
 
+import numpy as np
+
 from carom.io.models.build import Build
 from carom.io.models.solids import Solid
 from carom.io.models.touching import Filter, Friction
@@ -13,6 +15,7 @@ from carom.scene.bodies import Body, HalfSpace
 from carom.scene.contacts import far, overlap, place
 
 Pair = tuple[Body, "Body | HalfSpace"]
+BY_MATERIAL = Friction(np.nan, np.nan, np.nan)  # that of each two geoms is given by their materials
 
 
 def add_contacts(
@@ -20,7 +23,8 @@ def add_contacts(
 ) -> None:
     """Let all pairs touch that touch in the model.
 
-    The friction that most pairs have is the default of the scene; the others have contacts of their own.
+    The friction that most pairs have is the default of the scene; the others have contacts of their own. If
+    geoms have materials, these are the default.
     """
     pairs = touching_pairs(build, solids, rules)
     if friction is not None:
@@ -30,7 +34,11 @@ def add_contacts(
         return
     joined = {frozenset((j.parent, j.child)) for j in build.scene.joints}
     common = Counter(pairs.values()).most_common(1)[0][0]
-    build.scene.set_contact_default(restitution=restitution, impact_law=law, **_values(common))
+    if rules.restitution is None:
+        rule, values = None, _values(common)
+    else:
+        common, rule, values = None, "max", {}
+    build.scene.set_contact_default(restitution=restitution, impact_law=law, combine=rule, **values)
     for first, second in combinations(solids, 2):
         body, other = _ordered(first.part, second.part)
         if not isinstance(body, Body):
@@ -38,11 +46,12 @@ def add_contacts(
         value = pairs.get((body, other))
         if value is None:
             build.scene.ignore_contact(body, other)
+        elif value is BY_MATERIAL and frozenset((body, other)) not in joined:
+            continue
         elif value != common or frozenset((body, other)) in joined:
             name = build.names.new(f"{body.name}-{other.name}", "contact")
-            build.scene.add_contact(
-                body, other, restitution=restitution, impact_law=law, name=name, **_values(value)
-            )
+            own = {} if value is BY_MATERIAL else {"restitution": restitution, **_values(value)}
+            build.scene.add_contact(body, other, impact_law=law, name=name, **own)
     _ignore_what_is_seen(build, solids)
 
 
@@ -72,6 +81,9 @@ def touching_pairs(build: Build, solids: list[Solid], rules: Filter) -> dict[Pai
         called = f"pair {pair[0].name!r}, {pair[1].name!r}"
         if touch.some:
             build.report.add(called, "only some of their geoms touch", "all of them touch")
+        if rules.restitution is not None and touch.by_material:
+            pairs[pair] = BY_MATERIAL
+            continue
         if touch.differ:
             build.report.add(
                 called,

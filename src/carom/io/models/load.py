@@ -146,6 +146,9 @@ def load_model(
     build, links = _new_build(acts, data, report, light, max_hull_vertices)
     restitution = _restitution(model, restitution, report)
     rules, contacts = Filter(model), contacts and not is_off(model, "CONTACT", "CONSTRAINT")
+    if contacts and friction is None:
+        groups = [[g for g in geoms_of(build, one) if rules.touches_at_all(g)] for one in links]
+        rules.tell_apart(groups, restitution)
     standing = add_standing(build, rules) if contacts else []
     covers = {link.body: covering(build, link, rules) for link in links}
     jointed = [link for link in links if link.body not in motions]
@@ -153,7 +156,8 @@ def load_model(
         lift_out(build, jointed, covers, standing, rules)
     for link in links:
         given = motions.get(link.body, [])
-        _add_body(build, link, covers[link.body][0], given)
+        shape, geoms = covers[link.body]
+        _add_body(build, link, shape, rules.material(geoms[0]) if geoms else None, given)
         if given:
             drive(build, link, given)
         else:
@@ -203,7 +207,7 @@ def _restitution(model, given: float | None, report: Report) -> float:
     return RESTITUTION
 
 
-def _add_body(build: Build, link: Link, shape, motions) -> None:
+def _add_body(build: Build, link: Link, shape, material, motions) -> None:
     """Add the body of a link, with its position and motion."""
     centre, orientation = pose(build, link)
     motion = point_velocity(build.model, build.data, link.body, centre)
@@ -221,6 +225,7 @@ def _add_body(build: Build, link: Link, shape, motions) -> None:
         orientation=orientation,
         velocity=motion[:3],
         angular_velocity=motion[3:],
+        material=material,
         color=colour(build, geoms_of(build, link)),
         name=link.name,
     )

@@ -14,7 +14,8 @@ from carom.io.models.report import need_mujoco
 from carom.io.models.touching import Filter
 from carom.scene import joints
 from carom.scene.bodies import GROUND, Body, HalfSpace
-from carom.scene.shapes import Box, Compound, Ellipsoid, Shape, Sphere
+from carom.scene.materials import Material
+from carom.scene.shapes import Box, Compound, Ellipsoid, Part, Shape, Sphere
 from carom.scene.shapes.revolved import Capsule, Cylinder
 
 DENSITY = 1000.0  # [kg/m^3] of what is fixed to the ground, where it makes no difference
@@ -29,6 +30,7 @@ class Placed(NamedTuple):
     shape: Shape
     position: np.ndarray  # (3,)
     orientation: np.ndarray  # (4,)
+    material: Material | None = None
 
 
 def placed_shape(build: Build, geom: int) -> Placed | None:
@@ -75,12 +77,17 @@ def body_shape(parts: list[Placed], centre: np.ndarray) -> Shape | None:
     """Return the parts as one shape about the mass centre of their body; None for none."""
     if not parts:
         return None
-    moved = [(shape, position - centre, turn) for shape, position, turn in parts]
+    alike = len({part.material for part in parts}) == 1
+    moved = [
+        Part(p.shape, p.position - centre, p.orientation, None if alike else p.material)
+        for p in parts
+    ]
     if len(moved) == 1:
-        shape, position, turn = moved[0]
-        central = np.linalg.norm(position) <= SAME * shape.size
-        if central and (isinstance(shape, Sphere) or abs(turn @ IDENTITY) >= 1.0 - 1e-15):
-            return shape
+        one = moved[0]
+        central = np.linalg.norm(one.position) <= SAME * one.shape.size
+        straight = abs(one.orientation @ IDENTITY) >= 1.0 - 1e-15
+        if central and (isinstance(one.shape, Sphere) or straight):
+            return one.shape
     return Compound(moved, centroid=(0.0, 0.0, 0.0))
 
 
@@ -106,6 +113,8 @@ def covering(build: Build, link: Link, rules: Filter) -> tuple[Shape | None, lis
     geoms = geoms_of(build, link)
     touching = [g for g in geoms if rules.touches_at_all(g)]
     parts, used = _parts(build, touching or geoms)
+    if touching:
+        parts = [part._replace(material=rules.material(g)) for part, g in zip(parts, used)]
     return body_shape(parts, link.centre), used if touching else []
 
 
@@ -134,21 +143,22 @@ def add_standing(build: Build, rules: Filter) -> list[Solid]:
         if model.body_weldid[model.geom_bodyid[g]] != 0 or not rules.touches_at_all(g):
             continue
         is_plane = model.geom_type[g] == need_mujoco().mjtGeom.mjGEOM_PLANE
-        part = _half_space(build, g) if is_plane else _fixed(build, g)
+        material = rules.material(g)
+        part = _half_space(build, g, material) if is_plane else _fixed(build, g, material)
         if part is not None:
             build.geoms[g] = part
             solids.append(Solid(part, [g], False))
     return solids
 
 
-def _half_space(build: Build, g: int) -> HalfSpace:
+def _half_space(build: Build, g: int, material: Material | None) -> HalfSpace:
     name = build.names.new(name_of(build.model, "geom", g), "geom")
     normal = build.data.geom_xmat[g].reshape(3, 3)[:, 2]
     point, tint = build.data.geom_xpos[g], colour(build, [g])
-    return build.scene.add_half_space(point, normal, color=tint, name=name)
+    return build.scene.add_half_space(point, normal, material=material, color=tint, name=name)
 
 
-def _fixed(build: Build, g: int) -> Body | None:
+def _fixed(build: Build, g: int, material: Material | None) -> Body | None:
     part = placed_shape(build, g)
     if part is None:
         return None
@@ -160,6 +170,7 @@ def _fixed(build: Build, g: int) -> Body | None:
         density=DENSITY,
         position=place + axes @ offset,
         orientation=quaternion.normalize(quaternion.from_matrix(axes)),
+        material=material,
         color=colour(build, [g]),
         name=name,
     )

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.io.models.report import need_mujoco
+from carom.scene.materials import Material
 
 
 class Friction(NamedTuple):
@@ -23,9 +24,10 @@ class Touch(NamedTuple):
     friction: Friction | None  # the greatest of all pairs; None: nothing touches
     some: bool  # pairs that do not touch are among them
     differ: bool  # friction is not the same for all pairs
+    by_material: bool  # that of each pair is the greater one of the two materials
 
 
-NOTHING = Touch(None, False, False)
+NOTHING = Touch(None, False, False, False)
 
 
 class Filter:
@@ -33,6 +35,9 @@ class Filter:
 
     def __init__(self, model):
         self.model = model
+        self.restitution: float | None = (
+            None  # of materials, if geoms of one body have different ones
+        )
         flags = int(model.opt.disableflags)
         self.parents = not flags & int(need_mujoco().mjtDisableBit.mjDSBL_FILTERPARENT)
         self.excluded = {
@@ -71,12 +76,36 @@ class Filter:
         return (*map(int, numbers), friction)
 
     def _compare(self, some, others) -> Touch:
-        found = [self.friction(a, b) for a in some for b in others]
-        touching = [one for one in found if one is not None]
+        found = {(a, b): self.friction(a, b) for a in some for b in others}
+        touching = {pair: one for pair, one in found.items() if one is not None}
         if not touching:
             return NOTHING
-        greatest = Friction(*np.max(touching, axis=0).tolist())
-        return Touch(greatest, len(touching) < len(found), len(set(touching)) > 1)
+        greatest = Friction(*np.max(list(touching.values()), axis=0).tolist())
+        ruled = all(
+            one == tuple(map(max, self.of_geom(a), self.of_geom(b)))
+            for (a, b), one in touching.items()
+        )
+        differ = len(set(touching.values())) > 1
+        return Touch(greatest, len(touching) < len(found), differ, ruled)
+
+    def of_geom(self, geom: int) -> Friction:
+        """Return the friction of a geom with its equal."""
+        size, three = int(self.model.geom_condim[geom]), self.model.geom_friction[geom]
+        return _friction(size, three[[0, 0, 1, 2, 2]])
+
+    def tell_apart(self, groups: list[list[int]], restitution: float) -> None:
+        """Give materials to geoms if those of one body, of some, differ in friction."""
+        if any(len({self.of_geom(g) for g in geoms}) > 1 for geoms in groups):
+            self.restitution = restitution
+
+    def material(self, geom: int) -> Material | None:
+        """Return the material of a geom; None if geoms have none."""
+        if self.restitution is None:
+            return None
+        f = self.of_geom(geom)
+        return Material(
+            self.restitution, f.sliding, rolling_friction=f.rolling, pivoting_friction=f.pivoting
+        )
 
     def friction(self, a: int, b: int) -> Friction | None:
         """Return the friction of two geoms; None if they do not touch."""

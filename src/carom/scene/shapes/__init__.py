@@ -21,6 +21,7 @@ from carom.scene.shapes.plain import Ellipsoid as Ellipsoid
 from carom.scene.shapes.convex import Convex as Convex
 from carom.scene.shapes.mesh import Mesh as Mesh
 from carom.scene.shapes.compound import Compound as Compound
+from carom.scene.shapes.compound import Part as Part
 # isort: on
 
 SHAPES = subclasses_in(globals(), Shape)

@@ -4,15 +4,62 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import arguments, checks
-from carom.fields import keep
+from carom import arguments, checks, fields
+from carom.fields import Value, Vector, keep
 from carom.geometry import quaternion
 from carom.geometry.attitude import attitude
+from carom.scene.materials import Material
 from carom.scene.pieces import IDENTITY, Piece, Shape
+
+
+def _material(name: str, value) -> Material:
+    checks.instance(name, value, (Material,))
+    return value
+
+
+@arguments.known
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A part of a `Compound`.
+
+    Parameters
+    ----------
+    shape
+        Any shape.
+    position : (3,)
+        Position of its mass centre in the axes of the compound [m].
+    orientation
+        As for `Scene.add_body`, part to compound. Default no rotation.
+    material : Material, optional
+        Material of the surface of this part. Default: that of the body.
+
+    Examples
+    --------
+    A rubber foot on a steel leg:
+
+    >>> steel = carom.Material(restitution=0.6, friction=0.2)
+    >>> rubber = carom.Material(restitution=0.1, friction=0.9)
+    >>> leg = carom.Compound([
+    ...     carom.Part(carom.Box(0.02, 0.02, 0.3), (0, 0, 0.15)),
+    ...     carom.Part(carom.Sphere(0.02), (0, 0, 0), material=rubber),
+    ... ])
+    >>> scene = carom.Scene()
+    >>> scene.add_body(leg, mass=1.0, material=steel, position=(0, 0, 1)).shape.pieces[1].material is rubber
+    True
+    """
+
+    shape: Shape
+    position: Vector = fields.vector(unit="m")
+    orientation: Value[np.ndarray, Any] = Value(attitude, IDENTITY)
+    material: Value[Material | None, Material | None] = Value(_material, None)
+
+    def __post_init__(self):
+        checks.instance("shape", self.shape, (Shape,), "; a shape is needed")
 
 
 @arguments.known
@@ -25,9 +72,10 @@ class Compound(Shape):
 
     Parameters
     ----------
-    parts : sequence of (shape, position) or (shape, position, orientation)
+    parts : sequence of Part, (shape, position) or (shape, position, orientation)
         `position` (3,) of the mass centre of the part [m]; `orientation` as for `Scene.add_body`, part to
-        compound, default no rotation. Parts may overlap; their common volume then counts in each of them.
+        compound, default no rotation. Parts may overlap; their common volume then counts in each of them. A
+        `Part` may have a material of its own.
     masses : sequence of float, optional
         Masses of the parts relative to each other, each at least 0. Default: their volumes (equal densities).
     centroid : (3,), optional
@@ -37,7 +85,7 @@ class Compound(Shape):
     Attributes
     ----------
     parts : tuple of (shape, position, orientation)
-        The parts as given.
+        The parts as given, with the material as a fourth entry where one was given.
     centroid : (3,)
         The mass centre, in the axes of `parts` [m].
     volume
@@ -59,9 +107,9 @@ class Compound(Shape):
         self, parts: Sequence, masses: ArrayLike | None = None, centroid: ArrayLike | None = None
     ):
         placed = tuple(_part(k, part) for k, part in enumerate(_sequence(parts)))
-        shapes = [shape for shape, _, _ in placed]
+        shapes = [part[0] for part in placed]
         volumes = np.array([shape.volume for shape in shapes])
-        positions = np.array([position for _, position, _ in placed])
+        positions = np.array([part[1] for part in placed])
         if centroid is None:
             weights = _weights(shapes, volumes, masses)
             middle = weights @ positions
@@ -74,17 +122,22 @@ class Compound(Shape):
             middle, spread = checks.finite_array("centroid", centroid, (3,)), None
         arms = positions - middle
         size = max(float(np.linalg.norm(a)) + s.size for a, s in zip(arms, shapes))
-        pieces = [p.placed(a, q) for a, (s, _, q) in zip(arms, placed) for p in s.pieces]
+        pieces = [p.placed(a, *place) for a, (s, _, *place) in zip(arms, placed) for p in s.pieces]
         keep(self, parts=placed, centroid=middle, volume=float(volumes.sum()), size=size)
         keep(self, _pieces=tuple(pieces), _spread=spread)
 
     def __repr__(self) -> str:
-        return f"Compound(<{', '.join(type(shape).__name__ for shape, _, _ in self.parts)}>)"
+        return f"Compound(<{', '.join(type(part[0]).__name__ for part in self.parts)}>)"
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
         """Convex pieces of all parts."""
         return self._pieces
+
+    @property
+    def has_materials(self) -> bool:  # type: ignore[override]
+        """Whether a part has a material of its own."""
+        return any(piece.material is not None for piece in self._pieces)
 
     @property
     def radius(self) -> float:
@@ -103,7 +156,7 @@ class Compound(Shape):
 def _spread_of(placed, arms, weights) -> np.ndarray:
     """Return the inertia (3,3) by mass of parts with these weights, about their mass centre."""
     spread = np.zeros((3, 3))
-    for weight, arm, (shape, _, turn) in zip(weights, arms, placed):
+    for weight, arm, (shape, _, turn, *_) in zip(weights, arms, placed):
         axes = quaternion.matrix(turn)
         spread += axes @ shape.inertia(weight) @ axes.T
         spread += weight * (arm @ arm * np.eye(3) - np.outer(arm, arm))
@@ -114,18 +167,22 @@ def _sequence(parts) -> Sequence:
     """Return the parts, as a sequence that is not empty."""
     if not isinstance(parts, Sequence) or isinstance(parts, (str, bytes)) or len(parts) == 0:
         raise ValueError(
-            "parts must be a sequence of at least one (shape, position, orientation), got "
+            "parts must be a sequence of at least one Part or (shape, position, orientation), got "
             f"{checks.shown(parts)}"
         )
     return parts
 
 
 def _part(number: int, part) -> tuple:
-    """Return a checked (shape, position, orientation)."""
+    """Return a checked (shape, position, orientation), with the material if there is one."""
+    if isinstance(part, Part):
+        place = part.shape, part.position, part.orientation
+        return place if part.material is None else (*place, part.material)
     name = f"parts[{number}]"
     if not isinstance(part, Sequence) or len(part) not in (2, 3):
         raise ValueError(
-            f"{name} must be (shape, position) or (shape, position, orientation), got {checks.shown(part)}"
+            f"{name} must be (shape, position), (shape, position, orientation) or a Part, got "
+            f"{checks.shown(part)}"
         )
     shape, position, *turn = part
     checks.instance(f"{name}[0]", shape, (Shape,), "; a shape is needed")

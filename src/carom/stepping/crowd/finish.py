@@ -26,7 +26,7 @@ def finish(model, data, k, h, fall, residual):
     """Write the results of the step, and set still bodies to rest; return the energy in the ledger."""
     system, controls = model.system, model.controls
     active, start, end, crowd = data.active, data.state, data.work.trial, data.crowd
-    clock, records = data.clocks[0], data.records
+    clock = data.clocks[0]
     tolerance = rest_speed(controls, fall * h, residual, k, FEW_REST)
     impacts, pressing, rubbing = 0.0, 0.0, 0.0
     for i in range(k):
@@ -37,8 +37,8 @@ def finish(model, data, k, h, fall, residual):
         tangential = 0.5 * (p[1] * (u[1] + w[1]) + p[2] * (u[2] + w[2]))
         if spot.turns == 0 and p[0] > 0.0 and spot.strikes == 1:
             impacts += normal + tangential
-            write_impact(model, data, i, k, w, normal, tangential)
-            note_event(system, spot.contact, spot.feature, IMPACT, 0, clock, records)
+            write_impact(model, data, i, k, normal, tangential)
+            note_event(model, data, spot.contact, spot.feature, IMPACT, 0)
         else:
             pressing += normal
             rubbing += tangential
@@ -70,10 +70,10 @@ def finish(model, data, k, h, fall, residual):
 
 
 @kernel
-def write_impact(model, data, i, k, w, pressure, rubbing):
+def write_impact(model, data, i, k, pressure, rubbing):
     """Write the row of an impact without duration; k points share the impulses of the step."""
     crowd, clock, records = data.crowd, data.clocks[0], data.records
-    spot = crowd.closed[i]
+    spot, w = crowd.closed[i], contact_velocity(crowd.points[0][i], data.work.trial)
     block_of_point(crowd.problem, i, records.impact[clock.struck].W)
     blow = Blow(
         together=max(2, k), before=three(spot.before, 0), after=w, impulse=three(spot.impulse, 0),
@@ -89,7 +89,6 @@ def list_active(model, data, k, h, tolerance):
     """Write the loaded points that do not strike to `crowd.active`, and their events; return their number."""
     system = model.system
     active, end, crowd, clock = data.active, data.work.trial, data.crowd, data.clocks[0]
-    records = data.records
     count = 0
     for i in range(active.count[0]):
         crowd.follows[i] = 0  # 1 if a point stays active
@@ -110,13 +109,13 @@ def list_active(model, data, k, h, tolerance):
         slips = math.sqrt(w1 * w1 + w2 * w2) > max(tolerance, 10.0 * slow(contact, end))
         mode = MODE_SLIP if slips else MODE_STICK
         if spot.active < 0:
-            note_event(system, c, spot.feature, PERSISTS, mode, clock, records)
+            note_event(model, data, c, spot.feature, PERSISTS, mode)
             clock.holds += 1
         else:
             crowd.follows[spot.active] = 1
             if active.points[spot.active].mode != mode:
                 kind = SLIPS if slips else STICKS
-                note_event(system, c, spot.feature, kind, mode, clock, records)
+                note_event(model, data, c, spot.feature, kind, mode)
         begin_point(active_point, contact, c, spot.feature, mode)
         block_of_point(crowd.problem, i, active_point.W)
         for a in range(3):
@@ -126,7 +125,7 @@ def list_active(model, data, k, h, tolerance):
     for i in range(active.count[0]):
         if crowd.follows[i] == 0:
             active_point = active.points[i]
-            note_event(system, active_point.contact, active_point.feature, OPENS, 0, clock, records)
+            note_event(model, data, active_point.contact, active_point.feature, OPENS, 0)
     return count
 
 

@@ -49,10 +49,8 @@ def fly(model, data, method, h, loaded, cut):
             copy_state(work.trial[b], crowd.flight[b])
             halfway(now[b], crowd.flight[b], crowd.flight_middle[b])
         if code == 0 and cut:  # forces may be too stiff for a step of this length
-            named, watch = search.applied + search.friction, data.watch[0]
-            off, grows = unbalanced(
-                system, active, now, work.trial, named, work.result[0].start, h, watch
-            )
+            named = search.applied + search.friction
+            off, grows = unbalanced(model, data, named, work.result[0].start, h)
             code = TOO_LONG if grows or off > 1.0 else 0
         loads, friction = power_of_path(system, h, now, crowd.flight, crowd.middle, work)
         active.count[0] = count

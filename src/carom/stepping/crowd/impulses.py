@@ -30,20 +30,19 @@ LIFTS = 4  # greatest number of searches for other penetrating features
 @kernel
 def find_points(model, data, h, fall, wide):
     """List the points that may touch, and place them at the end of the flight and at its middle; return k."""
-    system, active, now, crowd, work = model.system, data.active, data.state, data.crowd, data.work
-    n = now.shape[0]
-    k = gather(system, active, h, fall, wide, now, crowd, work)
+    now, crowd, n = data.state, data.crowd, data.state.shape[0]
+    k = gather(model, data, h, fall, wide)
     if k < 0:
         return k
     for b in range(n):
         halfway(now[b], crowd.flight[b], crowd.middle[b])
-    place_all(system, 0, k, crowd.flight, crowd, crowd.points[1], work)
+    place_all(model, data, 0, k, crowd.flight, crowd.points[1])
     for i in range(k):
         crowd.closed[i].left = crowd.points[1][i].gap
-    place_all(system, 0, k, crowd.middle, crowd, crowd.points[0], work)
+    place_all(model, data, 0, k, crowd.middle, crowd.points[0])
     if n > 1:
-        place_all(system, 0, k, now, crowd, crowd.points[1], work)
-    note_drift(active, k, n > 1, now, crowd)
+        place_all(model, data, 0, k, now, crowd.points[1])
+    note_drift(data.active, k, n > 1, now, crowd)
     return k
 
 
@@ -53,9 +52,9 @@ def find_impulses(model, data, k, h, fall, patient):
 
     If impacts with restitution would add energy, their restitution is reduced until they add none.
     """
-    system, controls, active, now = model.system, model.controls, data.active, data.state
-    crowd, work, clock, n = data.crowd, data.work, data.clocks[0], data.state.shape[0]
-    pose(system, active, k, h, fall, now, crowd, work)
+    system, controls, n = model.system, model.controls, data.state.shape[0]
+    crowd, work, clock = data.crowd, data.work, data.clocks[0]
+    pose(model, data, k, h, fall)
     tolerance = ERROR_SHARE * controls.rest * fall * h
     most = left(controls, work.step[0], COUNT_BLOCKS) if patient else 0.0
     gamma, residual = solve(system, data, k, tolerance, most)
@@ -156,7 +155,7 @@ def impose(model, data, k, h):
         driven += driven_power(system, crowd.flight, work)  # the work of an impulse
     for b in range(end.shape[0]):
         shift(work.body[b].motion, 0.5 * h, end[b])
-    holds = onto_surfaces(system, k, end.shape[0], end, crowd, work) <= RESOLUTION
+    holds = onto_surfaces(model, data, k) <= RESOLUTION
     respin(system, crowd.flight, end)
     if joined:
         project_velocity(system, end, True, work)
@@ -165,24 +164,25 @@ def impose(model, data, k, h):
 
 
 @kernel
-def lift_others(system, active, k, depth, crowd, work):
+def lift_others(model, data, k, depth):
     """Move bodies apart where other features are inside by more than `depth`; keep angular momenta.
 
     Such a feature was no candidate and has no impulse, for example a corner that has come over an edge of a
     face. Return whether there was room, and whether the joints are closed.
     """
+    system, crowd, work = model.system, data.crowd, data.work
     end, holds = work.trial, True
     for b in range(end.shape[0]):
         copy_state(end[b], crowd.pressed[b])
     for _ in range(LIFTS):
-        last = gather_sunk(system, active, k, depth, end, crowd, work)
+        last = gather_sunk(model, data, k, depth)
         if last < 0:
             return False, holds
         if last == k:
             break
-        place_all(system, k, last, end, crowd, crowd.points[0], work)
+        place_all(model, data, k, last, end, crowd.points[0])
         write_responses(system, k, last, crowd, work)
-        holds = onto_surfaces(system, last, end.shape[0], end, crowd, work) <= RESOLUTION
+        holds = onto_surfaces(model, data, last) <= RESOLUTION
     respin(system, crowd.pressed, end)
     project_velocity(system, end, True, work)
     return True, holds

@@ -11,14 +11,15 @@ from carom.stepping.thresholds import LEAVING_SPEED
 
 
 @kernel
-def pose(system, active, k, h, fall, start, crowd, work):
+def pose(model, data, k, h, fall):
     """Write the problem of k points whose rows are in `crowd.points[0]`; the first guess is the last forces.
 
     For an impact of a single body the law of the cone holds for w + e u, tangents too: p . (w + u)/2 is then
     (p . (w + e u) - (1 - e)/2 p . W p)/(1 + e), which is never positive, and 0 without friction if e = 1.
     """
+    system, active, start, crowd = model.system, data.active, data.state, data.crowd
     alone = start.shape[0] == 1
-    write_responses(system, 0, k, crowd, work)
+    write_responses(system, 0, k, crowd, data.work)
     for i in range(k):
         spot, point = crowd.closed[i], crowd.points[0][i]
         contact, p = system.contacts[spot.contact], crowd.p

@@ -36,26 +36,27 @@ def closing_speed(contact, state):
 
 
 @kernel
-def gather(system, active, h, fall, wide, state, crowd, work):
+def gather(model, data, h, fall, wide):
     """List the points that may touch within a time h; return their number, -1 if there is no room.
 
     The distance of a pair decreases at most by its speeds and by impulses of other bodies, for which twice g h
     is allowed. A single body may turn so that its other end falls at twice its speed; three times is allowed.
     If a point was missed, the distances are multiplied by `wide`.
     """
+    system, active, state, crowd = model.system, data.active, data.state, data.crowd
     quicker, flight, crowd.count[0] = wide * (3.0 if state.shape[0] == 1 else 1.0), crowd.flight, 0
     chain(system, active, crowd)
     for c in range(system.contacts.shape[0]):
         contact, first, room = system.contacts[c], crowd.count[0], True
         if contact.touches == STOP:
-            if reaches_stop(system, contact, h, wide * fall, state, crowd, work):
+            if reaches_stop(model, data, contact, h, wide * fall):
                 room = add_stop(system, c, math.inf, state, crowd)
         else:
             speed = max(closing_speed(contact, state), closing_speed(contact, flight))
             if wide > 1.0:  # also with the velocities from the impulses found before
-                speed = max(speed, closing_speed(contact, work.trial))
+                speed = max(speed, closing_speed(contact, data.work.trial))
             reach = h * (quicker * speed + 2.0 * wide * fall * h)
-            room = add_points(system, active, c, reach, state, crowd, work)
+            room = add_points(model, data, c, reach, state)
         for i in range(first, crowd.count[0]):
             crowd.closed[i].gap = crowd.points[0][i].gap
             find_active(active, crowd.closed[i], crowd)
@@ -65,31 +66,33 @@ def gather(system, active, h, fall, wide, state, crowd, work):
 
 
 @kernel
-def add_points(system, active, c, reach, state, crowd, work):
+def add_points(model, data, c, reach, state):
     """Add the points of a contact that are within reach; return whether there is room."""
+    system, crowd, work = model.system, data.crowd, data.work
     contact = system.contacts[c]
     if apart(system, contact, state, reach):
         return True
     if contact.touches == 0:
-        return add_vertices(system, active, c, reach, state, crowd)
+        return add_vertices(system, data.active, c, reach, state, crowd)
     find_closed(system, contact, reach, 0.0, state, work)
     return add_touches(system, c, reach, state, crowd, work)
 
 
 @kernel
-def gather_sunk(system, active, k, depth, end, crowd, work):
-    """Add to the k spots the points of contacts that penetrate by more than `depth` of the smaller body.
+def gather_sunk(model, data, k, depth):
+    """Add to the k spots the points of contacts that end inside by more than `depth` of the smaller body.
 
     Return the new count, -1 if there is no room.
     """
+    system, end, crowd = model.system, data.work.trial, data.crowd
     crowd.count[0] = k
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
         if contact.touches == STOP or apart(system, contact, end, 0.0):
             continue
-        if least_gap(system, contact, end, work) >= -depth * smaller(contact):
+        if least_gap(system, contact, end, data.work) >= -depth * smaller(contact):
             continue
-        if not add_points(system, active, c, 0.0, end, crowd, work):
+        if not add_points(model, data, c, 0.0, end):
             return -1
     return crowd.count[0]
 
@@ -111,11 +114,11 @@ def add_turning(system, first, crowd):
 
 
 @kernel
-def reaches_stop(system, contact, h, fall, state, crowd, work):
+def reaches_stop(model, data, contact, h, fall):
     """Return whether a stop may be reached within a time h."""
-    point = work.placed[0]
-    place_stop(system, contact, crowd.flight, point)
-    after, rate = point.gap, abs(contact_velocity(point, crowd.flight)[0])
+    system, state, flight, point = model.system, data.state, data.crowd.flight, data.work.placed[0]
+    place_stop(system, contact, flight, point)
+    after, rate = point.gap, abs(contact_velocity(point, flight)[0])
     place_stop(system, contact, state, point)
     rate = max(rate, abs(contact_velocity(point, state)[0]))
     return min(point.gap, after) <= h * (rate + 2.0 * fall * h)
@@ -145,9 +148,9 @@ def find_active(active, spot, crowd):
 
 
 @kernel
-def place_all(system, first_spot, k, state, crowd, points, work):
+def place_all(model, data, first_spot, k, state, points):
     """Write the points from `first_spot` to k in a state."""
-    i = first_spot
+    system, crowd, work, i = model.system, data.crowd, data.work, first_spot
     while i < k:
         c = crowd.closed[i].contact
         contact = system.contacts[c]

@@ -204,7 +204,7 @@ def collide(model, data, h, fall, patient, careful):
         if times >= AGAIN or (wide == limits.SEARCH_LIMIT and k == before):
             if sunk > limits.MISSED_DEPTH and h > limits.MISSED_PIECE * model.controls.interval:
                 return TOO_LONG, k, residual, driven
-            room, holds = lift_others(system, data.active, k, RESOLUTION, crowd, work)
+            room, holds = lift_others(model, data, k, RESOLUTION)
             if not room:
                 return grow(work.step[0], r.FULL_SPOTS), k, residual, driven
             return 0 if holds else CONSTRAINTS_LOST, k, residual, driven

@@ -20,14 +20,15 @@ SURFACE_PASSES, SWEEPS, SURFACE_WORK = 8, (100, 1000), 20000
 
 
 @kernel
-def onto_surfaces(system, k, count, end, crowd, work):
+def onto_surfaces(model, data, k):
     """Move bodies to their joints, and apart where points penetrate; return the relative error of the joints.
 
     `crowd.points[1]` are the points at the end.
     """
+    system, crowd, work, end = model.system, data.crowd, data.work, data.work.trial
     missed = project_position(system, end, True, 1e-14, work)
     for _ in range(SURFACE_PASSES):
-        place_all(system, 0, k, end, crowd, crowd.points[1], work)
+        place_all(model, data, 0, k, end, crowd.points[1])
         deepest, tiny = 0.0, 1.0
         for i in range(k):
             gap = crowd.points[1][i].gap
@@ -38,7 +39,7 @@ def onto_surfaces(system, k, count, end, crowd, work):
         if deepest == 0.0:
             break
         lift(system, k, max(tiny, RETURN_GAIN * deepest), crowd, work)
-        for b in range(count):
+        for b in range(end.shape[0]):
             shift(work.body[b].motion, 1.0, end[b])
         missed = project_position(system, end, True, 1e-14, work)
     return missed
