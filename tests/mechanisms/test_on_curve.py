@@ -5,6 +5,8 @@ import re
 
 import numpy as np
 import pytest
+from campaigns import rails
+from campaigns.case import as_row, run, wrong
 from mechanism_scenes import orders
 from scipy.special import ellipj, ellipk
 
@@ -243,3 +245,10 @@ def test_other_bodies_make_no_difference():
         found.append((s.position[-1, 0], s["wire"].coordinate[-1], s["wire"].force[-1]))
     for alone, among in zip(*found):
         np.testing.assert_allclose(among, alone, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", [3, 10, 17, 24, 33])
+def test_random_rails(seed):
+    """The short form of benchmarks/campaigns/rails.py."""
+    case = rails.case(seed)
+    assert wrong(as_row("rails", seed, case, run(case))) == []
