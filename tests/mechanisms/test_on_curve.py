@@ -5,12 +5,12 @@ import re
 
 import numpy as np
 import pytest
-from campaigns import rails
-from campaigns.case import as_row, run, wrong
 from mechanism_scenes import orders
 from scipy.special import ellipj, ellipk
 
 import carom
+from campaigns import rails
+from campaigns.case import as_row, run, wrong
 from carom.dynamics.methods import METHODS
 
 G = 9.81
