@@ -8,6 +8,7 @@ from campaigns import (
     bearings,
     crowds,
     forced,
+    laws,
     mechanisms,
     piles,
     rails,
@@ -25,4 +26,5 @@ FAMILIES = {
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
     "rails": rails.case,
+    "laws": laws.case,
 }  # fmt: skip

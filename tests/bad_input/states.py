@@ -37,7 +37,7 @@ def stated():
 
     three = (1.0, 0.0, 0.0)
     number = dict(restitution=0.5, friction=0.1, friction_held=0.1, stiffness=1.0, rolling_friction=0.0,
-                  pivoting_friction=0.0)  # fmt: skip
+                  pivoting_friction=0.0, tangential_restitution=0.5)  # fmt: skip
     words = dict(impact_law="newton", multiple="sequential")
     shapes = {
         "Sphere": (carom.Sphere, dict(radius=0.1)),
@@ -74,6 +74,15 @@ def stated():
         "euler": lambda: (carom.euler, dict(axes="zyx", angles=(90.0, 0.0, 30.0))),
         "axis_angle": lambda: (carom.axis_angle, dict(axis=three, angle=90.0)),
         "Material": lambda: (carom.Material, number),
+        "Restitution": lambda: (carom.Restitution.power(0.5), dict(speed=1.0)),
+        "Restitution.power": lambda: (
+            carom.Restitution.power, dict(value=0.5, speed=1.0, exponent=-0.25, maximum=0.9),
+        ),
+        "Restitution.viscoelastic": lambda: (carom.Restitution.viscoelastic, dict(c=0.2)),
+        "Restitution.table": lambda: (
+            carom.Restitution.table, dict(speeds=(0.1, 1.0), values=(0.9, 0.5)),
+        ),
+        "Restitution.slope": lambda: (carom.Restitution.power(0.5).slope, dict(speed=1.0)),
         "ContactLaw": lambda: (carom.scene.ContactLaw, {**number, **words, "of_materials": ("friction",)}),
         "Options": lambda: (
             carom.Options, carom.Options(layer_width=1e-6, max_step=0.1, corner_exponent=1.5).as_dict()

@@ -52,7 +52,7 @@ def read_scene(scene) -> tuple[OneBody, Any]:
         radius=float(getattr(body.shape, "radius", 0.0) or 0.0),
         axes=contact_axes(np.asarray(contact.half_space.normal, dtype=np.float64)),
         plane_point=np.array(contact.half_space.point, dtype=np.float64),
-        restitution=float(contact.restitution),
+        restitution=checks.number("restitution of the contact", contact.restitution),
         friction=float(contact.friction),
         gravity=np.array(scene.gravity, dtype=np.float64),
     )

@@ -17,6 +17,8 @@ from carom.friction.solve import solve_cones
 from carom.generalized.step import project
 from carom.generalized.strike import Strike, rows_of
 from carom.model import actions as a
+from carom.persistent.thresholds import MOST_BOUNCES
+from carom.scene.restitution import Restitution
 from carom.status import Status
 
 if TYPE_CHECKING:
@@ -107,8 +109,13 @@ class Contacts(Strike):
     def stays(self, c: int, draw: float) -> bool:
         """Return whether the bounces of a contact with the acceleration `draw` end within a step."""
         u, still = float(self.u[c, 0]), self.still[c]
-        e = float(self.restitution_after(c, self.blows[c]))
-        ends = e < 1.0 and 2.0 * u < draw * (1.0 - e) * self.run.moment(draw)
+        e = float(self.restitution_after([c], self.blows[c], [u])[0])
+        rest, time = u, 0.0
+        if isinstance(law := self.restitution[c], Restitution) and u > still:
+            for _ in range(MOST_BOUNCES):  # as `carom.persistent.bounces` adds them up
+                time, rest = time + 2.0 * rest / draw, rest * e
+                e = float(law(rest))
+        ends = e < 1.0 and 2.0 * rest < draw * (1.0 - e) * (self.run.moment(draw) - time)
         return -10.0 * still <= u and (u <= still or ends)
 
     def set_active(self, chosen: list[int], closed: list[int]) -> int:

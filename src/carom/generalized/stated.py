@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
-from carom.fields import Number, Word, number, word
+from carom.fields import Number, Value, Word, number, word
 from carom.scene.materials import IMPACT_LAWS
+from carom.scene.restitution import restitution as number_or_law
 
 
 @dataclass(frozen=True)
@@ -15,15 +17,17 @@ class CoordinateContact:
     Attributes
     ----------
     name : str
-    restitution, friction : float
-        Coefficient of restitution e and friction coefficient mu.
+    restitution : float or Restitution
+        Coefficient of restitution e, or its law.
+    friction : float
+        Friction coefficient mu.
     impact_law : {"newton", "poisson", "stronge"}
     index : int
         Its index in `GeneralizedSystem.contacts`.
     """
 
     name: str
-    restitution: Number = number(least=0.0, most=1.0)
+    restitution: Value[Any, Any] = number_or_law()
     friction: Number = number(least=0.0)
     impact_law: Word = word(IMPACT_LAWS)
     index: int = 0

@@ -11,6 +11,7 @@ from carom.impact import layout as o
 from carom.impact.laws import GAINING, NUMBERS
 from carom.impact.resolve import resolve
 from carom.impact.thresholds import GROUP_SEED, NO_RESTITUTION
+from carom.scene.restitution import Restitution
 from carom.status import Status
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ class Strike:
     def __init__(self, run: GeneralizedRun):
         contacts = run.user.contacts
         self.run, self.seen = run, run.made.work
-        self.restitution = np.array([one.restitution for one in contacts])
+        self.restitution = [one.restitution for one in contacts]
         self.friction = np.array([one.friction for one in contacts])
         self.law = np.array([NUMBERS[one.impact_law] for one in contacts], dtype=np.int64)
         self.events: list[tuple[float, str, int]] = []
@@ -84,9 +85,13 @@ class Strike:
         self.blows[closed] = np.where(high, 0, self.blows[closed]) + 1
         self.struck[closed] = self.run.reached
 
-    def restitution_after(self, c, before):
+    def restitution_after(self, closed: list[int], before, approach):
         """Return e of contacts after a number of blows in a row; 0 if these have left hardly any speed."""
-        e = self.restitution[c]
+        given = [self.restitution[c] for c in closed]
+        e = np.array(
+            [float(one(max(v, 0.0))) if isinstance(one, Restitution) else one
+             for one, v in zip(given, approach)]
+        )  # fmt: skip
         return np.where((e < 1.0) & (e**before <= NO_RESTITUTION), 0.0, e)
 
     def together(self, closed: list[int], jams: int) -> int:
@@ -99,7 +104,10 @@ class Strike:
             i = closed.index(jams)
             u[i, 0] = -GROUP_SEED * np.linalg.norm(u[i, 1:])
         self.count(closed)
-        mu, e = self.friction[closed], self.restitution_after(closed, self.blows[closed] - 1.0)
+        mu, e = (
+            self.friction[closed],
+            self.restitution_after(closed, self.blows[closed] - 1.0, -u[:, 0]),
+        )
         code, after, p, works, wedged = self.solve(W, u, mu, e, closed)
         if code != o.OK:
             return Status.IMPACT_FAILED

@@ -11,6 +11,7 @@ import numpy as np
 from carom import arguments, checks
 from carom.generalized.stated import CoordinateContact
 from carom.scene.registry import Registry
+from carom.scene.restitution import Restitution
 
 if TYPE_CHECKING:
     from carom.generalized.evaluate import Evaluation
@@ -198,7 +199,7 @@ class GeneralizedSystem:
         *,
         tangent=None,
         gap_gradient: Callable | None = None,
-        restitution: float,
+        restitution: float | Restitution,
         friction: float = 0.0,
         impact_law: str = "newton",
         name: str | None = None,
@@ -216,8 +217,8 @@ class GeneralizedSystem:
             friction.
         gap_gradient : callable, optional
             ``gap_gradient(q) -> (n,)``, only for a system of functions. Default: central differences.
-        restitution : float
-            Coefficient of restitution e, in [0, 1].
+        restitution : float or Restitution
+            Coefficient of restitution e, in [0, 1], or its law, a function of the speed of approach.
         friction : float
             Coulomb's friction coefficient, at least 0. Default 0.
         impact_law : {"newton", "poisson", "stronge"}

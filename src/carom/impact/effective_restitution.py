@@ -1,4 +1,4 @@
-"""Inelastic collapse: infinitely many impacts within a finite time.
+"""The restitution of a contact in an impact: a number or a law of the speed; and inelastic collapse.
 
 A body between two others may be struck infinitely often within a finite time, although the bounces on one of
 them alone take longer (McNamara and Young 1992). Bounces lower than the tolerance, or than those that end in a
@@ -8,10 +8,12 @@ e^n is negligible, its next impact is plastic: a single contact would have come 
 
 from __future__ import annotations
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
+from carom.dynamics.curve import find_piece
 from carom.geometry.rotation import norm
 from carom.geometry.thresholds import ROUND_OFF
 from carom.impact.thresholds import NO_RESTITUTION
+from carom.scene.restitution import SLOWEST
 
 
 @kernel
@@ -24,8 +26,28 @@ def count_blow(system, controls, contact, contact_state, approach, now):
     contact_state.blows, contact_state.struck = contact_state.blows + 1, now
 
 
+@inlined
+def restitution_at(system, contact, approach):
+    """Return the restitution e of a contact at a speed of approach [m/s]."""
+    if contact.restitution_piece == contact.last_restitution_piece:
+        return contact.restitution
+    return law_at(system.curves, contact, approach)
+
+
 @kernel
-def effective_restitution(contact, contact_state):
+def law_at(pieces, contact, approach):
+    """Return e = c_0 + c_1 s + ..., s = x - start, x = v^exponent; beyond the pieces, that at their end."""
+    first, last = contact.restitution_piece, contact.last_restitution_piece
+    x = max(approach, SLOWEST) ** contact.restitution_exponent
+    x = min(max(x, pieces[first].start), pieces[last - 1].end)
+    piece, e = pieces[find_piece(pieces, first, last, x)], 0.0
+    for k in range(5, -1, -1):
+        e = e * (x - piece.start) + piece.c[k]
+    return min(1.0, max(0.0, e))
+
+
+@kernel
+def effective_restitution(system, contact, contact_state, approach):
     """Return the restitution of a contact for the impact that was counted last."""
-    e, before = contact.restitution, contact_state.blows - 1.0
+    e, before = restitution_at(system, contact, approach), contact_state.blows - 1.0
     return 0.0 if e < 1.0 and before > 0.0 and e**before <= NO_RESTITUTION else e

@@ -22,6 +22,7 @@ from carom.impact.record import write_impact
 from carom.impact.resolve import resolve
 from carom.impact.return_map import return_map
 from carom.impact.strike_several import strike_several
+from carom.impact.tangential import return_slip
 from carom.impact.thresholds import SEED
 from carom.impact.work_mode import restore_work
 from carom.impact.workspace import U
@@ -139,10 +140,12 @@ def strike_one(model, data, method, c):
         hit.code = BLOCKED
         return
     count_blow(system, controls, contact, active.contact_states[c], -hit.u[0], clock.now)
-    hit.restitution = effective_restitution(contact, active.contact_states[c])
+    hit.restitution = effective_restitution(system, contact, active.contact_states[c], -hit.u[0])
     if collide(method, controls, contact, hit, work.history) != layout.OK:
         hit.code = IMPACT_FAILED
         return
+    if contact.tangential_restitution != 0.0:
+        return_slip(hit.W, hit.u, hit.friction, contact.tangential_restitution, hit.out)
     write_impact(contact, state, point, hit, clock, data.records)
     spread(system, point, state, hit.out[layout.IMPULSE : layout.IMPULSE + 3], work)
     add_velocity(system, point, work, state)

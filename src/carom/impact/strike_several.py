@@ -88,7 +88,8 @@ def strike_several(model, data, c, k):
             hit.code = BLOCKED
             return
         j, contact_state = group.closed[i].active, active.contact_states[group.closed[i].contact]
-        group.mu[i], multiple.e[i] = contact.friction, effective_restitution(contact, contact_state)
+        group.mu[i] = contact.friction
+        multiple.e[i] = effective_restitution(system, contact, contact_state, -u[3 * i])
         if j >= 0 and active.points[j].jams == 1:
             u[3 * i] -= GROUP_SEED * math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2)
             group.mu[i] = contact.friction_held

@@ -265,7 +265,14 @@ CONTACT = [
     ("friction", "f8"),
     ("friction_held", "f8"),
     ("turning", "f8", 2),  # rolling and pivoting friction [m]
-    ("restitution", "f8"),
+    ("restitution", "f8"),  # e; NaN if it is a law of the speed of approach, which has the pieces
+    (
+        "restitution_piece",
+        "i8",
+    ),  # range of `System.curves`, e over v^exponent; empty if e is a number
+    ("last_restitution_piece", "i8"),
+    ("restitution_exponent", "f8"),
+    ("tangential_restitution", "f8"),
     ("stiffness", "f8"),  # of its boundary layer, relative to the others
     ("extent", "f8"),  # largest distance of the shape from the mass centre
     ("other_extent", "f8"),
@@ -376,6 +383,7 @@ class System(NamedTuple):
     loads: np.recarray  # LOAD
     bushings: np.recarray  # BUSHING
     contacts: np.recarray  # (C,) CONTACT
+    curves: np.recarray  # PIECE, of restitutions that are laws
     vertices: np.ndarray  # (V, 3) of all contacts, body axes
     solids: np.recarray  # SOLID of `carom.collision`, of bodies that may touch each other
     hulls: Hulls

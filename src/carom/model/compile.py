@@ -55,7 +55,7 @@ def compile_scene(
     coordinates = Coordinates(placement)
     for one in () if scene.robot is None else scene.robot.coordinates:
         coordinates.number(one.joint, one.index)  # a run counts their whole turns
-    pieces = Pieces()
+    pieces, curves = Pieces(), Pieces()
     sizes = start_sizes(scene)
     elements = Elements(scene, coordinates, functions, pieces, sizes)
     if implicit:
@@ -68,13 +68,14 @@ def compile_scene(
     bodies["axes"] = to_principal
     # stops have the numbers after those of all pairs, so no pair may be added later
     may_come = apart and bool(bodies["ballistic"].any()) and not scene.stops
-    touching = compile_contacts(scene, to_principal, options, may_come)
-    contacts = with_stops(scene, touching.rows, coordinates, sizes, options)
+    touching = compile_contacts(scene, to_principal, options, curves, may_come)
+    contacts = with_stops(scene, touching.rows, elements, options, curves)
     relations = elements.arrays(solver, more)
     system = System(
         bodies=bodies, gravity=np.array(scene.gravity), joints=joints, relations=relations, springs=springs,
-        loads=loads, bushings=bushings, contacts=contacts, vertices=touching.vertices,
-        solids=touching.solids, hulls=touching.hulls, levels=touching.levels, solver=solver,
+        loads=loads, bushings=bushings, contacts=contacts, curves=curves.rows,
+        vertices=touching.vertices, solids=touching.solids, hulls=touching.hulls,
+        levels=touching.levels, solver=solver,
     )  # fmt: skip
     return Compiled(
         system=system, start=start, to_principal=to_principal, flipped=flipped, functions=functions,

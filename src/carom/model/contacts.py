@@ -17,10 +17,12 @@ from carom.model.arrays import CONTACT
 from carom.model.contact_rows import Rows, contact_rows, first_pairs
 from carom.model.cores import Cores, new_cores, singly, swollen_alike
 from carom.model.level_surfaces import find_levels, with_level_rows
+from carom.model.more_forces import RESTITUTION, Pieces
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, meeting
 from carom.scene.contacts import IMPACT_LAWS
 from carom.scene.materials import MULTIPLE, ContactLaw, Material
+from carom.scene.restitution import Restitution
 from carom.scene.scene import Scene
 from carom.scene.shapes import Shape
 
@@ -32,6 +34,7 @@ class Surfaces(NamedTuple):
     single: Cores  # piece by piece, against each other
     shared: int  # first vertex of `single`, after those of contacts with half-spaces
     place: np.ndarray  # (N,) first solid of each body
+    curves: Pieces  # of restitutions that are laws
 
 
 class Contacts(NamedTuple):
@@ -47,7 +50,9 @@ class Contacts(NamedTuple):
     later: Defaults | None  # pairs of bodies that get rows when they come near each other
 
 
-def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool = False) -> Contacts:
+def compile_contacts(
+    scene: Scene, to_principal, options: Options, curves: Pieces, apart: bool = False
+) -> Contacts:
     """Return the contacts of a scene.
 
     A contact of two bodies has a row for each pair of pieces. Faces of static bodies in one plane have rows of
@@ -55,14 +60,15 @@ def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool =
     vertices of equal radius, and one for each curved piece. If bodies move `apart`, more rows may follow later.
     """
     known, later = first_pairs(scene, apart)
+    numbers = _numbers(known.laws, curves)
     many = later is not None or len(known.body) > FEW_CONTACTS
     own = scene.statics or any(law.of_materials for law in known.laws)
     if many or own or not scene.gravity.any():  # without gravity, speeds count too
-        return _contacts(scene, known, later, to_principal, options)
+        return _contacts(scene, known, later, curves, to_principal, options)
     # contacts of scenes that differ in their motion, as in many throws, are copies of each other
     of_pairs = known.body, known.other, known.plane, known.law, to_principal, scene.gravity
     key = (
-        *(one.tobytes() for one in of_pairs), *_numbers(known.laws), options.layer_width, options.penetration,
+        *(one.tobytes() for one in of_pairs), numbers.tobytes(), options.layer_width, options.penetration,
         *((plane.point.tobytes(), plane.normal.tobytes()) for plane in scene.half_spaces),
         *(body.shape for body in scene.bodies),
     )  # fmt: skip
@@ -71,7 +77,7 @@ def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool =
         return mould.cast()._replace(pairs=known)
     if len(_KNOWN) >= MOST_KNOWN:
         _KNOWN.clear()
-    made = _contacts(scene, known, None, to_principal, options)
+    made = _contacts(scene, known, None, curves, to_principal, options)
     _KNOWN[key] = Mould(made._replace(pairs=None))
     return made
 
@@ -82,7 +88,7 @@ FEW_CONTACTS = 64  # pairs of a scene whose contacts are kept
 MOST_KNOWN = 64  # such scenes
 
 
-def _contacts(scene: Scene, known: PairTable, later, to_principal, options: Options) -> Contacts:
+def _contacts(scene: Scene, known: PairTable, later, curves, to_principal, options: Options):
     """Return the contacts of the pairs `known`."""
     pairs, to_principal = _with_statics(scene, known), _and_of_statics(scene, to_principal)
     meets = pairs.other >= 0
@@ -99,7 +105,7 @@ def _contacts(scene: Scene, known: PairTable, later, to_principal, options: Opti
     ranges = (which.core[end][flat & ~curved].tolist() for end in ("first", "last"))
     own = [grounded.vertices[first:last] for first, last in zip(*ranges)]
     vertices = np.concatenate([*own, single.vertices])
-    surfaces = Surfaces(grounded, single, len(vertices) - len(single.vertices), place)
+    surfaces = Surfaces(grounded, single, len(vertices) - len(single.vertices), place, curves)
     rows = _rows(scene, options, pairs, which, surfaces)
     rows, levels = with_level_rows(rows, *find_levels(scene, pairs, place))
     return Contacts(rows, vertices, solids, hulls, levels, known, surfaces, later)
@@ -150,7 +156,7 @@ def _rows(scene, options: Options, pairs: PairTable, which: Rows, surfaces: Surf
     _write_shapes(rows, which)
     _write_ranges(rows, which, surfaces.shared)
     _write_solids(rows, which, surfaces.place)
-    _write_laws(rows, scene, pairs, which)
+    _write_laws(rows, scene, pairs, which, surfaces.curves)
     _write_statics(rows, scene)
     extent = rows["extent"]
     rows["still"] = 1e-14 * _speed(scene, extent)
@@ -249,24 +255,32 @@ def _write_solids(rows: np.recarray, which: Rows, place: np.ndarray) -> None:
     rows["other_solid"] = between * (place[rows["other"]] + which.other["piece"])
 
 
-def _write_laws(rows: np.recarray, scene: Scene, pairs: PairTable, which: Rows) -> None:
+#: columns of rows that say by which law their pair strikes, in the order of `_numbers`
+OF_LAW = (
+    "friction", "friction_held", "stiffness", "law", "multiple", *RESTITUTION, "tangential_restitution",
+)  # fmt: skip
+
+
+def _write_laws(rows: np.recarray, scene: Scene, pairs: PairTable, which: Rows, curves: Pieces):
     """Write the law of each contact to its rows."""
     laws, of_row = _laws_by_part(scene, pairs, which)
-    law = np.array(_numbers(laws), dtype=float).reshape(-1, 8)[of_row]
-    for k, name in enumerate(("friction", "friction_held", "restitution", "stiffness")):
+    law = _numbers(laws, curves)[of_row]
+    for k, name in enumerate(OF_LAW):
         rows[name] = law[:, k]
-    rows["turning"], rows["law"], rows["multiple"] = law[:, 4:6], law[:, 6], law[:, 7]
+    rows["turning"] = law[:, len(OF_LAW) :]
 
 
-def _numbers(laws: list[ContactLaw]) -> list[tuple]:
-    """Return the numbers of each law."""
-    return [
+def _numbers(laws: list[ContactLaw], curves: Pieces) -> np.ndarray:
+    """Return the numbers (L, 12) of laws; those of restitutions that are laws are added to `curves`."""
+    numbers = [
         (
-            one.friction, one.friction_held, one.restitution, one.stiffness, one.rolling_friction,
-            one.pivoting_friction, IMPACT_LAWS.index(one.impact_law), MULTIPLE.index(one.multiple),
+            one.friction, one.friction_held, one.stiffness, IMPACT_LAWS.index(one.impact_law),
+            MULTIPLE.index(one.multiple), *curves.add_restitution(one.restitution),
+            one.tangential_restitution, one.rolling_friction, one.pivoting_friction,
         )
         for one in laws
     ]  # fmt: skip
+    return np.array(numbers, dtype=float).reshape(-1, len(OF_LAW) + 2)
 
 
 class Surface(NamedTuple):
@@ -293,9 +307,22 @@ def _laws_by_part(scene: Scene, pairs: PairTable, which: Rows) -> tuple[list, np
         key = (int(of_row[row]), one.material, two.material)
         if key not in known:
             known[key] = len(laws)
-            laws.append(scene._pairs.law_of_parts(laws[key[0]], one, two))
+            laws.append(
+                _checked(scene._pairs.law_of_parts(laws[key[0]], one, two), laws[key[0]], one)
+            )
         of_row[row] = known[key]
     return laws, of_row
+
+
+def _checked(law: ContactLaw, whole: ContactLaw, surface: Surface) -> ContactLaw:
+    """Return the law of two parts; refuse restitutions of parts that are different laws of the speed."""
+    e = law.restitution, whole.restitution
+    if e[0] != e[1] and any(isinstance(one, Restitution) for one in e):
+        raise ValueError(
+            f"restitution must be a number for each part of {surface.name!r}, or one law for all, "
+            f"got {e[0]:g} and {e[1]:g}"
+        )
+    return law
 
 
 def _surface(part, piece: int) -> Surface:

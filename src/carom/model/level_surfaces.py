@@ -34,6 +34,7 @@ from carom.model.arrays import CONTACT
 from carom.model.graph import Sets
 from carom.scene.all_pairs import PairTable
 from carom.scene.pieces import Piece
+from carom.scene.restitution import Restitution
 from carom.scene.scene import Scene
 
 #: corners of the faces of a box, numbered as in `carom.scene.pieces.SIGNS`, counter-clockwise from outside
@@ -105,11 +106,17 @@ def _laws_of_statics(scene: Scene, pairs: PairTable) -> list[tuple[tuple, tuple]
             found[other - count][0].append(body)
             found[other - count][1].append(
                 (
-                    body, one.friction, one.friction_held, one.restitution, one.stiffness, one.rolling_friction,
-                    one.pivoting_friction, str(one.impact_law), str(one.multiple),
+                    body, one.friction, one.friction_held, *_sortable(one.restitution),
+                    one.tangential_restitution, one.stiffness,
+                    one.rolling_friction, one.pivoting_friction, str(one.impact_law), str(one.multiple),
                 )
             )  # fmt: skip
     return [(tuple(sorted(bodies)), tuple(sorted(laws))) for bodies, laws in found]
+
+
+def _sortable(e: float | Restitution) -> tuple[float, str]:
+    """Return a restitution as a key that has an order: numbers, then laws, which are written out."""
+    return (2.0, repr(e)) if isinstance(e, Restitution) else (e, "")
 
 
 def _faces(scene: Scene, place: np.ndarray) -> Iterator[Face]:

@@ -17,8 +17,13 @@ from carom.scene.more_forces import (
     Law,
     UserForce,
 )
+from carom.scene.restitution import Restitution, curve_of
 
 DEGREE = 5
+#: columns of a contact that say what its restitution is
+RESTITUTION = (
+    "restitution", "restitution_piece", "last_restitution_piece", "restitution_exponent",
+)  # fmt: skip
 
 
 class Pieces:
@@ -26,6 +31,7 @@ class Pieces:
 
     def __init__(self):
         self.rows = table(PIECE, 0)
+        self.known: dict[tuple, tuple[float, ...]] = {}  # restitutions
 
     def add(self, curve) -> tuple[int, int]:
         """Add a `scipy.interpolate.PPoly`; return the range of its pieces."""
@@ -41,6 +47,15 @@ class Pieces:
         first = len(self.rows)
         self.rows = np.concatenate([self.rows, pieces]).view(Columns)
         return first, len(self.rows)
+
+    def add_restitution(self, e: float | Restitution, length: float = 1.0) -> tuple[float, ...]:
+        """Return the values of `RESTITUTION` of a row whose speeds are `length` times those of a law."""
+        if not isinstance(e, Restitution):
+            return e, 0, 0, 0.0
+        if (e, length) not in self.known:
+            curve = curve_of(e).scaled(length)
+            self.known[e, length] = np.nan, *self.add(curve), curve.exponent
+        return self.known[e, length]
 
 
 class MoreForces:

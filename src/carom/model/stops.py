@@ -6,25 +6,31 @@ import numpy as np
 
 from carom._compiled.record_arrays import Columns, table
 from carom.model.arrays import CONTACT, STOP
+from carom.model.more_forces import RESTITUTION, Pieces
+from carom.model.relations import Elements
 from carom.scene.constraints import coordinate_kind
 from carom.scene.materials import IMPACT_LAWS
 
 
-def with_stops(scene, contacts: np.recarray, coordinates, sizes, options) -> np.recarray:
+def with_stops(scene, contacts: np.recarray, elements: Elements, options, curves: Pieces):
     """Return the contacts, then the stops; the numbers of stops follow those of contacts."""
     if not scene.stops:
         return contacts
     rows, first = table(CONTACT, len(scene.stops)), int(contacts.number.max(initial=-1)) + 1
     for row, stop in zip(rows, scene.stops):
-        number = coordinates.number(stop.joint, stop.coordinate)
-        c = coordinates.rows[number][0]
+        number = elements.coordinates.number(stop.joint, stop.coordinate)
+        c = elements.coordinates.rows[number][0]
         turns = coordinate_kind(stop.joint, stop.coordinate) == "turn"
         row.number, row.solid, row.touches = first + stop.index, number, STOP
         row.body, row.other = (c.child, c.parent) if c.child >= 0 else (c.parent, -1)
-        size = sizes[stop.joint.child.index]
+        size = elements.sizes[stop.joint.child.index]
         row.side = stop.side * (size if turns else 1.0)
         row.offset = row.side * stop.end
-        row.law, row.restitution = IMPACT_LAWS.index(stop.impact_law), stop.restitution
+        row.law = IMPACT_LAWS.index(stop.impact_law)
+        for name, value in zip(
+            RESTITUTION, curves.add_restitution(stop.restitution, abs(row.side))
+        ):
+            row[name] = value
         row.extent = row.other_extent = size
         row.first, row.last, row.stiffness = 0, 1, 1.0
     rows.still = 1e-14 * np.sqrt(np.linalg.norm(scene.gravity) * rows.extent)

@@ -4,8 +4,11 @@ After an impact with exit speed u_n, a contact whose free acceleration of approa
 
     t_i = 2 u_n / (g_i (1 - e)),
 
-which is exact if g_i is constant. With a given step, bounces that end within the step are not resolved. With
-tolerances, those that end within the time of one bounce as high as the tolerance,
+which is exact if g_i and e are constant. Where e depends on the speed, the times 2 v_k/g_i of bounces are added
+up, v_0 = u_n and v_{k+1} = e(v_k) v_k, and the formula gives what is left after some. The sum is finite even
+where e -> 1 for v -> 0: with 1 - e = c v^(1/5), v_k falls as k^-5. With a given step, bounces that end within
+the step are not resolved. With tolerances, those that end within the time of one bounce as high as the
+tolerance,
 
     t_i < (8 tol / g_i)^1/2,   tol = atol + rtol L,   so   u_n^2 / (2 g_i) < (1 - e)^2 tol,
 
@@ -23,12 +26,13 @@ from carom.contact.pair_point import smaller
 from carom.dynamics.elements import driven_power
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER, SUM_ERROR
+from carom.impact.effective_restitution import restitution_at
 from carom.impact.workspace import RETURN, C, U
 from carom.persistent.margins import time_to_stop
 from carom.persistent.return_to_surfaces import factor_given, give, greatest_speed, solve_rows
 from carom.persistent.settle import add_product, greatest
 from carom.persistent.springs import given
-from carom.persistent.thresholds import PLASTIC_SPEED, REST_SHARE
+from carom.persistent.thresholds import MOST_BOUNCES, PLASTIC_SPEED, REST_SHARE
 
 
 @kernel
@@ -43,18 +47,23 @@ def horizon_of(contact, controls, g, horizon):
 
 
 @kernel
-def bounces_end(contact, rate, g, still, horizon):
+def bounces_end(system, contact, rate, g, still, horizon):
     """Return whether the bounces of a contact with exit speed `rate` and acceleration g end by `horizon`."""
     if not (g > 0.0 and rate >= -still):
         return False
-    return rate <= still or time_of_bounces(contact, rate, g) < horizon
+    return rate <= still or time_of_bounces(system, contact, rate, g) < horizon
 
 
 @kernel
-def time_of_bounces(contact, rate, g):
-    """Return the time 2 u/(g (1 - e)) that bounces take."""
-    e = contact.restitution
-    return 2.0 * rate / (g * (1.0 - e)) if e < 1.0 else math.inf
+def time_of_bounces(system, contact, rate, g):
+    """Return the time 2 u/(g (1 - e)) that bounces take; with a law of restitution, the sum of their times."""
+    time, e = 0.0, restitution_at(system, contact, rate)
+    if contact.last_restitution_piece > contact.restitution_piece:
+        for _ in range(MOST_BOUNCES):
+            time += 2.0 * rate / g
+            rate *= e
+            e = restitution_at(system, contact, rate)
+    return time + 2.0 * rate / (g * (1.0 - e)) if e < 1.0 else math.inf
 
 
 @kernel
@@ -79,11 +88,11 @@ def name_work(normal, tangential, clock, step):
 
 
 @kernel
-def time_without_torque(contact, rate, g, state):
+def time_without_torque(system, contact, rate, g, state):
     """Return the time of bounces that are left out, in which rolling and pivoting friction do not act."""
     turning = max(contact.turning[0], contact.turning[1]) > 0.0
     bounces = turning and rate > slow(contact, state)
-    return time_of_bounces(contact, rate, g) if bounces else 0.0
+    return time_of_bounces(system, contact, rate, g) if bounces else 0.0
 
 
 @kernel

@@ -141,9 +141,9 @@ def judge(model, data, k, rows, horizon):
             a = group.v[ACCELERATIONS][3 * i]
             if group.closed[i].stays == 0:
                 end = horizon_of(contact, model.controls, -a, horizon)
-                if bounces_end(contact, u, -a, slow(contact, state), end):
+                if bounces_end(system, contact, u, -a, slow(contact, state), end):
                     group.closed[i].stays, more = 1, True
-                    group.closed[i].bounces = time_without_torque(contact, u, -a, state)
+                    group.closed[i].bounces = time_without_torque(system, contact, u, -a, state)
             elif turn == 0 and a > max(1e-10 * push, group.v[P][3 * i] * group.W[3 * i, 3 * i]):
                 group.closed[i].stays = 0  # it has no force
         if not more:

@@ -13,6 +13,7 @@ FRICTION_LIMIT = 1.0 - 1e-6  #: greatest friction: less is within the cone; a st
 PLASTIC_SPEED = 1e-4
 STIFF_SLIP = 1.5  #: speed of slip: change by friction in a step above which its direction is stiff
 SLIP_COSINE = 0.5  #: cosine of the angle: least between directions of slip in a step
+MOST_BOUNCES = 50  #: 1: bounces with the e of their own speed, before those that a formula adds up
 STOPPED_SLIP = 1e-3  #: slip at the start: with less at the end the direction is that of the start: it stops
 FALLS = 100.0  #: fall through the size: an error of velocity counts so long; what moves slower is at rest
 #: W_nn: a point jams at k below this: at 0 its force has no bound, which no step can follow

@@ -11,7 +11,6 @@ from carom._compiled.record_arrays import Columns, copied
 from carom.geometry import quaternion
 from carom.impact.layout import AT_END, WEDGED
 from carom.model import records as r
-from carom.model.arrays import STOP
 from carom.results import stiff_forces
 from carom.results.accuracy import sentences
 from carom.results.costs import busiest
@@ -20,10 +19,18 @@ from carom.results.event_tables import ContactTable, EventTable, ImpactTable, co
 from carom.results.exerted import exerted
 from carom.results.impact_remarks import remarks
 from carom.results.locks import locked
-from carom.results.names import constrained, contact_name, contact_names, row_units
+from carom.results.names import (
+    arms,
+    constrained,
+    contact_name,
+    contact_names,
+    restitution_of,
+    row_units,
+)
 from carom.scene.forces import AppliedForce
 from carom.scene.materials import IMPACT_LAWS
 from carom.scene.more_forces import JointFriction
+from carom.scene.restitution import Restitution
 from carom.status import Status
 
 #: attributes of contacts that tables show (an ensemble changes them from run to run)
@@ -139,7 +146,7 @@ def impact_table(solution) -> ImpactTable:
         law=np.array(IMPACT_LAWS)[contacts["law"][c]],
         inverse_mass=rows.W / arm[:, None, None] ** 2,
         impulse=rows.impulse * arm[:, None],
-        restitution=contacts["restitution"][c],
+        restitution=_restitutions(rows, contacts["restitution"][c], arm, solution),
         friction=contacts["friction"][c],
         wedged=(rows.phases & WEDGED) // WEDGED,
         located=1 - (rows.phases & AT_END) // AT_END,
@@ -152,6 +159,16 @@ def impact_table(solution) -> ImpactTable:
             )
         },
     )  # fmt: skip
+
+
+def _restitutions(rows, e: np.ndarray, arm: np.ndarray, solution) -> np.ndarray:
+    """Return e (K,) of impacts: the number of their contact, or what its law says at the speed of approach."""
+    approach = np.maximum(-rows.before[:, 0] / arm, 0.0)
+    for number in np.unique(rows.contact[np.isnan(e)]).tolist():
+        law, own = restitution_of(solution.scene, solution.pairs, number), rows.contact == number
+        assert isinstance(law, Restitution)
+        e[own] = law(approach[own])
+    return e
 
 
 def named(contact: np.ndarray, scene, pairs) -> dict[str, np.ndarray]:
@@ -191,11 +208,6 @@ def nodes(run) -> list[Nodes]:
         )
         out.append(Nodes(*(np.concatenate(pair)[order] for pair in columns)))
     return out
-
-
-def arms(contacts) -> np.ndarray:
-    """Return the lever arms (C,) that convert forces and gaps of stops of angles; 1 for all others."""
-    return np.where(contacts["touches"] == STOP, np.abs(contacts["side"]), 1.0)
 
 
 def contact_sums(touch: np.recarray, saved: int, contacts: int) -> tuple[np.ndarray, np.ndarray]:

@@ -7,16 +7,19 @@ import numpy as np
 from carom.impact import laws
 from carom.impact.layout import PHASE_JAM, PLASTIC
 from carom.model import records as r
-from carom.results.names import contact_name
+from carom.results.names import arms, contact_name, restitution_of
+from carom.scene.restitution import Restitution
 from carom.status import Remark
 
 #: energy of a jam, of what the run exchanges, below which slip of round-off has jammed (a wheel that rolls)
 _ROUND_OFF = 1e-9
+#: speed: of impacts that count as elastic, by that at which e is 1
+NEARLY = 1.01
 
 
 def remarks(rows, events, run) -> tuple[str, ...]:
     """Return a sentence for each kind: how many impacts (`rows`) or `events` of a run, and the first."""
-    said = _gains(rows, run)
+    said = [*_gains(rows, run), *_of_laws(rows, run), *_without_slip(rows, run)]
     jams = events["kind"] == r.JAMS
     if not (jams.any() or (rows["phases"] & (PHASE_JAM | PLASTIC)).any()):
         return tuple(map(Remark, said))
@@ -44,6 +47,46 @@ def remarks(rows, events, run) -> tuple[str, ...]:
 def _place(row, run) -> str:
     name = contact_name(run.scene, run.pairs, int(row["contact"]))
     return f"at t = {row['time']:.6g} s of contact {name!r}"
+
+
+def _of_laws(rows, run) -> list[str]:
+    """Return sentences about impacts that are faster than their law is stated for, or elastic by it."""
+    contacts, said = run.compiled.system.contacts, []
+    of_law = np.isnan(contacts["restitution"])
+    for number in np.unique(contacts["number"][of_law]).tolist() if of_law.any() else ():
+        law = restitution_of(run.scene, run.pairs, number)
+        assert isinstance(law, Restitution)
+        own = rows[rows["contact"] == number]
+        approach = -own["before"][:, 0] / arms(contacts[contacts["number"] == number])[0]
+        fast = own[approach > law.fastest]
+        if len(fast):
+            said.append(
+                f"{len(fast)} impacts were faster than their law of restitution is stated for "
+                f"({law.fastest:.6g}), the first {_place(fast[0], run)}: they had the e of that speed."
+            )
+        elastic = own[(approach > 0.0) & (approach < NEARLY * law.elastic)]
+        if len(elastic):
+            said.append(
+                f"{len(elastic)} impacts were elastic, or nearly, as their law says below a speed of "
+                f"{law.elastic:.6g}, the first {_place(elastic[0], run)}. Such bounces never end: for bodies "
+                "that come to rest give Restitution.power(..., maximum=0.9), or a table that begins below 1."
+            )
+    return said
+
+
+def _without_slip(rows, run) -> list[str]:
+    """Return a sentence about impacts of several contacts, which have no tangential restitution."""
+    contacts = run.compiled.system.contacts
+    rough = contacts["tangential_restitution"] != 0.0
+    if not rough.any():
+        return []
+    found = rows[np.isin(rows["contact"], contacts["number"][rough]) & (rows["together"] > 1)]
+    if not len(found):
+        return []
+    return [
+        f"{len(np.unique(found['time']))} impacts of several contacts were without the tangential restitution "
+        f"of their contacts, which only single ones have, the first {_place(found[0], run)}."
+    ]
 
 
 def _gains(rows, run) -> list[str]:

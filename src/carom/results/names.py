@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.model.arrays import STOP
 from carom.scene.constraints import (
     Constraint,
     ConstraintDefinition,
@@ -17,6 +18,7 @@ from carom.scene.constraints import (
 )
 from carom.scene.joints import Joint, JointDefinition, Screw
 from carom.scene.joints.definition import ACTIVE_POINT
+from carom.scene.restitution import Restitution
 
 UNITS = {"turn": "rad", "slide": "m"}
 
@@ -112,6 +114,18 @@ def contact_name(scene, pairs, number: int) -> str:
     plane = pairs.plane[number]
     other = scene.fixed[plane] if plane >= 0 else scene.bodies[pairs.other[number]]
     return f"{scene.bodies[pairs.body[number]].name}-{other.name}"
+
+
+def restitution_of(scene, pairs, number: int) -> float | Restitution:
+    """Return the restitution of a contact of a run, or of a stop, by its number."""
+    if number < len(pairs):
+        return pairs.laws[pairs.law[number]].restitution
+    return scene.stops[number - len(pairs)].restitution
+
+
+def arms(contacts) -> np.ndarray:
+    """Return the lever arms (C,) that convert forces and gaps of stops of angles; 1 for all others."""
+    return np.where(contacts["touches"] == STOP, np.abs(contacts["side"]), 1.0)
 
 
 def contact_names(scene, pairs) -> ContactNames:

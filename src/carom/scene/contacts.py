@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -52,7 +52,7 @@ class Contact(ContactLaw):
 
     def __repr__(self) -> str:
         plain = ContactLaw(friction_held=self.friction)
-        law = {name: getattr(self, name) for name in asdict(plain)}
+        law = {name: getattr(self, name) for name in vars(plain)}
         shown = {"restitution": "", "friction": "", "impact_law": ""}
         values = ", ".join(
             f"{name}={value!r}" if isinstance(value, str) else f"{name}={value:g}"

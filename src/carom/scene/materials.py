@@ -15,6 +15,8 @@ from typing import Any
 
 from carom import arguments, checks
 from carom.fields import Number, NumberOrNone, Value, Word, keep, number, word
+from carom.scene.restitution import Restitution
+from carom.scene.restitution import restitution as number_or_law
 
 IMPACT_LAWS = ("newton", "poisson", "stronge")
 MULTIPLE = ("simultaneous", "sequential")  # in the order of `carom.impact.multiple.layout`
@@ -25,7 +27,10 @@ RULES: dict[str, Callable[[float, float], float]] = {
     "product": lambda a, b: a * b,
     "geometric": lambda a, b: math.sqrt(a) * math.sqrt(b),
 }
-COMBINED = ("restitution", "friction", "friction_held", "rolling_friction", "pivoting_friction")
+COMBINED = (
+    "restitution", "friction", "friction_held", "rolling_friction", "pivoting_friction",
+    "tangential_restitution",
+)  # fmt: skip
 
 
 def _of_materials(name: str, value) -> tuple[str, ...]:
@@ -41,8 +46,8 @@ class ContactLaw:
 
     Attributes
     ----------
-    restitution : float
-        Coefficient of restitution e, from 0 to 1. Default 0.5.
+    restitution : float or Restitution
+        Coefficient of restitution e, from 0 to 1, or its law. Default 0.5.
     friction : float
         Coulomb's friction coefficient mu in impacts, at least 0. Default 0.
     friction_held : float
@@ -56,6 +61,9 @@ class ContactLaw:
     rolling_friction, pivoting_friction : float
         Greatest moment against rolling, and about the normal, in persistent contact, divided by the normal
         force [m], at least 0. Default 0. Impacts do not use them.
+    tangential_restitution : float
+        e_t from -1 to 1: an impact of this contact alone that ends in stick returns -e_t u_t^-, as far as the
+        friction allows. Default 0.
     multiple : {"simultaneous", "sequential"}
         Impact of the pair while other contacts are closed: simultaneous with theirs (default), or an impact of
         its own, one after another.
@@ -64,13 +72,14 @@ class ContactLaw:
         two parts then have their own values, and those of the law are for the materials of the bodies.
     """
 
-    restitution: Number = number(0.5, least=0, most=1)
+    restitution: Value[Any, Any] = number_or_law(0.5)
     friction: Number = number(0.0, least=0)
     friction_held: Value[float, float | None] = number(None, least=0)
     impact_law: Word = word(IMPACT_LAWS, "newton")
     stiffness: Number = number(1.0, above=0)
     rolling_friction: Number = number(0.0, least=0)
     pivoting_friction: Number = number(0.0, least=0)
+    tangential_restitution: Number = number(0.0, least=-1, most=1)
     multiple: Word = word(MULTIPLE, "simultaneous")
     of_materials: Value[tuple[str, ...], Iterable[str]] = Value(_of_materials, ())
 
@@ -87,21 +96,25 @@ class Material:
     Parameters
     ----------
     restitution, friction
-        e from 0 to 1 and mu at least 0, as for `Scene.add_contact`.
+        e from 0 to 1, or its law, and mu at least 0, as for `Scene.add_contact`. No rule combines two different
+        laws of restitution, or a law and a number: pass that of the pair to `Scene.add_contact`.
     friction_held
         mu in persistent contact, at least 0. Default: `friction`.
     stiffness
         Relative stiffness, above 0. Default 1. Two materials act in series: ``2 / (1 / s1 + 1 / s2)``.
     rolling_friction, pivoting_friction
         Greatest moment divided by the normal force [m], at least 0. Default 0.
+    tangential_restitution
+        e_t from -1 to 1, as for `Scene.add_contact`. Default 0.
     """
 
-    restitution: Number = number(least=0, most=1)
+    restitution: Value[Any, Any] = number_or_law()
     friction: Number = number(least=0)
     friction_held: NumberOrNone = number(None, least=0)
     stiffness: Number = number(1.0, above=0)
     rolling_friction: Number = number(0.0, least=0)
     pivoting_friction: Number = number(0.0, least=0)
+    tangential_restitution: Number = number(0.0, least=-1, most=1)
 
 
 Rule = str | Mapping[str, str] | None
@@ -170,15 +183,22 @@ def _values(names: Iterable[str], first, second, rules: Mapping) -> dict[str, An
     return found
 
 
-def _combined(name: str, first, second, rules: Mapping) -> float:
+def _combined(name: str, first, second, rules: Mapping) -> Any:
     values = []
     for material in (first.material, second.material):
         value = getattr(material, name)
         values.append(material.friction if value is None else value)
-    if name in rules:
+    law = any(isinstance(value, Restitution) for value in values)
+    if name in rules and not law:
         return RULES[rules[name]](*values)
     if values[0] == values[1]:
         return values[0]
+    if law:
+        raise ValueError(
+            f"{name} must be given for a pair of materials with different laws, which no rule combines: "
+            f"{first.name!r} has {values[0]:g}, {second.name!r} has {values[1]:g}; pass {name} of this pair to "
+            "add_contact"
+        )
     raise ValueError(
         f"combine must be given, the rule for {name} of two materials: {first.name!r} has {values[0]:g}, "
         f"{second.name!r} has {values[1]:g}; choose a rule with "

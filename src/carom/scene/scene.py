@@ -19,6 +19,7 @@ from carom.scene.materials import Material
 from carom.scene.named_parts import with_parts
 from carom.scene.pairs import Pairs
 from carom.scene.registry import Derived, Registry
+from carom.scene.restitution import Restitution
 from carom.scene.shapes import Shape
 from carom.scene.shapes.mesh import shape_given
 from carom.scene.shown import Shown
@@ -368,7 +369,7 @@ class Scene(Shown, TouchingPairs):
         *,
         lower: float | None = None,
         upper: float | None = None,
-        restitution: float = 0.0,
+        restitution: float | Restitution = 0.0,
         impact_law: str = "newton",
         coordinate: int = 0,
         name: str | None = None,
@@ -389,7 +390,8 @@ class Scene(Shown, TouchingPairs):
             Exactly one of the two: the lower or the upper limit of the coordinate [rad or m]. The coordinate is
             0 at the start. For two limits add two stops.
         restitution
-            Coefficient of restitution, from 0 (default) to 1.
+            Coefficient of restitution, from 0 (default) to 1, or its law: a function of the speed of the
+            coordinate [rad/s or m/s].
         impact_law
             ``"newton"`` (default), ``"poisson"`` or ``"stronge"``. A stop has no friction, so the laws differ
             only in multiple impacts.

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from carom import fields
-from carom.fields import Integer, Number, NumberOrNone, Word
+from carom.fields import Integer, NumberOrNone, Value, Word
 from carom.scene.constraints import coordinate_kind
 from carom.scene.joints import Joint
 from carom.scene.materials import IMPACT_LAWS
+from carom.scene.restitution import restitution as number_or_law
 from carom.scene.values import in_scene
 
 
@@ -27,7 +29,8 @@ class Stop:
         Index of the coordinate of the joint.
     lower, upper : float or None
         Limit of the coordinate [rad or m], one of the two; the coordinate is 0 at the start.
-    restitution : float
+    restitution : float or Restitution
+        The speed of a law is that of the coordinate [rad/s or m/s].
     impact_law : str
     """
 
@@ -37,7 +40,7 @@ class Stop:
     coordinate: Integer = fields.integer(least=0)
     lower: NumberOrNone = fields.number(None)
     upper: NumberOrNone = fields.number(None)
-    restitution: Number = fields.number(0.0, least=0.0, most=1.0)
+    restitution: Value[Any, Any] = number_or_law(0.0)
     impact_law: Word = fields.word(IMPACT_LAWS, "newton")
 
     def __post_init__(self):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from itertools import combinations
 
 from carom import arguments, checks
@@ -13,6 +12,7 @@ from carom.scene.contacts import Contact, check_gap
 from carom.scene.materials import ContactLaw, Rule
 from carom.scene.pairs import Pairs
 from carom.scene.registry import Registry
+from carom.scene.restitution import Restitution
 
 One = Body | HalfSpace | StaticBody | str
 Some = One | Sequence[One]
@@ -30,13 +30,14 @@ class TouchingPairs:
         body: One,
         other: One,
         *,
-        restitution: float | None = None,
+        restitution: float | Restitution | None = None,
         friction: float | None = None,
         friction_held: float | None = None,
         impact_law: str | None = None,
         stiffness: float | None = None,
         rolling_friction: float | None = None,
         pivoting_friction: float | None = None,
+        tangential_restitution: float | None = None,
         multiple: str | None = None,
         name: str | None = None,
         replace: bool = False,
@@ -53,7 +54,8 @@ class TouchingPairs:
             body, without penetration at the start. For two bodies the order matters: the normal points from
             `other` to `body`.
         restitution
-            Coefficient of restitution e, from 0 (plastic) to 1 (elastic). Default 0.5.
+            Coefficient of restitution e, from 0 (plastic) to 1 (elastic), or its law, a function of the speed
+            of approach, as ``carom.Restitution.power(0.6)``. Default 0.5.
         friction
             Coulomb's friction coefficient mu, at least 0: the tangent of the greatest slope on which the body
             rests. A large value (50) stands for a contact that does not slip. Default 0.
@@ -68,6 +70,10 @@ class TouchingPairs:
             Greatest moment against rolling, and about the normal, in persistent contact, divided by the
             normal force [m]. Default 0. The moments act against relative rotation until it stops; each contact
             point of a face has its own. Impacts do not use them.
+        tangential_restitution
+            Coefficient e_t from -1 to 1. If an impact of this contact alone ends in stick, the pair leaves with
+            -e_t times the slip before it (1 for a super ball), as far as the friction allows, and the energy
+            that friction took. Default 0: it leaves without slip. Impacts of several contacts have 0.
         multiple : {"simultaneous", "sequential"}
             Multiple impact, if other contacts of these bodies are closed too: all contacts simultaneously
             (default), or this pair in an impact of its own, one impact after another, as in a row of balls with
@@ -104,10 +110,11 @@ class TouchingPairs:
             "stiffness": stiffness,
             "rolling_friction": rolling_friction,
             "pivoting_friction": pivoting_friction,
+            "tangential_restitution": tangential_restitution,
             "multiple": multiple,
         }
         law = self._pairs.law(body, other, given)
-        contact = Contact(index=index, name=name, body=body, other=other, **asdict(law))
+        contact = Contact(index=index, name=name, body=body, other=other, **vars(law))
         check_gap(contact)
         contact = self._parts.add(contact)
         if old is not None:
@@ -119,13 +126,14 @@ class TouchingPairs:
     def set_contact_default(
         self,
         *,
-        restitution: float | None = None,
+        restitution: float | Restitution | None = None,
         friction: float | None = None,
         friction_held: float | None = None,
         impact_law: str = "newton",
         stiffness: float = 1.0,
         rolling_friction: float = 0.0,
         pivoting_friction: float = 0.0,
+        tangential_restitution: float = 0.0,
         multiple: str = "simultaneous",
         combine: Rule = None,
         all_pairs: bool = True,
@@ -134,7 +142,9 @@ class TouchingPairs:
 
         Parameters
         ----------
-        restitution, friction, friction_held, impact_law, stiffness, rolling_friction, pivoting_friction
+        restitution, friction, friction_held, impact_law, stiffness
+            As for `add_contact`.
+        rolling_friction, pivoting_friction, tangential_restitution
             As for `add_contact`.
         multiple
             As for `add_contact`.
@@ -160,6 +170,7 @@ class TouchingPairs:
             stiffness=stiffness,
             rolling_friction=rolling_friction,
             pivoting_friction=pivoting_friction,
+            tangential_restitution=tangential_restitution,
             multiple=multiple,
         )
         stated = restitution is not None or friction is not None

@@ -29,7 +29,7 @@ from carom.model.allowance import overdone, smooth_count
 from carom.model.arrays import STOP
 from carom.model.controls import LOCATE
 from carom.model.workspace import FREE
-from carom.persistent.bounces import horizon_of
+from carom.persistent.bounces import horizon_of, time_of_bounces
 from carom.persistent.margins import switch_due
 from carom.persistent.modes import jam_point, turn_modes
 from carom.persistent.several_points import activate_contact
@@ -309,4 +309,6 @@ def may_end(contact, system, controls, state, horizon, work):
     work.body[contact.body].status = FREE
     _, most = greatest_acceleration(system, contact, state, work)
     horizon = horizon_of(contact, controls, most, horizon)
+    if contact.last_restitution_piece > contact.restitution_piece:
+        return time_of_bounces(system, contact, rate, most) < horizon
     return 2.0 * rate < most * (1.0 - contact.restitution) * horizon

@@ -21,6 +21,7 @@ from carom.fields import Value, keep
 from carom.geometry.thresholds import ROUND_OFF, UNIT_ERROR
 from carom.scene.bodies import Body
 from carom.scene.contacts import Contact, check_overlap, far, place
+from carom.scene.restitution import Restitution
 from carom.scene.scene import Scene
 
 STATE_FIELDS = {"position": 3, "orientation": 4, "velocity": 3, "angular_velocity": 3}
@@ -81,7 +82,7 @@ def fields_of(part) -> Iterator[Found]:
             owner = getattr(part, inside) if inside else part
             for field in vars_of(type(owner)):
                 value = getattr(owner, field)
-                plain = value is None or isinstance(value, (float, str, np.ndarray))
+                plain = value is None or isinstance(value, (float, str, np.ndarray, Restitution))
                 if plain and field not in LEFT_OUT:
                     yield Found(part, inside, field)
 
@@ -97,7 +98,9 @@ def find(scene: Scene, name: str) -> Found | None:
 
 
 def components(value) -> dict[str, Any]:
-    """Return the places of the components of a vector, a quaternion or an inertia, by their names."""
+    """Return the places of the components of an array, by their names, or the numbers of a law."""
+    if isinstance(value, Restitution):
+        return {name: name for name in vars(value) if isinstance(getattr(value, name), float)}
     shape = np.shape(value)
     labels = {(3,): AXES, (4,): SCALAR_FIRST}.get(shape, ())
     return MOMENTS if shape == (3, 3) else dict(zip(labels, range(4)))
@@ -136,6 +139,9 @@ def whole(scene: Scene, inputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         if stem not in made:
             made[stem] = np.repeat(np.asarray(value)[None], len(rows), axis=0)
         at = components(value)[label]
+        if isinstance(value, Restitution):
+            made[stem] = _laws(name, made[stem], label, rows)
+            continue
         for one in {at, at[::-1]} if isinstance(at, tuple) else {(at,)}:  # an inertia is symmetric
             made[stem][(slice(None), *one)] = rows
     for field in [name for name in made if name in LAW_FIELDS]:
@@ -147,6 +153,17 @@ def whole(scene: Scene, inputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         rows = made.pop(field)
         for contact in scene.contacts:
             made.setdefault(f"{contact.name}.{field}", rows)
+    return made
+
+
+def _laws(name: str, laws: np.ndarray, label: str, rows: np.ndarray) -> np.ndarray:
+    """Return laws (R,) with one of their numbers from `rows`; refuse a number that they do not take."""
+    made = np.empty(len(rows), dtype=object)
+    for k, (law, one) in enumerate(zip(laws, rows.tolist())):
+        try:
+            made[k] = replace(law, **{label: one})
+        except ValueError as error:
+            raise ValueError(f"vary[{name!r}] in run {k}: {error}") from None
     return made
 
 
@@ -210,7 +227,7 @@ def _light(scene: Scene, found: Found) -> bool:
     Joints and forces are placed in the world at the start: if poses vary, they have to be placed again.
     """
     if isinstance(found.part, Contact):
-        return found.field in LAW_FIELDS
+        return found.field in LAW_FIELDS and not isinstance(found.value, Restitution)
     if not isinstance(found.part, Body) or found.field not in STATE_FIELDS:
         return False
     return found.field not in POSES or not (scene.joints or scene.forces or scene.constraints)

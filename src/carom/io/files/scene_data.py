@@ -40,6 +40,7 @@ from carom.scene.forces import FORCES, AppliedForce
 from carom.scene.joints import JOINTS, Joint
 from carom.scene.materials import ContactLaw, Material
 from carom.scene.pieces import Piece
+from carom.scene.restitution import LAWS
 from carom.scene.shapes import SHAPES
 from carom.scene.stops import Stop
 
@@ -55,6 +56,7 @@ TYPES: dict[str, type[Any]] = {
         *FORCES,
         *CONSTRAINTS,
         *CURVES,
+        *LAWS,
         Gear,
         ContactLaw,
         Material,
@@ -63,7 +65,9 @@ TYPES: dict[str, type[Any]] = {
     )
 }
 #: fields that files of earlier versions do not have
-LATER: dict[str, Any] = {"color": None, "material": None, "of_materials": {"tuple": []}}
+LATER: dict[str, Any] = {
+    "color": None, "material": None, "of_materials": {"tuple": []}, "tangential_restitution": 0.0,
+}  # fmt: skip
 ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 
 

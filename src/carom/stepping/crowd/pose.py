@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.friction.layout import CONE, DISC
+from carom.impact.effective_restitution import restitution_at
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_STICK
 from carom.stepping.crowd.response import write_responses
@@ -35,13 +36,15 @@ def pose(model, data, k, h, fall):
                 p[3 * i + 1] = s * (torque[1] if spot.turns == 1 else torque[0])
                 p[3 * i + 2] = s * torque[2] if spot.turns == 1 else 0.0
             continue
-        set_bound(spot, contact, h, fall)
+        u = spot.before[0] - spot.drift[0]
+        e = restitution_at(system, contact, -u)
+        set_bound(spot, (u, e, restitution_at(system, contact, -e * u)), contact, h, fall)
         crowd.c[3 * i] -= spot.bound
         crowd.c[3 * i + 1] += spot.drift[1]
         crowd.c[3 * i + 2] += spot.drift[2]
         if alone and spot.strikes == 1:
-            crowd.c[3 * i + 1] += contact.restitution * spot.before[1]
-            crowd.c[3 * i + 2] += contact.restitution * spot.before[2]
+            crowd.c[3 * i + 1] += e * spot.before[1]
+            crowd.c[3 * i + 2] += e * spot.before[2]
         row.kind, row.mu = CONE, contact.friction
         if spot.active >= 0:
             row.mu = contact.friction_held
@@ -69,21 +72,22 @@ def note_drift(active, k, several, start, crowd):
 
 
 @kernel
-def set_bound(spot, contact, h, fall):
+def set_bound(spot, law, contact, h, fall):
     """Write the least normal velocity after the step, and whether the point strikes.
 
     After an impact a point leaves with e times its approach at the start (Moreau 1988), unless all its bounces,
-    which last 2 e|u|/(g (1 - e)), end within the step: then it stays closed. A point that is open at the end
-    without contacts must not close faster than its gap allows. A point that leaves at the start, and is pressed
-    back within the step, returns as fast as it left: (u + w)/2 = 0, without a gain. All this excludes `drift`.
+    which last 2 e|u|/(g (1 - e)) with the e of the next one, end within the step: then it stays closed. `law`
+    has u and both e. A point that is open at the end without contacts must not close faster than its gap
+    allows. A point that leaves at the start, and is pressed back within the step, returns as fast as it left:
+    (u + w)/2 = 0, without a gain. All this excludes `drift`.
     """
-    u, e = spot.before[0] - spot.drift[0], contact.restitution
+    u, e, next_e = law
     spot.bound, spot.strikes = 0.0, 0
     if spot.gap > 0.0 and spot.left > 0.0:
         spot.bound = min(-spot.gap / h, -u)
     elif u > LEAVING_SPEED * fall * h + contact.still:
         spot.bound = -u
-    elif 2.0 * e * -u > (1.0 - e) * fall * h + contact.still:
+    elif 2.0 * e * -u > (1.0 - next_e) * fall * h + contact.still:
         spot.bound, spot.strikes = -e * u, 1
     elif -u > 2.0 * fall * h + contact.still:
         spot.strikes = 1

@@ -23,6 +23,7 @@ from carom.dynamics.more_forces import note_turns
 from carom.dynamics.project import project_velocity
 from carom.geometry.rotation import norm
 from carom.geometry.thresholds import RESOLUTION
+from carom.impact.effective_restitution import restitution_at
 from carom.model import records as r
 from carom.model.allowance import COUNT_BLOCKS, left
 from carom.persistent.thresholds import SHORTEST_CUT
@@ -218,7 +219,7 @@ def misses_bounce(system, k, h, fall, crowd):
         spot = crowd.closed[i]
         contact = system.contacts[spot.contact]
         if spot.turns == 0 and spot.gap > 0.0 and spot.left > 0.0 and spot.impulse[0] > 0.0:
-            e = contact.restitution
+            e = restitution_at(system, contact, spot.gap / h)
             if 2.0 * e * spot.gap / h > (1.0 - e) * fall * h + contact.still:
                 return True
     return False

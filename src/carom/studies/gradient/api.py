@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from carom import arguments, checks
 from carom.dynamics.methods import METHODS
 from carom.model.method import THREE_FIELD
@@ -112,6 +114,12 @@ def sensitivities(
     system = run.compiled.system
     number = 1 + int(max(system.contacts.number, default=-1))
     parameters = make_parameters(scene, with_respect_to, number, run.compiled.to_principal)
+    of_law = np.isnan(system.contacts.restitution)
+    if np.any(parameters.restitution[system.contacts.number[of_law]]):
+        raise ValueError(
+            "with_respect_to must not have the restitution of a contact whose restitution is a law, got "
+            f"{checks.shown(with_respect_to)}; its numbers are varied by carom.ensemble"
+        )
     if differences:
         from carom.studies.gradient.differences import differentiate
 

@@ -16,6 +16,7 @@ from carom.impact.laws import BY_SPEED
 
 UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 INPUTS = 11  # six numbers of W, three of u, mu, e
+BY_NORMAL, BY_RESTITUTION = 6, 10  # columns of the normal velocity and of e
 CENTRAL = ((-3, -1 / 60), (-2, 3 / 20), (-1, -3 / 4), (1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
 FORWARD = ((0, -49 / 20), (1, 6), (2, -15 / 2), (3, 20 / 3), (4, -15 / 4), (5, 6 / 5), (6, -1 / 6))
 FIRST = 2.0**-6  # first step, relative to the unit of an input

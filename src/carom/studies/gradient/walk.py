@@ -7,9 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from carom.geometry import quaternion
+from carom.results.names import restitution_of
 from carom.results.solution import Solution
+from carom.scene.restitution import Restitution
 from carom.studies.gradient import margins as near
-from carom.studies.gradient.blow import blow
+from carom.studies.gradient.blow import BY_NORMAL, BY_RESTITUTION, blow
 from carom.studies.gradient.body import Moving, cross, fly
 from carom.studies.gradient.parameters import Parameters
 from carom.studies.gradient.place import found_place, vertex_place
@@ -149,7 +151,11 @@ class Walk:
         which = [int(row.body)] + ([int(row.other)] if row.other >= 0 else [])
         bodies = [self.bodies[b] for b in which]
         W, u = inverse_mass(place, bodies), relative_velocity(place, bodies)
-        hit = blow(W, u, float(row.friction), float(row.restitution), int(row.law))
+        law = restitution_of(self.scene, self.solution.pairs, int(row.number))
+        e = float(law(-u[0])) if isinstance(law, Restitution) else float(row.restitution)
+        hit = blow(W, u, float(row.friction), e, int(row.law))
+        if hit is not None and isinstance(law, Restitution):  # de/du_n = -e'(v)
+            hit.d[:, BY_NORMAL] -= hit.d[:, BY_RESTITUTION] * law.slope(-u[0])
         if hit is None or not _same(hit.impulse, step.row.impulse):
             for b in which:
                 self.lose(b, time, "has an impact that does not follow the law of the contact")

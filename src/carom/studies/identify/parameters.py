@@ -9,9 +9,10 @@ import numpy as np
 
 from carom import checks
 from carom.fields import keep
+from carom.scene.restitution import Restitution
 from carom.scene.scene import Scene
 from carom.studies.identify.varied import KNOWN
-from carom.studies.values import find, split
+from carom.studies.values import Found, components, find, split
 
 
 @dataclass(frozen=True)
@@ -90,14 +91,20 @@ def _bounds(name: str, scene: Scene | None) -> tuple[float, float, float]:
         return KNOWN[checks.choice("a name in parameters", name, KNOWN)]
     stem, component = split(scene, name, "parameters")
     found = find(scene, stem)
+    value = None if found is None else found.value
     if not component and (
-        found is None or np.ndim(found.value) > 0 or isinstance(found.value, str)
+        found is None or np.ndim(value) > 0 or isinstance(value, (str, Restitution))
     ):
+        label = next(iter(components(value)), "x")
         raise ValueError(
             f"parameters must be numbers, got {name!r}, which is none; of a vector give components, like "
-            f"{name + '.x'!r}"
+            f"{f'{name}.{label}'!r}"
         )
-    return (-np.inf, np.inf, 0.0) if component or found is None else (*found.bounds, 0.0)
+    if found is not None and isinstance(found.value, Restitution):  # a number of a law
+        found = Found(found.owner, found.field, component)
+    elif component or found is None:
+        return -np.inf, np.inf, 0.0
+    return (*found.bounds, 0.0)
 
 
 def _parameter(name: str, value, scene: Scene | None) -> Parameter:

@@ -1,0 +1,284 @@
+"""Laws of restitution: the coefficient e of an impact as a function of its speed of approach.
+
+Each law compiles to one form, a polynomial in pieces of x = v^q. Beyond the pieces e keeps the value at their
+end, so that a law holds at every speed.
+"""
+
+from __future__ import annotations
+
+import sys
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, fields
+from functools import cache, partial
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom import arguments, checks
+from carom.fields import REQUIRED, Number, Value, number
+
+SLOWEST = sys.float_info.min  # [m/s] so that a negative power of the speed is finite
+
+
+class Curve(NamedTuple):
+    """e as a polynomial in pieces of x = v^exponent, in the order of `scipy.interpolate.PPoly`."""
+
+    exponent: float
+    c: np.ndarray  # (D+1, K) coefficients of (x - start of the piece), highest power first
+    x: np.ndarray  # (K+1,) ends of the pieces
+
+    def scaled(self, length: float) -> Curve:
+        """Return the curve of the speed v of a coordinate, as a function of length times v."""
+        s = length**self.exponent
+        powers = np.arange(len(self.c) - 1, -1, -1)
+        return Curve(self.exponent, self.c * s ** -powers[:, None].astype(float), self.x * s)
+
+
+@dataclass(frozen=True)
+class Restitution(ABC):
+    """A coefficient of restitution e that depends on the speed of approach v, for ``restitution=``.
+
+    Each contact of each impact has the e of its own speed of approach at the start of the impact, by each law
+    of impact. `Restitution.power`, `Restitution.viscoelastic` and `Restitution.table` make such a law, and
+    ``law(speed)`` is its e.
+
+    Examples
+    --------
+    >>> law = carom.Restitution.power(0.6, speed=1.0)
+    >>> [round(float(e), 3) for e in law([0.1, 1.0, 10.0])]
+    [1.0, 0.6, 0.337]
+    >>> scene = carom.Scene()
+    >>> floor = scene.add_half_space((0, 0, 0), (0, 0, 1), name="floor")
+    >>> ball = scene.add_body(carom.Sphere(0.1), mass=1, position=(0, 0, 1), name="ball")
+    >>> scene.add_contact(ball, floor, restitution=law)
+    Contact('ball-floor', restitution=Restitution.power(value=0.6, speed=1.0, exponent=-0.25, maximum=1.0), \
+friction=0, impact_law='newton')
+    """
+
+    #: speed [m/s] up to which the law is stated; faster impacts have the e of this speed
+    fastest: ClassVar[Any] = np.inf
+    #: speed [m/s] below which e is 1, so that bounces never end
+    elastic: ClassVar[Any] = 0.0
+    _kind: ClassVar[str]
+
+    def __new__(cls, *values, **named):
+        """Refuse a law of no kind."""
+        if cls is Restitution:
+            raise TypeError(
+                "Restitution is made by Restitution.power(value), Restitution.viscoelastic(c) or "
+                "Restitution.table(speeds, values)"
+            )
+        return super().__new__(cls)
+
+    @staticmethod
+    @arguments.known
+    def power(
+        value: float, speed: float = 1.0, exponent: float = -0.25, maximum: float = 1.0
+    ) -> Restitution:
+        """Return the law ``e = value (v / speed)^exponent``, at most `maximum`.
+
+        Parameters
+        ----------
+        value : float
+            e at `speed`, at least 0. It may be above 1, because e is capped.
+        speed : float
+            Speed of approach [m/s] at which e is `value`, above 0. Default 1.
+        exponent : float
+            From -1 to 1. Default -1/4, of plastic deformation (Johnson, Contact Mechanics, 1985, section 11.4).
+        maximum : float
+            Greatest e, from 0 to 1. Default 1: slow impacts are elastic then, and a ball ends bouncing for ever
+            at the speed at which e is 1, ``speed * value**4`` with the default exponent. A run says so.
+        """
+        return PowerRestitution(value, speed, exponent, maximum)
+
+    @staticmethod
+    @arguments.known
+    def viscoelastic(c: float) -> Restitution:
+        """Return the law ``e = 1 - c v^(1/5) + 0.6 c^2 v^(2/5)`` of viscoelastic spheres.
+
+        These are the first terms of a series (Schwager and Poeschel 1998, Physical Review E 57, 650). Their
+        least value is 7/12, at c v^(1/5) = 5/6: faster impacts have this e, and a run with some says so.
+
+        Parameters
+        ----------
+        c : float
+            [(s/m)^(1/5)], at least 0.
+        """
+        return ViscoelasticRestitution(c)
+
+    @staticmethod
+    @arguments.known
+    def table(speeds: ArrayLike, values: ArrayLike) -> Restitution:
+        """Return a law through measured points.
+
+        Between the points it is a monotone cubic (`scipy.interpolate.PchipInterpolator`), which has no values
+        beyond those of its neighbours. Slower impacts have the first value and faster ones the last, and a run
+        with faster ones says so.
+
+        Parameters
+        ----------
+        speeds : (n,) array-like
+            Speeds of approach [m/s], at least 0, each above the one before; two or more.
+        values : (n,) array-like
+            e at these speeds, from 0 to 1.
+        """
+        return TableRestitution(speeds, values)  # pyright: ignore[reportArgumentType]
+
+    @property
+    @abstractmethod
+    def curve(self) -> Curve:
+        """The law as a function of the speed, as kernels have it."""
+
+    def __call__(self, speed: ArrayLike) -> np.ndarray:
+        """Return e at speeds of approach [m/s], at least 0, of any shape."""
+        v = checks.real_array("speed", speed, "any")
+        if not np.all(v >= 0.0):
+            raise ValueError(f"speed must be at least 0 [m/s], got {checks.shown(speed)}")
+        q, c, ends = curve_of(self)
+        x = np.clip(np.maximum(v, SLOWEST) ** q, ends[0], ends[-1])
+        k = np.clip(np.searchsorted(ends, x, side="right") - 1, 0, len(ends) - 2)
+        e = np.zeros_like(x)
+        for row in c:
+            e = e * (x - ends[k]) + row[k]
+        return np.clip(e, 0.0, 1.0)
+
+    def slope(self, speed: float) -> float:
+        """Return de/dv [s/m] at a speed of approach [m/s] above 0; 0 where e keeps the value at an end."""
+        q, c, ends = curve_of(self)
+        v = checks.number("speed", speed, above=0.0, unit="m/s")
+        x = v**q
+        if not ends[0] < x < ends[-1]:
+            return 0.0
+        k = int(np.searchsorted(ends, x, side="right")) - 1
+        return float(np.polyval(np.polyder(c[:, k]), x - ends[k]) * q * v ** (q - 1.0))
+
+    def __repr__(self) -> str:
+        shown = ", ".join(f"{f.name}={getattr(self, f.name)!r}" for f in fields(self))
+        return f"Restitution.{self._kind}({shown})"
+
+    def __format__(self, form: str) -> str:
+        """Return the law as text, where a number would have `form`."""
+        return repr(self)
+
+
+@cache
+def curve_of(law: Restitution) -> Curve:
+    """Return the curve of a law, made once."""
+    return law.curve
+
+
+@dataclass(frozen=True, repr=False)
+class PowerRestitution(Restitution):
+    """A power of the speed, capped: `Restitution.power`."""
+
+    value: Number = number(least=0)
+    speed: Number = number(1.0, above=0, unit="m/s")
+    exponent: Number = number(-0.25, least=-1, most=1)
+    maximum: Number = number(1.0, least=0, most=1)
+    _kind = "power"
+
+    @property
+    def elastic(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """Speed at which a power that falls with the speed is 1."""
+        if self.maximum < 1.0 or self.exponent >= 0.0 or self.value == 0.0:
+            return 0.0
+        return float(self.speed * np.float64(self.value) ** (-1.0 / self.exponent))
+
+    @property
+    def curve(self) -> Curve:
+        """One piece, linear in v^q, which ends at `maximum`."""
+        with np.errstate(over="ignore"):
+            factor = float(self.value * np.float64(self.speed) ** -self.exponent)
+        end = self.maximum / factor if factor > 0.0 else 1.0
+        if not 0.0 < end < np.inf:  # e = 0, or `maximum` at every speed
+            return Curve(1.0, np.array([[min(self.maximum, factor)]]), np.array([0.0, 1.0]))
+        return Curve(self.exponent, np.array([[factor], [0.0]]), np.array([0.0, end]))
+
+
+@dataclass(frozen=True, repr=False)
+class ViscoelasticRestitution(Restitution):
+    """The first terms of the series of viscoelastic spheres: `Restitution.viscoelastic`."""
+
+    c: Number = number(least=0, most=checks.LENGTHS[1])
+    _kind = "viscoelastic"
+
+    @property
+    def fastest(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """Speed of the least value."""
+        return self._end**5 if self._end < sys.float_info.max**0.2 else np.inf
+
+    @property
+    def _end(self) -> float:
+        return 5.0 / (6.0 * self.c) if self.c > sys.float_info.min else np.inf
+
+    @property
+    def curve(self) -> Curve:
+        """One piece, a parabola in v^(1/5), which ends at its least value."""
+        end = min(self._end, SLOWEST**-0.2)
+        return Curve(0.2, np.array([[0.6 * self.c**2], [-self.c], [1.0]]), np.array([0.0, end]))
+
+
+def _numbers(name: str, value, most: float = np.inf) -> tuple[float, ...]:
+    """Return two or more numbers, at least 0, as a tuple."""
+    made = checks.finite_array(name, value, (None,))
+    if len(made) < 2 or not (made.min() >= 0.0 and made.max() <= most):
+        bounds = "at least 0" if most == np.inf else f"from 0 to {most:g}"
+        raise ValueError(f"{name} must be two numbers or more, {bounds}, got {checks.shown(value)}")
+    return tuple(made.tolist())
+
+
+@dataclass(frozen=True, repr=False)
+class TableRestitution(Restitution):
+    """A monotone cubic through measured points: `Restitution.table`."""
+
+    speeds: Value[tuple[float, ...], Any] = Value(_numbers)
+    values: Value[tuple[float, ...], Any] = Value(partial(_numbers, most=1.0))
+    _kind = "table"
+
+    def __post_init__(self):
+        if len(self.speeds) != len(self.values):
+            raise ValueError(
+                f"speeds and values must have the same length, got {len(self.speeds)} and {len(self.values)}"
+            )
+        if not np.all(np.diff(self.speeds) > 0.0):
+            raise ValueError(
+                f"speeds must rise, each above the one before, got {checks.shown(self.speeds)}"
+            )
+
+    @property
+    def fastest(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """Last speed of the table."""
+        return self.speeds[-1]
+
+    @property
+    def elastic(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """First speed of a table that begins with 1."""
+        return self.speeds[0] if self.values[0] == 1.0 else 0.0
+
+    @property
+    def curve(self) -> Curve:
+        """A cubic in v for each two points."""
+        from scipy.interpolate import PchipInterpolator
+
+        made = PchipInterpolator(self.speeds, self.values)
+        return Curve(1.0, made.c, made.x)
+
+
+LAWS = (PowerRestitution, ViscoelasticRestitution, TableRestitution)
+
+
+def number_or_law(name: str, value, **bounds) -> float | Restitution:
+    """Return a coefficient of restitution: a number within `bounds`, or a law."""
+    if isinstance(value, Restitution):
+        return value
+    if isinstance(value, type) or callable(value):
+        raise ValueError(
+            f"{name} must be a number or a law, such as carom.Restitution.power(0.6), got {checks.shown(value)}"
+        )
+    return checks.number(name, value, **bounds)
+
+
+def restitution(default: Any = REQUIRED) -> Value[Any, Any]:
+    """Return a field for a coefficient of restitution: a number from 0 to 1, or a law."""
+    return Value(partial(number_or_law, least=0, most=1), default)

@@ -1,0 +1,89 @@
+"""Tangential restitution: super balls in closed form, cones and energies that limit it, and nothing else."""
+
+import numpy as np
+import pytest
+
+import carom
+
+R = 0.05
+
+
+def bounce(e_t, *, velocity, spin, mu=10.0, e=1.0, impact_law="newton"):
+    """Return a ball just after one impact with a floor."""
+    scene = carom.Scene(gravity=(0, 0, 0))
+    floor = scene.add_half_space((0, 0, 0), (0, 0, 1))
+    one = scene.add_body(
+        carom.Sphere(R), mass=0.2, position=(0, 0, 0.01 + R), velocity=velocity,
+        angular_velocity=(0, spin, 0), name="ball",
+    )  # fmt: skip
+    scene.add_contact(
+        one, floor, restitution=e, friction=mu, tangential_restitution=e_t, impact_law=impact_law
+    )
+    return carom.simulate(scene, 0.02)
+
+
+@pytest.mark.parametrize("impact_law", ["newton", "poisson", "stronge"])
+@pytest.mark.parametrize(("v", "rw"), [(1.0, 0.0), (0.0, 1.0), (1.0, -1.0), (0.7, 2.0)])
+def test_super_ball(v, rw, impact_law):
+    # e = e_t = 1: the slip v - r w is reversed, and the angular momentum about the point of contact is kept
+    solution = bounce(1.0, velocity=(v, 0, -1.0), spin=rw / R, impact_law=impact_law)
+    after = solution.velocity[-1, 0, 0], R * solution.angular_velocity[-1, 0, 1]
+    assert after[0] == pytest.approx(3 / 7 * v + 4 / 7 * rw, abs=1e-12)
+    assert after[1] == pytest.approx(10 / 7 * v - 3 / 7 * rw, abs=1e-12)
+    assert solution.kinetic_energy[-1] == pytest.approx(solution.kinetic_energy[0], rel=1e-12)
+
+
+def test_zero_ends_without_slip_and_minus_one_as_without_friction():
+    for e_t in (-1.0, -0.4, 0.0, 0.3, 0.8):
+        solution = bounce(e_t, velocity=(1.0, 0, -1.0), spin=0.0, e=0.5)
+        slip = solution.velocity[-1, 0, 0] - R * solution.angular_velocity[-1, 0, 1]
+        assert slip == pytest.approx(-e_t, abs=1e-12)
+        loss = (1 - e_t**2) / 7 * 0.2
+        assert solution.impacts.friction_loss[0] == pytest.approx(loss, rel=1e-9, abs=1e-14)
+
+
+def test_friction_limits_what_comes_back():
+    # stick takes P_t = 2/7 m v, the cone mu (1 + e) m v_n = .4 m v: 0.1143 m v is left for the way back
+    solution = bounce(1.0, velocity=(1.0, 0, -1.0), spin=0.0, mu=0.2)
+    assert solution.impacts.impulse[0, 1] == pytest.approx(-0.4 * 0.2, rel=1e-12)
+    assert solution.velocity[-1, 0, 0] == pytest.approx(0.6, rel=1e-12)
+    # and nothing where slip lasts
+    slides = [bounce(e_t, velocity=(1.0, 0, -1.0), spin=0.0, mu=0.1) for e_t in (0.0, 1.0)]
+    assert np.array_equal(slides[0].velocity, slides[1].velocity)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_thrown_rod_never_gains(seed):
+    rng = np.random.default_rng(seed)
+    scene = carom.Scene()
+    floor = scene.add_half_space((0, 0, 0), (0, 0, 1), name="floor")
+    rod = scene.add_body(
+        carom.Capsule(0.02, 0.3), mass=1.0, position=(0, 0, 0.6), velocity=rng.normal(size=3),
+        angular_velocity=5 * rng.normal(size=3), name="rod",
+    )  # fmt: skip
+    scene.add_contact(
+        rod, floor, restitution=0.7, friction=0.6, impact_law="stronge",
+        tangential_restitution=rng.uniform(-1, 1),
+    )  # fmt: skip
+    solution = carom.simulate(scene, 1.0)
+    impacts = solution.impacts
+    single = impacts.together == 1
+    assert np.all(impacts.energy_change <= 0)
+    assert np.all(impacts.friction_loss >= 0)
+    # the normal velocity is that of the law, and the cone holds
+    W, p = impacts.inverse_mass[single], impacts.impulse[single]
+    after = impacts.relative_velocity_before[single] + np.einsum("kij,kj->ki", W, p)
+    assert after == pytest.approx(impacts.relative_velocity_after[single], abs=1e-12)
+    assert np.all(np.hypot(p[:, 1], p[:, 2]) <= 0.6 * p[:, 0] * (1 + 1e-12))
+
+
+def test_several_contacts_say_that_they_have_none():
+    scene = carom.Scene(gravity=(0, 0, 0))
+    one = scene.add_body(
+        carom.Sphere(0.1), mass=1, position=(0.2, 0, 0.2), velocity=(-1, 1, -1), name="ball"
+    )
+    for normal in ((1, 0, 0), (0, 0, 1)):
+        wall = scene.add_half_space((0, 0, 0), normal)
+        scene.add_contact(one, wall, friction=0.5, tangential_restitution=0.5)
+    (said,) = carom.simulate(scene, 0.2).warnings
+    assert "1 impacts of several contacts were without the tangential restitution" in said
