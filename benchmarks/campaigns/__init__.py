@@ -12,6 +12,7 @@ from campaigns import (
     laws,
     mechanisms,
     piles,
+    rails,
     rests,
     robots,
     rolls,
@@ -26,5 +27,6 @@ FAMILIES = {
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
     "belts": belts.case,
+    "rails": rails.case,
     "laws": laws.case,
 }  # fmt: skip

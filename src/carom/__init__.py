@@ -30,6 +30,7 @@ from carom.scene import (
     Scene,
     Sphere,
     constraints,
+    curves,
     forces,
     joints,
 )
@@ -93,6 +94,7 @@ __all__ = [
     "constraints",
     "contact_inverse_mass",
     "contact_sequence",
+    "curves",
     "ensemble",
     "euler",
     "film",
