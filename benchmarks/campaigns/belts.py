@@ -22,7 +22,7 @@ def case(seed: int) -> Case:
     for k in range(1 + seed % 3):
         scene.add_body(
             shape, mass=10.0 ** rng.uniform(-1, 1),
-            position=(*(0.1 * rng.normal(size=2)), 0.12 + 0.22 * k),
+            position=(*(0.1 * rng.normal(size=2)), 0.25 + 0.3 * k),
             orientation=draw.attitude(rng),
             velocity=0.5 * rng.normal(size=3), angular_velocity=3.0 * rng.normal(size=3),
         )  # fmt: skip
