@@ -41,7 +41,7 @@ def plank_on_rollers(rate):
 
 def main(out="out/examples"):
     inwards = carom.simulate(plank_on_rollers(20.0), 4.0)
-    outwards = carom.simulate(plank_on_rollers(-20.0), 0.7)
+    outwards = carom.simulate(plank_on_rollers(-20.0), 0.6)
     w, k = (np.sqrt(2 * mu * g / (apart - s * mu * thick)) for s in (1, -1))
     swings, leaves = (s["plank"].position[:, 0] for s in (inwards, outwards))
     error = np.max(np.abs(swings - start * np.cos(w * inwards.t)))
