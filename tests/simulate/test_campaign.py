@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import carom
-from campaigns import crowds, forced, laws, piles, rolls, strikes, throws
+from campaigns import belts, crowds, forced, laws, piles, rolls, strikes, throws
 from campaigns.case import run
 from carom.io.files.kept import run_again
 from carom.model.records import FULL_MULTIPLE
@@ -55,6 +55,16 @@ def test_rolls_end_and_lose_nothing_without_a_name(first):
         found = run(rolls.case(seed), tolerances=True)
         assert found.status == "SUCCESS", seed
         assert found.reached == 1.0, seed
+        assert found.depth <= 1e-9, seed
+        assert found.residual <= 1e-5, seed
+        assert found.gained <= 1e-6, seed
+
+
+def test_belts_end_and_lose_nothing_without_a_name():
+    # What ten met, the worst with 7e-7 of what was exchanged.
+    for seed in range(2000, 2010):
+        found = run(belts.case(seed), tolerances=True)
+        assert found.status == "SUCCESS", seed
         assert found.depth <= 1e-9, seed
         assert found.residual <= 1e-5, seed
         assert found.gained <= 1e-6, seed
