@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from carom import checks
@@ -20,7 +22,7 @@ def _parts(scene: Scene) -> list[Part]:
     return [part for part in (*scene.half_spaces, *scene.statics) if part.moves]
 
 
-def _axis(part: Part) -> tuple[np.ndarray, object, np.ndarray]:
+def _axis(part: Part) -> tuple[np.ndarray, Any, np.ndarray]:
     """Return axis, rate and point of the spin of a surface."""
     axis, rate, point = part.surface_spin or (np.zeros(3), 0.0, None)
     own = part.point if isinstance(part, HalfSpace) else part.position
@@ -32,7 +34,7 @@ def field_at(part: Part, t: float) -> np.ndarray:
     field, velocity, (axis, rate, point) = np.zeros((2, 2, 3)), part.surface_velocity, _axis(part)
     if velocity is not None:
         field[:, 0] = velocity(t) if callable(velocity) else (velocity, np.zeros(3))
-    field[:, 1] = np.outer(rate(t) if callable(rate) else (rate, 0.0), axis)
+    field[:, 1] = np.outer((rate, 0.0) if isinstance(rate, float) else rate(t), axis)
     field[:, 0] -= np.cross(field[:, 1], point)
     return field.reshape(4, 3)
 

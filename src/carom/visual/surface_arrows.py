@@ -57,14 +57,16 @@ def _places(part, radius: float) -> tuple[np.ndarray, np.ndarray]:
 def _velocity(part, points: np.ndarray) -> np.ndarray:
     """Return the velocity of the surface at points at the start."""
     velocity, spin = part.surface_velocity, part.surface_spin
-    v = np.asarray(
-        velocity(0.0)[0] if callable(velocity) else velocity if velocity is not None else (0, 0, 0)
-    )
+    if velocity is None:
+        velocity = np.zeros(3)
+    v = velocity if isinstance(velocity, np.ndarray) else velocity(0.0)[0]
     moved = np.repeat(np.asarray(v, dtype=float)[None], len(points), axis=0)
     if spin is not None:
         axis, rate, own = spin
         middle = own if own is not None else getattr(part, "position", getattr(part, "point", None))
-        moved += (rate(0.0)[0] if callable(rate) else rate) * np.cross(axis, points - middle)
+        moved += (rate if isinstance(rate, float) else rate(0.0)[0]) * np.cross(
+            axis, points - middle
+        )
     return moved
 
 
