@@ -21,6 +21,7 @@ from carom.model.actions import MODE_OPEN
 from carom.persistent.finish import land, note_modes, review
 from carom.persistent.members import explicit_member, implicit_member
 from carom.persistent.rows import beyond_stop
+from carom.persistent.springs import count_factors
 from carom.persistent.start import first_modes, first_stage
 from carom.persistent.step_control import note_unnamed
 from carom.persistent.thresholds import FALLS, STIFF_SLIP
@@ -46,6 +47,7 @@ def contact_step(model, data, method, h):
             step_group(model, data, method, label, h)
     if joined:  # friction in joints alone: a group without points
         step_group(model, data, method, n, h)
+    count_factors(data.group, work.step[0])
 
 
 @kernel
