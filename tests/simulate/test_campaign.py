@@ -92,6 +92,15 @@ def test_crowds_end_and_lose_nothing_without_a_name(first):
         assert found.residual <= 1e-3 or found.warned, seed
 
 
+def test_a_step_of_many_points_is_given_up_before_it_takes_minutes():
+    # Twenty boxes in a row that touch: a contact step of their 157 points takes a second, and the first step
+    # has thousands, which 3150 trial steps would have been allowed to do.
+    case = crowds.case(740011)
+    s = carom.simulate(case.scene, 4 * case.step, step=case.step)
+    assert s.stats["whole_steps"] == 4
+    assert s.stats["trial_steps"] < 50
+
+
 def test_what_a_return_pushes_in_is_pushed_out():
     # A body that a time-stepping step had left above the floor was laid down, with a corner into the wall.
     assert run(crowds.case(720003)).depth <= 1e-9
