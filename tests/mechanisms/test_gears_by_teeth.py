@@ -56,23 +56,31 @@ def test_no_tooth_is_skipped(speed):
 
 @pytest.mark.parametrize(
     ("seed", "tolerances"),
-    [(5, True), (8, True), (13, True), (38, True), (15, True), (45, False), (50, False)],
+    [
+        (5, True),
+        (8, True),
+        (13, True),
+        (38, True),
+        (15, True),
+        (45, False),
+        (50, False),
+        (137, True),
+    ],
 )
 def test_cases_of_the_campaign(seed, tolerances):
     """A ratchet, a cam, gears that touch at flanks of several faces, with their edges between; three faults.
 
     15: friction of a Geneva drive that a stage leaves 3e-9 within its cone slips all the same. 45: a pin as
     thick as its slot leaves it sideways. 50: a time-stepping step does not turn a gear to free a point whose
-    normal meets the axis: it went on by five teeth.
+    normal meets the axis: it went on by five teeth. 137: the tip of a saw tooth passes the end of a pawl, edge
+    on edge, with one time-stepping step.
     """
     assert wrong(vars(run(teeth.case(seed), tolerances))) == []
 
 
-@pytest.mark.parametrize(("seed", "tolerances"), [(137, True), (258, True), (62, False)])
+@pytest.mark.parametrize(("seed", "tolerances"), [(258, True), (62, False)])
 def test_every_step_has_its_events(seed, tolerances):
-    """137: the tip of a saw tooth passes the end of a pawl, edge on edge.
-
-    258: all 2350 pairs of pieces were looked at after each impact, until no trial steps were left. 62: two
+    """258: all 2350 pairs of pieces were looked at after each impact, until no trial steps were left. 62: two
     flanks touch, and the driven gear cannot lose the velocities of both.
     """
     outcome = vars(run(teeth.case(seed), tolerances))

@@ -114,6 +114,7 @@ def test_values_of_a_contact_are_those_of_all_parts():
     contact = scene.add_contact("block", "floor", friction=0.3)
     assert contact.of_materials == (
         "stiffness", "restitution", "rolling_friction", "pivoting_friction",
+        "tangential_restitution",
     )  # fmt: skip
     run = carom.simulate(scene, 0.05)
     assert run["block"].velocity[-1, 0] == pytest.approx(1.0 - 0.3 * 9.81 * 0.05, abs=1e-9)

@@ -50,9 +50,10 @@ def test_a_picture_has_the_colours(run):
 
 
 def test_a_plot_has_the_colours(run):
-    pytest.importorskip("matplotlib")
+    plt = pytest.importorskip("matplotlib.pyplot")
     from matplotlib.colors import to_hex
 
+    plt.close("all")  # those of other tests
     axes = run.plot("trajectory")
     found = {to_hex(c) for one in (*axes.artists, *axes.patches) for c in [one.get_facecolor()]}
     found |= {to_hex(c) for one in axes.collections for c in one.get_facecolor()[:1]}

@@ -21,7 +21,7 @@ from carom.model.actions import MODE_OPEN
 from carom.persistent.finish import land, note_modes, review
 from carom.persistent.members import explicit_member, implicit_member
 from carom.persistent.rows import beyond_stop
-from carom.persistent.springs import count_factors
+from carom.persistent.springs import FACTORED, count_factors
 from carom.persistent.start import first_modes, first_stage
 from carom.persistent.step_control import note_unnamed
 from carom.persistent.thresholds import FALLS, STIFF_SLIP
@@ -37,6 +37,7 @@ def contact_step(model, data, method, h):
     `work.result`.
     """
     active, work, n = data.active, data.work, data.state.shape[0]
+    data.group.equations.iterations[FACTORED] = 0
     result, joined = work.result[0], rubs(model.system)
     result.applied, result.friction, result.code = 0.0, 0.0, 0
     result.residual, result.unnamed = 0.0, 0.0

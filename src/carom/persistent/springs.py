@@ -116,9 +116,8 @@ def factor(n, rows, group):
 
 @kernel
 def count_factors(group, step):
-    """Add the work of the factors since the last count to the work of the island."""
+    """Add the work of the factors of a step, or of an activation, to the work of the island."""
     step.counts[COUNT_FACTORS] += group.equations.iterations[FACTORED]
-    group.equations.iterations[FACTORED] = 0
 
 
 @kernel

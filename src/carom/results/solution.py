@@ -443,12 +443,13 @@ class Solution(Portable, Drawn, Source):
             A half-space or a static body of the scene, or its name.
         """
         one = self.scene[part] if isinstance(part, str) else part
-        if one not in self.scene.fixed:
+        place = [k for k, known in enumerate(self.scene.fixed) if known is one]
+        if not place:
             raise ValueError(
                 f"part must be a half-space or a static body of the scene, got {checks.shown(part)}"
             )
         plane = np.append(self.pairs.plane, np.full(len(self.scene.stops), -1))
-        rows = plane[self._touch.contact] == self.scene.fixed.index(one)
+        rows = plane[self._touch.contact] == place[0]
         return np.bincount(self._touch.saved[rows], self._touch.power[rows], len(self.t))
 
     @cached_property

@@ -14,7 +14,7 @@ import math
 
 from carom._compiled.decorators import by_reference, kernel
 from carom._compiled.units import unit
-from carom.friction.layout import BUDGET, ENOUGH, ContactProblem
+from carom.friction.layout import BUDGET, CONE, ENOUGH, ContactProblem
 from carom.friction.solve import solve_cones
 from carom.friction.strategy import budget
 from carom.geometry.thresholds import SUM_ERROR
@@ -83,7 +83,6 @@ def round_off(n, row, impulse):
 def _once(k, work, smooth):
     """Solve the contact problem, `smooth` without friction; return the change of energy."""
     vector, heading, total = work.vector, work.heading, 0.0
-    # kinds and headings stay 0: cones
     before, bias, u, impulse = vector[o.U0], vector[o.MOREAU_C], vector[o.NOW_U], vector[o.NOW_P]
     mu, kind = vector[o.MOREAU_MU], work.index[o.MOREAU_KIND]
     for i in range(3 * k):
@@ -91,6 +90,7 @@ def _once(k, work, smooth):
     for i in range(k):
         bias[3 * i] += work.contact[i].e * min(0.0, bias[3 * i])
         mu[i] = 0.0 if smooth else work.contact[i].mu
+        kind[i], heading[i, 0], heading[i, 1] = CONE, 0.0, 0.0
     work.cones.mismatch[ENOUGH] = 0.0
     work.cones.count[BUDGET] = budget(k)
     problem = by_reference(
