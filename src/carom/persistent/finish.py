@@ -33,6 +33,7 @@ from carom.persistent.rows import (
     write_rows,
 )
 from carom.persistent.settle import greatest
+from carom.persistent.slip_law import set_friction
 from carom.persistent.springs import solve_springs
 from carom.persistent.step_control import rest_speed
 from carom.persistent.thresholds import FEW_REST, FRICTION_LIMIT
@@ -281,6 +282,7 @@ def stick_where_slip_ends(model, data, k, h):
             closed_point.loaded = 1 if closed_point.weight > 0.0 else 0
             if closed_point.stays == 1:
                 group.kind[i] = CONE if sticks == 1 else SLIDING
+                set_friction(model.system, i, sticks == 0, group)
         if solve_springs(k, group) and (sticks == 0 or within_cones(k, group)):
             break
     if sticks == 0:

@@ -14,6 +14,7 @@ from carom.scene.forces import AppliedForce as AppliedForce
 from carom.scene.joints import Joint as Joint
 from carom.scene.materials import ContactLaw as ContactLaw
 from carom.scene.materials import Material as Material
+from carom.scene.friction import Friction as Friction
 from carom.scene.restitution import Restitution as Restitution
 from carom.scene.scene import Scene as Scene
 from carom.scene.shapes import Box as Box

@@ -36,6 +36,7 @@ from carom.scene.bodies import FIXED, GROUND, Body, Ground
 from carom.scene.constraints import CONSTRAINTS, Constraint, Gear
 from carom.scene.contacts import Contact
 from carom.scene.forces import FORCES, AppliedForce
+from carom.scene.friction import FRICTION_LAWS
 from carom.scene.joints import JOINTS, Joint
 from carom.scene.materials import ContactLaw, Material
 from carom.scene.pieces import Piece
@@ -55,6 +56,7 @@ TYPES: dict[str, type[Any]] = {
         *FORCES,
         *CONSTRAINTS,
         *LAWS,
+        *FRICTION_LAWS,
         Gear,
         ContactLaw,
         Material,
