@@ -66,7 +66,14 @@ class Pieces:
 class MoreForces:
     """The forces of a scene that are not linear springs, loads or mounts."""
 
-    def __init__(self, scene, coordinates, functions: Functions, pieces: tuple[Pieces, Pieces], implicit: bool):
+    def __init__(
+        self,
+        scene,
+        coordinates,
+        functions: Functions,
+        pieces: tuple[Pieces, Pieces],
+        implicit: bool,
+    ):
         self.pushes, self.forces, self.frictions, self.named = [], [], [], []
         of_forces, of_frictions = pieces
         self.width = 0

@@ -15,7 +15,14 @@ import math
 from carom._compiled.decorators import kernel
 from carom.friction.layout import SLIDING
 from carom.impact.workspace import ACCELERATIONS, C, P, U
-from carom.model.actions import EVENT_JAM, EVENT_SEPARATE, MODE_OPEN, MODE_SLIP, MODE_STICK
+from carom.model.actions import (
+    EVENT_BREAK,
+    EVENT_JAM,
+    EVENT_SEPARATE,
+    MODE_OPEN,
+    MODE_SLIP,
+    MODE_STICK,
+)
 from carom.persistent.rolling_friction import take_torque
 from carom.persistent.settle import greatest
 from carom.persistent.thresholds import EVENT_ERROR, EVENT_MARGIN, NO_MARGIN
@@ -76,6 +83,13 @@ def set_margins(active_point, i, push, group):
         active_point.lift = -a[q] / push
     else:
         active_point.lift = max(p[q] * W[q, q] / push, EVENT_MARGIN)
+    set_grip(active_point, i, push, group)
+
+
+@kernel
+def set_grip(active_point, i, push, group):
+    """Write the grip of point i."""
+    q, W, p, a = 3 * i, group.W, group.v[P], group.v[ACCELERATIONS]
     if active_point.mode == MODE_STICK:
         gain = math.sqrt(a[q + 1] ** 2 + a[q + 2] ** 2) / push
         if active_point.next == MODE_SLIP:
@@ -97,6 +111,8 @@ def margin(active_point, kind):
 @kernel
 def note_due(active, search, work):
     """Mark the points of the same group that have the event of the search within the trial step."""
+    if search.kind == EVENT_BREAK:
+        return
     label = work.body[active.points[search.contact].body].label
     for i in range(active.count[0]):
         active_point = active.points[i]
@@ -105,10 +121,14 @@ def note_due(active, search, work):
 
 
 @kernel
-def switch_due(active, search):
+def switch_due(system, active, search):
     """Set the new mode of the points whose event has been located; return whether it is one of these."""
     if search.kind == EVENT_JAM:
         return False
+    if search.kind == EVENT_BREAK:
+        one = system.relations.frictions[search.contact]
+        one.next = -1 if one.force > 0.0 else 1
+        return True
     for i in range(active.count[0]):
         active_point = active.points[i]
         near = active_point.due == 1 and margin(active_point, search.kind) <= 2.0 * EVENT_MARGIN

@@ -40,7 +40,7 @@ from carom.persistent.rows import (
     set_modes,
     write_rows,
 )
-from carom.persistent.slip_law import renew_modes
+from carom.persistent.slip_law import first_modes_of_joints, renew_modes
 from carom.persistent.springs import bound_per_force, solve_springs
 from carom.persistent.start import first_modes
 from carom.persistent.thresholds import LAST_CHANGE, STAGE_CHANGE
@@ -113,6 +113,7 @@ def implicit_stage(model, data, label, s, hg, closes):
     iterations[0], laws, turned = 0, model.system.curves.shape[0] > 0, False
     if laws:
         first_modes(data, label)
+        first_modes_of_joints(model.system)
     for m in range(count):
         copy_state(group.base[group.member[m]], work.stage[group.member[m]])
     for turn in range(FIXED_POINT):

@@ -13,11 +13,11 @@ from carom._compiled.decorators import kernel
 from carom.dynamics.curve import value_at
 from carom.geometry.thresholds import REMAINDER
 from carom.impact.friction_law import HELD, depends_on_slip, in_slip
-from carom.impact.workspace import P, U
+from carom.impact.workspace import ACCELERATIONS, P, U
 from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.persistent.joint_rows import JOINT, radius_of
 from carom.persistent.settle import dot
-from carom.persistent.thresholds import FRICTION_LIMIT
+from carom.persistent.thresholds import EVENT_ERROR, FRICTION_LIMIT
 
 TURNS_BACK = 8  # iterations of a stage in which slip that turns back may still be found to stick
 
@@ -50,7 +50,7 @@ def set_friction(system, i, slips, group):
 
 @kernel
 def follow_laws(system, active, k, group):
-    """Write the friction of the entries that have a law, by their modes; a corner without one, by its velocity."""
+    """Write the friction of the entries that have a law, by modes; that of a corner without one, by velocity."""
     u, fastest = group.v[U], 0.0
     for row in range(3 * k):
         fastest = max(fastest, abs(u[row]))
@@ -71,6 +71,25 @@ def slips_by_mode(system, active, closed_point):
     if closed_point.turns == JOINT:
         return system.relations.frictions[closed_point.active].next != 0
     return active.points[closed_point.active].next == MODE_SLIP
+
+
+@kernel
+def first_modes_of_joints(system):
+    """Take the modes of the start of the step."""
+    for i in range(system.relations.frictions.shape[0]):
+        one = system.relations.frictions[i]
+        if one.last_piece > one.piece:
+            one.next = one.mode
+
+
+@kernel
+def grip_of_joint(i, slips, push, one, group):
+    """Return the margin of a joint before it breaks away, at the end of a step in which it sticks."""
+    if one.mode != 0 or not push > 0.0:
+        return 1.0
+    if slips:
+        return -max(abs(group.v[ACCELERATIONS][3 * i + 1]) / push, 2.0 * EVENT_ERROR)
+    return max(group.mu[i] - abs(group.v[P][3 * i + 1]), 0.0) * group.W[3 * i + 1, 3 * i + 1] / push
 
 
 @kernel

@@ -11,10 +11,10 @@ from carom.scene.bodies import HalfSpace as HalfSpace
 from carom.scene.constraints import Constraint as Constraint
 from carom.scene.contacts import Contact as Contact
 from carom.scene.forces import AppliedForce as AppliedForce
+from carom.scene.friction import Friction as Friction
 from carom.scene.joints import Joint as Joint
 from carom.scene.materials import ContactLaw as ContactLaw
 from carom.scene.materials import Material as Material
-from carom.scene.friction import Friction as Friction
 from carom.scene.restitution import Restitution as Restitution
 from carom.scene.scene import Scene as Scene
 from carom.scene.shapes import Box as Box

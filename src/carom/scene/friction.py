@@ -44,8 +44,8 @@ class Friction(FrictionLaw):
 
     A contact sticks while its tangential force is at most `static` times its normal force. In slip the
     coefficient is `kinetic`, or with `speed` that of Stribeck, which falls from `static` as the slip s grows:
-    ``kinetic + (static - kinetic) exp(-(s / speed)^exponent)``. `Friction.table` makes a law of measured points,
-    and ``law(speed)`` is its coefficient in slip.
+    ``kinetic + (static - kinetic) exp(-(s / speed)^exponent)``. `Friction.table` makes a law of measured
+    points, and ``law(speed)`` is its coefficient in slip.
 
     Parameters
     ----------
@@ -92,8 +92,8 @@ exponent=1.0), impact_law='newton')
         """Return a law through measured points.
 
         Between the points it is a monotone cubic (`scipy.interpolate.PchipInterpolator`), which has no values
-        beyond those of its neighbours. Slower slip has the first value, which also bounds stick, and faster slip
-        the last.
+        beyond those of its neighbours. Slower slip has the first value, which also bounds stick, and faster
+        slip the last.
 
         Parameters
         ----------

@@ -211,8 +211,8 @@ class JointFriction(AlongJoint):
     joint : Joint or str
         The joint, or its name.
     bound : float or Friction
-        Friction force [N] along a displacement or torque [N m] about an angle, at least 0; or a law of it, whose
-        coefficients are forces or torques, and whose speed is that of the coordinate [m/s or rad/s].
+        Friction force [N] along a displacement or torque [N m] about an angle, at least 0; or a law of it,
+        whose coefficients are forces or torques, and whose speed is that of the coordinate [m/s or rad/s].
     coordinate : int
         Index of the coordinate of the joint. Default 0.
     """

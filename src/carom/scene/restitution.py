@@ -113,6 +113,7 @@ friction=0, impact_law='newton')
         """
         return TableRestitution(speeds, values)  # pyright: ignore[reportArgumentType]
 
+
 @dataclass(frozen=True, repr=False)
 class PowerRestitution(Restitution):
     """A power of the speed, capped: `Restitution.power`."""

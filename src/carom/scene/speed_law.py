@@ -111,7 +111,9 @@ def through_points(speeds: tuple[float, ...], values: tuple[float, ...]) -> Curv
     return Curve(1.0, made.c, made.x)
 
 
-def number_or_law(name: str, value, law: type[SpeedLaw], example: str, **bounds) -> float | SpeedLaw:
+def number_or_law(
+    name: str, value, law: type[SpeedLaw], example: str, **bounds
+) -> float | SpeedLaw:
     """Return a coefficient: a number within `bounds`, or a law of the kind `law`, as in the `example`."""
     if isinstance(value, law):
         return value

@@ -18,7 +18,7 @@ from carom.contact.continuous_detection_pair import lowest_pair, passage_pair
 from carom.contact.gap import gap_and_rate, lowest, plane_in_body, round_off
 from carom.contact.pair_point import smaller
 from carom.contact.stop import passage_stop, stop_gap
-from carom.model.actions import EVENT_GAP, EVENT_JAM
+from carom.model.actions import EVENT_BREAK, EVENT_GAP, EVENT_JAM
 from carom.model.arrays import STOP
 from carom.persistent.events import contact_event_value, find_contact_event
 from carom.persistent.thresholds import EVENT_ERROR, EVENT_MARGIN
@@ -67,6 +67,8 @@ def event_value(model, data):
             return stop_gap(system, contact, state, work)
         search.tolerance = 4.0 * max(search.tolerance, round_off_of_both(contact, state))
         return lowest_pair(system, data, search.contact, state)
+    if search.kind == EVENT_BREAK:
+        return system.relations.frictions[search.contact].grip, 0.0
     if search.kind != EVENT_JAM and active.points[search.contact].several == 1:
         search.tolerance = EVENT_ERROR
     return contact_event_value(system, active.points[search.contact], search.kind), 0.0
