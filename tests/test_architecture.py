@@ -48,6 +48,7 @@ CAPABILITIES = {
         "dynamics": 1, "model": 1, "geometry": 1, "hints": 3,
     },
     "a material for each part of a compound": {"io": 1, "scene": 1},
+    "restitution with speed, tangential restitution": {"scene": 3, "impact": 1, "results": 1, "model": 1},
 }  # fmt: skip
 
 
