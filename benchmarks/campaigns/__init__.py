@@ -8,6 +8,7 @@ from campaigns import (
     bearings,
     crowds,
     forced,
+    frictions,
     laws,
     mechanisms,
     piles,
@@ -24,5 +25,5 @@ FAMILIES = {
     "throws": throws.case, "strikes": strikes.case, "mechanisms": mechanisms.case, "forced": forced.case,
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
-    "laws": laws.case,
+    "laws": laws.case, "frictions": frictions.case,
 }  # fmt: skip

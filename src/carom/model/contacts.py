@@ -277,7 +277,8 @@ def _numbers(laws: list[ContactLaw], curves: Pieces) -> np.ndarray:
     """Return the numbers (L, 18) of laws; coefficients that depend on speeds are added to `curves`."""
     numbers = [
         (
-            bound_of(one.friction), bound_of(one.friction_held), one.stiffness, IMPACT_LAWS.index(one.impact_law),
+            bound_of(one.friction), bound_of(one.friction_held), one.stiffness,
+            IMPACT_LAWS.index(one.impact_law),
             MULTIPLE.index(one.multiple), *curves.add_restitution(one.restitution),
             one.tangential_restitution, one.rolling_friction, one.pivoting_friction,
             *curves.add_law(one.friction), *curves.add_law(one.friction_held),
