@@ -22,7 +22,7 @@ from carom.persistent.active_set import clear
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.jam import jams_among
 from carom.persistent.joint_rows import JOINT, place_coordinate, radius_of
-from carom.persistent.margins import greatest_push, set_grip, set_margins, take_forces, time_to_stop
+from carom.persistent.margins import greatest_push, set_margins, take_forces, time_to_stop
 from carom.persistent.return_to_surfaces import greatest_speed, onto_surfaces, onto_tangents
 from carom.persistent.rows import (
     accelerate_freely,
@@ -33,7 +33,7 @@ from carom.persistent.rows import (
     write_rows,
 )
 from carom.persistent.settle import greatest
-from carom.persistent.slip_law import grip_of_joint, has_law, set_friction
+from carom.persistent.slip_law import breaks_away, grip_by_law, has_law, set_friction
 from carom.persistent.springs import solve_springs
 from carom.persistent.step_control import rest_speed
 from carom.persistent.thresholds import FEW_REST, FRICTION_LIMIT
@@ -145,12 +145,15 @@ def review(model, data, label, s, h, given) -> bool:
         closed_point = group.closed[i]
         if closed_point.own == 0:
             continue
-        slips = given and not lasts and gains(i, push, group)
+        law = has_law(system, closed_point)
+        slips = (
+            given and not lasts and (breaks_away(i, push, group) if law else gains(i, push, group))
+        )
         if closed_point.turns == JOINT:
             one = system.relations.frictions[closed_point.active]
             one.force, one.stop = group.v[P][3 * i + 1], time_to_stop(i, group)
-            if has_law(system, closed_point):
-                one.grip = grip_of_joint(i, slips, push, one, group)
+            if law:
+                one.grip = grip_by_law(i, push, group) if one.mode == 0 else 1.0
             elif slips and one.next == 0:
                 if work.search[0].active == 0:
                     return False
@@ -163,16 +166,15 @@ def review(model, data, label, s, h, given) -> bool:
         if not lasts and group.kind[i] == CONE and active_point.next == MODE_SLIP:
             active_point.next = MODE_STICK
         if slips and active_point.next == MODE_STICK:
-            breaks = located > 0.0 or has_law(system, closed_point)
-            if not (breaks and work.search[0].eager == 1):
+            if not ((located > 0.0 or law) and work.search[0].eager == 1):
                 if work.search[0].active == 0:
                     return False
                 active_point.next = MODE_SLIP
         still = max(1e-6 * (h * push), 10.0 * slow(system.contacts[closed_point.contact], end))
         end_mode(active_point, i, still, at_rest, group)
         set_margins(active_point, i, located, group)
-        if has_law(system, closed_point) and not located > 0.0:
-            set_grip(active_point, i, push, group)
+        if law and active_point.mode == MODE_STICK and active_point.next != MODE_OPEN:
+            active_point.grip = grip_by_law(i, push, group)
         if not given:
             active_point.grip = 1.0
         active_point.jams = jams_among(i, found, group)

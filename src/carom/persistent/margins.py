@@ -83,13 +83,6 @@ def set_margins(active_point, i, push, group):
         active_point.lift = -a[q] / push
     else:
         active_point.lift = max(p[q] * W[q, q] / push, EVENT_MARGIN)
-    set_grip(active_point, i, push, group)
-
-
-@kernel
-def set_grip(active_point, i, push, group):
-    """Write the grip of point i."""
-    q, W, p, a = 3 * i, group.W, group.v[P], group.v[ACCELERATIONS]
     if active_point.mode == MODE_STICK:
         gain = math.sqrt(a[q + 1] ** 2 + a[q + 2] ** 2) / push
         if active_point.next == MODE_SLIP:

@@ -17,7 +17,7 @@ from carom.impact.workspace import ACCELERATIONS, P, U
 from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.persistent.joint_rows import JOINT, radius_of
 from carom.persistent.settle import dot
-from carom.persistent.thresholds import EVENT_ERROR, FRICTION_LIMIT
+from carom.persistent.thresholds import BREAK_AWAY, FRICTION_LIMIT
 
 TURNS_BACK = 8  # iterations of a stage in which slip that turns back may still be found to stick
 
@@ -50,7 +50,7 @@ def set_friction(system, i, slips, group):
 
 @kernel
 def follow_laws(system, active, k, group):
-    """Write the friction of the entries that have a law, by modes; that of a corner without one, by velocity."""
+    """Write the friction of entries that have a law, by modes; that of a corner without one, by velocity."""
     u, fastest = group.v[U], 0.0
     for row in range(3 * k):
         fastest = max(fastest, abs(u[row]))
@@ -83,13 +83,22 @@ def first_modes_of_joints(system):
 
 
 @kernel
-def grip_of_joint(i, slips, push, one, group):
-    """Return the margin of a joint before it breaks away, at the end of a step in which it sticks."""
-    if one.mode != 0 or not push > 0.0:
+def breaks_away(i, push, group):
+    """Return whether an entry accelerates in slip: its break-away is located on a continuous margin."""
+    a = group.v[ACCELERATIONS]
+    return math.hypot(a[3 * i + 1], a[3 * i + 2]) > BREAK_AWAY * push
+
+
+@kernel
+def grip_by_law(i, push, group):
+    """Return the margin of an entry that sticks, an acceleration relative to `push`: of its force, or its gain."""
+    a, p, W, q = group.v[ACCELERATIONS], group.v[P], group.W, 3 * i
+    if not push > 0.0:
         return 1.0
-    if slips:
-        return -max(abs(group.v[ACCELERATIONS][3 * i + 1]) / push, 2.0 * EVENT_ERROR)
-    return max(group.mu[i] - abs(group.v[P][3 * i + 1]), 0.0) * group.W[3 * i + 1, 3 * i + 1] / push
+    if breaks_away(i, push, group):
+        return -math.hypot(a[q + 1], a[q + 2]) / push
+    left = radius_of(group, i) - math.hypot(p[q + 1], p[q + 2])
+    return max(left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push, 0.01 * BREAK_AWAY)
 
 
 @kernel
