@@ -119,7 +119,7 @@ def test_stick_slip_by_a_law_of_the_speed(name):
     found = carom.simulate(on_a_spring(m, k, N, V, law), 4.0, rtol=1e-9, atol=1e-9)
     exact = stribeck(law, m, k, N, V, found.t)
     assert found.position[:, 0, 0] == pytest.approx(exact, abs=1e-7)
-    assert np.ptp(exact) > 0.1
+    assert np.ptp(exact) > 0.05
 
 
 @pytest.mark.parametrize("speed", [0.0, 0.5])
@@ -262,8 +262,8 @@ def test_materials_and_names(tmp_path):
     two = scene.add_body(box, mass=1, material=steel, position=(1, 0, 0.1), name="two")
     with pytest.raises(ValueError, match="friction must be given for a pair"):
         scene.add_contact(two, floor)
-    scene.set_contact_default(combine="average")
     scene.add_contact(two, floor, friction=0.3)
+    scene.add_contact(two, one, friction=0.3)
     found = carom.simulate(scene, 0.2)
     found.save(tmp_path / "run.carom")
     assert carom.load(tmp_path / "run.carom").scene.contacts[0].friction == law

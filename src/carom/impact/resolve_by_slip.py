@@ -4,7 +4,7 @@ Slip is integrated in tau, dtau = dp/r, r = |u_t|, in which it is smooth down to
 
     p' = r,    P_t' = -mu(r) u_t,    loss' = mu(r) r^2,    u = u_0 + W (p, P_t),
 
-by the pair of order 5 of Dormand and Prince (1980). Stick is linear in p, and bounded by the static coefficient.
+by the pair of order 5 of Dormand and Prince (1980). Stick is linear in p, bounded by the static coefficient.
 What breaks away from it follows the outgoing ray of mu(0) as far as mu is constant to round-off. All else is as
 in `resolve`.
 """
