@@ -70,8 +70,10 @@ def test_stick_slip_has_its_period(seed, tolerance):
     found = carom.simulate(
         on_a_spring(*given), start + 2.3 * period, rtol=tolerance, atol=tolerance
     )
-    # a stop is placed to a share of the tolerance, and moves the next cycle; sizes are those of the block
-    assert found.position[:, 0, 0] == pytest.approx(stick_slip(found.t, *given)[0], abs=tolerance)
+    # the place where a slip stops begins the next cycle, earlier or later, and slip is fast
+    fastest = np.max(found.velocity[:, 0, 0])
+    allowed = tolerance * (1.0 + fastest)
+    assert found.position[:, 0, 0] == pytest.approx(stick_slip(found.t, *given)[0], abs=allowed)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -265,14 +267,13 @@ def test_materials_and_names(tmp_path):
     scene.add_contact(two, floor, friction=0.3)
     scene.add_contact(two, one, friction=0.3)
     found = carom.simulate(scene, 0.2)
-    found.save(tmp_path / "run.carom")
-    assert carom.load(tmp_path / "run.carom").scene.contacts[0].friction == law
-    assert "Friction(static=0.6" in repr(scene.contacts[0])
+    found.save(tmp_path / "run.nc")
+    assert carom.Solution.load(tmp_path / "run.nc").scene.contacts[0].friction == law
+    assert "friction=Friction(static=0.6" in repr(scene.contacts[0])
     values = [0.1, 0.2, 0.4]
-    many = carom.ensemble(scene, 3, duration=0.2, vary={"one-floor.friction.kinetic": values})
-    for value, x in zip(values, many.position[:, 0, 0]):
+    many = carom.ensemble(scene, 0.2, vary={"one-floor.friction.kinetic": values})
+    for value, x in zip(values, many.outcomes["position"][:, 0, 0]):
         scene.replace("one-floor", friction=replace(law, kinetic=value))
-        alone = carom.simulate(scene, 0.2)
-        assert x == pytest.approx(alone.position[-1, 0, 0], abs=1e-9)
+        assert x == carom.simulate(scene, 0.2).position[-1, 0, 0]
     with pytest.raises(ValueError, match="friction is a number"):
-        carom.sensitivities(found, with_respect_to=["one.velocity.x"])
+        carom.sensitivities(found, "one.velocity.x")
