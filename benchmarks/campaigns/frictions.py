@@ -25,7 +25,7 @@ def case(seed: int) -> Case:
             restitution=default.restitution, friction=law, impact_law=default.impact_law,
             multiple=default.multiple,
         )  # fmt: skip
-    made.label["friction"] = repr(law)
+    made.label["law of friction"] = repr(law)
     return made
 
 
