@@ -19,6 +19,7 @@ ROOMS = (
     "geometry",
     "collision",
     "model",
+    "kinematics",
     "contact",
     "friction",
     "dynamics",

@@ -12,6 +12,7 @@ from campaigns import (
     laws,
     mechanisms,
     piles,
+    rails,
     rests,
     robots,
     rolls,
@@ -25,5 +26,6 @@ FAMILIES = {
     "throws": throws.case, "strikes": strikes.case, "mechanisms": mechanisms.case, "forced": forced.case,
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
+    "rails": rails.case,
     "laws": laws.case, "frictions": frictions.case,
 }  # fmt: skip

@@ -31,6 +31,7 @@ from carom.scene import (
     Scene,
     Sphere,
     constraints,
+    curves,
     forces,
     joints,
 )
@@ -95,6 +96,7 @@ __all__ = [
     "constraints",
     "contact_inverse_mass",
     "contact_sequence",
+    "curves",
     "ensemble",
     "euler",
     "film",

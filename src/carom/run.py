@@ -16,8 +16,10 @@ from carom.dynamics.thresholds import FIRST_STEP
 from carom.geometry.frames import length
 from carom.impact.multiple.layout import multiple_settings
 from carom.impact.workspace import new_group, new_multiple, no_multiple
+from carom.kinematics.thresholds import END_MARGIN
 from carom.model import records as r
 from carom.model.answers import check_answers
+from carom.model.arrays import ON_CURVE
 from carom.model.compile import compiled_once, uses_functions, with_pairs
 from carom.model.controls import LOCATE, PROJECT, WORK, Controls
 from carom.model.data import Data, Model
@@ -355,6 +357,22 @@ def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:
             )
 
 
+def check_ends(scene: Scene, compiled) -> None:
+    """Refuse a point beyond an end of its curve, which is open, at the start."""
+    relations = compiled.system.relations
+    for (j, _), k in compiled.numbers.items():
+        c = relations.coordinates[k]
+        if c.kind not in ON_CURVE:
+            continue
+        one, s = relations.curves[c.number], float(c.reference)
+        margin = END_MARGIN * (one.high - one.low)
+        if one.period == 0.0 and not one.low - margin <= s <= one.high + margin:
+            raise ValueError(
+                f"position violates {scene.joints[j].name!r}: its point must be on the curve, between "
+                f"{one.low:g} m and {one.high:g} m from the anchor, got {s:g} m"
+            )
+
+
 def check_start(scene: Scene, compiled, start, work, options: Options) -> None:
     """Refuse an initial state that violates a joint or a constraint; the message has its name and error."""
     system, elements = compiled.system, (*scene.joints, *scene.constraints)
@@ -365,6 +383,7 @@ def check_start(scene: Scene, compiled, start, work, options: Options) -> None:
     start_errors(system, start, work, *errors)
     if compiled.functions.failed is not None:
         raise compiled.functions.failed
+    check_ends(scene, compiled)
     size = system.bodies.extent
     speed = np.max(np.abs(start.v)) + np.max(np.abs(start.w) * size[:, None])
     speed += np.max(np.abs(start_speeds(system, start, work)), initial=0.0)

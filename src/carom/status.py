@@ -25,6 +25,7 @@ class Status(IntEnum):
     UNSTABLE = 14
     BLOCKED = 15
     STOPPED = 16
+    LEFT_CURVE = 17
 
     @property
     def ended(self) -> bool:
@@ -50,7 +51,7 @@ class Status(IntEnum):
 (
     SUCCESS, NO_CONVERGENCE, STEP_CUT_TO_NOTHING, TOO_MANY_IMPACTS, NOT_FINITE, RETURN_MAP_FAILED,
     IMPACT_FAILED, CONSTRAINTS_LOST, FUNCTION_FAILED, INTERRUPTED, TOO_MANY_POINTS, SINGULAR_METRIC,
-    STEP_TOO_SMALL, INACCURATE, UNSTABLE, BLOCKED, STOPPED,
+    STEP_TOO_SMALL, INACCURATE, UNSTABLE, BLOCKED, STOPPED, LEFT_CURVE,
 ) = map(int, Status)  # fmt: skip
 
 #: cause and remedy; {finer} says how a run gets shorter steps
@@ -120,6 +121,10 @@ _MESSAGES: dict[Status, tuple[str, str]] = {
         "Change the prescribed motion, or attach the body by a spring, or by a joint that lets it move away.",
     ),
     Status.STOPPED: ("An event ended the run, as requested.", ""),
+    Status.LEFT_CURVE: (
+        "A point has passed an end of its curve, which is open.",
+        "Add stops at its ends (Scene.add_stop), make the curve longer, or close it.",
+    ),
     Status.INTERRUPTED: (
         "The run was interrupted.", "The solution has all results up to then.",
     ),

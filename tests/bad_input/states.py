@@ -155,6 +155,21 @@ def stated():
         "joints.Planar": lambda: (joints.Planar, dict(normal=(0, 0, 1.0), anchor=three)),
         "joints.PointOnLine": lambda: (joints.PointOnLine, dict(anchor=three, direction=three)),
         "joints.PointOnPlane": lambda: (joints.PointOnPlane, dict(anchor=three, normal=three)),
+        "joints.PointOnCurve": lambda: (
+            joints.PointOnCurve, dict(curve=carom.curves.Spline([three, (0, 0, 0.0)]), anchor=three),
+        ),
+        "joints.CurveOnPoint": lambda: (
+            joints.CurveOnPoint, dict(curve=carom.curves.Spline([three, (0, 0, 0.0)]), anchor=three),
+        ),
+        "curves.Spline": lambda: (
+            carom.curves.Spline, dict(points=[three, (0, 0, 0.0), (0, 1.0, 0)], closed=True),
+        ),
+        "curves.Curve": lambda: (
+            carom.curves.Curve, dict(function=lambda u: (u, 0, 0), start=0.0, end=1.0, closed=False),
+        ),
+        "curves.Curve.point": lambda: (carom.curves.Spline([three, (0, 0, 0.0)]).point, dict(s=0.1)),
+        "curves.Curve.tangent": lambda: (carom.curves.Spline([three, (0, 0, 0.0)]).tangent, dict(s=0.1)),
+        "curves.Curve.nearest": lambda: (carom.curves.Spline([three, (0, 0, 0.0)]).nearest, dict(point=three)),
         "joints.Distance": lambda: (joints.Distance, dict(anchor_parent=three, anchor_child=(0, 0, 0.0))),
         "joints.KnifeEdge": lambda: (
             joints.KnifeEdge, dict(anchor=three, direction=three, normal=(0, 0, 1.0)),

@@ -1,6 +1,7 @@
 """Every joint of the registry, made from the names of its arguments: what it keeps, and its coordinates."""
 
 import inspect
+import math
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ CHILD, AXIS, TURN = np.array([0.0, 0.0, 1.0]), np.array([0.6, 0.0, 0.8]), (0.3, 
 ARGUMENTS = {
     "anchor": CHILD, "anchor_parent": (0, 0, 0), "anchor_child": CHILD, "axis": AXIS, "normal": (0, 0, 1),
     "direction": (1, 0, 0), "axis_parent": (1, 0, 0), "axis_child": (0, 1, 0), "pitch": 0.3, "radius": 1.0,
+    "curve": carom.curves.Curve(lambda u: (u, 0.3 * math.sin(u), 1.2 - 0.2 * math.cos(u)), -4, 4),
 }  # fmt: skip
 
 

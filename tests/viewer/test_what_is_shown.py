@@ -23,6 +23,30 @@ def test_frames_hold_saved_times_and_impacts(thrown):
     assert show_of(thrown).left_out == []
 
 
+def test_a_curve_is_a_closed_tube_in_its_body(tmp_path):
+    scene = carom.Scene()
+    pin, plate = (
+        scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, z)) for z in (1.0, 3.0)
+    )
+    arc = carom.curves.Curve(lambda u: (np.sin(u), 0, 1 + np.cos(u)), 0.0, 6.0)
+    scene.add_joint(carom.joints.PointOnCurve(arc, arc.point(0)), carom.GROUND, plate)
+    scene.add_joint(carom.joints.CurveOnPoint(arc, arc.point(0)), pin, plate)
+    rails = [part for part in bodies.parts_of(scene, 10.0) if len(part.vertices) > 1000]
+    assert [(part.bodies, part.look) for part in rails] == [([-1], "static"), ([1], "joint")]
+    for part, centre in zip(rails, (1.0, -2.0)):
+        a, b, c = part.vertices[part.triangles].swapaxes(0, 1)
+        area = 0.5 * 8 * np.sin(np.pi / 4) * 0.06**2  # of a ring with eight sides
+        volume = np.sum(np.cross(a, b) * c) / 6
+        assert volume == pytest.approx(area * arc.length, rel=1e-3)  # so they are turned outwards
+        away = np.linalg.norm(part.vertices - (0, 0, centre), axis=1)
+        assert np.max(np.abs(away - 1.0)) < 0.0601
+    (ground,) = bodies.ground_curves(scene, 5)
+    np.testing.assert_allclose(ground, arc.point(np.linspace(0, arc.length, 5)), atol=1e-15)
+    shown = carom.simulate(scene, 0.01, step=1e-3)
+    shown.export(tmp_path / "rails.glb")  # with the names of the parts
+    carom.view(shown, export=tmp_path / "rails.html")
+
+
 def test_frames_are_thinned(thrown):
     shown = frames.frames_of(thrown, 20)
     assert len(shown.time) <= 20 + len(thrown.impacts)

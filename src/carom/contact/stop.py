@@ -14,17 +14,17 @@ from carom.contact.gap import round_off, slow
 from carom.contact.pair_point import tangents
 from carom.geometry.thresholds import RESOLUTION
 from carom.kinematics.contact_point import contact_velocity
-from carom.kinematics.coordinate import drift, value
-from carom.kinematics.joints import arm, axis, parent_arm
+from carom.kinematics.coordinate import along, drift, value
+from carom.kinematics.joints import child_arm, parent_arm
 from carom.model.actions import NOTHING, PERSIST, STRIKE
-from carom.model.arrays import PRISMATIC, STOP
+from carom.model.arrays import REVOLUTE, STOP
 
 
 @unit
 def place_stop(system, contact, state, point):
     """Write the point, axes and gap of a stop."""
     c = system.relations.coordinates[contact.solid]
-    nx, ny, nz = axis(state, c.parent, c.parent_frame, 0)
+    nx, ny, nz = along(system, c, state)
     # the row is that of the child relative to the parent; its sign changes if the child is the ground
     s = 1.0 if (contact.side > 0.0) == (contact.body == c.child) else -1.0
     point.a, point.b = contact.body, contact.other
@@ -32,13 +32,13 @@ def place_stop(system, contact, state, point):
     for k in range(3):
         point.core[k], point.arm_a[k], point.arm_b[k] = 0.0, 0.0, 0.0
     if c.child >= 0:
-        r = arm(state, c.child, c.child_anchor)
+        r = child_arm(c, state)
         point.arm_a[0], point.arm_a[1], point.arm_a[2] = r
-        if c.kind == PRISMATIC:
+        if c.kind != REVOLUTE:
             r = parent_arm(c, state)
             point.arm_b[0], point.arm_b[1], point.arm_b[2] = r
-    point.gap = contact.side * value(c, state) - contact.offset
-    point.turns, point.length = 4 if c.kind == PRISMATIC else 3, abs(contact.side)
+    point.gap = contact.side * value(system, c, state) - contact.offset
+    point.turns, point.length = 3 if c.kind == REVOLUTE else 4, abs(contact.side)
 
 
 @unit
@@ -52,7 +52,7 @@ def stop_gap(system, contact, state, work) -> tuple[float, float]:
 def stop_drift(system, contact, state, work) -> float:
     """Return (d/dt G) v of the row of a stop."""
     c = system.relations.coordinates[contact.solid]
-    return contact.side * drift(c, state, work.joint[0].target)
+    return contact.side * drift(system, c, state, work.joint[0].target)
 
 
 @kernel

@@ -1,13 +1,13 @@
 """All constraints: joints, then relations between their coordinates and user-defined rows.
 
 Each element has errors of position and velocity, a bias of the acceleration, and rows. A joint writes them for
-the relative motion of its two sides, six numbers (`carom.kinematics.joints`); other elements write one number
-for each row.
+the relative motion of its two sides, six numbers (`carom.kinematics.joints`); other elements, and joints on
+curves, write one number for each row.
 """
 
 from __future__ import annotations
 
-from carom._compiled.decorators import inlined
+from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.dynamics.relations import (
     prescribed,
@@ -27,17 +27,55 @@ from carom.dynamics.user_rows import (
     write_speeds,
 )
 from carom.kinematics import joints
-from carom.kinematics.rows import inverse_inertias, joint_rows, joint_target
-from carom.model.arrays import LOOPS, RELATION, STIFF, USER_ROWS
+from carom.kinematics.curve import (
+    curve_bias,
+    curve_error,
+    curve_rows,
+    curve_speed,
+    find_foot,
+    force_across,
+    push_across,
+)
+from carom.kinematics.rows import inverse_inertias, joint_rows, joint_target, mass_row
+from carom.model.arrays import LOOPS, ON_CURVE, OWN_ROWS, RELATION, STIFF, USER_ROWS
 from carom.model.parts_of_system import has_relation_rows
+
+
+@kernel
+def foot(system, joint, state):
+    """Return the curve of a joint, with the foot of its point in this state."""
+    c = system.relations.coordinates[joint.number]
+    find_foot(system, c, state)
+    return system.relations.curves[c.number]
+
+
+@kernel
+def rows_on_curve(system, j, state, work):
+    """Write A and A M^-1 of a joint on a curve."""
+    solver, joint = system.solver, system.joints[j]
+    one, first, last = foot(system, joint, state), solver.rows[j].first, solver.rows[j].last
+    for s in range(first, last):
+        curve_rows(joint, one, state, solver.sides[s])
+        for r in range(joint.rows):
+            mass_row(system, solver.sides[s], r, work)
+
+
+@kernel
+def force_on_curve(system, joint, state, reaction):
+    """Turn the multipliers of a joint on a curve into the wrench on its child at the point."""
+    f = force_across(foot(system, joint, state), reaction)
+    for k in range(3):
+        reaction[k], reaction[3 + k] = f[k], 0.0
 
 
 @unit
 def _position(system, j, state, work):
     """Write the error of position of an element to its bias."""
     joint, bias, t = system.joints[j], work.joint[j].bias, work.result[0].time
-    if joint.kind < RELATION:
+    if joint.kind < OWN_ROWS:
         joints.position_error(joint, state, bias)
+    elif joint.kind in ON_CURVE:
+        curve_error(foot(system, joint, state), bias)
     elif joint.kind == USER_ROWS:
         user_error(system, j, state, t, bias)
     else:
@@ -52,8 +90,11 @@ def _position(system, j, state, work):
 def _velocity(system, j, state, work):
     """Write the error of velocity of an element to its bias."""
     joint, bias, t = system.joints[j], work.joint[j].bias, work.result[0].time
-    if joint.kind < RELATION:
+    if joint.kind < OWN_ROWS:
         joints.velocity_error(joint, state, bias)
+        return
+    if joint.kind in ON_CURVE:
+        curve_speed(joint, foot(system, joint, state), state, bias)
         return
     for k in range(6):
         bias[k] = 0.0
@@ -67,8 +108,10 @@ def _velocity(system, j, state, work):
 def _acceleration(system, j, state, work):
     """Write the accelerations that an element requires, as its bias."""
     joint, record, t = system.joints[j], work.joint[j], work.result[0].time
-    if joint.kind < RELATION:
+    if joint.kind < OWN_ROWS:
         joints.acceleration_bias(joint, state, record.bias)
+    elif joint.kind in ON_CURVE:
+        curve_bias(joint, foot(system, joint, state), state, record.bias)
     elif joint.kind == USER_ROWS:
         user_bias(system, j, state, t, record.bias, record.target)
     elif joint.kind == STIFF:
@@ -81,11 +124,12 @@ def _acceleration(system, j, state, work):
 @unit
 def _target(system, j, state, relative, out):
     """Write the component of the errors of an element along each of its rows."""
-    if system.joints[j].kind < RELATION:
+    if system.joints[j].kind < OWN_ROWS:
         joint_target(system.joints[j], state, relative, out)
         return
+    first = 3 if system.joints[j].kind in ON_CURVE else 0  # lengths, and not angles
     for r in range(system.joints[j].rows):
-        out[r] = relative[r]
+        out[r] = relative[first + r]
 
 
 @unit
@@ -94,8 +138,10 @@ def _build_all(system, state, work):
     inverse_inertias(system, state, work)
     for j in range(system.joints.shape[0]):
         kind = system.joints[j].kind
-        if kind < RELATION:
+        if kind < OWN_ROWS:
             joint_rows(system, j, state, work)
+        elif kind in ON_CURVE:
+            rows_on_curve(system, j, state, work)
         elif kind == USER_ROWS:
             user_rows(system, j, state, work.result[0].time, work)
         elif kind == STIFF:
@@ -121,7 +167,7 @@ def driven_power(system, state, work) -> float:
     """Return the power of prescribed motions, multiplier times b, in the last solve of accelerations."""
     power = 0.0
     for j in range(system.joints.shape[0]):
-        if system.joints[j].kind >= RELATION:
+        if system.joints[j].kind >= OWN_ROWS:
             record = work.joint[j]
             _prescribed_speeds(system, j, state, work, record.target)
             for r in range(system.joints[j].rows):
@@ -133,7 +179,9 @@ def driven_power(system, state, work) -> float:
 def _push_other(system, j, state, multiplier, work):
     """Add A^T multiplier of an element that is not a joint to the wrenches."""
     joint, t = system.joints[j], work.result[0].time
-    if joint.kind == USER_ROWS:
+    if joint.kind in ON_CURVE:
+        push_across(joint, foot(system, joint, state), state, multiplier, work)
+    elif joint.kind == USER_ROWS:
         push_user_rows(system, j, state, t, multiplier, work)
     elif joint.kind == RELATION:
         relation = system.relations.relations[joint.number]
@@ -143,7 +191,7 @@ def _push_other(system, j, state, multiplier, work):
 @inlined
 def position_error(system, j, state, work):
     """Write the error of position of an element to its bias."""
-    if system.joints[j].kind >= RELATION:
+    if system.joints[j].kind >= OWN_ROWS:
         _position(system, j, state, work)
     else:
         joints.position_error(system.joints[j], state, work.joint[j].bias)
@@ -152,7 +200,7 @@ def position_error(system, j, state, work):
 @inlined
 def velocity_error(system, j, state, work):
     """Write the error of velocity of an element to its bias."""
-    if system.joints[j].kind >= RELATION:
+    if system.joints[j].kind >= OWN_ROWS:
         _velocity(system, j, state, work)
     else:
         joints.velocity_error(system.joints[j], state, work.joint[j].bias)
@@ -161,7 +209,7 @@ def velocity_error(system, j, state, work):
 @inlined
 def acceleration_bias(system, j, state, work):
     """Write the accelerations that an element requires, as its bias."""
-    if system.joints[j].kind >= RELATION:
+    if system.joints[j].kind >= OWN_ROWS:
         _acceleration(system, j, state, work)
     else:
         joints.acceleration_bias(system.joints[j], state, work.joint[j].bias)
@@ -170,7 +218,7 @@ def acceleration_bias(system, j, state, work):
 @inlined
 def row_target(system, j, state, relative, out):
     """Write the component of the errors of an element along each of its rows."""
-    if system.joints[j].kind >= RELATION:
+    if system.joints[j].kind >= OWN_ROWS:
         _target(system, j, state, relative, out)
     else:
         joint_target(system.joints[j], state, relative, out)
@@ -200,5 +248,5 @@ def prescribed_speeds(system, j, state, work, out):
 @inlined
 def push_other(system, j, state, multiplier, work):
     """Add A^T multiplier of an element that is not a joint to the wrenches."""
-    if system.joints[j].kind >= RELATION:
+    if system.joints[j].kind >= OWN_ROWS:
         _push_other(system, j, state, multiplier, work)

@@ -19,8 +19,8 @@ def unit_force(system, state, kind, number, axis, work):
     """Add the wrenches of a unit force; return the coordinate and its rate where it acts along one."""
     if kind == PUSHES:
         c = system.relations.coordinates[system.relations.pushes[number].coordinate]
-        push(c, state, 1.0, work)
-        return value(c, state), rate(c, state)
+        push(system, c, state, 1.0, work)
+        return value(system, c, state), rate(system, c, state)
     if kind == SPRINGS:
         one = system.springs[number]
         ex, ey, ez, _, ax, ay, az, bx, by, bz = line_of(one, state)

@@ -14,6 +14,7 @@ from carom.dynamics.curve import curve, find_piece
 from carom.dynamics.thresholds import ROTATION
 from carom.geometry.rotation import conjugate, multiply
 from carom.kinematics.coordinate import push, rate, value
+from carom.kinematics.curve import is_beyond, is_on_curve
 from carom.model.arrays import PRISMATIC
 from carom.model.parts_of_system import has_relations
 
@@ -52,9 +53,9 @@ def add_more_forces(system, state, work) -> float:
     for i in range(relations.pushes.shape[0]):
         one = relations.pushes[i]
         c = relations.coordinates[one.coordinate]
-        speed = rate(c, state)
-        force, free = push_force(relations, one, value(c, state), speed, t)
-        push(c, state, force, work)
+        speed = rate(system, c, state)
+        force, free = push_force(relations, one, value(system, c, state), speed, t)
+        push(system, c, state, force, work)
         power += free * speed
     for i in range(relations.forces.shape[0]):
         one, at = relations.forces[i], 0
@@ -78,7 +79,7 @@ def more_energy(system, state, t) -> float:
     total, relations = 0.0, system.relations
     for i in range(relations.pushes.shape[0]):
         one = relations.pushes[i]
-        stretch = value(relations.coordinates[one.coordinate], state) - one.rest
+        stretch = value(system, relations.coordinates[one.coordinate], state) - one.rest
         total += 0.5 * one.stiffness * stretch * stretch
     for i in range(relations.forces.shape[0]):
         one = relations.forces[i]
@@ -119,12 +120,19 @@ def spring_energy(system, spring, length):
     return 0.5 * spring.stiffness * (length - spring.rest_length) ** 2
 
 
-@unit(where=has_relations)
-def note_turns(system, state):
-    """Store the whole turns of all angles, after a trial step has been accepted."""
+@unit(where=has_relations, otherwise=False)
+def note_turns(system, state) -> bool:
+    """Store the whole turns of all angles, after a trial step has been accepted.
+
+    Return whether a point has left its curve.
+    """
+    left = False
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
-        c.reference = value(c, state)
+        c.reference = value(system, c, state)
+        if is_on_curve(c):
+            left = left or is_beyond(system.relations.curves[c.number], c.reference)
+    return left
 
 
 @kernel
@@ -143,9 +151,17 @@ def forget_turns(system):
 
 @unit(where=has_relations, otherwise=False)
 def turns_round(system, start, end, h) -> bool:
-    """Return whether an angle may turn so far in a step that its whole turns are not known."""
+    """Return whether an angle may turn so far in a step that its whole turns are not known.
+
+    That of a point on a curve is how far its direction may turn, so that its foot is found.
+    """
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
-        if c.kind != PRISMATIC and not h * max(abs(rate(c, start)), abs(rate(c, end))) <= ROTATION:
+        if c.kind == PRISMATIC:
+            continue
+        turn = h * max(abs(rate(system, c, start)), abs(rate(system, c, end)))
+        if is_on_curve(c):
+            turn *= system.relations.curves[c.number].sharpest
+        if not turn <= ROTATION:
             return True
     return False

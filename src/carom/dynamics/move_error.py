@@ -18,7 +18,7 @@ from carom.dynamics.explicit import copy_state
 from carom.dynamics.project import largest_position_error
 from carom.geometry.rotation import conjugate, log, multiply, rotate, rotate_back
 from carom.kinematics.joints import axis
-from carom.model.arrays import KNIFE_EDGE, RELATION, ROLLING, SLIDING, USER_ROWS
+from carom.model.arrays import KNIFE_EDGE, OWN_ROWS, ROLLING, SLIDING, USER_ROWS
 from carom.model.parts_of_system import has_joints
 
 
@@ -34,7 +34,7 @@ def error_of_move(system, start, h, end, work) -> float:
     work.result[0].time = t
     for j in range(system.joints.shape[0]):
         joint, bias = system.joints[j], work.joint[j].bias
-        if joint.kind < RELATION and joint.kind != KNIFE_EDGE and joint.parent >= 0:
+        if joint.kind < OWN_ROWS and joint.kind != KNIFE_EDGE and joint.parent >= 0:
             p, q = start[joint.parent].Q, end[joint.parent].Q
             turn_on(p, q, bias[:3])
             if joint.kind in SLIDING or joint.kind in ROLLING:
@@ -92,7 +92,7 @@ def mean_error(system, j, start, h, end, work):
         state = end if side == 1 else work.mean
         work.result[0].time = t + h if side == 1 else t
         velocity_error(system, j, state, work)
-        if joint.kind < RELATION:
+        if joint.kind < OWN_ROWS:
             along_rows(joint, start, state, bias)
         for k in range(6):
             target[k] -= 0.5 * h * bias[k]

@@ -17,6 +17,7 @@ from carom.dynamics.rotors import keep_rates
 from carom.dynamics.solve import solve, solve_near
 from carom.geometry.rotation import turn
 from carom.geometry.thresholds import EPSILON
+from carom.kinematics.curve import seek_feet
 from carom.model.parts_of_system import has_joints
 
 
@@ -96,6 +97,7 @@ def project_velocity(system, state, carried, work):
 def project_start(system, state, work):
     """Bring an initial state to the joints, for `Options.project_start`; return the remaining error."""
     error = 1.0
+    seek_feet(system, state)
     for _ in range(20):
         error = project_position(system, state, False, 1e-14, work)
         if error <= 1e-13:

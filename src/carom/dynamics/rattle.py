@@ -33,7 +33,7 @@ from carom.dynamics.kick import add_momentum, first_kick, second_kick
 from carom.dynamics.loops import dropped_rows, solve_factored
 from carom.dynamics.move_error import error_of_move
 from carom.dynamics.solve import joint_wrench, solve, solve_near
-from carom.model.arrays import LOOPS, RELATION
+from carom.model.arrays import LOOPS, OWN_ROWS
 from carom.model.parts_of_system import has_joints
 from carom.status import NO_CONVERGENCE
 
@@ -144,7 +144,7 @@ def _solve_factored(system, state, work):
 def keep_multipliers(system, state, work):
     """Store the multipliers of elements that are not joints: prescribed motions do work."""
     for j in range(system.joints.shape[0]):
-        if system.joints[j].kind >= RELATION:
+        if system.joints[j].kind >= OWN_ROWS:
             joint_wrench(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
 
 

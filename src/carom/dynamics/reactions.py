@@ -10,6 +10,7 @@ from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.elements import (
     acceleration_bias,
     build_rows,
+    force_on_curve,
     position_error,
     prescribed_speeds,
     row_target,
@@ -23,7 +24,8 @@ from carom.dynamics.solve import joint_wrench, solve
 from carom.dynamics.stiff import add_stiff
 from carom.dynamics.tree import joint_wrenches
 from carom.kinematics.coordinate import rate, value
-from carom.model.arrays import FOREST, LOOPS, RELATION
+from carom.kinematics.curve import is_on_curve, seek_feet, seek_foot
+from carom.model.arrays import FOREST, LOOPS, ON_CURVE, RELATION
 from carom.model.parts_of_system import has_relations
 
 
@@ -130,7 +132,7 @@ def follow_turns(system, saved, k):
         if k == 0:
             c.reference = 0.0
         else:
-            mean = 0.5 * (rate(c, saved.state[k - 1]) + rate(c, saved.state[k]))
+            mean = 0.5 * (rate(system, c, saved.state[k - 1]) + rate(system, c, saved.state[k]))
             c.reference += mean * (saved.series[k].t - saved.series[k - 1].t)
     for j in range(system.joints.shape[0]):
         if system.joints[j].kind == RELATION:
@@ -141,7 +143,10 @@ def follow_turns(system, saved, k):
                 relations.coordinates[term.coordinate].reference = angle
     for i in range(relations.coordinates.shape[0]):
         c = relations.coordinates[i]
-        c.reference = value(c, saved.state[k])
+        if is_on_curve(c):  # saved states may be far from each other
+            seek_foot(system, c, saved.state[k])
+        else:
+            c.reference = value(system, c, saved.state[k])
 
 
 @entry
@@ -165,6 +170,8 @@ def reactions(system, augment, saved, rows, work, out):
         solve(system, state, True, work)
         share(system, augment, state, work)
         for j in range(system.joints.shape[0]):
+            if system.joints[j].kind in ON_CURVE:
+                force_on_curve(system, system.joints[j], state, work.joint[j].reaction)
             for i in range(6):
                 out[k, j, i] = work.joint[j].reaction[i]
 
@@ -190,6 +197,7 @@ def saved_turns(system, saved, out):
 @kernel
 def errors_at(system, state, work, position, velocity):
     """Write the errors of position and velocity of each row of each element, (J, 6) each."""
+    seek_feet(system, state)
     for j in range(system.joints.shape[0]):
         position_error(system, j, state, work)
         row_target(system, j, state, work.joint[j].bias, position[j])

@@ -38,7 +38,7 @@ def relation_rows(system, j, state, work):
         term = system.relations.terms[i]
         c = system.relations.coordinates[term.coordinate]
         child = solver.sides[max(0, term.child_side)].A
-        add_rows(c, state, term.factor, child, solver.sides[max(0, term.parent_side)].A)
+        add_rows(system, c, state, term.factor, child, solver.sides[max(0, term.parent_side)].A)
     for s in range(solver.rows[j].first, solver.rows[j].last):
         mass_row(system, solver.sides[s], 0, work)
 
@@ -49,7 +49,7 @@ def relation_error(system, relation, state, t):
     total = -prescribed(system.relations, relation, t)[0]
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]
-        total += term.factor * value(system.relations.coordinates[term.coordinate], state)
+        total += term.factor * value(system, system.relations.coordinates[term.coordinate], state)
     return total
 
 
@@ -59,7 +59,7 @@ def relation_speed(system, relation, state, t):
     total = -prescribed(system.relations, relation, t)[1]
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]
-        total += term.factor * rate(system.relations.coordinates[term.coordinate], state)
+        total += term.factor * rate(system, system.relations.coordinates[term.coordinate], state)
     return total
 
 
@@ -69,7 +69,8 @@ def relation_bias(system, relation, state, t, out):
     total = prescribed(system.relations, relation, t)[2]
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]
-        total -= term.factor * drift(system.relations.coordinates[term.coordinate], state, out)
+        c = system.relations.coordinates[term.coordinate]
+        total -= term.factor * drift(system, c, state, out)
     return total
 
 
@@ -78,4 +79,5 @@ def push_relation(system, relation, state, force, work):
     """Add the wrenches of a multiplier of the row."""
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]
-        push(system.relations.coordinates[term.coordinate], state, force * term.factor, work)
+        c = system.relations.coordinates[term.coordinate]
+        push(system, c, state, force * term.factor, work)

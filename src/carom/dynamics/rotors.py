@@ -24,7 +24,7 @@ def rotor_energy(system, state) -> float:
     total = 0.0
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
-        speed = rate(system.relations.coordinates[rotor.coordinate], state)
+        speed = rate(system, system.relations.coordinates[rotor.coordinate], state)
         total += 0.5 * rotor.inertia * speed * speed
     return total
 
@@ -34,7 +34,7 @@ def note_rates(system, state):
     """Store the rates of `state`."""
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
-        rotor.rate = rate(system.relations.coordinates[rotor.coordinate], state)
+        rotor.rate = rate(system, system.relations.coordinates[rotor.coordinate], state)
 
 
 @unit(where=has_relations)
@@ -42,7 +42,8 @@ def add_rates(system, state, work):
     """Add the change by the motions of the last solve to the stored rates."""
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
-        rotor.rate += motion_along(system.relations.coordinates[rotor.coordinate], state, work)
+        c = system.relations.coordinates[rotor.coordinate]
+        rotor.rate += motion_along(system, c, state, work)
 
 
 @unit(where=has_relations)
@@ -51,7 +52,7 @@ def keep_rates(system, state, work):
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
         c = system.relations.coordinates[rotor.coordinate]
-        push(c, state, -rotor.inertia * (rate(c, state) - rotor.rate), work)
+        push(system, c, state, -rotor.inertia * (rate(system, c, state) - rotor.rate), work)
 
 
 @unit(where=has_relations, otherwise=(0.0, 0.0))
@@ -61,8 +62,8 @@ def energy_of_change(system, before, after) -> tuple[float, float]:
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
         c = system.relations.coordinates[rotor.coordinate]
-        speed = rate(c, after)
-        change = speed - rate(c, before)
+        speed = rate(system, c, after)
+        change = speed - rate(system, c, before)
         a += 0.5 * rotor.inertia * change * change
         b += rotor.inertia * speed * change
     return a, b
@@ -75,6 +76,6 @@ def work_of_change(system, state, work) -> float:
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
         c = system.relations.coordinates[rotor.coordinate]
-        speed = motion_along(c, state, work)
-        total += rotor.inertia * speed * (rate(c, state) - speed)
+        speed = motion_along(system, c, state, work)
+        total += rotor.inertia * speed * (rate(system, c, state) - speed)
     return total

@@ -10,7 +10,7 @@ from carom.dynamics.tree import solve_tree
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.pose import keep_poses, same_pose
 from carom.kinematics.rows import direction
-from carom.model.arrays import FOREST, NO_JOINTS, RELATION
+from carom.model.arrays import FOREST, NO_JOINTS, OWN_ROWS
 
 
 @unit
@@ -65,8 +65,8 @@ def joint_wrench(joint, state, multiplier, reaction):
     For an element that is not a joint, write the multipliers themselves.
     """
     for k in range(6):
-        reaction[k] = multiplier[k] if joint.kind >= RELATION and k < joint.rows else 0.0
-    if joint.kind >= RELATION:
+        reaction[k] = multiplier[k] if joint.kind >= OWN_ROWS and k < joint.rows else 0.0
+    if joint.kind >= OWN_ROWS:
         return
     for r in range(joint.rows):
         d = direction(joint, r, state)

@@ -35,7 +35,7 @@ def stretch(system, one, state):
     """Return the stretch s of a spring and its rate."""
     if one.coordinate >= 0:
         c = system.relations.coordinates[one.coordinate]
-        return value(c, state) - one.rest, rate(c, state)
+        return value(system, c, state) - one.rest, rate(system, c, state)
     ex, ey, ez, length, ax, ay, az, bx, by, bz = line_of(one, state)
     ux, uy, uz = point_velocity(state, one.child, bx, by, bz)
     vx, vy, vz = point_velocity(state, one.parent, ax, ay, az)
@@ -46,7 +46,7 @@ def stretch(system, one, state):
 def along_row(system, one, state, work):
     """Return J times the motions of the last solve."""
     if one.coordinate >= 0:
-        return motion_along(system.relations.coordinates[one.coordinate], state, work)
+        return motion_along(system, system.relations.coordinates[one.coordinate], state, work)
     ex, ey, ez, _, ax, ay, az, bx, by, bz = line_of(one, state)
     total = 0.0
     for side in range(2):
@@ -70,7 +70,7 @@ def stiff_rows(system, j, state, work):
     child = solver.sides[max(0, one.child_side)].A
     parent = solver.sides[max(0, one.parent_side)].A
     if one.coordinate >= 0:
-        add_rows(system.relations.coordinates[one.coordinate], state, 1.0, child, parent)
+        add_rows(system, system.relations.coordinates[one.coordinate], state, 1.0, child, parent)
     else:
         ex, ey, ez, _, ax, ay, az, bx, by, bz = line_of(one, state)
         for side in range(2):
@@ -96,7 +96,7 @@ def add_stiff(system, state, work) -> float:
         f = -(one.stiffness * s + one.damping * speed)
         power -= one.damping * speed * speed
         if one.coordinate >= 0:
-            push(system.relations.coordinates[one.coordinate], state, f, work)
+            push(system, system.relations.coordinates[one.coordinate], state, f, work)
             continue
         ex, ey, ez, _, ax, ay, az, bx, by, bz = line_of(one, state)
         add_force(work, one.child, (bx, by, bz), (f * ex, f * ey, f * ez))

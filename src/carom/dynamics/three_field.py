@@ -60,7 +60,7 @@ from carom.geometry.rotation import rotate, rotate_back, turn
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.kinematics.rows import direction
 from carom.kinematics.wrench import add_force
-from carom.model.arrays import LOOPS, RELATION
+from carom.model.arrays import LOOPS, OWN_ROWS
 from carom.model.workspace import RESTS
 from carom.status import NO_CONVERGENCE
 
@@ -194,7 +194,7 @@ def add_row_impulses(system, j, state, multiplier, work):
     """Add A^T multiplier of an element to the wrenches, rows taken at `state`."""
     joint = system.joints[j]
     c, p = joint.child, joint.parent
-    if joint.kind >= RELATION:
+    if joint.kind >= OWN_ROWS:
         push_other(system, j, state, multiplier, work)
         return
     cx, cy, cz = child_arm(joint, state)

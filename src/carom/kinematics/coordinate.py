@@ -2,6 +2,7 @@
 
     q' = t_a . (w_c - w_p) + t_l . (velocity of the child's anchor minus that of the parent at this point)
 
+A displacement may be along a curve (`carom.kinematics.curve`), with its tangent as the axis.
 An angle is known up to whole turns; the result is the value nearest to `reference`, the value at the start of
 the trial step, which is short enough for this (`carom.dynamics.more_forces.turns_round`). Either side may be
 the ground (the second angle of a universal joint is measured from the child).
@@ -13,16 +14,17 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.geometry.rotation import cross
+from carom.kinematics.curve import find_foot, is_on_curve, relative_bias
 from carom.kinematics.joints import (
     acceleration_bias,
     anchor_gap,
     anchor_speed,
-    arm,
     axis,
+    child_arm,
     parent_arm,
 )
 from carom.kinematics.wrench import add_force
-from carom.model.arrays import PRISMATIC
+from carom.model.arrays import PRISMATIC, REVOLUTE
 
 TURN = 2.0 * math.pi
 
@@ -37,9 +39,21 @@ def angular_velocity(state, b):
 
 
 @kernel
-def value(c, state):
+def along(system, c, state):
+    """Return the axis along, or about, which a coordinate grows; that of a curve is its tangent at the foot."""
+    if is_on_curve(c):
+        find_foot(system, c, state)
+        a = system.relations.curves[c.number].along
+        return a[0], a[1], a[2]
+    return axis(state, c.parent, c.parent_frame, 0)
+
+
+@kernel
+def value(system, c, state):
     """Return the coordinate: an angle [rad] or a displacement [m], 0 if the frames of both sides agree."""
-    ax, ay, az = axis(state, c.parent, c.parent_frame, 0)
+    ax, ay, az = along(system, c, state)
+    if is_on_curve(c):
+        return system.relations.curves[c.number].s
     if c.kind == PRISMATIC:
         dx, dy, dz = anchor_gap(c, state)
         return ax * dx + ay * dy + az * dz
@@ -51,10 +65,10 @@ def value(c, state):
 
 
 @kernel
-def rate(c, state):
+def rate(system, c, state):
     """Return q'."""
-    ax, ay, az = axis(state, c.parent, c.parent_frame, 0)
-    if c.kind == PRISMATIC:
+    ax, ay, az = along(system, c, state)
+    if c.kind != REVOLUTE:
         ux, uy, uz = anchor_speed(c, state)
     else:
         wx, wy, wz = angular_velocity(state, c.child)
@@ -64,9 +78,12 @@ def rate(c, state):
 
 
 @kernel
-def drift(c, state, out):
+def drift(system, c, state, out):
     """Return q'' for bodies without acceleration; `out` is workspace (6,)."""
-    ax, ay, az = axis(state, c.parent, c.parent_frame, 0)
+    ax, ay, az = along(system, c, state)
+    if is_on_curve(c):
+        lx, ly, lz = relative_bias(c, state)
+        return -(ax * lx + ay * ly + az * lz)
     if c.kind == PRISMATIC:
         acceleration_bias(c, state, out)
         return -(ax * out[3] + ay * out[4] + az * out[5])
@@ -77,12 +94,12 @@ def drift(c, state, out):
 
 
 @kernel
-def push(c, state, force, work):
+def push(system, c, state, force, work):
     """Add the wrenches of a force [N] or torque [N m] along the coordinate to both bodies."""
-    ax, ay, az = axis(state, c.parent, c.parent_frame, 0)
+    ax, ay, az = along(system, c, state)
     fx, fy, fz = force * ax, force * ay, force * az
-    if c.kind == PRISMATIC:
-        rx, ry, rz = arm(state, c.child, c.child_anchor)
+    if c.kind != REVOLUTE:
+        rx, ry, rz = child_arm(c, state)
         add_force(work, c.child, (rx, ry, rz), (fx, fy, fz))
         rx, ry, rz = parent_arm(c, state)
         add_force(work, c.parent, (rx, ry, rz), (-fx, -fy, -fz))
@@ -97,18 +114,16 @@ def push(c, state, force, work):
 
 
 @kernel
-def add_rows(c, state, factor, child, parent):
+def add_rows(system, c, state, factor, child, parent):
     """Add factor times the row of the coordinate to row 0 of `child` and `parent` (rows of the two sides)."""
-    ax, ay, az = axis(state, c.parent, c.parent_frame, 0)
+    ax, ay, az = along(system, c, state)
     ax, ay, az = factor * ax, factor * ay, factor * az
     for side in range(2):
         b, A, s = (c.child, child, 1.0) if side == 0 else (c.parent, parent, -1.0)
         if b < 0:
             continue
-        if c.kind == PRISMATIC:
-            rx, ry, rz = arm(state, b, c.child_anchor)
-            if side == 1:
-                rx, ry, rz = parent_arm(c, state)
+        if c.kind != REVOLUTE:
+            rx, ry, rz = child_arm(c, state) if side == 0 else parent_arm(c, state)
             tx, ty, tz = cross(rx, ry, rz, ax, ay, az)
             A[0, 0] += s * ax
             A[0, 1] += s * ay
@@ -121,19 +136,17 @@ def add_rows(c, state, factor, child, parent):
 
 
 @kernel
-def motion_along(c, state, work):
+def motion_along(system, c, state, work):
     """Return the change of q' by the motions that the last solve wrote."""
-    ax, ay, az = axis(state, c.parent, c.parent_frame, 0)
+    ax, ay, az = along(system, c, state)
     total = 0.0
     for side in range(2):
         b, s = (c.child, 1.0) if side == 0 else (c.parent, -1.0)
         if b < 0:
             continue
         m = work.body[b].motion
-        if c.kind == PRISMATIC:
-            rx, ry, rz = arm(state, b, c.child_anchor)
-            if side == 1:
-                rx, ry, rz = parent_arm(c, state)
+        if c.kind != REVOLUTE:
+            rx, ry, rz = child_arm(c, state) if side == 0 else parent_arm(c, state)
             ux, uy, uz = cross(m[3], m[4], m[5], rx, ry, rz)
             ux, uy, uz = ux + m[0], uy + m[1], uz + m[2]
         else:
@@ -152,5 +165,5 @@ def speeds_of(system, c, state):
             v, w, size = state[b].v, state[b].w, system.bodies[b].extent
             speed = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
             spin = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
-            total += speed + size * spin if c.kind == PRISMATIC else spin + speed / size
+            total += speed + size * spin if c.kind != REVOLUTE else spin + speed / size
     return total

@@ -19,6 +19,7 @@ from carom._compiled.decorators import kernel
 from carom.geometry.rotation import cross, rotate
 from carom.model.arrays import (
     BALL,
+    CURVE_ON_POINT,
     DISTANCE,
     KNIFE_EDGE,
     RIGID,
@@ -55,8 +56,14 @@ def child_arm(joint, state):
     """Return the arm r_c of the child (3), world; for a rolling body it ends at the point on the plane.
 
     It is -r n for a sphere, and -r e for a disc, where n is the normal of the plane, a the axis of the disc,
-    and e the unit vector along n - (n.a) a.
+    and e the unit vector along n - (n.a) a. That of a curve ends at the point of the parent.
     """
+    if joint.kind == CURVE_ON_POINT:
+        c, p = joint.child, joint.parent
+        rx, ry, rz = arm(state, p, joint.parent_anchor)
+        if p >= 0:
+            rx, ry, rz = rx + state[p].x[0], ry + state[p].x[1], rz + state[p].x[2]
+        return rx - state[c].x[0], ry - state[c].x[1], rz - state[c].x[2]
     if joint.kind not in ROLLING:
         return arm(state, joint.child, joint.child_anchor)
     nx, ny, nz = axis(state, joint.parent, joint.parent_frame, 0)

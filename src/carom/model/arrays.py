@@ -18,15 +18,22 @@ from carom.collision.layout import Hulls
 from carom.collision.level_layout import Levels
 from carom.scene import joints
 
-#: kinds of joints in kernels
-KIND = {definition: number for number, definition in enumerate(joints.JOINTS)}
+#: kinds of joints in kernels; those on curves come last
+KIND = {
+    definition: number
+    for number, definition in enumerate(sorted(joints.JOINTS, key=lambda one: one.guide == "curve"))
+}
 REVOLUTE, PRISMATIC = KIND[joints.Revolute], KIND[joints.Prismatic]
 DISTANCE, KNIFE_EDGE = KIND[joints.Distance], KIND[joints.KnifeEdge]
 UNIVERSAL, SCREW = KIND[joints.Universal], KIND[joints.Screw]
 ROLLING_SPHERE, ROLLING_DISC = KIND[joints.RollingSphere], KIND[joints.RollingDisc]
-#: other kinds in the table of joints: a relation of coordinates of joints; rows of the user's own; a spring and
-#: damper as a row, for the implicit step; inertia along a coordinate as a row
+#: kinds in the table of joints whose rows are numbers of their own: a point of the child on a curve of the
+#: parent, and a curve of the child on a point of the parent; a relation of coordinates of joints; rows of the
+#: user's own; a spring and damper as a row, for the implicit step; inertia along a coordinate as a row
+POINT_ON_CURVE, CURVE_ON_POINT = KIND[joints.PointOnCurve], KIND[joints.CurveOnPoint]
+ON_CURVE = (POINT_ON_CURVE, CURVE_ON_POINT)
 RELATION, USER_ROWS, STIFF, INERTIA = range(len(KIND), len(KIND) + 4)
+OWN_ROWS = min(ON_CURVE)  # the first of these kinds
 
 
 def _kinds(chosen) -> tuple[int, ...]:
@@ -37,7 +44,7 @@ def _kinds(chosen) -> tuple[int, ...]:
 ALONG = _kinds(lambda joint: joint.guide == "line")
 #: it moves in the plane perpendicular to this direction
 WITHIN = _kinds(lambda joint: joint.guide == "plane")
-SLIDING = ALONG + WITHIN
+SLIDING = (*ALONG, *WITHIN, POINT_ON_CURVE)
 #: the child rolls on a plane of the parent
 ROLLING = (ROLLING_SPHERE, ROLLING_DISC)
 #: the child turns about the first direction alone
@@ -83,8 +90,31 @@ JOINT = [
 ]
 
 #: a coordinate of a joint: an angle about (kind REVOLUTE), or a displacement along (PRISMATIC), the first axis
-#: of the parent's frame; either side may be the ground
+#: of the parent's frame, or arc length along a curve (ON_CURVE); either side may be the ground
 COORDINATE = JOINT
+
+#: the curve of a coordinate with its pieces, and workspace: the foot, which is the point of the curve nearest
+#: to that of the joint, in the last state that was asked for, in world axes
+CURVE = [
+    ("first", "i8"),  # range of its pieces
+    ("last", "i8"),
+    ("low", "f8"),  # its ends, as values of the coordinate
+    ("high", "f8"),
+    ("period", "f8"),  # its length if it is closed, else 0
+    ("sharpest", "f8"),  # largest curvature
+    ("x", "f8", 3),  # last place on the curve, in axes of its body; derivatives by the coordinate
+    ("slope", "f8", 3),
+    ("second", "f8", 3),
+    ("s", "f8"),  # coordinate of the foot
+    ("along", "f8", 3),  # direction in which it grows as the child moves relative to the parent
+    ("normal", "f8", (2, 3)),
+    ("gap", "f8", 2),  # position of the child beside the parent, along both normals
+    ("bend", "f8", 2),  # curvature of its path, along both normals
+    ("ahead", "f8"),  # 1 - curvature vector . gap: rate along the curve = speed / ahead
+]
+
+#: a piece of a curve: a polynomial of degree 5 in s - start, in axes of the body of the curve
+CURVE_PIECE = [("start", "f8"), ("c", "f8", (6, 3)), ("normal", "f8", 3)]  # normal: about across it
 
 #: a relation: sum of factor times coordinate = f(t)
 RELATION_ROW = [
@@ -345,6 +375,8 @@ class Relations(NamedTuple):
     stiff: np.recarray  # STIFF_SPRING
     frictions: np.recarray  # (F,) FRICTION
     rotors: np.recarray  # ROTOR
+    curves: np.recarray  # CURVE
+    curve_pieces: np.recarray  # CURVE_PIECE
     named: np.ndarray  # bodies of the user's functions
     read: np.ndarray  # arguments of the user's functions
     write: np.ndarray  # and results

@@ -180,6 +180,8 @@ def _joints(scene, moments, placement, elements, options, loops):
         joints.parent_anchor[j], joints.child_anchor[j] = p.point(a), c.point(b)
         joints.parent_frame[j], joints.child_frame[j] = p.axes(world), c.axes(world)
         joints.length[j] = definition.scale()
+        if definition.guide == "curve":
+            joints.number[j] = elements.coordinates.number(joint, 0)
     touching = [[b for b in (c, p) if b >= 0] for p, c in zip(parent.tolist(), child.tolist())]
     for j, bodies in enumerate(elements.touching, start=number):
         joints.number[j] = elements.numbers[j - number]

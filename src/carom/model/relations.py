@@ -10,6 +10,7 @@ from carom._compiled.composed import is_compiled, joined, once
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
 from carom.model import arrays
+from carom.model.curves import Curves
 from carom.model.more_forces import MoreForces, Pieces, is_damped_spring
 from carom.model.placement import Placement
 from carom.scene.constraints import Coupling, Rows, coordinate_kind
@@ -25,6 +26,7 @@ class Coordinates:
         self.placement = placement
         self.rows: list[np.recarray] = []
         self.numbers: dict[tuple[int, int], int] = {}
+        self.curves = Curves()
 
     def number(self, joint: Joint, coordinate: int) -> int:
         """Return the index of a coordinate in the table; a new one is added."""
@@ -46,6 +48,9 @@ class Coordinates:
     def _row(self, joint, coordinate):
         d, made = joint.definition, table(arrays.COORDINATE, 1)
         row = made[0]
+        if d.guide == "curve":
+            self.curves.add(joint, self.placement, row)
+            return made
         turns = coordinate_kind(joint, coordinate) == "turn"
         first, second = (self.placement.side(joint, k) for k in range(2))
         frame = d.coordinate_frame(coordinate)
@@ -202,11 +207,13 @@ class Elements:
             (arrays.PUSH, more.pushes), (arrays.USER_FORCE, more.forces), (arrays.STIFF_SPRING, self.stiff),
             (arrays.FRICTION, more.frictions), (arrays.ROTOR, self.rotors),
         )  # fmt: skip
+        curves = self.coordinates.curves
         named = np.array(more.named, np.int64)
         read, write = np.zeros((2, max(self.width, more.width)))
         relations = _joined(arrays.RELATION_ROW, self.relations)
         user = _joined(arrays.USER_ROW, self.user)
         tables = relations, listed, user, self.pieces.rows, *(_joined(*one) for one in forces)
+        tables += _joined(arrays.CURVE, curves.rows), _joined(arrays.CURVE_PIECE, curves.pieces)
         return arrays.Relations._make([1, rows, *tables, named, read, write])
 
 
@@ -215,7 +222,7 @@ def no_relations() -> arrays.Relations:
     """Return the tables of a scene without coordinates."""
     a, none = arrays, np.zeros(0)
     kinds = a.COORDINATE, a.RELATION_ROW, a.TERM, a.USER_ROW, a.PIECE, a.PUSH, a.USER_FORCE
-    kinds += a.STIFF_SPRING, a.FRICTION, a.ROTOR
+    kinds += a.STIFF_SPRING, a.FRICTION, a.ROTOR, a.CURVE, a.CURVE_PIECE
     named = np.zeros(0, dtype=np.int64)
     return a.Relations._make([0, *(table(kind, 0) for kind in kinds), named, none, none])
 

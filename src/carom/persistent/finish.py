@@ -56,7 +56,8 @@ def land(model, data, label, k) -> bool:
     for i in range(k):
         if group.closed[i].turns == JOINT:
             one = system.relations.frictions[group.closed[i].active]
-            place_coordinate(system.relations.coordinates[one.coordinate], end, group.points[0][i])
+            c = system.relations.coordinates[one.coordinate]
+            place_coordinate(system, c, end, group.points[0][i])
     onto_tangents(system, data, k, count)
     show(count, end, group, work)
     return True

@@ -14,9 +14,9 @@ from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.solve import free_body
 from carom.geometry.thresholds import ROUND_OFF
 from carom.impact.workspace import P
-from carom.kinematics.coordinate import drift, motion_along, push, speeds_of
-from carom.kinematics.joints import arm, axis, parent_arm
-from carom.model.arrays import PRISMATIC
+from carom.kinematics.coordinate import along, drift, motion_along, push, speeds_of
+from carom.kinematics.joints import child_arm, parent_arm
+from carom.model.arrays import REVOLUTE
 from carom.persistent.thresholds import MOTOR_COMPLIANCE
 
 JOINT = 5  # `turns` of such an entry, and of its point if the coordinate is a displacement
@@ -43,7 +43,7 @@ def _add_frictions(system, state, k, group, work) -> int:
         write_closed(-1, 0, point.core, closed_point)
         closed_point.turns, closed_point.active, closed_point.parent = JOINT, i, -1
         closed_point.own, closed_point.weight = 1, 1.0
-        place_coordinate(c, state, point)
+        place_coordinate(system, c, state, point)
         closed_point.spring = MOTOR_COMPLIANCE * response_alone(system, c, state, work)
         group.mu[k] = relations.frictions[i].bound
         k += 1
@@ -51,33 +51,33 @@ def _add_frictions(system, state, k, group, work) -> int:
 
 
 @kernel
-def place_coordinate(c, state, point):
+def place_coordinate(system, c, state, point):
     """Write a coordinate as a point: its row is the second of the point."""
-    nx, ny, nz = axis(state, c.parent, c.parent_frame, 0)
+    nx, ny, nz = along(system, c, state)
     s = 1.0 if c.child >= 0 else -1.0
     point.a, point.b = (c.child, c.parent) if c.child >= 0 else (c.parent, -1)
     tangents(s * nx, s * ny, s * nz, point.axes)
     for k in range(3):
         point.core[k], point.arm_a[k], point.arm_b[k] = 0.0, 0.0, 0.0
-    if c.kind == PRISMATIC:
-        r = arm(state, c.child, c.child_anchor) if c.child >= 0 else parent_arm(c, state)
+    if c.kind != REVOLUTE:
+        r = child_arm(c, state) if c.child >= 0 else parent_arm(c, state)
         point.arm_a[0], point.arm_a[1], point.arm_a[2] = r
         if c.child >= 0:
             r = parent_arm(c, state)
             point.arm_b[0], point.arm_b[1], point.arm_b[2] = r
     point.gap, point.length = 0.0, 1.0
-    point.turns = JOINT if c.kind == PRISMATIC else PIVOT
+    point.turns = PIVOT if c.kind == REVOLUTE else JOINT
 
 
 @kernel
 def response_alone(system, c, state, work):
     """Return the acceleration of a coordinate by a unit force along it, of its bodies without joints."""
     clear_wrenches(work)
-    push(c, state, 1.0, work)
+    push(system, c, state, 1.0, work)
     for b in (c.child, c.parent):
         if b >= 0:
             free_body(system.bodies[b], state[b].Q, work.body[b])
-    return motion_along(c, state, work)
+    return motion_along(system, c, state, work)
 
 
 @kernel
@@ -85,7 +85,7 @@ def drift_of_coordinate(system, i, state, work):
     """Return q'' of the coordinate of friction i for bodies without acceleration."""
     relations = system.relations
     c = relations.coordinates[relations.frictions[i].coordinate]
-    return drift(c, state, work.joint[0].target)
+    return drift(system, c, state, work.joint[0].target)
 
 
 @kernel

@@ -124,8 +124,9 @@ def _touches(d: JointFriction, joint: jc.Sides, value: np.ndarray, states) -> np
     if coordinate_kind(d.joint, d.coordinate) == "turn":
         rows["moment"], rows["other_moment"] = axis, -axis
         return rows
-    anchor = jc.subtract(jc.add(child.position, child.arm), parent.position)
-    arms = (np.atleast_2d(np.array(arm).T) for arm in (child.arm, anchor))
+    own = jc.child_arm(joint, parent, child)
+    anchor = jc.subtract(jc.add(child.position, own), parent.position)
+    arms = (np.atleast_2d(np.array(arm).T) for arm in (own, anchor))
     rows["push"] = axis
     rows["moment"], rows["other_moment"] = (s * np.cross(a, axis) for s, a in zip((1, -1), arms))
     return rows

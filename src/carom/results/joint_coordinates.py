@@ -17,6 +17,7 @@ from carom.scene import joints as j
 from carom.scene.joints import Joint
 
 TURN, DEGREES = 2.0 * math.pi, 180.0 / math.pi
+ON_CURVE = (j.PointOnCurve, j.CurveOnPoint)
 Vector = tuple[Any, Any, Any]
 Quaternion = tuple[Any, Any, Any, Any]
 
@@ -36,6 +37,7 @@ class Sides(NamedTuple):
     parent: Side
     child: Side
     axes: list[Vector]  # of its coordinates, in the definition
+    point: Vector  # the anchor in the definition
 
 
 def sides_of(joint: Joint) -> Sides:
@@ -48,7 +50,7 @@ def sides_of(joint: Joint) -> Sides:
     parts = zip((joint.parent, joint.child), frames, points)
     axes = [_numbers(d.coordinate_frame(k)[:, 0]) for k in range(len(d.coordinates))]
     parent, child = (side_of(*part) for part in parts)
-    return Sides(d, parent, child, axes)
+    return Sides(d, parent, child, axes, _numbers(joint.anchor()))
 
 
 def side_of(body, frame, point) -> Side:
@@ -81,7 +83,9 @@ def coordinates(joint: Sides, states, t: np.ndarray | None = None) -> tuple[np.n
         return turned, np.array(rotate(conjugate(p.turn), spin)).T
     gap = subtract(add(c.position, c.arm), add(p.position, p.arm))
     speed = subtract(add(c.velocity, cross(c.spin, c.arm)), add(p.velocity, cross(p.spin, p.arm)))
-    if isinstance(d, j.Distance):
+    if d.guide == "curve":
+        pairs = [_along_curve(joint, p, c)]
+    elif isinstance(d, j.Distance):
         length = np.sqrt(dot(gap, gap))
         pairs = [(length, dot(gap, speed) / length)]
     elif isinstance(d, j.Universal):
@@ -96,11 +100,12 @@ def coordinates(joint: Sides, states, t: np.ndarray | None = None) -> tuple[np.n
                 pairs.append((angle, dot(along, spin)))
             else:
                 pairs.append((dot(along, gap), dot(along, speed)))
-    for k, kind in enumerate(d.coordinates):
-        if kind == "turn":
-            angle, rate = pairs[k]
-            counted = angle - TURN * round(angle / TURN) if t is None else unwrapped(angle, rate, t)
-            pairs[k] = counted, rate
+    for k in range(len(d.coordinates)):
+        whole = period(d, k)
+        if whole > 0.0:
+            q, rate = pairs[k]
+            q = q - whole * round(q / whole) if t is None else unwrapped(q, rate, t, whole)
+            pairs[k] = q, rate
     if isinstance(d, j.Screw):  # the displacement gives the angle with all whole turns
         pairs[0] = pairs[1][0] / d.scale(), pairs[0][1]
     none = np.zeros((0,) if t is None else (len(t), 0))
@@ -118,9 +123,48 @@ def _of_cross(d: j.Universal, relative: Quaternion, turns, spin: Vector, atan2) 
     return [(angle, dot(axis, spin)) for angle, axis in zip(angles, axes)]
 
 
+def period(d: j.JointDefinition, k: int) -> float:
+    """Return the change of coordinate k after which all is as before: a turn, or a closed curve; 0 for none."""
+    if isinstance(d, ON_CURVE):
+        return d.curve.length if d.curve.closed else 0.0
+    return TURN if d.coordinates[k] == "turn" else 0.0
+
+
+def _along_curve(joint: Sides, p: Placed, c: Placed) -> tuple[Any, Any]:
+    """Return arc length and rate of a joint on a curve."""
+    d: Any = joint.definition
+    s, tangent, velocity = _foot(joint, p, c)
+    rate = np.sum(tangent * velocity, axis=1)
+    q = s - d.curve.nearest(joint.point)
+    return (q, rate) if np.ndim(p.turn[0]) or np.ndim(c.turn[0]) else (float(q[0]), float(rate[0]))
+
+
+def _foot(joint: Sides, p: Placed, c: Placed) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return arc length (T,), tangent and velocity (T, 3) of a point on a curve, in axes of its definition."""
+    d: Any = joint.definition
+    owner, point = (p, c) if isinstance(d, j.PointOnCurve) else (c, p)
+    gap = subtract(add(point.position, point.arm), add(owner.position, owner.arm))
+    arm = add(owner.arm, gap)
+    speed = subtract(point.velocity, add(owner.velocity, cross(owner.spin, arm)))
+    speed = add(speed, cross(point.spin, point.arm))
+    back = conjugate(owner.turn)
+    place, velocity = (
+        np.atleast_2d(np.array(np.broadcast_arrays(*rotate(back, one))).T) for one in (gap, speed)
+    )
+    s = d.curve.feet(place + joint.point, velocity)
+    return s, d.curve.tangent(s), velocity
+
+
 def direction(joint: Sides, states, k: int) -> Vector:
     """Return the axis along, or about, which coordinate k changes; it turns with the parent, or the child."""
     d, second = joint.definition, isinstance(joint.definition, j.Universal) and k == 1
+    if isinstance(d, ON_CURVE):
+        p, c = (placed(side, states) for side in (joint.parent, joint.child))
+        tangent = _foot(joint, p, c)[1].T
+        tangent = tangent if states.position.ndim == 3 else tangent[:, 0]
+        if isinstance(d, j.PointOnCurve):
+            return rotate(p.turn, tangent)
+        return rotate(c.turn, -tangent)
     axis = joint.axes[k]
     if isinstance(d, j.Universal):
         axis = _numbers(d.axis_child if second else d.axis_parent)
@@ -141,6 +185,13 @@ def units(joint: Joint, degrees: bool = False) -> list[str]:
     if isinstance(d, j.Spherical):
         return [angle] * 3
     return [angle if kind == "turn" else "m" for kind in d.coordinates]
+
+
+def child_arm(joint: Sides, p: Placed, c: Placed) -> Vector:
+    """Return the arm of the child to where a joint acts: its anchor, or that of the parent on its curve."""
+    if isinstance(joint.definition, j.CurveOnPoint):
+        return subtract(add(p.position, p.arm), c.position)
+    return c.arm
 
 
 class Placed(NamedTuple):
@@ -179,11 +230,11 @@ def of_scene(scene, joint) -> Joint:
     return scene[joint.name]
 
 
-def unwrapped(angle: np.ndarray, rate: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Return angles (T,) with whole turns, counted with the mean rates between saved times."""
-    ahead = 0.5 * (rate[1:] + rate[:-1]) * np.diff(t) - np.diff(angle)
-    turns = np.cumsum(np.round(ahead / TURN))
-    return angle + TURN * np.concatenate([[0.0], turns])
+def unwrapped(q: np.ndarray, rate: np.ndarray, t: np.ndarray, whole: float) -> np.ndarray:
+    """Return coordinates (T,) with whole turns or laps, counted with the mean rates between saved times."""
+    ahead = 0.5 * (rate[1:] + rate[:-1]) * np.diff(t) - np.diff(q)
+    turns = np.cumsum(np.round(ahead / whole))
+    return q + whole * np.concatenate([[0.0], turns])
 
 
 def add(a, b):

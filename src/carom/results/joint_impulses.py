@@ -105,7 +105,6 @@ class _Mechanism:
         self.functions, self.to_principal = compiled.functions, compiled.to_principal
         self.joints = [jc.sides_of(joint) for joint in self.scene.joints]
         self.children = [joint.child.index for joint in self.scene.joints]
-        self.anchors = np.array([sides.child.anchor for sides in self.joints])
         self.rotors = [
             force.definition for force in self.scene.forces
             if isinstance(force.definition, JointInertia)
@@ -183,8 +182,8 @@ class _Mechanism:
         """Take an impulse along a coordinate from the child, and the opposite one from the parent."""
         sides = self.joints[joint.index]
         axis = amount * np.array(jc.direction(sides, state, k))
-        place = jc.placed(sides.child, state)
-        anchor = np.add(place.position, place.arm)
+        parent, child = (jc.placed(side, state) for side in (sides.parent, sides.child))
+        anchor = np.add(child.position, jc.child_arm(sides, parent, child))
         for body, sign in ((joint.child.index, -1.0), (joint.parent.index, 1.0)):
             if body >= 0 and coordinate_kind(joint, k) == "turn":
                 rest[body, 3:] += sign * axis
@@ -212,10 +211,10 @@ class _Mechanism:
         weight[weight == 0.0] = 1.0
         share = np.linalg.lstsq((scaled / weight[:, None]).T, (own / half).ravel(), SMALLEST)[0]
         share /= weight
-        arms = quaternion.rotate(now.orientation[self.children], self.anchors)
         for j, part, child in rows.joints:
-            wrench = share[part] @ A[part, child]
-            yield t, impact, j, wrench[:3], wrench[3:] - jc.cross(arms[j], wrench[:3])
+            wrench, sides = share[part] @ A[part, child], self.joints[j]
+            arm = jc.child_arm(sides, *(jc.placed(one, now) for one in (sides.parent, sides.child)))
+            yield t, impact, j, wrench[:3], wrench[3:] - jc.cross(arm, wrench[:3])
 
     def rows_of(self, moved: np.ndarray) -> _Rows:
         """Return the rows of all elements in some components."""

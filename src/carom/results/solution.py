@@ -310,6 +310,8 @@ class Solution(Portable, Drawn, Source):
                             first of x, y, z), projected onto the plane
         PointOnLine         displacement
         PointOnPlane        two displacements, as for Planar
+        PointOnCurve,       arc length from the start, positive towards the end of the curve; laps of a closed
+        CurveOnPoint        curve are counted like turns
         Distance            length [m] (not 0 at the start)
         Spherical           rotation vector [rad], angle in [0, pi], in the world axes of the start, fixed in
                             the parent; its rates are the relative angular velocity in the same axes

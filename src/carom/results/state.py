@@ -12,7 +12,7 @@ from carom.model.arrays import STATE
 from carom.results.event_tables import ForceTable, force_table
 from carom.results.exerted import exerted_by
 from carom.results.instant import Instant
-from carom.results.joint_coordinates import TURN, coordinates, in_degrees, of_scene, sides_of
+from carom.results.joint_coordinates import coordinates, in_degrees, of_scene, period, sides_of
 from carom.results.named import Source, view
 from carom.results.names import Numbers
 from carom.scene.more_forces import JointFriction
@@ -181,7 +181,8 @@ class SystemState(Source):
         """Return coordinates and rates (n,) of a joint, as `Solution.joint_coordinates` does.
 
         Angles include whole turns where the run counts them: of coordinates with a spring, an actuator, another
-        force, a stop or a constraint, of a model, and of a `Screw`. Others are from -pi to pi.
+        force, a stop or a constraint, of a model, and of a `Screw`. Others are from -pi to pi. Laps of a closed
+        curve are counted.
 
         Parameters
         ----------
@@ -194,10 +195,10 @@ class SystemState(Source):
         if joint.index not in self._known:
             self._known[joint.index] = sides_of(joint)
         read = coordinates(self._known[joint.index], self)
-        for k, kind in enumerate(joint.definition.coordinates if self._instant else ()):
-            row = self._instant.numbers.get((joint.index, k))
-            if kind == "turn" and row is not None:
-                read[0][k] += TURN * round((self._instant.turns[row] - read[0][k]) / TURN)
+        for k in range(len(joint.definition.coordinates) if self._instant else 0):
+            row, whole = self._instant.numbers.get((joint.index, k)), period(joint.definition, k)
+            if whole > 0.0 and row is not None:
+                read[0][k] += whole * round((self._instant.turns[row] - read[0][k]) / whole)
         return in_degrees(joint, *read) if checks.flag("degrees", degrees) else read
 
     def __repr__(self) -> str:

@@ -1,6 +1,7 @@
 """The description of a system: shapes, bodies, contacts, joints, forces. NumPy only, no motion."""
 
 from carom.scene import constraints as constraints
+from carom.scene import curves as curves
 from carom.scene import forces as forces
 from carom.scene import joints as joints
 from carom.scene import shapes as shapes

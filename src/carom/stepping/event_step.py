@@ -35,7 +35,7 @@ from carom.persistent.modes import jam_point, turn_modes
 from carom.persistent.several_points import activate_contact
 from carom.persistent.step_control import goes_wild, next_pace, unsolved
 from carom.persistent.thresholds import CUT_RESIDUAL, STOP_RESIDUAL
-from carom.status import NO_CONVERGENCE, NOT_FINITE
+from carom.status import LEFT_CURVE, NO_CONVERGENCE, NOT_FINITE
 from carom.status import TOO_MANY_IMPACTS as TOO_MANY
 from carom.stepping.record import finite, grow, save_contacts
 from carom.stepping.trial_step import first_event, propose_step
@@ -127,7 +127,8 @@ def accept_step(model, data):
 
     # the motion up to the end of the trial step, and the modes at its end
     accept(data, search)
-    note_turns(system, now)
+    if note_turns(system, now):
+        return LEFT_CURVE, NOTHING
     search.pace = next_pace(search.pace, work)
     if left_ball(system, now, search.dt, work):
         return r.LEFT_BALL, NOTHING

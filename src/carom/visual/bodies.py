@@ -12,8 +12,9 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.scene.bodies import Body
+from carom.scene.curves import Curve
 from carom.scene.forces import Spring
-from carom.scene.joints import Distance, Joint, RollingDisc, RollingSphere
+from carom.scene.joints import CurveOnPoint, Distance, Joint, RollingDisc, RollingSphere
 from carom.scene.more_forces import CurveSpring
 from carom.scene.shapes import Box, Sphere
 from carom.scene.shapes.revolved import Cylinder
@@ -28,6 +29,7 @@ PIN = 0.15  # of the size of a body: a pin is no thicker
 COLOURS = ("#56B4E9", "#E69F00", "#009E73", "#F0E442", "#CC79A7", "#999999")
 JOINT, STATIC = "#5b6873", "#c3ccd4"
 ROD = 0.012  # radius of rods of bodies without a shape, as a fraction of the size of the region
+RAIL, RING = 400, 8  # most points along a curve, and sides of its tube
 
 
 class Part(NamedTuple):
@@ -102,7 +104,68 @@ def parts_of(scene, radius: float, fineness: int | None = None) -> list[Part]:
             parts.setdefault(key, Part(vertices, triangles, [], look, whole)).bodies.append(
                 body.index
             )
-    return [*parts.values(), *(_static(solid, fineness) for solid in scene.statics)]
+    rails = [_rail(j, 0.5 * ROD * radius) for j in scene.joints if j.definition.guide == "curve"]
+    return [*parts.values(), *(_static(solid, fineness) for solid in scene.statics), *rails]
+
+
+def _rail(joint: Joint, thick: float) -> Part:
+    """Return a tube along the curve of a joint."""
+    curve, owner = curve_of(joint)
+    n = max(2, min(RAIL, 4 * len(curve.knots)))
+    s = np.linspace(0.0, curve.length, n)
+    k = np.clip(np.searchsorted(curve.knots, s, side="right") - 1, 0, len(curve.knots) - 2)
+    t = curve.tangent(s)
+    across = curve.normals[k] - np.sum(curve.normals[k] * t, axis=1)[:, None] * t
+    across /= np.linalg.norm(across, axis=1)[:, None]
+    angle = 2.0 * np.pi / RING * np.arange(RING)[:, None, None]
+    ring = np.cos(angle) * across + np.sin(angle) * np.cross(t, across)
+    place, turn = place_of_curve(joint)
+    centre = place + quaternion.rotate(turn, curve.point(s))
+    tube = (centre + thick * quaternion.rotate(turn, ring)).reshape(-1, 3)
+    vertices = np.vstack([tube, centre[[0, -1]]])
+    side, step = np.meshgrid(np.arange(RING), np.arange(n - 1), indexing="ij")
+    a, b = side * n + step, (side + 1) % RING * n + step
+    walls = np.stack([a, b, b + 1, a, b + 1, a + 1], axis=-1).reshape(-1, 3)
+    first, last = np.arange(RING) * n, np.arange(RING) * n + n - 1
+    caps = [(RING * n, b, a) for a, b in zip(first, np.roll(first, -1))]
+    caps += [(RING * n + 1, a, b) for a, b in zip(last, np.roll(last, -1))]
+    faces = np.concatenate([walls, np.array(caps)])
+    if owner.index < 0:
+        return Part(vertices, faces, [-1], "static", None, JOINT)
+    return Part(vertices, faces, [owner.index], "joint")
+
+
+def curve_of(joint: Joint) -> tuple[Curve, Any]:
+    """Return the curve of a joint, and the body or ground that it belongs to."""
+    d: Any = joint.definition
+    return d.curve, joint.child if isinstance(d, CurveOnPoint) else joint.parent
+
+
+def place_of_curve(joint: Joint) -> tuple[np.ndarray, np.ndarray]:
+    """Return position and orientation of the axes of a curve, in axes of its body."""
+    owner = curve_of(joint)[1]
+    if joint.frames is not None:
+        return joint.frames[0 if owner is joint.parent else 1]
+    turn = np.array([1.0, 0.0, 0.0, 0.0])
+    if isinstance(owner, Body):
+        turn = quaternion.conjugate(owner.orientation)
+    return _in_body(owner, np.zeros(3)), turn
+
+
+def ground_rails(scene) -> list[Joint]:
+    """Return the joints whose curves are fixed in the ground."""
+    on_curves = [joint for joint in scene.joints if joint.definition.guide == "curve"]
+    return [joint for joint in on_curves if curve_of(joint)[1].index < 0]
+
+
+def ground_curves(scene, points: int = RAIL) -> list[np.ndarray]:
+    """Return points (K, 3) along each curve that is fixed in the ground."""
+    out = []
+    for joint in ground_rails(scene):
+        curve, (place, turn) = curve_of(joint)[0], place_of_curve(joint)
+        s = np.linspace(0.0, curve.length, points)
+        out.append(place + quaternion.rotate(turn, curve.point(s)))
+    return out
 
 
 def _static(solid, fineness: int) -> Part:
@@ -191,7 +254,8 @@ def ground_points(scene) -> list[np.ndarray]:
     placed = [j for j in scene.joints if getattr(j.definition, "anchor", None) is not None]
     joined = [_anchor(j, j.parent) for j in placed if j.parent.index < 0]
     ends = [((k.parent, k.parent_anchor), (k.child, k.child_anchor)) for k in links_of(scene)]
-    return joined + [anchor for pair in ends for body, anchor in pair if body < 0]
+    rails = [point for curve in ground_curves(scene, 50) for point in curve]
+    return joined + rails + [anchor for pair in ends for body, anchor in pair if body < 0]
 
 
 def moving(position: np.ndarray, orientation: np.ndarray) -> np.ndarray:

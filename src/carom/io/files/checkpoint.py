@@ -28,7 +28,7 @@ FIXED = {
     "work.placed", "islands.clock", "islands.single.clock", "islands.joined", "islands.others",
     "islands.partner", "islands.partner_first", "islands.plane", "islands.plane_first",
     "relations.relations", "relations.terms", "relations.user", "relations.pieces",
-    "relations.pushes", "relations.forces", "relations.named",
+    "relations.pushes", "relations.forces", "relations.named", "relations.curves", "relations.curve_pieces",
 }  # fmt: skip
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from carom import checks
 from carom.scene import bodies, contacts, forces, joints, stops
 from carom.scene.constraints import CONSTRAINTS, Constraint, Coupling, Gear, coordinate_kind
+from carom.scene.curves import Curve, Spline
 from carom.scene.materials import Material
 from carom.scene.pieces import Piece, Shape
 from carom.scene.scene import Scene
@@ -194,6 +195,18 @@ def _check_piece(piece: Piece) -> None:
         raise ValueError(f"vertices and faces must be none of a {piece.kind}")
 
 
+def _check_curve(curve: Curve) -> None:
+    """Raise for a curve whose table has no pieces, or directions that are no unit vectors."""
+    knots = checks.finite_array("knots", curve.knots, (None,))
+    ends = checks.finite_array("ends", curve.ends, (len(knots), 3, 3))
+    if not (len(knots) > 1 and knots[0] == 0.0 and np.all(np.diff(knots) > 0.0)):
+        raise ValueError("knots must be two or more numbers that increase from 0")
+    if not np.all(np.abs(np.linalg.norm(ends[:, 1], axis=1) - 1.0) <= ROUNDING):
+        raise ValueError("ends must have directions of length 1")
+    if checks.flag("closed", curve.closed) and not np.array_equal(ends[0], ends[-1]):
+        raise ValueError("ends of a closed curve must be equal")
+
+
 def _solid(shape, flat: bool = False) -> None:
     """Refuse a shape without centroid, size and spread; one that is `flat` may have no volume or spread."""
     checks.finite_array("centroid", shape.centroid, (3,))
@@ -231,5 +244,5 @@ def _check_faces(faces, vertices: int) -> None:
 #: records that are not made again: their checks
 _LOOKS = {
     Convex: _check_convex, Mesh: _check_mesh, Compound: _check_compound, Piece: _check_piece,
-    Coupling: _check_coupling, Gear: _check_coupling,
+    Coupling: _check_coupling, Gear: _check_coupling, Curve: _check_curve, Spline: _check_curve,
 }  # fmt: skip

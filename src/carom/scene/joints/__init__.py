@@ -26,6 +26,8 @@ from carom.scene.joints.pairs import PointOnPlane as PointOnPlane
 from carom.scene.joints.special import Screw as Screw
 from carom.scene.joints.rolling import RollingSphere as RollingSphere
 from carom.scene.joints.rolling import RollingDisc as RollingDisc
+from carom.scene.joints.on_curve import PointOnCurve as PointOnCurve
+from carom.scene.joints.on_curve import CurveOnPoint as CurveOnPoint
 # isort: on
 
 from carom.scene.joints.definition import JointDefinition as JointDefinition

@@ -10,7 +10,7 @@ import numpy as np
 from carom.geometry.frames import triad
 
 #: number of rows that constrain the anchor of the child, and number of rows that constrain its rotation
-ACTIVE_POINT = {"point": 3, "line": 2, "plane": 1}
+ACTIVE_POINT = {"point": 3, "line": 2, "plane": 1, "curve": 2}
 TURNS = {"ball": 0, "cross": 1, "axis": 2, "rigid": 3}
 
 
@@ -22,10 +22,11 @@ class JointDefinition:
 
     Attributes
     ----------
-    guide : {"point", "line", "plane", "own"}
+    guide : {"point", "line", "plane", "curve", "own"}
         Allowed positions of the anchor of the child in the parent: the anchor of the parent ("point"), the line
         through it along the direction of the joint ("line"), the plane through it perpendicular to the
-        direction ("plane"), or positions given by special equations of the joint ("own").
+        direction ("plane"), a curve (`carom.scene.joints.on_curve`, "curve"), or positions given by special
+        equations of the joint ("own").
     turn : {"ball", "axis", "rigid", "cross", "own"}
         Allowed rotations of the child relative to the parent: all ("ball"), about the direction of the joint
         ("axis"), none ("rigid"), about two perpendicular axes (`Universal`, "cross"), or rotations given by

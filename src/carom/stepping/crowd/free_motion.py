@@ -79,7 +79,7 @@ def friction_power(system, state):
     relations, power = system.relations, 0.0
     for i in range(relations.frictions.shape[0]):
         one = relations.frictions[i]
-        power += one.force * rate(relations.coordinates[one.coordinate], state)
+        power += one.force * rate(system, relations.coordinates[one.coordinate], state)
     return power
 
 

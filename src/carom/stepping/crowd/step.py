@@ -27,7 +27,7 @@ from carom.impact.effective_restitution import restitution_at
 from carom.model import records as r
 from carom.model.allowance import COUNT_BLOCKS, left
 from carom.persistent.thresholds import SHORTEST_CUT
-from carom.status import NOT_FINITE
+from carom.status import LEFT_CURVE, NOT_FINITE
 from carom.stepping import thresholds as limits
 from carom.stepping.crowd.balance import energy_gained, off, slow_down, take_out, take_over
 from carom.stepping.crowd.finish import finish
@@ -170,8 +170,7 @@ def move_on(model, data, method, h, patient, careful):
     clock.friction += rubbed
     for b in range(n):
         copy_state(end[b], now[b])
-    note_turns(system, now)
-    return 0
+    return LEFT_CURVE if note_turns(system, now) else 0
 
 
 @kernel

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -91,7 +92,7 @@ def _bounds(name: str, scene: Scene | None) -> tuple[float, float, float]:
         return KNOWN[checks.choice("a name in parameters", name, KNOWN)]
     stem, component = split(scene, name, "parameters")
     found = find(scene, stem)
-    value = None if found is None else found.value
+    value: Any = None if found is None else found.value
     if not component and (
         found is None or np.ndim(value) > 0 or isinstance(value, (str, SpeedLaw))
     ):

@@ -13,7 +13,7 @@ import numpy as np
 import carom
 from carom import checks
 from carom.scene.shapes.revolved import Cylinder
-from carom.visual.bodies import JOINT, Part, colours_of, turn_to
+from carom.visual.bodies import JOINT, Part, colours_of, ground_rails, turn_to
 from carom.visual.films.models import model_of, rgb
 from carom.visual.films.stage import PLANE
 from carom.visual.surfaces import surface
@@ -31,17 +31,18 @@ def write_glb(show: Show, path: Path, speed: float) -> None:
     file.clock((time - time[0]) / speed)
     root = file.node(show.title, turn=to_y(show.place.up))
     looks: dict[int, list[tuple]] = {}
-    statics = iter(show.solution.scene.statics)  # their parts are in the same order
+    scene = show.solution.scene
+    still = iter([*scene.statics, *ground_rails(scene)])  # their parts are in the same order
     for part in show.parts:
         pieces = file.pieces(part)
-        for b, colour in zip(part.bodies, colours_of(part, show.solution.scene)):
+        for b, colour in zip(part.bodies, colours_of(part, scene)):
             drawn = tuple((*piece, file.material(rgb(colour), pale)) for piece, pale in pieces)
             if b < 0:
-                name = next(statics).name
+                name = next(still).name
                 file.node(name, root, file.mesh(name, drawn))
             else:
                 looks.setdefault(b, []).extend(drawn)
-    for body in show.solution.scene.bodies:
+    for body in scene.bodies:
         b = body.index
         mesh = file.mesh(body.name, tuple(looks[b]))
         node = file.node(body.name, root, mesh, x[0, b], Q[0, b])

@@ -7,7 +7,7 @@ import numpy as np
 from carom import checks
 from carom.arguments import known
 from carom.geometry import quaternion
-from carom.visual.bodies import outline_of, parts_of
+from carom.visual.bodies import ground_curves, outline_of, parts_of
 from carom.visual.plots import figure
 from carom.visual.plots import style as looks
 
@@ -99,8 +99,11 @@ def trajectory(
             for half_space in scene.half_spaces:
                 _ground(drawn, half_space, seen)
             for part in parts:
-                if part.look == "static":
+                if part.look == "static" and part.shape is not None:
                     _static(drawn, part, seen)
+            for curve in ground_curves(scene):
+                still = {"scalex": False, "scaley": False}  # the view is that of the motion
+                drawn.plot(*curve[:, seen].T, color=GROUND, lw=2, zorder=0, **still)
         figure.legend(drawn, loc="best")
     return drawn
 

@@ -1,0 +1,282 @@
+"""Joints of a point on a curve: the foot, its axes, and two rows across the curve.
+
+With the point y in axes of the body of the curve, its foot c(s), (y - c) . c' = 0, d = y - c, the tangent t,
+normals n_1, n_2 and the curvature vector b of the curve at its foot:
+
+    error  n_r . d,     rate  n_r . y',     n_r . y'' = (n_r . b) s' (t . y'),     s' = t . y' / (1 - b . d).
+
+In the world y' and y'' are those of the relative motion, whose bias has the accelerations of both arms and that
+of Coriolis. The foot is found by Newton's iteration from the coordinate at the start of the trial step, which
+`carom.dynamics.more_forces` keeps short enough for this.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
+from carom.geometry.rotation import cross, rotate, rotate_back
+from carom.geometry.thresholds import RESOLUTION, SMALLEST
+from carom.kinematics.joints import anchor_speed, child_arm, parent_arm
+from carom.kinematics.thresholds import END_MARGIN
+from carom.kinematics.wrench import add_force
+from carom.model.arrays import CURVE_ON_POINT, POINT_ON_CURVE
+
+MOST_CORRECTIONS = 30  # of a foot
+
+
+@kernel
+def find_piece(pieces, first, last, t):
+    """Return the piece that contains t; outside all pieces, the first or the last."""
+    low, high = first, last - 1
+    while low < high:
+        middle = (low + high + 1) // 2
+        if pieces[middle].start <= t:
+            low = middle
+        else:
+            high = middle - 1
+    return low
+
+
+@kernel
+def polynomial(c, k, s):
+    """Return component k of a piece of degree 5, and its first and second derivative."""
+    f, d, e = c[5, k], 0.0, 0.0
+    for i in range(4, -1, -1):
+        e = e * s + 2.0 * d
+        d = d * s + f
+        f = f * s + c[i, k]
+    return f, d, e
+
+
+@kernel
+def to_owner(c, state, vector):
+    """Return a world vector in axes of the body of the curve (-1: the ground)."""
+    owner = c.parent if c.kind == POINT_ON_CURVE else c.child
+    return vector if owner < 0 else rotate_back(state[owner].Q, vector)
+
+
+@kernel
+def to_world(c, state, vector):
+    """Return a vector in axes of the body of the curve in world axes."""
+    owner = c.parent if c.kind == POINT_ON_CURVE else c.child
+    return vector if owner < 0 else rotate(state[owner].Q, vector)
+
+
+@kernel
+def point_of(c, state):
+    """Return the point of the joint in axes of the body of the curve, from its centre."""
+    arm = parent_arm(c, state) if c.kind == POINT_ON_CURVE else child_arm(c, state)
+    return to_owner(c, state, arm)
+
+
+@kernel
+def place_at(one, pieces, i, t):
+    """Write position, first and second derivative of piece i at a distance t from its start."""
+    for k in range(3):
+        one.x[k], one.slope[k], one.second[k] = polynomial(pieces[i].c, k, t)
+
+
+@kernel
+def correction(one, point, curved):
+    """Return Newton's correction of a place on the curve, towards the foot of a point.
+
+    Far from the foot the curvature would lead away.
+    """
+    along, square, bend = 0.0, 0.0, 0.0
+    for k in range(3):
+        d = point[k] - one.x[k]
+        along += d * one.slope[k]
+        bend += d * one.second[k]
+        square += one.slope[k] * one.slope[k]
+    return along / max(square - (bend if curved else 0.0), 0.5 * square)
+
+
+@unit
+def find_foot(system, c, state):
+    """Write the foot of the point of a joint, with its axes, to the curve; NaN if there is none nearby."""
+    one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
+    point, place = point_of(c, state), one.first
+    s, small = c.reference, RESOLUTION / max(one.sharpest, 1.0 / (one.high - one.low))
+    done = False
+    for k in range(MOST_CORRECTIONS):
+        t = s
+        if one.period > 0.0:
+            t -= one.period * math.floor((s - one.low) / one.period)
+        place = find_piece(pieces, one.first, one.last, t)
+        place_at(one, pieces, place, t - pieces[place].start)
+        if done:
+            break
+        step = correction(one, point, k > 1)
+        s += step
+        done = abs(step) <= small  # the error after it is its square
+    one.s = s if done else math.nan
+    write_axes(c, one, pieces[place].normal, point, state)
+
+
+@kernel
+def write_axes(c, one, across, point, state):
+    """Write axes and curvature of a foot, and the gap of the point; `across` is a vector across the curve."""
+    side, t, b = 1.0 if c.kind == POINT_ON_CURVE else -1.0, one.slope, one.second
+    square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2]
+    f = 1.0 / math.sqrt(square)
+    tx, ty, tz = f * t[0], f * t[1], f * t[2]
+    f = across[0] * tx + across[1] * ty + across[2] * tz
+    nx, ny, nz = across[0] - f * tx, across[1] - f * ty, across[2] - f * tz
+    f = 1.0 / math.sqrt(nx * nx + ny * ny + nz * nz)
+    dx, dy, dz = point[0] - one.x[0], point[1] - one.x[1], point[2] - one.x[2]
+    nx, ny, nz, one.ahead = f * nx, f * ny, f * nz, 1.0
+    for r in range(2):
+        if r == 1:
+            nx, ny, nz = cross(tx, ty, tz, nx, ny, nz)
+        one.gap[r] = side * (nx * dx + ny * dy + nz * dz) + 0.0 * one.s  # NaN stays
+        one.bend[r] = side * (nx * b[0] + ny * b[1] + nz * b[2]) / square
+        one.ahead -= one.gap[r] * one.bend[r]
+        one.normal[r, 0], one.normal[r, 1], one.normal[r, 2] = to_world(c, state, (nx, ny, nz))
+    a = one.along
+    a[0], a[1], a[2] = to_world(c, state, (side * tx, side * ty, side * tz))
+
+
+@unit
+def seek_foot(system, c, state):
+    """Set the coordinate of a joint to that of its foot on the whole curve, in the lap nearest to the last.
+
+    Where the curve crosses itself, the branch is that along the motion, or that nearest to the last coordinate.
+    """
+    one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
+    point, before = point_of(c, state), c.reference
+    u = to_owner(c, state, anchor_speed(c, state))
+    speed, least, found = dot(u, u), math.inf, before
+    for i in range(one.first, one.last):
+        end = pieces[i + 1].start if i + 1 < one.last else one.high
+        t, spacing = 0.0, end - pieces[i].start
+        place_at(one, pieces, i, t)
+        if distance(one, point) > 1.01 * spacing + math.sqrt(least):
+            continue
+        for _ in range(2):
+            t = min(max(t + correction(one, point, False), 0.0), spacing)
+            place_at(one, pieces, i, t)
+        lap, along = abs(pieces[i].start + t - before), dot(u, one.slope)
+        if one.period > 0.0:
+            lap -= one.period * math.floor(lap / one.period + 0.5)
+        turned = max(0.0, 1.0 - along * along / speed) if speed > SMALLEST else 0.0
+        away = distance(one, point) ** 2 + spacing * spacing * turned + (RESOLUTION * lap) ** 2
+        if away < least:
+            least, found = away, pieces[i].start + t
+    c.reference = found
+    find_foot(system, c, state)
+    laps = math.floor((before - one.s) / one.period + 0.5) if one.period > 0.0 else 0.0
+    c.reference = one.s + laps * one.period
+
+
+@kernel
+def dot(a, b):
+    """Return the product of two vectors."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@kernel
+def distance(one, point):
+    """Return the distance of a point from the last place on the curve."""
+    x = one.x
+    return math.sqrt((point[0] - x[0]) ** 2 + (point[1] - x[1]) ** 2 + (point[2] - x[2]) ** 2)
+
+
+@kernel
+def is_on_curve(c):
+    """Return whether a coordinate is arc length along a curve."""
+    return c.kind == POINT_ON_CURVE or c.kind == CURVE_ON_POINT
+
+
+@kernel
+def seek_feet(system, state):
+    """Set all coordinates along curves to those of a state that does not follow the last one."""
+    for i in range(system.relations.coordinates.shape[0]):
+        if is_on_curve(system.relations.coordinates[i]):
+            seek_foot(system, system.relations.coordinates[i], state)
+
+
+@kernel
+def is_beyond(one, s):
+    """Return whether a coordinate is beyond the ends of an open curve, by more than stops there allow."""
+    return one.period == 0.0 and max(one.low - s, s - one.high) > END_MARGIN * (one.high - one.low)
+
+
+@kernel
+def curve_error(one, out):
+    """Write the error of position of the last foot: out[3 + r] for row r."""
+    for k in range(6):
+        out[k] = 0.0
+    out[3], out[4] = one.gap[0], one.gap[1]
+
+
+@kernel
+def curve_speed(c, one, state, out):
+    """Write the error of velocity at the last foot: out[3 + r] for row r."""
+    u = anchor_speed(c, state)
+    for k in range(6):
+        out[k] = 0.0
+    for r in range(2):
+        out[3 + r] = dot(one.normal[r], u)
+
+
+@kernel
+def curve_bias(c, one, state, out):
+    """Write the bias of the acceleration at the last foot: out[3 + r] for row r."""
+    bias, speed = relative_bias(c, state), dot(one.along, anchor_speed(c, state))
+    for k in range(6):
+        out[k] = 0.0
+    for r in range(2):
+        out[3 + r] = dot(one.normal[r], bias) + one.bend[r] * speed * speed / one.ahead
+
+
+@kernel
+def relative_bias(c, state):
+    """Return the bias of the relative acceleration without the curvature, for arms that end at the point."""
+    w = state[c.child].w
+    rx, ry, rz = child_arm(c, state)
+    tx, ty, tz = cross(w[0], w[1], w[2], rx, ry, rz)
+    sx, sy, sz = cross(w[0], w[1], w[2], tx, ty, tz)
+    lx, ly, lz = -sx, -sy, -sz
+    if c.parent >= 0:
+        o = state[c.parent].w
+        rx, ry, rz = parent_arm(c, state)
+        tx, ty, tz = cross(o[0], o[1], o[2], rx, ry, rz)
+        sx, sy, sz = cross(o[0], o[1], o[2], tx, ty, tz)
+        lx, ly, lz = lx + sx, ly + sy, lz + sz
+    owner = c.parent if c.kind == POINT_ON_CURVE else c.child
+    if owner >= 0:
+        o = state[owner].w
+        ux, uy, uz = anchor_speed(c, state)
+        sx, sy, sz = cross(o[0], o[1], o[2], 2.0 * ux, 2.0 * uy, 2.0 * uz)
+        lx, ly, lz = lx + sx, ly + sy, lz + sz
+    return lx, ly, lz
+
+
+@kernel
+def curve_rows(c, one, state, side):
+    """Write A of both rows at the last foot, for one body of the joint."""
+    s, arm = 1.0, child_arm(c, state)
+    if side.body != c.child:
+        s, arm = -1.0, parent_arm(c, state)
+    for r in range(2):
+        n, A = one.normal[r], side.A
+        tx, ty, tz = cross(arm[0], arm[1], arm[2], n[0], n[1], n[2])
+        A[r, 0], A[r, 1], A[r, 2] = s * n[0], s * n[1], s * n[2]
+        A[r, 3], A[r, 4], A[r, 5] = s * tx, s * ty, s * tz
+
+
+@kernel
+def push_across(c, one, state, multiplier, work):
+    """Add the wrenches of the multipliers of both rows at the last foot."""
+    f = force_across(one, multiplier)
+    add_force(work, c.child, child_arm(c, state), f)
+    add_force(work, c.parent, parent_arm(c, state), (-f[0], -f[1], -f[2]))
+
+
+@kernel
+def force_across(one, multiplier):
+    """Return the force on the child of the multipliers of both rows at the last foot."""
+    m, n, f, g = one.normal[0], one.normal[1], multiplier[0], multiplier[1]
+    return f * m[0] + g * n[0], f * m[1] + g * n[1], f * m[2] + g * n[2]
