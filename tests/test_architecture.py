@@ -246,6 +246,7 @@ OTHER_FLOATS = {
     "dynamics.implicit": {"GAMMA"},
     "friction.residual": {"NOTHING"},
     "impact.multiple.stages": {"GAMMA"},
+    "impact.resolve_by_slip": {"_A", "_E", "_NONE"},
     "impact.spline": {"_X1", "_X2", "_X3", "_W1", "_W2", "_W3"},
     "impact.strike_several": {"HERTZ", "LINEAR"},
     "kinematics.coordinate": {"TURN"},

@@ -5,7 +5,7 @@ from __future__ import annotations
 from carom._compiled.decorators import inlined, kernel
 from carom.dynamics.curve import value_at
 
-STRIKES, HELD = range(2)  # in impacts, and in persistent contact
+STRIKES, PERSISTENT = range(2)  # in impacts, and in persistent contact
 
 
 @inlined
@@ -19,7 +19,7 @@ def friction_at(system, contact, held, slip):
     """Return mu of a contact that slips at a speed [m/s], and where it is zero, that which bounds stick."""
     if depends_on_slip(contact, held) and slip > 0.0:
         return in_slip(system.curves, contact, held, slip)
-    return contact.friction_held if held == HELD else contact.friction
+    return contact.friction_held if held == PERSISTENT else contact.friction
 
 
 @kernel

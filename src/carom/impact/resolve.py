@@ -24,7 +24,7 @@ from carom.impact.wedge import drowned, moves_nothing, power_of_two, pushed
 _SLIP_STEPS = 2000
 
 # The contact slips along a curve or along a line (in the plane of u_t), or it sticks.
-CURVED, STRAIGHT, STICK = range(3)
+BENT, STRAIGHT, STICK = range(3)
 
 # The end of a piece of the path: within the phase, where slip stops, at the goal of the phase, where the pair
 # is wedged (no impulse changes the velocity), or nowhere.
@@ -52,14 +52,14 @@ class Phase(NamedTuple):
 class Line(NamedTuple):
     """A piece of the path along which u is linear in p."""
 
-    mode: int  # STRAIGHT or STICK; CURVED if there is no line
+    mode: int  # STRAIGHT or STICK; BENT if there is no line
     t1: float  # friction impulse per normal impulse
     t2: float
     growth: float  # d|u_t|/dp
 
 
 COMPRESSION = Phase(laws.NEWTON, 0.0, False, 0.0)
-CURVE = Line(CURVED, 0.0, 0.0, 0.0)
+CURVE = Line(BENT, 0.0, 0.0, 0.0)
 
 
 @entry
@@ -124,13 +124,13 @@ def _follow(contact, u, e, law):
                 phases |= o.PHASE_STICK
             elif phases & o.PHASE_SLIP:
                 phases |= o.PHASE_RESTART
-        elif line.mode == CURVED:
+        elif line.mode == BENT:
             line = _straightened(contact, s)
         if line.mode != STICK and mu > 0.0:
             phases |= o.PHASE_SLIP
 
         # One piece, until the phase ends or slip ends, or one step.
-        if line.mode == CURVED:
+        if line.mode == BENT:
             s, ended, marks = _along_curve(contact, phase, s)
         else:
             s, ended, marks = along_line(contact, phase, line, s)

@@ -24,10 +24,10 @@ from carom.impact.friction_law import STRIKES, in_slip
 from carom.impact.resolve import (
     AT_GOAL,
     AT_STOP,
+    BENT,
     CAUGHT,
     COMPRESSION,
     CURVE,
-    CURVED,
     ENDLESS,
     STICK,
     STRAIGHT,
@@ -43,7 +43,7 @@ from carom.impact.slip_step import normal_rate
 from carom.impact.thresholds import LONGEST_IMPULSE, RAY_LENGTH, SLIP_ERROR
 from carom.impact.wedge import drowned, power_of_two
 
-MOST_STEPS = 50_000
+MOST_SLIP_STEPS = 50_000
 _A = (
     (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     (1 / 5, 0.0, 0.0, 0.0, 0.0, 0.0),
@@ -89,7 +89,7 @@ def resolve_by_slip(system, contact, hit) -> int:
     stopped, ends = not math.sqrt(s[0] * s[0] + s[1] * s[1]) > at_rest, False
     while not ends:
         steps += 1
-        if steps > MOST_STEPS:
+        if steps > MOST_SLIP_STEPS:
             return o.TOO_MANY_STEPS
         if stopped:
             if phases & o.PHASE_SLIP:
@@ -102,7 +102,7 @@ def resolve_by_slip(system, contact, hit) -> int:
                 phases |= o.PHASE_RESTART
         if line.mode != STICK:
             phases |= o.PHASE_SLIP
-        if line.mode == CURVED:
+        if line.mode == BENT:
             s, ended, marks, h = _along_curve(slip, phase, s, h)
         else:
             mu, ended = in_slip(system.curves, contact, STRIKES, 0.0), WITHIN

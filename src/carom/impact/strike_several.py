@@ -11,7 +11,7 @@ from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.driven import blocked
 from carom.impact.effective_restitution import count_blow, effective_restitution
-from carom.impact.friction_law import HELD, STRIKES, friction_at
+from carom.impact.friction_law import PERSISTENT, STRIKES, friction_at
 from carom.impact.layout import OK
 from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSettings
 from carom.impact.multiple.resolve import resolve_multiple
@@ -94,7 +94,7 @@ def strike_several(model, data, c, k):
         multiple.e[i] = effective_restitution(system, contact, contact_state, -u[3 * i])
         if j >= 0 and active.points[j].jams == 1:
             u[3 * i] -= GROUP_SEED * math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2)
-            group.mu[i] = friction_at(system, contact, HELD, slip)
+            group.mu[i] = friction_at(system, contact, PERSISTENT, slip)
         multiple.law[i], multiple.kappa[i] = contact.law, contact.stiffness
         multiple.ball_like[i] = contact.ball_like
         all_by_pairs = multiple.settings.multiple == SEQUENTIAL

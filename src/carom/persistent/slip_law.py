@@ -12,7 +12,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.dynamics.curve import value_at
 from carom.geometry.thresholds import REMAINDER
-from carom.impact.friction_law import HELD, depends_on_slip, in_slip
+from carom.impact.friction_law import PERSISTENT, depends_on_slip, in_slip
 from carom.impact.workspace import ACCELERATIONS, P, U
 from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.persistent.joint_rows import JOINT, radius_of
@@ -29,7 +29,7 @@ def has_law(system, closed_point):
         one = system.relations.frictions[closed_point.active]
         return one.last_piece > one.piece
     contact = system.contacts[closed_point.contact]
-    return closed_point.turns == 0 and depends_on_slip(contact, HELD)
+    return closed_point.turns == 0 and depends_on_slip(contact, PERSISTENT)
 
 
 @kernel
@@ -45,7 +45,9 @@ def set_friction(system, i, slips, group):
         group.mu[i] = value_at(system.curves, law, abs(u[3 * i + 1])) if slips else one.bound
         return
     contact = system.contacts[closed_point.contact]
-    group.mu[i] = in_slip(system.curves, contact, HELD, speed) if slips else contact.friction_held
+    group.mu[i] = (
+        in_slip(system.curves, contact, PERSISTENT, speed) if slips else contact.friction_held
+    )
 
 
 @kernel
@@ -91,7 +93,7 @@ def breaks_away(i, push, group):
 
 @kernel
 def grip_by_law(i, push, group):
-    """Return the margin of an entry that sticks, an acceleration relative to `push`: of its force, or its gain."""
+    """Return the margin of an entry that sticks: of its force, or its gain, as accelerations by `push`."""
     a, p, W, q = group.v[ACCELERATIONS], group.v[P], group.W, 3 * i
     if not push > 0.0:
         return 1.0

@@ -18,7 +18,7 @@ from carom.contact.continuous_detection_pair import lowest_pair, passage_pair
 from carom.contact.gap import gap_and_rate, lowest, plane_in_body, round_off
 from carom.contact.pair_point import smaller
 from carom.contact.stop import passage_stop, stop_gap
-from carom.impact.friction_law import HELD, depends_on_slip
+from carom.impact.friction_law import PERSISTENT, depends_on_slip
 from carom.model.actions import EVENT_BREAK, EVENT_CONE, EVENT_GAP, EVENT_JAM
 from carom.model.arrays import STOP
 from carom.persistent.events import contact_event_value, find_contact_event
@@ -72,7 +72,7 @@ def event_value(model, data):
         search.tolerance = BREAK_AWAY
         return system.relations.frictions[search.contact].grip, 0.0
     active_point = active.points[search.contact]
-    law = depends_on_slip(system.contacts[active_point.contact], HELD)
+    law = depends_on_slip(system.contacts[active_point.contact], PERSISTENT)
     if law and search.kind == EVENT_CONE:
         search.tolerance = BREAK_AWAY
     elif active_point.several == 1 and search.kind != EVENT_JAM:

@@ -7,7 +7,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.friction.layout import CONE, DISC
 from carom.impact.effective_restitution import restitution_at
-from carom.impact.friction_law import HELD, STRIKES, friction_at
+from carom.impact.friction_law import PERSISTENT, STRIKES, friction_at
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_STICK
 from carom.stepping.crowd.response import write_responses
@@ -52,7 +52,7 @@ def pose(model, data, k, h, fall):
         row.kind, row.mu = CONE, friction_at(system, contact, STRIKES, slip)
         if spot.active >= 0:
             holds = active.points[spot.active].mode == MODE_STICK
-            row.mu = friction_at(system, contact, HELD, 0.0 if holds else slip)
+            row.mu = friction_at(system, contact, PERSISTENT, 0.0 if holds else slip)
             for r in range(3):
                 p[3 * i + r] = h * active.points[spot.active].force[r]
 
