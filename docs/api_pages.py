@@ -41,7 +41,7 @@ TOPICS = {
         "Motion": ("t", "position", "orientation", "velocity", "angular_velocity", "evaluate"),
         "Impacts": ("impacts", "joint_impulses", "impact_history", "events"),
         "Contact that stays": (
-            "contacts", "contact_mode", "contact_force", "forces", "held_residual", "pairs",
+            "contacts", "contact_mode", "contact_force", "forces", "surface_power", "held_residual", "pairs",
         ),
         "Energy": ("kinetic_energy", "potential_energy", "total_energy", "ledger"),
         "Joints": (

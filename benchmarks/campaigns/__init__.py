@@ -6,6 +6,7 @@ them by the thousand; the tests run a few of each.
 
 from campaigns import (
     bearings,
+    belts,
     crowds,
     forced,
     frictions,
@@ -26,6 +27,7 @@ FAMILIES = {
     "throws": throws.case, "strikes": strikes.case, "mechanisms": mechanisms.case, "forced": forced.case,
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
+    "belts": belts.case,
     "rails": rails.case,
     "laws": laws.case, "frictions": frictions.case,
 }  # fmt: skip

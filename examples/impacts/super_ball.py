@@ -60,7 +60,10 @@ def main(out="out/examples"):
             print(f"{name}: {v:+.4f} m/s after three impacts, energy {s.kinetic_energy[-1]:.4f} J")
             axes.plot(s.position[:, 0, 0], s.position[:, 0, 2], label=name)
         axes.axhline(0, color="0.6"), axes.axhline(height, color="0.6"), axes.plot(*hand[::2], "ko")
-        axes.set(xlabel="x / m", ylabel="height / m"), axes.legend()
+        (
+            axes.set(xlabel="x / m", ylabel="height / m", ylim=(-0.05, 0.9)),
+            axes.legend(loc="upper right"),
+        )
 
 
 if __name__ == "__main__":

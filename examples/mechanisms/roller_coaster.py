@@ -34,7 +34,7 @@ def coaster(friction=0.0):
     if friction > 0.0:
         scene.add_force(carom.forces.JointFriction(rail, friction), name="friction")
     scene.add_stop(rail, upper=track.length - 1.0, restitution=0.3, name="buffer")
-    return carom.simulate(scene, 12.0)
+    return carom.simulate(scene, 12.0, save_at=0.02)
 
 
 # %%

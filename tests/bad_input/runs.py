@@ -120,6 +120,7 @@ def run(folder):
         "Solution.to_pandas": lambda: (solution().to_pandas, dict(degrees=True)),
         "Solution.evaluate": lambda: (solution().evaluate, dict(t=0.01, side="left")),
         "Solution.impact_history": lambda: (solution().impact_history, dict(k=0, steps=4)),
+        "Solution.surface_power": lambda: (solution().surface_power, dict(part="floor")),
         "Solution.joint_coordinates": lambda: (swing().joint_coordinates, dict(joint="j", degrees=True)),
         "results.JointView.coordinates": lambda: (swing()["j"].coordinates, dict(degrees=True)),
         "Solution.plot": lambda: (solution().plot, dict(kind="impacts", what="ball-floor")),

@@ -95,7 +95,7 @@ def stated():
         "Scene": lambda: (carom.Scene, dict(gravity=(0, 0, -9.81))),
         "Scene.add_half_space": of_scene(
             "add_half_space", point=(0, 0, 0), normal=(0, 0, 1), material=carom.Material(0.5, 0.1), name="wall",
-            color="red", replace=True,
+            color="red", surface_velocity=(1.0, 0, 0), surface_spin=((0, 0, 1.0), 2.0, three), replace=True,
         ),
         "Scene.add_body": of_scene(
             "add_body", shape=carom.Sphere(0.1), mass=1.0, density=None, inertia=(1.0, 1.0, 1.0),
@@ -109,7 +109,8 @@ def stated():
         ),
         "Scene.add_static": of_scene(
             "add_static", shape=carom.Sphere(0.1), position=three, orientation=(1.0, 0, 0, 0),
-            material=carom.Material(0.5, 0.1), name="new", color="red", replace=True,
+            material=carom.Material(0.5, 0.1), name="new", color="red", surface_velocity=(1.0, 0, 0),
+            surface_spin=((0, 0, 1.0), 2.0, three), replace=True,
         ),
         "Scene.add_joint": of_scene(
             "add_joint", definition=joints.Spherical((0, 0, 0)), parent="@ball", child="@box",

@@ -25,6 +25,7 @@ LIMIT = 120.0  # seconds that a call may take: the first of its kind is compiled
 #: errors that the documentation names, beside ValueError and TypeError
 DOCUMENTED = {
     "Solution.joint_coordinates": KeyError,
+    "Solution.surface_power": KeyError,
     "results.SystemState.joint_coordinates": KeyError,
     "Solution.impact_history": IndexError,
     "Mesh.load": FileNotFoundError,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import carom
-from campaigns import crowds, forced, laws, piles, rolls, strikes, throws
+from campaigns import belts, crowds, forced, laws, piles, rolls, strikes, throws
 from campaigns.case import run
 from carom.io.files.kept import run_again
 from carom.model.records import FULL_MULTIPLE
@@ -60,6 +60,16 @@ def test_rolls_end_and_lose_nothing_without_a_name(first):
         assert found.gained <= 1e-6, seed
 
 
+def test_belts_end_and_lose_nothing_without_a_name():
+    # What ten met, the worst with 7e-7 of what was exchanged.
+    for seed in range(2000, 2010):
+        found = run(belts.case(seed), tolerances=True)
+        assert found.status == "SUCCESS", seed
+        assert found.depth <= 1e-9, seed
+        assert found.residual <= 1e-5, seed
+        assert found.gained <= 1e-6, seed
+
+
 @pytest.mark.parametrize("seed", [200109, 200195])
 def test_what_does_not_move_is_not_inaccurate(seed):
     # Without gravity, in equilibrium: all energies are round-off, 1e-35 J, and so is what has no name.
@@ -80,6 +90,15 @@ def test_crowds_end_and_lose_nothing_without_a_name(first):
         assert found.reached == 1.0, seed
         assert found.depth <= 1e-5, seed
         assert found.residual <= 1e-3 or found.warned, seed
+
+
+def test_a_step_of_many_points_is_given_up_before_it_takes_minutes():
+    # Twenty boxes in a row that touch: a contact step of their 157 points takes a second, and the first step
+    # has thousands, which 3150 trial steps would have been allowed to do.
+    case = crowds.case(740011)
+    s = carom.simulate(case.scene, 4 * case.step, step=case.step)
+    assert s.stats["whole_steps"] == 4
+    assert s.stats["trial_steps"] < 50
 
 
 def test_what_a_return_pushes_in_is_pushed_out():

@@ -60,7 +60,7 @@ def nearest_points(shape_a, pose_a, shape_b, pose_b) -> PairPoint:
             k = int(np.argmin(out["gap"][:count]))
             if best is None or out["gap"][k] < best.gap:
                 best = PairPoint(
-                    float(out["gap"][k]), *(out[f][k].copy() for f in ("normal", "on_a", "on_b"))
+                    float(out["gap"][k]), *(out[f][k] + 0.0 for f in ("normal", "on_a", "on_b"))
                 )
     assert best is not None
     return best

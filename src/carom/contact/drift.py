@@ -45,6 +45,7 @@ from carom.contact.place_of_other import pose_of
 from carom.geometry.rotation import rotate, rotate_back
 from carom.geometry.thresholds import RESOLUTION
 from carom.geometry.vectors import cross, dot, plus
+from carom.kinematics.contact_point import field_along
 
 
 class Core(NamedTuple):
@@ -228,4 +229,8 @@ def drift_of_solids(system, contact, other_solid, point, state):
     du = plus(cross(wa, plus(pa, -1.0, va)), -1.0, cross(wb, plus(pb, -1.0, vb)))
     ua, ub = plus(va, 1.0, cross(wa, point.arm_a)), plus(vb, 1.0, cross(wb, point.arm_b))
     u, E = plus(ua, -1.0, ub), point.axes
-    return dot(n, du) + dot(rate, u), dot(E[1], du), dot(E[2], du)
+    t1, t2 = dot(E[1], du), dot(E[2], du)
+    if point.moves == 1:  # the place moves with p_A', `contact_acceleration` has v_A
+        s = field_along(point, plus(pa, -1.0, va))
+        t1, t2 = t1 - s[1], t2 - s[2]
+    return dot(n, du) + dot(rate, u), t1, t2

@@ -21,6 +21,7 @@ from carom.contact.thresholds import ACTIVE_REACH
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.geometry.thresholds import ROUND_OFF
 from carom.geometry.vectors import dot, minus
+from carom.kinematics.contact_point import carry_field
 from carom.kinematics.wrench import point_velocity
 from carom.model.workspace import STATIC
 
@@ -79,6 +80,7 @@ def write_touch(contact, touch, state, point):
     n, e = touch.normal, contact.axes[0]
     point.a, point.b, point.gap, point.turns = contact.body, contact.other, touch.gap, 0
     point.owner, point.parts[0], point.parts[1] = touch.owner, touch.parts[0], touch.parts[1]
+    carry_field(contact, point)
     if contact.static == 1:
         point.b = STATIC
     for k in range(3):

@@ -17,7 +17,7 @@ from carom.collision.layout import CYLINDER
 from carom.collision.support import change_of_support
 from carom.contact.rim import in_solid
 from carom.geometry.rotation import cross, rotate
-from carom.kinematics.contact_point import in_axes
+from carom.kinematics.contact_point import field_along, in_axes
 
 
 @kernel
@@ -42,5 +42,10 @@ def roll_on_plane(system, contact, feature, point, state):
         w[0], w[1], w[2],
         r[0] + solid.radius * E[0, 0], r[1] + solid.radius * E[0, 1], r[2] + solid.radius * E[0, 2],
     )  # fmt: skip
-    a = cross(w[0], w[1], w[2], c[0] + p[0], c[1] + p[1], c[2] + p[2])
-    return in_axes(point, a[0], a[1], a[2])
+    c = (c[0] + p[0], c[1] + p[1], c[2] + p[2])
+    a = cross(w[0], w[1], w[2], c[0], c[1], c[2])
+    u = in_axes(point, a[0], a[1], a[2])
+    if point.moves == 1:  # the place moves with v + c, `contact_acceleration` has v
+        s = field_along(point, c)
+        u = (u[0], u[1] - s[1], u[2] - s[2])
+    return u

@@ -39,6 +39,7 @@ def place_stop(system, contact, state, point):
             point.arm_b[0], point.arm_b[1], point.arm_b[2] = r
     point.gap = contact.side * value(system, c, state) - contact.offset
     point.turns, point.length = 3 if c.kind == REVOLUTE else 4, abs(contact.side)
+    point.moves = 0
 
 
 @unit

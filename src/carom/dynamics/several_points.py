@@ -100,6 +100,15 @@ def any_turns(k, points):
 
 
 @kernel
+def on_drive(k, points):
+    """Return whether one of k points is on a surface with a drive, which works on bodies at rest too."""
+    for i in range(k):
+        if points[i].moves == 1:
+            return True
+    return False
+
+
+@kernel
 def inverse_masses_of_one(body, k, points, state, W):
     """Write W of points of one body: e.(d/m + (J^-1 (r x d)) x s) of directions d, e at arms r, s."""
     inverse, g = inverse_inertia(body, state[points[0].a].Q), 1.0 / body.mass

@@ -9,6 +9,8 @@ from carom._compiled.decorators import kernel
 from carom.impact import laws, layout
 from carom.impact.thresholds import NO_RESTITUTION
 from carom.impact.workspace import U
+from carom.kinematics.contact_point import power_of_surface
+from carom.model.parts_of_system import has_relation_rows
 
 _NOT_LAW_A = layout.PHASE_JAM | layout.WEDGED
 
@@ -86,6 +88,13 @@ def write_share(data, contact, i, k):
     write_blow(contact, group.points[0][i], data.state, blow, clock, records)
     if not (phases & layout.PLASTIC != 0 and multiple.e[i] == 1.0 and group.mu[i] == 0.0):
         clock.impacts += blow.change
+
+
+@kernel
+def note_drive(system, point, state, impulse, clock):
+    """Add the work of the drive of a moving surface; where there are motors, `driven_work` has it."""
+    if point.moves == 1 and not has_relation_rows(system):
+        clock.loads += power_of_surface(point, state, impulse)
 
 
 @kernel

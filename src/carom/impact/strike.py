@@ -19,7 +19,7 @@ from carom.impact.effective_restitution import count_blow, effective_restitution
 from carom.impact.friction_law import STRIKES, depends_on_slip
 from carom.impact.layer import traverse
 from carom.impact.mean_point import as_one
-from carom.impact.record import write_impact
+from carom.impact.record import note_drive, write_impact
 from carom.impact.resolve import resolve
 from carom.impact.resolve_by_slip import resolve_by_slip
 from carom.impact.return_map import return_map
@@ -29,6 +29,7 @@ from carom.impact.thresholds import SEED
 from carom.impact.work_mode import restore_work
 from carom.impact.workspace import U
 from carom.kinematics.contact_point import contact_velocity
+from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.controls import LOCATE, WORK
 from carom.model.event_rows import begin_event, end_event
 from carom.model.method import THREE_FIELD
@@ -75,6 +76,7 @@ def strike(model, data, method, c):
     )  # fmt: skip
     contact, hit, clock = system.contacts[c], work.hit[0], data.clocks[0]
     hit.closed = 0
+    set_surfaces(system, clock.now)
     hit.code = onto_surface(system, controls, c, state, work)
     if hit.code != 0:
         return
@@ -153,7 +155,9 @@ def strike_one(model, data, method, c):
     if contact.tangential_restitution != 0.0:
         return_slip(hit.W, hit.u, hit.friction, contact.tangential_restitution, hit.out)
     write_impact(contact, state, point, hit, clock, data.records)
-    spread(system, point, state, hit.out[layout.IMPULSE : layout.IMPULSE + 3], work)
+    impulse = hit.out[layout.IMPULSE : layout.IMPULSE + 3]
+    note_drive(system, point, state, impulse, clock)
+    spread(system, point, state, impulse, work)
     add_velocity(system, point, work, state)
 
 

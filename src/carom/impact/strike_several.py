@@ -15,10 +15,10 @@ from carom.impact.friction_law import PERSISTENT, STRIKES, friction_at
 from carom.impact.layout import OK
 from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSettings
 from carom.impact.multiple.resolve import resolve_multiple
-from carom.impact.record import write_share
+from carom.impact.record import note_drive, write_share
 from carom.impact.thresholds import GROUP_SEED
 from carom.impact.workspace import U
-from carom.model.allowance import COUNT_PASSAGES, left
+from carom.model.allowance import COUNT_FACTORS, left
 from carom.status import BLOCKED, IMPACT_FAILED
 
 #: exponents of the normal force: if all points are on round bodies, and otherwise
@@ -101,9 +101,9 @@ def strike_several(model, data, c, k):
         multiple.pair[i] = pair_of(i, system.contacts, group.closed, all_by_pairs)
     passage = multiple.workspace.work.clock[0]
     if model.controls.retry == 1:  # the group can take a time-stepping step instead
-        passage.left = int(max(0.0, left(model.controls, step, COUNT_PASSAGES)) / k**3)
+        passage.left = int(max(0.0, left(model.controls, step, COUNT_FACTORS)) / k**3)
     code = resolve_group(k, group.W, u, group.mu, multiple)
-    step.counts[COUNT_PASSAGES] += k**3 * multiple.result.summary[0].steps
+    step.counts[COUNT_FACTORS] += k**3 * multiple.result.summary[0].steps
     step.since += k * multiple.result.summary[0].steps
     if code != OK or passage.left < 0:
         hit.code = IMPACT_FAILED
@@ -113,7 +113,9 @@ def strike_several(model, data, c, k):
         if P[3 * i] != 0.0:
             contact = system.contacts[group.closed[i].contact]
             write_share(data, contact, i, k)
-            spread(system, group.points[0][i], state, P[3 * i : 3 * i + 3], work)
+            impulse = P[3 * i : 3 * i + 3]
+            note_drive(system, group.points[0][i], state, impulse, data.clocks[0])
+            spread(system, group.points[0][i], state, impulse, work)
             add_velocity(system, group.points[0][i], work, state)
     most = SUM_ERROR * greatest(3 * k, u)
     for i in range(k):

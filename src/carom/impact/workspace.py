@@ -61,7 +61,8 @@ class Equations(NamedTuple):
     before: np.ndarray  # (3K,) the unknowns before an iteration of Newton's method
     directions: np.ndarray  # (3K, 3K) corrections z of x, each before A z (`persistent.settle`)
     part: np.ndarray  # (3K,) the part of the correction by r in each of them
-    iterations: np.ndarray  # (1,) of stages that fail in a closing step, and for impulses instead
+    #: (2,) those of stages that fail in a closing step, and for impulses instead; work of factors (`springs`)
+    iterations: np.ndarray
 
 
 class Group(NamedTuple):
@@ -133,7 +134,7 @@ def new_equations(n: int) -> Equations:
     x, r, before, part = (np.zeros(n) for _ in range(4))
     return Equations(
         rows=rows, chosen=chosen, A=A, factor=factor, pivot=pivot, x=x, r=r, before=before,
-        directions=directions, part=part, iterations=np.zeros(1, dtype=np.int64),
+        directions=directions, part=part, iterations=np.zeros(2, dtype=np.int64),
     )  # fmt: skip
 
 

@@ -25,13 +25,32 @@ def place(contact, p, state, point):
         for i in range(3):
             axes[i, k] = n[i, k]
     point.gap = gap
+    carry_field(contact, point)
+
+
+@kernel
+def carry_field(contact, point):
+    """Write whether the surface at a point moves in itself, and its velocity field."""
+    point.moves = 0 if contact.moves == 0 else 1
+    if point.moves == 1:
+        copy_field(contact, point)
+
+
+@kernel
+def copy_field(p, q):
+    """Copy the velocity field of a moving surface."""
+    for i in range(4):
+        for k in range(3):
+            q.field[i, k] = p.field[i, k]
 
 
 @kernel
 def copy_point(p, q):
     """Copy a point."""
     q.a, q.b, q.gap, q.turns, q.length = p.a, p.b, p.gap, p.turns, p.length
-    q.owner, q.parts[0], q.parts[1] = p.owner, p.parts[0], p.parts[1]
+    q.owner, q.parts[0], q.parts[1], q.moves = p.owner, p.parts[0], p.parts[1], p.moves
+    if p.moves == 1:
+        copy_field(p, q)
     for k in range(3):
         q.arm_a[k], q.arm_b[k], q.core[k] = p.arm_a[k], p.arm_b[k], p.core[k]
         for i in range(3):
@@ -74,17 +93,60 @@ def own_rows(point, u):
 
 
 @kernel
+def own_field(point, state, i):
+    """Return rows of a moving surface at a point, contact axes: velocity (i = 0), rate in one place (i = 2).
+
+    The surface moves in itself: the normal component counts for nothing.
+    """
+    s, w, x, r = point.field[i], point.field[i + 1], state[point.a].x, point.arm_a
+    if point.turns != 0:
+        return turning_rows(point, w[0], w[1], w[2])
+    vx, vy, vz = cross(w[0], w[1], w[2], x[0] + r[0], x[1] + r[1], x[2] + r[2])
+    _, t1, t2 = in_axes(point, s[0] + vx, s[1] + vy, s[2] + vz)
+    return 0.0, t1, t2
+
+
+@kernel
+def on_surface(point, state, i, u):
+    """Return rows u less those of the surface."""
+    if point.moves == 0:
+        return u
+    s = own_field(point, state, i)
+    return u[0] - s[0], u[1] - s[1], u[2] - s[2]
+
+
+@kernel
+def field_along(point, p):
+    """Return the rate of a velocity field, contact axes, at a place that moves with velocity p."""
+    w = point.field[1]
+    ax, ay, az = cross(w[0], w[1], w[2], p[0], p[1], p[2])
+    _, t1, t2 = in_axes(point, ax, ay, az)
+    return 0.0, t1, t2
+
+
+@kernel
+def power_of_surface(point, state, p):
+    """Return the power of the drive of a moving surface by a force p at a point, or the work by an impulse."""
+    if point.moves == 0:
+        return 0.0
+    s = own_field(point, state, 0)
+    return p[0] * s[0] + p[1] * s[1] + p[2] * s[2]
+
+
+@kernel
 def contact_velocity(point, state):
-    """Return u = G v, in contact axes."""
+    """Return u = G v, in contact axes; relative to a surface that moves in itself."""
     if 0 < point.turns < 4:
         w, z = state[point.a].w, (0.0, 0.0, 0.0)
         if point.b >= 0:
             z = (state[point.b].w[0], state[point.b].w[1], state[point.b].w[2])
-        return turning_rows(point, w[0] - z[0], w[1] - z[1], w[2] - z[2])
+        u = turning_rows(point, w[0] - z[0], w[1] - z[1], w[2] - z[2])
+        return on_surface(point, state, 0, u)
     r, s = point.arm_a, point.arm_b
     ux, uy, uz = point_velocity(state, point.a, r[0], r[1], r[2])
     vx, vy, vz = point_velocity(state, point.b, s[0], s[1], s[2])
-    return own_rows(point, in_axes(point, ux - vx, uy - vy, uz - vz))
+    u = own_rows(point, in_axes(point, ux - vx, uy - vy, uz - vz))
+    return on_surface(point, state, 0, u)
 
 
 @kernel
@@ -122,13 +184,18 @@ def contact_acceleration(point, state, stage):
         if point.b >= 0:
             o = stage[point.b].rate
             z = (o[3], o[4], o[5])
-        return turning_rows(point, m[3] - z[0], m[4] - z[1], m[5] - z[2])
+        u = turning_rows(point, m[3] - z[0], m[4] - z[1], m[5] - z[2])
+        return on_surface(point, state, 2, u)
     if point.b >= 0:
         ax, ay, az = motion_there(stage[point.a].rate, point.arm_a)
         bx, by, bz = motion_there(stage[point.b].rate, point.arm_b)
         return own_rows(point, in_axes(point, ax - bx, ay - by, az - bz))
-    w, c = state[point.a].w, point.core
-    cx, cy, cz = cross(w[0], w[1], w[2], c[0], c[1], c[2])
-    cx, cy, cz = cross(w[0], w[1], w[2], cx, cy, cz)
+    v, w, c = state[point.a].v, state[point.a].w, point.core
+    px, py, pz = cross(w[0], w[1], w[2], c[0], c[1], c[2])
+    cx, cy, cz = cross(w[0], w[1], w[2], px, py, pz)
     ux, uy, uz = motion_there(stage[point.a].rate, point.arm_a)
-    return own_rows(point, in_axes(point, ux + cx, uy + cy, uz + cz))
+    u = own_rows(point, in_axes(point, ux + cx, uy + cy, uz + cz))
+    if point.moves == 0:
+        return u
+    s = field_along(point, (v[0] + px, v[1] + py, v[2] + pz))
+    return on_surface(point, state, 2, (u[0], u[1] - s[1], u[2] - s[2]))

@@ -290,7 +290,22 @@ CONTACT = [
     ("still", "f8"),  # speed that counts as zero: round-off of a fall by the body's size
     ("width", "f8"),  # b of the boundary layer
     ("penetration", "f8"),  # delta
+    # a surface that moves in itself: 0 none, 1 as `field` says, 2 + its place in `MovingSurfaces`
+    ("moves", "i8"),
+    # its velocity at the origin of the world and its angular velocity, and their rates
+    ("field", "f8", (4, 3)),
 ]
+
+#: a surface whose motion is a function of time: of the user's, t -> (value, rate) of velocity and of spin
+MOVING = [
+    ("velocity_address", "i8"),  # 0: `velocity`
+    ("spin_address", "i8"),  # 0: `rate`
+    ("velocity", "f8", 3),
+    ("rate", "f8"),
+    ("axis", "f8", 3),  # of its spin, through this point
+    ("point", "f8", 3),
+]
+
 
 #: place of a body in a forest of joints
 LINK = [
@@ -382,6 +397,14 @@ class Relations(NamedTuple):
     write: np.ndarray  # and results
 
 
+class MovingSurfaces(NamedTuple):
+    """Surfaces that move in themselves as functions of time."""
+
+    rows: np.recarray  # MOVING
+    read: np.ndarray  # (1,) argument of a function that reads time alone
+    write: np.ndarray  # (8,) velocity and acceleration, rate of spin and its rate
+
+
 class System(NamedTuple):
     """All that the kernels know about a scene. Once compiled, only the workspaces in it change."""
 
@@ -398,4 +421,5 @@ class System(NamedTuple):
     solids: np.recarray  # SOLID of `carom.collision`, of bodies that may touch each other
     hulls: Hulls
     levels: Levels  # faces of static solids in one plane
+    moving: MovingSurfaces
     solver: Solver

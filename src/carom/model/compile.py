@@ -15,6 +15,7 @@ from carom.model import graph, solvers
 from carom.model.arrays import BODY, BUSHING, JOINT, KIND, LOAD, SCREW, SPRING, STATE, System
 from carom.model.contacts import Surfaces, compile_contacts, more_contacts
 from carom.model.more_forces import MoreForces, Pieces
+from carom.model.moving_surfaces import moving_surfaces
 from carom.model.placement import Placement
 from carom.model.relations import Coordinates, Elements
 from carom.model.stops import with_stops
@@ -76,6 +77,7 @@ def compile_scene(
         loads=loads, bushings=bushings, contacts=contacts, curves=curves.rows,
         vertices=touching.vertices, solids=touching.solids, hulls=touching.hulls,
         levels=touching.levels, solver=solver,
+        moving=moving_surfaces(scene, functions),
     )  # fmt: skip
     return Compiled(
         system=system, start=start, to_principal=to_principal, flipped=flipped, functions=functions,

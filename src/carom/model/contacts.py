@@ -18,6 +18,7 @@ from carom.model.contact_rows import Rows, contact_rows, first_pairs
 from carom.model.cores import Cores, new_cores, singly, swollen_alike
 from carom.model.level_surfaces import find_levels, with_level_rows
 from carom.model.more_forces import RESTITUTION, Pieces
+from carom.model.moving_surfaces import write_fields
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, meeting
 from carom.scene.contacts import IMPACT_LAWS
@@ -63,7 +64,8 @@ def compile_contacts(
     known, later = first_pairs(scene, apart)
     numbers = _numbers(known.laws, curves)
     many = later is not None or len(known.body) > FEW_CONTACTS
-    own = scene.statics or any(law.of_materials for law in known.laws)
+    own = scene.statics or any(plane.moves for plane in scene.half_spaces)
+    own = own or any(law.of_materials for law in known.laws)
     if many or own or not scene.gravity.any():  # without gravity, speeds count too
         return _contacts(scene, known, later, curves, to_principal, options)
     # contacts of scenes that differ in their motion, as in many throws, are copies of each other
@@ -154,6 +156,7 @@ def _rows(scene, options: Options, pairs: PairTable, which: Rows, surfaces: Surf
     rows["number"], rows["body"] = which.number, pairs.body[which.number]
     rows["other"] = pairs.other[which.number]
     _write_half_spaces(rows, scene, pairs.plane[which.number])
+    write_fields(rows, scene, pairs.plane[which.number])
     _write_shapes(rows, which)
     _write_ranges(rows, which, surfaces.shared)
     _write_solids(rows, which, surfaces.place)

@@ -109,6 +109,7 @@ def _laws_of_statics(scene: Scene, pairs: PairTable) -> list[tuple[tuple, tuple]
                     body, *_sortable(one.friction), *_sortable(one.friction_held), *_sortable(one.restitution),
                     one.tangential_restitution, one.stiffness,
                     one.rolling_friction, one.pivoting_friction, str(one.impact_law), str(one.multiple),
+                    other if scene.statics[other - count].moves else -1,
                 )
             )  # fmt: skip
     return [(tuple(sorted(bodies)), tuple(sorted(laws))) for bodies, laws in found]

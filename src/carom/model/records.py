@@ -60,6 +60,7 @@ TOUCH = [
     ("push", "f8", 3),  # the same in world axes
     ("moment", "f8", 3),
     ("other_moment", "f8", 3),  # about the mass centre of the other body
+    ("power", "f8"),  # of the drive of a surface that moves in itself
 ]
 
 IMPACTS = [

@@ -166,7 +166,7 @@ class Elements:
             made.piece, made.last_piece = self.pieces.add(d.motion)
         else:
             name = f"the motion of {constraint.name!r}"
-            made.address = functions.address(_of_time(d.motion), (1,), (3,), name)
+            made.address = functions.address(of_time(d.motion), (1,), (3,), name)
 
     def arrays(self, solver, more: MoreForces) -> arrays.Relations:
         """Return the tables, with the sides that `solver` gave to the bodies."""
@@ -232,7 +232,7 @@ def _joined(fields, rows) -> np.recarray:
 
 
 @once
-def _of_time(function):
+def of_time(function):
     """Return a function of (t, x) from a function of t."""
     if not is_compiled(function):
         return lambda t, x: function(float(t))

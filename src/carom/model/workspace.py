@@ -75,6 +75,11 @@ POINT = [
     # joint with friction
     ("turns", "i8"),
     ("length", "f8"),  # that converts an angular velocity to a speed
+    (
+        "moves",
+        "i8",
+    ),  # 1 if the surface of the other side moves in itself, as `field` says (`CONTACT`)
+    ("field", "f8", (4, 3)),
 ]
 
 #: index that stands for a static body

@@ -24,10 +24,12 @@ from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.contact.pair_point import smaller
 from carom.dynamics.elements import driven_power
+from carom.dynamics.several_points import on_drive
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER, SUM_ERROR
 from carom.impact.effective_restitution import restitution_at
 from carom.impact.workspace import RETURN, C, U
+from carom.kinematics.contact_point import power_of_surface
 from carom.persistent.margins import time_to_stop
 from carom.persistent.return_to_surfaces import factor_given, give, greatest_speed, solve_rows
 from carom.persistent.settle import add_product, greatest
@@ -125,9 +127,13 @@ def end_bounces(model, data, k, label, horizon):
         find_pull(k, 0, SUM_ERROR * speed, group)
         normal, tangential = work_of_pull(k, group)
     name_work(normal, tangential, clock, work.step[0])
+    x = group.v[RETURN]
+    for i in range(k):
+        clock.loads += power_of_surface(group.points[0][i], state, x[3 * i : 3 * i + 3])
     if give(system, k, count, state, group, work):
         clock.loads += driven_power(system, state, work)  # of an impulse: its work
-    if greatest_speed(system, state, count, group.member) <= still:
+    slow_enough = greatest_speed(system, state, count, group.member) <= still
+    if slow_enough and not on_drive(k, group.points[0]):
         for m in range(count):
             b = group.member[m]
             for r in range(3):

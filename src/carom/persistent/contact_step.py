@@ -21,6 +21,7 @@ from carom.model.actions import MODE_OPEN
 from carom.persistent.finish import land, note_modes, review
 from carom.persistent.members import explicit_member, implicit_member
 from carom.persistent.rows import beyond_stop
+from carom.persistent.springs import count_factors
 from carom.persistent.start import first_modes, first_stage
 from carom.persistent.step_control import note_unnamed
 from carom.persistent.thresholds import FALLS, STIFF_SLIP
@@ -46,6 +47,7 @@ def contact_step(model, data, method, h):
             step_group(model, data, method, label, h)
     if joined:  # friction in joints alone: a group without points
         step_group(model, data, method, n, h)
+    count_factors(data.group, work.step[0])
 
 
 @kernel
@@ -74,7 +76,8 @@ def step_group(model, data, method, label, h):
         s = stages_within(method)
         if k > 0 and land(model, data, label, k) and review(model, data, label, s, h, True):
             note_errors(model, data, method.E, label, k, h)
-            note_unnamed(model, data, label, result.friction - rubbed)
+            named = result.friction - rubbed + result.applied - had
+            note_unnamed(model, data, label, named, 0.0, push)
             return
         result.stiff = 1
     if not (order > 0 and 0.5 * h * h * push <= closing_size(model, data, label)):
@@ -85,7 +88,8 @@ def step_group(model, data, method, label, h):
             note_errors(model, data, method.stiff_E, label, 0, h)
             if order > 0:
                 result.order = min(order, STIFF_ORDER)
-            note_unnamed(model, data, label, result.friction - rubbed)
+            named = result.friction - rubbed + result.applied - had
+            note_unnamed(model, data, label, named, 0.0, push)
             return
     first_modes(data, label)
     result.applied, result.friction = had, rubbed
@@ -99,6 +103,8 @@ def step_group(model, data, method, label, h):
         miss, b = work.body[group.member[m]].miss, group.member[m]
         bound_accelerations_of(work, b, 2)
         miss[0], miss[1] = max(miss[0], 0.5 * h * h * push), 0.0
+    named = result.friction - rubbed + result.applied - had
+    note_unnamed(model, data, label, named, h, push)
     if order > 0:
         result.order = 1 if lets_go else CLOSING_ORDER
 

@@ -12,11 +12,12 @@ from carom.dynamics.adapt import allowed_error
 from carom.dynamics.explicit import copy_state, note_velocity
 from carom.dynamics.passed_edges import has_passed, note_passed
 from carom.dynamics.project import project_position, project_velocity
-from carom.dynamics.several_points import velocities
+from carom.dynamics.several_points import on_drive, velocities
 from carom.dynamics.thresholds import ERROR_SHARE
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER, RESOLUTION
 from carom.impact.workspace import ACCELERATIONS, C, P, U
+from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
 from carom.persistent.active_set import clear
 from carom.persistent.coulomb_stage import solve_forces
@@ -47,6 +48,7 @@ def land(model, data, label, k) -> bool:
     if loaded and not (project_position(system, end, True, 1e-14, work) <= RESOLUTION):
         return False
     show(count, end, group, work)
+    set_surfaces(system, work.result[0].time)
     place_closed(system, k, end, group, group.points[0], work)
     note_passed(system, data.active, k, group, data.state, end)
     onto_surfaces(system, data, k, count, end)
@@ -141,7 +143,7 @@ def review(model, data, label, s, h, given) -> bool:
     for i in range(active.count[0]):
         if work.body[active.points[i].body].label == label:
             clear(active.points[i])  # it has a force only if it is among the points found
-    at_rest = come_to_rest(system, data, tolerance, count)
+    at_rest = not on_drive(k, group.points[0]) and come_to_rest(system, data, tolerance, count)
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.own == 0:

@@ -65,7 +65,7 @@ def place_coordinate(system, c, state, point):
         if c.child >= 0:
             r = parent_arm(c, state)
             point.arm_b[0], point.arm_b[1], point.arm_b[2] = r
-    point.gap, point.length = 0.0, 1.0
+    point.gap, point.length, point.moves = 0.0, 1.0, 0
     point.turns = PIVOT if c.kind == REVOLUTE else JOINT
 
 

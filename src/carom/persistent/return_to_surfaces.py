@@ -52,7 +52,9 @@ def mark_rows(system, active, k, group):
             core = contact.radius == 0.0 and contact.touches == 0
             inside = friction < (1.0 - 1e-9) * group.mu[i] * p[q]
             sticks = active_point.mode == MODE_STICK and inside
-            group.closed[i].rows = 3 if core and sticks else 1
+            # where it sticks to a surface that moves, its velocity alone is returned
+            moves = group.points[0][i].moves == 1
+            group.closed[i].rows = 3 if core and sticks and not moves else 1
     return some
 
 

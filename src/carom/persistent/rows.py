@@ -21,7 +21,9 @@ from carom.dynamics.several_points import accelerations, inverse_masses, spread_
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER
 from carom.impact.workspace import C, P, U
+from carom.kinematics.contact_point import power_of_surface
 from carom.kinematics.flight import free_rates
+from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.actions import MODE_SLIP
 from carom.persistent.joint_rows import (
     JOINT,
@@ -69,6 +71,7 @@ def write_rows(model, data, label, s) -> int:
     """
     system, group, work = model.system, data.group, data.work
     points, state = group.points[0], work.stage
+    set_surfaces(system, work.result[0].time)
     k = find_points(system, data, label)
     inverse_masses(system, k, points, state, work, group.W)
     write_motion(system, k, state, work.stages[s], group, work)
@@ -191,7 +194,7 @@ def way_of(system, active, closed_point):
 
 @unit
 def push_bodies(model, data, loaded, k, count, s) -> tuple[float, float]:
-    """Add the accelerations by the forces in P to stage s; return the powers of motors and friction."""
+    """Add the accelerations by the forces in P to stage s; return the powers of drives and friction."""
     system, group, work = model.system, data.group, data.work
     u, p, power, driven = group.v[U], group.v[P], 0.0, 0.0
     spread_all(system, group.points[0, :k], p, group.member[:count], work.stage, work)
@@ -201,6 +204,7 @@ def push_bodies(model, data, loaded, k, count, s) -> tuple[float, float]:
         b = group.member[m]
         accelerate(work.body[b].motion, work.stages[s, b].rate)
     for i in range(k):
+        driven += power_of_surface(group.points[0][i], work.stage, p[3 * i : 3 * i + 3])
         if group.kind[i] == SLIDING:
             power += p[3 * i + 1] * u[3 * i + 1] + p[3 * i + 2] * u[3 * i + 2]
     return driven, power

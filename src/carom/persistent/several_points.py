@@ -46,6 +46,7 @@ from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.rows import slip_of, write_motion
 from carom.persistent.settle import greatest
 from carom.persistent.slip_law import set_friction
+from carom.persistent.springs import count_factors
 from carom.persistent.start import accelerate_start, first_stage
 from carom.status import TOO_MANY_POINTS
 
@@ -67,6 +68,7 @@ def activate_contact(model, data, c, horizon):
         hit.code = TOO_MANY_POINTS
     elif k > 0:
         activate_several(model, data, k, label, horizon)
+        count_factors(data.group, work.step[0])
     regroup(system, active, work)
 
 

@@ -29,11 +29,13 @@ from carom.friction.layout import SLIDING
 from carom.geometry.thresholds import LAST_DIGIT, REMAINDER, ROUND_OFF
 from carom.impact.thresholds import GROUP_ERROR, LOADED_PART
 from carom.impact.workspace import ACCELERATIONS, C, P
+from carom.model.allowance import COUNT_FACTORS
 from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import JOINT, is_driven
 from carom.persistent.settle import add_product, greatest, settle
 
 SHARES = 6  # rounds until the compliances of stick are found
+FACTORED = 1  # place of the work of factors in `Equations.iterations`: a point has three rows
 
 
 @kernel
@@ -109,6 +111,14 @@ def factor(n, rows, group):
             L[i, j] = A[i, j]
         L[i, i] += limits.PROXIMAL_SPRING * compliance_of(group, rows[i])
     lu.factor(L, n, group.equations.pivot, 0.0)
+    group.equations.iterations[FACTORED] += n**3 // 27
+
+
+@kernel
+def count_factors(group, step):
+    """Add the work of the factors since the last count to the work of the island."""
+    step.counts[COUNT_FACTORS] += group.equations.iterations[FACTORED]
+    group.equations.iterations[FACTORED] = 0
 
 
 @kernel

@@ -38,13 +38,15 @@ def weigh(system, b, start, end):
 
 
 @kernel
-def note_unnamed(model, data, label, friction):
-    """Note the change of energy in a step besides the work of friction, relative to the allowed loss.
+def note_unnamed(model, data, label, named, h, push):
+    """Note the change of energy in a step besides the `named` work, relative to the allowed loss.
 
-    It is known of bodies on which only gravity acts.
+    It is known of bodies on which only gravity acts. Implicit Euler, the closing member with a step of length
+    h, also loses m (h a)^2/2 by an acceleration a. That is at most the sum of a at the start, what friction
+    changes, at most `push`, and gravity: more is an impact, of a normal that jumps.
     """
     system, start, end, member = model.system, data.state, data.work.trial, data.group.member
-    (count, loaded), lost, may = bodies_of(model, data, label), friction, 0.0
+    (count, loaded), lost, may, by_euler = bodies_of(model, data, label), named, 0.0, 0.0
     if loaded:
         return
     g, result = norm(system.gravity), data.work.result[0]
@@ -53,13 +55,26 @@ def note_unnamed(model, data, label, friction):
         b = member[m]
         body = system.bodies[b]
         lost += lost_by(system, b, start, end)
+        by_euler += (
+            body.mass * (h * (first_acceleration(system, b, data.work.stages) + push + g)) ** 2
+        )
         may += limits.MOTION_LOSS * kinetic_of(body, start[b])
         may += min(body.mass * fall, limits.SIZE_LOSS * weigh(system, b, start, end))
     if count == 1:
         body = system.bodies[member[0]]
         may = kinetic_of(body, start[member[0]]) + body.mass * g * body.extent
         may *= limits.BODY_LOSS
-    result.unnamed = max(result.unnamed, abs(lost) / may if may > 0.0 else 0.0)
+    over = abs(lost) - min(by_euler, abs(lost))
+    result.unnamed = max(result.unnamed, over / may if may > 0.0 else 0.0)
+
+
+@kernel
+def first_acceleration(system, b, stages):
+    """Return the acceleration of a body at the start of a step, including that of its rotation at its size."""
+    rate, linear, angular = stages[0, b].rate, 0.0, 0.0
+    for r in range(3):
+        linear, angular = linear + rate[r] * rate[r], angular + rate[3 + r] * rate[3 + r]
+    return math.sqrt(linear) + system.bodies[b].extent * math.sqrt(angular)
 
 
 @kernel

@@ -22,7 +22,8 @@ class Ledger(Shown):
     kinetic, potential
         Present energies. The potential energy is that of gravity, springs and forces with a potential.
     loads
-        Work of forces and torques without potential, of dampers (negative), and of motors.
+        Work of forces and torques without potential, of dampers (negative), of motors, and of the drives of
+        surfaces that move in themselves.
     impacts
         Change of energy by impacts: at most 0, except that Newton's law with friction may add energy. If small
         bounces are dropped, corrections of their friction are included here.

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from carom.results.state import SystemState
     from carom.run import Run
     from carom.scene.all_pairs import PairTable
+    from carom.scene.bodies import HalfSpace, StaticBody
     from carom.scene.scene import Scene
 
 SIDES = ("right", "left")
@@ -429,6 +430,26 @@ class Solution(Portable, Drawn, Source):
         an entry for each contact of `pairs` at each saved time.
         """
         return force_table(self._touch)._by_name(self._numbers)
+
+    def surface_power(self, part: HalfSpace | StaticBody | str) -> np.ndarray:
+        """Return the power (T,) [W] of the drive of a surface that moves in itself, at the saved times.
+
+        It is that of the forces of persistent contact. The work of all drives, with what they do in impacts, is
+        in `Ledger.loads`.
+
+        Parameters
+        ----------
+        part : HalfSpace, StaticBody or str
+            A half-space or a static body of the scene, or its name.
+        """
+        one = self.scene[part] if isinstance(part, str) else part
+        if one not in self.scene.fixed:
+            raise ValueError(
+                f"part must be a half-space or a static body of the scene, got {checks.shown(part)}"
+            )
+        plane = np.append(self.pairs.plane, np.full(len(self.scene.stops), -1))
+        rows = plane[self._touch.contact] == self.scene.fixed.index(one)
+        return np.bincount(self._touch.saved[rows], self._touch.power[rows], len(self.t))
 
     @cached_property
     def _contact_sums(self) -> tuple[np.ndarray, np.ndarray]:

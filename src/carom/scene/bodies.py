@@ -13,6 +13,14 @@ from carom.fields import Number, Value, Vector, keep
 from carom.geometry.attitude import attitude
 from carom.scene.colors import hex_color
 from carom.scene.materials import Material
+from carom.scene.moving_surfaces import (
+    SurfaceSpin,
+    SurfaceVelocity,
+    check_in_plane,
+    motion_in_words,
+    surface_spin,
+    surface_velocity,
+)
 from carom.scene.shapes import SHAPES, Shape
 from carom.scene.values import in_scene
 
@@ -94,6 +102,10 @@ class HalfSpace:
         Material of its surface.
     color : str or None
         Colour ``#rrggbb`` in pages, pictures and films; None: grey.
+    surface_velocity : (3,), callable or None
+        Velocity with which its surface moves in itself [m/s]; see `Scene.add_static`.
+    surface_spin : tuple or None
+        Axis, rate [rad/s] and point, or None for that of the part, about which its surface turns in itself.
     """
 
     index: int
@@ -102,9 +114,20 @@ class HalfSpace:
     normal: Vector = fields.direction()
     material: MaterialOrNone = Value(_material, None)
     color: Color = Value(hex_color, None)
+    surface_velocity: SurfaceVelocity = surface_velocity()
+    surface_spin: SurfaceSpin = surface_spin()
+
+    def __post_init__(self):
+        check_in_plane(self.surface_velocity, self.surface_spin, self.normal)
 
     def __repr__(self) -> str:
-        return f"HalfSpace({self.name!r}, point={self.point}, normal={self.normal})"
+        at = f"point={self.point}, normal={self.normal}"
+        return f"HalfSpace({self.name!r}, {at}{motion_in_words(self)})"
+
+    @property
+    def moves(self) -> bool:
+        """Whether its surface moves in itself."""
+        return self.surface_velocity is not None or self.surface_spin is not None
 
 
 @in_scene
@@ -126,6 +149,10 @@ class StaticBody:
         Material of its surface.
     color : str or None
         Colour ``#rrggbb`` in pages, pictures and films; None: grey.
+    surface_velocity : (3,), callable or None
+        Velocity with which its surface moves in itself [m/s]; see `Scene.add_static`.
+    surface_spin : tuple or None
+        Axis, rate [rad/s] and point, or None for that of the part, about which its surface turns in itself.
     """
 
     index: int
@@ -135,6 +162,8 @@ class StaticBody:
     orientation: Value[np.ndarray, Any] = Value(attitude)
     material: MaterialOrNone = Value(_material, None)
     color: Color = Value(hex_color, None)
+    surface_velocity: SurfaceVelocity = surface_velocity()
+    surface_spin: SurfaceSpin = surface_spin()
 
     def __post_init__(self):
         checks.instance("shape", self.shape, SHAPES)
@@ -142,7 +171,13 @@ class StaticBody:
         keep(self, material=whole_material(self.shape, self.material))
 
     def __repr__(self) -> str:
-        return f"StaticBody({self.name!r}, {self.shape!r}, position={self.position})"
+        at = f"{self.shape!r}, position={self.position}"
+        return f"StaticBody({self.name!r}, {at}{motion_in_words(self)})"
+
+    @property
+    def moves(self) -> bool:
+        """Whether its surface moves in itself."""
+        return self.surface_velocity is not None or self.surface_spin is not None
 
 
 def whole_material(shape: Shape, material: Material | None) -> Material | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
@@ -16,6 +16,7 @@ from carom.scene.contacts import Contact, check_gap
 from carom.scene.forces import FORCES, AppliedForce, ForceDefinition, force_on, sides
 from carom.scene.joints import JOINTS, Joint, JointDefinition
 from carom.scene.materials import Material
+from carom.scene.moving_surfaces import GivenSpin
 from carom.scene.named_parts import with_parts
 from carom.scene.pairs import Pairs
 from carom.scene.registry import Derived, Registry
@@ -84,6 +85,8 @@ class Scene(Shown, TouchingPairs):
         *,
         material: Material | None = None,
         color: str | ArrayLike | None = None,
+        surface_velocity: ArrayLike | Callable | None = None,
+        surface_spin: GivenSpin | None = None,
         name: str | None = None,
         replace: bool = False,
     ) -> HalfSpace:
@@ -99,14 +102,18 @@ class Scene(Shown, TouchingPairs):
             Material of its surface, see `set_contact_default`.
         color : str or (3,)
             Colour in pages, pictures and films, as for `add_body`. Default: grey.
+        surface_velocity, surface_spin
+            Motion of its surface in itself, as for `add_static`: a belt, a turntable. The velocity must be in
+            the plane, the axis along the normal; the spin is about `point`, if no other point is given.
         name
             Name in the scene. Default ``"half_space1"``, ``"half_space2"``, ...
         replace : bool
             True: a half-space that has this name is replaced, and what refers to it then refers to the new one.
             Default False: a name that is taken is refused.
         """
+        motion: Any = surface_velocity, surface_spin
         index, name = self._parts.new(HalfSpace, name, "half_space", replace)
-        return self._parts.add(HalfSpace(index, name, point, normal, material, color))
+        return self._parts.add(HalfSpace(index, name, point, normal, material, color, *motion))
 
     @arguments.known
     def add_body(
@@ -191,6 +198,8 @@ class Scene(Shown, TouchingPairs):
         orientation: Orientation = (1.0, 0.0, 0.0, 0.0),
         material: Material | None = None,
         color: str | ArrayLike | None = None,
+        surface_velocity: ArrayLike | Callable | None = None,
+        surface_spin: GivenSpin | None = None,
         name: str | None = None,
         replace: bool = False,
     ) -> StaticBody:
@@ -211,6 +220,15 @@ class Scene(Shown, TouchingPairs):
             Material of its surface, see `set_contact_default`.
         color : str or (3,)
             Colour in pages, pictures and films, as for `add_body`. Default: grey.
+        surface_velocity : (3,) or callable
+            Velocity [m/s] with which its surface moves in itself while the solid stays where it is, as a belt
+            does. At a contact only the tangential part acts. Or a function ``t -> (velocity, acceleration)``,
+            each (3,), as that of a `Driver`.
+        surface_spin : (axis, rate) or (axis, rate, point)
+            Its surface turns in itself about an axis (3,) with this rate [rad/s], as those of turntables and
+            rollers do, in addition to `surface_velocity`. The axis goes through `position`, or through `point`
+            (3,). The rate may be a function ``t -> (rate, its derivative)``. The work of both drives is in
+            `Ledger.loads`, the power of each in `Solution.surface_power`.
         name
             Name in the scene. Default ``"static1"``, ``"static2"``, ...
         replace : bool
@@ -229,9 +247,8 @@ class Scene(Shown, TouchingPairs):
         """
         index, name = self._parts.new(StaticBody, name, "static", replace)
         shape = shape_given(shape)
-        return self._parts.add(
-            StaticBody(index, name, shape, position, orientation, material, color)
-        )
+        look: Any = material, color, surface_velocity, surface_spin
+        return self._parts.add(StaticBody(index, name, shape, position, orientation, *look))
 
     @arguments.known
     def add_joint(

@@ -8,6 +8,8 @@ from carom._compiled.decorators import entry, inlined, kernel
 from carom.contact.place import place_any
 from carom.dynamics.explicit import copy_state
 from carom.geometry.rotation import cross
+from carom.kinematics.contact_point import own_field
+from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.records import GROW
 from carom.stepping.energy_balance import begin_watch, note_energies
 
@@ -72,6 +74,7 @@ def save_contacts(model, data, k):
     """Write forces and moments of all active points at saved time k."""
     system, active, now, work = model.system, data.active, data.state, data.work
     clock, records = data.clocks[0], data.records
+    set_surfaces(system, clock.now)
     for i in range(active.count[0]):
         active_point, point, touch = active.points[i], work.placed[0], records.touch[clock.touched]
         contact = system.contacts[active_point.contact]
@@ -96,6 +99,10 @@ def save_contacts(model, data, k):
         mx = m[0] * E[0, 0] + m[1] * E[1, 0] + m[2] * E[2, 0]
         my = m[0] * E[0, 1] + m[1] * E[1, 1] + m[2] * E[2, 1]
         mz = m[0] * E[0, 2] + m[1] * E[1, 2] + m[2] * E[2, 2]
+        touch.power = 0.0
+        if point.moves == 1:
+            s, w = own_field(point, now, 0), point.field[1]
+            touch.power = f[1] * s[1] + f[2] * s[2] + mx * w[0] + my * w[1] + mz * w[2]
         t, o, p = touch.moment, touch.other_moment, touch.push
         t[0], t[1], t[2] = tx + mx, ty + my, tz + mz
         o[0], o[1], o[2] = (sx - mx, sy - my, sz - mz) if pair else (0.0, 0.0, 0.0)

@@ -19,6 +19,7 @@ from carom.scene.more_forces import CurveSpring
 from carom.scene.shapes import Box, Sphere
 from carom.scene.shapes.revolved import Cylinder
 from carom.visual.dice import is_die, pip_colour, pips
+from carom.visual.surface_arrows import arrows_of
 from carom.visual.surfaces import is_round, surface
 
 Surface = tuple[np.ndarray, np.ndarray]
@@ -27,7 +28,7 @@ STILL = 0.02  # fraction of the greatest displacement, or a rotation [rad], up t
 PIN = 0.15  # of the size of a body: a pin is no thicker
 #: Okabe and Ito's colours, told apart by colour-blind eyes; their vermilion and blue are for arrows
 COLOURS = ("#56B4E9", "#E69F00", "#009E73", "#F0E442", "#CC79A7", "#999999")
-JOINT, STATIC = "#5b6873", "#c3ccd4"
+JOINT, STATIC, ARROW = "#5b6873", "#c3ccd4", "#D55E00"
 ROD = 0.012  # radius of rods of bodies without a shape, as a fraction of the size of the region
 RAIL, RING = 400, 8  # most points along a curve, and sides of its tube
 
@@ -105,7 +106,8 @@ def parts_of(scene, radius: float, fineness: int | None = None) -> list[Part]:
                 body.index
             )
     rails = [_rail(j, 0.5 * ROD * radius) for j in scene.joints if j.definition.guide == "curve"]
-    return [*parts.values(), *(_static(solid, fineness) for solid in scene.statics), *rails]
+    fixed = [_static(solid, fineness) for solid in scene.statics]
+    return [*parts.values(), *fixed, *rails, *surface_arrows(scene, radius)]
 
 
 def _rail(joint: Joint, thick: float) -> Part:
@@ -166,6 +168,11 @@ def ground_curves(scene, points: int = RAIL) -> list[np.ndarray]:
         s = np.linspace(0.0, curve.length, points)
         out.append(place + quaternion.rotate(turn, curve.point(s)))
     return out
+
+
+def surface_arrows(scene, radius: float) -> list[Part]:
+    """Return the arrows of surfaces that move in themselves."""
+    return [Part(*arrow, [-1], "static", None, ARROW) for arrow in arrows_of(scene, radius)]
 
 
 def _static(solid, fineness: int) -> Part:

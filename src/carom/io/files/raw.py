@@ -46,6 +46,8 @@ SAME = {
     **{f"touch_{name}": f"held_{name}" for name in ("saved", "contact", "body", "other", "point")},
     "touch_force": "held_force", "touch_push": "held_vector",
 }  # fmt: skip
+#: columns that files of earlier versions do not have, and that are 0 where they are left out
+LATER = ("touch_power",)
 #: variables of words, of which there are ten at most
 WORDS = {
     "impact_law": IMPACT_LAWS, "event_kind": r.EVENTS, "interval_mode": ("open", "slipping", "sticking"),
@@ -67,7 +69,7 @@ def columns(records: r.Records, labelled: Mapping[str, np.ndarray]) -> list[Colu
         for field in fields:
             name, data = f"{table}_{field[0]}", getattr(records, table)[field[0]]
             same = labelled.get(SAME.get(name, ""))
-            if same is not None and _same_bits(data, same):
+            if (same is not None and _same_bits(data, same)) or (name in LATER and not data.any()):
                 continue
             tail = TAILS[data.shape[len(DIMS[table]) :]]
             out.append(Column(name, (*DIMS[table], *tail), np.ascontiguousarray(data)))

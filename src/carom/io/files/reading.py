@@ -185,6 +185,8 @@ class _Arrays:
     def column(self, name: str, same: str, shape: tuple[int, ...], kind) -> np.ndarray:
         """Return a column of the records, or the variable that has the same bits."""
         own = f"{raw.GROUP}/{name}"
+        if name in raw.LATER and own not in self:
+            return np.zeros(shape, kind)
         return self._placed(own if own in self else same, shape, kind)
 
     def table(self, prefix: str, columns: dict) -> dict[str, np.ndarray]:

@@ -69,6 +69,7 @@ TYPES: dict[str, type[Any]] = {
 #: fields that files of earlier versions do not have
 LATER: dict[str, Any] = {
     "color": None, "material": None, "of_materials": {"tuple": []}, "tangential_restitution": 0.0,
+    "surface_velocity": None, "surface_spin": None,
 }  # fmt: skip
 ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 
@@ -212,7 +213,7 @@ class Decoder:
 def _is_as_before(record, name: str) -> bool:
     """Return whether a later field has the value that it has where it is left out."""
     if isinstance(record, FIXED):
-        return name == "color" and record.color is None
+        return name != "material" and getattr(record, name) is None
     if isinstance(record, Piece):
         return record.material is None
     return isinstance(record, ContactLaw) and name == "of_materials" and not record.of_materials

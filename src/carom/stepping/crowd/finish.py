@@ -178,6 +178,9 @@ def come_to_rest(system, tolerance, count, start, end, crowd):
     for i in range(count):
         if crowd.active[i].other >= 0:
             parent[root(parent, crowd.active[i].body)] = root(parent, crowd.active[i].other)
+    for i in range(count):  # a surface that moves in itself works on bodies at rest
+        if system.contacts[crowd.active[i].contact].moves > 0:
+            speed[1, root(parent, crowd.active[i].body)] = math.inf
     for b in range(n):
         g, size = root(parent, b), system.bodies[b].extent
         speed[0, g] = max(speed[0, g], norm(start[b].v) + size * norm(start[b].w))

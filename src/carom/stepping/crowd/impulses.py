@@ -15,7 +15,8 @@ from carom.dynamics.thresholds import ERROR_SHARE
 from carom.friction.layout import ITERATE
 from carom.geometry.rotation import rotate, rotate_back
 from carom.geometry.thresholds import REMAINDER, RESOLUTION
-from carom.kinematics.contact_point import contact_velocity
+from carom.kinematics.contact_point import contact_velocity, power_of_surface
+from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.allowance import COUNT_BLOCKS, left
 from carom.stepping.crowd.free_motion import halfway
 from carom.stepping.crowd.pose import note_drift, pose
@@ -30,7 +31,8 @@ LIFTS = 4  # greatest number of searches for other penetrating features
 @kernel
 def find_points(model, data, h, fall, wide):
     """List the points that may touch, and place them at the end of the flight and at its middle; return k."""
-    now, crowd, n = data.state, data.crowd, data.state.shape[0]
+    now, crowd, n, step = data.state, data.crowd, data.state.shape[0], data.work.step[0]
+    set_surfaces(model.system, step.begin + step.spent + 0.5 * h)
     k = gather(model, data, h, fall, wide)
     if k < 0:
         return k
@@ -148,6 +150,8 @@ def impose(model, data, k, h):
     """
     system, crowd, work, end = model.system, data.crowd, data.work, data.work.trial
     driven, joined = 0.0, system.joints.shape[0] > 0
+    for i in range(k):
+        driven += power_of_surface(crowd.points[0][i], crowd.middle, crowd.closed[i].impulse)
     work.result[0].time = work.result[0].start + h
     if joined:
         note_rates(system, crowd.flight)

@@ -141,7 +141,7 @@ def move_on(model, data, method, h, patient, careful):
         return code
 
     # the work of loads and of friction in joints, on the actual path
-    applied, rubbed = 0.0, 0.0
+    applied, rubbed = driven, 0.0
     if loaded:
         search = work.search[0]
         taken, rubbed = power_of_path(system, h, now, end, crowd.middle, work)

@@ -91,7 +91,8 @@ def sensitivities(
     checks.flag("throw", throw)
     checks.choice("by", by, WAYS)
     scene = solution.scene
-    parts = (*scene.joints, *scene.constraints, *scene.forces)
+    belts = [one for one in scene.half_spaces if one.moves]
+    parts = (*scene.joints, *scene.constraints, *scene.forces, *belts)
     if parts and by == "saltation":
         raise ValueError(
             f'solution must be of a scene of free bodies for by="saltation", got one with {parts[0]!r}; use '

@@ -38,7 +38,7 @@ def write_glb(show: Show, path: Path, speed: float) -> None:
         for b, colour in zip(part.bodies, colours_of(part, scene)):
             drawn = tuple((*piece, file.material(rgb(colour), pale)) for piece, pale in pieces)
             if b < 0:
-                name = next(still).name
+                name = getattr(next(still, None), "name", "arrow")
                 file.node(name, root, file.mesh(name, drawn))
             else:
                 looks.setdefault(b, []).extend(drawn)
