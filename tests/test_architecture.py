@@ -49,6 +49,9 @@ CAPABILITIES = {
     },
     "a material for each part of a compound": {"io": 1, "scene": 1},
     "restitution with speed, tangential restitution": {"scene": 3, "impact": 1, "results": 1, "model": 1},
+    "friction that depends on the slip": {
+        "impact": 3, "persistent": 1, "scene": 1, "model": 1, "results": 1,
+    },
     "surfaces that move": {"persistent": 1, "scene": 2, "model": 1, "kinematics": 1, "visual": 1, "contact": 1},
     "curves, and joints on them": {"kinematics": 3, "scene": 5, "model": 1, "dynamics": 1, "results": 1},
 }  # fmt: skip
@@ -247,6 +250,7 @@ OTHER_FLOATS = {
     "dynamics.implicit": {"GAMMA"},
     "friction.residual": {"NOTHING"},
     "impact.multiple.stages": {"GAMMA"},
+    "impact.resolve_by_slip": {"_A", "_E", "_NONE"},
     "impact.spline": {"_X1", "_X2", "_X3", "_W1", "_W2", "_W3"},
     "impact.strike_several": {"HERTZ", "LINEAR"},
     "kinematics.coordinate": {"TURN"},

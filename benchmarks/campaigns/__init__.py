@@ -9,6 +9,7 @@ from campaigns import (
     belts,
     crowds,
     forced,
+    frictions,
     laws,
     mechanisms,
     piles,
@@ -28,5 +29,5 @@ FAMILIES = {
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
     "belts": belts.case,
     "rails": rails.case,
-    "laws": laws.case,
+    "laws": laws.case, "frictions": frictions.case,
 }  # fmt: skip

@@ -13,6 +13,7 @@ import carom
 from carom.collision.api import nearest_points
 from carom.geometry import quaternion
 from carom.model.contact_rows import touching_pairs
+from carom.scene.friction import bound_of
 
 #: what a run may break at most: depth by size; energy gained, and without a name, by the energy exchanged;
 #: an impulse by that which throws a free mass back
@@ -82,7 +83,7 @@ def run(case: Case, tolerances: bool = False) -> Outcome:
     }
     newton = case.label.get("impact_law") == "newton" and case.label["friction"] > 0.0
     laws = case.scene.contacts
-    if newton or any(law.impact_law == "newton" and law.friction > 0.0 for law in laws):
+    if newton or any(law.impact_law == "newton" and bound_of(law.friction) > 0.0 for law in laws):
         del energies["impacts"]  # Newton's law may gain energy by itself
     speed = float(np.max(np.linalg.norm(s.velocity, axis=2), initial=0.0))
     speed = max(speed, case.step * float(np.linalg.norm(case.scene.gravity)))

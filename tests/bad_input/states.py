@@ -74,6 +74,11 @@ def stated():
         "euler": lambda: (carom.euler, dict(axes="zyx", angles=(90.0, 0.0, 30.0))),
         "axis_angle": lambda: (carom.axis_angle, dict(axis=three, angle=90.0)),
         "Material": lambda: (carom.Material, number),
+        "Friction": lambda: (
+            carom.Friction, dict(static=0.5, kinetic=0.3, speed=0.1, exponent=1.0),
+        ),
+        "Friction.table": lambda: (carom.Friction.table, dict(speeds=(0.1, 1.0), values=(0.9, 0.5))),
+        "Friction.slope": lambda: (carom.Friction(0.5, 0.3, 0.1).slope, dict(speed=1.0)),
         "Restitution": lambda: (carom.Restitution.power(0.5), dict(speed=1.0)),
         "Restitution.power": lambda: (
             carom.Restitution.power, dict(value=0.5, speed=1.0, exponent=-0.25, maximum=0.9),

@@ -9,11 +9,10 @@ e^n is negligible, its next impact is plastic: a single contact would have come 
 from __future__ import annotations
 
 from carom._compiled.decorators import inlined, kernel
-from carom.dynamics.curve import find_piece
+from carom.dynamics.curve import value_at
 from carom.geometry.rotation import norm
 from carom.geometry.thresholds import ROUND_OFF
 from carom.impact.thresholds import NO_RESTITUTION
-from carom.scene.restitution import SLOWEST
 
 
 @kernel
@@ -36,14 +35,11 @@ def restitution_at(system, contact, approach):
 
 @kernel
 def law_at(pieces, contact, approach):
-    """Return e = c_0 + c_1 s + ..., s = x - start, x = v^exponent; beyond the pieces, that at their end."""
-    first, last = contact.restitution_piece, contact.last_restitution_piece
-    x = max(approach, SLOWEST) ** contact.restitution_exponent
-    x = min(max(x, pieces[first].start), pieces[last - 1].end)
-    piece, e = pieces[find_piece(pieces, first, last, x)], 0.0
-    for k in range(5, -1, -1):
-        e = e * (x - piece.start) + piece.c[k]
-    return min(1.0, max(0.0, e))
+    """Return e by the law of a contact."""
+    law = (
+        contact.restitution_piece, contact.last_restitution_piece, contact.restitution_exponent,
+    )  # fmt: skip
+    return min(1.0, max(0.0, value_at(pieces, law, approach)))
 
 
 @kernel

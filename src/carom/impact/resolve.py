@@ -24,11 +24,11 @@ from carom.impact.wedge import drowned, moves_nothing, power_of_two, pushed
 _SLIP_STEPS = 2000
 
 # The contact slips along a curve or along a line (in the plane of u_t), or it sticks.
-_CURVED, _STRAIGHT, _STICK = range(3)
+BENT, STRAIGHT, STICK = range(3)
 
 # The end of a piece of the path: within the phase, where slip stops, at the goal of the phase, where the pair
 # is wedged (no impulse changes the velocity), or nowhere.
-_WITHIN, _AT_STOP, _AT_GOAL, _CAUGHT, _ENDLESS = range(5)
+WITHIN, AT_STOP, AT_GOAL, CAUGHT, ENDLESS = range(5)
 
 
 class Contact(NamedTuple):
@@ -52,14 +52,14 @@ class Phase(NamedTuple):
 class Line(NamedTuple):
     """A piece of the path along which u is linear in p."""
 
-    mode: int  # _STRAIGHT or _STICK; _CURVED if there is no line
+    mode: int  # STRAIGHT or STICK; BENT if there is no line
     t1: float  # friction impulse per normal impulse
     t2: float
     growth: float  # d|u_t|/dp
 
 
-_COMPRESSION = Phase(laws.NEWTON, 0.0, False, 0.0)
-_CURVE = Line(_CURVED, 0.0, 0.0, 0.0)
+COMPRESSION = Phase(laws.NEWTON, 0.0, False, 0.0)
+CURVE = Line(BENT, 0.0, 0.0, 0.0)
 
 
 @entry
@@ -106,10 +106,10 @@ def _follow(contact, u, e, law):
     """
     mu, at_rest = contact.mu, ROUND_OFF * contact.size
     s, before = (u[1], u[2], u[0], 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0)
-    phase, line, slip_end = _COMPRESSION, _CURVE, (-1.0, 0.0)
+    phase, line, slip_end = COMPRESSION, CURVE, (-1.0, 0.0)
     phases, steps, stopped = 0, 0, not math.sqrt(u[1] * u[1] + u[2] * u[2]) > at_rest
     if mu == 0.0:
-        line = Line(_STRAIGHT, 0.0, 0.0, 0.0)
+        line = Line(STRAIGHT, 0.0, 0.0, 0.0)
         phases, stopped = 0 if stopped else o.PHASE_SLIP, False
 
     while steps < _SLIP_STEPS:
@@ -118,36 +118,36 @@ def _follow(contact, u, e, law):
         if stopped:
             if phases & o.PHASE_SLIP:
                 slip_end = (before[0] + s[3], s[2])
-            s = _without_slip(contact.m, s, contact.size)
+            s = without_slip(contact.m, s, contact.size)
             line = _from_rest(contact)
-            if line.mode == _STICK:
+            if line.mode == STICK:
                 phases |= o.PHASE_STICK
             elif phases & o.PHASE_SLIP:
                 phases |= o.PHASE_RESTART
-        elif line.mode == _CURVED:
+        elif line.mode == BENT:
             line = _straightened(contact, s)
-        if line.mode != _STICK and mu > 0.0:
+        if line.mode != STICK and mu > 0.0:
             phases |= o.PHASE_SLIP
 
         # One piece, until the phase ends or slip ends, or one step.
-        if line.mode == _CURVED:
+        if line.mode == BENT:
             s, ended, marks = _along_curve(contact, phase, s)
         else:
-            s, ended, marks = _along_line(contact, phase, line, s)
+            s, ended, marks = along_line(contact, phase, line, s)
         phases |= marks
-        if ended == _ENDLESS:
+        if ended == ENDLESS:
             return o.NO_END, steps, phases, s, before, slip_end
-        stopped = ended == _AT_STOP
+        stopped = ended == AT_STOP
 
         # The next phase.
-        if phase.restitution and ended != _CAUGHT and s[2] < -at_rest:
+        if phase.restitution and ended != CAUGHT and s[2] < -at_rest:
             # Jam: the bodies approach again before restitution ends. Compression continues and includes
             # the restitution so far, so p_c and A_c belong to the last zero of u_n.
-            phase = _COMPRESSION
+            phase = COMPRESSION
             s = (s[0], s[1], s[2], s[3] + before[0], s[4] + before[1], s[5] + before[2],
                  s[6] + before[3], s[7] + before[4])  # fmt: skip
             before = (0.0, 0.0, 0.0, 0.0, 0.0)
-        elif ended in (_AT_GOAL, _CAUGHT):
+        elif ended in (AT_GOAL, CAUGHT):
             if phase.restitution:
                 return o.OK, steps, phases, s, before, slip_end
             before = (s[3], s[4], s[5], s[6], s[7])
@@ -168,9 +168,9 @@ def _from_rest(contact):
     m, mu = contact.m, contact.mu
     t1, t2 = stick_ratio(m[1], m[2], m[3], m[4], m[5])
     if math.sqrt(t1 * t1 + t2 * t2) <= mu:
-        return Line(_STICK, t1, t2, 0.0)
+        return Line(STICK, t1, t2, 0.0)
     c, n, growth = outgoing(m[1], m[2], m[3], m[4], m[5], mu)
-    return Line(_STRAIGHT if growth > 0.0 else _STICK, -mu * c, -mu * n, growth)
+    return Line(STRAIGHT if growth > 0.0 else STICK, -mu * c, -mu * n, growth)
 
 
 @inlined
@@ -185,18 +185,18 @@ def _straightened(contact, s):
     c, n = x / r, y / r
     f, g = _turning(m, mu, c, n)
     if abs(f) <= IMPACT_ERROR * (abs(m[1]) + abs(m[2]) + mu * (m[3] + m[5])):
-        return Line(_STRAIGHT, -mu * c, -mu * n, g)
+        return Line(STRAIGHT, -mu * c, -mu * n, g)
     slope = mu * ((m[3] - m[5]) * (c * c - n * n) + 4.0 * m[4] * c * n) - (m[1] * c + m[2] * n)
     near = abs(f) * r <= -1e-14 * slope * contact.size and abs(f) <= -1e-3 * slope
     if not (slope < 0.0 and near):
-        return _CURVE
+        return CURVE
     for _ in range(3):  # Newton onto the ray itself
         turn = -f / slope
         c, n = c - turn * n, n + turn * c
         norm = math.sqrt(c * c + n * n)
         c, n = c / norm, n / norm
         f, g = _turning(m, mu, c, n)
-    return Line(_STRAIGHT, -mu * c, -mu * n, g)
+    return Line(STRAIGHT, -mu * c, -mu * n, g)
 
 
 @inlined
@@ -222,15 +222,15 @@ def _along_curve(contact, phase, s):
     h = min(h, 4.0 * max(end, unit) / r)
     new = moved(m, mu, s, t, h)
     if laws.remaining(law, goal, new[2], new[3], new[7]) <= 0.0:
-        return land(contact, phase, s, new, t, h), _AT_GOAL, marks
+        return land(contact, phase, s, new, t, h), AT_GOAL, marks
     if phase.restitution and drowned(m, new[3], new[4], new[5], phase.taken):
-        return new, _CAUGHT, marks | o.WEDGED
+        return new, CAUGHT, marks | o.WEDGED
     slips = math.sqrt(new[0] * new[0] + new[1] * new[1]) > 1e-3 * ROUND_OFF * size
-    return new, _WITHIN if slips else _AT_STOP, marks
+    return new, WITHIN if slips else AT_STOP, marks
 
 
 @inlined
-def _along_line(contact, phase, line, s):
+def along_line(contact, phase, line, s):
     """Move to the end of the phase or of slip; return the new state, the kind of end, marks of the phases."""
     m, mu, law, t1, t2, growth = contact.m, contact.mu, phase.law, line.t1, line.t2, line.growth
     k = m[0] + m[1] * t1 + m[2] * t2
@@ -239,29 +239,29 @@ def _along_line(contact, phase, line, s):
     length = laws.straight(law, left, s[2], k) if left > 0.0 else 0.0
 
     # If the pair is wedged the velocity stays. Only a law of impulses then gives the impulse that remains.
-    caught, marks, ended = moves_nothing(m, t1, t2, k, growth), 0, _AT_GOAL
+    caught, marks, ended = moves_nothing(m, t1, t2, k, growth), 0, AT_GOAL
     if phase.restitution and law not in laws.BY_IMPULSE and not (caught or growth < 0.0):
         p, p1, p2 = s[3] + length, s[4] + length * t1, s[5] + length * t2
         caught = drowned(m, p, p1, p2, phase.taken)
     if caught:
         if pushed(s[2], contact.size, contact.still):
-            return s, _ENDLESS, marks
+            return s, ENDLESS, marks
         k, f1, f2, growth = max(0.0, k), 0.0, 0.0, 0.0
         length = left if law in laws.BY_IMPULSE else 0.0
-        marks, ended = o.WEDGED if phase.restitution else 0, _CAUGHT
-    elif k <= 0.0 and line.mode == _STRAIGHT:
+        marks, ended = o.WEDGED if phase.restitution else 0, CAUGHT
+    elif k <= 0.0 and line.mode == STRAIGHT:
         marks = o.PHASE_JAM
-    if line.mode == _STICK and not abs(f1) + abs(f2) > SUM_ERROR * (abs(m[1]) + abs(m[2])):
+    if line.mode == STICK and not abs(f1) + abs(f2) > SUM_ERROR * (abs(m[1]) + abs(m[2])):
         f1, f2 = 0.0, 0.0  # otherwise W_tt is so nearly singular that stick leaves some creep
 
     # Slip may end before the phase.
     r, loss = math.sqrt(s[0] * s[0] + s[1] * s[1]), 0.0
-    if line.mode == _STRAIGHT:
+    if line.mode == STRAIGHT:
         if mu > 0.0 and growth < 0.0 and r <= -growth * length:
-            length, ended = -r / growth, _AT_STOP
+            length, ended = -r / growth, AT_STOP
         loss = mu * length * (r + 0.5 * growth * length)
     if not length < math.inf:
-        return s, _ENDLESS, marks
+        return s, ENDLESS, marks
     s = (
         s[0] + length * f1, s[1] + length * f2, s[2] + length * k, s[3] + length, s[4] + length * t1,
         s[5] + length * t2, s[6] + loss, s[7] + length * (s[2] + 0.5 * k * length),
@@ -270,7 +270,7 @@ def _along_line(contact, phase, line, s):
 
 
 @kernel
-def _without_slip(m, s, size):
+def without_slip(m, s, size):
     """Return the state with u_t = 0: an impulse removes the u_t that remains at the end of slip.
 
     This u_t is round-off, and so is the impulse, unless W_tt is nearly singular: then u_t stays.

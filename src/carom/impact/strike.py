@@ -16,10 +16,12 @@ from carom.dynamics.several_points import inverse_masses, velocities
 from carom.impact import layout
 from carom.impact.driven import blocked, driven_work
 from carom.impact.effective_restitution import count_blow, effective_restitution
+from carom.impact.friction_law import STRIKES, depends_on_slip
 from carom.impact.layer import traverse
 from carom.impact.mean_point import as_one
 from carom.impact.record import note_drive, write_impact
 from carom.impact.resolve import resolve
+from carom.impact.resolve_by_slip import resolve_by_slip
 from carom.impact.return_map import return_map
 from carom.impact.strike_several import strike_several
 from carom.impact.tangential import return_slip
@@ -143,7 +145,11 @@ def strike_one(model, data, method, c):
         return
     count_blow(system, controls, contact, active.contact_states[c], -hit.u[0], clock.now)
     hit.restitution = effective_restitution(system, contact, active.contact_states[c], -hit.u[0])
-    if collide(method, controls, contact, hit, work.history) != layout.OK:
+    if depends_on_slip(contact, STRIKES):
+        code = resolve_by_slip(system, contact, hit)
+    else:
+        code = collide(method, controls, contact, hit, work.history)
+    if code != layout.OK:
         hit.code = IMPACT_FAILED
         return
     if contact.tangential_restitution != 0.0:

@@ -11,6 +11,7 @@ from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.driven import blocked
 from carom.impact.effective_restitution import count_blow, effective_restitution
+from carom.impact.friction_law import PERSISTENT, STRIKES, friction_at
 from carom.impact.layout import OK
 from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSettings
 from carom.impact.multiple.resolve import resolve_multiple
@@ -88,11 +89,12 @@ def strike_several(model, data, c, k):
             hit.code = BLOCKED
             return
         j, contact_state = group.closed[i].active, active.contact_states[group.closed[i].contact]
-        group.mu[i] = contact.friction
+        slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
+        group.mu[i] = friction_at(system, contact, STRIKES, slip)  # as the impact begins
         multiple.e[i] = effective_restitution(system, contact, contact_state, -u[3 * i])
         if j >= 0 and active.points[j].jams == 1:
             u[3 * i] -= GROUP_SEED * math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2)
-            group.mu[i] = contact.friction_held
+            group.mu[i] = friction_at(system, contact, PERSISTENT, slip)
         multiple.law[i], multiple.kappa[i] = contact.law, contact.stiffness
         multiple.ball_like[i] = contact.ball_like
         all_by_pairs = multiple.settings.multiple == SEQUENTIAL

@@ -8,6 +8,8 @@ VELOCITY_LEFT = 1e-6  #: velocity to be removed: what may be left: of approach b
 #: greatest velocity, mass, pivot or force: smaller ones of several contacts are round-off
 GROUP_ERROR = 1e-11
 SERIES_ACCURACY = 1e-14  #: root of |u_t| |u|: last term of the series of slip
+SLIP_ERROR = 1e-13  #: root of |u_t| |u|: error of a step of slip whose friction depends on it
+RAY_LENGTH = 1e-8  #: speed of the impact: slip up to which its friction is that at its beginning
 LONGEST_IMPULSE = 1e6  #: speed of the impact by W_nn: longest step in p: round-off of u grows with p
 ENERGY_BALANCE = 1e-6  #: energy lost in compression, or sum of |p u|: accuracy of the balance of an impact
 GAIN = 1e-9  #: sum of |p u|: the same for Moreau's problem, which is solved without a passage

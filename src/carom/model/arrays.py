@@ -173,7 +173,12 @@ STIFF_SPRING = [
 FRICTION = [
     ("coordinate", "i8"),
     ("bound", "f8"),
+    ("piece", "i8"),  # of its law in slip, as those of a contact
+    ("last_piece", "i8"),
+    ("exponent", "f8"),
     ("next", "i8"),  # 1 or -1: slips in this direction; 0 sticks
+    ("mode", "i8"),  # the same at the start of the step
+    ("grip", "f8"),  # margin before a joint with a law breaks away (`carom.persistent.margins`)
     ("speed", "f8"),  # at the start of the step
     ("force", "f8"),  # of the last solve
     ("stop", "f8"),  # time until its slip stops
@@ -262,8 +267,13 @@ CONTACT = [
     # for an angle
     ("side", "f8"),
     ("radius", "f8"),  # sum of both radii for two solids
-    ("friction", "f8"),
+    ("friction", "f8"),  # mu, or what bounds stick by a law
     ("friction_held", "f8"),
+    # of impacts and of persistent contact: range of `System.curves`, mu over s^exponent of the slip s; empty if
+    # mu is a number
+    ("friction_piece", "i8", 2),
+    ("last_friction_piece", "i8", 2),
+    ("friction_exponent", "f8", 2),
     ("turning", "f8", 2),  # rolling and pivoting friction [m]
     ("restitution", "f8"),  # e; NaN if it is a law of the speed of approach, which has the pieces
     (
@@ -406,7 +416,7 @@ class System(NamedTuple):
     loads: np.recarray  # LOAD
     bushings: np.recarray  # BUSHING
     contacts: np.recarray  # (C,) CONTACT
-    curves: np.recarray  # PIECE, of restitutions that are laws
+    curves: np.recarray  # PIECE, of restitutions and frictions that are laws
     vertices: np.ndarray  # (V, 3) of all contacts, body axes
     solids: np.recarray  # SOLID of `carom.collision`, of bodies that may touch each other
     hulls: Hulls

@@ -61,7 +61,7 @@ def compile_scene(
     elements = Elements(scene, coordinates, functions, pieces, sizes)
     if implicit:
         elements.add_springs(scene, placement)
-    more = MoreForces(scene, coordinates, functions, pieces, implicit)
+    more = MoreForces(scene, coordinates, functions, (pieces, curves), implicit)
     joints, flipped, solver = _joints(scene, moments, placement, elements, options, loops)
     springs, loads = _springs(scene, placement, more, implicit), _loads(scene, placement)
     bushings = _bushings(scene, placement)

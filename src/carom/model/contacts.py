@@ -22,10 +22,11 @@ from carom.model.moving_surfaces import write_fields
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, meeting
 from carom.scene.contacts import IMPACT_LAWS
+from carom.scene.friction import bound_of
 from carom.scene.materials import MULTIPLE, ContactLaw, Material
-from carom.scene.restitution import Restitution
 from carom.scene.scene import Scene
 from carom.scene.shapes import Shape
+from carom.scene.speed_law import SpeedLaw
 
 
 class Surfaces(NamedTuple):
@@ -35,7 +36,7 @@ class Surfaces(NamedTuple):
     single: Cores  # piece by piece, against each other
     shared: int  # first vertex of `single`, after those of contacts with half-spaces
     place: np.ndarray  # (N,) first solid of each body
-    curves: Pieces  # of restitutions that are laws
+    curves: Pieces  # of coefficients that are laws
 
 
 class Contacts(NamedTuple):
@@ -270,20 +271,24 @@ def _write_laws(rows: np.recarray, scene: Scene, pairs: PairTable, which: Rows, 
     law = _numbers(laws, curves)[of_row]
     for k, name in enumerate(OF_LAW):
         rows[name] = law[:, k]
-    rows["turning"] = law[:, len(OF_LAW) :]
+    rows["turning"], by_slip = law[:, -8:-6], law[:, -6:].reshape(-1, 2, 3)
+    for k, name in enumerate(("friction_piece", "last_friction_piece", "friction_exponent")):
+        rows[name] = by_slip[:, :, k]
 
 
 def _numbers(laws: list[ContactLaw], curves: Pieces) -> np.ndarray:
-    """Return the numbers (L, 12) of laws; those of restitutions that are laws are added to `curves`."""
+    """Return the numbers (L, 18) of laws; coefficients that depend on speeds are added to `curves`."""
     numbers = [
         (
-            one.friction, one.friction_held, one.stiffness, IMPACT_LAWS.index(one.impact_law),
+            bound_of(one.friction), bound_of(one.friction_held), one.stiffness,
+            IMPACT_LAWS.index(one.impact_law),
             MULTIPLE.index(one.multiple), *curves.add_restitution(one.restitution),
             one.tangential_restitution, one.rolling_friction, one.pivoting_friction,
+            *curves.add_law(one.friction), *curves.add_law(one.friction_held),
         )
         for one in laws
     ]  # fmt: skip
-    return np.array(numbers, dtype=float).reshape(-1, len(OF_LAW) + 2)
+    return np.array(numbers, dtype=float).reshape(-1, len(OF_LAW) + 8)
 
 
 class Surface(NamedTuple):
@@ -318,13 +323,14 @@ def _laws_by_part(scene: Scene, pairs: PairTable, which: Rows) -> tuple[list, np
 
 
 def _checked(law: ContactLaw, whole: ContactLaw, surface: Surface) -> ContactLaw:
-    """Return the law of two parts; refuse restitutions of parts that are different laws of the speed."""
-    e = law.restitution, whole.restitution
-    if e[0] != e[1] and any(isinstance(one, Restitution) for one in e):
-        raise ValueError(
-            f"restitution must be a number for each part of {surface.name!r}, or one law for all, "
-            f"got {e[0]:g} and {e[1]:g}"
-        )
+    """Return the law of two parts; refuse coefficients of parts that are different laws of the speed."""
+    for name in ("restitution", "friction", "friction_held"):
+        e = getattr(law, name), getattr(whole, name)
+        if e[0] != e[1] and any(isinstance(one, SpeedLaw) for one in e):
+            raise ValueError(
+                f"{name} must be a number for each part of {surface.name!r}, or one law for all, "
+                f"got {e[0]:g} and {e[1]:g}"
+            )
     return law
 
 

@@ -34,8 +34,8 @@ from carom.model.arrays import CONTACT
 from carom.model.graph import Sets
 from carom.scene.all_pairs import PairTable
 from carom.scene.pieces import Piece
-from carom.scene.restitution import Restitution
 from carom.scene.scene import Scene
+from carom.scene.speed_law import SpeedLaw
 
 #: corners of the faces of a box, numbered as in `carom.scene.pieces.SIGNS`, counter-clockwise from outside
 BOX_RINGS = (
@@ -106,7 +106,7 @@ def _laws_of_statics(scene: Scene, pairs: PairTable) -> list[tuple[tuple, tuple]
             found[other - count][0].append(body)
             found[other - count][1].append(
                 (
-                    body, one.friction, one.friction_held, *_sortable(one.restitution),
+                    body, *_sortable(one.friction), *_sortable(one.friction_held), *_sortable(one.restitution),
                     one.tangential_restitution, one.stiffness,
                     one.rolling_friction, one.pivoting_friction, str(one.impact_law), str(one.multiple),
                     other if scene.statics[other - count].moves else -1,
@@ -115,9 +115,9 @@ def _laws_of_statics(scene: Scene, pairs: PairTable) -> list[tuple[tuple, tuple]
     return [(tuple(sorted(bodies)), tuple(sorted(laws))) for bodies, laws in found]
 
 
-def _sortable(e: float | Restitution) -> tuple[float, str]:
-    """Return a restitution as a key that has an order: numbers, then laws, which are written out."""
-    return (2.0, repr(e)) if isinstance(e, Restitution) else (e, "")
+def _sortable(e: float | SpeedLaw) -> tuple[float, str]:
+    """Return a coefficient as a key that has an order: numbers, then laws, which are written out."""
+    return (np.inf, repr(e)) if isinstance(e, SpeedLaw) else (e, "")
 
 
 def _faces(scene: Scene, place: np.ndarray) -> Iterator[Face]:

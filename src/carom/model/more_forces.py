@@ -8,6 +8,7 @@ from carom._compiled.composed import is_compiled, joined, once
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
 from carom.model.arrays import FRICTION, PIECE, PUSH, USER_FORCE
+from carom.scene.friction import bound_of
 from carom.scene.more_forces import (
     Actuator,
     CurveSpring,
@@ -17,7 +18,7 @@ from carom.scene.more_forces import (
     Law,
     UserForce,
 )
-from carom.scene.restitution import Restitution, curve_of
+from carom.scene.speed_law import SpeedLaw, curve_of
 
 DEGREE = 5
 #: columns of a contact that say what its restitution is
@@ -31,7 +32,7 @@ class Pieces:
 
     def __init__(self):
         self.rows = table(PIECE, 0)
-        self.known: dict[tuple, tuple[float, ...]] = {}  # restitutions
+        self.known: dict[tuple, tuple[int, int, float]] = {}  # laws of a speed
 
     def add(self, curve) -> tuple[int, int]:
         """Add a `scipy.interpolate.PPoly`; return the range of its pieces."""
@@ -48,34 +49,46 @@ class Pieces:
         self.rows = np.concatenate([self.rows, pieces]).view(Columns)
         return first, len(self.rows)
 
-    def add_restitution(self, e: float | Restitution, length: float = 1.0) -> tuple[float, ...]:
-        """Return the values of `RESTITUTION` of a row whose speeds are `length` times those of a law."""
-        if not isinstance(e, Restitution):
-            return e, 0, 0, 0.0
-        if (e, length) not in self.known:
-            curve = curve_of(e).scaled(length)
-            self.known[e, length] = np.nan, *self.add(curve), curve.exponent
-        return self.known[e, length]
+    def add_law(self, law: float | SpeedLaw, length: float = 1.0) -> tuple[int, int, float]:
+        """Return pieces and exponent of a row whose speeds are `length` times those of a law."""
+        if not isinstance(law, SpeedLaw):
+            return 0, 0, 0.0
+        if (law, length) not in self.known:
+            curve = curve_of(law).scaled(length)
+            self.known[law, length] = *self.add(curve), curve.exponent
+        return self.known[law, length]
+
+    def add_restitution(self, e: float | SpeedLaw, length: float = 1.0) -> tuple[float, ...]:
+        """Return the values of `RESTITUTION` of such a row."""
+        return np.nan if isinstance(e, SpeedLaw) else e, *self.add_law(e, length)
 
 
 class MoreForces:
     """The forces of a scene that are not linear springs, loads or mounts."""
 
-    def __init__(self, scene, coordinates, functions: Functions, pieces: Pieces, implicit: bool):
+    def __init__(
+        self,
+        scene,
+        coordinates,
+        functions: Functions,
+        pieces: tuple[Pieces, Pieces],
+        implicit: bool,
+    ):
         self.pushes, self.forces, self.frictions, self.named = [], [], [], []
+        of_forces, of_frictions = pieces
         self.width = 0
         self.laws: dict[int, Law] = {}  # of actuators, by the index of the force
         self.curves: dict[int, tuple[int, int]] = {}  # by the index of the force
         for force in scene.forces:
             d = force.definition
             if isinstance(d, CurveSpring):
-                self.curves[force.index] = pieces.add(d.tension)
+                self.curves[force.index] = of_forces.add(d.tension)
             elif isinstance(d, Actuator):
                 self.pushes.append(_actuator(force, coordinates, functions, self.laws, implicit))
             elif isinstance(d, JointForce) or (isinstance(d, JointSpring) and not implicit):
                 self.pushes.append(_push(force, coordinates, functions))
             elif isinstance(d, JointFriction):
-                self.frictions.append(_friction(d, coordinates))
+                self.frictions.append(_friction(d, coordinates, of_frictions))
             elif isinstance(d, UserForce):
                 self.forces.append(self._of_user(force, functions))
 
@@ -128,9 +141,10 @@ def is_damped_spring(d) -> bool:
     return not d.law and min(d.spring) >= 0.0 and max(d.spring) > 0.0
 
 
-def _friction(d, coordinates):
+def _friction(d, coordinates, pieces):
     made = table(FRICTION, 1)
-    made.coordinate, made.bound = coordinates.number(d.joint, d.coordinate), d.bound
+    made.coordinate, made.bound = coordinates.number(d.joint, d.coordinate), bound_of(d.bound)
+    made.piece, made.last_piece, made.exponent = pieces.add_law(d.bound)
     return made
 
 

@@ -5,12 +5,14 @@ The function of an event is positive before it and negative after it, and is eva
     EVENT_SEPARATE   the margin before opening        (`carom.persistent.margins`)
     EVENT_CONE       the margin before slip
     EVENT_JAM        k                                while slipping (`carom.persistent.jam`)
+    EVENT_BREAK      the margin before slip           of a joint whose friction is a law
 """
 
 from __future__ import annotations
 
 from carom._compiled.decorators import inlined, kernel
 from carom.model.actions import (
+    EVENT_BREAK,
     EVENT_CONE,
     EVENT_GAP,
     EVENT_JAM,
@@ -37,7 +39,7 @@ def note_first_stops(system, active):
         first[0], first[1], first[2] = active_point.stop, turns[0], turns[1]
     frictions = system.relations.frictions
     for i in range(frictions.shape[0]):
-        frictions[i].first_stop = frictions[i].stop
+        frictions[i].first_stop, frictions[i].mode = frictions[i].stop, frictions[i].next
 
 
 @inlined
@@ -56,4 +58,8 @@ def find_contact_event(system, active, work):
             return EVENT_SEPARATE, i
         if active_point.grip < 0.0:
             return EVENT_CONE, i
+    frictions = system.relations.frictions
+    for i in range(frictions.shape[0]):
+        if frictions[i].grip < 0.0:
+            return EVENT_BREAK, i
     return EVENT_GAP, -1

@@ -34,6 +34,7 @@ from carom.persistent.rows import (
     write_rows,
 )
 from carom.persistent.settle import greatest
+from carom.persistent.slip_law import breaks_away, grip_by_law, has_law, set_friction
 from carom.persistent.springs import solve_springs
 from carom.persistent.step_control import rest_speed
 from carom.persistent.thresholds import FEW_REST, FRICTION_LIMIT
@@ -147,11 +148,16 @@ def review(model, data, label, s, h, given) -> bool:
         closed_point = group.closed[i]
         if closed_point.own == 0:
             continue
-        slips = given and not lasts and gains(i, push, group)
+        law = has_law(system, closed_point)
+        slips = (
+            given and not lasts and (breaks_away(i, push, group) if law else gains(i, push, group))
+        )
         if closed_point.turns == JOINT:
             one = system.relations.frictions[closed_point.active]
             one.force, one.stop = group.v[P][3 * i + 1], time_to_stop(i, group)
-            if slips and one.next == 0:
+            if law:
+                one.grip = grip_by_law(i, push, group) if one.mode == 0 else 1.0
+            elif slips and one.next == 0:
                 if work.search[0].active == 0:
                     return False
                 one.next = -1 if one.force > 0.0 else 1
@@ -163,13 +169,15 @@ def review(model, data, label, s, h, given) -> bool:
         if not lasts and group.kind[i] == CONE and active_point.next == MODE_SLIP:
             active_point.next = MODE_STICK
         if slips and active_point.next == MODE_STICK:
-            if not (located > 0.0 and work.search[0].eager == 1):
+            if not ((located > 0.0 or law) and work.search[0].eager == 1):
                 if work.search[0].active == 0:
                     return False
                 active_point.next = MODE_SLIP
         still = max(1e-6 * (h * push), 10.0 * slow(system.contacts[closed_point.contact], end))
         end_mode(active_point, i, still, at_rest, group)
         set_margins(active_point, i, located, group)
+        if law and active_point.mode == MODE_STICK and active_point.next != MODE_OPEN:
+            active_point.grip = grip_by_law(i, push, group)
         if not given:
             active_point.grip = 1.0
         active_point.jams = jams_among(i, found, group)
@@ -284,6 +292,7 @@ def stick_where_slip_ends(model, data, k, h):
             closed_point.loaded = 1 if closed_point.weight > 0.0 else 0
             if closed_point.stays == 1:
                 group.kind[i] = CONE if sticks == 1 else SLIDING
+                set_friction(model.system, i, sticks == 0, group)
         if solve_springs(k, group) and (sticks == 0 or within_cones(k, group)):
             break
     if sticks == 0:

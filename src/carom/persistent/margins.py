@@ -15,7 +15,14 @@ import math
 from carom._compiled.decorators import kernel
 from carom.friction.layout import SLIDING
 from carom.impact.workspace import ACCELERATIONS, C, P, U
-from carom.model.actions import EVENT_JAM, EVENT_SEPARATE, MODE_OPEN, MODE_SLIP, MODE_STICK
+from carom.model.actions import (
+    EVENT_BREAK,
+    EVENT_JAM,
+    EVENT_SEPARATE,
+    MODE_OPEN,
+    MODE_SLIP,
+    MODE_STICK,
+)
 from carom.persistent.rolling_friction import take_torque
 from carom.persistent.settle import greatest
 from carom.persistent.thresholds import EVENT_ERROR, EVENT_MARGIN, NO_MARGIN
@@ -97,6 +104,8 @@ def margin(active_point, kind):
 @kernel
 def note_due(active, search, work):
     """Mark the points of the same group that have the event of the search within the trial step."""
+    if search.kind == EVENT_BREAK:
+        return
     label = work.body[active.points[search.contact].body].label
     for i in range(active.count[0]):
         active_point = active.points[i]
@@ -105,10 +114,14 @@ def note_due(active, search, work):
 
 
 @kernel
-def switch_due(active, search):
+def switch_due(system, active, search):
     """Set the new mode of the points whose event has been located; return whether it is one of these."""
     if search.kind == EVENT_JAM:
         return False
+    if search.kind == EVENT_BREAK:
+        one = system.relations.frictions[search.contact]
+        one.next = -1 if one.force > 0.0 else 1
+        return True
     for i in range(active.count[0]):
         active_point = active.points[i]
         near = active_point.due == 1 and margin(active_point, search.kind) <= 2.0 * EVENT_MARGIN

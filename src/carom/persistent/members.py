@@ -40,7 +40,9 @@ from carom.persistent.rows import (
     set_modes,
     write_rows,
 )
+from carom.persistent.slip_law import first_modes_of_joints, renew_modes
 from carom.persistent.springs import bound_per_force, solve_springs
+from carom.persistent.start import first_modes
 from carom.persistent.thresholds import LAST_CHANGE, STAGE_CHANGE
 
 FIXED_POINT = 25  # iterations of the pose of a stage
@@ -108,7 +110,10 @@ def implicit_stage(model, data, label, s, hg, closes):
     group, work, (count, loaded) = data.group, data.work, bodies_of(model, data, label)
     k, change, power, rubbed = -1, 0.0, 0.0, 0.0
     iterations = group.equations.iterations
-    iterations[0] = 0
+    iterations[0], laws, turned = 0, model.system.curves.shape[0] > 0, False
+    if laws:
+        first_modes(data, label)
+        first_modes_of_joints(model.system)
     for m in range(count):
         copy_state(group.base[group.member[m]], work.stage[group.member[m]])
     for turn in range(FIXED_POINT):
@@ -120,7 +125,7 @@ def implicit_stage(model, data, label, s, hg, closes):
             change, size = max(change, own[0]), max(size, own[1])
         if change > 0.0:  # a body that stops has errors of the others
             change = change / size if size > 0.0 else math.inf
-        if turn > 0 and change <= LAST_CHANGE:
+        if turn > 0 and change <= LAST_CHANGE and not turned:
             break
         applied = accelerate_freely(model, data, loaded, count, s)
         before = k
@@ -139,6 +144,8 @@ def implicit_stage(model, data, label, s, hg, closes):
             solve_impulses(model, data, k, hg)
         else:
             iterations[0] = lost
+        if laws:
+            turned = renew_modes(model, data.active, k, hg, turn, group)
         for i in range(k):  # the work of friction of all points: what sticks has no velocity
             group.kind[i] = SLIDING
         velocities(k, group.points[0], work.stage, group.v[U])

@@ -33,6 +33,7 @@ from carom.persistent.joint_rows import (
     mode_of_joint,
 )
 from carom.persistent.points import find_points
+from carom.persistent.slip_law import follow_laws
 from carom.persistent.springs import bound_per_force
 from carom.persistent.thresholds import SLIP_COSINE, STOPPED_SLIP
 
@@ -74,6 +75,8 @@ def write_rows(model, data, label, s) -> int:
     k = find_points(system, data, label)
     inverse_masses(system, k, points, state, work, group.W)
     write_motion(system, k, state, work.stages[s], group, work)
+    if system.curves.shape[0] > 0:
+        follow_laws(system, data.active, k, group)
     return k
 
 

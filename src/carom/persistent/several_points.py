@@ -45,6 +45,7 @@ from carom.persistent.points import weigh
 from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.rows import slip_of, write_motion
 from carom.persistent.settle import greatest
+from carom.persistent.slip_law import set_friction
 from carom.persistent.springs import FACTORED, count_factors
 from carom.persistent.start import accelerate_start, first_stage
 from carom.status import TOO_MANY_POINTS
@@ -120,6 +121,7 @@ def pose_forces(model, data, k, label):
         d1, d2, _ = slip_of(system, data, i, still)
         group.kind[i] = SLIDING if d1 != 0.0 or d2 != 0.0 else CONE
         group.heading[i, 0], group.heading[i, 1] = d1, d2
+        set_friction(system, i, group.kind[i] == SLIDING, group)
 
 
 @kernel

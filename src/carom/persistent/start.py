@@ -27,6 +27,7 @@ from carom.persistent.rows import (
     write_rows,
 )
 from carom.persistent.settle import greatest
+from carom.persistent.slip_law import has_law
 from carom.persistent.springs import solve_springs
 
 
@@ -114,7 +115,11 @@ def note_way(model, data, i, still):
     closed_point = group.closed[i]
     d1, d2, speed = slip_of(system, data, i, still)
     if closed_point.turns == JOINT:
+        one = system.relations.frictions[closed_point.active]
+        if d1 == 0.0 and has_law(system, closed_point):  # it may just have broken away
+            d1, speed = float(one.mode), 0.0
         keep_way(system, active, closed_point, d1, d2, speed)
+        one.mode = one.next
         return True
     active_point, moves = active.points[closed_point.active], d1 != 0.0 or d2 != 0.0
     if closed_point.own == 0:

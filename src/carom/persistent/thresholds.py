@@ -19,6 +19,7 @@ FALLS = 100.0  #: fall through the size: an error of velocity counts so long; wh
 #: W_nn: a point jams at k below this: at 0 its force has no bound, which no step can follow
 JAM_MARGIN = 1e-6
 EVENT_MARGIN = 1e-5  #: 1: least margin before an event
+BREAK_AWAY = 1e-12  #: acceleration: by friction that is a law: less is round-off of stick
 EVENT_ERROR = 1e-6  #: acceleration: an event is located to this part
 NO_MARGIN = 1e-7  #: acceleration: less counts as zero: those of two bodies have errors of 1e-9
 MOTOR_COMPLIANCE = 1e-13  #: effect of a force without joints: with less, joints and motors leave no freedom

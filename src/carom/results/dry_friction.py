@@ -16,6 +16,7 @@ from carom.model.compile import compile_scene
 from carom.model.records import TOUCH
 from carom.results import joint_coordinates as jc
 from carom.scene.constraints import Driver, coordinate_kind
+from carom.scene.friction import bound_of
 from carom.scene.more_forces import JointFriction
 
 STILL = 1e-9  # of the speeds of the joint: below it the rate is round-off, and the joint sticks
@@ -83,7 +84,8 @@ def _speed(d: JointFriction, states) -> float:
     child, turns = d.joint.child, coordinate_kind(d.joint, d.coordinate) == "turn"
     moves = states.angular_velocity if turns else states.velocity
     moment = float(np.trace(child.inertia))  # about m r^2
-    given = d.bound / moment if turns else d.bound * np.sqrt(moment / child.mass) / child.mass
+    bound = bound_of(d.bound)
+    given = bound / moment if turns else bound * np.sqrt(moment / child.mass) / child.mass
     return max(np.sqrt(given), np.max(np.linalg.norm(moves[:, child.index], axis=-1)))
 
 

@@ -481,7 +481,7 @@ class Solution(Portable, Drawn, Source):
         IndexError
             If there is no impact k.
         ValueError
-            If impact k is part of a multiple impact.
+            If impact k is part of a multiple impact, or its friction is a law.
         """
         from carom.impact.history import impact_layer
 
@@ -496,6 +496,11 @@ class Solution(Portable, Drawn, Source):
             )
         contacts = self._run.compiled.system.contacts
         row = contacts[int(np.searchsorted(contacts.number, record.contact))]
+        if row.last_friction_piece[0] > row.friction_piece[0]:
+            raise ValueError(
+                f"k must be an impact whose friction is a number, got {k}, of a law: the layer of the paper "
+                "has none"
+            )
         return impact_layer(
             record.inverse_mass, record.relative_velocity_before, record.friction,
             record.restitution, penetration=float(row.penetration), width=float(row.width),

@@ -12,6 +12,7 @@ from carom.scene.bodies import HalfSpace as HalfSpace
 from carom.scene.constraints import Constraint as Constraint
 from carom.scene.contacts import Contact as Contact
 from carom.scene.forces import AppliedForce as AppliedForce
+from carom.scene.friction import Friction as Friction
 from carom.scene.joints import Joint as Joint
 from carom.scene.materials import ContactLaw as ContactLaw
 from carom.scene.materials import Material as Material

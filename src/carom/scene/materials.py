@@ -14,9 +14,10 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from carom import arguments, checks
-from carom.fields import Number, NumberOrNone, Value, Word, keep, number, word
-from carom.scene.restitution import Restitution
+from carom.fields import Number, Value, Word, keep, number, word
+from carom.scene.friction import friction as friction_or_law
 from carom.scene.restitution import restitution as number_or_law
+from carom.scene.speed_law import SpeedLaw
 
 IMPACT_LAWS = ("newton", "poisson", "stronge")
 MULTIPLE = ("simultaneous", "sequential")  # in the order of `carom.impact.multiple.layout`
@@ -48,10 +49,10 @@ class ContactLaw:
     ----------
     restitution : float or Restitution
         Coefficient of restitution e, from 0 to 1, or its law. Default 0.5.
-    friction : float
-        Coulomb's friction coefficient mu in impacts, at least 0. Default 0.
-    friction_held : float
-        mu in persistent contact, at least 0. Default: `friction`.
+    friction : float or Friction
+        Coulomb's friction coefficient mu in impacts, at least 0, or its law. Default 0.
+    friction_held : float or Friction
+        mu in persistent contact, at least 0, or its law. Default: `friction`.
     impact_law : {"newton", "poisson", "stronge"}
         Definition of e: the ratio of normal speeds ("newton") or of normal impulses ("poisson"), or the square
         root of the ratio of works ("stronge").
@@ -73,8 +74,8 @@ class ContactLaw:
     """
 
     restitution: Value[Any, Any] = number_or_law(0.5)
-    friction: Number = number(0.0, least=0)
-    friction_held: Value[float, float | None] = number(None, least=0)
+    friction: Value[Any, Any] = friction_or_law(0.0)
+    friction_held: Value[Any, Any] = friction_or_law(None)
     impact_law: Word = word(IMPACT_LAWS, "newton")
     stiffness: Number = number(1.0, above=0)
     rolling_friction: Number = number(0.0, least=0)
@@ -96,8 +97,8 @@ class Material:
     Parameters
     ----------
     restitution, friction
-        e from 0 to 1, or its law, and mu at least 0, as for `Scene.add_contact`. No rule combines two different
-        laws of restitution, or a law and a number: pass that of the pair to `Scene.add_contact`.
+        e from 0 to 1, and mu at least 0, or their laws, as for `Scene.add_contact`. No rule combines two
+        different laws, or a law and a number: pass that of the pair to `Scene.add_contact`.
     friction_held
         mu in persistent contact, at least 0. Default: `friction`.
     stiffness
@@ -109,8 +110,8 @@ class Material:
     """
 
     restitution: Value[Any, Any] = number_or_law()
-    friction: Number = number(least=0)
-    friction_held: NumberOrNone = number(None, least=0)
+    friction: Value[Any, Any] = friction_or_law()
+    friction_held: Value[Any, Any] = friction_or_law(None)
     stiffness: Number = number(1.0, above=0)
     rolling_friction: Number = number(0.0, least=0)
     pivoting_friction: Number = number(0.0, least=0)
@@ -188,7 +189,7 @@ def _combined(name: str, first, second, rules: Mapping) -> Any:
     for material in (first.material, second.material):
         value = getattr(material, name)
         values.append(material.friction if value is None else value)
-    law = any(isinstance(value, Restitution) for value in values)
+    law = any(isinstance(value, SpeedLaw) for value in values)
     if name in rules and not law:
         return RULES[rules[name]](*values)
     if values[0] == values[1]:

@@ -25,6 +25,7 @@ from carom.scene.constraints import (
     distinct_bodies,
     joint_or_name,
 )
+from carom.scene.friction import friction
 from carom.scene.values import apart
 
 
@@ -209,13 +210,14 @@ class JointFriction(AlongJoint):
     ----------
     joint : Joint or str
         The joint, or its name.
-    bound : float
-        Friction force [N] along a displacement or torque [N m] about an angle, at least 0.
+    bound : float or Friction
+        Friction force [N] along a displacement or torque [N m] about an angle, at least 0; or a law of it,
+        whose coefficients are forces or torques, and whose speed is that of the coordinate [m/s or rad/s].
     coordinate : int
         Index of the coordinate of the joint. Default 0.
     """
 
-    bound: Number = fields.number(least=0.0)
+    bound: Value[Any, Any] = friction()
     coordinate: Integer = fields.integer(0, least=0)
 
 

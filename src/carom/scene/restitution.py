@@ -1,42 +1,30 @@
-"""Laws of restitution: the coefficient e of an impact as a function of its speed of approach.
-
-Each law compiles to one form, a polynomial in pieces of x = v^q. Beyond the pieces e keeps the value at their
-end, so that a law holds at every speed.
-"""
+"""Laws of restitution: the coefficient e of an impact as a function of its speed of approach."""
 
 from __future__ import annotations
 
 import sys
-from abc import ABC, abstractmethod
-from dataclasses import dataclass, fields
-from functools import cache, partial
-from typing import Any, ClassVar, NamedTuple
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.fields import REQUIRED, Number, Value, number
-
-SLOWEST = sys.float_info.min  # [m/s] so that a negative power of the speed is finite
-
-
-class Curve(NamedTuple):
-    """e as a polynomial in pieces of x = v^exponent, in the order of `scipy.interpolate.PPoly`."""
-
-    exponent: float
-    c: np.ndarray  # (D+1, K) coefficients of (x - start of the piece), highest power first
-    x: np.ndarray  # (K+1,) ends of the pieces
-
-    def scaled(self, length: float) -> Curve:
-        """Return the curve of the speed v of a coordinate, as a function of length times v."""
-        s = length**self.exponent
-        powers = np.arange(len(self.c) - 1, -1, -1)
-        return Curve(self.exponent, self.c * s ** -powers[:, None].astype(float), self.x * s)
+from carom.scene.speed_law import (
+    SLOWEST,
+    Curve,
+    SpeedLaw,
+    check_table,
+    number_or_law,
+    numbers,
+    through_points,
+)
 
 
-@dataclass(frozen=True)
-class Restitution(ABC):
+@dataclass(frozen=True, repr=False)
+class Restitution(SpeedLaw):
     """A coefficient of restitution e that depends on the speed of approach v, for ``restitution=``.
 
     Each contact of each impact has the e of its own speed of approach at the start of the impact, by each law
@@ -60,7 +48,7 @@ friction=0, impact_law='newton')
     fastest: ClassVar[Any] = np.inf
     #: speed [m/s] below which e is 1, so that bounces never end
     elastic: ClassVar[Any] = 0.0
-    _kind: ClassVar[str]
+    _most = 1.0
 
     def __new__(cls, *values, **named):
         """Refuse a law of no kind."""
@@ -125,48 +113,6 @@ friction=0, impact_law='newton')
         """
         return TableRestitution(speeds, values)  # pyright: ignore[reportArgumentType]
 
-    @property
-    @abstractmethod
-    def curve(self) -> Curve:
-        """The law as a function of the speed, as kernels have it."""
-
-    def __call__(self, speed: ArrayLike) -> np.ndarray:
-        """Return e at speeds of approach [m/s], at least 0, of any shape."""
-        v = checks.real_array("speed", speed, "any")
-        if not np.all(v >= 0.0):
-            raise ValueError(f"speed must be at least 0 [m/s], got {checks.shown(speed)}")
-        q, c, ends = curve_of(self)
-        x = np.clip(np.maximum(v, SLOWEST) ** q, ends[0], ends[-1])
-        k = np.clip(np.searchsorted(ends, x, side="right") - 1, 0, len(ends) - 2)
-        e = np.zeros_like(x)
-        for row in c:
-            e = e * (x - ends[k]) + row[k]
-        return np.clip(e, 0.0, 1.0)
-
-    def slope(self, speed: float) -> float:
-        """Return de/dv [s/m] at a speed of approach [m/s] above 0; 0 where e keeps the value at an end."""
-        q, c, ends = curve_of(self)
-        v = checks.number("speed", speed, above=0.0, unit="m/s")
-        x = v**q
-        if not ends[0] < x < ends[-1]:
-            return 0.0
-        k = int(np.searchsorted(ends, x, side="right")) - 1
-        return float(np.polyval(np.polyder(c[:, k]), x - ends[k]) * q * v ** (q - 1.0))
-
-    def __repr__(self) -> str:
-        shown = ", ".join(f"{f.name}={getattr(self, f.name)!r}" for f in fields(self))
-        return f"Restitution.{self._kind}({shown})"
-
-    def __format__(self, form: str) -> str:
-        """Return the law as text, where a number would have `form`."""
-        return repr(self)
-
-
-@cache
-def curve_of(law: Restitution) -> Curve:
-    """Return the curve of a law, made once."""
-    return law.curve
-
 
 @dataclass(frozen=True, repr=False)
 class PowerRestitution(Restitution):
@@ -176,7 +122,7 @@ class PowerRestitution(Restitution):
     speed: Number = number(1.0, above=0, unit="m/s")
     exponent: Number = number(-0.25, least=-1, most=1)
     maximum: Number = number(1.0, least=0, most=1)
-    _kind = "power"
+    _kind = "Restitution.power"
 
     @property
     def elastic(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -201,7 +147,7 @@ class ViscoelasticRestitution(Restitution):
     """The first terms of the series of viscoelastic spheres: `Restitution.viscoelastic`."""
 
     c: Number = number(least=0, most=checks.LENGTHS[1])
-    _kind = "viscoelastic"
+    _kind = "Restitution.viscoelastic"
 
     @property
     def fastest(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -219,32 +165,16 @@ class ViscoelasticRestitution(Restitution):
         return Curve(0.2, np.array([[0.6 * self.c**2], [-self.c], [1.0]]), np.array([0.0, end]))
 
 
-def _numbers(name: str, value, most: float = np.inf) -> tuple[float, ...]:
-    """Return two or more numbers, at least 0, as a tuple."""
-    made = checks.finite_array(name, value, (None,))
-    if len(made) < 2 or not (made.min() >= 0.0 and made.max() <= most):
-        bounds = "at least 0" if most == np.inf else f"from 0 to {most:g}"
-        raise ValueError(f"{name} must be two numbers or more, {bounds}, got {checks.shown(value)}")
-    return tuple(made.tolist())
-
-
 @dataclass(frozen=True, repr=False)
 class TableRestitution(Restitution):
     """A monotone cubic through measured points: `Restitution.table`."""
 
-    speeds: Value[tuple[float, ...], Any] = Value(_numbers)
-    values: Value[tuple[float, ...], Any] = Value(partial(_numbers, most=1.0))
-    _kind = "table"
+    speeds: Value[tuple[float, ...], Any] = Value(numbers)
+    values: Value[tuple[float, ...], Any] = Value(partial(numbers, most=1.0))
+    _kind = "Restitution.table"
 
     def __post_init__(self):
-        if len(self.speeds) != len(self.values):
-            raise ValueError(
-                f"speeds and values must have the same length, got {len(self.speeds)} and {len(self.values)}"
-            )
-        if not np.all(np.diff(self.speeds) > 0.0):
-            raise ValueError(
-                f"speeds must rise, each above the one before, got {checks.shown(self.speeds)}"
-            )
+        check_table(self.speeds, self.values)
 
     @property
     def fastest(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -259,26 +189,15 @@ class TableRestitution(Restitution):
     @property
     def curve(self) -> Curve:
         """A cubic in v for each two points."""
-        from scipy.interpolate import PchipInterpolator
-
-        made = PchipInterpolator(self.speeds, self.values)
-        return Curve(1.0, made.c, made.x)
+        return through_points(self.speeds, self.values)
 
 
 LAWS = (PowerRestitution, ViscoelasticRestitution, TableRestitution)
 
 
-def number_or_law(name: str, value, **bounds) -> float | Restitution:
-    """Return a coefficient of restitution: a number within `bounds`, or a law."""
-    if isinstance(value, Restitution):
-        return value
-    if isinstance(value, type) or callable(value):
-        raise ValueError(
-            f"{name} must be a number or a law, such as carom.Restitution.power(0.6), got {checks.shown(value)}"
-        )
-    return checks.number(name, value, **bounds)
-
-
 def restitution(default: Any = REQUIRED) -> Value[Any, Any]:
     """Return a field for a coefficient of restitution: a number from 0 to 1, or a law."""
-    return Value(partial(number_or_law, least=0, most=1), default)
+    check = partial(
+        number_or_law, law=Restitution, example="carom.Restitution.power(0.6)", least=0, most=1
+    )
+    return Value(check, default)

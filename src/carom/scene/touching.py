@@ -9,6 +9,7 @@ from carom import arguments, checks
 from carom.scene.all_pairs import PairTable
 from carom.scene.bodies import FIXED, Body, Ground, HalfSpace, StaticBody
 from carom.scene.contacts import Contact, check_gap
+from carom.scene.friction import FrictionLaw
 from carom.scene.materials import ContactLaw, Rule
 from carom.scene.pairs import Pairs
 from carom.scene.registry import Registry
@@ -31,8 +32,8 @@ class TouchingPairs:
         other: One,
         *,
         restitution: float | Restitution | None = None,
-        friction: float | None = None,
-        friction_held: float | None = None,
+        friction: float | FrictionLaw | None = None,
+        friction_held: float | FrictionLaw | None = None,
         impact_law: str | None = None,
         stiffness: float | None = None,
         rolling_friction: float | None = None,
@@ -58,7 +59,8 @@ class TouchingPairs:
             of approach, as ``carom.Restitution.power(0.6)``. Default 0.5.
         friction
             Coulomb's friction coefficient mu, at least 0: the tangent of the greatest slope on which the body
-            rests. A large value (50) stands for a contact that does not slip. Default 0.
+            rests. A large value (50) stands for a contact that does not slip. Or a law, a function of the speed
+            of slip, as ``carom.Friction(static=0.4, kinetic=0.3)``. Default 0.
         friction_held
             mu in persistent contact, at least 0. Default: `friction`.
         impact_law : {"newton", "poisson", "stronge"}
@@ -127,8 +129,8 @@ class TouchingPairs:
         self,
         *,
         restitution: float | Restitution | None = None,
-        friction: float | None = None,
-        friction_held: float | None = None,
+        friction: float | FrictionLaw | None = None,
+        friction_held: float | FrictionLaw | None = None,
         impact_law: str = "newton",
         stiffness: float = 1.0,
         rolling_friction: float = 0.0,

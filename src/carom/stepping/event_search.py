@@ -18,10 +18,11 @@ from carom.contact.continuous_detection_pair import lowest_pair, passage_pair
 from carom.contact.gap import gap_and_rate, lowest, plane_in_body, round_off
 from carom.contact.pair_point import smaller
 from carom.contact.stop import passage_stop, stop_gap
-from carom.model.actions import EVENT_GAP, EVENT_JAM
+from carom.impact.friction_law import PERSISTENT, depends_on_slip
+from carom.model.actions import EVENT_BREAK, EVENT_CONE, EVENT_GAP, EVENT_JAM
 from carom.model.arrays import STOP
 from carom.persistent.events import contact_event_value, find_contact_event
-from carom.persistent.thresholds import EVENT_ERROR, EVENT_MARGIN
+from carom.persistent.thresholds import BREAK_AWAY, EVENT_ERROR, EVENT_MARGIN
 
 NEWTON_STEPS = 6  # steps to the root of a cubic from a near start
 
@@ -67,9 +68,16 @@ def event_value(model, data):
             return stop_gap(system, contact, state, work)
         search.tolerance = 4.0 * max(search.tolerance, round_off_of_both(contact, state))
         return lowest_pair(system, data, search.contact, state)
-    if search.kind != EVENT_JAM and active.points[search.contact].several == 1:
+    if search.kind == EVENT_BREAK:
+        search.tolerance = BREAK_AWAY
+        return system.relations.frictions[search.contact].grip, 0.0
+    active_point = active.points[search.contact]
+    law = depends_on_slip(system.contacts[active_point.contact], PERSISTENT)
+    if law and search.kind == EVENT_CONE:
+        search.tolerance = BREAK_AWAY
+    elif active_point.several == 1 and search.kind != EVENT_JAM:
         search.tolerance = EVENT_ERROR
-    return contact_event_value(system, active.points[search.contact], search.kind), 0.0
+    return contact_event_value(system, active_point, search.kind), 0.0
 
 
 @kernel

@@ -134,7 +134,7 @@ def accept_step(model, data):
         return r.LEFT_BALL, NOTHING
     if search.dt == search.left:
         work.step[0].spent = work.step[0].length
-    met = search.found == 1 and search.kind != EVENT_GAP and switch_due(active, search)
+    met = search.found == 1 and search.kind != EVENT_GAP and switch_due(system, active, search)
     if active.count[0] > 0:
         turn_modes(model, data)
     if search.found == 0:

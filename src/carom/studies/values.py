@@ -21,8 +21,8 @@ from carom.fields import Value, keep
 from carom.geometry.thresholds import ROUND_OFF, UNIT_ERROR
 from carom.scene.bodies import Body
 from carom.scene.contacts import Contact, check_overlap, far, place
-from carom.scene.restitution import Restitution
 from carom.scene.scene import Scene
+from carom.scene.speed_law import SpeedLaw
 
 STATE_FIELDS = {"position": 3, "orientation": 4, "velocity": 3, "angular_velocity": 3}
 POSES = ("position", "orientation")
@@ -82,7 +82,7 @@ def fields_of(part) -> Iterator[Found]:
             owner = getattr(part, inside) if inside else part
             for field in vars_of(type(owner)):
                 value = getattr(owner, field)
-                plain = value is None or isinstance(value, (float, str, np.ndarray, Restitution))
+                plain = value is None or isinstance(value, (float, str, np.ndarray, SpeedLaw))
                 if plain and field not in LEFT_OUT:
                     yield Found(part, inside, field)
 
@@ -99,7 +99,7 @@ def find(scene: Scene, name: str) -> Found | None:
 
 def components(value) -> dict[str, Any]:
     """Return the places of the components of an array, by their names, or the numbers of a law."""
-    if isinstance(value, Restitution):
+    if isinstance(value, SpeedLaw):
         return {name: name for name in vars(value) if isinstance(getattr(value, name), float)}
     shape = np.shape(value)
     labels = {(3,): AXES, (4,): SCALAR_FIRST}.get(shape, ())
@@ -139,7 +139,7 @@ def whole(scene: Scene, inputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         if stem not in made:
             made[stem] = np.repeat(np.asarray(value)[None], len(rows), axis=0)
         at = components(value)[label]
-        if isinstance(value, Restitution):
+        if isinstance(value, SpeedLaw):
             made[stem] = _laws(name, made[stem], label, rows)
             continue
         for one in {at, at[::-1]} if isinstance(at, tuple) else {(at,)}:  # an inertia is symmetric
@@ -227,7 +227,7 @@ def _light(scene: Scene, found: Found) -> bool:
     Joints and forces are placed in the world at the start: if poses vary, they have to be placed again.
     """
     if isinstance(found.part, Contact):
-        return found.field in LAW_FIELDS and not isinstance(found.value, Restitution)
+        return found.field in LAW_FIELDS and not isinstance(found.value, SpeedLaw)
     if not isinstance(found.part, Body) or found.field not in STATE_FIELDS:
         return False
     return found.field not in POSES or not (scene.joints or scene.forces or scene.constraints)

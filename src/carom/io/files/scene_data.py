@@ -37,6 +37,7 @@ from carom.scene.constraints import CONSTRAINTS, Constraint, Gear
 from carom.scene.contacts import Contact
 from carom.scene.curves import CURVES
 from carom.scene.forces import FORCES, AppliedForce
+from carom.scene.friction import FRICTION_LAWS
 from carom.scene.joints import JOINTS, Joint
 from carom.scene.materials import ContactLaw, Material
 from carom.scene.pieces import Piece
@@ -57,6 +58,7 @@ TYPES: dict[str, type[Any]] = {
         *CONSTRAINTS,
         *CURVES,
         *LAWS,
+        *FRICTION_LAWS,
         Gear,
         ContactLaw,
         Material,

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 from carom._compiled.decorators import kernel
 from carom.friction.layout import CONE, DISC
 from carom.impact.effective_restitution import restitution_at
+from carom.impact.friction_law import PERSISTENT, STRIKES, friction_at
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_STICK
 from carom.stepping.crowd.response import write_responses
@@ -45,9 +48,11 @@ def pose(model, data, k, h, fall):
         if alone and spot.strikes == 1:
             crowd.c[3 * i + 1] += e * spot.before[1]
             crowd.c[3 * i + 2] += e * spot.before[2]
-        row.kind, row.mu = CONE, contact.friction
+        slip = math.hypot(spot.before[1], spot.before[2])  # the law at the start of the step
+        row.kind, row.mu = CONE, friction_at(system, contact, STRIKES, slip)
         if spot.active >= 0:
-            row.mu = contact.friction_held
+            holds = active.points[spot.active].mode == MODE_STICK
+            row.mu = friction_at(system, contact, PERSISTENT, 0.0 if holds else slip)
             for r in range(3):
                 p[3 * i + r] = h * active.points[spot.active].force[r]
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from carom import checks
 from carom.fields import keep
-from carom.scene.restitution import Restitution
 from carom.scene.scene import Scene
+from carom.scene.speed_law import SpeedLaw
 from carom.studies.identify.varied import KNOWN
 from carom.studies.values import Found, components, find, split
 
@@ -94,14 +94,14 @@ def _bounds(name: str, scene: Scene | None) -> tuple[float, float, float]:
     found = find(scene, stem)
     value: Any = None if found is None else found.value
     if not component and (
-        found is None or np.ndim(value) > 0 or isinstance(value, (str, Restitution))
+        found is None or np.ndim(value) > 0 or isinstance(value, (str, SpeedLaw))
     ):
         label = next(iter(components(value)), "x")
         raise ValueError(
             f"parameters must be numbers, got {name!r}, which is none; of a vector give components, like "
             f"{f'{name}.{label}'!r}"
         )
-    if found is not None and isinstance(found.value, Restitution):  # a number of a law
+    if found is not None and isinstance(found.value, SpeedLaw):  # a number of a law
         found = Found(found.owner, found.field, component)
     elif component or found is None:
         return -np.inf, np.inf, 0.0

@@ -1,0 +1,141 @@
+"""Friction that depends on the slip: its bound in stick, and mu(|u|) in slip.
+
+What sticks is held up to the bound, and slips by mu(|u|) once it has broken away, until its slip ends. So the
+same state may stick or slip, and the mode decides (`next` of an active point, or of a joint). In a stage of the
+implicit member, whose disc has one radius, mode and mu(|u|) are those of the iterate before.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.dynamics.curve import value_at
+from carom.geometry.thresholds import REMAINDER
+from carom.impact.friction_law import PERSISTENT, depends_on_slip, in_slip
+from carom.impact.workspace import ACCELERATIONS, P, U
+from carom.model.actions import MODE_SLIP, MODE_STICK
+from carom.persistent.joint_rows import JOINT, radius_of
+from carom.persistent.settle import dot
+from carom.persistent.thresholds import BREAK_AWAY, FRICTION_LIMIT
+
+TURNS_BACK = 8  # iterations of a stage in which slip that turns back may still be found to stick
+
+
+@kernel
+def has_law(system, closed_point):
+    """Return whether the friction of a point or a joint is a law."""
+    if closed_point.turns == JOINT:
+        one = system.relations.frictions[closed_point.active]
+        return one.last_piece > one.piece
+    contact = system.contacts[closed_point.contact]
+    return closed_point.turns == 0 and depends_on_slip(contact, PERSISTENT)
+
+
+@kernel
+def set_friction(system, i, slips, group):
+    """Write the friction of entry i, if it has a law: in slip that at its velocity in U, in stick its bound."""
+    closed_point, u = group.closed[i], group.v[U]
+    if not has_law(system, closed_point):
+        return
+    speed = math.hypot(u[3 * i + 1], u[3 * i + 2])
+    if closed_point.turns == JOINT:
+        one = system.relations.frictions[closed_point.active]
+        law = (one.piece, one.last_piece, one.exponent)
+        group.mu[i] = value_at(system.curves, law, abs(u[3 * i + 1])) if slips else one.bound
+        return
+    contact = system.contacts[closed_point.contact]
+    group.mu[i] = (
+        in_slip(system.curves, contact, PERSISTENT, speed) if slips else contact.friction_held
+    )
+
+
+@kernel
+def follow_laws(system, active, k, group):
+    """Write the friction of entries that have a law, by modes; that of a corner without one, by velocity."""
+    u, fastest = group.v[U], 0.0
+    for row in range(3 * k):
+        fastest = max(fastest, abs(u[row]))
+    for i in range(k):
+        closed_point = group.closed[i]
+        if not has_law(system, closed_point):
+            continue
+        if closed_point.own == 1:
+            set_friction(system, i, slips_by_mode(system, active, closed_point), group)
+        else:
+            slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
+            set_friction(system, i, slip > REMAINDER * fastest, group)
+
+
+@kernel
+def slips_by_mode(system, active, closed_point):
+    """Return whether a point, or a joint, slips by its mode."""
+    if closed_point.turns == JOINT:
+        return system.relations.frictions[closed_point.active].next != 0
+    return active.points[closed_point.active].next == MODE_SLIP
+
+
+@kernel
+def first_modes_of_joints(system):
+    """Take the modes of the start of the step."""
+    for i in range(system.relations.frictions.shape[0]):
+        one = system.relations.frictions[i]
+        if one.last_piece > one.piece:
+            one.next = one.mode
+
+
+@kernel
+def breaks_away(i, push, group):
+    """Return whether an entry accelerates in slip: its break-away is located on a continuous margin."""
+    a = group.v[ACCELERATIONS]
+    return math.hypot(a[3 * i + 1], a[3 * i + 2]) > BREAK_AWAY * push
+
+
+@kernel
+def grip_by_law(i, push, group):
+    """Return the margin of an entry that sticks: of its force, or its gain, as accelerations by `push`."""
+    a, p, W, q = group.v[ACCELERATIONS], group.v[P], group.W, 3 * i
+    if not push > 0.0:
+        return 1.0
+    if breaks_away(i, push, group):
+        return -math.hypot(a[q + 1], a[q + 2]) / push
+    left = radius_of(group, i) - math.hypot(p[q + 1], p[q + 2])
+    return max(left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push, 0.01 * BREAK_AWAY)
+
+
+@kernel
+def renew_modes(model, active, k, hg, turn, group):
+    """Let what breaks away in a stage slip, and what its disc holds, or what turns back, stick.
+
+    U has the slip of the stage without its forces. Return whether a mode changes.
+    """
+    system, p, changed = model.system, group.v[P], False
+    for i in range(k):
+        closed_point, q = group.closed[i], 3 * i
+        if closed_point.own == 0 or not has_law(system, closed_point):
+            continue
+        u1 = group.v[U][q + 1] + hg * dot(3 * k, group.W[q + 1], p)
+        u2 = group.v[U][q + 2] + hg * dot(3 * k, group.W[q + 2], p)
+        full = not math.hypot(p[q + 1], p[q + 2]) < FRICTION_LIMIT * radius_of(group, i)
+        slips = slips_by_mode(system, active, closed_point)
+        back = turn < TURNS_BACK and goes_back(system, active, closed_point, u1, u2)
+        if slips == (full and not (slips and back)):
+            continue
+        changed = True
+        if closed_point.turns == JOINT:
+            one = system.relations.frictions[closed_point.active]
+            one.next = 0 if slips else 1 if u1 > 0.0 else -1
+        else:
+            active.points[closed_point.active].next = MODE_STICK if slips else MODE_SLIP
+    return changed
+
+
+@kernel
+def goes_back(system, active, closed_point, u1, u2):
+    """Return whether the slip (u1, u2) is against that at the start of the step."""
+    if closed_point.turns == JOINT:
+        one = system.relations.frictions[closed_point.active]
+        return one.speed > 0.0 and one.next * u1 <= 0.0
+    active_point = active.points[closed_point.active]
+    d = active_point.heading
+    return active_point.speed > 0.0 and u1 * d[0] + u2 * d[1] <= 0.0
