@@ -93,9 +93,14 @@ def test_the_part_that_strikes_decides_how_it_bounces():
         scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1), material=soft)
         # stands on one end: the lower ball is the first part, or with half a turn the second
         scene.add_body(ends, mass=1.0, position=(0, 0, 0.3), orientation=turn, name="dumbbell")
-        first = carom.simulate(scene, 0.2).impacts[0]
+        run = carom.simulate(scene, 0.2)
+        first = run.impacts[0]
         before, after = first.relative_velocity_before, first.relative_velocity_after
         assert after[0] == pytest.approx(-e * before[0], abs=1e-12)
+        assert np.isnan(first.restitution)
+        assert first.friction == 0.0
+        with pytest.raises(ValueError, match="a contact with one material"):
+            run.impact_history(0)
 
 
 def test_parts_of_one_material_are_as_a_body_of_it():

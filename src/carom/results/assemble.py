@@ -137,8 +137,10 @@ def impact_table(solution) -> ImpactTable:
     """Return the table of impacts, with names and laws of their contacts from the scene."""
     rows, contacts = solution._written.impact, solution._written.contacts
     number, first = np.unique(contacts["number"], return_index=True)
-    c = first[np.searchsorted(number, rows.contact)]
+    place = np.searchsorted(number, rows.contact)
+    c = first[place]
     arm = arms(contacts)[c]
+    e = _restitutions(rows, contacts["restitution"][c], arm, solution)
     return ImpactTable(
         relative_velocity_before=rows.before / arm[:, None],
         relative_velocity_after=rows.after / arm[:, None],
@@ -146,8 +148,8 @@ def impact_table(solution) -> ImpactTable:
         law=np.array(IMPACT_LAWS)[contacts["law"][c]],
         inverse_mass=rows.W / arm[:, None, None] ** 2,
         impulse=rows.impulse * arm[:, None],
-        restitution=_restitutions(rows, contacts["restitution"][c], arm, solution),
-        friction=contacts["friction"][c],
+        restitution=np.where(_differs(contacts["restitution"], first)[place], np.nan, e),
+        friction=np.where(_differs(contacts["friction"], first)[place], np.nan, contacts["friction"][c]),
         wedged=(rows.phases & WEDGED) // WEDGED,
         located=1 - (rows.phases & AT_END) // AT_END,
         **named(rows.contact, solution.scene, solution.pairs),
@@ -159,6 +161,11 @@ def impact_table(solution) -> ImpactTable:
             )
         },
     )  # fmt: skip
+
+
+def _differs(values: np.ndarray, first: np.ndarray) -> np.ndarray:
+    """Return for each contact whether its rows, which are those from `first` on, have different values."""
+    return np.minimum.reduceat(values, first) < np.maximum.reduceat(values, first)
 
 
 def _restitutions(rows, e: np.ndarray, arm: np.ndarray, solution) -> np.ndarray:

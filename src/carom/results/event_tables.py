@@ -41,8 +41,9 @@ class ImpactRecord(NamedTuple):
     duration: float  #: duration in the boundary layer [s]
     law: str  #: law of restitution
     inverse_mass: np.ndarray  #: (3, 3) Delassus operator W of the contact [1/kg]
-    restitution: float  #: e of the contact
-    friction: float  #: mu of the contact
+    #: e of the contact; NaN where parts of a body have materials with different ones
+    restitution: float
+    friction: float  #: mu of the contact; NaN likewise
     compression_work: float  #: work of the normal force in compression [J]
     restitution_work: float  #: work of the normal force in restitution [J]
     friction_loss: float  #: energy that friction dissipates [J]

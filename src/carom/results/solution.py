@@ -481,7 +481,8 @@ class Solution(Portable, Drawn, Source):
         IndexError
             If there is no impact k.
         ValueError
-            If impact k is part of a multiple impact, or its friction is a law.
+            If impact k is part of a multiple impact, its friction is a law, or parts of the bodies have
+            different materials.
         """
         from carom.impact.history import impact_layer
 
@@ -500,6 +501,11 @@ class Solution(Portable, Drawn, Source):
             raise ValueError(
                 f"k must be an impact whose friction is a number, got {k}, of a law: the layer of the paper "
                 "has none"
+            )
+        if not np.isfinite(record.friction + record.restitution):
+            raise ValueError(
+                f"k must be an impact of a contact with one material, got {k}: the parts that struck are not "
+                "recorded"
             )
         return impact_layer(
             record.inverse_mass, record.relative_velocity_before, record.friction,

@@ -122,7 +122,6 @@ class Shape(ABC):
     a point from the mass centre.
     """
 
-    has_materials = False  # of its parts
     if TYPE_CHECKING:
         volume: Any
         size: Any
@@ -131,6 +130,11 @@ class Shape(ABC):
     @abstractmethod
     def pieces(self) -> tuple[Piece, ...]:
         """The convex pieces of the shape."""
+
+    @property
+    def has_materials(self) -> bool:
+        """Whether a part has a material of its own."""
+        return False
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg].

@@ -135,7 +135,7 @@ class Compound(Shape):
         return self._pieces
 
     @property
-    def has_materials(self) -> bool:  # type: ignore[override]
+    def has_materials(self) -> bool:
         """Whether a part has a material of its own."""
         return any(piece.material is not None for piece in self._pieces)
 
