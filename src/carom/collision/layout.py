@@ -17,7 +17,9 @@ from carom.geometry import quaternion
 
 #: kinds of cores; a pair is handled with the smaller kind first
 POINT, SEGMENT, BOX, HULL, CYLINDER, ELLIPSOID = range(6)
-KINDS = ("point", "segment", "box", "hull", "cylinder", "ellipsoid")
+#: kinds that are not convex: a surface given by a function, and a prism over a plane curve
+IMPLICIT, PROFILE = 6, 7
+KINDS = ("point", "segment", "box", "hull", "cylinder", "ellipsoid", "implicit", "profile")
 
 SOLID = [
     ("kind", "i8"),
@@ -26,13 +28,15 @@ SOLID = [
     ("radius", "f8"),  # of the ball that enlarges the core
     ("inner", "f8"),  # an ellipsoid is also a smaller convex core enlarged by this radius
     ("extent", "f8"),  # greatest distance of a point of the solid from its origin
-    ("first", "i8"),  # range of the vertices of a hull
+    ("first", "i8"),  # range of the vertices of a hull, or of the pieces of a profile
     ("last", "i8"),
     ("first_face", "i8"),
     ("last_face", "i8"),
     # of directions, for the vertices of a hull and for the normals of its faces (`carom.geometry.cells`)
     ("across", "i8", 2),  # cells along an edge of the cube
     ("cell", "i8", 2),  # the first cell
+    ("surface", "i8"),  # number of an implicit surface
+    ("bend", "f8"),  # greatest curvature of a solid that is not convex [1/m]
     ("body", "i8"),  # number of its shape
     ("x", "f8", 3),  # pose in its body
     ("Q", "f8", 4),
@@ -46,6 +50,24 @@ CANDIDATE = [
     ("point", "f8", 3),
     ("number", "i8"),
 ]  # counted from the first vertex or face of the hull
+
+#: a surface phi(x) = 0 in its own axes, with free space where phi > 0 (`carom.scene` has its definitions)
+IMPLICIT_SURFACE = [
+    ("kind", "i8"),
+    ("size", "f8", 4),  # radii, lengths and angles of its kind
+    ("first", "i8"),  # range of its numbers in `Hulls.numbers`
+    ("last", "i8"),
+    ("count", "i8", 2),  # of cells of a height field along x and y
+    ("corner", "f8", 2),  # of its grid
+    ("spacing", "f8", 2),
+    (
+        "address",
+        "i8",
+    ),  # of a compiled function of the user's: x -> value, gradient, Hessian; 0 for none
+]
+
+#: a piece of the plane curve of a profile: a polynomial of degree 5 in s - start, s the arc length
+PLANE_PIECE = [("start", "f8"), ("c", "f8", (6, 2))]
 
 #: one point of a contact; normal from B to A, points on the two surfaces, all in the world
 TOUCH_POINT = [
@@ -100,6 +122,9 @@ class Hulls(NamedTuple):
     corners: np.ndarray  # (K,) vertices of the faces, counted from the first of the hull
     starts: np.ndarray  # (C + 1,) the first candidate of each cell
     candidates: np.recarray  # (M,) CANDIDATE, cell by cell
+    surfaces: np.recarray  # (S,) IMPLICIT_SURFACE
+    numbers: np.ndarray  # (L,) of these surfaces
+    outlines: np.recarray  # (P,) PLANE_PIECE of profiles
 
 
 class PairWork(NamedTuple):
@@ -138,7 +163,8 @@ class Pair(NamedTuple):
 def no_hulls() -> Hulls:
     """Return the hulls of a scene in which no two bodies may touch."""
     none = np.zeros(0, dtype=np.int64)
-    return Hulls(np.zeros((0, 3)), table(FACE, 0), none, none, table(CANDIDATE, 0))
+    curved = table(IMPLICIT_SURFACE, 0), np.zeros(0), table(PLANE_PIECE, 0)
+    return Hulls(np.zeros((0, 3)), table(FACE, 0), none, none, table(CANDIDATE, 0), *curved)
 
 
 def new_pair_work() -> PairWork:
@@ -178,9 +204,11 @@ def solid_table(shapes, turns=None) -> tuple[np.recarray, Hulls]:
             hulls.append(_hull(piece, end))
             end = Count(*(a + len(part) for a, part in zip(end, hulls[-1])))
         row.last, row.last_face = end.vertices, end.faces
-    vertices, faces, corners, starts, candidates = map(np.concatenate, zip(*hulls))
-    starts = np.append(starts, end.candidates)
-    return solid, Hulls(vertices, faces.view(Columns), corners, starts, candidates.view(Columns))
+    made = Hulls._make(
+        part[0] if len(part) == 1 else np.concatenate(part).view(type(part[0]))
+        for part in zip(*hulls)
+    )
+    return solid, made._replace(starts=np.append(made.starts, end.candidates))
 
 
 class Count(NamedTuple):
@@ -208,4 +236,5 @@ def _hull(piece, before: Count) -> Hulls:
         candidates.append(rows)
         count += len(rows)
     every = np.concatenate(candidates).view(Columns)
-    return Hulls(piece.vertices, faces, corners, np.concatenate(starts), every)
+    curved = no_hulls()[5:]
+    return Hulls(piece.vertices, faces, corners, np.concatenate(starts), every, *curved)

@@ -102,6 +102,11 @@ CURVE = [
     ("high", "f8"),
     ("period", "f8"),  # its length if it is closed, else 0
     ("sharpest", "f8"),  # largest curvature
+    (
+        "side",
+        "f8",
+        3,
+    ),  # towards the free side of a rail that can be left, in axes of its body; else 0
     ("x", "f8", 3),  # last place on the curve, in axes of its body; derivatives by the coordinate
     ("slope", "f8", 3),
     ("second", "f8", 3),
@@ -274,6 +279,11 @@ CONTACT = [
     ("friction_piece", "i8", 2),
     ("last_friction_piece", "i8", 2),
     ("friction_exponent", "f8", 2),
+    # of anisotropic friction: the axis along which mu is `friction`, fixed to the body (`grain_of` 1), to the
+    # other body (2) or to the world (3), 0 for none; and mu across it over that along it
+    ("grain_of", "i8"),
+    ("grain", "f8", 3),
+    ("across", "f8"),
     ("turning", "f8", 2),  # rolling and pivoting friction [m]
     ("restitution", "f8"),  # e; NaN if it is a law of the speed of approach, which has the pieces
     (

@@ -74,6 +74,9 @@ CONTACT = [
     ("e", "f8"),  # energetic coefficient in use
     ("root", "f8"),  # kappa^(1/p)
     ("law", "i8"),
+    ("tangential", "f8"),  # e_t
+    ("friction_piece", "i8", 2),  # range of the pieces of a law of the slip, empty for a number
+    ("friction_exponent", "f8"),
     ("approach", "f8"),  # speed of approach before, at least 0
     ("members", "i8"),
     # memory of the normal law
