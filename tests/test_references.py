@@ -35,9 +35,13 @@ def of_parts(h, out, each):
     """Write twice the sum of each vertex alone, found directly and through a unit; return that of all."""
     for i in range(each.shape[0]):
         p, k = h.vertices[i : i + 1], h.corners[i : i + 1]
-        part = by_reference(Hulls(p, h.faces, k, h.starts, h.candidates))
+        part = by_reference(
+            Hulls(p, h.faces, k, h.starts, h.candidates, h.surfaces, h.numbers, h.outlines)
+        )
         each[i] = total(part)
-        total_unit(Hulls(p, h.faces, k, h.starts, h.candidates), out)
+        total_unit(
+            Hulls(p, h.faces, k, h.starts, h.candidates, h.surfaces, h.numbers, h.outlines), out
+        )
         each[i] += out[0]
     return total(h)
 
