@@ -149,7 +149,10 @@ def impact_table(solution) -> ImpactTable:
         inverse_mass=rows.W / arm[:, None, None] ** 2,
         impulse=rows.impulse * arm[:, None],
         restitution=np.where(_differs(contacts["restitution"], first)[place], np.nan, e),
-        friction=np.where(_differs(contacts["friction"], first)[place], np.nan, contacts["friction"][c]),
+        friction=np.where(
+            _differs(contacts["friction"], first)[place] | (contacts["grain_of"][c] > 0), np.nan,
+            contacts["friction"][c],
+        ),
         wedged=(rows.phases & WEDGED) // WEDGED,
         located=1 - (rows.phases & AT_END) // AT_END,
         **named(rows.contact, solution.scene, solution.pairs),
