@@ -36,6 +36,7 @@ from carom.status import Status
 #: attributes of contacts that tables show (an ensemble changes them from run to run)
 OF_CONTACTS = (
     "number", "other", "first", "law", "restitution", "friction", "penetration", "width", "touches", "side",
+    "grain_of",
 )  # fmt: skip
 
 

@@ -127,10 +127,10 @@ exponent=1.0), impact_law='newton')
 
     def __post_init__(self):
         given = {name for name, value in vars(self).items() if value is not None}
-        by_slip, by_way = given & set(_BY_SLIP), given & set(_BY_WAY)
+        by_slip, by_way = ([one for one in names if one in given] for names in (_BY_SLIP, _BY_WAY))
         if by_slip and by_way:
             raise ValueError(
-                f"{min(by_way)} must not be given with {min(by_slip)}: friction depends on the speed of slip, "
+                f"{by_way[0]} must not be given with {by_slip[0]}: friction depends on the speed of slip, "
                 f"or on its direction, got {self!r}"
             )
         missing = [one for one in (_BY_WAY if by_way else _BY_SLIP[:2]) if one not in given]
