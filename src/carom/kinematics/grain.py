@@ -2,7 +2,7 @@
 
 An elliptic cone (F_1/mu_1)^2 + (F_2/mu_2)^2 <= N^2 with slip along its normal is Coulomb's cone of
 mu = sqrt(mu_1 mu_2) in the rows t_i' = (mu_i/mu) t_i: u_i' = (mu_i/mu) u_i and F_i' = (mu/mu_i) F_i have the
-same power, |F'| <= mu N is the ellipse, and F' against u' its normal (mathematics page, §1.1). So the tangents
+same power, |F'| <= mu N is the ellipse, and F' against u' its normal (mathematics page, §1.10). So the tangents
 of a point with a grain are perpendicular, but no unit vectors.
 """
 

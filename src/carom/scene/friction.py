@@ -98,7 +98,7 @@ class Friction(FrictionLaw):
 
     Notes
     -----
-    Mathematics page, §1.1.
+    Mathematics page, §1.10.
 
     Examples
     --------
