@@ -10,8 +10,8 @@ from campaigns.case import Case
 from carom.geometry import quaternion
 
 FAMILIES = (throws, slides, strikes, slides, rests, piles, throws, crowds)
-#: how far a force may be beyond its ellipse, as a part of it; sine below which anisotropy fades out; forces, and
-#: impulses, that are looked at
+#: how far a force may be beyond its ellipse, as a part of it; sine below which anisotropy fades out; number of
+#: forces, and of impulses, that are looked at
 EXCESS, FADES, LOOKS = 1e-6, 0.1, 2000
 
 

@@ -83,7 +83,7 @@ def skate(law, velocity, spin):
 
 
 def on_three_feet(law, velocity, spin, inertia, times):
-    """Return places, attitudes and velocities of the skate by `solve_ivp`: its loads follow from equilibrium."""
+    """Return places, attitudes and velocities of the skate by `solve_ivp`; equilibrium gives its loads."""
     feet = SIZE * np.array(TRIANGLE)
 
     def rates(t, y):
@@ -118,8 +118,9 @@ def test_a_skate_that_turns(law, velocity, spin, tolerance):
     found = carom.simulate(scene, 0.25, rtol=tolerance, atol=tolerance)
     exact = on_three_feet(law, velocity, spin, scene["block"].inertia[2, 2], found.t)
     # errors of steps add up
-    assert found.position[:, 0, :2].T == pytest.approx(exact[:2], abs=10 * tolerance)
-    assert found.angular_velocity[:, 0, 2] == pytest.approx(exact[5], abs=200 * tolerance)
+    np.testing.assert_allclose(found.position[:, 0, :2], exact[:2].T, rtol=0, atol=10 * tolerance)
+    spin = found.angular_velocity[:, 0, 2]
+    np.testing.assert_allclose(spin, exact[5], rtol=0, atol=200 * tolerance)
     assert np.max(np.diff(found.ledger.friction)) <= 0.0
     assert np.abs(found.ledger.residual).max() < 20 * tolerance
     # each force has the direction of the normal of its ellipse
@@ -141,41 +142,43 @@ def test_a_skate_that_turns(law, velocity, spin, tolerance):
 
 
 def impulse_of(W, u, law, e, kind):
-    """Return the impulse (3,) by du/dp = W (1, -D^2 u_t/|D u_t|), with stick where the ellipse allows it."""
+    """Return the impulse (3,) by du/dp = W (1, -D^2 u_t/|D u_t|), with stick where the ellipse allows it.
+
+    None if the slip that has stopped begins again.
+    """
     D = np.array([law.along, law.across])
     hold = -np.linalg.solve(W[1:, 1:], W[1:, 0])
-    sticks = np.linalg.norm(hold / D) <= 1.0
-    y, left, compressed = np.array([*u, 0.0, 0.0, 0.0, 0.0]), False, 0.0
+    y, sticks, compressed, worked = np.array([*u, 0.0, 0.0, 0.0, 0.0]), False, np.nan, np.nan
 
     def rates(p, y):
         w = D * y[1:3]
-        f = hold if left else -D * w / np.linalg.norm(w)
+        f = hold if sticks else -D * w / np.linalg.norm(w)
         return [*(W @ [1.0, *f]), 1.0, *f, y[0]]
 
-    def slips(p, y):
-        return 1.0 if left else np.linalg.norm(D * y[1:3]) - 1e-10
+    def stops(p, y):
+        return 1.0 if sticks else np.linalg.norm(D * y[1:3]) - 1e-10
 
-    slips.terminal = True
-    for phase in range(2):
-        end = {
-            "newton": lambda p, y: y[0] + e * u[0],
-            "poisson": lambda p, y: y[3] - (1 + e) * compressed,
-            "stronge": lambda p, y: y[6] - (1 - e**2) * worked,
-        }[kind]
-        stop = end if phase else lambda p, y: y[0]
-        stop.__dict__["terminal"] = True
-        while True:
-            found = solve_ivp(
-                rates, (0, 1e3), y, "DOP853", rtol=1e-11, atol=1e-13, events=[stop, slips]
-            )
-            y = found.y[:, -1]
-            if len(found.t_events[0]):
-                break
-            if not sticks:
+    def ends(p, y):
+        if np.isnan(compressed):
+            return y[0]
+        if kind == "newton":
+            return y[0] + e * u[0]
+        return y[3] - (1 + e) * compressed if kind == "poisson" else y[6] - (1 - e**2) * worked
+
+    stops.terminal = ends.terminal = True
+    while True:
+        found = solve_ivp(
+            rates, (0, 1e3), y, "DOP853", rtol=1e-11, atol=1e-13, events=[ends, stops]
+        )
+        y = found.y[:, -1]
+        if not len(found.t_events[0]):
+            if np.linalg.norm(hold / D) > 1.0:
                 return None
-            left, y[1:3] = True, 0.0
-        compressed, worked = (y[3], y[6]) if phase == 0 else (compressed, worked)
-    return y[3:6]
+            sticks, y[1:3] = True, 0.0
+        elif np.isnan(compressed):
+            compressed, worked = y[3], y[6]
+        else:
+            return y[3:6]
 
 
 def thrown(seed, law=None, turn=(1, 0, 0, 0), mirror=False):
@@ -215,10 +218,11 @@ def test_an_impact_follows_its_ellipse(kind):
         if exact is None:
             continue
         compared += 1
-        assert first.impulse == pytest.approx(exact, abs=1e-10), seed
+        assert first.impulse == pytest.approx(exact, abs=1e-9), seed
         u = first.relative_velocity_before + first.inverse_mass @ first.impulse
         assert first.relative_velocity_after == pytest.approx(u, abs=1e-12)
-        assert first.friction_loss >= 0.0 and np.isnan(first.friction)
+        assert first.friction_loss >= 0.0
+        assert np.isnan(first.friction)
     assert compared >= 8
 
 
@@ -245,13 +249,11 @@ def test_equal_coefficients_are_a_number():
     one, two = (carom.simulate(thrown(1, law=mu)[0], 0.4, step=1e-3) for mu in (law, 0.3))
     assert len(one.impacts) == len(two.impacts) > 0
     assert one.position == pytest.approx(two.position, abs=1e-9)
+    slide = {"position": (0, 0, 0.025), "velocity": (1, 0.3, 0), "angular_velocity": (0, 0, 3)}
     one, two = (
-        carom.simulate(
-            on_floor(carom.Box(0.2, 0.2, 0.05), mu, position=(0, 0, 0.025), velocity=(1, 0.3, 0), angular_velocity=(0, 0, 3)),
-            1.0, step=1e-2,
-        )
+        carom.simulate(on_floor(carom.Box(0.2, 0.2, 0.05), mu, **slide), 1.0, step=1e-2)
         for mu in (law, 0.3)
-    )  # fmt: skip
+    )
     assert one.position == pytest.approx(two.position, abs=1e-11)
 
 
@@ -388,9 +390,9 @@ def test_ensembles_and_files_have_it(tmp_path):
     assert np.array_equal(again.position, alone.position)
 
 
-@pytest.mark.parametrize("first", [2000, 2008])
-def test_campaign(first):
-    for seed in range(first, first + 8):
+def test_random_scenes_keep_their_ellipses():
+    # a throw, a strike, a pile, a crowd ...: what 300 others met
+    for seed in range(2000, 2008):
         found = run(grains.case(seed))
         assert found.status in ("SUCCESS", "INACCURATE"), seed
         assert found.reached == 1.0, seed
