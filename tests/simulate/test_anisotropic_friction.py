@@ -362,6 +362,8 @@ def test_what_is_refused():
         Friction(axis=(1, 0, 0), along=1e-4, across=0.2)
     with pytest.raises(ValueError, match="axis must not be the zero vector"):
         Friction(axis=(0, 0, 0), along=0.1, across=0.2)
+    with pytest.raises(ValueError, match="bound must not depend on the direction"):
+        carom.forces.JointFriction("rail", law)
     scene = on_floor(carom.Sphere(0.1), law, position=(0, 0, 0.5))
     with pytest.raises(ValueError, match="friction_held must have the axis of friction"):
         scene.replace("block-floor", friction_held=0.3)

@@ -241,13 +241,11 @@ _checked = partial(
 )
 
 
-def _along_joint(name: str, value) -> float | FrictionLaw:
-    value = _checked(name, value)
-    if grain(value) is not None:
-        raise ValueError(
-            f"{name} must not depend on the direction, which a joint has not, got {value!r}"
-        )
-    return value
+def _along_joint(name: str, value) -> float | SpeedLaw:
+    found = _checked(name, value)
+    if grain(found) is not None:
+        raise ValueError(f"{name} must not depend on the direction in a joint, got {found!r}")
+    return found
 
 
 def friction(default: Any = REQUIRED, *, joint: bool = False) -> Value[Any, Any]:
@@ -260,14 +258,14 @@ def bound_of(mu: float | FrictionLaw) -> float:
     return mu.bound if isinstance(mu, FrictionLaw) else mu
 
 
-def grain(mu: float | FrictionLaw) -> Grain | None:
+def grain(mu: Any) -> Grain | None:
     """Return axis and ratio of anisotropic friction; None if it is not anisotropic."""
     if not isinstance(mu, Friction) or mu.axis is None:
         return None
     return Grain(mu.axis, mu.of, mu.across / mu.along)
 
 
-def check_grains(friction: float | FrictionLaw, held: float | FrictionLaw) -> None:
+def check_grains(friction: Any, held: Any) -> None:
     """Refuse anisotropic friction that differs in more than its size in impacts and in persistent contact."""
     one, two = grain(friction), grain(held)
     if one is None and two is None:
@@ -300,5 +298,5 @@ def combined_grains(
     along, across = rule(law.along, mu), rule(law.across, mu)
     if along == across:
         return along
-    of = {"body": "other", "other": "body"}.get(law.of, law.of) if flip else law.of
+    of = {"body": "other", "other": "body", "world": "world"}[law.of] if flip else law.of
     return Friction(axis=law.axis, along=along, across=across, of=of)

@@ -194,7 +194,7 @@ def _combined(name: str, first, second, rules: Mapping) -> Any:
     rule, grains = RULES.get(rules.get(name, "")), [grain(value) for value in values]
     law = any(isinstance(v, SpeedLaw) and g is None for v, g in zip(values, grains))
     if any(grains):
-        found = combined_grains(name, *values, rule)
+        found = combined_grains(name, values[0], values[1], rule)
         if found is not None:
             return found
     elif rule is not None and not law:
