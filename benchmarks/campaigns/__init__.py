@@ -10,6 +10,7 @@ from campaigns import (
     crowds,
     forced,
     frictions,
+    grains,
     laws,
     mechanisms,
     piles,
@@ -29,5 +30,5 @@ FAMILIES = {
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
     "belts": belts.case,
     "rails": rails.case,
-    "laws": laws.case, "frictions": frictions.case,
+    "laws": laws.case, "frictions": frictions.case, "grains": grains.case,
 }  # fmt: skip

@@ -77,6 +77,9 @@ def stated():
         "Friction": lambda: (
             carom.Friction, dict(static=0.5, kinetic=0.3, speed=0.1, exponent=1.0),
         ),
+        "Friction anisotropic": lambda: (
+            carom.Friction, dict(axis=three, along=0.1, across=0.5, of="world"),
+        ),
         "Friction.table": lambda: (carom.Friction.table, dict(speeds=(0.1, 1.0), values=(0.9, 0.5))),
         "Friction.slope": lambda: (carom.Friction(0.5, 0.3, 0.1).slope, dict(speed=1.0)),
         "Restitution": lambda: (carom.Restitution.power(0.5), dict(speed=1.0)),

@@ -22,6 +22,7 @@ from carom.contact.stop import is_active, place_stop
 from carom.contact.thresholds import REACH, RIM_DISTANCE, RIM_TIME
 from carom.geometry.vectors import dot, minus
 from carom.kinematics.contact_point import place
+from carom.kinematics.grain import turn_plain
 from carom.model.arrays import STOP
 
 
@@ -204,8 +205,8 @@ def place_closed(system, k, state, group, points, work):
             continue
         place_any(system, closed_point, state, points[i], work)
         if closed_point.turns > 0:
-            points[i].turns = closed_point.turns
-            points[i].length = smaller(system.contacts[closed_point.contact])
+            contact = system.contacts[closed_point.contact]
+            turn_plain(contact, closed_point.turns, smaller(contact), points[i])
 
 
 @kernel

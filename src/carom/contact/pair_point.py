@@ -22,6 +22,7 @@ from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.geometry.thresholds import ROUND_OFF
 from carom.geometry.vectors import dot, minus
 from carom.kinematics.contact_point import carry_field
+from carom.kinematics.grain import lay_along_grain
 from carom.kinematics.wrench import point_velocity
 from carom.model.workspace import STATIC
 
@@ -93,10 +94,12 @@ def write_touch(contact, touch, state, point):
     beyond = contact.surface > 0 and not n[0] * e[0] + n[1] * e[1] + n[2] * e[2] > 1.0 - ROUND_OFF
     if beyond or not on_half_space(contact):
         tangents(n[0], n[1], n[2], point.axes)
-        return
-    for k in range(3):
-        for i in range(3):
-            point.axes[i, k] = contact.axes[i, k]
+    else:
+        for k in range(3):
+            for i in range(3):
+                point.axes[i, k] = contact.axes[i, k]
+    if contact.grain_of != 0:
+        lay_along_grain(contact, state, point)
 
 
 @kernel

@@ -10,6 +10,7 @@ from carom.impact import laws, layout
 from carom.impact.thresholds import NO_RESTITUTION
 from carom.impact.workspace import U
 from carom.kinematics.contact_point import power_of_surface
+from carom.kinematics.grain import lengths_of_tangents
 from carom.model.parts_of_system import has_relation_rows
 
 _NOT_LAW_A = layout.PHASE_JAM | layout.WEDGED
@@ -49,7 +50,24 @@ def write_blow(contact, point, state, blow, clock, records):
     row.compression_work, row.restitution_work = blow.compression, blow.restitution
     row.friction_loss, row.energy_change = blow.friction, blow.change
     row.phases, row.duration = blow.phases, blow.duration
+    if contact.grain_of != 0:
+        write_plain(row, lengths_of_tangents(point))
     clock.struck += 1
+
+
+@kernel
+def write_plain(row, lengths):
+    """Write the vectors of a row, and its W, in tangents of length 1."""
+    for r in range(1, 3):
+        s = lengths[r - 1]
+        row.before[r], row.after[r], row.impulse[r] = (
+            row.before[r] / s,
+            row.after[r] / s,
+            row.impulse[r] * s,
+        )
+        for j in range(3):
+            row.W[r, j] /= s
+            row.W[j, r] /= s
 
 
 @kernel

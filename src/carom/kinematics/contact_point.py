@@ -1,13 +1,15 @@
 """A contact point: its position and its velocity, u = G v.
 
 G maps the velocities of all bodies to u = (u_n, u_t1, u_t2), the velocity of body a relative to body b at
-the point. (Paper, change of coordinates at contact.)
+the point. (Paper, change of coordinates at contact.) With anisotropic friction the tangents have lengths
+(`carom.kinematics.grain`).
 """
 
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.geometry.rotation import cross, rotate
+from carom.kinematics.grain import lay_along_grain
 from carom.kinematics.wrench import point_velocity
 
 
@@ -25,6 +27,8 @@ def place(contact, p, state, point):
         for i in range(3):
             axes[i, k] = n[i, k]
     point.gap = gap
+    if contact.grain_of != 0:
+        lay_along_grain(contact, state, point)
     carry_field(contact, point)
 
 

@@ -279,8 +279,8 @@ CONTACT = [
     ("friction_piece", "i8", 2),
     ("last_friction_piece", "i8", 2),
     ("friction_exponent", "f8", 2),
-    # of anisotropic friction: the axis along which mu is `friction`, fixed to the body (`grain_of` 1), to the
-    # other body (2) or to the world (3), 0 for none; and mu across it over that along it
+    # of anisotropic friction, with the geometric mean as mu: an axis fixed to the body (`grain_of` BODY_AXES),
+    # to the other body or to the world, 0 for none; and mu across it over that along it
     ("grain_of", "i8"),
     ("grain", "f8", 3),
     ("across", "f8"),
@@ -347,6 +347,9 @@ SIDE = [
 
 #: value of `touches` for a stop in a joint
 STOP = 2
+
+#: `grain_of`: to what the axis of anisotropic friction is fixed
+BODY_AXES, OTHER_AXES, WORLD_AXES = 1, 2, 3
 
 
 #: workspace of a forest, for each body: numbers before the freedoms, and for each freedom

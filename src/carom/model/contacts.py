@@ -13,7 +13,7 @@ from carom.collision.layout import SOLID, Hulls, no_hulls, solid_table
 from carom.collision.level_layout import Levels
 from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes, length
-from carom.model.arrays import CONTACT
+from carom.model.arrays import BODY_AXES, CONTACT, OTHER_AXES, WORLD_AXES
 from carom.model.contact_rows import Rows, contact_rows, first_pairs
 from carom.model.cores import Cores, new_cores, singly, swollen_alike
 from carom.model.level_surfaces import find_levels, with_level_rows
@@ -22,7 +22,7 @@ from carom.model.moving_surfaces import write_fields
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, meeting
 from carom.scene.contacts import IMPACT_LAWS
-from carom.scene.friction import bound_of
+from carom.scene.friction import FIXED_TO, bound_of, grain
 from carom.scene.materials import MULTIPLE, ContactLaw, Material
 from carom.scene.scene import Scene
 from carom.scene.shapes import Shape
@@ -37,6 +37,7 @@ class Surfaces(NamedTuple):
     shared: int  # first vertex of `single`, after those of contacts with half-spaces
     place: np.ndarray  # (N,) first solid of each body
     curves: Pieces  # of coefficients that are laws
+    turns: np.ndarray  # (N + S, 4) from principal to body axes; of static bodies from world axes
 
 
 class Contacts(NamedTuple):
@@ -108,7 +109,9 @@ def _contacts(scene: Scene, known: PairTable, later, curves, to_principal, optio
     ranges = (which.core[end][flat & ~curved].tolist() for end in ("first", "last"))
     own = [grounded.vertices[first:last] for first, last in zip(*ranges)]
     vertices = np.concatenate([*own, single.vertices])
-    surfaces = Surfaces(grounded, single, len(vertices) - len(single.vertices), place, curves)
+    surfaces = Surfaces(
+        grounded, single, len(vertices) - len(single.vertices), place, curves, to_principal
+    )
     rows = _rows(scene, options, pairs, which, surfaces)
     rows, levels = with_level_rows(rows, *find_levels(scene, pairs, place))
     return Contacts(rows, vertices, solids, hulls, levels, known, surfaces, later)
@@ -160,7 +163,7 @@ def _rows(scene, options: Options, pairs: PairTable, which: Rows, surfaces: Surf
     _write_shapes(rows, which)
     _write_ranges(rows, which, surfaces.shared)
     _write_solids(rows, which, surfaces.place)
-    _write_laws(rows, scene, pairs, which, surfaces.curves)
+    _write_laws(rows, scene, pairs, which, surfaces)
     _write_statics(rows, scene)
     extent = rows["extent"]
     rows["still"] = 1e-14 * _speed(scene, extent)
@@ -196,6 +199,7 @@ def _write_statics(rows: np.recarray, scene: Scene) -> None:
     for b, solid in enumerate(scene.statics, start=count):
         rows["centre"][rows["other"] == b] = solid.position
     rows["other"][rows["static"] == 1] = -1
+    rows["grain_of"][(rows["static"] == 1) & (rows["grain_of"] == OTHER_AXES)] = WORLD_AXES
 
 
 def _write_half_spaces(rows: np.recarray, scene: Scene, plane: np.ndarray) -> None:
@@ -265,30 +269,47 @@ OF_LAW = (
 )  # fmt: skip
 
 
-def _write_laws(rows: np.recarray, scene: Scene, pairs: PairTable, which: Rows, curves: Pieces):
+def _write_laws(rows: np.recarray, scene: Scene, pairs: PairTable, which: Rows, surfaces: Surfaces):
     """Write the law of each contact to its rows."""
     laws, of_row = _laws_by_part(scene, pairs, which)
-    law = _numbers(laws, curves)[of_row]
+    law = _numbers(laws, surfaces.curves)[of_row]
     for k, name in enumerate(OF_LAW):
         rows[name] = law[:, k]
-    rows["turning"], by_slip = law[:, -8:-6], law[:, -6:].reshape(-1, 2, 3)
+    rows["turning"], by_slip = law[:, -13:-11], law[:, -11:-5].reshape(-1, 2, 3)
     for k, name in enumerate(("friction_piece", "last_friction_piece", "friction_exponent")):
         rows[name] = by_slip[:, :, k]
+    if law[:, -5].any():
+        _write_grains(rows, law[:, -5:], surfaces.turns)
+
+
+def _write_grains(rows: np.recarray, grains: np.ndarray, turns: np.ndarray) -> None:
+    """Write the axes of anisotropic friction, in the axes of the bodies that they are fixed to."""
+    of, body, other = grains[:, 0].astype(int), rows["body"], rows["other"]
+    of = np.where((of == OTHER_AXES) & (other < 0), WORLD_AXES, of)  # of a half-space
+    side = np.where(of == BODY_AXES, body, other)
+    turned = quaternion.rotate_back(turns[side], grains[:, 1:4])
+    rows["grain"] = np.where((of == WORLD_AXES)[:, None], grains[:, 1:4], turned)
+    rows["grain_of"], rows["across"] = of, grains[:, 4]
 
 
 def _numbers(laws: list[ContactLaw], curves: Pieces) -> np.ndarray:
-    """Return the numbers (L, 18) of laws; coefficients that depend on speeds are added to `curves`."""
+    """Return the numbers (L, 23) of laws; coefficients that depend on speeds are added to `curves`."""
     numbers = [
         (
             bound_of(one.friction), bound_of(one.friction_held), one.stiffness,
             IMPACT_LAWS.index(one.impact_law),
             MULTIPLE.index(one.multiple), *curves.add_restitution(one.restitution),
             one.tangential_restitution, one.rolling_friction, one.pivoting_friction,
-            *curves.add_law(one.friction), *curves.add_law(one.friction_held),
+            *curves.add_law(one.friction), *curves.add_law(one.friction_held), *_grain_numbers(one),
         )
         for one in laws
     ]  # fmt: skip
-    return np.array(numbers, dtype=float).reshape(-1, len(OF_LAW) + 8)
+    return np.array(numbers, dtype=float).reshape(-1, len(OF_LAW) + 13)
+
+
+def _grain_numbers(law: ContactLaw) -> tuple[float, ...]:
+    found = grain(law.friction)
+    return (0.0,) * 5 if found is None else (1 + FIXED_TO.index(found.of), *found.axis, found.ratio)
 
 
 class Surface(NamedTuple):

@@ -33,6 +33,7 @@ from carom.geometry.thresholds import RESOLUTION
 from carom.model.arrays import CONTACT
 from carom.model.graph import Sets
 from carom.scene.all_pairs import PairTable
+from carom.scene.friction import grain
 from carom.scene.pieces import Piece
 from carom.scene.scene import Scene
 from carom.scene.speed_law import SpeedLaw
@@ -109,7 +110,7 @@ def _laws_of_statics(scene: Scene, pairs: PairTable) -> list[tuple[tuple, tuple]
                     body, *_sortable(one.friction), *_sortable(one.friction_held), *_sortable(one.restitution),
                     one.tangential_restitution, one.stiffness,
                     one.rolling_friction, one.pivoting_friction, str(one.impact_law), str(one.multiple),
-                    other if scene.statics[other - count].moves else -1,
+                    other if scene.statics[other - count].moves or grain(one.friction) else -1,
                 )
             )  # fmt: skip
     return [(tuple(sorted(bodies)), tuple(sorted(laws))) for bodies, laws in found]

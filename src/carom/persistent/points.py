@@ -26,7 +26,9 @@ from carom.contact.stop import is_active
 from carom.contact.thresholds import ACTIVE_REACH, PLACE_ERROR, REACH
 from carom.dynamics.thresholds import NORMAL_ERROR
 from carom.geometry.rotation import cross, rotate_back
+from carom.geometry.thresholds import ROUND_OFF
 from carom.kinematics.contact_point import copy_point
+from carom.kinematics.grain import lengths_of_tangents, turn_plain
 from carom.persistent.joint_rows import add_frictions
 
 
@@ -182,8 +184,8 @@ def add_turning(system, active, k, group):
                 write_turning(i, turns, closed_point, more)
                 more.own = closed_point.own
                 copy_point(group.points[0][i], point)
-                point.turns = turns
-                point.length = smaller(system.contacts[closed_point.contact])
+                contact = system.contacts[closed_point.contact]
+                turn_plain(contact, turns, smaller(contact), point)
                 total += 1
     return total
 
@@ -255,10 +257,10 @@ def weigh_patch(system, first, k, group):
 def in_plane(origin, point):
     """Return the place of a point in the plane of the patch."""
     r, E = point.arm_a, origin.axes
-    return (
-        E[1, 0] * r[0] + E[1, 1] * r[1] + E[1, 2] * r[2],
-        E[2, 0] * r[0] + E[2, 1] * r[1] + E[2, 2] * r[2],
-    )
+    x = E[1, 0] * r[0] + E[1, 1] * r[1] + E[1, 2] * r[2]
+    y = E[2, 0] * r[0] + E[2, 1] * r[1] + E[2, 2] * r[2]
+    a, b = lengths_of_tangents(origin)
+    return (x, y) if abs(a - 1.0) <= ROUND_OFF else (x / a, y / b)
 
 
 @kernel

@@ -36,6 +36,7 @@ from carom.status import Status
 #: attributes of contacts that tables show (an ensemble changes them from run to run)
 OF_CONTACTS = (
     "number", "other", "first", "law", "restitution", "friction", "penetration", "width", "touches", "side",
+    "grain_of",
 )  # fmt: skip
 
 
@@ -149,7 +150,10 @@ def impact_table(solution) -> ImpactTable:
         inverse_mass=rows.W / arm[:, None, None] ** 2,
         impulse=rows.impulse * arm[:, None],
         restitution=np.where(_differs(contacts["restitution"], first)[place], np.nan, e),
-        friction=np.where(_differs(contacts["friction"], first)[place], np.nan, contacts["friction"][c]),
+        friction=np.where(
+            _differs(contacts["friction"], first)[place] | (contacts["grain_of"][c] > 0), np.nan,
+            contacts["friction"][c],
+        ),
         wedged=(rows.phases & WEDGED) // WEDGED,
         located=1 - (rows.phases & AT_END) // AT_END,
         **named(rows.contact, solution.scene, solution.pairs),

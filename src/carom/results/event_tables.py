@@ -17,7 +17,8 @@ CURVED = 1 << 40  # features of curved pieces are above this number, vertices be
 class ImpactRecord(NamedTuple):
     """One contact point of an impact.
 
-    Vectors are in contact axes (normal, tangent 1, tangent 2) unless the field says otherwise. For a stop of an
+    Vectors are in contact axes (normal, tangent 1, tangent 2) unless the field says otherwise; with anisotropic
+    friction tangent 1 is along its axis. For a stop of an
     angle `unit` is ``"rad/s"``: velocities are in rad/s, impulses in N m s, W in 1/(kg m^2), the penetration in
     rad.
 
@@ -43,7 +44,7 @@ class ImpactRecord(NamedTuple):
     inverse_mass: np.ndarray  #: (3, 3) Delassus operator W of the contact [1/kg]
     #: e of the contact; NaN where parts of a body have materials with different ones
     restitution: float
-    friction: float  #: mu of the contact; NaN likewise
+    friction: float  #: mu of the contact; NaN likewise, and if it is anisotropic
     compression_work: float  #: work of the normal force in compression [J]
     restitution_work: float  #: work of the normal force in restitution [J]
     friction_loss: float  #: energy that friction dissipates [J]

@@ -481,8 +481,8 @@ class Solution(Portable, Drawn, Source):
         IndexError
             If there is no impact k.
         ValueError
-            If impact k is part of a multiple impact, its friction is a law, or parts of the bodies have
-            different materials.
+            If impact k is part of a multiple impact, its friction is a law or anisotropic, or parts of the
+            bodies have different materials.
         """
         from carom.impact.history import impact_layer
 
@@ -501,6 +501,10 @@ class Solution(Portable, Drawn, Source):
             raise ValueError(
                 f"k must be an impact whose friction is a number, got {k}, of a law: the layer of the paper "
                 "has none"
+            )
+        if row.grain_of > 0:
+            raise ValueError(
+                f"k must be an impact whose friction is a number, got {k}, of anisotropic friction"
             )
         if not np.isfinite(record.friction + record.restitution):
             raise ValueError(

@@ -1,17 +1,19 @@
-"""Laws of friction: the static coefficient bounds stick, the kinetic one acts in slip and may fall with it."""
+"""Laws of friction: by the speed of slip (a static and a kinetic coefficient), or by its direction (a cone)."""
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
-from carom.fields import REQUIRED, Number, NumberOrNone, Value, number
+from carom.fields import REQUIRED, Number, NumberOrNone, Value, Word, number, word
 from carom.scene.speed_law import (
     Curve,
     SpeedLaw,
@@ -25,6 +27,17 @@ from carom.scene.speed_law import (
 FIRST_PIECE, LAST_PLACE = 0.016, 38.0
 #: of exponents of the speed: steeper laws are steps, which `kinetic` states better
 EXPONENTS = 0.1, 10.0
+#: greatest ratio of `along` and `across`: beyond it forces across lose the digits of those along
+MOST_ANISOTROPIC = 1e3
+FIXED_TO = ("body", "other", "world")
+
+
+class Grain(NamedTuple):
+    """What is the same of anisotropic friction in impacts and in persistent contact."""
+
+    axis: tuple[float, float, float]
+    of: str
+    ratio: float  # across / along
 
 
 @dataclass(frozen=True, repr=False)
@@ -37,21 +50,29 @@ class FrictionLaw(SpeedLaw):
         """The coefficient that bounds stick."""
 
 
+def _axis(name: str, value) -> tuple[float, ...]:
+    return tuple(checks.unit_vector(name, value).tolist())  # a law is hashed
+
+
 @arguments.known
 @dataclass(frozen=True, repr=False)
 class Friction(FrictionLaw):
-    """A law of friction with a static and a kinetic coefficient, for ``friction=``.
+    """A law of friction, for ``friction=``: by the speed of slip, or by its direction.
 
-    A contact sticks while its tangential force is at most `static` times its normal force. In slip the
-    coefficient is `kinetic`, or with `speed` that of Stribeck, which falls from `static` as the slip s grows:
-    ``kinetic + (static - kinetic) exp(-(s / speed)^exponent)``. `Friction.table` makes a law of measured
-    points, and ``law(speed)`` is its coefficient in slip.
+    *By the speed*, ``Friction(static, kinetic)``: a contact sticks while its tangential force is at most
+    `static` times its normal force. In slip the coefficient is `kinetic`, or with `speed` that of Stribeck,
+    which falls from `static` as the slip s grows: ``kinetic + (static - kinetic) exp(-(s / speed)^exponent)``.
+    `Friction.table` makes a law of measured points, and ``law(speed)`` is its coefficient in slip.
+
+    *By the direction*, ``Friction(axis=..., along=..., across=...)``, for skates, wheels and grooves: the
+    tangential force is within the ellipse ``(F_1 / along)^2 + (F_2 / across)^2 <= N^2``, with F_1 along the
+    axis, and in slip it is that force of the ellipse which takes the most power.
 
     Parameters
     ----------
-    static : float
+    static : float, optional
         Coefficient that bounds stick, at least `kinetic`.
-    kinetic : float
+    kinetic : float, optional
         Coefficient in slip, with `speed` that of fast slip, above 0.
     speed : float, optional
         Speed of slip [m/s] at which the excess of `static` over `kinetic` has fallen to 1/e, above 0. Default:
@@ -59,6 +80,25 @@ class Friction(FrictionLaw):
     exponent : float
         From 0.1 to 10. Default 1; 2 is common too (Armstrong-Helouvry, Control of Machines with Friction,
         1991).
+    axis : (3,) array-like, optional
+        Direction of anisotropic friction, not zero. Its projection on the surface counts. Where it is normal to
+        the surface within 6 degrees, anisotropy fades out, to the mean ``sqrt(along * across)``.
+    along, across : float, optional
+        Coefficients for slip along the projected axis and across it, above 0, with a ratio up to 1000.
+    of : {"body", "other", "world"}
+        What the axis is fixed to, whose axes it is given in: the first body of the pair (default), the other
+        one, or the world. In a `Material`, "body" is the one with this material. A half-space has world axes.
+
+    Raises
+    ------
+    TypeError
+        If neither `static` and `kinetic` nor `axis`, `along` and `across` are given.
+    ValueError
+        If both are given, or a value is not allowed.
+
+    Notes
+    -----
+    Mathematics page, §1.10.
 
     Examples
     --------
@@ -71,20 +111,49 @@ class Friction(FrictionLaw):
     >>> scene.add_contact(block, floor, friction=carom.Friction(static=0.4, kinetic=0.3))
     Contact('block-floor', restitution=0.5, friction=Friction(static=0.4, kinetic=0.3, speed=None, \
 exponent=1.0), impact_law='newton')
+    >>> carom.Friction(axis=(1, 0, 0), along=0.02, across=0.6)
+    Friction(axis=(1.0, 0.0, 0.0), along=0.02, across=0.6, of='body')
     """
 
-    static: Number = number(above=0)
-    kinetic: Number = number(above=0)
+    static: Value[Any, Any] = number(None, above=0)
+    kinetic: Value[Any, Any] = number(None, above=0)
     speed: NumberOrNone = number(None, above=0, unit="m/s")
     exponent: Number = number(1.0, least=EXPONENTS[0], most=EXPONENTS[1])
+    axis: Value[Any, Any] = Value(_axis, None)
+    along: Value[Any, Any] = number(None, above=0)
+    across: Value[Any, Any] = number(None, above=0)
+    of: Word = word(FIXED_TO, "body")
     _kind = "Friction"
 
     def __post_init__(self):
-        if self.static < self.kinetic:
+        given = {name for name, value in vars(self).items() if value is not None}
+        by_slip, by_way = ([one for one in names if one in given] for names in (_BY_SLIP, _BY_WAY))
+        if by_slip and by_way:
+            raise ValueError(
+                f"{by_way[0]} must not be given with {by_slip[0]}: friction depends on the speed of slip, "
+                f"or on its direction, got {self!r}"
+            )
+        missing = [one for one in (_BY_WAY if by_way else _BY_SLIP[:2]) if one not in given]
+        if missing:
+            raise TypeError(
+                f"Friction needs {' and '.join(missing)}: Friction(static=..., kinetic=...), or "
+                "Friction(axis=..., along=..., across=...)"
+            )
+        if by_way:
+            if not 1.0 / MOST_ANISOTROPIC <= self.across / self.along <= MOST_ANISOTROPIC:
+                raise ValueError(
+                    f"across must be from 1/{MOST_ANISOTROPIC:g} to {MOST_ANISOTROPIC:g} times along, "
+                    f"{self.along:g}, got {self.across:g}"
+                )
+        elif self.static < self.kinetic:
             raise ValueError(
                 f"static must be at least kinetic, {self.kinetic:g}, because what just sticks may not slip, "
                 f"got {self.static:g}"
             )
+
+    def __repr__(self) -> str:
+        names = (*_BY_WAY, "of") if self.axis is not None else (*_BY_SLIP, "exponent")
+        return f"Friction({', '.join(f'{name}={getattr(self, name)!r}' for name in names)})"
 
     @staticmethod
     @arguments.known
@@ -106,16 +175,18 @@ exponent=1.0), impact_law='newton')
 
     @property
     def bound(self) -> float:
-        """The static coefficient."""
-        return self.static
+        """The static coefficient; of anisotropic friction the geometric mean of both."""
+        return self.static if self.axis is None else math.sqrt(self.along * self.across)
 
     @property
     def curve(self) -> Curve:
         """One constant piece, or the exponential in z = (s / speed)^exponent by quintics in s^exponent.
 
         A quintic has value and two derivatives of the exponential at both ends. Its error falls with it, so the
-        pieces grow as exp(z/6).
+        pieces grow as exp(z/6). Anisotropic friction has its mean.
         """
+        if self.axis is not None:
+            return Curve(1.0, np.array([[self.bound]]), np.array([0.0, 1.0]))
         fall = self.static - self.kinetic
         if self.speed is None or fall == 0.0:
             return Curve(1.0, np.array([[self.kinetic]]), np.array([0.0, 1.0]))
@@ -163,17 +234,69 @@ class TableFriction(FrictionLaw):
         return through_points(self.speeds, self.values)
 
 
+_BY_SLIP, _BY_WAY = ("static", "kinetic", "speed"), ("axis", "along", "across")
 FRICTION_LAWS = (Friction, TableFriction)
 _checked = partial(
     number_or_law, law=FrictionLaw, example="carom.Friction(static=0.4, kinetic=0.3)", least=0
 )
 
 
-def friction(default: Any = REQUIRED) -> Value[Any, Any]:
-    """Return a field for a coefficient of friction: a number at least 0, or a law."""
-    return Value(_checked, default)
+def _along_joint(name: str, value) -> float | SpeedLaw:
+    found = _checked(name, value)
+    if grain(found) is not None:
+        raise ValueError(f"{name} must not depend on the direction in a joint, got {found!r}")
+    return found
+
+
+def friction(default: Any = REQUIRED, *, joint: bool = False) -> Value[Any, Any]:
+    """Return a field for a coefficient of friction: a number at least 0, or a law, in a joint by its speed."""
+    return Value(_along_joint if joint else _checked, default)
 
 
 def bound_of(mu: float | FrictionLaw) -> float:
     """Return the coefficient that bounds stick."""
     return mu.bound if isinstance(mu, FrictionLaw) else mu
+
+
+def grain(mu: Any) -> Grain | None:
+    """Return axis and ratio of anisotropic friction; None if it is not anisotropic."""
+    if not isinstance(mu, Friction) or mu.axis is None:
+        return None
+    return Grain(mu.axis, mu.of, mu.across / mu.along)
+
+
+def check_grains(friction: Any, held: Any) -> None:
+    """Refuse anisotropic friction that differs in more than its size in impacts and in persistent contact."""
+    one, two = grain(friction), grain(held)
+    if one is None and two is None:
+        return
+    if one is None or two is None or one[:2] != two[:2] or not math.isclose(one.ratio, two.ratio):
+        raise ValueError(
+            "friction_held must have the axis of friction and its ratio of across to along where one of them "
+            f"is anisotropic, got friction {friction:g} and friction_held {held:g}"
+        )
+
+
+def combined_grains(
+    name: str, first: Any, second: Any, rule: Callable[[float, float], float] | None
+) -> float | FrictionLaw | None:
+    """Return the friction of two materials, one of which is anisotropic; None if no rule says it.
+
+    `rule` combines the coefficients along and across with the number of the other material.
+    """
+    if grain(first) is not None and grain(second) is not None:
+        if first == second and first.of == "world":
+            return first
+        raise ValueError(
+            f"{name} must be given for a pair of materials that are both anisotropic, got {first:g} and "
+            f"{second:g}; pass {name} of this pair to add_contact"
+        )
+    flip = grain(first) is None
+    law, mu = (second, first) if flip else (first, second)
+    if rule is None or isinstance(mu, FrictionLaw):
+        return None
+    along, across = rule(law.along, mu), rule(law.across, mu)
+    if along == across:
+        return along
+    of = {"body": "other", "other": "body", "world": "world"}[law.of] if flip else law.of
+    return Friction(axis=law.axis, along=along, across=across, of=of)

@@ -15,6 +15,7 @@ from typing import Any
 
 from carom import arguments, checks
 from carom.fields import Number, Value, Word, keep, number, word
+from carom.scene.friction import check_grains, combined_grains, grain
 from carom.scene.friction import friction as friction_or_law
 from carom.scene.restitution import restitution as number_or_law
 from carom.scene.speed_law import SpeedLaw
@@ -87,6 +88,7 @@ class ContactLaw:
     def __post_init__(self):
         if self.friction_held is None:
             keep(self, friction_held=self.friction)
+        check_grains(self.friction, self.friction_held)
 
 
 @arguments.known
@@ -189,9 +191,14 @@ def _combined(name: str, first, second, rules: Mapping) -> Any:
     for material in (first.material, second.material):
         value = getattr(material, name)
         values.append(material.friction if value is None else value)
-    law = any(isinstance(value, SpeedLaw) for value in values)
-    if name in rules and not law:
-        return RULES[rules[name]](*values)
+    rule, grains = RULES.get(rules.get(name, "")), [grain(value) for value in values]
+    law = any(isinstance(v, SpeedLaw) and g is None for v, g in zip(values, grains))
+    if any(grains):
+        found = combined_grains(name, values[0], values[1], rule)
+        if found is not None:
+            return found
+    elif rule is not None and not law:
+        return rule(*values)
     if values[0] == values[1]:
         return values[0]
     if law:

@@ -60,7 +60,7 @@ class TouchingPairs:
         friction
             Coulomb's friction coefficient mu, at least 0: the tangent of the greatest slope on which the body
             rests. A large value (50) stands for a contact that does not slip. Or a law, a function of the speed
-            of slip, as ``carom.Friction(static=0.4, kinetic=0.3)``. Default 0.
+            of slip, as ``carom.Friction(static=0.4, kinetic=0.3)``, or of its direction. Default 0.
         friction_held
             mu in persistent contact, at least 0. Default: `friction`.
         impact_law : {"newton", "poisson", "stronge"}

@@ -9,6 +9,7 @@ from carom.contact.place import place_any
 from carom.dynamics.explicit import copy_state
 from carom.geometry.rotation import cross
 from carom.kinematics.contact_point import own_field
+from carom.kinematics.grain import lengths_of_tangents
 from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.records import GROW
 from carom.stepping.energy_balance import begin_watch, note_energies
@@ -87,6 +88,9 @@ def save_contacts(model, data, k):
         fx = f[0] * E[0, 0] + f[1] * E[1, 0] + f[2] * E[2, 0]
         fy = f[0] * E[0, 1] + f[1] * E[1, 1] + f[2] * E[2, 1]
         fz = f[0] * E[0, 2] + f[1] * E[1, 2] + f[2] * E[2, 2]
+        a, b = 1.0, 1.0
+        if contact.grain_of != 0:
+            a, b = lengths_of_tangents(point)
         tx, ty, tz = cross(arm[0], arm[1], arm[2], fx, fy, fz)
         sx, sy, sz = cross(other[0], other[1], other[2], -fx, -fy, -fz)
         unit = 1.0
@@ -95,7 +99,8 @@ def save_contacts(model, data, k):
             tx, ty, tz = unit * fx, unit * fy, unit * fz
             sx, sy, sz = -tx, -ty, -tz
             fx, fy, fz = 0.0, 0.0, 0.0
-        m = active_point.torque
+        torque = active_point.torque
+        m = (torque[0], torque[1] / a, torque[2] / b)
         mx = m[0] * E[0, 0] + m[1] * E[1, 0] + m[2] * E[2, 0]
         my = m[0] * E[0, 1] + m[1] * E[1, 1] + m[2] * E[2, 1]
         mz = m[0] * E[0, 2] + m[1] * E[1, 2] + m[2] * E[2, 2]
@@ -109,4 +114,5 @@ def save_contacts(model, data, k):
         p[0], p[1], p[2] = fx, fy, fz
         for j in range(3):
             touch.force[j], touch.point[j] = unit * f[j], now[active_point.body].x[j] + arm[j]
+        touch.force[1], touch.force[2] = a * touch.force[1], b * touch.force[2]
         clock.touched += 1

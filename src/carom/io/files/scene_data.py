@@ -69,7 +69,7 @@ TYPES: dict[str, type[Any]] = {
 #: fields that files of earlier versions do not have
 LATER: dict[str, Any] = {
     "color": None, "material": None, "of_materials": {"tuple": []}, "tangential_restitution": 0.0,
-    "surface_velocity": None, "surface_spin": None,
+    "surface_velocity": None, "surface_spin": None, "axis": None, "along": None, "across": None, "of": "body",
 }  # fmt: skip
 ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 

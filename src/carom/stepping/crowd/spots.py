@@ -21,6 +21,7 @@ from carom.contact.thresholds import ACTIVE_REACH
 from carom.dynamics.thresholds import EDGE_JUMP
 from carom.geometry.rotation import norm
 from carom.kinematics.contact_point import contact_velocity, place
+from carom.kinematics.grain import turn_plain
 from carom.model.arrays import STOP
 
 
@@ -156,7 +157,7 @@ def place_all(model, data, first_spot, k, state, points):
         contact = system.contacts[c]
         if contact.touches == 0:
             place(contact, crowd.closed[i].point, state, points[i])
-            points[i].turns, points[i].length = crowd.closed[i].turns, contact.extent
+            turn_plain(contact, crowd.closed[i].turns, contact.extent, points[i])
             i += 1
             continue
         if contact.touches == STOP:
@@ -169,7 +170,7 @@ def place_all(model, data, first_spot, k, state, points):
             spot = crowd.closed[i]
             t = which_touch(system, contact, spot.feature, spot.point, state, work)
             write_touch(contact, work.touches[t], state, points[i])
-            points[i].turns, points[i].length = spot.turns, smaller(contact)
+            turn_plain(contact, spot.turns, smaller(contact), points[i])
             i += 1
         if not on_half_space(contact):
             share_plane(points, first, i, state)

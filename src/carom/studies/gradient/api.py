@@ -121,7 +121,9 @@ def sensitivities(
             "with_respect_to must not have the restitution of a contact whose restitution is a law, got "
             f"{checks.shown(with_respect_to)}; its numbers are varied by carom.ensemble"
         )
-    if np.any(system.contacts.last_friction_piece > system.contacts.friction_piece):
+    if np.any(system.contacts.last_friction_piece > system.contacts.friction_piece) or np.any(
+        system.contacts.grain_of
+    ):
         raise ValueError(
             "solution must be of contacts whose friction is a number, got a law, whose impacts have no closed "
             "form; its numbers are varied by carom.ensemble"

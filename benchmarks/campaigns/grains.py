@@ -1,0 +1,84 @@
+"""Scenes of other families whose friction is anisotropic; the forces are measured by the ellipse itself."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import carom
+from campaigns import crowds, piles, rests, slides, strikes, throws
+from campaigns.case import Case
+from carom.geometry import quaternion
+
+FAMILIES = (throws, slides, strikes, slides, rests, piles, throws, crowds)
+#: how far a force may be beyond its ellipse, as a part of it; sine below which anisotropy fades out; number of
+#: forces, and of impulses, that are looked at
+EXCESS, FADES, LOOKS = 1e-6, 0.1, 2000
+
+
+def case(seed: int) -> Case:
+    """Return case number `seed`: families in turn, a law for each contact or for all pairs."""
+    rng = np.random.default_rng([47, seed])
+    made = FAMILIES[seed % len(FAMILIES)].case(seed)
+    scene, default = made.scene, made.scene.contact_default
+    law = friction(rng)
+    for contact in scene.contacts:
+        one = law if len(scene.contacts) == 1 else friction(rng)
+        scene.replace(contact.name, friction=one, friction_held=one)
+    if default is not None:
+        scene.set_contact_default(
+            restitution=default.restitution, friction=law, impact_law=default.impact_law,
+            multiple=default.multiple,
+        )  # fmt: skip
+    made.label["law of friction"] = repr(law)
+    made.off = off
+    return made
+
+
+def friction(rng) -> carom.Friction:
+    """Return a law with a ratio from 1/30 to 30, fixed to any of both bodies or to the world."""
+    most = rng.uniform(0.05, 1.2)
+    both = [most, most / 30.0 ** rng.uniform(0.0, 1.0)]
+    along, across = rng.permutation(both)
+    of = str(rng.choice(["body", "other", "world"]))
+    return carom.Friction(axis=rng.normal(size=3), along=along, across=across, of=of)
+
+
+def off(s: carom.Solution) -> float:
+    """Return how far forces and impulses are beyond the ellipses of their laws, in units of EXCESS."""
+    forces, impacts, spaces = s.forces, s.impacts, s.scene.half_spaces
+    rows, chosen = [], slice(None, None, 1 + len(forces) // LOOKS)
+    for c, k, f in zip(forces.contact[chosen], forces.saved[chosen], forces.force[chosen]):
+        plane = s.pairs.plane[c] if c < len(s.pairs) else -1  # stops of joints follow
+        if 0 <= plane < len(spaces):
+            rows.append((c, spaces[plane].normal, s.orientation[k], f))
+    chosen = slice(None, None, 1 + len(impacts) // LOOKS)
+    turns = s.evaluate(impacts.time[chosen])[1] if len(impacts) else ()
+    for c, n, q, p in zip(
+        impacts.contact[chosen], impacts.normal[chosen], turns, impacts.impulse[chosen]
+    ):
+        if c < len(s.pairs):
+            rows.append((c, n, q, p))
+    return max((beyond(s, *row) for row in rows), default=0.0) / EXCESS
+
+
+def beyond(s: carom.Solution, contact: int, normal, orientation, force) -> float:
+    """Return how far a force is beyond its ellipse, as a part of it; 0 where anisotropy fades out."""
+    pairs = s.pairs
+    law = pairs.laws[pairs.law[contact]].friction
+    if abs(axis_of(s, contact, law, orientation) @ normal) > np.sqrt(1.0 - FADES**2):
+        return 0.0
+    size = np.hypot(force[1] / law.along, force[2] / law.across)
+    return float(size / force[0] - 1.0) if size > 0.0 else 0.0
+
+
+def axis_of(s: carom.Solution, contact: int, law: carom.Friction, orientation) -> np.ndarray:
+    """Return the axis of a law in the world."""
+    pairs, turn = s.pairs, None
+    if law.of == "body":
+        turn = orientation[pairs.body[contact]]
+    elif law.of == "other" and pairs.other[contact] >= 0:
+        turn = orientation[pairs.other[contact]]
+    elif law.of == "other":
+        fixed = s.scene.fixed[pairs.plane[contact]]
+        turn = getattr(fixed, "orientation", None)
+    return np.array(law.axis) if turn is None else quaternion.rotate(turn, law.axis)
