@@ -19,7 +19,7 @@ from carom._compiled.units import unit
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.geometry.thresholds import RESOLUTION, SMALLEST
 from carom.kinematics.joints import anchor_speed, child_arm, parent_arm
-from carom.kinematics.thresholds import END_MARGIN
+from carom.kinematics.thresholds import END_MARGIN, NEAR_RAIL
 from carom.kinematics.wrench import add_force
 from carom.model.arrays import CURVE_ON_POINT, POINT_ON_CURVE
 
@@ -93,12 +93,10 @@ def correction(one, point, curved):
     return along / max(square - (bend if curved else 0.0), 0.5 * square)
 
 
-@unit
-def find_foot(system, c, state):
-    """Write the foot of the point of a joint, with its axes, to the curve; NaN if there is none nearby."""
-    one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
-    point, place = point_of(c, state), one.first
-    s, small = c.reference, RESOLUTION / max(one.sharpest, 1.0 / (one.high - one.low))
+@kernel
+def follow(one, pieces, point, s):
+    """Return the foot of a point that Newton's iteration from s finds, and its piece; NaN if there is none."""
+    place, small = one.first, RESOLUTION / max(one.sharpest, 1.0 / (one.high - one.low))
     done = False
     for k in range(MOST_CORRECTIONS):
         t = s
@@ -111,8 +109,59 @@ def find_foot(system, c, state):
         step = correction(one, point, k > 1)
         s += step
         done = abs(step) <= small  # the error after it is its square
-    one.s = s if done else math.nan
+    return s if done else math.nan, place
+
+
+@unit
+def find_foot(system, c, state):
+    """Write the foot of the point of a joint, with its axes, to the curve; NaN if there is none nearby.
+
+    That of a rail that can be left is the nearest one in flight.
+    """
+    one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
+    point = point_of(c, state)
+    one.s, place = follow(one, pieces, point, c.reference)
+    free = can_be_left(one)
+    if free and not distance(one, point) * one.sharpest + 0.0 * one.s <= NEAR_RAIL:
+        place = find_nearest(c, one, pieces, point)
     write_axes(c, one, pieces[place].normal, point, state)
+    if free:  # in its plane, where the centre of curvature is no place of its own
+        one.bend[0], one.ahead = 0.0, max(one.ahead, RESOLUTION)
+
+
+@kernel
+def can_be_left(one):
+    """Return whether a curve is a rail with a free side."""
+    return one.side[0] != 0.0 or one.side[1] != 0.0 or one.side[2] != 0.0
+
+
+@kernel
+def find_nearest(c, one, pieces, point):
+    """Write the nearest foot on the whole curve, in the lap nearest to the last, and return its piece.
+
+    The curve goes on straight beyond its ends. Near a centre of curvature, any near place does as the foot.
+    """
+    least, near = math.inf, one.low
+    for i in range(one.first, one.last):
+        end = pieces[i + 1].start if i + 1 < one.last else one.high
+        t, spacing = 0.0, end - pieces[i].start
+        place_at(one, pieces, i, t)
+        if distance(one, point) > 1.01 * spacing + least:
+            continue
+        for _ in range(3):
+            t = min(max(t + correction(one, point, False), 0.0), spacing)
+            place_at(one, pieces, i, t)
+        if distance(one, point) < least:
+            least, near = distance(one, point), pieces[i].start + t
+    one.s, place = follow(one, pieces, point, near)
+    within = one.low <= one.s <= one.high or (one.period > 0.0 and not math.isnan(one.s))
+    if not (within and distance(one, point) <= least):
+        place = find_piece(pieces, one.first, one.last, near)
+        place_at(one, pieces, place, near - pieces[place].start)
+        one.s = near + correction(one, point, False)
+    if one.period > 0.0:
+        one.s += one.period * math.floor((c.reference - one.s) / one.period + 0.5)
+    return place
 
 
 @kernel
@@ -204,11 +253,12 @@ def is_beyond(one, s):
 
 
 @kernel
-def curve_error(one, out):
+def curve_error(joint, one, out):
     """Write the error of position of the last foot: out[3 + r] for row r."""
     for k in range(6):
         out[k] = 0.0
-    out[3], out[4] = one.gap[0], one.gap[1]
+    for r in range(joint.rows):
+        out[3 + r] = one.gap[r]
 
 
 @kernel
@@ -217,7 +267,7 @@ def curve_speed(c, one, state, out):
     u = anchor_speed(c, state)
     for k in range(6):
         out[k] = 0.0
-    for r in range(2):
+    for r in range(c.rows):
         out[3 + r] = dot(one.normal[r], u)
 
 
@@ -227,8 +277,24 @@ def curve_bias(c, one, state, out):
     bias, speed = relative_bias(c, state), dot(one.along, anchor_speed(c, state))
     for k in range(6):
         out[k] = 0.0
-    for r in range(2):
+    for r in range(c.rows):
         out[3 + r] = dot(one.normal[r], bias) + one.bend[r] * speed * speed / one.ahead
+
+
+@kernel
+def speed_beside(c, state):
+    """Return the speed of the point relative to the curve."""
+    u = anchor_speed(c, state)
+    return math.sqrt(dot(u, u))
+
+
+@kernel
+def rail_drift(c, one, state):
+    """Return (d/dt G) v of the contact of a rail that can be left, at the last foot: normal, tangent, across."""
+    bias, u, t, n = relative_bias(c, state), anchor_speed(c, state), one.along, one.normal[1]
+    speed = dot(t, u)
+    turn = one.bend[1] * speed / one.ahead  # rate at which n turns back, t ahead
+    return -dot(n, bias) - turn * speed, -dot(t, bias) + turn * dot(n, u), -dot(one.normal[0], bias)
 
 
 @kernel
@@ -260,7 +326,7 @@ def curve_rows(c, one, state, side):
     s, arm = 1.0, child_arm(c, state)
     if side.body != c.child:
         s, arm = -1.0, parent_arm(c, state)
-    for r in range(2):
+    for r in range(c.rows):
         n, A = one.normal[r], side.A
         tx, ty, tz = cross(arm[0], arm[1], arm[2], n[0], n[1], n[2])
         A[r, 0], A[r, 1], A[r, 2] = s * n[0], s * n[1], s * n[2]

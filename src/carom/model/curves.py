@@ -35,6 +35,11 @@ class Curves:
         pieces["start"] = curve.knots[:-1] - start
         pieces["c"] = np.moveaxis(curve.coefficients, 0, 1) @ turn.T
         pieces["c"][:, 0] += origin
-        pieces["normal"] = curve.normals @ turn.T
+        if joint.can_be_left:
+            across = owner.axes(definition.across(anchor)[:, None])[:, 0]
+            pieces["normal"] = across
+            one.side[0] = np.cross(owner.axes(curve.tangent(start)[:, None])[:, 0], across)
+        else:
+            pieces["normal"] = curve.normals @ turn.T
         self.rows.append(one)
         self.pieces.append(pieces)

@@ -9,7 +9,16 @@ from carom.model.arrays import CONTACT, STOP
 from carom.model.more_forces import RESTITUTION, Pieces
 from carom.model.relations import Elements
 from carom.scene.constraints import coordinate_kind
+from carom.scene.friction import bound_of
 from carom.scene.materials import IMPACT_LAWS
+
+
+def write_friction(row, friction, curves: Pieces) -> None:
+    """Write the friction of a rail that can be left, in impacts and in persistent contact."""
+    law = curves.add_law(friction)
+    row.friction = row.friction_held = bound_of(friction)
+    for name, value in zip(("friction_piece", "last_friction_piece", "friction_exponent"), law):
+        row[name][:] = value
 
 
 def with_stops(scene, contacts: np.recarray, elements: Elements, options, curves: Pieces):
@@ -26,6 +35,8 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, curves
         size = elements.sizes[stop.joint.child.index]
         row.side = stop.side * (size if turns else 1.0)
         row.offset = row.side * stop.end
+        if stop.joint.can_be_left:
+            write_friction(row, stop.joint.definition.friction, curves)
         row.law = IMPACT_LAWS.index(stop.impact_law)
         for name, value in zip(
             RESTITUTION, curves.add_restitution(stop.restitution, abs(row.side))

@@ -133,14 +133,30 @@ def period(d: j.JointDefinition, k: int) -> float:
 def _along_curve(joint: Sides, p: Placed, c: Placed) -> tuple[Any, Any]:
     """Return arc length and rate of a joint on a curve."""
     d: Any = joint.definition
-    s, tangent, velocity = _foot(joint, p, c)
+    s, tangent, velocity, beside = _foot(joint, p, c)
     rate = np.sum(tangent * velocity, axis=1)
+    if getattr(d, "side", None) is not None:  # in flight the foot has a speed of its own
+        rate = rate / (1.0 - np.sum(beside * d.curve._at(s)[2], axis=1))
     q = s - d.curve.nearest(joint.point)
     return (q, rate) if np.ndim(p.turn[0]) or np.ndim(c.turn[0]) else (float(q[0]), float(rate[0]))
 
 
-def _foot(joint: Sides, p: Placed, c: Placed) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return arc length (T,), tangent and velocity (T, 3) of a point on a curve, in axes of its definition."""
+def gaps_of_rail(joint: Joint, states) -> np.ndarray:
+    """Return the distances (T,) of a point from a rail that can be left, towards the free side."""
+    sides, d = sides_of(joint), joint.definition
+    p, c = (placed(side, states) for side in (sides.parent, sides.child))
+    _, tangent, _, beside = _foot(sides, p, c)
+    return np.sum(np.cross(tangent, d.across(joint.anchor())) * beside, axis=1)
+
+
+def across_rail(joint: Joint, states) -> np.ndarray:
+    """Return the normal (T, 3) of the plane of a rail that can be left, in the world."""
+    p = placed(sides_of(joint).parent, states)
+    return np.array(rotate(p.turn, _numbers(joint.definition.across(joint.anchor())))).T
+
+
+def _foot(joint: Sides, p: Placed, c: Placed) -> tuple[np.ndarray, ...]:
+    """Return arc length (T,), and (T, 3) tangent, velocity and place beside the curve, in its own axes."""
     d: Any = joint.definition
     owner, point = (p, c) if isinstance(d, j.PointOnCurve) else (c, p)
     gap = subtract(add(point.position, point.arm), add(owner.position, owner.arm))
@@ -151,8 +167,10 @@ def _foot(joint: Sides, p: Placed, c: Placed) -> tuple[np.ndarray, np.ndarray, n
     place, velocity = (
         np.atleast_2d(np.array(np.broadcast_arrays(*rotate(back, one))).T) for one in (gap, speed)
     )
-    s = d.curve.feet(place + joint.point, velocity)
-    return s, d.curve.tangent(s), velocity
+    place = place + joint.point
+    free = getattr(d, "side", None) is not None  # then the nearest branch counts
+    s = d.curve.feet(place, 0.0 * velocity if free else velocity)
+    return s, d.curve.tangent(s), velocity, place - d.curve.point(s)
 
 
 def direction(joint: Sides, states, k: int) -> Vector:

@@ -45,6 +45,8 @@ class Joint:
             raise ValueError(
                 f"parent of a KnifeEdge must be carom.GROUND, got {shown(self.parent)}"
             )
+        if self.can_be_left:
+            self.definition.across(self.anchor())  # pyright: ignore[reportAttributeAccessIssue]
         parent, child = self.frames or (None, None)
         if (parent is None) != (child is None):
             raise ValueError(
@@ -66,6 +68,11 @@ class Joint:
         if own is not None:
             return own
         return self.child.position if self.frames is None else np.zeros(3)
+
+    @property
+    def can_be_left(self) -> bool:
+        """Whether it is a rail with a free side."""
+        return getattr(self.definition, "side", None) is not None
 
     @property
     def kind(self) -> str:
