@@ -79,6 +79,17 @@ def place_at(one, pieces, i, t):
 
 
 @kernel
+def locate(one, pieces, s):
+    """Write the place of a coordinate on the curve, and return its piece."""
+    t = s
+    if one.period > 0.0:
+        t -= one.period * math.floor((s - one.low) / one.period)
+    place = find_piece(pieces, one.first, one.last, t)
+    place_at(one, pieces, place, t - pieces[place].start)
+    return place
+
+
+@kernel
 def correction(one, point, curved):
     """Return Newton's correction of a place on the curve, towards the foot of a point.
 
@@ -99,11 +110,7 @@ def follow(one, pieces, point, s):
     place, small = one.first, RESOLUTION / max(one.sharpest, 1.0 / (one.high - one.low))
     done = False
     for k in range(MOST_CORRECTIONS):
-        t = s
-        if one.period > 0.0:
-            t -= one.period * math.floor((s - one.low) / one.period)
-        place = find_piece(pieces, one.first, one.last, t)
-        place_at(one, pieces, place, t - pieces[place].start)
+        place = locate(one, pieces, s)
         if done:
             break
         step = correction(one, point, k > 1)
@@ -141,23 +148,31 @@ def find_nearest(c, one, pieces, point):
 
     The curve goes on straight beyond its ends. Near a centre of curvature, any near place does as the foot.
     """
-    least, near = math.inf, one.low
+    least, near, spacing = math.inf, one.low, 0.0
     for i in range(one.first, one.last):
         end = pieces[i + 1].start if i + 1 < one.last else one.high
-        t, spacing = 0.0, end - pieces[i].start
+        t, length = 0.0, end - pieces[i].start
         place_at(one, pieces, i, t)
-        if distance(one, point) > 1.01 * spacing + least:
+        if distance(one, point) > 1.01 * length + least:
             continue
-        for _ in range(3):
-            t = min(max(t + correction(one, point, False), 0.0), spacing)
+        for _ in range(2):
+            t = min(max(t + correction(one, point, True), 0.0), length)
             place_at(one, pieces, i, t)
         if distance(one, point) < least:
-            least, near = distance(one, point), pieces[i].start + t
-    one.s, place = follow(one, pieces, point, near)
-    within = one.low <= one.s <= one.high or (one.period > 0.0 and not math.isnan(one.s))
-    if not (within and distance(one, point) <= least):
-        place = find_piece(pieces, one.first, one.last, near)
-        place_at(one, pieces, place, near - pieces[place].start)
+            least, near, spacing = distance(one, point), pieces[i].start + t, length
+    one.s = near
+    for _ in range(MOST_CORRECTIONS):
+        place = locate(one, pieces, one.s)
+        step = correction(one, point, True)
+        if distance(one, point) > least + RESOLUTION * spacing:  # near a centre of curvature
+            place, one.s = locate(one, pieces, near), near
+            break
+        if abs(step) <= RESOLUTION * spacing:
+            break
+        one.s += min(max(step, -spacing), spacing)
+    if one.period == 0.0 and not one.low <= one.s <= one.high:
+        near = min(max(one.s, one.low), one.high)
+        place = locate(one, pieces, near)
         one.s = near + correction(one, point, False)
     if one.period > 0.0:
         one.s += one.period * math.floor((c.reference - one.s) / one.period + 0.5)

@@ -169,7 +169,7 @@ def _foot(joint: Sides, p: Placed, c: Placed) -> tuple[np.ndarray, ...]:
     )
     place = place + joint.point
     free = getattr(d, "side", None) is not None  # then the nearest branch counts
-    s = d.curve.feet(place, 0.0 * velocity if free else velocity)
+    s = d.curve.feet(place, 0.0 * velocity if free else velocity, free)
     return s, d.curve.tangent(s), velocity, place - d.curve.point(s)
 
 

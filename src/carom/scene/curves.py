@@ -157,16 +157,17 @@ class Curve:
             slope, value = slope * t + value, value * t + c[power]
         return value, slope, bend
 
-    def feet(self, points: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    def feet(self, points: np.ndarray, velocity: np.ndarray, far: bool = False) -> np.ndarray:
         """Return the arc lengths (K,) of points (K, 3) near the curve, with velocities (K, 3) along it.
 
-        Where the curve crosses itself, that of the branch along the velocity.
+        Where the curve crosses itself, that of the branch along the velocity. The points may also be `far`.
         """
         x, t = self.ends[:, 0], self.ends[:, 1]
         speed = np.linalg.norm(velocity, axis=1, keepdims=True)
         moves = speed > 1e-9 * np.max(speed, initial=0.0)
         heading = np.where(moves, velocity / np.where(moves, speed, 1.0), 0.0)
-        spacing = np.max(np.diff(self.knots)) ** 2
+        longest = float(np.max(np.diff(self.knots)))
+        spacing = longest**2
         s = np.zeros(len(points))
         for k, point in enumerate(points):
             across = 1.0 - (t @ heading[k]) ** 2 if moves[k, 0] else 0.0
@@ -176,8 +177,9 @@ class Curve:
             place, slope, bend = self._at(s)
             e, square = points - place, np.sum(slope**2, axis=1)
             # the first corrections do without the curvature, which counts near the curve only
-            below = square - (np.sum(e * bend, axis=1) if k > 1 else 0.0)
-            s = s + np.sum(e * slope, axis=1) / np.maximum(below, 0.5 * square)
+            below = square - (np.sum(e * bend, axis=1) if k > 1 or far else 0.0)
+            step = np.sum(e * slope, axis=1) / np.maximum(below, 0.5 * square)
+            s = s + (np.clip(step, -longest, longest) if far else step)
         return s
 
 
