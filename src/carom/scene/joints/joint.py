@@ -45,8 +45,6 @@ class Joint:
             raise ValueError(
                 f"parent of a KnifeEdge must be carom.GROUND, got {shown(self.parent)}"
             )
-        if self.can_be_left:
-            self.definition.across(self.anchor())  # pyright: ignore[reportAttributeAccessIssue]
         parent, child = self.frames or (None, None)
         if (parent is None) != (child is None):
             raise ValueError(
@@ -54,6 +52,7 @@ class Joint:
             )
         if parent is None:
             keep(self, frames=None)
+            self._check_side()
             return
         if isinstance(self.definition, (RollingSphere, RollingDisc)):
             raise ValueError(
@@ -61,6 +60,12 @@ class Joint:
                 f"got {shown(parent)}"
             )
         keep(self, frames=(frame("parent_frame", parent), frame("child_frame", child)))
+        self._check_side()
+
+    def _check_side(self) -> None:
+        """Refuse a rail that can be left without a free side at the anchor."""
+        if self.can_be_left:
+            self.definition.across(self.anchor())  # pyright: ignore[reportAttributeAccessIssue]
 
     def anchor(self) -> np.ndarray:
         """Return the anchor (3,): of the definition, or the child's mass centre, or the origin of the frame."""

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from carom import arguments, checks, fields
-from carom.fields import Value, VectorOrNone, Word, keep
+from carom.fields import Value, VectorOrNone, Word
 from carom.scene.curves import Curve
 from carom.scene.friction import friction as friction_or_law
 from carom.scene.joints.definition import JointDefinition
@@ -70,15 +70,17 @@ class PointOnCurve(JointDefinition):
     impact_law: Word = fields.word(IMPACT_LAWS, "newton")
 
     def __post_init__(self):
-        if self.side is not None:
-            keep(self, rows=1)
-            return
         for name in ("restitution", "friction"):
-            if getattr(self, name) != 0.0:
+            if self.side is None and getattr(self, name) != 0.0:
                 raise ValueError(
                     f"{name} must be that of a rail that can be left, with side=, got "
                     f"{getattr(self, name)} and no side"
                 )
+
+    @property
+    def rows(self) -> int:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """Number of constraint rows: across the curve, or across the plane of a rail that can be left."""
+        return 2 if self.side is None else 1
 
     def across(self, anchor: np.ndarray) -> np.ndarray:
         """Return the unit normal (3,) of the plane of a rail that can be left; tangent x normal is free."""
