@@ -23,16 +23,20 @@ def case(seed: int) -> Case:
     closed, moving = rng.random() < 0.6, rng.random() < 0.35
     moving = closed and moving  # else it would turn a valley over
     points, kind = _ring(rng) if closed else (_valley(rng), "valley")
+    if closed and rng.random() < 0.4:
+        points, kind = _track(rng), "space"
     curve = carom.curves.Spline(quaternion.rotate(turn, points), closed=bool(closed))
     across = quaternion.rotate(turn, np.array((0.0, 1.0, 0.0)))
     start = rng.uniform(0.3, 0.7) * curve.length
     along = curve.tangent(start)
-    side = np.cross(along, across) * (-1.0 if kind == "inside" else 1.0)
-    if kind == "valley" and side @ quaternion.rotate(turn, np.array((0.0, 0.0, 1.0))) < 0.0:
-        side = -side
+    side, up = np.cross(along, across), quaternion.rotate(turn, np.array((0.0, 0.0, 1.0)))
     scene = carom.Scene(gravity=(0, 0, -9.81))
-    if kind == "valley":
-        scene = carom.Scene(gravity=quaternion.rotate(turn, np.array((0.0, 0.0, -9.81))))
+    if kind == "inside" or (kind == "valley" and side @ up < 0.0):
+        side = -side
+    if kind in ("valley", "space"):
+        scene = carom.Scene(gravity=-9.81 * up)
+    if kind == "space":
+        side = up
     parent = carom.GROUND
     if moving:
         middle = curve.ends[:, 0].mean(axis=0)
@@ -61,6 +65,8 @@ def case(seed: int) -> Case:
         "kind": kind, "step": step, "moving": bool(moving), "restitution": e, "friction": mu,
         "impact_law": law,
     }  # fmt: skip
+    if kind == "space":
+        return Case(scene, 2.0, step, label, lambda s: _off_above(s, curve, side))
     return Case(scene, 2.0, step, label, lambda s: _off(s, curve, across, side))
 
 
@@ -81,8 +87,15 @@ def _valley(rng):
     return np.stack([x, 0.0 * x, z], axis=1)
 
 
-def _off(s: carom.Solution, curve, across, side) -> float:
-    """Return how far the point is out of the plane or beyond the rail, by what is allowed."""
+def _track(rng):
+    """Return the points of a closed curve in space, nowhere steeper than some 60 degrees."""
+    angle = np.linspace(0, 2 * np.pi, int(rng.integers(6, 12)), endpoint=False)
+    r, z = rng.uniform(0.8, 1.2, len(angle)), 0.3 * rng.normal(size=len(angle))
+    return np.stack([2 * r * np.cos(angle), 2 * r * np.sin(angle), z], axis=1)
+
+
+def _places(s: carom.Solution) -> np.ndarray:
+    """Return the places (K, 3) of the point in the axes of its rail, at the saved times."""
     joint = s.scene["rail"]
     owner, bead = joint.parent, joint.child
     local = quaternion.rotate_back(bead.orientation, joint.definition.anchor - bead.position)
@@ -92,7 +105,23 @@ def _off(s: carom.Solution, curve, across, side) -> float:
             s.orientation[:, owner.index], quaternion.conjugate(owner.orientation)
         )
         place = owner.position + quaternion.rotate_back(turn, place - s.position[:, owner.index])
-    size = np.ptp(curve.ends[:, 0], axis=0).max()
+    return place
+
+
+def _off_above(s: carom.Solution, curve, up) -> float:
+    """Return how far the point is beside or below a rail in space, by what is allowed."""
+    place, size = _places(s), np.ptp(curve.ends[:, 0], axis=0).max()
+    q = s["rail"].coordinate + s.scene["rail"].definition.foot(s.scene["rail"].definition.anchor)
+    away = place - curve.point(q)
+    height = away @ up
+    beside = np.linalg.norm(away - height[:, None] * up, axis=1)
+    return float(max(np.max(beside), np.max(-height)) / size / OFF)
+
+
+def _off(s: carom.Solution, curve, across, side) -> float:
+    """Return how far the point is out of the plane or beyond the rail, by what is allowed."""
+    joint, place = s.scene["rail"], _places(s)
+    bead, size = joint.child, np.ptp(curve.ends[:, 0], axis=0).max()
     worst = np.max(np.abs((place - curve.point(0.0)) @ across))
     samples = np.linspace(0.0, curve.length, SAMPLES)
     x = curve.point(samples)

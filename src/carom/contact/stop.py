@@ -56,8 +56,8 @@ def is_rail(system, c):
 @kernel
 def place_on_rail(contact, c, one, state, point):
     """Write the contact point of a rail, at the last foot: normal, tangent, and across the plane."""
-    n, t, r, s = one.normal[1], one.along, child_arm(c, state), parent_arm(c, state)
-    across = cross(n[0], n[1], n[2], t[0], t[1], t[2])
+    n, across, r, s = one.normal[1], one.normal[0], child_arm(c, state), parent_arm(c, state)
+    t = cross(across[0], across[1], across[2], n[0], n[1], n[2])
     point.a, point.b, point.gap = contact.body, contact.other, one.gap[1]
     point.turns, point.length, point.moves = 0, 1.0, 0
     for k in range(3):

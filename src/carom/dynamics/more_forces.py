@@ -14,7 +14,13 @@ from carom.dynamics.curve import curve, find_piece
 from carom.dynamics.thresholds import RAIL_TRAVEL, ROTATION
 from carom.geometry.rotation import conjugate, multiply
 from carom.kinematics.coordinate import push, rate, value
-from carom.kinematics.curve import can_be_left, is_beyond, is_on_curve, speed_beside
+from carom.kinematics.curve import (
+    can_be_left,
+    is_beyond,
+    is_on_curve,
+    is_upright,
+    speed_beside,
+)
 from carom.model.arrays import PRISMATIC
 from carom.model.parts_of_system import has_relations
 
@@ -165,7 +171,10 @@ def turns_round(system, start, end, h) -> bool:
             one = system.relations.curves[c.number]
             if can_be_left(one):
                 travel = h * max(speed_beside(c, start), speed_beside(c, end))
-                turn = 0.0 if travel < one.gap[1] else ROTATION / RAIL_TRAVEL * travel
+                far = travel < one.gap[1] and not is_upright(
+                    system.relations.curve_pieces[one.first]
+                )
+                turn = 0.0 if far else ROTATION / RAIL_TRAVEL * travel
             turn *= one.sharpest
         if not turn <= ROTATION:
             return True

@@ -72,10 +72,28 @@ def point_of(c, state):
 
 
 @kernel
+def is_upright(piece):
+    """Return whether a piece is of a rail in space, which its point sees along the free side."""
+    n = piece.normal
+    return n[0] == 0.0 and n[1] == 0.0 and n[2] == 0.0
+
+
+@kernel
+def seen(one, v):
+    """Return a vector without its component along the free side."""
+    n = one.side
+    f = n[0] * v[0] + n[1] * v[1] + n[2] * v[2]
+    return v[0] - f * n[0], v[1] - f * n[1], v[2] - f * n[2]
+
+
+@kernel
 def place_at(one, pieces, i, t):
     """Write position, first and second derivative of piece i at a distance t from its start."""
     for k in range(3):
         one.x[k], one.slope[k], one.second[k] = polynomial(pieces[i].c, k, t)
+    if is_upright(pieces[i]):
+        for v in (one.x, one.slope, one.second):
+            v[0], v[1], v[2] = seen(one, v)
 
 
 @kernel
@@ -126,12 +144,16 @@ def find_foot(system, c, state):
     That of a rail that can be left is the nearest one in flight.
     """
     one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
-    point = point_of(c, state)
+    point, free = point_of(c, state), can_be_left(one)
+    if is_upright(pieces[one.first]):
+        one.s, place = follow(one, pieces, seen(one, point), c.reference)
+        write_upright(c, one, pieces[place], point, state)
+        return
     one.s, place = follow(one, pieces, point, c.reference)
-    free = can_be_left(one)
     if free and not distance(one, point) * one.sharpest + 0.0 * one.s <= NEAR_RAIL:
         place = find_nearest(c, one, pieces, point)
-    write_axes(c, one, pieces[place].normal, point, state)
+    n = pieces[place].normal
+    write_axes(c, one, (n[0], n[1], n[2]), point, state)
     if free:  # in its plane, where the centre of curvature is no place of its own
         one.bend[0], one.ahead = 0.0, max(one.ahead, RESOLUTION)
 
@@ -202,6 +224,35 @@ def write_axes(c, one, across, point, state):
     a[0], a[1], a[2] = to_world(c, state, (side * tx, side * ty, side * tz))
 
 
+@kernel
+def write_upright(c, one, piece, point, state):
+    """Write the axes of a rail in space: across it, as seen along the free side, and towards the free side.
+
+    The point stays above the rail, N . (y - c) over a foot that it sees along N. With the unit tangent
+    t = (t.h) h + (t.N) N, the gap is (t.h) N . (y - c), and the normal n = (t.h) N - (t.N) h.
+    """
+    t = one.s - piece.start
+    if one.period > 0.0:
+        t -= one.period * math.floor((one.s - one.low) / one.period)
+    n, h, s = one.side, one.slope, 1.0 / math.sqrt(dot(one.slope, one.slope))
+    across = cross(n[0], n[1], n[2], h[0], h[1], h[2])
+    write_axes(c, one, across, seen(one, point), state)
+    rise, height, bend, square, along = 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(3):
+        x, slope, second = polynomial(piece.c, k, t)
+        rise += n[k] * slope
+        square += slope * slope
+        height += n[k] * (point[k] - x)
+        bend += n[k] * second
+        along += s * h[k] * second
+    f = 1.0 / math.sqrt(square)
+    run, rise = f / s, f * rise
+    one.gap[1], one.bend[1] = run * height, (run * bend - rise * along) / square
+    m, a = one.normal[1], one.along
+    for k in range(3):
+        m[k] = run * m[k] - rise * a[k]
+
+
 @unit
 def seek_foot(system, c, state):
     """Set the coordinate of a joint to that of its foot on the whole curve, in the lap nearest to the last.
@@ -210,6 +261,8 @@ def seek_foot(system, c, state):
     """
     one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
     point, before = point_of(c, state), c.reference
+    if is_upright(pieces[one.first]):
+        point = seen(one, point)
     u = to_owner(c, state, anchor_speed(c, state))
     speed, least, found = dot(u, u), math.inf, before
     for i in range(one.first, one.last):
@@ -306,10 +359,11 @@ def speed_beside(c, state):
 @kernel
 def rail_drift(c, one, state):
     """Return (d/dt G) v of the contact of a rail that can be left, at the last foot: normal, tangent, across."""
-    bias, u, t, n = relative_bias(c, state), anchor_speed(c, state), one.along, one.normal[1]
-    speed = dot(t, u)
+    bias, u, n, e = relative_bias(c, state), anchor_speed(c, state), one.normal[1], one.normal[0]
+    t, ahead = cross(e[0], e[1], e[2], n[0], n[1], n[2]), dot(one.along, u)
+    speed, across = dot(t, u), one.bend[0] * ahead * ahead / one.ahead
     turn = one.bend[1] * speed / one.ahead  # rate at which n turns back, t ahead
-    return -dot(n, bias) - turn * speed, -dot(t, bias) + turn * dot(n, u), -dot(one.normal[0], bias)
+    return -dot(n, bias) - turn * speed, -dot(t, bias) + turn * dot(n, u), -dot(e, bias) - across
 
 
 @kernel

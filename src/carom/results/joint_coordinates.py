@@ -135,9 +135,14 @@ def _along_curve(joint: Sides, p: Placed, c: Placed) -> tuple[Any, Any]:
     d: Any = joint.definition
     s, tangent, velocity, beside = _foot(joint, p, c)
     rate = np.sum(tangent * velocity, axis=1)
-    if getattr(d, "side", None) is not None:  # in flight the foot has a speed of its own
-        rate = rate / (1.0 - np.sum(beside * d.curve._at(s)[2], axis=1))
-    q = s - d.curve.nearest(joint.point)
+    if (
+        isinstance(d, j.PointOnCurve) and d.side is not None
+    ):  # in flight the foot has a speed of its own
+        curve = d.curve if d.plane.any() else d.shadow
+        _, slope, bend = curve._at(s)
+        ahead = np.sum(slope**2, axis=1) - np.sum(beside * bend, axis=1)
+        rate = np.sum(slope * velocity, axis=1) / ahead
+    q = s - d.foot(np.array(joint.point))
     return (q, rate) if np.ndim(p.turn[0]) or np.ndim(c.turn[0]) else (float(q[0]), float(rate[0]))
 
 
@@ -145,14 +150,8 @@ def gaps_of_rail(joint: Joint, states) -> np.ndarray:
     """Return the distances (T,) of a point from a rail that can be left, towards the free side."""
     sides, d = sides_of(joint), joint.definition
     p, c = (placed(side, states) for side in (sides.parent, sides.child))
-    _, tangent, _, beside = _foot(sides, p, c)
-    return np.sum(np.cross(tangent, d.across(joint.anchor())) * beside, axis=1)
-
-
-def across_rail(joint: Joint, states) -> np.ndarray:
-    """Return the normal (T, 3) of the plane of a rail that can be left, in the world."""
-    p = placed(sides_of(joint).parent, states)
-    return np.array(rotate(p.turn, _numbers(joint.definition.across(joint.anchor())))).T
+    s, _, _, beside = _foot(sides, p, c)
+    return np.sum(d.free(joint.anchor(), s) * beside, axis=1)
 
 
 def _foot(joint: Sides, p: Placed, c: Placed) -> tuple[np.ndarray, ...]:
@@ -168,8 +167,7 @@ def _foot(joint: Sides, p: Placed, c: Placed) -> tuple[np.ndarray, ...]:
         np.atleast_2d(np.array(np.broadcast_arrays(*rotate(back, one))).T) for one in (gap, speed)
     )
     place = place + joint.point
-    free = getattr(d, "side", None) is not None  # then the nearest branch counts
-    s = d.curve.feet(place, 0.0 * velocity if free else velocity, free)
+    s = d.feet(place, velocity)
     return s, d.curve.tangent(s), velocity, place - d.curve.point(s)
 
 

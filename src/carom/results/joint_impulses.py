@@ -45,8 +45,9 @@ def world_impulses(solution) -> np.ndarray:
         joint = solution.scene.stops[impacts.contact[k] - len(pairs.body)].joint
         if joint.can_be_left:
             n = impacts.normal[k]
-            across = jc.across_rail(joint, _State(*solution.evaluate(impacts.time[k])))
-            out[k] = impacts.impulse[k] @ (n, np.cross(across, n), across)
+            state = _State(*solution.evaluate(impacts.time[k]))
+            along = np.array(jc.direction(jc.sides_of(joint), state, 0))
+            out[k] = impacts.impulse[k] @ (n, along, np.cross(n, along))
     return out
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from functools import cached_property
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
 from carom import arguments, checks, fields
-from carom.fields import Value, VectorOrNone, Word
+from carom.fields import Value, VectorOrNone, Word, keep
 from carom.scene.curves import Curve
 from carom.scene.friction import friction as friction_or_law
 from carom.scene.joints.definition import JointDefinition
@@ -16,8 +17,8 @@ from carom.scene.materials import IMPACT_LAWS
 from carom.scene.restitution import restitution as number_or_law
 
 CurveField: TypeAlias = Value[Curve, Curve]
-#: sine of the least angle of `side` to the curve, and of the greatest one of a plane curve to its plane
-LEAST_SINE, PLANE = 1e-3, 1e-9
+#: sine of the least angle of the free side to the curve, and of the greatest one of a plane curve to its plane
+LEAST_SINE, PLANE = 0.02, 1e-9
 
 
 def _curve(name: str, value) -> Curve:
@@ -26,9 +27,29 @@ def _curve(name: str, value) -> Curve:
     return value
 
 
+@dataclass(frozen=True, eq=False)
+class OnCurve(JointDefinition):
+    """A joint of a point of one body and a curve of the other, which turn freely."""
+
+    guide, turn = "curve", "ball"
+    coordinates = ("slide",)
+    in_trees = False
+
+    curve: CurveField = Value(_curve)
+    side: ClassVar[Any] = None
+
+    def feet(self, points: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+        """Return the arc lengths (K,) of the feet of points (K, 3) with velocities (K, 3)."""
+        return self.curve.feet(points, velocity)
+
+    def foot(self, point: np.ndarray) -> float:
+        """Return the arc length of the foot of a point (3,), from which the coordinate is measured."""
+        return self.curve.nearest(point)
+
+
 @arguments.known
 @dataclass(frozen=True, eq=False)
-class PointOnCurve(JointDefinition):
+class PointOnCurve(OnCurve):
     """A bead on a wire, a car on a rail: a point of the child stays on a curve of the parent.
 
     The child rotates freely. The coordinate is the arc length [m] along the curve, 0 at the point of the curve
@@ -42,10 +63,11 @@ class PointOnCurve(JointDefinition):
     anchor : (3,), optional
         The point of the child, on the curve at the start. Default: the mass centre of the child.
     side : (3,), optional
-        Of a rail that can be left, which is a plane curve: a direction at the anchor, across the curve, towards
-        the side on which the point may fly. The point stays in the plane of the curve, the rail only pushes,
-        and has a contact called ``child-joint`` in results. The coordinate is that of the nearest point of the
-        rail, and nothing may act along it. Default None: the point cannot leave the curve.
+        Of a rail that can be left: a direction across it, towards the side on which the point may fly. The rail
+        only pushes; its contact is called ``child-joint`` in results. A plane curve has the free side on that
+        side of it to which `side` points at the anchor, and the point flies in its plane. A curve in space has
+        it towards `side` everywhere, and the point flies above the curve, seen along `side`. Nothing may act
+        along the coordinate. Default None: the point cannot leave the curve.
     restitution, friction
         e from 0 to 1 (default 0), and mu at least 0 (default 0), or their laws, of a rail that can be left.
     impact_law : {"newton", "poisson", "stronge"}
@@ -54,15 +76,9 @@ class PointOnCurve(JointDefinition):
     Raises
     ------
     ValueError
-        If `side` is along the curve or across its plane, or the curve is in no plane; if restitution or
-        friction are given without `side`.
+        If `side` is along the curve, or across its plane; if restitution or friction are given without `side`.
     """
 
-    guide, turn = "curve", "ball"
-    coordinates = ("slide",)
-    in_trees = False
-
-    curve: CurveField = Value(_curve)
     anchor: VectorOrNone = fields.vector(None)
     side: VectorOrNone = fields.direction(None)
     restitution: Value[Any, Any] = number_or_law(0.0)
@@ -82,34 +98,76 @@ class PointOnCurve(JointDefinition):
         """Number of constraint rows: across the curve, or across the plane of a rail that can be left."""
         return 2 if self.side is None else 1
 
-    def across(self, anchor: np.ndarray) -> np.ndarray:
-        """Return the unit normal (3,) of the plane of a rail that can be left; tangent x normal is free."""
-        curve, side = self.curve, self.side
-        t = curve.tangent(curve.nearest(anchor))
-        normal = np.cross(side, t)
-        if not np.linalg.norm(normal) > LEAST_SINE:
-            raise ValueError(f"side must not be along the curve at the anchor, got {checks.shown(side)}")
-        bends = np.linalg.norm(curve.ends[:, 2], axis=1)
-        if curve.sharpest * curve.length > PLANE:
-            at = np.argmax(bends)
-            normal = np.cross(*curve.ends[at, 1:])
-        normal /= np.linalg.norm(normal)
+    @cached_property
+    def plane(self) -> np.ndarray:
+        """Unit normal (3,) of the plane of a rail that can be left, 0 for a curve in space.
+
+        (tangent, normal, free side) are right-handed, or left-handed.
+        """
+        curve, first = self.curve, np.cross(self.side, self.curve.ends[0, 1])
+        sharpest = np.argmax(np.linalg.norm(curve.ends[:, 2], axis=1))
+        bends = curve.sharpest * curve.length > PLANE
+        normal = np.cross(*curve.ends[sharpest, 1:]) if bends else first
+        normal = normal / max(np.linalg.norm(normal), PLANE)
         off = np.abs(curve.ends[:, 1:] @ normal) / (1.0, max(curve.sharpest, PLANE / curve.length))
-        if not np.max(off) < PLANE:
-            raise ValueError(
-                f"side must be left out, or the curve be in a plane, got {checks.shown(side)} and {curve!r}"
-            )
-        towards = np.cross(t, normal) @ side
-        if not abs(towards) > LEAST_SINE:
+        return normal if np.max(off) < PLANE else np.zeros(3)
+
+    @cached_property
+    def shadow(self) -> Curve:
+        """The curve in space, seen along the free side."""
+        made = object.__new__(Curve)
+        keep(
+            made, knots=self.curve.knots, ends=self._seen(self.curve.ends), closed=self.curve.closed
+        )
+        return made
+
+    def _seen(self, vectors: np.ndarray) -> np.ndarray:
+        return vectors - (vectors @ self.side)[..., None] * self.side
+
+    def feet(self, points: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+        """Return the arc lengths (K,) of the feet of points (K, 3) with velocities (K, 3)."""
+        if self.side is None:
+            return super().feet(points, velocity)
+        if self.plane.any():
+            return self.curve.feet(points, 0.0 * velocity, far=True)
+        return self.shadow.feet(self._seen(points), self._seen(velocity))
+
+    def foot(self, point: np.ndarray) -> float:
+        """Return the arc length of the foot of a point (3,), from which the coordinate is measured."""
+        if self.side is None:
+            return super().foot(point)
+        s = float(self.feet(point[None], np.zeros((1, 3)))[0])
+        return s % self.curve.length if self.curve.closed else min(max(s, 0.0), self.curve.length)
+
+    def across(self, anchor: np.ndarray) -> np.ndarray:
+        """Return the normal (3,) of the plane of a rail that can be left, with tangent x normal on the free side.
+
+        It is 0 for a curve in space.
+        """
+        side, normal = self.side, self.plane
+        where, tangents = "at the anchor", self.curve.tangent(self.foot(anchor))
+        if not normal.any():
+            where, tangents = "of a curve in space anywhere", self.curve.ends[:, 1]
+        if not np.min(np.linalg.norm(np.cross(side, tangents), axis=-1)) > LEAST_SINE:
+            raise ValueError(f"side must not be along the curve {where}, got {checks.shown(side)}")
+        towards = np.cross(tangents, normal) @ side
+        if normal.any() and not abs(towards) > LEAST_SINE:
             raise ValueError(
                 f"side must not be perpendicular to the plane of the curve, got {checks.shown(side)}"
             )
-        return normal if towards > 0.0 else -normal
+        return normal if np.all(towards >= 0.0) else -normal
+
+    def free(self, anchor: np.ndarray, s: np.ndarray) -> np.ndarray:
+        """Return the unit vectors (K, 3) across a rail that can be left, towards the free side."""
+        tangent, across = self.curve.tangent(s), self.across(anchor)
+        side = self.side - (tangent @ self.side)[..., None] * tangent
+        side = np.cross(tangent, across) if across.any() else side
+        return side / np.linalg.norm(side, axis=-1, keepdims=True)
 
 
 @arguments.known
 @dataclass(frozen=True, eq=False)
-class CurveOnPoint(JointDefinition):
+class CurveOnPoint(OnCurve):
     """A slot on a pin: a curve of the child stays on a point of the parent.
 
     The child rotates freely. The coordinate is the arc length [m] of the point along the curve, as that of
@@ -123,9 +181,4 @@ class CurveOnPoint(JointDefinition):
         The point of the parent, on the curve at the start.
     """
 
-    guide, turn = "curve", "ball"
-    coordinates = ("slide",)
-    in_trees = False
-
-    curve: CurveField = Value(_curve)
     anchor: VectorOrNone = fields.vector()
