@@ -129,12 +129,20 @@ def test_bead_sticks_on_a_gentle_slope():
     np.testing.assert_allclose(s.position[-1, 0], ring(0.2), atol=1e-12)
 
 
-def on_hoop(**rail):
-    """A body with an arm inside a hoop that moves and turns."""
+def wave(u):
+    return 2 * math.cos(u), 2 * math.sin(u), 0.5 * math.sin(2 * u) + 0.3 * math.cos(u)
+
+
+WAVE = carom.curves.Curve(wave, 0.0, 2 * math.pi, closed=True)
+
+
+def on_hoop(curve=CIRCLE, start=ring(2.5), speed=5.0, **rail):
+    """A body with an arm on a hoop that moves and turns."""
     centre, spin = np.array((0.1, 0.2, -0.3)), np.array((0.5, 0.3, 0.4))
-    place, along = np.array(ring(2.5)), np.array((math.cos(2.5), 0.0, -math.sin(2.5)))
+    s = curve.nearest(start)
+    place, along = curve.point(s), curve.tangent(s)
     arm, turn = np.array((0.05, 0.1, -0.03)), np.array((1.0, 2.0, -1.0))
-    velocity = np.cross(spin, place - centre) + 5.0 * along + np.cross(turn, arm)
+    velocity = np.cross(spin, place - centre) + speed * along + np.cross(turn, arm)
     scene = carom.Scene(gravity=(0, 0, -G))
     hoop = scene.add_body(
         mass=2.0, inertia=(0.5, 0.6, 0.7), position=centre, angular_velocity=spin, name="hoop"
@@ -143,23 +151,57 @@ def on_hoop(**rail):
         mass=0.5, inertia=(0.01, 0.02, 0.025), position=place + arm, velocity=velocity,
         angular_velocity=turn, name="bead",
     )  # fmt: skip
-    rail = carom.joints.PointOnCurve(CIRCLE, anchor=place, **rail)
+    rail = carom.joints.PointOnCurve(curve, anchor=place, **rail)
     scene.add_joint(rail, hoop, bead, name="rail")
     return scene
 
 
-def test_pressed_rail_that_moves_is_a_two_sided_one():
+@pytest.mark.parametrize("where", [(CIRCLE, ring(2.5), 5.0), (WAVE, wave(2.2), 3.0)])
+def test_pressed_rail_that_moves_is_a_two_sided_one(where):
     """Contact and joint are one constraint in two forms, with different code."""
     at = np.linspace(0.0, 0.25, 6)
     two, one = (
-        carom.simulate(on_hoop(**rail), 0.25, rtol=1e-11, atol=1e-11, save_at=at)
+        carom.simulate(on_hoop(*where, **rail), 0.25, rtol=1e-11, atol=1e-11, save_at=at)
         for rail in ({}, {"side": (0, 0, 1)})
     )
+    assert np.all(one["bead-rail"].mode == "slipping")
     np.testing.assert_allclose(one.position, two.position, atol=1e-10)
     np.testing.assert_allclose(
         one["rail"].force + one["bead-rail"].vector, two["rail"].force, atol=1e-8
     )
     np.testing.assert_allclose(one["rail"].coordinate, two["rail"].coordinate, atol=1e-10)
+
+
+def test_bounces_on_a_helix_have_closed_forms():
+    """Above a helix the bead goes round its cylinder evenly, and falls."""
+    r, pitch, e, speed, height = 0.5, 0.2, 0.5, 1.5, 0.3
+    helix = carom.curves.Curve(lambda u: (r * math.cos(u), r * math.sin(u), -pitch * u), 0, 40)
+    scene = carom.Scene(gravity=(0, 0, -G))
+    scene.add_body(
+        carom.Sphere(0.02), mass=MASS, position=(r, 0, height), velocity=(0, speed, 0), name="bead"
+    )
+    rail = carom.joints.PointOnCurve(helix, side=(0, 0, 1), restitution=e)
+    scene.add_joint(rail, carom.GROUND, "bead", name="rail")
+    s = carom.simulate(scene, 0.9, rtol=1e-10, atol=1e-10)
+    cos, sin = r / math.hypot(r, pitch), -pitch / math.hypot(r, pitch)
+    # height + (pitch/r) v t = g t^2/2
+    fall = (pitch / r * speed + math.sqrt((pitch / r * speed) ** 2 + 2 * G * height)) / G
+    normal, along = -cos * G * fall - sin * speed, cos * speed - sin * G * fall
+    ahead, up = along * cos + e * normal * sin, along * sin - e * normal * cos
+    again = 2 * (up - sin / cos * ahead) / G
+    np.testing.assert_allclose(s.impacts.time[:2], (fall, fall + again), atol=1e-9)
+    np.testing.assert_allclose(
+        s.impacts.relative_velocity_before[0], (normal, along, 0.0), atol=1e-8
+    )
+    np.testing.assert_allclose(np.hypot(*s.position[:, 0, :2].T), r, atol=1e-11)
+    flies = s.t < fall
+    t = s.t[flies]
+    np.testing.assert_allclose(
+        s["bead-rail"].gap[flies], cos * (height + pitch / r * speed * t - 0.5 * G * t**2), atol=1e-9
+    )
+    np.testing.assert_allclose(s["rail"].coordinate[flies], speed * t / cos, atol=1e-9)
+    np.testing.assert_allclose(s["rail"].rate[flies], speed / cos, atol=1e-9)
+    closes(s, 1e-8)
 
 
 def test_blow_of_a_rail_and_of_the_joint_change_the_momenta():
@@ -224,11 +266,11 @@ def test_open_rail_ends_in_flight_too():
 
 
 def test_what_is_no_rail_that_can_be_left():
-    helix = carom.curves.Curve(lambda u: (math.cos(u), math.sin(u), 0.2 * u), 0, 10)
+    steep = carom.curves.Curve(lambda u: (math.cos(u), 0.3 * u**2, math.sin(u)), -1.0, 1.0)
     for curve, side, what in (
         (CIRCLE, (1, 0, 0), "side must not be along the curve"),
         (CIRCLE, (0, 1, 0), "side must not be perpendicular to the plane"),
-        (helix, (0, 0, 1), "or the curve be in a plane"),
+        (steep, (0, 0, 1), "side must not be along a curve in space anywhere"),
     ):
         scene = carom.Scene()
         bead = scene.add_body(carom.Sphere(0.1), mass=1.0, position=curve.point(0))

@@ -157,22 +157,26 @@ class Curve:
             slope, value = slope * t + value, value * t + c[power]
         return value, slope, bend
 
-    def feet(self, points: np.ndarray, velocity: np.ndarray, far: bool = False) -> np.ndarray:
+    def feet(self, points: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """Return the arc lengths (K,) of points (K, 3) near the curve, with velocities (K, 3) along it.
 
-        Where the curve crosses itself, that of the branch along the velocity. The points may also be `far`.
+        Where the curve crosses itself, that of the branch along the velocity.
         """
         x, t = self.ends[:, 0], self.ends[:, 1]
         speed = np.linalg.norm(velocity, axis=1, keepdims=True)
         moves = speed > 1e-9 * np.max(speed, initial=0.0)
         heading = np.where(moves, velocity / np.where(moves, speed, 1.0), 0.0)
-        longest = float(np.max(np.diff(self.knots)))
-        spacing = longest**2
+        spacing = np.max(np.diff(self.knots)) ** 2
         s = np.zeros(len(points))
         for k, point in enumerate(points):
             across = 1.0 - (t @ heading[k]) ** 2 if moves[k, 0] else 0.0
             away = np.sum((x - point) ** 2, axis=1) + FAR * spacing * across
             s[k] = self.knots[np.argmin(away)]
+        return self.feet_from(points, s)
+
+    def feet_from(self, points: np.ndarray, s: np.ndarray, far: bool = False) -> np.ndarray:
+        """Return the arc lengths (K,) of points (K, 3) near places on the curve; they may be `far` from it."""
+        longest = np.max(np.diff(self.knots))
         for k in range(20):
             place, slope, bend = self._at(s)
             e, square = points - place, np.sum(slope**2, axis=1)

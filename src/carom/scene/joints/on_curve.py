@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, TypeAlias
@@ -128,9 +129,17 @@ class PointOnCurve(OnCurve):
         """Return the arc lengths (K,) of the feet of points (K, 3) with velocities (K, 3)."""
         if self.side is None:
             return super().feet(points, velocity)
+        x, knots = self.curve.ends[:, 0], self.curve.knots
         if self.plane.any():
-            return self.curve.feet(points, 0.0 * velocity, far=True)
-        return self.shadow.feet(self._seen(points), self._seen(velocity))
+            starts = [np.argmin(np.sum((x - point) ** 2, axis=1)) for point in points]
+            return self.curve.feet_from(points, knots[starts], far=True)
+        near, starts = 4.0 * np.max(np.diff(knots)) ** 2, []
+        for point in points:  # the highest branch below it
+            height, beside = (point - x) @ self.side, np.sum(self._seen(point - x) ** 2, axis=1)
+            height[(beside > max(near, np.min(beside))) | (height < -math.sqrt(near))] = math.inf
+            best = height if np.isfinite(height).any() else beside
+            starts.append(np.argmin(best))
+        return self.shadow.feet_from(self._seen(points), knots[starts])
 
     def foot(self, point: np.ndarray) -> float:
         """Return the arc length of the foot of a point (3,), from which the coordinate is measured."""
@@ -145,11 +154,11 @@ class PointOnCurve(OnCurve):
         It is 0 for a curve in space.
         """
         side, normal = self.side, self.plane
-        where, tangents = "at the anchor", self.curve.tangent(self.foot(anchor))
+        where, tangents = "the curve at the anchor", self.curve.tangent(self.foot(anchor))
         if not normal.any():
-            where, tangents = "of a curve in space anywhere", self.curve.ends[:, 1]
+            where, tangents = "a curve in space anywhere", self.curve.ends[:, 1]
         if not np.min(np.linalg.norm(np.cross(side, tangents), axis=-1)) > LEAST_SINE:
-            raise ValueError(f"side must not be along the curve {where}, got {checks.shown(side)}")
+            raise ValueError(f"side must not be along {where}, got {checks.shown(side)}")
         towards = np.cross(tangents, normal) @ side
         if normal.any() and not abs(towards) > LEAST_SINE:
             raise ValueError(
