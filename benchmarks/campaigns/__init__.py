@@ -11,6 +11,7 @@ from campaigns import (
     forced,
     frictions,
     laws,
+    loose_rails,
     mechanisms,
     piles,
     rails,
@@ -28,6 +29,6 @@ FAMILIES = {
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
     "belts": belts.case,
-    "rails": rails.case,
+    "rails": rails.case, "loose rails": loose_rails.case,
     "laws": laws.case, "frictions": frictions.case,
 }  # fmt: skip

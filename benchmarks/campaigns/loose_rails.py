@@ -137,5 +137,3 @@ def _off(s: carom.Solution, curve, across, side) -> float:
     near = [np.sqrt(np.min(np.sum((x - p) ** 2, axis=1))) for p in place[chosen]]
     gap = np.max(np.abs(s[f"{bead.name}-rail"].gap[chosen] - near))
     return float(max(worst / size / OFF, gap / size / 1e-3))
-
-

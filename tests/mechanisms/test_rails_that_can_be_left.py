@@ -60,9 +60,7 @@ def test_bead_leaves_a_sphere_and_flies(tolerance, error):
     flight = s.position[s.t > left, 0]
     np.testing.assert_allclose(flight, np.column_stack([x, 0 * x, z]), atol=10 * error)
     contact = s["bead-rail"]
-    np.testing.assert_allclose(
-        contact.gap[s.t > left], np.hypot(x, z) - 1.0, atol=10 * error
-    )
+    np.testing.assert_allclose(contact.gap[s.t > left], np.hypot(x, z) - 1.0, atol=10 * error)
     assert np.all(contact.mode[s.t > left] == "open")
     assert len(s.impacts) == 0
     held = s.t < left
@@ -86,7 +84,9 @@ def test_bead_falls_off_the_top_of_a_loop_and_lands(tolerance, error, restitutio
         lambda u: 1 / math.sqrt(speed**2 - 2 * G * (1 - math.cos(u))),
         0.0, 0.5 * math.pi + angle, epsabs=1e-13,
     )[0]  # fmt: skip
-    flight = 4.0 * slow * math.cos(angle) / G  # the parabola has the circle's curvature at its start
+    flight = (
+        4.0 * slow * math.cos(angle) / G
+    )  # the parabola has the circle's curvature at its start
     blow = s.impacts[0]
     assert blow.time == pytest.approx(left + flight, abs=error)
     landing = np.array((math.cos(3 * angle), 0.0, -math.sin(3 * angle)))
@@ -136,7 +136,10 @@ def wave(u):
 WAVE = carom.curves.Curve(wave, 0.0, 2 * math.pi, closed=True)
 
 
-def on_hoop(curve=CIRCLE, start=ring(2.5), speed=5.0, **rail):
+LOW = ring(2.5)
+
+
+def on_hoop(curve=CIRCLE, start=LOW, speed=5.0, **rail):
     """A body with an arm on a hoop that moves and turns."""
     centre, spin = np.array((0.1, 0.2, -0.3)), np.array((0.5, 0.3, 0.4))
     s = curve.nearest(start)
@@ -156,7 +159,7 @@ def on_hoop(curve=CIRCLE, start=ring(2.5), speed=5.0, **rail):
     return scene
 
 
-@pytest.mark.parametrize("where", [(CIRCLE, ring(2.5), 5.0), (WAVE, wave(2.2), 3.0)])
+@pytest.mark.parametrize("where", [(CIRCLE, LOW, 5.0), (WAVE, wave(2.2), 3.0)])
 def test_pressed_rail_that_moves_is_a_two_sided_one(where):
     """Contact and joint are one constraint in two forms, with different code."""
     at = np.linspace(0.0, 0.25, 6)
@@ -197,7 +200,9 @@ def test_bounces_on_a_helix_have_closed_forms():
     flies = s.t < fall
     t = s.t[flies]
     np.testing.assert_allclose(
-        s["bead-rail"].gap[flies], cos * (height + pitch / r * speed * t - 0.5 * G * t**2), atol=1e-9
+        s["bead-rail"].gap[flies],
+        cos * (height + pitch / r * speed * t - 0.5 * G * t**2),
+        atol=1e-9,
     )
     np.testing.assert_allclose(s["rail"].coordinate[flies], speed * t / cos, atol=1e-9)
     np.testing.assert_allclose(s["rail"].rate[flies], speed / cos, atol=1e-9)
@@ -284,7 +289,7 @@ def test_what_is_no_rail_that_can_be_left():
     with pytest.raises(ValueError, match="joint must be two-sided"):
         scene.add_stop("rail", lower=-1.0)
     scene.replace("bead", position=0.9 * np.array(ring(0.1)))
-    with pytest.raises(ValueError, match="must be on the free side of the rail, got a gap of -0.1 m"):
+    with pytest.raises(ValueError, match="must be on the free side of the rail, got a gap of -0"):
         carom.simulate(scene, 0.1)
 
 

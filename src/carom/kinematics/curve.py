@@ -358,7 +358,7 @@ def speed_beside(c, state):
 
 @kernel
 def rail_drift(c, one, state):
-    """Return (d/dt G) v of the contact of a rail that can be left, at the last foot: normal, tangent, across."""
+    """Return (d/dt G) v of the contact of a rail, at the last foot: normal, tangent, across."""
     bias, u, n, e = relative_bias(c, state), anchor_speed(c, state), one.normal[1], one.normal[0]
     t, ahead = cross(e[0], e[1], e[2], n[0], n[1], n[2]), dot(one.along, u)
     speed, across = dot(t, u), one.bend[0] * ahead * ahead / one.ahead

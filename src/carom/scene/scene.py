@@ -590,7 +590,7 @@ class Scene(Shown, TouchingPairs):
 
     @property
     def stops(self) -> tuple[Stop, ...]:
-        """Stops of joints, in the order in which they were added, then the contacts of rails that can be left."""
+        """Stops of joints, in the order in which they were added, then contacts of rails that can be left."""
         added = self._parts.parts(Stop)
         rails = (joint for joint in self.joints if joint.can_be_left)
         return (*added, *(RailContact(k, joint) for k, joint in enumerate(rails, len(added))))

@@ -101,10 +101,7 @@ class PointOnCurve(OnCurve):
 
     @cached_property
     def plane(self) -> np.ndarray:
-        """Unit normal (3,) of the plane of a rail that can be left, 0 for a curve in space.
-
-        (tangent, normal, free side) are right-handed, or left-handed.
-        """
+        """Unit normal (3,) of the plane of a rail that can be left, of any sign; 0 for a curve in space."""
         curve, first = self.curve, np.cross(self.side, self.curve.ends[0, 1])
         sharpest = np.argmax(np.linalg.norm(curve.ends[:, 2], axis=1))
         bends = curve.sharpest * curve.length > PLANE
@@ -149,9 +146,9 @@ class PointOnCurve(OnCurve):
         return s % self.curve.length if self.curve.closed else min(max(s, 0.0), self.curve.length)
 
     def across(self, anchor: np.ndarray) -> np.ndarray:
-        """Return the normal (3,) of the plane of a rail that can be left, with tangent x normal on the free side.
+        """Return the normal (3,) of the plane of a rail that can be left, 0 for a curve in space.
 
-        It is 0 for a curve in space.
+        Tangent x normal is the free side.
         """
         side, normal = self.side, self.plane
         where, tangents = "the curve at the anchor", self.curve.tangent(self.foot(anchor))
