@@ -12,6 +12,7 @@ from campaigns import (
     frictions,
     grains,
     laws,
+    loose_rails,
     mechanisms,
     piles,
     rails,
@@ -29,6 +30,6 @@ FAMILIES = {
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
     "belts": belts.case,
-    "rails": rails.case,
+    "rails": rails.case, "loose rails": loose_rails.case,
     "laws": laws.case, "frictions": frictions.case, "grains": grains.case,
 }  # fmt: skip

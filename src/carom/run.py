@@ -348,6 +348,11 @@ def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:
     for stop, gap in zip(scene.stops, gaps[first:, 0]):
         extent = system.contacts.extent[first + stop.index]
         if not gap >= -options.constraint_tolerance * extent:
+            if stop.joint.can_be_left:
+                raise ValueError(
+                    f"position violates {stop.joint.name!r}: its point must be on the free side of the rail, "
+                    f"got a gap of {gap:g} m"
+                )
             side = "lower" if stop.side > 0.0 else "upper"
             unit = "rad" if stop.joint.definition.coordinates[stop.coordinate] == "turn" else "m"
             place = round(stop.end + gap / system.contacts.side[first + stop.index], 9)

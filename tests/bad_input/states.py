@@ -160,7 +160,11 @@ def stated():
         "joints.PointOnLine": lambda: (joints.PointOnLine, dict(anchor=three, direction=three)),
         "joints.PointOnPlane": lambda: (joints.PointOnPlane, dict(anchor=three, normal=three)),
         "joints.PointOnCurve": lambda: (
-            joints.PointOnCurve, dict(curve=carom.curves.Spline([three, (0, 0, 0.0)]), anchor=three),
+            joints.PointOnCurve,
+            dict(
+                curve=carom.curves.Spline([three, (0, 0, 0.0)]), anchor=three, side=three, restitution=0.5,
+                friction=0.2, impact_law="newton",
+            ),
         ),
         "joints.CurveOnPoint": lambda: (
             joints.CurveOnPoint, dict(curve=carom.curves.Spline([three, (0, 0, 0.0)]), anchor=three),

@@ -29,5 +29,5 @@ def drift_of(system, contact, feature, point, state, work):
     The point must have been written for this state.
     """
     if contact.touches == STOP:
-        return stop_drift(system, contact, state, work), 0.0, 0.0
+        return stop_drift(system, contact, state, work)
     return drift(system, contact, feature, point, state)

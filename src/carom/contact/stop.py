@@ -12,9 +12,11 @@ from carom._compiled.units import unit
 from carom.contact.continuous_detection import BELOW, CLEAR, UNSURE, cubic_clears
 from carom.contact.gap import round_off, slow
 from carom.contact.pair_point import tangents
+from carom.geometry.rotation import cross
 from carom.geometry.thresholds import RESOLUTION
 from carom.kinematics.contact_point import contact_velocity
 from carom.kinematics.coordinate import along, drift, value
+from carom.kinematics.curve import can_be_left, find_foot, is_on_curve, rail_drift
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.model.actions import NOTHING, PERSIST, STRIKE
 from carom.model.arrays import REVOLUTE, STOP
@@ -25,6 +27,9 @@ def place_stop(system, contact, state, point):
     """Write the point, axes and gap of a stop."""
     c = system.relations.coordinates[contact.solid]
     nx, ny, nz = along(system, c, state)
+    if is_rail(system, c):
+        place_on_rail(contact, c, system.relations.curves[c.number], state, point)
+        return
     # the row is that of the child relative to the parent; its sign changes if the child is the ground
     s = 1.0 if (contact.side > 0.0) == (contact.body == c.child) else -1.0
     point.a, point.b = contact.body, contact.other
@@ -42,6 +47,24 @@ def place_stop(system, contact, state, point):
     point.moves = 0
 
 
+@kernel
+def is_rail(system, c):
+    """Return whether a coordinate is that of a rail that can be left, whose contact is its stop."""
+    return is_on_curve(c) and can_be_left(system.relations.curves[c.number])
+
+
+@kernel
+def place_on_rail(contact, c, one, state, point):
+    """Write the contact point of a rail, at the last foot: normal, tangent, and across the plane."""
+    n, across, r, s = one.normal[1], one.normal[0], child_arm(c, state), parent_arm(c, state)
+    t = cross(across[0], across[1], across[2], n[0], n[1], n[2])
+    point.a, point.b, point.gap = contact.body, contact.other, one.gap[1]
+    point.turns, point.length, point.moves = 0, 1.0, 0
+    for k in range(3):
+        point.core[k], point.arm_a[k], point.arm_b[k] = 0.0, r[k], s[k]
+        point.axes[0, k], point.axes[1, k], point.axes[2, k] = n[k], t[k], across[k]
+
+
 @unit
 def stop_gap(system, contact, state, work) -> tuple[float, float]:
     """Return the gap of a stop and its rate."""
@@ -50,10 +73,13 @@ def stop_gap(system, contact, state, work) -> tuple[float, float]:
 
 
 @unit
-def stop_drift(system, contact, state, work) -> float:
-    """Return (d/dt G) v of the row of a stop."""
+def stop_drift(system, contact, state, work) -> tuple[float, float, float]:
+    """Return (d/dt G) v of a stop."""
     c = system.relations.coordinates[contact.solid]
-    return contact.side * drift(system, c, state, work.joint[0].target)
+    if is_rail(system, c):
+        find_foot(system, c, state)
+        return rail_drift(c, system.relations.curves[c.number], state)
+    return contact.side * drift(system, c, state, work.joint[0].target), 0.0, 0.0
 
 
 @kernel

@@ -75,7 +75,7 @@ def _position(system, j, state, work):
     if joint.kind < OWN_ROWS:
         joints.position_error(joint, state, bias)
     elif joint.kind in ON_CURVE:
-        curve_error(foot(system, joint, state), bias)
+        curve_error(joint, foot(system, joint, state), bias)
     elif joint.kind == USER_ROWS:
         user_error(system, j, state, t, bias)
     else:

@@ -11,10 +11,16 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom._compiled.user_functions import call_function
 from carom.dynamics.curve import curve, find_piece
-from carom.dynamics.thresholds import ROTATION
+from carom.dynamics.thresholds import RAIL_TRAVEL, ROTATION
 from carom.geometry.rotation import conjugate, multiply
 from carom.kinematics.coordinate import push, rate, value
-from carom.kinematics.curve import is_beyond, is_on_curve
+from carom.kinematics.curve import (
+    can_be_left,
+    is_beyond,
+    is_on_curve,
+    is_upright,
+    speed_beside,
+)
 from carom.model.arrays import PRISMATIC
 from carom.model.parts_of_system import has_relations
 
@@ -153,7 +159,8 @@ def forget_turns(system):
 def turns_round(system, start, end, h) -> bool:
     """Return whether an angle may turn so far in a step that its whole turns are not known.
 
-    That of a point on a curve is how far its direction may turn, so that its foot is found.
+    That of a point on a curve is how far its direction may turn, so that its foot is found; above a rail that
+    can be left, the point may reach it (its gap is that at the end).
     """
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
@@ -161,7 +168,14 @@ def turns_round(system, start, end, h) -> bool:
             continue
         turn = h * max(abs(rate(system, c, start)), abs(rate(system, c, end)))
         if is_on_curve(c):
-            turn *= system.relations.curves[c.number].sharpest
+            one = system.relations.curves[c.number]
+            if can_be_left(one):
+                travel = h * max(speed_beside(c, start), speed_beside(c, end))
+                far = travel < one.gap[1] and not is_upright(
+                    system.relations.curve_pieces[one.first]
+                )
+                turn = 0.0 if far else ROTATION / RAIL_TRAVEL * travel
+            turn *= one.sharpest
         if not turn <= ROTATION:
             return True
     return False

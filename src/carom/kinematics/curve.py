@@ -19,7 +19,7 @@ from carom._compiled.units import unit
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.geometry.thresholds import RESOLUTION, SMALLEST
 from carom.kinematics.joints import anchor_speed, child_arm, parent_arm
-from carom.kinematics.thresholds import END_MARGIN
+from carom.kinematics.thresholds import END_MARGIN, NEAR_RAIL
 from carom.kinematics.wrench import add_force
 from carom.model.arrays import CURVE_ON_POINT, POINT_ON_CURVE
 
@@ -72,10 +72,39 @@ def point_of(c, state):
 
 
 @kernel
+def is_upright(piece):
+    """Return whether a piece is of a rail in space, which its point sees along the free side."""
+    n = piece.normal
+    return n[0] == 0.0 and n[1] == 0.0 and n[2] == 0.0
+
+
+@kernel
+def seen(one, v):
+    """Return a vector without its component along the free side."""
+    n = one.side
+    f = n[0] * v[0] + n[1] * v[1] + n[2] * v[2]
+    return v[0] - f * n[0], v[1] - f * n[1], v[2] - f * n[2]
+
+
+@kernel
 def place_at(one, pieces, i, t):
     """Write position, first and second derivative of piece i at a distance t from its start."""
     for k in range(3):
         one.x[k], one.slope[k], one.second[k] = polynomial(pieces[i].c, k, t)
+    if is_upright(pieces[i]):
+        for v in (one.x, one.slope, one.second):
+            v[0], v[1], v[2] = seen(one, v)
+
+
+@kernel
+def locate(one, pieces, s):
+    """Write the place of a coordinate on the curve, and return its piece."""
+    t = s
+    if one.period > 0.0:
+        t -= one.period * math.floor((s - one.low) / one.period)
+    place = find_piece(pieces, one.first, one.last, t)
+    place_at(one, pieces, place, t - pieces[place].start)
+    return place
 
 
 @kernel
@@ -93,26 +122,83 @@ def correction(one, point, curved):
     return along / max(square - (bend if curved else 0.0), 0.5 * square)
 
 
-@unit
-def find_foot(system, c, state):
-    """Write the foot of the point of a joint, with its axes, to the curve; NaN if there is none nearby."""
-    one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
-    point, place = point_of(c, state), one.first
-    s, small = c.reference, RESOLUTION / max(one.sharpest, 1.0 / (one.high - one.low))
+@kernel
+def follow(one, pieces, point, s):
+    """Return the foot of a point that Newton's iteration from s finds, and its piece; NaN if there is none."""
+    place, small = one.first, RESOLUTION / max(one.sharpest, 1.0 / (one.high - one.low))
     done = False
     for k in range(MOST_CORRECTIONS):
-        t = s
-        if one.period > 0.0:
-            t -= one.period * math.floor((s - one.low) / one.period)
-        place = find_piece(pieces, one.first, one.last, t)
-        place_at(one, pieces, place, t - pieces[place].start)
+        place = locate(one, pieces, s)
         if done:
             break
         step = correction(one, point, k > 1)
         s += step
         done = abs(step) <= small  # the error after it is its square
-    one.s = s if done else math.nan
-    write_axes(c, one, pieces[place].normal, point, state)
+    return s if done else math.nan, place
+
+
+@unit
+def find_foot(system, c, state):
+    """Write the foot of the point of a joint, with its axes, to the curve; NaN if there is none nearby.
+
+    That of a rail that can be left is the nearest one in flight.
+    """
+    one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
+    point, free = point_of(c, state), can_be_left(one)
+    if is_upright(pieces[one.first]):
+        one.s, place = follow(one, pieces, seen(one, point), c.reference)
+        write_upright(c, one, pieces[place], point, state)
+        return
+    one.s, place = follow(one, pieces, point, c.reference)
+    if free and not distance(one, point) * one.sharpest + 0.0 * one.s <= NEAR_RAIL:
+        place = find_nearest(c, one, pieces, point)
+    n = pieces[place].normal
+    write_axes(c, one, (n[0], n[1], n[2]), point, state)
+    if free:  # in its plane, where the centre of curvature is no place of its own
+        one.bend[0], one.ahead = 0.0, max(one.ahead, RESOLUTION)
+
+
+@kernel
+def can_be_left(one):
+    """Return whether a curve is a rail with a free side."""
+    return one.side[0] != 0.0 or one.side[1] != 0.0 or one.side[2] != 0.0
+
+
+@kernel
+def find_nearest(c, one, pieces, point):
+    """Write the nearest foot on the whole curve, in the lap nearest to the last, and return its piece.
+
+    The curve goes on straight beyond its ends. Near a centre of curvature, any near place does as the foot.
+    """
+    least, near, spacing = math.inf, one.low, 0.0
+    for i in range(one.first, one.last):
+        end = pieces[i + 1].start if i + 1 < one.last else one.high
+        t, length = 0.0, end - pieces[i].start
+        place_at(one, pieces, i, t)
+        if distance(one, point) > 1.01 * length + least:
+            continue
+        for _ in range(2):
+            t = min(max(t + correction(one, point, True), 0.0), length)
+            place_at(one, pieces, i, t)
+        if distance(one, point) < least:
+            least, near, spacing = distance(one, point), pieces[i].start + t, length
+    one.s = near
+    for _ in range(MOST_CORRECTIONS):
+        place = locate(one, pieces, one.s)
+        step = correction(one, point, True)
+        if distance(one, point) > least + RESOLUTION * spacing:  # near a centre of curvature
+            place, one.s = locate(one, pieces, near), near
+            break
+        if abs(step) <= RESOLUTION * spacing:
+            break
+        one.s += min(max(step, -spacing), spacing)
+    if one.period == 0.0 and not one.low <= one.s <= one.high:
+        near = min(max(one.s, one.low), one.high)
+        place = locate(one, pieces, near)
+        one.s = near + correction(one, point, False)
+    if one.period > 0.0:
+        one.s += one.period * math.floor((c.reference - one.s) / one.period + 0.5)
+    return place
 
 
 @kernel
@@ -138,6 +224,35 @@ def write_axes(c, one, across, point, state):
     a[0], a[1], a[2] = to_world(c, state, (side * tx, side * ty, side * tz))
 
 
+@kernel
+def write_upright(c, one, piece, point, state):
+    """Write the axes of a rail in space: across it, as seen along the free side, and towards the free side.
+
+    The point stays above the rail, N . (y - c) over a foot that it sees along N. With the unit tangent
+    t = (t.h) h + (t.N) N, the gap is (t.h) N . (y - c), and the normal n = (t.h) N - (t.N) h.
+    """
+    t = one.s - piece.start
+    if one.period > 0.0:
+        t -= one.period * math.floor((one.s - one.low) / one.period)
+    n, h, s = one.side, one.slope, 1.0 / math.sqrt(dot(one.slope, one.slope))
+    across = cross(n[0], n[1], n[2], h[0], h[1], h[2])
+    write_axes(c, one, across, seen(one, point), state)
+    rise, height, bend, square, along = 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(3):
+        x, slope, second = polynomial(piece.c, k, t)
+        rise += n[k] * slope
+        square += slope * slope
+        height += n[k] * (point[k] - x)
+        bend += n[k] * second
+        along += s * h[k] * second
+    f = 1.0 / math.sqrt(square)
+    run, rise = f / s, f * rise
+    one.gap[1], one.bend[1] = run * height, (run * bend - rise * along) / square
+    m, a = one.normal[1], one.along
+    for k in range(3):
+        m[k] = run * m[k] - rise * a[k]
+
+
 @unit
 def seek_foot(system, c, state):
     """Set the coordinate of a joint to that of its foot on the whole curve, in the lap nearest to the last.
@@ -146,6 +261,8 @@ def seek_foot(system, c, state):
     """
     one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
     point, before = point_of(c, state), c.reference
+    if is_upright(pieces[one.first]):
+        point = seen(one, point)
     u = to_owner(c, state, anchor_speed(c, state))
     speed, least, found = dot(u, u), math.inf, before
     for i in range(one.first, one.last):
@@ -204,11 +321,12 @@ def is_beyond(one, s):
 
 
 @kernel
-def curve_error(one, out):
+def curve_error(joint, one, out):
     """Write the error of position of the last foot: out[3 + r] for row r."""
     for k in range(6):
         out[k] = 0.0
-    out[3], out[4] = one.gap[0], one.gap[1]
+    for r in range(joint.rows):
+        out[3 + r] = one.gap[r]
 
 
 @kernel
@@ -217,7 +335,7 @@ def curve_speed(c, one, state, out):
     u = anchor_speed(c, state)
     for k in range(6):
         out[k] = 0.0
-    for r in range(2):
+    for r in range(c.rows):
         out[3 + r] = dot(one.normal[r], u)
 
 
@@ -227,8 +345,25 @@ def curve_bias(c, one, state, out):
     bias, speed = relative_bias(c, state), dot(one.along, anchor_speed(c, state))
     for k in range(6):
         out[k] = 0.0
-    for r in range(2):
+    for r in range(c.rows):
         out[3 + r] = dot(one.normal[r], bias) + one.bend[r] * speed * speed / one.ahead
+
+
+@kernel
+def speed_beside(c, state):
+    """Return the speed of the point relative to the curve."""
+    u = anchor_speed(c, state)
+    return math.sqrt(dot(u, u))
+
+
+@kernel
+def rail_drift(c, one, state):
+    """Return (d/dt G) v of the contact of a rail, at the last foot: normal, tangent, across."""
+    bias, u, n, e = relative_bias(c, state), anchor_speed(c, state), one.normal[1], one.normal[0]
+    t, ahead = cross(e[0], e[1], e[2], n[0], n[1], n[2]), dot(one.along, u)
+    speed, across = dot(t, u), one.bend[0] * ahead * ahead / one.ahead
+    turn = one.bend[1] * speed / one.ahead  # rate at which n turns back, t ahead
+    return -dot(n, bias) - turn * speed, -dot(t, bias) + turn * dot(n, u), -dot(e, bias) - across
 
 
 @kernel
@@ -260,7 +395,7 @@ def curve_rows(c, one, state, side):
     s, arm = 1.0, child_arm(c, state)
     if side.body != c.child:
         s, arm = -1.0, parent_arm(c, state)
-    for r in range(2):
+    for r in range(c.rows):
         n, A = one.normal[r], side.A
         tx, ty, tz = cross(arm[0], arm[1], arm[2], n[0], n[1], n[2])
         A[r, 0], A[r, 1], A[r, 2] = s * n[0], s * n[1], s * n[2]

@@ -25,7 +25,7 @@ class Curves:
         row.parent, row.child = parent.body.index, child.body.index
         row.parent_anchor[:], row.child_anchor[:] = parent.point(anchor), child.point(anchor)
         owner = parent if row.kind == POINT_ON_CURVE else child
-        count, start = len(curve.knots) - 1, curve.nearest(anchor)
+        count, start = len(curve.knots) - 1, definition.foot(anchor)
         pieces, one = table(CURVE_PIECE, count), table(CURVE, 1)
         one.first = sum(map(len, self.pieces))
         one.last = one.first + count
@@ -35,6 +35,14 @@ class Curves:
         pieces["start"] = curve.knots[:-1] - start
         pieces["c"] = np.moveaxis(curve.coefficients, 0, 1) @ turn.T
         pieces["c"][:, 0] += origin
-        pieces["normal"] = curve.normals @ turn.T
+        if joint.can_be_left:
+            across, free = definition.across(anchor), definition.free(anchor, start)
+            pieces["normal"] = owner.axes(across[:, None])[:, 0]
+            one.side[0] = owner.axes((free if across.any() else definition.side)[:, None])[:, 0]
+            if not across.any():
+                slope = np.linalg.norm(definition.shadow.ends[:, 1], axis=1)
+                one.sharpest = curve.sharpest / np.min(slope) ** 2
+        else:
+            pieces["normal"] = curve.normals @ turn.T
         self.rows.append(one)
         self.pieces.append(pieces)

@@ -8,7 +8,9 @@ from carom._compiled.record_arrays import Columns, table
 from carom.model.arrays import CONTACT, STOP
 from carom.model.more_forces import RESTITUTION, Pieces
 from carom.model.relations import Elements
+from carom.model.thresholds import DIRECTION
 from carom.scene.constraints import coordinate_kind
+from carom.scene.friction import bound_of
 from carom.scene.materials import IMPACT_LAWS
 
 
@@ -33,7 +35,23 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, curves
             row[name] = value
         row.extent = row.other_extent = size
         row.first, row.last, row.stiffness = 0, 1, 1.0
+        if stop.joint.can_be_left:
+            _write_rail(row, stop.joint, curves)
     rows.still = 1e-14 * np.sqrt(np.linalg.norm(scene.gravity) * rows.extent)
+    for row, stop in zip(rows, scene.stops):
+        if stop.joint.can_be_left:  # its direction is that of the table of the curve
+            fall = np.linalg.norm(scene.gravity) * stop.joint.definition.curve.length
+            row.still = DIRECTION * (np.sqrt(fall) + np.linalg.norm(stop.joint.child.velocity))
     rows.width = 1e-5 * rows.extent if options.layer_width is None else options.layer_width
     rows.penetration = options.penetration
     return np.concatenate([contacts, rows]).view(Columns)
+
+
+def _write_rail(row, joint, curves: Pieces) -> None:
+    """Write the size and the friction of a rail that can be left, in impacts and in persistent contact."""
+    d = joint.definition
+    row.extent = row.other_extent = max(row.extent, np.ptp(d.curve.ends[:, 0], axis=0).max())
+    row.friction = row.friction_held = bound_of(d.friction)
+    names = "friction_piece", "last_friction_piece", "friction_exponent"
+    for name, value in zip(names, curves.add_law(d.friction)):
+        row[name][:] = value

@@ -130,7 +130,8 @@ def _of_depth(watch: np.record, scene: Scene, pairs: PairTable | None) -> str:
         said = f"Body {what.name!r} penetrates {where.name!r} by {watch.depth:.2g} of its size"
     else:
         stop = scene.stops[number - len(pairs.body)]
-        said = f"Joint {stop.joint.name!r} exceeds its stop by {watch.depth:.2g} of the size of its body"
+        beyond = "penetrates its rail" if stop.joint.can_be_left else "exceeds its stop"
+        said = f"Joint {stop.joint.name!r} {beyond} by {watch.depth:.2g} of the size of its body"
     return (
         f"{said} at t = {watch.deep_at:.6g} s ({TOO_DEEP:g} is allowed): events follow each other too fast to "
         "be located. {finer}."

@@ -133,14 +133,29 @@ def period(d: j.JointDefinition, k: int) -> float:
 def _along_curve(joint: Sides, p: Placed, c: Placed) -> tuple[Any, Any]:
     """Return arc length and rate of a joint on a curve."""
     d: Any = joint.definition
-    s, tangent, velocity = _foot(joint, p, c)
+    s, tangent, velocity, beside = _foot(joint, p, c)
     rate = np.sum(tangent * velocity, axis=1)
-    q = s - d.curve.nearest(joint.point)
+    if (
+        isinstance(d, j.PointOnCurve) and d.side is not None
+    ):  # in flight the foot has a speed of its own
+        curve = d.curve if d.plane.any() else d.shadow
+        _, slope, bend = curve._at(s)
+        ahead = np.sum(slope**2, axis=1) - np.sum(beside * bend, axis=1)
+        rate = np.sum(slope * velocity, axis=1) / ahead
+    q = s - d.foot(np.array(joint.point))
     return (q, rate) if np.ndim(p.turn[0]) or np.ndim(c.turn[0]) else (float(q[0]), float(rate[0]))
 
 
-def _foot(joint: Sides, p: Placed, c: Placed) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return arc length (T,), tangent and velocity (T, 3) of a point on a curve, in axes of its definition."""
+def gaps_of_rail(joint: Joint, states) -> np.ndarray:
+    """Return the distances (T,) of a point from a rail that can be left, towards the free side."""
+    sides, d = sides_of(joint), joint.definition
+    p, c = (placed(side, states) for side in (sides.parent, sides.child))
+    s, _, _, beside = _foot(sides, p, c)
+    return np.sum(d.free(joint.anchor(), s) * beside, axis=1)
+
+
+def _foot(joint: Sides, p: Placed, c: Placed) -> tuple[np.ndarray, ...]:
+    """Return arc length (T,), and (T, 3) tangent, velocity and place beside the curve, in its own axes."""
     d: Any = joint.definition
     owner, point = (p, c) if isinstance(d, j.PointOnCurve) else (c, p)
     gap = subtract(add(point.position, point.arm), add(owner.position, owner.arm))
@@ -151,8 +166,9 @@ def _foot(joint: Sides, p: Placed, c: Placed) -> tuple[np.ndarray, np.ndarray, n
     place, velocity = (
         np.atleast_2d(np.array(np.broadcast_arrays(*rotate(back, one))).T) for one in (gap, speed)
     )
-    s = d.curve.feet(place + joint.point, velocity)
-    return s, d.curve.tangent(s), velocity
+    place = place + joint.point
+    s = d.feet(place, velocity)
+    return s, d.curve.tangent(s), velocity, place - d.curve.point(s)
 
 
 def direction(joint: Sides, states, k: int) -> Vector:

@@ -34,13 +34,20 @@ SMALLEST = 1e-10  # singular value, relative to the greatest, below which rows d
 
 
 def world_impulses(solution) -> np.ndarray:
-    """Return the impulse of each impact on the body (K, 3), world axes [N s]; 0 at stops of joints."""
+    """Return the impulse of each impact on the body (K, 3), world axes [N s]; 0 at stops of coordinates."""
     impacts, pairs = solution.impacts, solution.pairs
     out = np.zeros((len(impacts), 3))
     for k in np.flatnonzero(impacts.contact < len(pairs.body)):  # stops come after contacts
         flat = 0 <= pairs.plane[impacts.contact[k]] < len(solution.scene.half_spaces)
         axes = contact_axes if flat else pair_axes
         out[k] = impacts.impulse[k] @ axes(impacts.normal[k])
+    for k in np.flatnonzero(impacts.contact >= len(pairs.body)):
+        joint = solution.scene.stops[impacts.contact[k] - len(pairs.body)].joint
+        if joint.can_be_left:
+            n = impacts.normal[k]
+            state = _State(*solution.evaluate(impacts.time[k]))
+            along = np.array(jc.direction(jc.sides_of(joint), state, 0))
+            out[k] = impacts.impulse[k] @ (n, along, np.cross(n, along))
     return out
 
 
@@ -170,6 +177,9 @@ class _Mechanism:
         number = int(impacts.contact[i])
         if number >= len(pairs.body):
             stop = self.scene.stops[number - len(pairs.body)]
+            if stop.joint.can_be_left:
+                self.take(stop.joint, self.push[i], state, rest)
+                return
             along = stop.side * impacts.impulse[i, 0]
             self.take_along(stop.joint, stop.coordinate, along, state, rest)
             return
@@ -182,10 +192,15 @@ class _Mechanism:
         """Take an impulse along a coordinate from the child, and the opposite one from the parent."""
         sides = self.joints[joint.index]
         axis = amount * np.array(jc.direction(sides, state, k))
+        self.take(joint, axis, state, rest, coordinate_kind(joint, k) == "turn")
+
+    def take(self, joint, axis: np.ndarray, state: _State, rest: np.ndarray, turns: bool = False):
+        """Take an impulse at the anchor, or about an axis, from the child, the opposite one from the parent."""
+        sides = self.joints[joint.index]
         parent, child = (jc.placed(side, state) for side in (sides.parent, sides.child))
         anchor = np.add(child.position, jc.child_arm(sides, parent, child))
         for body, sign in ((joint.child.index, -1.0), (joint.parent.index, 1.0)):
-            if body >= 0 and coordinate_kind(joint, k) == "turn":
+            if body >= 0 and turns:
                 rest[body, 3:] += sign * axis
             elif body >= 0:
                 arm = anchor - state.position[body]

@@ -15,6 +15,7 @@ import numpy as np
 from carom import arguments, checks
 from carom.geometry import quaternion
 from carom.results import exerted as ex
+from carom.results import joint_coordinates as jc
 from carom.results.names import UNITS
 from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.constraints import Constraint, Driver, coordinate_kind
@@ -22,7 +23,7 @@ from carom.scene.contacts import Contact, gap_between
 from carom.scene.forces import AppliedForce, CurveSpring, Spring
 from carom.scene.joints import Joint
 from carom.scene.more_forces import AlongJoint, UserForce
-from carom.scene.stops import Stop
+from carom.scene.stops import RailContact, Stop
 from carom.scene.table import first_names
 
 if TYPE_CHECKING:
@@ -403,6 +404,8 @@ class ContactView(View):
         It is computed from the states when it is asked for, some 20 microseconds for each time.
         """
         source, part = self._source, self._part
+        if isinstance(part, RailContact):
+            return np.reshape(jc.gaps_of_rail(part.joint, source), np.shape(source.t))[()]
         if isinstance(part, Stop):
             q = source.joint_coordinates(part.joint)[0][..., part.coordinate][()]
             return part.side * (q - part.end)

@@ -55,6 +55,7 @@ def row_units(definition: JointDefinition | ConstraintDefinition) -> list[str]:
         lengths = ACTIVE_POINT.get(definition.guide, definition.rows) + isinstance(
             definition, Screw
         )
+        lengths = min(lengths, definition.rows)
         return ["m"] * lengths + ["rad"] * (definition.rows - lengths)
     if isinstance(definition, Driver):
         return [UNITS[coordinate_kind(definition.joint, definition.coordinate)]]

@@ -48,6 +48,16 @@ def coordinate_kind(joint: Joint | str, coordinate: int, name: str = "joint") ->
     return own[coordinate]
 
 
+def acts_along(joint: Joint | str, coordinate: int, name: str = "joint") -> None:
+    """Refuse a joint without this coordinate, and a rail that can be left, along which nothing acts."""
+    coordinate_kind(joint, coordinate, name)
+    if isinstance(joint, Joint) and joint.can_be_left:
+        raise ValueError(
+            f"{name} must be two-sided: nothing acts along a rail that can be left, got {joint!r}; its "
+            "friction is that of the joint"
+        )
+
+
 def _constant(name: str, rate) -> float:
     """Return a constant rate; a function of time is the motion."""
     if callable(rate):
@@ -98,7 +108,7 @@ class Coupling:
         for key, factor in factors.items():
             pair = key if isinstance(key, tuple) and len(key) == 2 else (key, 0)
             joint, coordinate = pair
-            coordinate_kind(joint, coordinate, "each key of factors")
+            acts_along(joint, coordinate, "each key of factors")
             factor = checks.number(f"factors[{joint!r}]", factor)
             if factor == 0.0:
                 raise ValueError(f"factors[{joint!r}] must not be 0, got {factor!r}")
@@ -124,7 +134,7 @@ class Gear(Coupling):
         if ratio == 0.0:
             raise ValueError(f"ratio must not be 0, got {checks.shown(ratio)}")
         for name, joint in (("first", first), ("second", second)):
-            coordinate_kind(joint, 0, name)
+            acts_along(joint, 0, name)
         if first == second:
             raise ValueError(f"first and second must be two joints, got {first!r} for both")
         super().__init__({first: ratio, second: -1.0})
@@ -158,7 +168,7 @@ class Driver:
     coordinate: Integer = fields.integer(0, least=0)
 
     def __post_init__(self):
-        coordinate_kind(self.joint, self.coordinate)
+        acts_along(self.joint, self.coordinate)
         if (self.rate is None) == (self.motion is None):
             raise ValueError(
                 f"rate or motion must be given, and not both, got {self.rate} and {self.motion}"

@@ -172,12 +172,18 @@ class Curve:
             across = 1.0 - (t @ heading[k]) ** 2 if moves[k, 0] else 0.0
             away = np.sum((x - point) ** 2, axis=1) + FAR * spacing * across
             s[k] = self.knots[np.argmin(away)]
+        return self.feet_from(points, s)
+
+    def feet_from(self, points: np.ndarray, s: np.ndarray, far: bool = False) -> np.ndarray:
+        """Return the arc lengths (K,) of points (K, 3) near places on the curve; they may be `far` from it."""
+        longest = np.max(np.diff(self.knots))
         for k in range(20):
             place, slope, bend = self._at(s)
             e, square = points - place, np.sum(slope**2, axis=1)
             # the first corrections do without the curvature, which counts near the curve only
-            below = square - (np.sum(e * bend, axis=1) if k > 1 else 0.0)
-            s = s + np.sum(e * slope, axis=1) / np.maximum(below, 0.5 * square)
+            below = square - (np.sum(e * bend, axis=1) if k > 1 or far else 0.0)
+            step = np.sum(e * slope, axis=1) / np.maximum(below, 0.5 * square)
+            s = s + (np.clip(step, -longest, longest) if far else step)
         return s
 
 

@@ -21,7 +21,7 @@ from carom.fields import (
 from carom.scene.constraints import (
     Bodies,
     OneJoint,
-    coordinate_kind,
+    acts_along,
     distinct_bodies,
     joint_or_name,
 )
@@ -36,7 +36,7 @@ class AlongJoint:
     joint: OneJoint = Value(joint_or_name)
 
     def __post_init__(self):
-        coordinate_kind(self.joint, self.coordinate)  # pyright: ignore[reportAttributeAccessIssue]
+        acts_along(self.joint, self.coordinate)  # pyright: ignore[reportAttributeAccessIssue]
 
 
 @arguments.known

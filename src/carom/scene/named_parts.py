@@ -9,7 +9,7 @@ from typing import Any
 
 from carom.fields import keep
 from carom.scene.bodies import Body
-from carom.scene.constraints import Coupling, coordinate_kind
+from carom.scene.constraints import Coupling, acts_along
 from carom.scene.joints import Joint
 
 
@@ -36,7 +36,7 @@ def with_parts(definition: Any, member: Callable) -> Any:
                 f"each joint of the definition must be given once, got {[t[0].name for t in terms]}"
             )
         for joint, k, _ in terms:
-            coordinate_kind(joint, k, "each joint of the definition")
+            acts_along(joint, k, "each joint of the definition")
         if terms == definition.terms:
             return definition
         made = copy.copy(definition)

@@ -24,7 +24,7 @@ from carom.scene.restitution import Restitution
 from carom.scene.shapes import Shape
 from carom.scene.shapes.mesh import shape_given
 from carom.scene.shown import Shown
-from carom.scene.stops import Stop
+from carom.scene.stops import RailContact, Stop
 from carom.scene.summary import counts, summary
 from carom.scene.touching import TouchingPairs
 from carom.scene.values import in_scene
@@ -590,8 +590,10 @@ class Scene(Shown, TouchingPairs):
 
     @property
     def stops(self) -> tuple[Stop, ...]:
-        """Stops of joints, in the order in which they were added."""
-        return self._parts.parts(Stop)
+        """Stops of joints, in the order in which they were added, then contacts of rails that can be left."""
+        added = self._parts.parts(Stop)
+        rails = (joint for joint in self.joints if joint.can_be_left)
+        return (*added, *(RailContact(k, joint) for k, joint in enumerate(rails, len(added))))
 
     def __getitem__(self, name: str):
         """Return the part with this name; the message of a `KeyError` suggests the nearest name.

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from carom import fields
-from carom.fields import Integer, NumberOrNone, Value, Word
-from carom.scene.constraints import coordinate_kind
+from carom.fields import Integer, NumberOrNone, Value, Word, keep
+from carom.scene.constraints import acts_along
 from carom.scene.joints import Joint
 from carom.scene.materials import IMPACT_LAWS
 from carom.scene.restitution import restitution as number_or_law
@@ -44,7 +44,7 @@ class Stop:
     impact_law: Word = fields.word(IMPACT_LAWS, "newton")
 
     def __post_init__(self):
-        coordinate_kind(self.joint, self.coordinate)
+        acts_along(self.joint, self.coordinate)
         if (self.lower is None) == (self.upper is None):
             raise ValueError(
                 "lower or upper must be given, and not both (add two stops for two ends), got "
@@ -65,3 +65,15 @@ class Stop:
         which = "upper" if self.lower is None else "lower"
         where = f"{which}={self.end:g}, restitution={self.restitution:g}"
         return f"Stop({self.name!r}, {self.joint.name!r}, {where})"
+
+
+class RailContact(Stop):
+    """The contact of a point with a rail that can be left, which the joint states."""
+
+    def __init__(self, index: int, joint: Joint):
+        d: Any = joint.definition
+        keep(self, index=index, name=f"{joint.child.name}-{joint.name}", joint=joint, coordinate=0)
+        keep(self, lower=0.0, upper=None, restitution=d.restitution, impact_law=d.impact_law)
+
+    def __repr__(self) -> str:
+        return f"RailContact({self.name!r}, restitution={self.restitution:g})"

@@ -52,6 +52,7 @@ class Joint:
             )
         if parent is None:
             keep(self, frames=None)
+            self._check_side()
             return
         if isinstance(self.definition, (RollingSphere, RollingDisc)):
             raise ValueError(
@@ -59,6 +60,12 @@ class Joint:
                 f"got {shown(parent)}"
             )
         keep(self, frames=(frame("parent_frame", parent), frame("child_frame", child)))
+        self._check_side()
+
+    def _check_side(self) -> None:
+        """Refuse a rail that can be left without a free side at the anchor."""
+        if self.can_be_left:
+            self.definition.across(self.anchor())  # pyright: ignore[reportAttributeAccessIssue]
 
     def anchor(self) -> np.ndarray:
         """Return the anchor (3,): of the definition, or the child's mass centre, or the origin of the frame."""
@@ -66,6 +73,11 @@ class Joint:
         if own is not None:
             return own
         return self.child.position if self.frames is None else np.zeros(3)
+
+    @property
+    def can_be_left(self) -> bool:
+        """Whether it is a rail with a free side."""
+        return getattr(self.definition, "side", None) is not None
 
     @property
     def kind(self) -> str:
