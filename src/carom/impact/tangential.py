@@ -12,12 +12,12 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import entry, kernel
 from carom.friction.rays import solve_tangential
 from carom.impact import layout as o
 
 
-@kernel
+@entry
 def return_slip(W, u, mu, e, out):
     """Add the impulse of tangential restitution `e` to the result `out` of an impact that began with u."""
     if int(out[o.PHASES]) & (o.PHASE_STICK | o.WEDGED) != o.PHASE_STICK:
@@ -30,14 +30,14 @@ def return_slip(W, u, mu, e, out):
     n = -(a * t1 + b * t2)
     p, p1, p2, lost = out[o.IMPULSE], out[o.IMPULSE + 1], out[o.IMPULSE + 2], out[o.FRICTION_LOSS]
     # |P_t + s dP_t|^2 = mu^2 (P_n + s dP_n)^2 at the cone
-    cone = _part(
+    cone = greatest_part(
         t1 * t1 + t2 * t2 - mu * mu * n * n,
         p1 * t1 + p2 * t2 - mu * mu * p * n,
         mu * mu * p * p - p1 * p1 - p2 * p2,
     )
     # dP_n u_n s + dP_t.du_t s^2/2 is the energy that comes back
     drawn, back = n * out[o.VELOCITY], 0.5 * (t1 * x + t2 * y)
-    s = min(cone, _part(back, 0.5 * drawn, lost))
+    s = min(cone, greatest_part(back, 0.5 * drawn, lost))
     out[o.IMPULSE], out[o.IMPULSE + 1], out[o.IMPULSE + 2] = p + s * n, p1 + s * t1, p2 + s * t2
     out[o.VELOCITY + 1] += s * x
     out[o.VELOCITY + 2] += s * y
@@ -47,7 +47,7 @@ def return_slip(W, u, mu, e, out):
 
 
 @kernel
-def _part(a, b, c):
+def greatest_part(a, b, c):
     """Return the greatest s in [0, 1] up to which a s^2 + 2 b s <= c, for c >= 0."""
     if not c > 0.0:
         return 0.0

@@ -211,6 +211,7 @@ def change_modes(k, work, when, latest, p, one_only):
         count += 1
         if c.mode == OPEN:
             close(c)
+            c.sticks = 0 if c.sticks == o.HAS_STUCK else c.sticks
         elif c.mode == LOAD:
             if d - c.d0 > IMPACT_ERROR:
                 unload(c, d, p_n)
