@@ -38,7 +38,7 @@ def gather_stuck(k, work):
     for i in range(k):
         c = work.contact[i]
         if c.mode == OPEN:
-            c.sticks = 0 if c.sticks == 0 else o.HAS_STUCK
+            c.sticks &= o.HAS_STUCK
         elif c.sticks == 1 and c.mu > 0.0:
             work.index[o.STUCK, z] = i
             z += 1

@@ -31,7 +31,7 @@ CAPPED = 4  #: the law of a contact requires e_* > 1, and is not satisfied: ener
 EXACT = 16  #: contacts that move alike, resolved exactly as one
 REPELLED = 32  #: the impulse was changed by round-off, so that energy does not grow
 
-HAS_STUCK = 2  # of `sticks`: the contact is open, and it stuck until it opened
+HAS_STUCK = 2  #: bit of `sticks`: the contact is open, and opened without slip
 
 
 class MultipleSettings(NamedTuple):
@@ -91,7 +91,7 @@ CONTACT = [
     ("mark", "f8"),  # normal impulse at the last change of mode
     ("wedged", "i8"),  # 1: friction keeps it compressed at the end
     # friction
-    ("sticks", "i8"),  # 1, or HAS_STUCK
+    ("sticks", "i8"),  # 1 if it does, plus HAS_STUCK
     ("grip", "f8"),  # mu times the trace of its W_tt
     # sums
     ("loading", "f8"),  # p_c

@@ -1,6 +1,6 @@
 """Tangential restitution of several contacts: one further impulse returns slip to those that end in stick.
 
-It has the rows n of all contacts with an impulse, and the rows t of those that stuck until they opened, and is
+It has the rows n of all contacts with an impulse, and the rows t of those that opened without slip, and is
 
     dP_t = K^+ (-e_t u_t^-),   K = W_tt - W_tn W_nn^+ W_nt,   dP_n = -W_nn^+ W_nt dP_t,
 
@@ -74,7 +74,7 @@ def _gather(k, work):
         if P[3 * i] > GROUP_ERROR * most:
             work.index[o.CLOSED, n] = i
             n += 1
-            if c.sticks != 0 and c.mu > 0.0:
+            if c.sticks & o.HAS_STUCK != 0 and c.mu > 0.0:
                 work.index[o.STUCK, m] = i
                 for r in range(2):
                     wish[2 * m + r] = -c.tangential * u[3 * i + 1 + r]
