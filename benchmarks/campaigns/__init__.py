@@ -17,6 +17,7 @@ from campaigns import (
     rests,
     robots,
     rolls,
+    rough,
     slides,
     strikes,
     teeth,
@@ -29,5 +30,5 @@ FAMILIES = {
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
     "belts": belts.case,
     "rails": rails.case,
-    "laws": laws.case, "frictions": frictions.case,
+    "laws": laws.case, "frictions": frictions.case, "rough": rough.case,
 }  # fmt: skip

@@ -89,7 +89,11 @@ def test_between_floor_and_wall():
         scene.add_contact(one, plane, restitution=1, friction=10, tangential_restitution=1)
     run = carom.simulate(scene, 1.0)
     (v, z), rw = (3 / 7, 1.0), 10 / 7  # after the floor
-    v, z, rw = -v, 3 / 7 * z + 4 / 7 * rw, 10 / 7 * z - 3 / 7 * rw  # after the wall, on which r w goes up
+    v, z, rw = (
+        -v,
+        3 / 7 * z + 4 / 7 * rw,
+        10 / 7 * z - 3 / 7 * rw,
+    )  # after the wall, on which r w goes up
     assert len(run.impacts) == 2
     assert run.velocity[-1, 0] == pytest.approx([v, 0, z], abs=1e-12)
     assert R * run.angular_velocity[-1, 0, 1] == pytest.approx(rw, abs=1e-12)
@@ -133,11 +137,16 @@ def test_a_crowd_says_that_it_has_none():
     scene = carom.Scene(gravity=(0, 0, 0))
     for k in range(9):
         scene.add_body(
-            carom.Sphere(0.03), mass=1.0, position=(k * 0.0601, 0, 0), velocity=(0 if k else 5, 0, 0)
+            carom.Sphere(0.03),
+            mass=1.0,
+            position=(k * 0.0601, 0, 0),
+            velocity=(0 if k else 5, 0, 0),
         )
     scene.set_contact_default(restitution=0.5, friction=0.1, tangential_restitution=0.5)
     options = carom.Options(max_impacts_per_step=1)
     run = carom.simulate(scene, 0.02, step=1e-3, options=options)
     count = len(np.unique(run.impacts.time[run.impacts.located == 0]))
-    said = f"{count} impacts in time-stepping steps were without the tangential restitution of their"
+    said = (
+        f"{count} impacts in time-stepping steps were without the tangential restitution of their"
+    )
     assert any(said in one for one in run.warnings)

@@ -69,8 +69,13 @@ class Impact(Shown):
 
 @arguments.known
 def resolve_impact(
-    inverse_mass, velocity, friction: float, restitution: float, law: str = "newton",
-    *, tangential_restitution: float = 0.0,
+    inverse_mass,
+    velocity,
+    friction: float,
+    restitution: float,
+    law: str = "newton",
+    *,
+    tangential_restitution: float = 0.0,
 ) -> Impact:
     """Solve one impact with Coulomb friction to round-off (Darboux-Keller equation).
 
@@ -92,9 +97,9 @@ def resolve_impact(
         three agree if the direction of slip is constant. Newton's law can increase the energy if slip stops or
         reverses; Stronge's never does.
     tangential_restitution : float or array_like
-        Coefficient e_t in [-1, 1]. Where the impact ends in stick the slip becomes ``-e_t`` times that before it,
-        as far as the cone of friction and the energy that friction has taken allow. 1 is a super ball; below 0
-        slip keeps its direction, and with -1 it is that of an impact without friction. Default 0.
+        Coefficient e_t in [-1, 1]. Where the impact ends in stick the slip becomes ``-e_t`` times that before,
+        as far as the cone of friction and the energy that friction has taken allow, without a gain. 1 is a
+        super ball; below 0 slip keeps its direction, and -1 is a smooth surface. Default 0.
 
     Returns
     -------

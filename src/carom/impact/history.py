@@ -34,7 +34,7 @@ class LayerHistory:
     duration : float
         Time spent in the layer [s].
     velocity_after, impulse : ndarray, shape (3,)
-        Velocity at exit [m/s] and impulse [N s], with that of tangential restitution, a jump after the last knot.
+        Velocity at exit [m/s] and impulse [N s], with the jump by tangential restitution after the last knot.
     energy_change : float
         Change of kinetic energy [J].
     phases : tuple of str

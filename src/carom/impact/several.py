@@ -21,7 +21,10 @@ FEW_IMPACTS = 2000  # take ten times as long as a thread to begin
 
 @entry
 def resolve_many(W, u, numbers, law, out):
-    """Solve each impact, with rows mu, e and e_t of `numbers`; return the number of the first that failed and its code, or (-1, OK)."""
+    """Solve each impact, with mu, e and e_t in `numbers`.
+
+    Return the number of the first that failed and its code, or (-1, OK).
+    """
     for i in range(u.shape[0]):
         mu, e, e_t = numbers[i]
         code = resolve(W[i], u[i], mu, e, law[i], out[i])
@@ -64,9 +67,7 @@ def resolve_several(inverse_mass, velocity, friction, restitution, law, tangenti
 
     def solve(first: int) -> None:
         part = slice(first, first + size)
-        failed, code = resolve_many(
-            full[part], speed[part], numbers[part], number[part], out[part]
-        )
+        failed, code = resolve_many(full[part], speed[part], numbers[part], number[part], out[part])
         if failed >= 0:
             at = tuple(map(int, np.unravel_index(first + failed, shape)))
             raise ValueError(f"the impact at index {at} could not be solved: {o.MESSAGES[code]}")

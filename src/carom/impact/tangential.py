@@ -5,7 +5,8 @@ After the impact u_t = 0. A further impulse dP changes it to -e_t u_t^-, and lea
     dP_t = K^-1 (-e_t u_t^-),   K = W_tt - W_tn W_nt/W_nn,   dP_n = -W_nt.dP_t/W_nn.
 
 Only the part s <= 1 of dP is applied with which the whole impulse is in the cone, |P_t| <= mu P_n, and which
-returns no more energy than friction has taken (Garwin 1969; Walton 1993).
+returns no more energy than friction has taken (Garwin 1969; Walton 1993) and the impact has lost: the normal
+force of Newton's or Poisson's law may have added some.
 """
 
 from __future__ import annotations
@@ -37,11 +38,12 @@ def return_slip(W, u, mu, e, out):
     )
     # dP_n u_n s + dP_t.du_t s^2/2 is the energy that comes back
     drawn, back = n * out[o.VELOCITY], 0.5 * (t1 * x + t2 * y)
-    s = min(cone, greatest_part(back, 0.5 * drawn, lost))
+    room = min(lost, max(0.0, -out[o.ENERGY_CHANGE]))
+    s = min(cone, greatest_part(back, 0.5 * drawn, room))
     out[o.IMPULSE], out[o.IMPULSE + 1], out[o.IMPULSE + 2] = p + s * n, p1 + s * t1, p2 + s * t2
     out[o.VELOCITY + 1] += s * x
     out[o.VELOCITY + 2] += s * y
-    gained = min(lost, s * (drawn + s * back))
+    gained = min(room, s * (drawn + s * back))
     out[o.FRICTION_LOSS] = lost - gained
     out[o.ENERGY_CHANGE] += gained
 

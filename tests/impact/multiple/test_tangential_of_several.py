@@ -1,4 +1,4 @@
-"""Tangential restitution where several contacts strike: systems solved by hand, cones, energies, and one body."""
+"""Tangential restitution where several contacts strike: systems solved by hand, cones, energies."""
 
 import numpy as np
 import pytest
@@ -40,7 +40,7 @@ def test_a_ball_in_a_corner(e_t, multiple):
 
 
 def rod(v, e, e_t, **more):
-    """Return W, u and the impact of a thin rod that lies flat as it strikes with both ends; it turns about Z."""
+    """Return W, u and the impact of a thin rod that strikes flat with both ends and turns about Z."""
     m, a = 0.7, 0.3
     G = rows((Z, X, Y, a * X), (Z, X, Y, -a * X))
     W, u, _ = of_body(G, m, [1e-3 * m, m * a * a / 3, m * a * a / 3], np.array(v))
@@ -76,12 +76,15 @@ def test_two_balls_on_a_floor():
     v = np.array([0.0] * 6 + [0.3, -0.1, -1.0, 2.0, 5.0, 0.0])
     W, u = G @ inverse @ G.T, (G @ v).reshape(2, 3)
     plain, hit = (
-        resolve_impacts(W, u, 2.0, 0.7, law="stronge", tangential_restitution=e_t) for e_t in (0, 0.6)
+        resolve_impacts(W, u, 2.0, 0.7, law="stronge", tangential_restitution=e_t)
+        for e_t in (0, 0.6)
     )
     change = hit.velocity_after - plain.velocity_after
     assert change[:, 0] == pytest.approx(0, abs=1e-9)
     assert change[:, 1:] == pytest.approx(-0.6 * u[:, 1:], abs=1e-9)
-    assert hit.velocity_after.ravel() == pytest.approx(u.ravel() + W @ hit.impulse.ravel(), abs=1e-9)
+    assert hit.velocity_after.ravel() == pytest.approx(
+        u.ravel() + W @ hit.impulse.ravel(), abs=1e-9
+    )
     assert plain.energy_change < hit.energy_change < 0
 
 
@@ -94,7 +97,9 @@ def random_impact(rng):
         axes, (one, other) = np.linalg.qr(rng.normal(size=(3, 3)))[0], rng.integers(bodies, size=2)
         for body, side in ((one, 1), (other, -1)):
             if side == 1 or (body != one and rng.random() < 0.7):
-                G[3 * i : 3 * i + 3, 6 * body : 6 * body + 6] = side * rows((*axes, rng.normal(size=3)))
+                G[3 * i : 3 * i + 3, 6 * body : 6 * body + 6] = side * rows(
+                    (*axes, rng.normal(size=3))
+                )
     mass = np.outer(10 ** rng.uniform(-1, 1, bodies), [1, 1, 1, 0.5, 0.4, 0.3]).ravel()
     u = (G @ rng.normal(size=6 * bodies)).reshape(k, 3)
     u *= -1.0 if u[:, 0].min() > -1e-3 else 1.0
@@ -156,7 +161,9 @@ def test_of_bodies_and_of_coordinates():
     scene = carom.Scene(gravity=(0, 0, 0))
     floor = scene.add_half_space((0, 0, 0), (0, 0, 1))
     v = (0.7, 0.0, -1.0)
-    box = scene.add_body(carom.Box(2 * a, 2 * a, 2 * h), mass=m, position=(0, 0, h + 0.01), velocity=v)
+    box = scene.add_body(
+        carom.Box(2 * a, 2 * a, 2 * h), mass=m, position=(0, 0, h + 0.01), velocity=v
+    )
     law = {"restitution": 0.5, "friction": 1.0, "tangential_restitution": 0.5}
     scene.add_contact(box, floor, **law)
     run = carom.simulate(scene, 0.02)

@@ -95,7 +95,7 @@ def find_holding(z, work):
 
 @kernel
 def invert(n, rank, rows, work):
-    """Write H = D (D A D)^+ D = R R^T, R = D L (L^T L)^-1, by L L^T = D A D; `rows` rows have one weight in D."""
+    """Write H = D (D A D)^+ D = R R^T, R = D L (L^T L)^-1, by L L^T = D A D with D for `rows` rows each."""
     L, M, hold = work.matrix[o.FACTOR], work.matrix[o.MIDDLE], work.matrix[o.HOLDING]
     weight, order = work.vector[o.SCALE], work.index[o.PIVOTED]
     for p in range(rank):
@@ -132,7 +132,7 @@ def _factor(z, work, L):
 
 @kernel
 def decompose(n, largest, order, L):
-    """Write L in A = L L^T, with rows in the order of pivots, over A; return the rank. Its scale is `largest`."""
+    """Write L in A = L L^T, rows in the order of pivots, over A of the scale `largest`; return its rank."""
     for a in range(n):
         order[a] = a
     # directions that do not move, in a plane, are those of round-off
