@@ -49,13 +49,13 @@ def resolve_several(inverse_mass, velocity, friction, restitution, law, tangenti
     number = np.array(
         [NUMBERS[checks.choice("law", name, NUMBERS)] for name in names.flat], np.int64
     )
-    parts = W.shape[:-2], u.shape[:-1], mu.shape, e.shape, e_t.shape, names.shape
+    parts = W.shape[:-2], u.shape[:-1], mu.shape, e.shape, names.shape, e_t.shape
     try:
         shape = np.broadcast_shapes(*parts)
     except ValueError:
         raise ValueError(
-            "inverse_mass, velocity, friction, restitutions and law must have first axes that go together "
-            f"(broadcast), got {', '.join(map(str, parts))}"
+            "inverse_mass, velocity, friction, restitution, law and tangential_restitution must have first "
+            f"axes that go together (broadcast), got {', '.join(map(str, parts))}"
         ) from None
     n = int(np.prod(shape))
     full, speed = np.zeros((n, 3, 3)), np.zeros((n, 3))  # of a plane, 0 along its second tangent
