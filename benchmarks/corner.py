@@ -76,7 +76,7 @@ class Case:
         self.contacts = CornerContacts(
             k, 0, np.ascontiguousarray(W), np.ascontiguousarray(u), mu * ones, e * ones,
             np.full(k, law), ones if kappa is None else np.array(kappa, float),
-            np.zeros(k, dtype=np.int64),
+            np.zeros(k, dtype=np.int64), 0 * ones,
         )  # fmt: skip
         self.settings, self.repeat, self.given = MultipleSettings, repeat, settings
         self.workspace, self.out = new_multiple_workspace(k), new_multiple_result(k)

@@ -19,6 +19,7 @@ from campaigns import (
     rests,
     robots,
     rolls,
+    rough,
     slides,
     strikes,
     teeth,
@@ -31,5 +32,5 @@ FAMILIES = {
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
     "belts": belts.case,
     "rails": rails.case, "loose rails": loose_rails.case,
-    "laws": laws.case, "frictions": frictions.case, "grains": grains.case,
+    "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "rough": rough.case,
 }  # fmt: skip

@@ -49,7 +49,7 @@ def run(folder):
             carom.GeneralizedSystem(**system).add_contact,
             dict(gap=lambda q: q[1], tangent=lambda q: np.array([1.0, 0.0]),
                  gap_gradient=lambda q: np.array([0.0, 1.0]), restitution=0.5, friction=0.1,
-                 impact_law="newton", name="new"),
+                 impact_law="newton", tangential_restitution=0.5, name="new"),
         ),
         "GeneralizedSystem.evaluation": lambda: (one_oscillator().evaluation, {}),
         "GeneralizedSystem.metric": lambda: (one_oscillator().metric, dict(position=[1.0])),
@@ -155,16 +155,19 @@ def run(folder):
             carom.contact_inverse_mass,
             dict(scene=thrown(), body="ball", point=(0, 0, 0.05), normal=(0, 0, 1.0), other=None),
         ),
-        "resolve_impact": lambda: (carom.resolve_impact, dict(**blow, law="newton")),
+        "resolve_impact": lambda: (
+            carom.resolve_impact, dict(**blow, law="newton", tangential_restitution=0.5),
+        ),
         "studies.gradient.impact_derivative": lambda: (gradient.impact_derivative, dict(**blow, law="newton")),
         "impact_layer": lambda: (
-            carom.impact_layer, dict(**blow, penetration=0.5, width=1e-6, law="newton", steps=2),
+            carom.impact_layer, dict(**blow, penetration=0.5, width=1e-6, law="newton", steps=2,
+                                     tangential_restitution=0.5),
         ),
         "LayerHistory.evaluate": lambda: (things.layer().evaluate, dict(t=0.0)),
         "resolve_impacts": lambda: (
             carom.resolve_impacts,
             dict(inverse_mass=W, velocity=[(-1.0, 1.0, 0.0)], friction=0.1, restitution=0.5, law="newton",
-                 multiple="simultaneous", stiffness=[1.0], exponent=1.0, rtol=1e-8),
+                 multiple="simultaneous", stiffness=[1.0], exponent=1.0, rtol=1e-8, tangential_restitution=0.5),
         ),
         "solve_contacts": lambda: (
             carom.solve_contacts,

@@ -77,13 +77,76 @@ def test_a_thrown_rod_never_gains(seed):
     assert np.all(np.hypot(p[:, 1], p[:, 2]) <= 0.6 * p[:, 0] * (1 + 1e-12))
 
 
-def test_several_contacts_say_that_they_have_none():
+def test_between_floor_and_wall():
+    # floor, then wall: slip v_x - r w at the floor and v_z + r w at the wall, each reversed with the angular
+    # momentum about its point kept (cases/closed_form, 3/7 and 4/7), e = 1 for what is normal
     scene = carom.Scene(gravity=(0, 0, 0))
+    planes = [scene.add_half_space((0, 0, 0), n) for n in ((0, 0, 1), (-1, 0, 0))]
     one = scene.add_body(
-        carom.Sphere(0.1), mass=1, position=(0.2, 0, 0.2), velocity=(-1, 1, -1), name="ball"
+        carom.Sphere(R), mass=0.2, position=(-0.3, 0, 0.1), velocity=(1.0, 0, -1.0), name="ball"
     )
-    for normal in ((1, 0, 0), (0, 0, 1)):
-        wall = scene.add_half_space((0, 0, 0), normal)
-        scene.add_contact(one, wall, friction=0.5, tangential_restitution=0.5)
-    (said,) = carom.simulate(scene, 0.2).warnings
-    assert "1 impacts of several contacts were without the tangential restitution" in said
+    for plane in planes:
+        scene.add_contact(one, plane, restitution=1, friction=10, tangential_restitution=1)
+    run = carom.simulate(scene, 1.0)
+    (v, z), rw = (3 / 7, 1.0), 10 / 7  # after the floor
+    v, z, rw = (
+        -v,
+        3 / 7 * z + 4 / 7 * rw,
+        10 / 7 * z - 3 / 7 * rw,
+    )  # after the wall, on which r w goes up
+    assert len(run.impacts) == 2
+    assert run.velocity[-1, 0] == pytest.approx([v, 0, z], abs=1e-12)
+    assert R * run.angular_velocity[-1, 0, 1] == pytest.approx(rw, abs=1e-12)
+
+
+@pytest.mark.parametrize("law", ["newton", "stronge"])
+def test_impacts_alone_are_those_of_a_run(law):
+    run = bounce(0.6, velocity=(1.0, 0.4, -1.0), spin=3.0, e=0.7, mu=0.5, impact_law=law)
+    (hit,) = run.impacts
+    given = hit.inverse_mass, hit.relative_velocity_before, 0.5, 0.7, law
+    one = carom.resolve_impact(*given, tangential_restitution=0.6)
+    assert np.array_equal(one.impulse, hit.impulse)
+    assert one.friction_loss == hit.friction_loss
+    several = carom.resolve_impact(*given, tangential_restitution=np.array([0.6, 0.0, -0.6]))
+    assert np.array_equal(several.impulse[0], hit.impulse)
+    assert np.array_equal(several.impulse[1], carom.resolve_impact(*given).impulse)
+    history = run.impact_history(0)
+    assert history.velocity_after == pytest.approx(hit.relative_velocity_after, abs=1e-12)
+    assert history.velocity[-1, 1:] == pytest.approx(0, abs=1e-12)  # slip returns at the exit
+    alone = carom.resolve_impacts(given[0], [given[1]], *given[2:], tangential_restitution=0.6)
+    assert alone.impulse[0] == pytest.approx(hit.impulse, rel=1e-12)
+
+
+def test_a_ball_in_coordinates():
+    sp = pytest.importorskip("sympy")
+    x, z, b, dx, dz, db = sp.symbols("x z b dx dz db")
+    system = carom.GeneralizedSystem.from_sympy(
+        [x, z, b], [dx, dz, db], kinetic_energy=0.1 * (dx**2 + dz**2 + 0.4 * R**2 * db**2),
+        position=[0, 0.01 + R, 0], velocity=[1.0, -1.0, 2.0],
+    )  # fmt: skip
+    system.add_contact(
+        z - R, tangent=dx - R * db, restitution=0.8, friction=0.6, tangential_restitution=0.5
+    )
+    v = carom.simulate(system, 0.02).v[-1]
+    of_body = bounce(0.5, velocity=(1.0, 0, -1.0), spin=2.0, e=0.8, mu=0.6)
+    expected = [*of_body.velocity[-1, 0, ::2], of_body.angular_velocity[-1, 0, 1]]
+    assert v == pytest.approx(expected, abs=1e-12)
+
+
+def test_a_crowd_says_that_it_has_none():
+    scene = carom.Scene(gravity=(0, 0, 0))
+    for k in range(9):
+        scene.add_body(
+            carom.Sphere(0.03),
+            mass=1.0,
+            position=(k * 0.0601, 0, 0),
+            velocity=(0 if k else 5, 0, 0),
+        )
+    scene.set_contact_default(restitution=0.5, friction=0.1, tangential_restitution=0.5)
+    options = carom.Options(max_impacts_per_step=1)
+    run = carom.simulate(scene, 0.02, step=1e-3, options=options)
+    count = len(np.unique(run.impacts.time[run.impacts.located == 0]))
+    said = (
+        f"{count} impacts in time-stepping steps were without the tangential restitution of their"
+    )
+    assert any(said in one for one in run.warnings)

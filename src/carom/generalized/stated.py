@@ -22,6 +22,8 @@ class CoordinateContact:
     friction : float
         Friction coefficient mu.
     impact_law : {"newton", "poisson", "stronge"}
+    tangential_restitution : float
+        e_t.
     index : int
         Its index in `GeneralizedSystem.contacts`.
     """
@@ -30,4 +32,5 @@ class CoordinateContact:
     restitution: Value[Any, Any] = number_or_law()
     friction: Number = number(least=0.0)
     impact_law: Word = word(IMPACT_LAWS)
+    tangential_restitution: Number = number(0.0, least=-1, most=1)
     index: int = 0

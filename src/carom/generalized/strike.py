@@ -10,6 +10,7 @@ from carom.generalized.solution import CoordinateImpact
 from carom.impact import layout as o
 from carom.impact.laws import GAINING, NUMBERS
 from carom.impact.resolve import resolve
+from carom.impact.tangential import return_slip
 from carom.impact.thresholds import GROUP_SEED, NO_RESTITUTION
 from carom.scene.restitution import Restitution
 from carom.status import Status
@@ -34,6 +35,7 @@ class Strike:
         self.run, self.seen = run, run.made.work
         self.restitution = [one.restitution for one in contacts]
         self.friction = np.array([one.friction for one in contacts])
+        self.tangential = np.array([one.tangential_restitution for one in contacts])
         self.law = np.array([NUMBERS[one.impact_law] for one in contacts], dtype=np.int64)
         self.events: list[tuple[float, str, int]] = []
         self.light = 0.0  # kinetic energy that the loads give in a step: less is round-off
@@ -131,11 +133,13 @@ class Strike:
 
         Of several contacts it is a multiple impact (mathematics page, part 2).
         """
-        law = self.law[closed]
+        law, e_t = self.law[closed], self.tangential[closed]
         if len(closed) == 1:
             out = np.zeros((o.SIZE, 1))
             out[o.STILL] = self.still[closed]
             code = resolve(W, u[0].copy(), mu[0], e[0], law[0], out[:, 0])
+            if code == o.OK and e_t[0] != 0.0:
+                return_slip(W, u[0].copy(), mu[0], e_t[0], out[:, 0])
             after, p = (out[at : at + 3].T for at in (o.VELOCITY, o.IMPULSE))
             works, phases = out[[o.WORK_C, o.WORK_R, o.FRICTION_LOSS]], out[o.PHASES].astype(int)
             return code, after, p, works, phases & o.WEDGED
@@ -145,7 +149,7 @@ class Strike:
         if self.room is None:
             self.room = new_multiple_workspace(len(self.blows))
         settings = multiple_settings(self.run.options, 1.0)
-        code, found = api.solve(W, u, mu, e, law, np.ones(len(u)), settings, self.room)
+        code, found = api.solve(W, u, mu, e, law, np.ones(len(u)), e_t, settings, self.room)
         after, p = found.velocity.reshape(-1, 3), found.impulse.reshape(-1, 3)
         works = np.array([found.compression, found.restitution, found.friction])
         return code, after, p, works, found.wedged

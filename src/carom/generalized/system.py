@@ -202,6 +202,7 @@ class GeneralizedSystem:
         restitution: float | Restitution,
         friction: float = 0.0,
         impact_law: str = "newton",
+        tangential_restitution: float = 0.0,
         name: str | None = None,
     ) -> CoordinateContact:
         """Add a contact: a gap that impacts and contact forces keep from becoming negative.
@@ -223,6 +224,8 @@ class GeneralizedSystem:
             Coulomb's friction coefficient, at least 0. Default 0.
         impact_law : {"newton", "poisson", "stronge"}
             As for `carom.resolve_impact`.
+        tangential_restitution : float
+            e_t in [-1, 1], as for `carom.resolve_impact`. Default 0.
         name : str, optional
             Name of the contact. Default ``"contact k"``.
 
@@ -233,7 +236,9 @@ class GeneralizedSystem:
         """
         name = f"contact {len(self.contacts)}" if name is None else name
         index, name = self._parts.new(CoordinateContact, name, "contact")
-        contact = CoordinateContact(name, restitution, friction, impact_law, index)
+        contact = CoordinateContact(
+            name, restitution, friction, impact_law, tangential_restitution, index
+        )
         if contact.friction > 0.0 and tangent is None:
             raise ValueError(
                 f"friction needs a tangent, got friction {checks.shown(friction)} without one"

@@ -69,7 +69,13 @@ class Impact(Shown):
 
 @arguments.known
 def resolve_impact(
-    inverse_mass, velocity, friction: float, restitution: float, law: str = "newton"
+    inverse_mass,
+    velocity,
+    friction: float,
+    restitution: float,
+    law: str = "newton",
+    *,
+    tangential_restitution: float = 0.0,
 ) -> Impact:
     """Solve one impact with Coulomb friction to round-off (Darboux-Keller equation).
 
@@ -90,6 +96,10 @@ def resolve_impact(
         normal impulses (kinetic), or the square root of the ratio of works of the normal force (energetic). The
         three agree if the direction of slip is constant. Newton's law can increase the energy if slip stops or
         reverses; Stronge's never does.
+    tangential_restitution : float or array_like
+        Coefficient e_t in [-1, 1]. Where the impact ends in stick the slip becomes ``-e_t`` times that before,
+        as far as the cone of friction and the energy that friction has taken allow, without a gain. 1 is a
+        super ball; below 0 slip keeps its direction, and -1 is a smooth surface. Default 0.
 
     Returns
     -------
@@ -126,15 +136,19 @@ def resolve_impact(
     """
     from carom.impact import layout as o
     from carom.impact.resolve import resolve
+    from carom.impact.tangential import return_slip
 
     given = inverse_mass, velocity, friction, restitution, law
-    if _are_several(*given):
+    if _are_several(*given, tangential_restitution):
         from carom.impact.several import resolve_several
 
-        return resolve_several(*given)
+        return resolve_several(*given, tangential_restitution)
     W, u, mu, e, number = checked_impact(inverse_mass, velocity, friction, restitution, law)
+    e_t = checked_tangential(tangential_restitution)
     out = np.zeros(o.SIZE)
     raise_for(resolve(W, u, mu, e, number, out))
+    if e_t != 0.0:
+        return_slip(W, u, mu, e_t, out)
     stated = {
         "inverse_mass": W, "relative_velocity_before": u, "friction": mu, "restitution": e, "law": law,
     }  # fmt: skip
@@ -152,9 +166,9 @@ def resolve_impact(
     )
 
 
-def _are_several(inverse_mass, velocity, friction, restitution, law) -> bool:
+def _are_several(inverse_mass, velocity, *numbers) -> bool:
     """Return whether arguments have more axes than those of one impact, or are of a plane one."""
-    cores = ((inverse_mass, 2), (velocity, 1), (friction, 0), (restitution, 0), (law, 0))
+    cores = ((inverse_mass, 2), (velocity, 1), *((one, 0) for one in numbers))
     try:
         more = any(np.ndim(value) > axes for value, axes in cores)
         return more or np.shape(inverse_mass) == (2, 2)
@@ -174,6 +188,11 @@ def checked_impact(inverse_mass, velocity, friction, restitution, law):
     mu = checks.number("friction", friction, least=0.0)
     e = checks.number("restitution", restitution, least=0.0, most=1.0)
     return W, u, mu, e, NUMBERS[checks.choice("law", law, NUMBERS)]
+
+
+def checked_tangential(given) -> float:
+    """Return e_t; raise ValueError unless it is from -1 to 1."""
+    return checks.number("tangential_restitution", given, least=-1.0, most=1.0)
 
 
 def checked_inverse_mass(inverse_mass) -> np.ndarray:

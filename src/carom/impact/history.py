@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from carom import arguments, checks
-from carom.impact.api import checked_impact, phase_names, raise_for
+from carom.impact.api import checked_impact, checked_tangential, phase_names, raise_for
 
 MOST_STEPS = 100_000  # of one passage through the layer: more steps would only add round-off
 
@@ -34,7 +34,7 @@ class LayerHistory:
     duration : float
         Time spent in the layer [s].
     velocity_after, impulse : ndarray, shape (3,)
-        Velocity at exit [m/s] and impulse [N s].
+        Velocity at exit [m/s] and impulse [N s], with the jump by tangential restitution after the last knot.
     energy_change : float
         Change of kinetic energy [J].
     phases : tuple of str
@@ -101,6 +101,7 @@ def impact_layer(
     width: float,
     law: str = "newton",
     steps: int = 2,
+    tangential_restitution: float = 0.0,
 ) -> LayerHistory:
     """Integrate one impact through the boundary layer, in time, by geometric cubic splines.
 
@@ -116,6 +117,9 @@ def impact_layer(
         Number of steps of the spline, half of them in compression and half in restitution; from 2 to 100 000. A
         step is divided where slip ends, and halved where slip turns sharply. Default 2, as in the paper: exact
         if the direction of slip is constant, otherwise of order 4.
+    tangential_restitution : float
+        e_t in [-1, 1], as for `resolve_impact`: the slip that returns is a jump at the exit, after the last
+        knot. Default 0.
 
     Returns
     -------
@@ -144,12 +148,14 @@ def impact_layer(
     from carom.impact import layout as o
     from carom.impact.layer import traverse
     from carom.impact.phase import COLUMNS
+    from carom.impact.tangential import return_slip
     from carom.model.workspace import HIT
 
     W, u, mu, e, number = checked_impact(inverse_mass, velocity, friction, restitution, law)
     delta = checks.number("penetration", penetration, above=0.0, below=1.0)
     b = checks.number("width", width, above=0.0, unit="m")
     steps = checks.integer("steps", steps, least=2, most=MOST_STEPS)
+    e_t = checked_tangential(tangential_restitution)
     hit = table(HIT, 1)[0]
     hit.W, hit.u, hit.friction, hit.restitution = W, u, mu, e
     out, rows = hit.out, np.zeros((steps + 32, COLUMNS))
@@ -158,6 +164,8 @@ def impact_layer(
         rows = np.zeros((int(out[o.KNOTS]), COLUMNS))
         raise_for(traverse(hit, number, (b, delta, steps), rows))
     rows = rows[: int(out[o.KNOTS])]
+    if e_t != 0.0:
+        return_slip(W, u, mu, e_t, out)
     return LayerHistory(
         t=rows[:, 0].copy(),
         x=b * np.exp(rows[:, 1] / b),

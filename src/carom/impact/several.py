@@ -14,21 +14,28 @@ from carom.impact import layout as o
 from carom.impact.api import Impact, phase_names
 from carom.impact.laws import NUMBERS
 from carom.impact.resolve import resolve
+from carom.impact.tangential import return_slip
 
 FEW_IMPACTS = 2000  # take ten times as long as a thread to begin
 
 
 @entry
-def resolve_many(W, u, mu, e, law, out):
-    """Solve each impact; return the number of the first that failed and its code, or (-1, OK)."""
+def resolve_many(W, u, numbers, law, out):
+    """Solve each impact, with mu, e and e_t in `numbers`.
+
+    Return the number of the first that failed and its code, or (-1, OK).
+    """
     for i in range(u.shape[0]):
-        code = resolve(W[i], u[i], mu[i], e[i], law[i], out[i])
+        mu, e, e_t = numbers[i]
+        code = resolve(W[i], u[i], mu, e, law[i], out[i])
         if code != o.OK:
             return i, code
+        if e_t != 0.0:
+            return_slip(W[i], u[i], mu, e_t, out[i])
     return -1, o.OK
 
 
-def resolve_several(inverse_mass, velocity, friction, restitution, law) -> Impact:
+def resolve_several(inverse_mass, velocity, friction, restitution, law, tangential) -> Impact:
     """Solve impacts whose arguments are arrays that go together; see `resolve_impact`."""
     W = _checked_inverse_masses(inverse_mass)
     k = W.shape[-1]
@@ -37,32 +44,30 @@ def resolve_several(inverse_mass, velocity, friction, restitution, law) -> Impac
     _all(name, u[..., 0], "below 0", u[..., 0] < 0)
     mu = _numbers("friction", friction, "at least 0", lambda a: a >= 0)
     e = _numbers("restitution", restitution, "from 0 to 1", lambda a: (a >= 0) & (a <= 1))
+    e_t = _numbers("tangential_restitution", tangential, "from -1 to 1", lambda a: abs(a) <= 1)
     names = np.asarray(law, dtype=object)
     number = np.array(
         [NUMBERS[checks.choice("law", name, NUMBERS)] for name in names.flat], np.int64
     )
-    parts = W.shape[:-2], u.shape[:-1], mu.shape, e.shape, names.shape
+    parts = W.shape[:-2], u.shape[:-1], mu.shape, e.shape, names.shape, e_t.shape
     try:
         shape = np.broadcast_shapes(*parts)
     except ValueError:
         raise ValueError(
-            "inverse_mass, velocity, friction, restitution and law must have first axes that go together "
-            f"(broadcast), got {', '.join(map(str, parts))}"
+            "inverse_mass, velocity, friction, restitution, law and tangential_restitution must have first "
+            f"axes that go together (broadcast), got {', '.join(map(str, parts))}"
         ) from None
     n = int(np.prod(shape))
     full, speed = np.zeros((n, 3, 3)), np.zeros((n, 3))  # of a plane, 0 along its second tangent
     full[:, :k, :k] = np.broadcast_to(W, (*shape, k, k)).reshape(n, k, k)
     speed[:, :k] = np.broadcast_to(u, (*shape, k)).reshape(n, k)
-    mu, e, number = (
-        np.broadcast_to(a, shape).flatten() for a in (mu, e, number.reshape(names.shape))
-    )
+    numbers = np.stack([np.broadcast_to(a, shape).flatten() for a in (mu, e, e_t)], axis=1)
+    number = np.broadcast_to(number.reshape(names.shape), shape).flatten()
     out = np.zeros((n, o.SIZE))
 
     def solve(first: int) -> None:
         part = slice(first, first + size)
-        failed, code = resolve_many(
-            full[part], speed[part], mu[part], e[part], number[part], out[part]
-        )
+        failed, code = resolve_many(full[part], speed[part], numbers[part], number[part], out[part])
         if failed >= 0:
             at = tuple(map(int, np.unravel_index(first + failed, shape)))
             raise ValueError(f"the impact at index {at} could not be solved: {o.MESSAGES[code]}")

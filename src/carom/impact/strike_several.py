@@ -31,7 +31,7 @@ def resolve_group(k, W, u, mu, multiple) -> int:
     contacts = by_reference(
         CornerContacts(
             k=k, others=0, W=W, u=u, friction=mu, restitution=multiple.e, law=multiple.law,
-            stiffness=multiple.kappa, pair=multiple.pair,
+            stiffness=multiple.kappa, pair=multiple.pair, tangential=multiple.tangential,
         )
     )  # fmt: skip
     given = multiple.settings
@@ -97,6 +97,7 @@ def strike_several(model, data, c, k):
             group.mu[i] = friction_at(system, contact, PERSISTENT, slip)
         multiple.law[i], multiple.kappa[i] = contact.law, contact.stiffness
         multiple.ball_like[i] = contact.ball_like
+        multiple.tangential[i] = contact.tangential_restitution
         all_by_pairs = multiple.settings.multiple == SEQUENTIAL
         multiple.pair[i] = pair_of(i, system.contacts, group.closed, all_by_pairs)
     passage = multiple.workspace.work.clock[0]

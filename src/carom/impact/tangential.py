@@ -5,19 +5,20 @@ After the impact u_t = 0. A further impulse dP changes it to -e_t u_t^-, and lea
     dP_t = K^-1 (-e_t u_t^-),   K = W_tt - W_tn W_nt/W_nn,   dP_n = -W_nt.dP_t/W_nn.
 
 Only the part s <= 1 of dP is applied with which the whole impulse is in the cone, |P_t| <= mu P_n, and which
-returns no more energy than friction has taken (Garwin 1969; Walton 1993).
+returns no more energy than friction has taken (Garwin 1969; Walton 1993) and the impact has lost: the normal
+force of Newton's or Poisson's law may have added some.
 """
 
 from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import entry, kernel
 from carom.friction.rays import solve_tangential
 from carom.impact import layout as o
 
 
-@kernel
+@entry
 def return_slip(W, u, mu, e, out):
     """Add the impulse of tangential restitution `e` to the result `out` of an impact that began with u."""
     if int(out[o.PHASES]) & (o.PHASE_STICK | o.WEDGED) != o.PHASE_STICK:
@@ -30,24 +31,25 @@ def return_slip(W, u, mu, e, out):
     n = -(a * t1 + b * t2)
     p, p1, p2, lost = out[o.IMPULSE], out[o.IMPULSE + 1], out[o.IMPULSE + 2], out[o.FRICTION_LOSS]
     # |P_t + s dP_t|^2 = mu^2 (P_n + s dP_n)^2 at the cone
-    cone = _part(
+    cone = greatest_part(
         t1 * t1 + t2 * t2 - mu * mu * n * n,
         p1 * t1 + p2 * t2 - mu * mu * p * n,
         mu * mu * p * p - p1 * p1 - p2 * p2,
     )
     # dP_n u_n s + dP_t.du_t s^2/2 is the energy that comes back
     drawn, back = n * out[o.VELOCITY], 0.5 * (t1 * x + t2 * y)
-    s = min(cone, _part(back, 0.5 * drawn, lost))
+    room = min(lost, max(0.0, -out[o.ENERGY_CHANGE]))
+    s = min(cone, greatest_part(back, 0.5 * drawn, room))
     out[o.IMPULSE], out[o.IMPULSE + 1], out[o.IMPULSE + 2] = p + s * n, p1 + s * t1, p2 + s * t2
     out[o.VELOCITY + 1] += s * x
     out[o.VELOCITY + 2] += s * y
-    gained = min(lost, s * (drawn + s * back))
+    gained = min(room, s * (drawn + s * back))
     out[o.FRICTION_LOSS] = lost - gained
     out[o.ENERGY_CHANGE] += gained
 
 
 @kernel
-def _part(a, b, c):
+def greatest_part(a, b, c):
     """Return the greatest s in [0, 1] up to which a s^2 + 2 b s <= c, for c >= 0."""
     if not c > 0.0:
         return 0.0

@@ -4,7 +4,8 @@ NO_RESTITUTION = 1e-6  #: 1: below this restitution an impact ends with compress
 SEED = 1e-10  #: slip: approach given to a point that jams, below `REMAINDER`: it changes no result
 GROUP_SEED = 1e-7  #: slip: the same among several points, above `SLIP_END`
 SHORTEST_PART = 1e-9  #: length of a phase or of the layer: shortest step: if it fails, u_t reaches 0 in it
-VELOCITY_LEFT = 1e-6  #: velocity to be removed: what may be left: of approach by Newton's law, and of others
+#: velocity to be removed: what may be left: of approach by Newton's law, of slip, and of others
+VELOCITY_LEFT = 1e-6
 #: greatest velocity, mass, pivot or force: smaller ones of several contacts are round-off
 GROUP_ERROR = 1e-11
 SERIES_ACCURACY = 1e-14  #: root of |u_t| |u|: last term of the series of slip

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom.impact import laws
-from carom.impact.layout import PHASE_JAM, PLASTIC
+from carom.impact.layout import AT_END, PHASE_JAM, PLASTIC
 from carom.model import records as r
 from carom.results.names import arms, contact_name, restitution_of
 from carom.scene.restitution import Restitution
@@ -22,8 +22,7 @@ def remarks(rows, events, run) -> tuple[str, ...]:
     said = [
         *_gains(rows, run),
         *_of_laws(rows, run),
-        *_without_slip(rows, run),
-        *_as_they_began(rows, run),
+        *_of_several(rows, run),
     ]
     jams = events["kind"] == r.JAMS
     if not (jams.any() or (rows["phases"] & (PHASE_JAM | PLASTIC)).any()):
@@ -79,34 +78,23 @@ def _of_laws(rows, run) -> list[str]:
     return said
 
 
-def _without_slip(rows, run) -> list[str]:
-    """Return a sentence about impacts of several contacts, which have no tangential restitution."""
-    contacts = run.compiled.system.contacts
-    rough = contacts["tangential_restitution"] != 0.0
-    if not rough.any():
-        return []
-    found = rows[np.isin(rows["contact"], contacts["number"][rough]) & (rows["together"] > 1)]
-    if not len(found):
-        return []
-    return [
-        f"{len(np.unique(found['time']))} impacts of several contacts were without the tangential restitution "
-        f"of their contacts, which only single ones have, the first {_place(found[0], run)}."
-    ]
-
-
-def _as_they_began(rows, run) -> list[str]:
-    """Return a sentence about impacts of several contacts whose friction is a law."""
-    contacts = run.compiled.system.contacts
-    by_slip = contacts["last_friction_piece"][:, 0] > contacts["friction_piece"][:, 0]
-    if not by_slip.any():
-        return []
-    found = rows[np.isin(rows["contact"], contacts["number"][by_slip]) & (rows["together"] > 1)]
-    if not len(found):
-        return []
-    return [
-        f"{len(np.unique(found['time']))} impacts of several contacts had the friction of their slip at the "
-        f"beginning, because only single ones follow a law of friction, the first {_place(found[0], run)}."
-    ]
+def _of_several(rows, run) -> list[str]:
+    """Return sentences about impacts of several contacts that are without a part of their law."""
+    contacts, several = run.compiled.system.contacts, rows["together"] > 1
+    crowd = several & (rows["phases"] & AT_END != 0)
+    said = []
+    for concerned, without, words in (
+        (contacts["tangential_restitution"] != 0.0, crowd,
+         "in time-stepping steps were without the tangential restitution of their contacts"),
+        (contacts["last_friction_piece"][:, 0] > contacts["friction_piece"][:, 0], several,
+         "of several contacts had the friction of their slip at the beginning, because only single ones follow "
+         "a law of friction"),
+    ):  # fmt: skip
+        found = rows[without & np.isin(rows["contact"], contacts["number"][concerned])]
+        if len(found):
+            count = len(np.unique(found["time"]))
+            said.append(f"{count} impacts {words}, the first {_place(found[0], run)}.")
+    return said
 
 
 def _gains(rows, run) -> list[str]:

@@ -514,7 +514,7 @@ class Solution(Portable, Drawn, Source):
         return impact_layer(
             record.inverse_mass, record.relative_velocity_before, record.friction,
             record.restitution, penetration=float(row.penetration), width=float(row.width),
-            law=record.law,
+            law=record.law, tangential_restitution=float(row.tangential_restitution),
             steps=self._run.options.layer_steps if steps is None else steps,
         )  # fmt: skip
 

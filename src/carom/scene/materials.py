@@ -64,8 +64,8 @@ class ContactLaw:
         Greatest moment against rolling, and about the normal, in persistent contact, divided by the normal
         force [m], at least 0. Default 0. Impacts do not use them.
     tangential_restitution : float
-        e_t from -1 to 1: an impact of this contact alone that ends in stick returns -e_t u_t^-, as far as the
-        friction allows. Default 0.
+        e_t from -1 to 1: an impact that ends in stick leaves the slip -e_t u_t^-, as far as the friction
+        allows: below 0 in its direction before. Default 0.
     multiple : {"simultaneous", "sequential"}
         Impact of the pair while other contacts are closed: simultaneous with theirs (default), or an impact of
         its own, one after another.

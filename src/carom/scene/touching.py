@@ -73,9 +73,10 @@ class TouchingPairs:
             normal force [m]. Default 0. The moments act against relative rotation until it stops; each contact
             point of a face has its own. Impacts do not use them.
         tangential_restitution
-            Coefficient e_t from -1 to 1. If an impact of this contact alone ends in stick, the pair leaves with
-            -e_t times the slip before it (1 for a super ball), as far as the friction allows, and the energy
-            that friction took. Default 0: it leaves without slip. Impacts of several contacts have 0.
+            Coefficient e_t from -1 to 1. If an impact ends in stick, the pair leaves with -e_t times the slip
+            before it (1 for a super ball), as far as the friction allows, and the energy that friction took.
+            Below 0 slip keeps its direction; -1 leaves it as without friction. Default 0: it leaves without
+            slip, as it does in time-stepping steps.
         multiple : {"simultaneous", "sequential"}
             Multiple impact, if other contacts of these bodies are closed too: all contacts simultaneously
             (default), or this pair in an impact of its own, one impact after another, as in a row of balls with

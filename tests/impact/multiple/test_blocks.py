@@ -62,7 +62,7 @@ def jam(e, law, mu=1.6):
     settings, workspace, out = MultipleSettings(), new_multiple_workspace(1), new_multiple_result(1)
     one = np.ones(1)
     laws, pair = np.array([law]), np.zeros(1, dtype=np.int64)
-    contacts = CornerContacts(1, 0, ROD, SLIPS, mu * one, e * one, laws, one, pair)
+    contacts = CornerContacts(1, 0, ROD, SLIPS, mu * one, e * one, laws, one, pair, 0 * one)
     return impact_without_collision(contacts, settings, workspace, out), out
 
 

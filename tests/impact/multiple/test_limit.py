@@ -23,7 +23,7 @@ def strike(k, left=None):
     each = np.ones(k)
     numbers = np.full(k, NUMBERS["newton"])
     contacts = CornerContacts(
-        k, 0, W, u, 0.4 * each, 0.5 * each, numbers, each, np.zeros(k, dtype=np.int64)
+        k, 0, W, u, 0.4 * each, 0.5 * each, numbers, each, np.zeros(k, dtype=np.int64), 0 * each
     )
     settings = MultipleSettings(multiple=MULTIPLE["simultaneous"], rtol=1e-8, exponent=1.0)
     out, workspace = new_multiple_result(k), new_multiple_workspace(k)

@@ -34,7 +34,7 @@ def ours(mu: float = 0.2, e: float = 0.5, law: int = LAW) -> Callable[[], None]:
 
     W, u = impacts()
     n = len(u)
-    same = np.full(n, mu), np.full(n, e), np.full(n, law, dtype=np.int64)
+    same = np.tile([mu, e, 0.0], (n, 1)), np.full(n, law, dtype=np.int64)
     out = np.zeros((n, SIZE))
 
     def run() -> None:

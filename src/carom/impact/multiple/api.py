@@ -73,6 +73,7 @@ def resolve_impacts(
     stiffness=None,
     exponent: float = 1.0,
     rtol: float = 1e-8,
+    tangential_restitution=0.0,
 ) -> CornerImpact:
     """Solve the multiple impact of k closed contacts, one or more of which strike.
 
@@ -104,6 +105,8 @@ def resolve_impacts(
         Exponent p of the normal law N = kappa depth^p, at least 1. Default 1; Hertz's law has 1.5.
     rtol : float
         Relative tolerance of velocities, within [1e-12, 1e-2]. Default 1e-8.
+    tangential_restitution : float or array_like, shape (k,)
+        e_t in [-1, 1], as for `resolve_impact`, of contacts that stick at their end. Default 0.
 
     Returns
     -------
@@ -140,6 +143,7 @@ def resolve_impacts(
     W = checked_inverse_masses(inverse_mass, k)
     mu = per_contact("friction", friction, k, least=0.0)
     e = per_contact("restitution", restitution, k, least=0.0, most=1.0)
+    e_t = per_contact("tangential_restitution", tangential_restitution, k, least=-1.0, most=1.0)
     kappa = per_contact("stiffness", 1.0 if stiffness is None else stiffness, k, above=0.0)
     numbers = codes("law", law, k, NUMBERS)
     settings = MultipleSettings(
@@ -147,7 +151,7 @@ def resolve_impacts(
         rtol=checks.number("rtol", rtol, least=1e-12, most=1e-2),
         exponent=checks.number("exponent", exponent, least=1.0, most=4.0),
     )
-    code, out = solve(W, np.ascontiguousarray(u), mu, e, numbers, kappa, settings)
+    code, out = solve(W, np.ascontiguousarray(u), mu, e, numbers, kappa, e_t, settings)
     if code != OK:
         raise ValueError(f"the impact could not be solved: {MESSAGES[code]}")
     summary = out.summary[0]
@@ -168,7 +172,7 @@ def resolve_impacts(
     )
 
 
-def solve(W, u, mu, e, law, kappa, settings, workspace=None):
+def solve(W, u, mu, e, law, kappa, tangential, settings, workspace=None):
     """Solve a multiple impact of contacts (k,) with velocities (k, 3); return the code and the result."""
     from carom.impact.multiple.layout import (
         SEQUENTIAL,
@@ -182,6 +186,7 @@ def solve(W, u, mu, e, law, kappa, settings, workspace=None):
     room, out = workspace or new_multiple_workspace(k), new_multiple_result(k)
     pair = np.arange(k) if settings.multiple == SEQUENTIAL else np.zeros(k, dtype=np.int64)
     contacts = CornerContacts(
-        k=k, others=0, W=W, u=u.reshape(-1), friction=mu, restitution=e, law=law, stiffness=kappa, pair=pair
+        k=k, others=0, W=W, u=u.reshape(-1), friction=mu, restitution=e, law=law, stiffness=kappa, pair=pair,
+        tangential=tangential,
     )  # fmt: skip
     return resolve_multiple(contacts, settings, room, out), out

@@ -3,7 +3,7 @@
 Contacts that move alike are solved as one, contacts that no force presses are left out, and groups that do not
 act on each other are solved one after the other.
 
-Contacts form a class if they have equal velocity, friction, restitution, law and stiffness, and equal coupling
+Contacts form a class if they have equal velocity, friction, restitutions, law and stiffness, and equal coupling
 to each class. They have the same history in the layer: m of them are one contact, whose impulse they share
 equally, W_CD = sum_ij W_ij / (m_C m_D), kappa_C = m_C kappa. A box that falls flat on its face is one contact.
 
@@ -146,10 +146,11 @@ def nothing_slips(contacts, scale_u):
 
 @kernel
 def _same_kind(contacts, i, j, tolerance):
-    """Return whether contacts i and j have the same velocity, friction, restitution, law and stiffness."""
+    """Return whether contacts i and j have the same velocity, friction, restitutions, law and stiffness."""
     u, mu, e = contacts.u, contacts.friction, contacts.restitution
     law, kappa = contacts.law, contacts.stiffness
     same = mu[i] == mu[j] and e[i] == e[j] and law[i] == law[j] and kappa[i] == kappa[j]
+    same = same and contacts.tangential[i] == contacts.tangential[j]
     for r in range(3 if mu[i] > 0.0 else 1):
         same = same and abs(u[3 * i + r] - u[3 * j + r]) <= tolerance
     return same

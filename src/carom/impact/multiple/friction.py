@@ -38,7 +38,7 @@ def gather_stuck(k, work):
     for i in range(k):
         c = work.contact[i]
         if c.mode == OPEN:
-            c.sticks = 0
+            c.sticks &= o.HAS_STUCK
         elif c.sticks == 1 and c.mu > 0.0:
             work.index[o.STUCK, z] = i
             z += 1
@@ -78,10 +78,8 @@ def _bearing(z, work, weight):
 
 @unit
 def find_holding(z, work):
-    """Write H in T = -H a: H = D (D W_ZZ D)^+ D = R R^T, R = D L (L^T L)^-1, by L L^T = D W_ZZ D."""
-    n, vector = 2 * z, work.vector
-    L, M, hold = work.matrix[o.FACTOR], work.matrix[o.MIDDLE], work.matrix[o.HOLDING]
-    weight, order, full = vector[o.SCALE], work.index[o.PIVOTED], 0
+    """Write H in T = -H a: H = D (D W_ZZ D)^+ D."""
+    weight, L, full = work.vector[o.SCALE], work.matrix[o.FACTOR], 0
     if not _bearing(z, work, weight) > limits.LOADED_PART:
         for a in range(z):
             weight[a] = 1.0
@@ -92,6 +90,14 @@ def find_holding(z, work):
         for a in range(z):
             weight[a] += limits.UNLOADED_WEIGHT
         rank = _factor(z, work, L)
+    invert(2 * z, rank, 2, work)
+
+
+@kernel
+def invert(n, rank, rows, work):
+    """Write H = D (D A D)^+ D = R R^T, R = D L (L^T L)^-1, by L L^T = D A D with D for `rows` rows each."""
+    L, M, hold = work.matrix[o.FACTOR], work.matrix[o.MIDDLE], work.matrix[o.HOLDING]
+    weight, order = work.vector[o.SCALE], work.index[o.PIVOTED]
     for p in range(rank):
         for q in range(rank):
             s = 0.0
@@ -101,7 +107,7 @@ def find_holding(z, work):
     factor(rank, 0.0, M)
     for a in range(n):
         for q in range(rank):
-            L[a, q] *= weight[order[a] // 2]
+            L[a, q] *= weight[order[a] // rows]
         substitute(rank, M, L[a])
     for a in range(n):
         for b in range(a + 1):
@@ -113,14 +119,22 @@ def find_holding(z, work):
 
 @kernel
 def _factor(z, work, L):
-    """Write L in D W_ZZ D = L L^T, with rows in the order of pivots; return the rank."""
+    """Write L in D W_ZZ D = L L^T; return the rank."""
     slot, W, weight = work.index[o.STUCK], work.matrix[o.MASS], work.vector[o.SCALE]
-    order, n, largest = work.index[o.PIVOTED], 2 * z, 0.0
+    n, largest = 2 * z, 0.0
     for a in range(n):
         row = W[3 * slot[a // 2] + 1 + a % 2]
         for b in range(a + 1):
             L[a, b] = weight[a // 2] * weight[b // 2] * row[3 * slot[b // 2] + 1 + b % 2]
-        order[a], largest = a, max(largest, L[a, a])
+        largest = max(largest, L[a, a])
+    return decompose(n, largest, work.index[o.PIVOTED], L)
+
+
+@kernel
+def decompose(n, largest, order, L):
+    """Write L in A = L L^T, rows in the order of pivots, over A of the scale `largest`; return its rank."""
+    for a in range(n):
+        order[a] = a
     # directions that do not move, in a plane, are those of round-off
     rank = factor_by_pivots(n, limits.GROUP_ERROR * largest, order, L)
     for b in range(rank):

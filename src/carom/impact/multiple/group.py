@@ -13,7 +13,9 @@ from carom.impact.multiple.moreau import solve_group
 from carom.impact.multiple.restitution import any_targets, energetic, iterate_restitution, run
 from carom.impact.multiple.series import into_lanes
 from carom.impact.multiple.steps import ENDED
+from carom.impact.multiple.tangential import return_slips
 from carom.impact.resolve import resolve
+from carom.impact.tangential import return_slip
 from carom.impact.thresholds import COARSE_TOLERANCE
 
 
@@ -37,6 +39,7 @@ def strike_group(g, contacts, still, by_newton, settings, workspace):
         at_once(n, work, summary)
     else:
         pass_group(n, work, settings, summary)
+    return_slips(n, work)
     energy, index = speed * speed / mass, work.index
     for i in range(contacts.k):
         for a in range(n):
@@ -93,6 +96,7 @@ def _fill(n, contacts, still, exponent, work):
         i = index[o.FIRST_MEMBER, q]
         c = work.contact[a]
         c.mu, c.restitution, c.law = mu[i], contacts.restitution[i], contacts.law[i]
+        c.tangential = contacts.tangential[i]
         c.e, c.members = c.restitution, index[o.CLASS_SIZE, q]
         c.root = (kappa[i] * index[o.CLASS_SIZE, q] * mass / stiff) ** (1.0 / exponent)
         c.grip = mu[i] * (W[3 * a + 1, 3 * a + 1] + W[3 * a + 2, 3 * a + 2])
@@ -132,6 +136,8 @@ def _exactly(contacts, still, work, out):
         summary.marks |= o.CAPPED
     if code != one.OK:
         return o.NOT_RESOLVED
+    if contacts.tangential[i] != 0.0:
+        return_slip(W, before, mu, contacts.tangential[i], single)
     share = 1.0 / index[o.CLASS_SIZE, q]
     for j in range(contacts.k):
         if index[o.CLASS, j] == q:

@@ -95,6 +95,7 @@ def drift(k, work, apart, p):
         c = work.contact[i]
         if c.mode != law.OPEN:
             law.release(c, d[i], work.vector[o.NOW_P, 3 * i], p)
+            law.note_stick(i, work)
         if u[3 * i] < -apart:
             time = min(time, max(0.0, c.d0 - d[i]) / -u[3 * i])
     if not time < math.inf:

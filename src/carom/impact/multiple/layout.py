@@ -31,6 +31,8 @@ CAPPED = 4  #: the law of a contact requires e_* > 1, and is not satisfied: ener
 EXACT = 16  #: contacts that move alike, resolved exactly as one
 REPELLED = 32  #: the impulse was changed by round-off, so that energy does not grow
 
+HAS_STUCK = 2  #: bit of `sticks`: the contact is open, and opened without slip
+
 
 class MultipleSettings(NamedTuple):
     """Settings of the resolver of multiple impacts."""
@@ -65,6 +67,7 @@ class CornerContacts(NamedTuple):
     stiffness: np.ndarray  # (K,), only ratios matter
     # (K,) contacts with equal numbers strike together, others in an impact of their own
     pair: np.ndarray
+    tangential: np.ndarray  # (K,) e_t
 
 
 #: one contact, or a class of contacts that move alike, in scaled variables
@@ -88,7 +91,7 @@ CONTACT = [
     ("mark", "f8"),  # normal impulse at the last change of mode
     ("wedged", "i8"),  # 1: friction keeps it compressed at the end
     # friction
-    ("sticks", "i8"),
+    ("sticks", "i8"),  # 1 if it does, plus HAS_STUCK
     ("grip", "f8"),  # mu times the trace of its W_tt
     # sums
     ("loading", "f8"),  # p_c
@@ -145,7 +148,7 @@ class BlowWork(NamedTuple):
 
     member: np.ndarray  # (K,) places of these contacts among all contacts
     W: np.ndarray  # (3K, 3K)
-    given: np.ndarray  # (4, 3K) rows below
+    given: np.ndarray  # (5, 3K) rows below
     law: np.ndarray  # (2, K) laws and pairs
     result: MultipleResult
 
@@ -157,8 +160,8 @@ class MultipleWorkspace(NamedTuple):
     blow: BlowWork
 
 
-#: rows of `given`: velocity before, friction, restitution, stiffness
-BLOW_U, BLOW_FRICTION, BLOW_RESTITUTION, BLOW_STIFFNESS = range(4)
+#: rows of `given`: velocity before, friction, restitution, stiffness, tangential restitution
+BLOW_U, BLOW_FRICTION, BLOW_RESTITUTION, BLOW_STIFFNESS, BLOW_TANGENTIAL = range(5)
 
 
 #: rows of `index`: class of a contact, first member of a class, its size, its group, members of a group, a
@@ -239,7 +242,7 @@ def new_multiple_workspace(capacity: int) -> MultipleWorkspace:
     )  # fmt: skip
     work.clock["left"] = UNLIMITED
     blow = BlowWork(
-        member=np.zeros(k, dtype=np.int64), W=np.zeros((n, n)), given=np.zeros((4, n)),
+        member=np.zeros(k, dtype=np.int64), W=np.zeros((n, n)), given=np.zeros((5, n)),
         law=np.zeros((2, k), dtype=np.int64), result=new_multiple_result(k),
     )  # fmt: skip
     return MultipleWorkspace(work, blow)

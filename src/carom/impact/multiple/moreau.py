@@ -103,6 +103,7 @@ def _once(k, work, smooth):
         normal = 0.5 * impulse[a] * (before[a] + u[a])
         rub = impulse[a + 1] * (before[a + 1] + u[a + 1])
         rub += impulse[a + 2] * (before[a + 2] + u[a + 2])
+        c.sticks = o.HAS_STUCK if math.hypot(u[a + 1], u[a + 2]) <= VELOCITY_LEFT else 0
         c.absorbed, c.returned = max(0.0, -normal), max(0.0, normal)
         c.loss = max(0.0, -0.5 * rub)
         total += normal + 0.5 * rub

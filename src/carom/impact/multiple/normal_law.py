@@ -13,11 +13,13 @@ that touches at rest.
 
 from __future__ import annotations
 
+import math
+
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.lanes import blocks, value_and_slope, values
 from carom._compiled.simd import LANES, store
 from carom.impact.multiple import layout as o
-from carom.impact.thresholds import IMPACT_ERROR
+from carom.impact.thresholds import IMPACT_ERROR, VELOCITY_LEFT
 
 OPEN, LOAD, UNLOAD = 0, 1, 2
 _EVENT_SAMPLES = 5
@@ -74,6 +76,14 @@ def release(c, d, p_n, p):
     c.mode = OPEN
     c.d0 = d
     c.slope = 0.0
+
+
+@kernel
+def note_stick(i, work):
+    """Mark a contact that has opened without slip: what its tangential restitution needs."""
+    u, c = work.vector[o.NOW_U], work.contact[i]
+    if c.mode == OPEN and math.hypot(u[3 * i + 1], u[3 * i + 2]) <= VELOCITY_LEFT:
+        c.sticks |= o.HAS_STUCK
 
 
 @kernel
@@ -211,6 +221,7 @@ def change_modes(k, work, when, latest, p, one_only):
         count += 1
         if c.mode == OPEN:
             close(c)
+            c.sticks &= ~o.HAS_STUCK
         elif c.mode == LOAD:
             if d - c.d0 > IMPACT_ERROR:
                 unload(c, d, p_n)
@@ -220,6 +231,7 @@ def change_modes(k, work, when, latest, p, one_only):
             release(c, d, p_n, p)
         else:
             load_again(c, p_n)
+        note_stick(i, work)
         if one_only:
             break
     return count

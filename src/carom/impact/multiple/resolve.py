@@ -48,6 +48,7 @@ def resolve_multiple(contacts, settings, workspace, out):
                 k=m, others=contacts.k - m, W=blow.W, u=blow.given[o.BLOW_U],
                 friction=blow.given[o.BLOW_FRICTION], restitution=blow.given[o.BLOW_RESTITUTION],
                 law=blow.law[0], stiffness=blow.given[o.BLOW_STIFFNESS], pair=blow.law[1],
+                tangential=blow.given[o.BLOW_TANGENTIAL],
             )
         )  # fmt: skip
         _together(part, scale, settings, workspace)
@@ -74,7 +75,7 @@ def _together(contacts, scale, settings, workspace):
         CornerContacts(
             k=k, others=contacts.others, W=clean, u=contacts.u, friction=work.vector[o.ACTING_MU],
             restitution=contacts.restitution, law=contacts.law, stiffness=contacts.stiffness,
-            pair=contacts.pair,
+            pair=contacts.pair, tangential=contacts.tangential,
         )
     )  # fmt: skip
     result.classes = reduce(contacts, acting, scale, index)
@@ -111,7 +112,7 @@ def _check(contacts):
             total += row[b]
     for i in range(k):
         mu, e, kappa = contacts.friction[i], contacts.restitution[i], contacts.stiffness[i]
-        total += mu + e + kappa
+        total += mu + e + kappa + contacts.tangential[i]
         sound = mu >= 0.0 and 0.0 <= e <= 1.0 and kappa > 0.0 and 0 <= contacts.law[i] < laws.COUNT
         if not (sound and W[3 * i, 3 * i] >= 0.0):
             return math.nan
@@ -168,6 +169,7 @@ def choose(contacts, every, least, blow, out):
         blow.given[o.BLOW_FRICTION, a] = contacts.friction[i]
         blow.given[o.BLOW_RESTITUTION, a] = contacts.restitution[i]
         blow.given[o.BLOW_STIFFNESS, a] = contacts.stiffness[i]
+        blow.given[o.BLOW_TANGENTIAL, a] = contacts.tangential[i]
         blow.law[0, a], blow.law[1, a] = contacts.law[i], pair[i]
         for r in range(3):
             blow.given[o.BLOW_U, 3 * a + r] = u[3 * i + r]
