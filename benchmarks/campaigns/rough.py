@@ -24,7 +24,9 @@ def case(seed: int) -> Case:
         scene, step = made.scene, made.step
         scene.replace(scene.contacts[0].name, **contact)
     else:
-        pull = (-7.0, 0, -7.0) if kind == "corner" else (0, 0, -9.81)  # into the corner: both at once
+        pull = (
+            (-7.0, 0, -7.0) if kind == "corner" else (0, 0, -9.81)
+        )  # into the corner: both at once
         scene = carom.Scene(gravity=pull)
         for normal in ((0, 0, 1), (1, 0, 0), (-1, 0, 0))[: 3 if kind == "corner" else 1]:
             scene.add_half_space((-0.3 * normal[0], 0, 0), normal)
