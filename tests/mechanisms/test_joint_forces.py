@@ -164,6 +164,19 @@ def test_friction_brakes_a_block_and_holds_it():
     assert solution.ledger.friction[-1] == pytest.approx(-4.5, rel=1e-13)
 
 
+def test_friction_of_no_force_is_none():
+    found = []
+    for bound in ((), (0.0,)):
+        scene, joint = block(speed=3.0)
+        scene.add_stop(joint, upper=1.0, restitution=0.5)
+        for one in bound:
+            scene.add_force(forces.JointFriction(joint, one), name="friction")
+        solution = carom.simulate(scene, 1.0)
+        found.append(solution.position)
+    assert np.array_equal(*found)
+    assert np.all(solution["friction"].force == 0.0)
+
+
 def test_a_spring_with_dry_friction_loses_as_much_each_half_swing():
     # k = 10, F = 2, from -1.03: turning points lie 2 F/k = .4 nearer each time, until |k x| <= F
     errors = []

@@ -87,7 +87,7 @@ class MoreForces:
                 self.pushes.append(_actuator(force, coordinates, functions, self.laws, implicit))
             elif isinstance(d, JointForce) or (isinstance(d, JointSpring) and not implicit):
                 self.pushes.append(_push(force, coordinates, functions))
-            elif isinstance(d, JointFriction):
+            elif isinstance(d, JointFriction) and bound_of(d.bound) > 0.0:
                 self.frictions.append(_friction(d, coordinates, of_frictions))
             elif isinstance(d, UserForce):
                 self.forces.append(self._of_user(force, functions))

@@ -7,7 +7,7 @@ long in a control loop, and arrays (T,) for the times of a run.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -148,7 +148,7 @@ def _along_curve(joint: Sides, p: Placed, c: Placed) -> tuple[Any, Any]:
 
 def gaps_of_rail(joint: Joint, states) -> np.ndarray:
     """Return the distances (T,) of a point from a rail that can be left, towards the free side."""
-    sides, d = sides_of(joint), joint.definition
+    sides, d = sides_of(joint), cast(Any, joint.definition)
     p, c = (placed(side, states) for side in (sides.parent, sides.child))
     s, _, _, beside = _foot(sides, p, c)
     return np.sum(d.free(joint.anchor(), s) * beside, axis=1)

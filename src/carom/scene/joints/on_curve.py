@@ -81,7 +81,7 @@ class PointOnCurve(OnCurve):
     """
 
     anchor: VectorOrNone = fields.vector(None)
-    side: VectorOrNone = fields.direction(None)
+    side: Value[Any, Any] = fields.direction(None)
     restitution: Value[Any, Any] = number_or_law(0.0)
     friction: Value[Any, Any] = friction_or_law(0.0)
     impact_law: Word = fields.word(IMPACT_LAWS, "newton")
