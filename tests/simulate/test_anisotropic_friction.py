@@ -349,6 +349,31 @@ def test_materials_combine_along_and_across():
         scene.contact_law("ski", "two")
 
 
+def test_a_part_has_its_own():
+    # a sledge of a runner and a rubber block, loaded alike: the runner alone drags across
+    law, mu = Friction(axis=(1, 0, 0), along=0.1, across=0.5), 0.3
+    foot = carom.Box(0.1, 0.02, 0.02)
+    ski, rubber, ice = (carom.Material(restitution=0, friction=f) for f in (law, mu, 0.0))
+    parts = [carom.Part(foot, (0, y, 0), material=one) for y, one in ((-0.1, ski), (0.1, rubber))]
+    for way, of_ski in (((1, 0, 0), 0.1), ((0, 1, 0), 0.5)):
+        scene = carom.Scene(gravity=(0, 0, -G))
+        scene.add_half_space((0, 0, 0), (0, 0, 1), material=ice, name="floor")
+        scene.set_contact_default(combine="max")
+        turn = np.array(way) * 2.0
+        scene.add_body(
+            carom.Compound(parts), mass=1, position=(0, 0, 0.01), velocity=turn, material=rubber
+        )
+        found = carom.simulate(scene, 1e-3, step=1e-4)
+        drag = -found.velocity[-1, 0] @ way + 2.0
+        if way[0]:  # equal loads
+            assert drag == pytest.approx(0.5 * (of_ski + mu) * G * 1e-3, rel=1e-3)
+        else:  # the loads differ by the moment of the drag about the mass centre, at 0.01 above the floor
+            shift = 0.01 * drag / (G * 1e-3)
+            share = 0.5 + shift / 0.2
+            expected = (share * mu + (1 - share) * of_ski) * G * 1e-3
+            assert drag == pytest.approx(expected, rel=1e-2)
+
+
 def test_what_is_refused():
     law = Friction(axis=(0, 2, 0), along=0.1, across=0.4)
     assert law.axis == (0.0, 1.0, 0.0)

@@ -347,7 +347,7 @@ def _checked(law: ContactLaw, whole: ContactLaw, surface: Surface) -> ContactLaw
     """Return the law of two parts; refuse coefficients of parts that are different laws of the speed."""
     for name in ("restitution", "friction", "friction_held"):
         e = getattr(law, name), getattr(whole, name)
-        if e[0] != e[1] and any(isinstance(one, SpeedLaw) for one in e):
+        if e[0] != e[1] and any(isinstance(one, SpeedLaw) and not grain(one) for one in e):
             raise ValueError(
                 f"{name} must be a number for each part of {surface.name!r}, or one law for all, "
                 f"got {e[0]:g} and {e[1]:g}"

@@ -150,10 +150,7 @@ def impact_table(solution) -> ImpactTable:
         inverse_mass=rows.W / arm[:, None, None] ** 2,
         impulse=rows.impulse * arm[:, None],
         restitution=np.where(_differs(contacts["restitution"], first)[place], np.nan, e),
-        friction=np.where(
-            _differs(contacts["friction"], first)[place] | (contacts["grain_of"][c] > 0), np.nan,
-            contacts["friction"][c],
-        ),
+        friction=np.where(_not_one_mu(contacts, first)[place], np.nan, contacts["friction"][c]),
         wedged=(rows.phases & WEDGED) // WEDGED,
         located=1 - (rows.phases & AT_END) // AT_END,
         **named(rows.contact, solution.scene, solution.pairs),
@@ -170,6 +167,13 @@ def impact_table(solution) -> ImpactTable:
 def _differs(values: np.ndarray, first: np.ndarray) -> np.ndarray:
     """Return for each contact whether its rows, which are those from `first` on, have different values."""
     return np.minimum.reduceat(values, first) < np.maximum.reduceat(values, first)
+
+
+def _not_one_mu(contacts, first: np.ndarray) -> np.ndarray:
+    """Return for each contact whether it has several coefficients of friction: of parts, or of directions."""
+    return _differs(contacts["friction"], first) | np.maximum.reduceat(
+        contacts["grain_of"] > 0, first
+    )
 
 
 def _restitutions(rows, e: np.ndarray, arm: np.ndarray, solution) -> np.ndarray:
