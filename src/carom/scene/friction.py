@@ -164,14 +164,14 @@ class TableFriction(FrictionLaw):
 
 
 FRICTION_LAWS = (Friction, TableFriction)
-_checked = partial(
+checked_friction = partial(
     number_or_law, law=FrictionLaw, example="carom.Friction(static=0.4, kinetic=0.3)", least=0
 )
 
 
 def friction(default: Any = REQUIRED) -> Value[Any, Any]:
     """Return a field for a coefficient of friction: a number at least 0, or a law."""
-    return Value(_checked, default)
+    return Value(checked_friction, default)
 
 
 def bound_of(mu: float | FrictionLaw) -> float:

@@ -6,6 +6,9 @@ load and slip is lost. It is the limit of the passage if masses are far apart, b
 equilibrium between the slow contacts of heavy ones. If there is no such velocity (a body trapped between two
 walls), or if the energy would rise, the least e is used for all contacts, and then e = 0. Where that is not
 solved either, there is no friction: this problem always has a solution, which never raises the energy.
+
+A coefficient that depends on the slip is that of the velocity after, like the cone, by iteration from the one
+that bounds stick: what that holds sticks.
 """
 
 from __future__ import annotations
@@ -21,14 +24,16 @@ from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.layout import AT_ONCE, PLASTIC
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.layer import set_velocity, start
+from carom.impact.multiple.slip_law import by_law, in_slip, slip_of
 from carom.impact.thresholds import GAIN, VELOCITY_LEFT, VISIBLE_ERROR
 
 #: in turn: each contact with its own e, all with the least, none with any, and then without friction
 OWN_E, LEAST_E, NO_E, NO_FRICTION = range(4)
+_MOST_TURNS = 30  # of the iteration of mu
 
 
 @unit
-def solve_group(k, work) -> tuple[int, float]:
+def solve_group(k, work, passage) -> tuple[int, float]:
     """Resolve the group; return its marks, and the change of energy in a plastic event."""
     vector, W, least, most = work.vector, work.matrix[o.MASS], 1.0, 0.0
     marks, change = PLASTIC, 0.0
@@ -40,7 +45,7 @@ def solve_group(k, work) -> tuple[int, float]:
         for i in range(k):
             c = work.contact[i]
             c.e = c.restitution if way == OWN_E else least if way == LEAST_E else 0.0
-        change = _once(k, work, way == NO_FRICTION)
+        change = _once(k, work, passage, way == NO_FRICTION)
         marks = AT_ONCE if way == OWN_E else AT_ONCE | o.MISSED if way == LEAST_E else PLASTIC
         if sound(
             W, vector[o.U0], vector[o.NOW_U], vector[o.NOW_P], 1.0, (3 * k, VELOCITY_LEFT, GAIN)
@@ -80,7 +85,19 @@ def round_off(n, row, impulse):
 
 
 @kernel
-def _once(k, work, smooth):
+def _mu_changes(k, work, passage, u):
+    """Write mu at the slip after, where there is any; return whether it has changed."""
+    changed, mu = False, work.vector[o.MOREAU_MU]
+    for i in range(k):
+        c, slip = work.contact[i], slip_of(u, i)
+        if by_law(c) and slip > VELOCITY_LEFT:
+            before, mu[i] = mu[i], in_slip(c, passage, slip)
+            changed = changed or abs(mu[i] - before) > GAIN
+    return changed
+
+
+@kernel
+def _once(k, work, passage, smooth):
     """Solve the contact problem, `smooth` without friction; return the change of energy."""
     vector, heading, total = work.vector, work.heading, 0.0
     before, bias, u, impulse = vector[o.U0], vector[o.MOREAU_C], vector[o.NOW_U], vector[o.NOW_P]
@@ -96,8 +113,11 @@ def _once(k, work, smooth):
     problem = by_reference(
         ContactProblem(W=work.matrix[o.MASS], c=bias, mu=mu, kind=kind, heading=heading)
     )
-    solve_cones(k, problem, impulse, work.cones)
-    set_velocity(k, work)
+    for _ in range(_MOST_TURNS):
+        solve_cones(k, problem, impulse, work.cones)
+        set_velocity(k, work)
+        if smooth or not passage.by_slip or not _mu_changes(k, work, passage, u):
+            break
     for i in range(k):
         c, a = work.contact[i], 3 * i
         normal = 0.5 * impulse[a] * (before[a] + u[a])
