@@ -111,6 +111,13 @@ class Passage:
             way = a / np.hypot(*a)
         return y
 
+    def event(self, j):
+        def gauge(t, y):
+            return self.gauges(t, y)[j] - SMALL
+
+        gauge.terminal, gauge.direction = True, 1.0
+        return gauge
+
     def run(self):
         """Return the velocities after, or None after too many events."""
         y, t = np.zeros(4 * self.k), 0.0
@@ -120,16 +127,9 @@ class Passage:
                 return u
             live = [j for j in range(2 * self.k) if j < self.k or self.mode[j - self.k] != OPEN]
 
-            def event(j):
-                def g(t, y):
-                    return self.gauges(t, y)[j] - SMALL
-
-                g.terminal, g.direction = True, 1.0
-                return g
-
             found = solve_ivp(
                 self.rates, (t, t + 50.0), y, method="DOP853", rtol=1e-12, atol=1e-14,
-                events=[event(j) for j in live],
+                events=[self.event(j) for j in live],
             )  # fmt: skip
             t, y = found.t[-1], found.y[:, -1]
             hit = [j for j, times in zip(live, found.t_events) if len(times)]
@@ -146,3 +146,131 @@ def case(seed, k=2, slip=1.0):
     u = slip * rng.normal(size=(k, 3))
     u[:, 0] = -rng.uniform(0.3, 1.0, size=k)
     return A @ A.T / (5 * k), u, rng.uniform(0.3, 0.9)
+
+
+# seeds whose slip the integration passes quickly: with slip at first, with little, and from rest
+SEEDS = [(seed, slip) for slip, seeds in ((1.0, (0, 2, 5)), (0.1, (0, 7, 9)), (0.0, (11, 14, 17)))
+         for seed in seeds]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_two_contacts_along_their_slip(name):
+    law = LAWS[name]
+    for seed, slip in SEEDS:
+        W, u, e = case(seed, slip=slip)
+        exact = Passage(W, u, [law, law], e)
+        exact.sticks = [slip == 0.0] * 2
+        after = exact.run()
+        for rtol in (1e-8, 1e-10):
+            found = carom.resolve_impacts(W, u, law, e, "stronge", rtol=rtol)
+            # errors of the steps add up; those of order four are 1e-10 at least
+            assert found.velocity_after == pytest.approx(after, abs=2e-9 + rtol)
+            assert found.energy_change < 0.0
+            assert (found.friction_loss >= 0.0).all()
+
+
+@pytest.mark.parametrize("seed", [10, 13])
+def test_a_contact_breaks_away_in_the_impact(seed):
+    W, u, e = case(seed, slip=0.0)
+    exact = Passage(W, u, [LAWS["kinetic"]] * 2, e)
+    exact.sticks = [True, True]
+    after = exact.run()
+    assert exact.sticks == [False, False]
+    found = carom.resolve_impacts(W, u, LAWS["kinetic"], e, "stronge", rtol=1e-9)
+    assert found.velocity_after == pytest.approx(after, abs=2e-9)
+    assert found.steps < 500
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5])
+def test_a_law_that_is_a_number(exponent):
+    for seed in range(6):
+        W, u, _ = case(seed, k=3)
+        by_law, by_number = (
+            carom.resolve_impacts(W, u, mu, 0.5, "poisson", exponent=exponent)
+            for mu in (Friction(0.3, 0.3), 0.3)
+        )
+        assert by_law.velocity_after == pytest.approx(by_number.velocity_after, abs=3e-8)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_one_contact_in_the_layer(name):
+    # what couples the second contact, which is at rest, is far below the tolerance
+    for seed in range(4):
+        W, u, e = case(seed)
+        W[:3, 3:], u[1] = 1e-11, 0.0
+        W[3:, :3] = W[:3, 3:].T
+        found = carom.resolve_impacts(W, u, LAWS[name], e, "stronge", rtol=1e-10)
+        one = carom.resolve_impacts(W[:3, :3], u[:1], LAWS[name], e, "stronge")
+        assert found.events > 0
+        assert one.events == 0  # without the layer
+        assert found.velocity_after[0] == pytest.approx(one.velocity_after[0], abs=1e-9)
+
+
+def test_laws_part_contacts_that_are_alike_otherwise():
+    W = np.kron(np.eye(2), np.diag([1.0, 2.0, 2.0])) + 0.2
+    u = np.array([[-1.0, 0.8, 0.1]] * 2)
+    laws = Friction(0.5, 0.2), Friction(0.5, 0.3)
+    alike = carom.resolve_impacts(W, u, [laws[0], laws[0]], 0.5, "stronge").impulse
+    other = carom.resolve_impacts(W, u, laws, 0.5, "stronge").impulse
+    assert alike[0] == pytest.approx(alike[1], abs=1e-12)
+    assert np.hypot(*other[1, 1:]) > 1.3 * np.hypot(*other[0, 1:])
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_a_plastic_event_has_the_friction_of_its_slip_after(name):
+    slips = 0
+    for seed in range(6):
+        W, u, _ = case(seed, k=3)
+        found = carom.resolve_impacts(W, u, LAWS[name], 0.0)
+        for v, p in zip(found.velocity_after, found.impulse):
+            slip, friction = np.hypot(*v[1:]), np.hypot(*p[1:])
+            if slip > 1e-6 and p[0] > 0.0:
+                assert friction == pytest.approx(float(LAWS[name](slip)) * p[0], rel=1e-5)
+                slips += 1
+            else:
+                assert friction <= LAWS[name].bound * p[0] * (1 + 1e-9) or name == "rising"
+    assert slips > 3
+
+
+def random_laws(rng, k):
+    """Return laws of each kind, and numbers."""
+    out = []
+    for kind in rng.integers(4, size=k):
+        c, r = rng.uniform(0.05, 0.6), rng.uniform(1, 3)
+        speed, exponent = 10 ** rng.uniform(-2, 0.5), rng.choice([0.5, 1.0, 2.0])
+        table = np.sort(rng.uniform(0, 3, 4)), rng.uniform(0.05, 1.0, 4)
+        out.append(
+            [Friction(c * r, c), Friction(c * r, c, speed, exponent), Friction.table(*table), c][
+                kind
+            ]
+        )
+    return out
+
+
+def test_energy_never_grows():
+    law = ["newton", "poisson", "stronge"]
+    for seed in range(60):
+        rng = np.random.default_rng([47, seed])
+        k = int(rng.integers(2, 9))
+        rank = 3 * k + 2 if seed % 2 else int(rng.integers(3, 3 * k))
+        A = rng.normal(size=(3 * k, rank))
+        u = (A @ rng.normal(size=rank)).reshape(k, 3) * rng.choice([0.1, 1.0, 10.0])
+        u *= 1.0 if u[:, 0].min() < 0.0 else -1.0
+        found = carom.resolve_impacts(
+            A @ A.T / rank, u, random_laws(rng, k), rng.uniform(0.1, 1, k), law[seed % 3],
+            exponent=(1.0, 1.5)[seed // 3 % 2],
+        )  # fmt: skip
+        p, after = found.impulse, found.velocity_after
+        assert 0.5 * np.sum(p * (u + after)) <= 1e-9 * np.sum(np.abs(p * u))
+        assert after[:, 0].min() >= -1e-6 * np.abs(u).max()
+        assert (found.friction_loss >= 0.0).all()
+        assert not found.at_once
+
+
+@pytest.mark.plain
+def test_nonsense_is_refused():
+    W, u, _ = case(0)
+    with pytest.raises(ValueError, match="friction must be one value or 2 of them"):
+        carom.resolve_impacts(W, u, [LAWS["kinetic"]], 0.5)
+    with pytest.raises(ValueError, match=r"friction\[1\] must be"):
+        carom.resolve_impacts(W, u, [LAWS["kinetic"], -1.0], 0.5)

@@ -167,7 +167,7 @@ class PassageWork(NamedTuple):
     clock: np.recarray  # (1,) CLOCK
     index: np.ndarray  # (12, 3K) rows below
     matrix: np.ndarray  # (7, 3K, 3K) below
-    vector: np.ndarray  # (34, 3K) rows below
+    vector: np.ndarray  # (36, 3K) rows below
     series: np.ndarray  # (18, ORDERS, B, 4) below; contact i is lane i % 4 of block i // 4
     # (3K, 3B, 4) W of the group, scaled, in lanes: blocks of n, then of t1 and t2
     columns: np.ndarray
@@ -219,8 +219,8 @@ DISC_T, WEIGHT, SCALE, STICK_T, ORDER_P, ORDER_U = range(15, 21)
 OUT_X, OUT_F, OUT_NEW, OUT_DX, OUT_DF, OUT_H, OUT_BEST, OUT_BEST_F, OUT_LAST, OUT_V = range(21, 31)
 #: velocity before of one contact; of Moreau's problem: velocity without impulses, friction
 SINGLE_U, MOREAU_C, MOREAU_MU = 12, 31, 32
-#: mu at the slip of a stage
-SLIP_MU = 33
+#: of friction by laws: mu at the slip of a stage, by how much it misses the law, and mu before
+SLIP_MU, MISS, MU_BEFORE = 33, 34, 35
 #: first index of `series`: velocity n, t1, t2; impulse n, t1, t2; depth; N; |u_t|^2; |u_t|; mu N/|u_t|, the
 #: same times dt/dtau; 1/|u_t|; friction loss; dtau/dt and dt/dtau; numbers of each contact (rows below)
 S_U, S_U1, S_U2, S_P, S_P1, S_P2, S_D, S_N, S_Q, S_R, S_F, S_FS, S_G, S_LOSS, S_RATE, S_SIGMA = (
@@ -272,7 +272,7 @@ def new_multiple_workspace(capacity: int) -> MultipleWorkspace:
     work = PassageWork(
         contact=table(CONTACT, k), saved=table(CONTACT, k), clock=table(CLOCK, 1),
         index=np.zeros((12, n), dtype=np.int64), matrix=np.zeros((7, n, n)),
-        vector=np.zeros((34, 3 * LANES * blocks)), series=np.zeros((18, ORDERS, blocks, LANES)),
+        vector=np.zeros((36, 3 * LANES * blocks)), series=np.zeros((18, ORDERS, blocks, LANES)),
         columns=np.zeros((n, 3 * blocks, LANES)), stage=np.zeros((2, 6, n)),
         single=np.zeros(SIZE), cones=new_contact_work(k), heading=np.zeros((k, 2)),
     )  # fmt: skip

@@ -24,7 +24,7 @@ from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.layout import AT_ONCE, PLASTIC
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.layer import set_velocity, start
-from carom.impact.multiple.slip_law import by_law, in_slip, slip_of
+from carom.impact.multiple.slip_law import by_law, by_secant, in_slip, slip_of
 from carom.impact.thresholds import GAIN, VELOCITY_LEFT, VISIBLE_ERROR
 
 #: in turn: each contact with its own e, all with the least, none with any, and then without friction
@@ -86,14 +86,15 @@ def round_off(n, row, impulse):
 
 @kernel
 def _mu_changes(k, work, passage, u):
-    """Write mu at the slip after, where there is any; return whether it has changed."""
-    changed, mu = False, work.vector[o.MOREAU_MU]
+    """Improve mu for the slip after, where there is any; return whether it has missed that."""
+    misses, mu = False, work.vector[o.MOREAU_MU]
     for i in range(k):
         c, slip = work.contact[i], slip_of(u, i)
-        if by_law(c) and slip > VELOCITY_LEFT:
-            before, mu[i] = mu[i], in_slip(c, passage, slip)
-            changed = changed or abs(mu[i] - before) > GAIN
-    return changed
+        if by_law(c) and (slip > VELOCITY_LEFT or mu[i] > c.mu):
+            miss = in_slip(c, passage, slip) - mu[i]
+            misses = misses or abs(miss) > GAIN
+            mu[i] = by_secant(i, mu[i], miss, work)
+    return misses
 
 
 @kernel
@@ -107,6 +108,7 @@ def _once(k, work, passage, smooth):
     for i in range(k):
         bias[3 * i] += work.contact[i].e * min(0.0, bias[3 * i])
         mu[i] = 0.0 if smooth else work.contact[i].mu
+        work.vector[o.MU_BEFORE, i] = mu[i]
         kind[i], heading[i, 0], heading[i, 1] = CONE, 0.0, 0.0
     work.cones.mismatch[ENOUGH] = 0.0
     work.cones.count[BUDGET] = budget(k)

@@ -16,7 +16,7 @@ from carom.friction.dense import add_product
 from carom.impact.multiple import layout as o
 from carom.impact.multiple import normal_law as law
 from carom.impact.multiple.friction import gather_discs, push, slip_of, solve_discs
-from carom.impact.thresholds import IMPACT_ERROR, INSTANT, PULL
+from carom.impact.thresholds import IMPACT_ERROR, INSTANT, LEAST_SLOPE, PULL
 
 
 @inlined
@@ -43,16 +43,27 @@ def set_mu(m, work, passage, u):
 
 
 @kernel
-def greatest_change(m, work, passage, step, force, u):
-    """Return the greatest change of velocity that mu at the velocity u would make within `step`."""
-    most = 0.0
+def improve_mu(m, work, passage, step, force, u):
+    """Improve mu of `m` discs for the slip at the velocity u; return how much velocity it misses in `step`."""
+    most, mu = 0.0, work.vector[o.SLIP_MU]
     for s in range(m):
         i = work.index[o.IN_DISC, s]
         c = work.contact[i]
         if by_law(c) and c.sticks == 0:
-            change = abs(in_slip(c, passage, slip_of(u, i)) - work.vector[o.SLIP_MU, i])
-            most = max(most, change * step * force[3 * i] * c.grip / c.mu)
+            miss = in_slip(c, passage, slip_of(u, i)) - mu[i]
+            most = max(most, abs(miss) * step * force[3 * i] * c.grip / c.mu)
+            mu[i] = by_secant(i, mu[i], miss, work)
     return most
+
+
+@kernel
+def by_secant(i, mu, miss, work):
+    """Return a better mu of contact i, which misses its law by `miss`; a law may change steeply."""
+    before, slope = work.vector[o.MU_BEFORE], -1.0
+    if mu != before[i]:
+        slope = min((miss - work.vector[o.MISS, i]) / (mu - before[i]), LEAST_SLOPE)
+    before[i], work.vector[o.MISS, i] = mu, miss
+    return max(0.0, mu - miss / slope)
 
 
 @kernel
@@ -109,9 +120,14 @@ def pull(k, work, passage, d, u, slow) -> float:
 
 @kernel
 def let_go(k, work, passage, slow):
-    """Let contacts slip that their static coefficient cannot hold; those beside them may follow."""
+    """Let contacts slip that their static coefficient cannot hold; those beside them may follow.
+
+    Write the forces of this instant.
+    """
     d, u = work.vector[o.D], work.vector[o.NOW_U]
     while pull(k, work, passage, d, u, slow) > PULL:
         for i in range(k):
             if work.vector[o.WEIGHT, i] > PULL:
                 work.contact[i].sticks = 0
+    for i in range(3 * k):
+        work.stage[o.FORCE, 0, i] = work.vector[o.SCRATCH, i]

@@ -24,11 +24,10 @@ from carom.impact.multiple.layer import set_velocity
 from carom.impact.multiple.slip_law import (
     by_law,
     crosses_rest,
-    greatest_change,
+    improve_mu,
     jump,
     let_go,
     pull,
-    set_mu,
 )
 from carom.impact.thresholds import (
     CHANGE_TOLERANCE,
@@ -82,7 +81,8 @@ def by_stages(k, work, rtol, passage) -> tuple[float, bool]:
         let_go(k, work, passage, slip_at_rest(rtol))
     m = gather_discs(k, work, u, math.inf)
     h, slow = clock.step, slip_at_rest(rtol)
-    present_forces(k, m, work, h, passage, rtol)
+    if not passage.by_slip:
+        present_forces(k, m, work, h, passage.exponent, rtol)
     while True:
         error = implicit_step(k, m, work, h, passage, rtol)
         clock.steps += 1
@@ -292,7 +292,7 @@ def implicit_step(k, m, work, h, passage, rtol) -> float:
 
 
 @kernel
-def present_forces(k, m, work, h, passage, rtol):
+def present_forces(k, m, work, h, p, rtol):
     """Write the forces of this instant; `m` discs are gathered.
 
     For a contact that slips, T = -mu N u_t/|u_t|; for contacts at rest, T is the solution of §2.3. Both are
@@ -300,7 +300,7 @@ def present_forces(k, m, work, h, passage, rtol):
     """
     vector, force, moment = work.vector, work.stage[o.FORCE, 0], INSTANT_STEP * h
     u, ahead, q = vector[o.NOW_U], vector[o.NEW_U], vector[o.SCRATCH]
-    normal_forces(k, work, vector[o.D], passage.exponent, force)
+    normal_forces(k, work, vector[o.D], p, force)
     for i in range(k):
         n = 3 * i
         slip = math.sqrt(u[n + 1] * u[n + 1] + u[n + 2] * u[n + 2])
@@ -310,8 +310,6 @@ def present_forces(k, m, work, h, passage, rtol):
             ahead[n + r] = u[n + r] if r == 0 else moves * u[n + r]
     add_product(3 * k, work.matrix[o.MASS], q, ahead)
     if m > 0:
-        if passage.by_slip:
-            set_mu(m, work, passage, u)
         solve_discs(m, work, moment, force, ahead, SLIP_SHARE * rtol * INSTANT_STEP)
 
 
@@ -323,12 +321,13 @@ def add_friction(sizes, work, s, step, passage, rtol):
     """
     _, m = sizes
     force, u, least = work.stage[o.FORCE, s], work.vector[o.NEW_U], SLIP_SHARE * rtol
+    for i in range(sizes[0] if passage.by_slip else 0):
+        work.vector[o.MU_BEFORE, i] = work.vector[o.SLIP_MU, i]
     for _ in range(_MOST_TURNS):
         solve_discs(m, work, step, force, u, least)
         push(sizes, work, step, force, u)
-        if not passage.by_slip or greatest_change(m, work, passage, step, force, u) <= least:
+        if not passage.by_slip or improve_mu(m, work, passage, step, force, u) <= least:
             return True
-        set_mu(m, work, passage, u)
         push(sizes, work, -step, force, u)
     return False
 
