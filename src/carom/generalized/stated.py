@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from carom.fields import Number, Value, Word, number, word
+from carom.fields import Value, Word, word
+from carom.scene.friction import friction
 from carom.scene.materials import IMPACT_LAWS
 from carom.scene.restitution import restitution as number_or_law
 
@@ -19,8 +20,8 @@ class CoordinateContact:
     name : str
     restitution : float or Restitution
         Coefficient of restitution e, or its law.
-    friction : float
-        Friction coefficient mu.
+    friction : float or Friction
+        Friction coefficient mu, or its law.
     impact_law : {"newton", "poisson", "stronge"}
     index : int
         Its index in `GeneralizedSystem.contacts`.
@@ -28,6 +29,6 @@ class CoordinateContact:
 
     name: str
     restitution: Value[Any, Any] = number_or_law()
-    friction: Number = number(least=0.0)
+    friction: Value[Any, Any] = friction()
     impact_law: Word = word(IMPACT_LAWS)
     index: int = 0
