@@ -23,7 +23,6 @@ def remarks(rows, events, run) -> tuple[str, ...]:
         *_gains(rows, run),
         *_of_laws(rows, run),
         *_without_slip(rows, run),
-        *_as_they_began(rows, run),
     ]
     jams = events["kind"] == r.JAMS
     if not (jams.any() or (rows["phases"] & (PHASE_JAM | PLASTIC)).any()):
@@ -91,21 +90,6 @@ def _without_slip(rows, run) -> list[str]:
     return [
         f"{len(np.unique(found['time']))} impacts of several contacts were without the tangential restitution "
         f"of their contacts, which only single ones have, the first {_place(found[0], run)}."
-    ]
-
-
-def _as_they_began(rows, run) -> list[str]:
-    """Return a sentence about impacts of several contacts whose friction is a law."""
-    contacts = run.compiled.system.contacts
-    by_slip = contacts["last_friction_piece"][:, 0] > contacts["friction_piece"][:, 0]
-    if not by_slip.any():
-        return []
-    found = rows[np.isin(rows["contact"], contacts["number"][by_slip]) & (rows["together"] > 1)]
-    if not len(found):
-        return []
-    return [
-        f"{len(np.unique(found['time']))} impacts of several contacts had the friction of their slip at the "
-        f"beginning, because only single ones follow a law of friction, the first {_place(found[0], run)}."
     ]
 
 
