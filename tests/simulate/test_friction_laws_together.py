@@ -104,7 +104,9 @@ def test_what_a_study_varies():
         scene.replace("block-floor", friction=replace(LAW, **new))
         x = carom.simulate(scene, 0.2).position[-1, 0]
         assert many.outcomes["position"][run, 0] == pytest.approx(x, abs=1e-12)
-    with pytest.raises(ValueError, match=r"vary\['block-floor.friction.kinetic'\] in run 1: static"):
+    with pytest.raises(
+        ValueError, match=r"vary\['block-floor.friction.kinetic'\] in run 1: static"
+    ):
         carom.ensemble(scene, 0.2, vary={"block-floor.friction.kinetic": [0.1, 2.0]})
 
 
@@ -126,11 +128,15 @@ def test_identify_finds_the_numbers_of_a_law():
     times = np.linspace(0.0, 0.3, 31)
     found = carom.simulate(sliding(0.25), 0.3, save_at=times)
     recordings = [Recording(found.t, found.position[:, 0], found.orientation[:, 0])]
+    # the search begins where the static coefficient would be below the kinetic one
+    parameters = {
+        "block-floor.friction.kinetic": (0.5, 0.1),
+        "block-floor.friction.static": (0.51, 0.1),
+    }
     fit = carom.identify(
-        sliding(0.4), recordings, {"block-floor.friction.kinetic": (0.4, 0.1)},
-        squared_error(1.0, 1.0), resamples=0, tolerance=1e-6,
-    )  # fmt: skip
-    assert fit.parameters["block-floor.friction.kinetic"] == pytest.approx(0.25, abs=1e-4)
+        sliding(0.4), recordings, parameters, squared_error(1.0, 1.0), resamples=0, tolerance=1e-3
+    )
+    assert list(fit.parameters.values()) == pytest.approx([0.25, 0.6], abs=1e-3)
 
 
 def test_files_keep_laws(tmp_path):
