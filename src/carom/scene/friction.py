@@ -12,14 +12,7 @@ from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.fields import REQUIRED, Number, NumberOrNone, Value, number
-from carom.scene.speed_law import (
-    Curve,
-    SpeedLaw,
-    check_table,
-    number_or_law,
-    numbers,
-    through_points,
-)
+from carom.scene.speed_law import Curve, SpeedLaw, TableLaw, number_or_law
 
 #: piece of exp(-z) at z = 0 whose polynomial of degree 5 is exact to round-off, and where exp(-z) is round-off
 FIRST_PIECE, LAST_PLACE = 0.016, 38.0
@@ -140,15 +133,13 @@ exponent=1.0), impact_law='newton')
 
 
 @dataclass(frozen=True, repr=False)
-class TableFriction(FrictionLaw):
+class TableFriction(TableLaw, FrictionLaw):
     """A monotone cubic through measured points: `Friction.table`."""
 
-    speeds: Value[tuple[float, ...], Any] = Value(numbers)
-    values: Value[tuple[float, ...], Any] = Value(numbers)
     _kind = "Friction.table"
 
     def __post_init__(self):
-        check_table(self.speeds, self.values)
+        super().__post_init__()
         if not min(self.values) > 0.0:
             raise ValueError(f"values must be above 0, got {checks.shown(self.values)}")
 
@@ -156,11 +147,6 @@ class TableFriction(FrictionLaw):
     def bound(self) -> float:
         """The first value."""
         return self.values[0]
-
-    @property
-    def curve(self) -> Curve:
-        """A cubic in s for each two points."""
-        return through_points(self.speeds, self.values)
 
 
 FRICTION_LAWS = (Friction, TableFriction)

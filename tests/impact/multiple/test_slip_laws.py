@@ -276,3 +276,27 @@ def test_nonsense_is_refused():
         carom.resolve_impacts(W, u, [LAWS["kinetic"]], 0.5)
     with pytest.raises(ValueError, match=r"friction\[1\] must be"):
         carom.resolve_impacts(W, u, [LAWS["kinetic"], -1.0], 0.5)
+
+
+def test_a_jam_in_an_impact_by_a_law():
+    # a rod in Painleve's paradox: friction drives it into the ground until its slip has ended
+    law, e = Friction(2.0, 1.5, speed=1.0), 0.5
+    W = np.array([[1.75, 1.3, 0.0], [1.3, 3.25, 0.0], [0.0, 0.0, 1.0]])
+
+    def slip(p, u):
+        mu = float(law(max(u[1], 0.0)))
+        return W[0, 0] - mu * W[0, 1], W[0, 1] - mu * W[1, 1]
+
+    def stops(p, u):
+        return u[1] - 1e-13
+
+    stops.terminal = True
+    path = solve_ivp(
+        slip, (0, 9), (-0.1, 1.0), method="DOP853", rtol=1e-13, atol=1e-14, events=stops
+    )
+    deepest, stick = path.y[0, -1], W[0, 0] - W[0, 1] ** 2 / W[1, 1]
+    assert deepest < -0.15
+    p = path.t[-1] - deepest / stick  # of compression; friction sticks from its lowest point on
+    found = carom.resolve_impacts(W, [[-0.1, 1.0, 0.0]], law, e, "poisson")
+    assert found.velocity_after[0] == pytest.approx([stick * e * p, 0.0, 0.0], abs=1e-11)
+    assert found.impulse[0, 0] == pytest.approx((1.0 + e) * p, rel=1e-11)

@@ -24,12 +24,11 @@ from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.layout import AT_ONCE, PLASTIC
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.layer import set_velocity, start
-from carom.impact.multiple.slip_law import by_law, by_secant, in_slip, slip_of
+from carom.impact.multiple.slip_law import MOST_TURNS, by_law, by_secant, in_slip, slip_of
 from carom.impact.thresholds import GAIN, VELOCITY_LEFT, VISIBLE_ERROR
 
 #: in turn: each contact with its own e, all with the least, none with any, and then without friction
 OWN_E, LEAST_E, NO_E, NO_FRICTION = range(4)
-_MOST_TURNS = 30  # of the iteration of mu
 
 
 @unit
@@ -115,7 +114,7 @@ def _once(k, work, passage, smooth):
     problem = by_reference(
         ContactProblem(W=work.matrix[o.MASS], c=bias, mu=mu, kind=kind, heading=heading)
     )
-    for _ in range(_MOST_TURNS):
+    for _ in range(MOST_TURNS):
         solve_cones(k, problem, impulse, work.cones)
         set_velocity(k, work)
         if smooth or not passage.by_slip or not _mu_changes(k, work, passage, u):

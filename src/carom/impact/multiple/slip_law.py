@@ -18,6 +18,8 @@ from carom.impact.multiple import normal_law as law
 from carom.impact.multiple.friction import gather_discs, push, slip_of, solve_discs
 from carom.impact.thresholds import IMPACT_ERROR, INSTANT, LEAST_SLOPE, PULL
 
+MOST_TURNS = 30  # of the iteration of mu, and of that for the place of break-away
+
 
 @inlined
 def by_law(c):

@@ -22,6 +22,7 @@ from carom.impact.multiple import normal_law as law
 from carom.impact.multiple.friction import gather_discs, push, slip_of, solve_discs
 from carom.impact.multiple.layer import set_velocity
 from carom.impact.multiple.slip_law import (
+    MOST_TURNS,
     by_law,
     crosses_rest,
     improve_mu,
@@ -66,9 +67,6 @@ DEFECT = WEIGHTS - np.array([
     4586570599 / 29645900160, 0.0, 178811875 / 945068544, 814220225 / 1159782912,
     -3700637 / 11593932, 61727 / 225920,
 ])  # fmt: skip
-
-
-_MOST_TURNS = 30  # of the iteration of mu
 
 
 @unit
@@ -215,7 +213,7 @@ def break_away(k, m, work, h, passage, rtol):
     now, other, most = pull(k, work, passage, d, u, slow), h, 0.0
     if not now > PULL:
         return h
-    for _ in range(_MOST_TURNS):
+    for _ in range(MOST_TURNS):
         root = low
         if other > h and most > now:
             root = max(low, h - now * (other - h) / (most - now))
@@ -323,7 +321,7 @@ def add_friction(sizes, work, s, step, passage, rtol):
     force, u, least = work.stage[o.FORCE, s], work.vector[o.NEW_U], SLIP_SHARE * rtol
     for i in range(sizes[0] if passage.by_slip else 0):
         work.vector[o.MU_BEFORE, i] = work.vector[o.SLIP_MU, i]
-    for _ in range(_MOST_TURNS):
+    for _ in range(MOST_TURNS):
         solve_discs(m, work, step, force, u, least)
         push(sizes, work, step, force, u)
         if not passage.by_slip or improve_mu(m, work, passage, step, force, u) <= least:
