@@ -160,6 +160,6 @@ def friction(default: Any = REQUIRED) -> Value[Any, Any]:
     return Value(checked_friction, default)
 
 
-def bound_of(mu: float | FrictionLaw) -> float:
+def bound_of(mu: float | SpeedLaw) -> float:
     """Return the coefficient that bounds stick."""
-    return mu.bound if isinstance(mu, FrictionLaw) else mu
+    return mu.bound if isinstance(mu, FrictionLaw) else mu  # pyright: ignore[reportReturnType]

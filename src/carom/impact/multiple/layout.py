@@ -10,12 +10,13 @@ from carom._compiled.record_arrays import table
 from carom._compiled.simd import LANES
 from carom.friction.layout import ContactWork, new_contact_work
 from carom.impact.layout import BAD_INPUT, SIZE
-from carom.scene.friction import FrictionLaw, bound_of
+from carom.scene.friction import bound_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from carom.options import Options
+    from carom.scene.speed_law import SpeedLaw
 
 SIMULTANEOUS, SEQUENTIAL, BY_NEWTON = 0, 1, 2
 MULTIPLE = {"simultaneous": SIMULTANEOUS, "sequential": SEQUENTIAL, "newton": BY_NEWTON}
@@ -63,7 +64,7 @@ class SlipLaws(NamedTuple):
     pieces: np.recarray  # PIECE of all laws
 
 
-def slip_laws(friction: Sequence[float | FrictionLaw]) -> tuple[np.ndarray, SlipLaws]:
+def slip_laws(friction: Sequence[float | SpeedLaw] | np.ndarray) -> tuple[np.ndarray, SlipLaws]:
     """Return the coefficients (K,) that bound stick, and the laws of contacts."""
     from carom.model.more_forces import Pieces
 

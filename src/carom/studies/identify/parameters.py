@@ -74,7 +74,9 @@ class Space:
         self.names = tuple(parameters)
         all_of_them = [_parameter(name, parameters, scene) for name in self.names]
         stems = [n[: -len(".static")] for n in self.names if str(n).endswith(".static")]
-        places = {name: i for i, name in enumerate(self.names if scene is not None else ())}
+        places: dict[str, int] = {
+            name: i for i, name in enumerate(self.names if scene is not None else ())
+        }
         #: places of both coefficients of laws of friction
         self.pairs = [(places[f"{stem}.static"], places[f"{stem}.kinetic"]) for stem in stems
                       if {f"{stem}.static", f"{stem}.kinetic"} <= places.keys()]  # fmt: skip
