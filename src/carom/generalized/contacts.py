@@ -122,6 +122,7 @@ class Contacts(Strike):
         """Make `chosen` active: find stick or slip of each from the accelerations; return a status."""
         if self.cones is None:
             self.cones = new_contact_work(len(self.friction))
+        self.loose = np.zeros((len(self.friction), 2))
         for _ in range(CONTACT_ROUNDS):
             k = len(chosen)
             code = self.take_out(chosen)
@@ -132,8 +133,9 @@ class Contacts(Strike):
                 chosen = sorted(chosen + driven)
                 continue
             rows = rows_of(chosen)
-            W, c0, mu = self.W[np.ix_(rows, rows)], self.c[rows], self.friction[chosen]
-            p, heading = np.zeros(3 * k), self.headings(chosen)
+            W, c0, p = self.W[np.ix_(rows, rows)], self.c[rows], np.zeros(3 * k)
+            heading = self.headings(chosen)
+            mu = self.friction_along(chosen, heading)
             kinds = np.where(heading.any(axis=1), SLIDING, CONE)
             status, _, _ = solve_cones(k, ContactProblem(W, c0, mu, kinds, heading), p, self.cones)
             if status != SOLVED:
@@ -149,6 +151,8 @@ class Contacts(Strike):
             least = 1e-12 * np.max(np.abs(c0))
             pressed = [c for i, c in enumerate(chosen) if p[i, 0] > 0.0 or abs(w[i]) <= least]
             if len(pressed) == k:
+                if self.breaks_away(chosen, p, heading):
+                    continue
                 self.write_held(chosen, p, heading)
                 return 0
             chosen = pressed
@@ -174,8 +178,26 @@ class Contacts(Strike):
         along = np.where((self.slip > 10.0 * self.still)[:, None], self.u[:, 1:], 0.0)
         if self.kind == a.EVENT_CONE and not along[self.marked].any():
             along[self.marked] = -self.was.force[self.marked, 1:]  # stick has just ended
+        along[self.loose.any(axis=1)] = self.loose[self.loose.any(axis=1)]
         along[self.friction == 0.0] = 0.0
         return along[chosen] / np.maximum(np.linalg.norm(along[chosen], axis=1), 1e-300)[:, None]
+
+    def friction_along(self, chosen: list[int], heading: np.ndarray) -> np.ndarray:
+        """Return mu (k,) of contacts: by laws that of their slip, and where they may stick its bound."""
+        mu, laws = self.friction[chosen], self.run.user.contacts
+        for i, c in enumerate(chosen):
+            if self.by_law[c] and heading[i].any():
+                mu[i] = laws[c].friction(self.slip[c])
+        return mu
+
+    def breaks_away(self, chosen: list[int], p: np.ndarray, heading: np.ndarray) -> bool:
+        """Note contacts with laws that cannot stick, and their directions of slip; return whether there are."""
+        pull = np.linalg.norm(p[:, 1:], axis=1)
+        fails = self.by_law[chosen] & ~heading.any(axis=1) & (self.was.mode[chosen] != a.MODE_STICK)
+        fails &= pull > (1.0 - 1e-10) * self.friction[chosen] * p[:, 0]
+        fails &= pull > 1e-12 * np.max(p[:, 0])
+        self.loose[np.array(chosen)[fails]] = -p[fails, 1:] / pull[fails, None]
+        return bool(fails.any())
 
     def write_held(self, chosen: list[int], p: np.ndarray, heading: np.ndarray) -> None:
         """Write forces p (k, 3) of active contacts, and whether each sticks; so does what others hold alone."""

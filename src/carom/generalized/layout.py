@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom._compiled.record_arrays import table
+from carom.impact.multiple.layout import SlipLaws
 from carom.model.actions import NO_EVENT
 from carom.model.method import Method
 from carom.model.workspace import SEARCH
@@ -40,7 +41,8 @@ class Coordinates(NamedTuple):
     holonomic: int  # constraints phi
     rows: int  # of all constraints
     contacts: int
-    friction: np.ndarray  # (C,)
+    friction: np.ndarray  # (C,) of a law, that which bounds stick
+    slip: SlipLaws
     drop: float  # a row is left out if its pivot is below this part of its diagonal
 
 

@@ -11,6 +11,7 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.user_functions import call_function
+from carom.dynamics.curve import value_at
 from carom.friction import ldl, lu
 from carom.generalized import layout as o
 from carom.generalized.differences import evaluate_parts
@@ -102,6 +103,15 @@ def slip_of(system, heading, c, x, work):
 
 
 @kernel
+def friction_of(system, c, speed):
+    """Return mu of contact c that slips at a speed along its direction."""
+    first, last, exponent = system.slip.first[c], system.slip.last[c], system.slip.exponent[c]
+    if last > first:
+        return value_at(system.slip.pieces, (first, last, exponent), max(0.0, speed))
+    return system.friction[c]
+
+
+@kernel
 def add_row_to(row, target, m, work):
     """Write row number m of R and D, and what it must give; return the number of rows."""
     copy_row(row, work.R[m], row.size)
@@ -121,7 +131,7 @@ def gather(system, active, what, x, work):
         target = 0.0 if what == RATE else -work.phi[r] if what == POSITION else -work.A_rate[r]
         m = add_row_to(work.A[r], target, m, work)
     for c in range(system.contacts):
-        contact, mu, first = active[c], system.friction[c], m
+        contact, first = active[c], m
         if contact.mode == a.MODE_OPEN:
             continue
         contact.row = m
@@ -130,8 +140,9 @@ def gather(system, active, what, x, work):
                 0.0 if what == RATE else -work.gap[c] if what == POSITION else -work.G_rate[c, r]
             )
             m = add_row_to(work.G[c, r], target, m, work)
-        if what == ACCELERATION and contact.mode == a.MODE_SLIP and mu > 0.0:
-            _, _, e1, e2 = slip_of(system, contact.heading, c, x, work)
+        if what == ACCELERATION and contact.mode == a.MODE_SLIP and system.friction[c] > 0.0:
+            u1, u2, e1, e2 = slip_of(system, contact.heading, c, x, work)
+            mu = friction_of(system, c, u1 * e1 + u2 * e2)
             add_row(-mu * e1, work.G[c, 1], work.D[first], n)
             add_row(-mu * e2, work.G[c, 2], work.D[first], n)
     return m
@@ -185,8 +196,7 @@ def note_forces(system, active, x, work):
     """Write the forces of persistent contacts from the multipliers; return the power of friction."""
     power = 0.0
     for c in range(system.contacts):
-        contact, mu = active[c], system.friction[c]
-        force, m = contact.force, contact.row
+        contact, force, m = active[c], active[c].force, active[c].row
         if contact.mode == a.MODE_OPEN:
             continue
         force[0] = work.rhs[m]
@@ -195,6 +205,7 @@ def note_forces(system, active, x, work):
             force[1], force[2] = work.rhs[m + 1], work.rhs[m + 2]
         else:
             u1, u2, e1, e2 = slip_of(system, contact.heading, c, x, work)
+            mu = friction_of(system, c, u1 * e1 + u2 * e2)
             force[1], force[2] = -mu * force[0] * e1, -mu * force[0] * e2
             power += force[1] * u1 + force[2] * u2
     return power

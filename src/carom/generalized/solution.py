@@ -38,7 +38,7 @@ class CoordinateImpact(NamedTuple):
     law: str  #: law of restitution
     inverse_mass: np.ndarray  #: (3, 3) Delassus operator W of the contact
     restitution: float  #: e of the contact
-    friction: float  #: mu of the contact
+    friction: float  #: mu of the contact, of a law that which bounds stick
     compression_work: float  #: work of the normal force in compression [J]
     restitution_work: float  #: work of the normal force in restitution [J]
     friction_loss: float  #: energy that friction dissipates [J]

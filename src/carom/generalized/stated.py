@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from carom.fields import Number, Value, Word, number, word
+from carom.scene.friction import friction
 from carom.scene.materials import IMPACT_LAWS
 from carom.scene.restitution import restitution as number_or_law
 
@@ -19,8 +20,8 @@ class CoordinateContact:
     name : str
     restitution : float or Restitution
         Coefficient of restitution e, or its law.
-    friction : float
-        Friction coefficient mu.
+    friction : float or Friction
+        Friction coefficient mu, or its law.
     impact_law : {"newton", "poisson", "stronge"}
     tangential_restitution : float
         e_t.
@@ -30,7 +31,7 @@ class CoordinateContact:
 
     name: str
     restitution: Value[Any, Any] = number_or_law()
-    friction: Number = number(least=0.0)
+    friction: Value[Any, Any] = friction(axis=False)
     impact_law: Word = word(IMPACT_LAWS)
     tangential_restitution: Number = number(0.0, least=-1, most=1)
     index: int = 0

@@ -34,7 +34,8 @@ class Strike:
         contacts = run.user.contacts
         self.run, self.seen = run, run.made.work
         self.restitution = [one.restitution for one in contacts]
-        self.friction = np.array([one.friction for one in contacts])
+        self.friction, self.slips = run.made.system.friction, run.made.system.slip
+        self.by_law = self.slips.last > self.slips.first
         self.tangential = np.array([one.tangential_restitution for one in contacts])
         self.law = np.array([NUMBERS[one.impact_law] for one in contacts], dtype=np.int64)
         self.events: list[tuple[float, str, int]] = []
@@ -131,10 +132,10 @@ class Strike:
     def solve(self, W, u, mu, e, closed):
         """Return code, velocities (k, 3), impulses (k, 3), works (3, k) and wedged (k,) of an impact.
 
-        Of several contacts it is a multiple impact (mathematics page, part 2).
+        Of several contacts, or with a law of friction, it is a multiple impact (mathematics page, part 2).
         """
         law, e_t = self.law[closed], self.tangential[closed]
-        if len(closed) == 1:
+        if len(closed) == 1 and not self.by_law[closed[0]]:
             out = np.zeros((o.SIZE, 1))
             out[o.STILL] = self.still[closed]
             code = resolve(W, u[0].copy(), mu[0], e[0], law[0], out[:, 0])
@@ -144,12 +145,19 @@ class Strike:
             works, phases = out[[o.WORK_C, o.WORK_R, o.FRICTION_LOSS]], out[o.PHASES].astype(int)
             return code, after, p, works, phases & o.WEDGED
         from carom.impact.multiple import api
-        from carom.impact.multiple.layout import multiple_settings, new_multiple_workspace
+        from carom.impact.multiple.layout import (
+            SlipLaws,
+            multiple_settings,
+            new_multiple_workspace,
+        )
 
         if self.room is None:
             self.room = new_multiple_workspace(len(self.blows))
         settings = multiple_settings(self.run.options, 1.0)
-        code, found = api.solve(W, u, mu, e, law, np.ones(len(u)), e_t, settings, self.room)
+        slips = SlipLaws(*(one[closed] for one in self.slips[:3]), self.slips.pieces)
+        code, found = api.solve(
+            W, u, (mu, slips), e, law, np.ones(len(u)), e_t, settings, self.room
+        )
         after, p = found.velocity.reshape(-1, 3), found.impulse.reshape(-1, 3)
         works = np.array([found.compression, found.restitution, found.friction])
         return code, after, p, works, found.wedged

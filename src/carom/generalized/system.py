@@ -10,6 +10,7 @@ import numpy as np
 
 from carom import arguments, checks
 from carom.generalized.stated import CoordinateContact
+from carom.scene.friction import FrictionLaw, bound_of
 from carom.scene.registry import Registry
 from carom.scene.restitution import Restitution
 
@@ -200,7 +201,7 @@ class GeneralizedSystem:
         tangent=None,
         gap_gradient: Callable | None = None,
         restitution: float | Restitution,
-        friction: float = 0.0,
+        friction: float | FrictionLaw = 0.0,
         impact_law: str = "newton",
         tangential_restitution: float = 0.0,
         name: str | None = None,
@@ -220,8 +221,8 @@ class GeneralizedSystem:
             ``gap_gradient(q) -> (n,)``, only for a system of functions. Default: central differences.
         restitution : float or Restitution
             Coefficient of restitution e, in [0, 1], or its law, a function of the speed of approach.
-        friction : float
-            Coulomb's friction coefficient, at least 0. Default 0.
+        friction : float or Friction
+            Coulomb's friction coefficient, at least 0, or its law, a function of the slip. Default 0.
         impact_law : {"newton", "poisson", "stronge"}
             As for `carom.resolve_impact`.
         tangential_restitution : float
@@ -239,7 +240,7 @@ class GeneralizedSystem:
         contact = CoordinateContact(
             name, restitution, friction, impact_law, tangential_restitution, index
         )
-        if contact.friction > 0.0 and tangent is None:
+        if bound_of(contact.friction) > 0.0 and tangent is None:
             raise ValueError(
                 f"friction needs a tangent, got friction {checks.shown(friction)} without one"
             )

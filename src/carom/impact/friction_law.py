@@ -25,7 +25,11 @@ def friction_at(system, contact, held, slip):
 @kernel
 def in_slip(pieces, contact, held, slip):
     """Return mu by the law of a contact at a speed of slip."""
-    law = (
-        contact.friction_piece[held], contact.last_friction_piece[held], contact.friction_exponent[held],
-    )  # fmt: skip
-    return value_at(pieces, law, slip)
+    return value_at(pieces, law_of(contact, held), slip)
+
+
+@kernel
+def law_of(contact, held):
+    """Return first piece, that after the last, and exponent of the law of a contact."""
+    first, last = contact.friction_piece[held], contact.last_friction_piece[held]
+    return first, last, contact.friction_exponent[held]

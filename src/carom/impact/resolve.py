@@ -70,24 +70,41 @@ def resolve(W, u, mu, e, law, out):
     `out` in the order of `layout`; its entry STILL is an input. Return 0, or the code of a failure (`out` then
     has no result).
     """
-    total = W[0, 0] + W[0, 1] + W[0, 2] + W[1, 1] + W[1, 2] + W[2, 2] + u[0] + u[1] + u[2] + mu + e
-    if not (math.isfinite(total) and W[0, 0] > 0.0):
-        return o.BAD_INPUT
-    if not u[0] < 0.0:
-        return o.NOT_APPROACHING
-    # Scale W and u by themselves, so that powers in the series of slip neither overflow nor vanish.
+    code, m, before, units, size = scaled(W, u, mu + e)
+    if code != o.OK:
+        return code
+    contact = Contact(m, mu, size, out[o.STILL] / units[0])
+    return finish(out, units, before, _follow(contact, before, e, law))
+
+
+@inlined
+def scaled(W, u, numbers):
+    """Return a code, W and u by units, these units of u and W, and |u|; all must be finite, and `numbers`.
+
+    The units are of W and u themselves, so that powers in the series of slip neither overflow nor vanish.
+    """
+    total = W[0, 0] + W[0, 1] + W[0, 2] + W[1, 1] + W[1, 2] + W[2, 2]
+    code = o.OK if u[0] < 0.0 else o.NOT_APPROACHING
+    if not (math.isfinite(total + u[0] + u[1] + u[2] + numbers) and W[0, 0] > 0.0):
+        code = o.BAD_INPUT
     w = power_of_two(max(W[0, 0], W[1, 1], W[2, 2]))
     v = power_of_two(max(abs(u[0]), abs(u[1]), abs(u[2])))
     m = (W[0, 0] / w, W[0, 1] / w, W[0, 2] / w, W[1, 1] / w, W[1, 2] / w, W[2, 2] / w)
     u0, u1, u2 = u[0] / v, u[1] / v, u[2] / v
-    contact = Contact(m, mu, math.sqrt(u0 * u0 + u1 * u1 + u2 * u2), out[o.STILL] / v)
-    code, steps, phases, s, before, slip_end = _follow(contact, (u0, u1, u2), e, law)
+    return code, m, (u0, u1, u2), (v, w), math.sqrt(u0 * u0 + u1 * u1 + u2 * u2)
+
+
+@inlined
+def finish(out, units, u, path):
+    """Write the results of a path, as `_follow` returns it; return its code."""
+    code, steps, phases, s, before, slip_end = path
+    v, w = units
     if code != o.OK:
         return code
     s = (s[0], s[1], max(0.0, s[2]), s[3], s[4], s[5], s[6], s[7])
     if not 0.0 < before[0] + s[3] < math.inf:
         return o.NO_END
-    write(out, v, w, (u0, u1, u2), s, before)
+    write(out, v, w, u, s, before)
     out[o.PHASES] = phases
     out[o.STEPS] = steps
     out[o.SLIP_END_P] = slip_end[0] * (v / w) if slip_end[0] >= 0.0 else -1.0

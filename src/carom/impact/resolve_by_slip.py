@@ -16,11 +16,11 @@ from typing import NamedTuple
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
+from carom.dynamics.curve import value_at
 from carom.friction.rays import outgoing, stick_ratio
 from carom.geometry.thresholds import ROUND_OFF
 from carom.impact import laws
 from carom.impact import layout as o
-from carom.impact.friction_law import STRIKES, in_slip
 from carom.impact.resolve import (
     AT_GOAL,
     AT_STOP,
@@ -36,12 +36,13 @@ from carom.impact.resolve import (
     Line,
     Phase,
     along_line,
+    finish,
+    scaled,
     without_slip,
-    write,
 )
 from carom.impact.slip_step import normal_rate
 from carom.impact.thresholds import LONGEST_IMPULSE, RAY_LENGTH, SLIP_ERROR
-from carom.impact.wedge import drowned, power_of_two
+from carom.impact.wedge import drowned
 
 MOST_SLIP_STEPS = 50_000
 _A = (
@@ -57,33 +58,32 @@ _E = (71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525)  # and
 _NONE = (0.0, 0.0, 0.0, 0.0)
 
 
+class SlipFriction(NamedTuple):
+    """A law of friction."""
+
+    bound: float  # of stick
+    law: tuple  # first piece, that after the last, exponent
+    pieces: object
+
+
 class Slip(NamedTuple):
     """A contact in slip, in scaled units."""
 
     m: tuple  # W, as in `slip_step`
     size: float  # speed of impact |u|
     speed: float  # unit of speeds
-    contact: object  # CONTACT
-    pieces: object  # of its law
+    friction: object  # SlipFriction
 
 
 @unit
-def resolve_by_slip(system, contact, hit) -> int:
-    """Solve the impact in `hit` by the law of friction of its contact; the results are those of `resolve`."""
-    W, u, e, out = hit.W, hit.u, hit.restitution, hit.out
-    total = W[0, 0] + W[0, 1] + W[0, 2] + W[1, 1] + W[1, 2] + W[2, 2] + u[0] + u[1] + u[2] + e
-    if not (math.isfinite(total) and W[0, 0] > 0.0):
-        return o.BAD_INPUT
-    if not u[0] < 0.0:
-        return o.NOT_APPROACHING
-    w = power_of_two(max(W[0, 0], W[1, 1], W[2, 2]))
-    v = power_of_two(max(abs(u[0]), abs(u[1]), abs(u[2])))
-    m = (W[0, 0] / w, W[0, 1] / w, W[0, 2] / w, W[1, 1] / w, W[1, 2] / w, W[2, 2] / w)
-    before_all = u[0] / v, u[1] / v, u[2] / v
-    size = math.sqrt(before_all[0] ** 2 + before_all[1] ** 2 + before_all[2] ** 2)
-    slip = Slip(m, size, v, contact, system.curves)
-    still, steps, at_rest = out[o.STILL] / v, 0, ROUND_OFF * size
-    s = (before_all[1], before_all[2], before_all[0], 0.0, 0.0, 0.0, 0.0, 0.0)
+def resolve_by_slip(W, u, friction, e, law, out) -> int:
+    """Solve one impact by a law of friction; all else is as in `resolve`."""
+    code, m, start, units, size = scaled(W, u, friction.bound + e)
+    if code != o.OK:
+        return code
+    slip = Slip(m, size, units[0], friction)
+    still, steps, at_rest = out[o.STILL] / units[0], 0, ROUND_OFF * size
+    s = (start[1], start[2], start[0], 0.0, 0.0, 0.0, 0.0, 0.0)
     before, phase, line = (0.0, 0.0, 0.0, 0.0, 0.0), COMPRESSION, CURVE
     phases, slip_end, h = 0, (-1.0, 0.0), 0.01
     stopped, ends = not math.sqrt(s[0] * s[0] + s[1] * s[1]) > at_rest, False
@@ -105,7 +105,7 @@ def resolve_by_slip(system, contact, hit) -> int:
         if line.mode == BENT:
             s, ended, marks, h = _along_curve(slip, phase, s, h)
         else:
-            mu, ended = in_slip(system.curves, contact, STRIKES, 0.0), WITHIN
+            mu, ended = _mu(slip, 0.0), WITHIN
             new = _along_ray(m, mu, line, s, size)
             marks = 0
             if (
@@ -130,27 +130,25 @@ def resolve_by_slip(system, contact, hit) -> int:
                 before = (s[3], s[4], s[5], s[6], s[7])
                 s = (s[0], s[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
                 ends = not e > 0.0
-                goal = laws.goal(contact.law, e, -before_all[0], before[0], before[4])
-                phase = Phase(contact.law, goal, True, before[3] - before[4])
-    s = (s[0], s[1], max(0.0, s[2]), s[3], s[4], s[5], s[6], s[7])
-    if not 0.0 < before[0] + s[3] < math.inf:
-        return o.NO_END
-    write(out, v, w, before_all, s, before)
-    out[o.PHASES], out[o.STEPS] = phases, steps
-    out[o.SLIP_END_P] = slip_end[0] * (v / w) if slip_end[0] >= 0.0 else -1.0
-    out[o.SLIP_END_UN] = slip_end[1] * v
-    out[o.DURATION], out[o.X_MIN], out[o.KNOTS] = 0.0, 0.0, 0.0
-    return o.OK
+                goal = laws.goal(law, e, -start[0], before[0], before[4])
+                phase = Phase(law, goal, True, before[3] - before[4])
+    return finish(out, units, start, (o.OK, steps, phases, s, before, slip_end))
+
+
+@kernel
+def _mu(slip, r):
+    """Return mu at a slip r, in scaled units."""
+    return value_at(slip.friction.pieces, slip.friction.law, r * slip.speed)
 
 
 @kernel
 def _from_rest(slip):
     """Return the line of stick, or that on which slip begins again, which is short."""
-    m, contact = slip.m, slip.contact
+    m = slip.m
     t1, t2 = stick_ratio(m[1], m[2], m[3], m[4], m[5])
-    if math.sqrt(t1 * t1 + t2 * t2) <= contact.friction:
+    if math.sqrt(t1 * t1 + t2 * t2) <= slip.friction.bound:
         return Line(STICK, t1, t2, 0.0)
-    mu = in_slip(slip.pieces, contact, STRIKES, 0.0)
+    mu = _mu(slip, 0.0)
     c, n, growth = outgoing(m[1], m[2], m[3], m[4], m[5], mu)
     if growth > 0.0:
         return Line(STRAIGHT, -mu * c, -mu * n, growth)
@@ -175,7 +173,7 @@ def _along_curve(slip, phase, s, h):
     """Try one step h in tau; return the state, the kind of end, marks of the phases, and the next h."""
     m, size, law, goal = slip.m, slip.size, phase.law, phase.goal
     r = math.sqrt(s[0] * s[0] + s[1] * s[1])
-    mu = in_slip(slip.pieces, slip.contact, STRIKES, r * slip.speed)
+    mu = _mu(slip, r)
     r, k = normal_rate(m, mu, s)
     marks, unit_p = o.PHASE_JAM if k <= 0.0 else 0, size / m[0]
     left = laws.remaining(law, goal, s[2], s[3], s[7])
@@ -201,7 +199,7 @@ def _rates(slip, s, d):
     x = s[0] + (m[1] * d[0] + m[3] * d[1] + m[4] * d[2])
     y = s[1] + (m[2] * d[0] + m[4] * d[1] + m[5] * d[2])
     r = math.sqrt(x * x + y * y)
-    mu = in_slip(slip.pieces, slip.contact, STRIKES, r * slip.speed)
+    mu = _mu(slip, r)
     return r, -mu * x, -mu * y, mu * r * r
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import by_reference, inlined, kernel
 from carom._compiled.units import unit
 from carom.contact.closed_points import concerns, gather_closed
 from carom.contact.gap import round_off, slow, strike_point
@@ -16,12 +16,12 @@ from carom.dynamics.several_points import inverse_masses, velocities
 from carom.impact import layout
 from carom.impact.driven import blocked, driven_work
 from carom.impact.effective_restitution import count_blow, effective_restitution
-from carom.impact.friction_law import STRIKES, depends_on_slip
+from carom.impact.friction_law import PERSISTENT, STRIKES, depends_on_slip, law_of
 from carom.impact.layer import traverse
 from carom.impact.mean_point import as_one
 from carom.impact.record import note_drive, write_impact
 from carom.impact.resolve import resolve
-from carom.impact.resolve_by_slip import resolve_by_slip
+from carom.impact.resolve_by_slip import SlipFriction, resolve_by_slip
 from carom.impact.return_map import return_map
 from carom.impact.strike_several import strike_several
 from carom.impact.tangential import return_slip
@@ -103,11 +103,11 @@ def strike(model, data, method, c):
         begin_event(system, c, group.closed[0].feature, state, clock, records)
         first = clock.struck
         if single:
-            hit.friction = contact.friction
+            hit.friction, held = contact.friction, STRIKES
             if approach == 0.0:
-                hit.friction = contact.friction_held
+                hit.friction, held = contact.friction_held, PERSISTENT
                 hit.u[0] = -SEED * math.sqrt(hit.u[1] ** 2 + hit.u[2] ** 2)
-            strike_one(model, data, method, c)
+            strike_one(model, data, method, c, held)
         else:
             strike_several(model, data, c, k)
         if hit.code != 0:
@@ -134,8 +134,11 @@ def forget_jams(active, k, group):
 
 
 @kernel
-def strike_one(model, data, method, c):
-    """Solve the impact of the one point in work.struck, with W and u in work.hit."""
+def strike_one(model, data, method, c, held):
+    """Solve the impact of the one point in work.struck, with W, u and friction in work.hit.
+
+    `held` says whether its law is that of impacts or of persistent contact.
+    """
     system, controls = model.system, model.controls
     active, state, work, clock = data.active, data.state, data.work, data.clocks[0]
     contact, hit, point = system.contacts[c], work.hit[0], work.struck[0]
@@ -145,8 +148,11 @@ def strike_one(model, data, method, c):
         return
     count_blow(system, controls, contact, active.contact_states[c], -hit.u[0], clock.now)
     hit.restitution = effective_restitution(system, contact, active.contact_states[c], -hit.u[0])
-    if depends_on_slip(contact, STRIKES):
-        code = resolve_by_slip(system, contact, hit)
+    if depends_on_slip(contact, held):
+        slip = SlipFriction(hit.friction, law_of(contact, held), system.curves)
+        code = resolve_by_slip(
+            hit.W, hit.u, by_reference(slip), hit.restitution, contact.law, hit.out
+        )
     else:
         code = collide(method, controls, contact, hit, work.history)
     if code != layout.OK:

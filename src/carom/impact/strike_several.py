@@ -11,9 +11,9 @@ from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.driven import blocked
 from carom.impact.effective_restitution import count_blow, effective_restitution
-from carom.impact.friction_law import PERSISTENT, STRIKES, friction_at
+from carom.impact.friction_law import PERSISTENT, STRIKES, friction_at, law_of
 from carom.impact.layout import OK
-from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSettings
+from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSettings, SlipLaws
 from carom.impact.multiple.resolve import resolve_multiple
 from carom.impact.record import note_drive, write_share
 from carom.impact.thresholds import GROUP_SEED
@@ -26,12 +26,18 @@ HERTZ, LINEAR = 1.5, 1.0
 
 
 @unit
-def resolve_group(k, W, u, mu, multiple) -> int:
-    """Solve the impact of k points; return its code."""
+def resolve_group(k, pieces, group, multiple) -> int:
+    """Solve the impact of k points, `pieces` of whose laws of friction are given; return its code."""
+    slip = by_reference(
+        SlipLaws(
+            multiple.friction_piece[0], multiple.friction_piece[1], multiple.friction_exponent, pieces
+        )
+    )  # fmt: skip
     contacts = by_reference(
         CornerContacts(
-            k=k, others=0, W=W, u=u, friction=mu, restitution=multiple.e, law=multiple.law,
-            stiffness=multiple.kappa, pair=multiple.pair, tangential=multiple.tangential,
+            k=k, others=0, W=group.W, u=group.v[U], friction=group.mu, restitution=multiple.e,
+            law=multiple.law, stiffness=multiple.kappa, pair=multiple.pair, tangential=multiple.tangential,
+            slip=slip,
         )
     )  # fmt: skip
     given = multiple.settings
@@ -89,12 +95,14 @@ def strike_several(model, data, c, k):
             hit.code = BLOCKED
             return
         j, contact_state = group.closed[i].active, active.contact_states[group.closed[i].contact]
-        slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
-        group.mu[i] = friction_at(system, contact, STRIKES, slip)  # as the impact begins
+        held = STRIKES
         multiple.e[i] = effective_restitution(system, contact, contact_state, -u[3 * i])
         if j >= 0 and active.points[j].jams == 1:
             u[3 * i] -= GROUP_SEED * math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2)
-            group.mu[i] = friction_at(system, contact, PERSISTENT, slip)
+            held = PERSISTENT
+        group.mu[i] = friction_at(system, contact, held, 0.0)
+        first, last, multiple.friction_exponent[i] = law_of(contact, held)
+        multiple.friction_piece[0, i], multiple.friction_piece[1, i] = first, last
         multiple.law[i], multiple.kappa[i] = contact.law, contact.stiffness
         multiple.ball_like[i] = contact.ball_like
         multiple.tangential[i] = contact.tangential_restitution
@@ -103,7 +111,7 @@ def strike_several(model, data, c, k):
     passage = multiple.workspace.work.clock[0]
     if model.controls.retry == 1:  # the group can take a time-stepping step instead
         passage.left = int(max(0.0, left(model.controls, step, COUNT_FACTORS)) / k**3)
-    code = resolve_group(k, group.W, u, group.mu, multiple)
+    code = resolve_group(k, system.curves, group, multiple)
     step.counts[COUNT_FACTORS] += k**3 * multiple.result.summary[0].steps
     step.since += k * multiple.result.summary[0].steps
     if code != OK or passage.left < 0:

@@ -22,6 +22,8 @@ SLIP_END = 1e-10  #: greatest velocity: slower slip, or slip below 0.1 rtol, has
 #: greatest mu N: from which on a contact stops a motion; weaker ones hold as if they had it
 LOADED_PART = 1e-3
 UNLOADED_WEIGHT = 0.1  #: greatest mu N: added to all where the loaded contacts alone cannot stop all motion
+LEAST_SLOPE = -0.2  #: 1: of the miss of a law by mu, that is believed: where slip runs away it is 0
+PULL = 1e-10  #: acceleration by friction: of a contact that its static coefficient does not hold
 LAYER_PROXIMAL = 1e-10  #: diagonal of A: weight of the proximal term where A is singular: w is wrong by less
 MOMENT_AHEAD = 0.3  #: time of the fastest contact: for the force of a contact that is closing
 INSTANT_STEP = 1e-7  #: step: the moment ahead for the forces of an instant

@@ -99,9 +99,7 @@ class MultipleImpact(NamedTuple):
     pair: np.ndarray  # (K,) of `CornerContacts`
     ball_like: np.ndarray  # (K,) 1 for a ball or an ellipsoid
     tangential: np.ndarray  # (K,) e_t
-    friction_piece: (
-        np.ndarray
-    )  # (K, 2) range of the pieces of a law of the slip, empty for a number
+    friction_piece: np.ndarray  # (2, K) range of the pieces of a law, empty for a number
     friction_exponent: np.ndarray  # (K,)
 
 
@@ -155,5 +153,5 @@ def new_multiple(k: int, settings: MultipleSettings) -> MultipleImpact:
     return MultipleImpact(
         workspace=new_multiple_workspace(k), settings=settings, result=new_multiple_result(k),
         e=np.zeros(k), law=law, kappa=np.zeros(k), pair=pair, ball_like=ball_like,
-        tangential=np.zeros(k), friction_piece=np.zeros((k, 2), dtype=np.int64), friction_exponent=np.zeros(k),
+        tangential=np.zeros(k), friction_piece=np.zeros((2, k), dtype=np.int64), friction_exponent=np.zeros(k),
     )  # fmt: skip

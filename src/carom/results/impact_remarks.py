@@ -19,13 +19,13 @@ NEARLY = 1.01
 
 def remarks(rows, events, run) -> tuple[str, ...]:
     """Return a sentence for each kind: how many impacts (`rows`) or `events` of a run, and the first."""
-    said = [
-        *_gains(rows, run),
-        *_of_laws(rows, run),
-        *_of_several(rows, run),
-    ]
-    jams = events["kind"] == r.JAMS
-    if not (jams.any() or (rows["phases"] & (PHASE_JAM | PLASTIC)).any()):
+    marks, jams = int(np.bitwise_or.reduce(rows["phases"])), events["kind"] == r.JAMS
+    said = _gains(rows, run)
+    if len(run.compiled.system.curves):
+        said += _of_laws(rows, run)
+    if marks & AT_END:
+        said += _without_slip(rows, run)
+    if not (jams.any() or marks & (PHASE_JAM | PLASTIC)):
         return tuple(map(Remark, said))
     jams = events[jams]
     counts = np.abs(rows["energy_change"]) > _ROUND_OFF * run.watch[0].exchanged
@@ -57,7 +57,7 @@ def _of_laws(rows, run) -> list[str]:
     """Return sentences about impacts that are faster than their law is stated for, or elastic by it."""
     contacts, said = run.compiled.system.contacts, []
     of_law = np.isnan(contacts["restitution"])
-    for number in np.unique(contacts["number"][of_law]).tolist() if of_law.any() else ():
+    for number in np.unique(contacts["number"][of_law]).tolist():
         law = restitution_of(run.scene, run.pairs, number)
         assert isinstance(law, Restitution)
         own = rows[rows["contact"] == number]
@@ -78,23 +78,18 @@ def _of_laws(rows, run) -> list[str]:
     return said
 
 
-def _of_several(rows, run) -> list[str]:
-    """Return sentences about impacts of several contacts that are without a part of their law."""
-    contacts, several = run.compiled.system.contacts, rows["together"] > 1
-    crowd = several & (rows["phases"] & AT_END != 0)
-    said = []
-    for concerned, without, words in (
-        (contacts["tangential_restitution"] != 0.0, crowd,
-         "in time-stepping steps were without the tangential restitution of their contacts"),
-        (contacts["last_friction_piece"][:, 0] > contacts["friction_piece"][:, 0], several,
-         "of several contacts had the friction of their slip at the beginning, because only single ones follow "
-         "a law of friction"),
-    ):  # fmt: skip
-        found = rows[without & np.isin(rows["contact"], contacts["number"][concerned])]
-        if len(found):
-            count = len(np.unique(found["time"]))
-            said.append(f"{count} impacts {words}, the first {_place(found[0], run)}.")
-    return said
+def _without_slip(rows, run) -> list[str]:
+    """Return a sentence about impacts in time-stepping steps, which have no tangential restitution."""
+    contacts = run.compiled.system.contacts
+    rough = contacts[contacts["tangential_restitution"] != 0.0]["number"]
+    found = rows[(rows["phases"] & AT_END != 0) & (rows["together"] > 1)]
+    found = found[np.isin(found["contact"], rough)]
+    if not len(found):
+        return []
+    return [
+        f"{len(np.unique(found['time']))} impacts in time-stepping steps were without the tangential "
+        f"restitution of their contacts, the first {_place(found[0], run)}."
+    ]
 
 
 def _gains(rows, run) -> list[str]:

@@ -14,14 +14,7 @@ from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.fields import REQUIRED, Number, NumberOrNone, Value, Word, number, word
-from carom.scene.speed_law import (
-    Curve,
-    SpeedLaw,
-    check_table,
-    number_or_law,
-    numbers,
-    through_points,
-)
+from carom.scene.speed_law import Curve, SpeedLaw, TableLaw, number_or_law
 
 #: piece of exp(-z) at z = 0 whose polynomial of degree 5 is exact to round-off, and where exp(-z) is round-off
 FIRST_PIECE, LAST_PLACE = 0.016, 38.0
@@ -211,15 +204,13 @@ exponent=1.0), impact_law='newton')
 
 
 @dataclass(frozen=True, repr=False)
-class TableFriction(FrictionLaw):
+class TableFriction(TableLaw, FrictionLaw):
     """A monotone cubic through measured points: `Friction.table`."""
 
-    speeds: Value[tuple[float, ...], Any] = Value(numbers)
-    values: Value[tuple[float, ...], Any] = Value(numbers)
     _kind = "Friction.table"
 
     def __post_init__(self):
-        check_table(self.speeds, self.values)
+        super().__post_init__()
         if not min(self.values) > 0.0:
             raise ValueError(f"values must be above 0, got {checks.shown(self.values)}")
 
@@ -228,32 +219,28 @@ class TableFriction(FrictionLaw):
         """The first value."""
         return self.values[0]
 
-    @property
-    def curve(self) -> Curve:
-        """A cubic in s for each two points."""
-        return through_points(self.speeds, self.values)
-
 
 _BY_SLIP, _BY_WAY = ("static", "kinetic", "speed"), ("axis", "along", "across")
 FRICTION_LAWS = (Friction, TableFriction)
-_checked = partial(
+checked_friction = partial(
     number_or_law, law=FrictionLaw, example="carom.Friction(static=0.4, kinetic=0.3)", least=0
 )
 
 
-def _along_joint(name: str, value) -> float | SpeedLaw:
-    found = _checked(name, value)
+def without_grain(name: str, value) -> float | SpeedLaw:
+    """Return a coefficient that does not depend on the direction."""
+    found = checked_friction(name, value)
     if grain(found) is not None:
-        raise ValueError(f"{name} must not depend on the direction in a joint, got {found!r}")
+        raise ValueError(f"{name} must not depend on the direction here, got {found!r}")
     return found
 
 
-def friction(default: Any = REQUIRED, *, joint: bool = False) -> Value[Any, Any]:
-    """Return a field for a coefficient of friction: a number at least 0, or a law, in a joint by its speed."""
-    return Value(_along_joint if joint else _checked, default)
+def friction(default: Any = REQUIRED, *, axis: bool = True) -> Value[Any, Any]:
+    """Return a field for a coefficient of friction: a number at least 0, or a law, perhaps with an axis."""
+    return Value(checked_friction if axis else without_grain, default)
 
 
-def bound_of(mu: float | FrictionLaw) -> float:
+def bound_of(mu: float | SpeedLaw) -> float:
     """Return the coefficient that bounds stick."""
     return mu.bound if isinstance(mu, FrictionLaw) else mu
 

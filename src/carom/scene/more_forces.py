@@ -217,7 +217,7 @@ class JointFriction(AlongJoint):
         Index of the coordinate of the joint. Default 0.
     """
 
-    bound: Value[Any, Any] = friction(joint=True)
+    bound: Value[Any, Any] = friction(axis=False)
     coordinate: Integer = fields.integer(0, least=0)
 
 

@@ -12,15 +12,7 @@ from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.fields import REQUIRED, Number, Value, number
-from carom.scene.speed_law import (
-    SLOWEST,
-    Curve,
-    SpeedLaw,
-    check_table,
-    number_or_law,
-    numbers,
-    through_points,
-)
+from carom.scene.speed_law import SLOWEST, Curve, SpeedLaw, TableLaw, number_or_law, numbers
 
 
 @dataclass(frozen=True, repr=False)
@@ -166,15 +158,11 @@ class ViscoelasticRestitution(Restitution):
 
 
 @dataclass(frozen=True, repr=False)
-class TableRestitution(Restitution):
+class TableRestitution(TableLaw, Restitution):
     """A monotone cubic through measured points: `Restitution.table`."""
 
-    speeds: Value[tuple[float, ...], Any] = Value(numbers)
     values: Value[tuple[float, ...], Any] = Value(partial(numbers, most=1.0))
     _kind = "Restitution.table"
-
-    def __post_init__(self):
-        check_table(self.speeds, self.values)
 
     @property
     def fastest(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -185,11 +173,6 @@ class TableRestitution(Restitution):
     def elastic(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
         """First speed of a table that begins with 1."""
         return self.speeds[0] if self.values[0] == 1.0 else 0.0
-
-    @property
-    def curve(self) -> Curve:
-        """A cubic in v for each two points."""
-        return through_points(self.speeds, self.values)
 
 
 LAWS = (PowerRestitution, ViscoelasticRestitution, TableRestitution)

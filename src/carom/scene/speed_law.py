@@ -10,12 +10,13 @@ import sys
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields
 from functools import cache
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import checks
+from carom.fields import Value
 
 SLOWEST = sys.float_info.min  # [m/s] so that a negative power of the speed is finite
 
@@ -93,22 +94,32 @@ def numbers(name: str, value, most: float = np.inf) -> tuple[float, ...]:
     return tuple(made.tolist())
 
 
-def check_table(speeds: tuple[float, ...], values: tuple[float, ...]) -> None:
-    """Refuse a table whose columns differ in length, or whose speeds do not rise."""
-    if len(speeds) != len(values):
-        raise ValueError(
-            f"speeds and values must have the same length, got {len(speeds)} and {len(values)}"
-        )
-    if not np.all(np.diff(speeds) > 0.0):
-        raise ValueError(f"speeds must rise, each above the one before, got {checks.shown(speeds)}")
+@dataclass(frozen=True, repr=False)
+class TableLaw(SpeedLaw):
+    """A monotone cubic through measured points."""
 
+    speeds: Value[tuple[float, ...], Any] = Value(numbers)
+    values: Value[tuple[float, ...], Any] = Value(numbers)
 
-def through_points(speeds: tuple[float, ...], values: tuple[float, ...]) -> Curve:
-    """Return a monotone cubic in v for each two points of a table."""
-    from scipy.interpolate import PchipInterpolator
+    def __post_init__(self):
+        """Refuse a table whose columns differ in length, or whose speeds do not rise."""
+        speeds, values = self.speeds, self.values
+        if len(speeds) != len(values):
+            raise ValueError(
+                f"speeds and values must have the same length, got {len(speeds)} and {len(values)}"
+            )
+        if not np.all(np.diff(speeds) > 0.0):
+            raise ValueError(
+                f"speeds must rise, each above the one before, got {checks.shown(speeds)}"
+            )
 
-    made = PchipInterpolator(speeds, values)
-    return Curve(1.0, made.c, made.x)
+    @property
+    def curve(self) -> Curve:
+        """A cubic in v for each two points."""
+        from scipy.interpolate import PchipInterpolator
+
+        made = PchipInterpolator(self.speeds, self.values)
+        return Curve(1.0, made.c, made.x)
 
 
 def number_or_law(

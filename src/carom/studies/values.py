@@ -128,6 +128,7 @@ def whole(scene: Scene, inputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Return rows for whole fields: components within the values of the scene, a law for each contact."""
     parts = {name: split(scene, name) for name in inputs}
     made = {name: rows for name, rows in inputs.items() if not parts[name][1]}
+    laws: dict[str, dict[str, np.ndarray]] = {}  # their numbers
     for name, (stem, label) in parts.items():
         if not label:
             continue
@@ -140,10 +141,11 @@ def whole(scene: Scene, inputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
             made[stem] = np.repeat(np.asarray(value)[None], len(rows), axis=0)
         at = components(value)[label]
         if isinstance(value, SpeedLaw):
-            made[stem] = _laws(name, made[stem], label, rows)
+            laws.setdefault(stem, {})[label] = rows
             continue
         for one in {at, at[::-1]} if isinstance(at, tuple) else {(at,)}:  # an inertia is symmetric
             made[stem][(slice(None), *one)] = rows
+    made |= {stem: _laws(stem, made[stem], numbers) for stem, numbers in laws.items()}
     for field in [name for name in made if name in LAW_FIELDS]:
         if scene.contact_default is not None or not scene.contacts:
             raise ValueError(
@@ -156,14 +158,15 @@ def whole(scene: Scene, inputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     return made
 
 
-def _laws(name: str, laws: np.ndarray, label: str, rows: np.ndarray) -> np.ndarray:
-    """Return laws (R,) with one of their numbers from `rows`; refuse a number that they do not take."""
-    made = np.empty(len(rows), dtype=object)
-    for k, (law, one) in enumerate(zip(laws, rows.tolist())):
+def _laws(stem: str, laws: np.ndarray, numbers: dict[str, np.ndarray]) -> np.ndarray:
+    """Return laws (R,) with some of their numbers from rows (R,); refuse numbers that they do not take."""
+    made = np.empty(len(laws), dtype=object)
+    for k, (law, *row) in enumerate(zip(laws, *(rows.tolist() for rows in numbers.values()))):
         try:
-            made[k] = replace(law, **{label: one})
+            made[k] = replace(law, **dict(zip(numbers, row)))
         except ValueError as error:
-            raise ValueError(f"vary[{name!r}] in run {k}: {error}") from None
+            names = " and ".join(repr(f"{stem}.{label}") for label in numbers)
+            raise ValueError(f"vary[{names}] in run {k}: {error}") from None
     return made
 
 

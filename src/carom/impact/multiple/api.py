@@ -8,6 +8,7 @@ import numpy as np
 
 from carom import arguments, checks
 from carom.friction.checks import checked_inverse_masses, codes, per_contact
+from carom.scene.friction import FrictionLaw, without_grain
 
 
 @dataclass(frozen=True)
@@ -86,9 +87,12 @@ def resolve_impacts(
         Relative velocities before the impact [m/s], normal first. A contact with a negative normal velocity
         strikes; with 0 it touches (bodies at rest on each other); with a positive one it opens, and the other
         contacts may close it again.
-    friction, restitution : float or array_like, shape (k,)
-        Coulomb's coefficient mu, at least 0, and coefficient of restitution e in [0, 1]. If all e are 0, the
-        impact is one plastic event. Otherwise an e below 0.01 is replaced by 0.01.
+    friction : float, carom.Friction, or a sequence of k of them
+        Coulomb's coefficient mu, at least 0, or a law of the slip, followed along the impact. One contact
+        problem at once (a plastic event, ``"newton"``) has mu at the slip after the impact.
+    restitution : float or array_like, shape (k,)
+        Coefficient of restitution e in [0, 1]. If all e are 0, the impact is one plastic event. Otherwise an e
+        below 0.01 is replaced by 0.01.
     law : {"newton", "poisson", "stronge"} or a sequence of k of them
         Definition of e: the ratio of normal velocities of each striking contact (default) or of impulses, or
         the square root of the ratio of works of the normal force. With more than one contact, no contact
@@ -134,14 +138,20 @@ def resolve_impacts(
     """
     from carom.impact.laws import NUMBERS
     from carom.impact.layout import AT_ONCE, OK
-    from carom.impact.multiple.layout import CAPPED, MESSAGES, MULTIPLE, MultipleSettings
+    from carom.impact.multiple.layout import (
+        CAPPED,
+        MESSAGES,
+        MULTIPLE,
+        MultipleSettings,
+        slip_laws,
+    )
 
     u = checks.finite_array("velocity", velocity, (None, 3), "m/s")
     k = len(u)
     if k == 0:
         raise ValueError(f"velocity must have at least one contact, got {checks.shown(velocity)}")
     W = checked_inverse_masses(inverse_mass, k)
-    mu = per_contact("friction", friction, k, least=0.0)
+    mu = _frictions(friction, k)
     e = per_contact("restitution", restitution, k, least=0.0, most=1.0)
     e_t = per_contact("tangential_restitution", tangential_restitution, k, least=-1.0, most=1.0)
     kappa = per_contact("stiffness", 1.0 if stiffness is None else stiffness, k, above=0.0)
@@ -151,7 +161,7 @@ def resolve_impacts(
         rtol=checks.number("rtol", rtol, least=1e-12, most=1e-2),
         exponent=checks.number("exponent", exponent, least=1.0, most=4.0),
     )
-    code, out = solve(W, np.ascontiguousarray(u), mu, e, numbers, kappa, e_t, settings)
+    code, out = solve(W, np.ascontiguousarray(u), slip_laws(mu), e, numbers, kappa, e_t, settings)
     if code != OK:
         raise ValueError(f"the impact could not be solved: {MESSAGES[code]}")
     summary = out.summary[0]
@@ -172,8 +182,21 @@ def resolve_impacts(
     )
 
 
-def solve(W, u, mu, e, law, kappa, tangential, settings, workspace=None):
-    """Solve a multiple impact of contacts (k,) with velocities (k, 3); return the code and the result."""
+def _frictions(given, k: int):
+    """Return the friction of k contacts: numbers, or some laws among them."""
+    laws = [given] * k if isinstance(given, FrictionLaw) else given
+    if not (isinstance(laws, (list, tuple)) and any(isinstance(one, FrictionLaw) for one in laws)):
+        return per_contact("friction", given, k, least=0.0)
+    if len(laws) != k:
+        raise ValueError(f"friction must be one value or {k} of them, got {checks.shown(given)}")
+    return [without_grain(f"friction[{i}]", one) for i, one in enumerate(laws)]
+
+
+def solve(W, u, friction, e, law, kappa, tangential, settings, workspace=None):
+    """Solve a multiple impact of contacts (k,) with velocities (k, 3); return the code and the result.
+
+    `friction` is as `slip_laws` returns it.
+    """
     from carom.impact.multiple.layout import (
         SEQUENTIAL,
         CornerContacts,
@@ -182,11 +205,11 @@ def solve(W, u, mu, e, law, kappa, tangential, settings, workspace=None):
     )
     from carom.impact.multiple.resolve import resolve_multiple
 
-    k = len(u)
+    k, (mu, slip) = len(u), friction
     room, out = workspace or new_multiple_workspace(k), new_multiple_result(k)
     pair = np.arange(k) if settings.multiple == SEQUENTIAL else np.zeros(k, dtype=np.int64)
     contacts = CornerContacts(
         k=k, others=0, W=W, u=u.reshape(-1), friction=mu, restitution=e, law=law, stiffness=kappa, pair=pair,
-        tangential=tangential,
+        tangential=tangential, slip=slip,
     )  # fmt: skip
     return resolve_multiple(contacts, settings, room, out), out

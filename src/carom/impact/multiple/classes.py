@@ -146,11 +146,12 @@ def nothing_slips(contacts, scale_u):
 
 @kernel
 def _same_kind(contacts, i, j, tolerance):
-    """Return whether contacts i and j have the same velocity, friction, restitutions, law and stiffness."""
+    """Return whether contacts i and j have the same velocity, friction, restitutions, laws and stiffness."""
     u, mu, e = contacts.u, contacts.friction, contacts.restitution
-    law, kappa = contacts.law, contacts.stiffness
+    law, kappa, slip = contacts.law, contacts.stiffness, contacts.slip
     same = mu[i] == mu[j] and e[i] == e[j] and law[i] == law[j] and kappa[i] == kappa[j]
     same = same and contacts.tangential[i] == contacts.tangential[j]
+    same = same and slip.first[i] == slip.first[j] and slip.last[i] == slip.last[j]
     for r in range(3 if mu[i] > 0.0 else 1):
         same = same and abs(u[3 * i + r] - u[3 * j + r]) <= tolerance
     return same
@@ -226,7 +227,10 @@ def find_pressed(contacts, least, index):
             if pressed[j] == 0:
                 row = W[3 * j]
                 side = math.sqrt(row[3 * i + 1] ** 2 + row[3 * i + 2] ** 2)
-                if not row[3 * i] >= mu[i] * side:
+                law = (
+                    contacts.slip.last[i] > contacts.slip.first[i]
+                )  # may rise above its static value
+                if not row[3 * i] >= (math.inf if law and side > 0.0 else mu[i]) * side:
                     pressed[j] = 1
                     stack[height] = j
                     height += 1

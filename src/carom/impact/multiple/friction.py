@@ -178,13 +178,23 @@ def stick(k, z, work, impulse, velocity):
 
 
 @kernel
-def gather_discs(k, work):
-    """List the closed contacts with friction and write their W_tt, scaled; return their number."""
+def slip_of(u, i):
+    """Return |u_t| of contact i."""
+    return math.sqrt(u[3 * i + 1] * u[3 * i + 1] + u[3 * i + 2] * u[3 * i + 2])
+
+
+@kernel
+def gather_discs(k, work, u, most):
+    """List the closed contacts with friction and write their W_tt, scaled; return their number.
+
+    Those that slip by more than `most` are left out.
+    """
     slot, cones, m = work.index[o.IN_DISC], work.cones, 0
     for i in range(k):
         c = work.contact[i]
-        if c.mode != OPEN and c.mu > 0.0:
+        if c.mode != OPEN and c.mu > 0.0 and (c.sticks == 1 or slip_of(u, i) <= most):
             slot[m] = i
+            work.vector[o.SLIP_MU, i] = c.mu
             disc, trace = cones.contact[m], c.grip / c.mu
             disc.kind, disc.mu, disc.h2 = f.DISC, 0.0, 0.0
             disc.scale = math.sqrt(2.0 / trace) if trace > 0.0 else 1.0
@@ -203,8 +213,8 @@ def gather_discs(k, work):
 def solve_discs(m, work, step, force, u, tolerance):
     """Write the friction of `m` discs with which the velocity without it, `u`, ends a time `step`.
 
-    The radii are mu times the normal forces of `force`, and `tolerance` is for velocities. Friction of the last
-    solve is the first guess.
+    The radii are `SLIP_MU` times the normal forces of `force`, and `tolerance` is for velocities. Friction of
+    the last solve is the first guess.
     """
     slot, cones, last = work.index[o.IN_DISC], work.cones, work.vector[o.DISC_T]
     t, bias, centre = cones.vector[f.ITERATE], cones.vector[f.BIAS], cones.vector[f.CENTRE]
@@ -212,7 +222,7 @@ def solve_discs(m, work, step, force, u, tolerance):
     for s in range(m):
         n, a, disc = 3 * s, 3 * slot[s], cones.contact[s]
         scale = disc.scale
-        disc.h1 = work.contact[slot[s]].mu * force[a] / scale
+        disc.h1 = work.vector[o.SLIP_MU, slot[s]] * force[a] / scale
         t[n], t[n + 1], t[n + 2] = in_disc(disc.h1, last[2 * s] / scale, last[2 * s + 1] / scale)
         bias[n], bias[n + 1], bias[n + 2] = 0.0, scale * u[a + 1] / step, scale * u[a + 2] / step
         for r in range(3):
@@ -235,3 +245,15 @@ def solve_discs(m, work, step, force, u, tolerance):
         _, x, y = in_disc(cones.contact[s].h1, t[3 * s + 1], t[3 * s + 2])
         force[a + 1], force[a + 2] = scale * x, scale * y
         last[2 * s], last[2 * s + 1] = force[a + 1], force[a + 2]
+
+
+@kernel
+def push(sizes, work, step, force, u):
+    """Add the effect of the friction of discs within `step` to velocities; `sizes` as in `stages`."""
+    slot = work.index[o.IN_DISC]
+    for s in range(sizes[1]):
+        a = 3 * slot[s] + 1
+        x, y = step * force[a], step * force[a + 1]
+        row1, row2 = work.matrix[o.MASS, a], work.matrix[o.MASS, a + 1]
+        for i in range(3 * sizes[0]):
+            u[i] += x * row1[i] + y * row2[i]

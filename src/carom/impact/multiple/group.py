@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import by_reference, kernel
 from carom._compiled.units import unit
 from carom.impact import laws
 from carom.impact import layout as one
@@ -12,9 +12,11 @@ from carom.impact.multiple.layer import start
 from carom.impact.multiple.moreau import solve_group
 from carom.impact.multiple.restitution import any_targets, energetic, iterate_restitution, run
 from carom.impact.multiple.series import into_lanes
+from carom.impact.multiple.slip_law import by_law
 from carom.impact.multiple.steps import ENDED
 from carom.impact.multiple.tangential import return_slips
 from carom.impact.resolve import resolve
+from carom.impact.resolve_by_slip import SlipFriction, resolve_by_slip
 from carom.impact.tangential import return_slip
 from carom.impact.thresholds import COARSE_TOLERANCE
 
@@ -35,10 +37,19 @@ def strike_group(g, contacts, still, by_newton, settings, workspace):
         return
     plastic = summary.plastic_change
     summary.plastic_change = 0.0
+    by_slip = False
+    for a in range(n):
+        by_slip = by_slip or by_law(work.contact[a])
+    passage = by_reference(
+        o.Passage(
+            settings.rtol, settings.exponent, settings.max_events, settings.max_steps,
+            settings.max_rounds, by_slip, speed, contacts.slip.pieces,
+        )
+    )  # fmt: skip
     if by_newton:
-        at_once(n, work, summary)
+        at_once(n, work, passage, summary)
     else:
-        pass_group(n, work, settings, summary)
+        pass_group(n, work, passage, summary)
     return_slips(n, work)
     energy, index = speed * speed / mass, work.index
     for i in range(contacts.k):
@@ -98,6 +109,10 @@ def _fill(n, contacts, still, exponent, work):
         c.mu, c.restitution, c.law = mu[i], contacts.restitution[i], contacts.law[i]
         c.tangential = contacts.tangential[i]
         c.e, c.members = c.restitution, index[o.CLASS_SIZE, q]
+        c.friction_piece[0], c.friction_piece[1] = contacts.slip.first[i], contacts.slip.last[i]
+        c.friction_exponent = contacts.slip.exponent[i]
+        if not c.mu > 0.0:
+            c.friction_piece[1] = c.friction_piece[0]
         c.root = (kappa[i] * index[o.CLASS_SIZE, q] * mass / stiff) ** (1.0 / exponent)
         c.grip = mu[i] * (W[3 * a + 1, 3 * a + 1] + W[3 * a + 2, 3 * a + 2])
         for r in range(3):
@@ -130,9 +145,12 @@ def _exactly(contacts, still, work, out):
     single, summary = work.single, out.summary[0]
     single[one.STILL] = still
     several = parts or contacts.others > 0
-    code = resolve_single(work, mu, e, law)
+    last = contacts.slip.last[i] if mu > 0.0 else contacts.slip.first[i]
+    pieces = (contacts.slip.first[i], last, contacts.slip.exponent[i])
+    slip = by_reference(SlipFriction(mu, pieces, contacts.slip.pieces))
+    code = resolve_single(work, slip, e, law)
     if several and code == one.OK and single[one.WORK_R] > -single[one.WORK_C]:
-        code = resolve_single(work, mu, 1.0, laws.STRONGE)
+        code = resolve_single(work, slip, 1.0, laws.STRONGE)
         summary.marks |= o.CAPPED
     if code != one.OK:
         return o.NOT_RESOLVED
@@ -171,7 +189,7 @@ def pass_group(k, work, settings, result):
     energetic(k, work)
     start(k, work)
     if all_plastic(k, work):
-        at_once(k, work, result)
+        at_once(k, work, settings, result)
         return
     into_lanes(k, work)
     iterates = any_targets(k, work)
@@ -183,18 +201,21 @@ def pass_group(k, work, settings, result):
     result.events += work.clock[0].events
     work.clock[0].left -= work.clock[0].steps
     if ended != ENDED and work.clock[0].left >= 0:
-        at_once(k, work, result)
+        at_once(k, work, settings, result)
 
 
 @kernel
-def at_once(k, work, result):
+def at_once(k, work, passage, result):
     """Resolve the group as one contact problem."""
-    marks, change = solve_group(k, work)
+    marks, change = solve_group(k, work, passage)
     result.plastic_change += change
     result.marks |= marks
 
 
 @unit
-def resolve_single(work, mu, e, law) -> int:
+def resolve_single(work, slip, e, law) -> int:
     """Resolve the impact of one contact; return its code."""
-    return resolve(work.matrix[o.SINGLE], work.vector[o.SINGLE_U], mu, e, law, work.single)
+    W, u = work.matrix[o.SINGLE], work.vector[o.SINGLE_U]
+    if slip.law[1] > slip.law[0]:
+        return resolve_by_slip(W, u, slip, e, law, work.single)
+    return resolve(W, u, slip.bound, e, law, work.single)

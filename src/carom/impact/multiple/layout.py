@@ -10,9 +10,13 @@ from carom._compiled.record_arrays import table
 from carom._compiled.simd import LANES
 from carom.friction.layout import ContactWork, new_contact_work
 from carom.impact.layout import BAD_INPUT, SIZE
+from carom.scene.friction import bound_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from carom.options import Options
+    from carom.scene.speed_law import SpeedLaw
 
 SIMULTANEOUS, SEQUENTIAL, BY_NEWTON = 0, 1, 2
 MULTIPLE = {"simultaneous": SIMULTANEOUS, "sequential": SEQUENTIAL, "newton": BY_NEWTON}
@@ -53,6 +57,26 @@ def multiple_settings(options: Options, exponent: float = 0.0) -> MultipleSettin
     )  # fmt: skip
 
 
+class SlipLaws(NamedTuple):
+    """The laws of the slip of contacts."""
+
+    first: np.ndarray  # (K,) first piece
+    last: np.ndarray  # (K,) piece after the last; for a number not above the first
+    exponent: np.ndarray  # (K,)
+    pieces: np.recarray  # PIECE of all laws
+
+
+def slip_laws(friction: Sequence[float | SpeedLaw] | np.ndarray) -> tuple[np.ndarray, SlipLaws]:
+    """Return the coefficients (K,) that bound stick, and the laws of contacts."""
+    from carom.model.more_forces import Pieces
+
+    curves = Pieces()
+    rows = np.array([curves.add_law(one) for one in friction]).reshape(-1, 3)
+    first, last = rows[:, :2].astype(np.int64).T.copy()
+    laws = SlipLaws(first, last, rows[:, 2].copy(), curves.rows)
+    return np.array([bound_of(one) for one in friction], dtype=float), laws
+
+
 class CornerContacts(NamedTuple):
     """The contacts of an impact: the first `k` of each array; (n, t1, t2) of each are rows of W and u."""
 
@@ -61,18 +85,32 @@ class CornerContacts(NamedTuple):
     W: np.ndarray  # (3K, 3K) inverse mass, symmetric, often singular
     # (3K,) velocity before, approach negative; u_n = 0 for contacts that touch or persist
     u: np.ndarray
-    friction: np.ndarray  # (K,)
+    friction: np.ndarray  # (K,) of a law, that which bounds stick
     restitution: np.ndarray  # (K,)
     law: np.ndarray  # (K,) of `carom.impact.laws`
     stiffness: np.ndarray  # (K,), only ratios matter
     # (K,) contacts with equal numbers strike together, others in an impact of their own
     pair: np.ndarray
     tangential: np.ndarray  # (K,) e_t
+    slip: SlipLaws
+
+
+class Passage(NamedTuple):
+    """Settings of the passage of a group, and the laws of friction of its contacts."""
+
+    rtol: float
+    exponent: float  # p of the normal law
+    max_events: int
+    max_steps: int
+    max_rounds: int
+    by_slip: bool  # whether any friction is a law
+    speed: float  # unit of speeds [m/s]
+    pieces: np.recarray
 
 
 #: one contact, or a class of contacts that move alike, in scaled variables
 CONTACT = [
-    ("mu", "f8"),
+    ("mu", "f8"),  # of a law, that which bounds stick
     ("restitution", "f8"),  # e as given
     ("e", "f8"),  # energetic coefficient in use
     ("root", "f8"),  # kappa^(1/p)
@@ -133,7 +171,7 @@ class PassageWork(NamedTuple):
     clock: np.recarray  # (1,) CLOCK
     index: np.ndarray  # (12, 3K) rows below
     matrix: np.ndarray  # (7, 3K, 3K) below
-    vector: np.ndarray  # (33, 3K) rows below
+    vector: np.ndarray  # (36, 3K) rows below
     series: np.ndarray  # (18, ORDERS, B, 4) below; contact i is lane i % 4 of block i // 4
     # (3K, 3B, 4) W of the group, scaled, in lanes: blocks of n, then of t1 and t2
     columns: np.ndarray
@@ -148,8 +186,8 @@ class BlowWork(NamedTuple):
 
     member: np.ndarray  # (K,) places of these contacts among all contacts
     W: np.ndarray  # (3K, 3K)
-    given: np.ndarray  # (5, 3K) rows below
-    law: np.ndarray  # (2, K) laws and pairs
+    given: np.ndarray  # (6, 3K) rows below
+    law: np.ndarray  # (4, K) laws and pairs; first and last pieces of laws of the slip
     result: MultipleResult
 
 
@@ -160,8 +198,9 @@ class MultipleWorkspace(NamedTuple):
     blow: BlowWork
 
 
-#: rows of `given`: velocity before, friction, restitution, stiffness, tangential restitution
-BLOW_U, BLOW_FRICTION, BLOW_RESTITUTION, BLOW_STIFFNESS, BLOW_TANGENTIAL = range(5)
+#: rows of `given`: velocity before, friction, restitution, stiffness, tangential restitution, exponent of the
+#: law of friction
+BLOW_U, BLOW_FRICTION, BLOW_RESTITUTION, BLOW_STIFFNESS, BLOW_TANGENTIAL, BLOW_EXPONENT = range(6)
 
 
 #: rows of `index`: class of a contact, first member of a class, its size, its group, members of a group, a
@@ -185,6 +224,8 @@ DISC_T, WEIGHT, SCALE, STICK_T, ORDER_P, ORDER_U = range(15, 21)
 OUT_X, OUT_F, OUT_NEW, OUT_DX, OUT_DF, OUT_H, OUT_BEST, OUT_BEST_F, OUT_LAST, OUT_V = range(21, 31)
 #: velocity before of one contact; of Moreau's problem: velocity without impulses, friction
 SINGLE_U, MOREAU_C, MOREAU_MU = 12, 31, 32
+#: of friction by laws: mu at the slip of a stage, by how much it misses the law, and mu before
+SLIP_MU, MISS, MU_BEFORE = 33, 34, 35
 #: first index of `series`: velocity n, t1, t2; impulse n, t1, t2; depth; N; |u_t|^2; |u_t|; mu N/|u_t|, the
 #: same times dt/dtau; 1/|u_t|; friction loss; dtau/dt and dt/dtau; numbers of each contact (rows below)
 S_U, S_U1, S_U2, S_P, S_P1, S_P2, S_D, S_N, S_Q, S_R, S_F, S_FS, S_G, S_LOSS, S_RATE, S_SIGMA = (
@@ -236,13 +277,13 @@ def new_multiple_workspace(capacity: int) -> MultipleWorkspace:
     work = PassageWork(
         contact=table(CONTACT, k), saved=table(CONTACT, k), clock=table(CLOCK, 1),
         index=np.zeros((12, n), dtype=np.int64), matrix=np.zeros((7, n, n)),
-        vector=np.zeros((33, 3 * LANES * blocks)), series=np.zeros((18, ORDERS, blocks, LANES)),
+        vector=np.zeros((36, 3 * LANES * blocks)), series=np.zeros((18, ORDERS, blocks, LANES)),
         columns=np.zeros((n, 3 * blocks, LANES)), stage=np.zeros((2, 6, n)),
         single=np.zeros(SIZE), cones=new_contact_work(k), heading=np.zeros((k, 2)),
     )  # fmt: skip
     work.clock["left"] = UNLIMITED
     blow = BlowWork(
-        member=np.zeros(k, dtype=np.int64), W=np.zeros((n, n)), given=np.zeros((5, n)),
-        law=np.zeros((2, k), dtype=np.int64), result=new_multiple_result(k),
+        member=np.zeros(k, dtype=np.int64), W=np.zeros((n, n)), given=np.zeros((6, n)),
+        law=np.zeros((4, k), dtype=np.int64), result=new_multiple_result(k),
     )  # fmt: skip
     return MultipleWorkspace(work, blow)

@@ -6,6 +6,9 @@ load and slip is lost. It is the limit of the passage if masses are far apart, b
 equilibrium between the slow contacts of heavy ones. If there is no such velocity (a body trapped between two
 walls), or if the energy would rise, the least e is used for all contacts, and then e = 0. Where that is not
 solved either, there is no friction: this problem always has a solution, which never raises the energy.
+
+A coefficient that depends on the slip is that of the velocity after, like the cone, by iteration from the one
+that bounds stick: what that holds sticks.
 """
 
 from __future__ import annotations
@@ -21,6 +24,7 @@ from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.layout import AT_ONCE, PLASTIC
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.layer import set_velocity, start
+from carom.impact.multiple.slip_law import MOST_TURNS, by_law, by_secant, in_slip, slip_of
 from carom.impact.thresholds import GAIN, VELOCITY_LEFT, VISIBLE_ERROR
 
 #: in turn: each contact with its own e, all with the least, none with any, and then without friction
@@ -28,7 +32,7 @@ OWN_E, LEAST_E, NO_E, NO_FRICTION = range(4)
 
 
 @unit
-def solve_group(k, work) -> tuple[int, float]:
+def solve_group(k, work, passage) -> tuple[int, float]:
     """Resolve the group; return its marks, and the change of energy in a plastic event."""
     vector, W, least, most = work.vector, work.matrix[o.MASS], 1.0, 0.0
     marks, change = PLASTIC, 0.0
@@ -40,7 +44,7 @@ def solve_group(k, work) -> tuple[int, float]:
         for i in range(k):
             c = work.contact[i]
             c.e = c.restitution if way == OWN_E else least if way == LEAST_E else 0.0
-        change = _once(k, work, way == NO_FRICTION)
+        change = _once(k, work, passage, way == NO_FRICTION)
         marks = AT_ONCE if way == OWN_E else AT_ONCE | o.MISSED if way == LEAST_E else PLASTIC
         if sound(
             W, vector[o.U0], vector[o.NOW_U], vector[o.NOW_P], 1.0, (3 * k, VELOCITY_LEFT, GAIN)
@@ -80,7 +84,20 @@ def round_off(n, row, impulse):
 
 
 @kernel
-def _once(k, work, smooth):
+def _mu_changes(k, work, passage, u):
+    """Improve mu for the slip after, where there is any; return whether it has missed that."""
+    misses, mu = False, work.vector[o.MOREAU_MU]
+    for i in range(k):
+        c, slip = work.contact[i], slip_of(u, i)
+        if by_law(c) and (slip > VELOCITY_LEFT or mu[i] > c.mu):
+            miss = in_slip(c, passage, slip) - mu[i]
+            misses = misses or abs(miss) > GAIN
+            mu[i] = by_secant(i, mu[i], miss, work)
+    return misses
+
+
+@kernel
+def _once(k, work, passage, smooth):
     """Solve the contact problem, `smooth` without friction; return the change of energy."""
     vector, heading, total = work.vector, work.heading, 0.0
     before, bias, u, impulse = vector[o.U0], vector[o.MOREAU_C], vector[o.NOW_U], vector[o.NOW_P]
@@ -90,14 +107,18 @@ def _once(k, work, smooth):
     for i in range(k):
         bias[3 * i] += work.contact[i].e * min(0.0, bias[3 * i])
         mu[i] = 0.0 if smooth else work.contact[i].mu
+        work.vector[o.MU_BEFORE, i] = mu[i]
         kind[i], heading[i, 0], heading[i, 1] = CONE, 0.0, 0.0
     work.cones.mismatch[ENOUGH] = 0.0
     work.cones.count[BUDGET] = budget(k)
     problem = by_reference(
         ContactProblem(W=work.matrix[o.MASS], c=bias, mu=mu, kind=kind, heading=heading)
     )
-    solve_cones(k, problem, impulse, work.cones)
-    set_velocity(k, work)
+    for _ in range(MOST_TURNS):
+        solve_cones(k, problem, impulse, work.cones)
+        set_velocity(k, work)
+        if smooth or not passage.by_slip or not _mu_changes(k, work, passage, u):
+            break
     for i in range(k):
         c, a = work.contact[i], 3 * i
         normal = 0.5 * impulse[a] * (before[a] + u[a])

@@ -3,7 +3,8 @@
 C. A. Kennedy and M. H. Carpenter, Applied Numerical Mathematics 44 (2003) 139-181. At each stage the depths,
 and therefore the normal forces, are known, and friction is the convex problem of §2.3 for the velocity at the
 end of the stage. Stick is exact (u_t = 0 at every stage). Slip that begins from rest needs no small steps,
-although its direction is stiff (rate mu N W/|u_t|), and no threshold separates stick from slip.
+although its direction is stiff (rate mu N W/|u_t|), and no threshold separates stick from slip. A coefficient
+that depends on the slip is that of this velocity too, by iteration.
 """
 
 from __future__ import annotations
@@ -18,12 +19,22 @@ from carom._compiled.units import unit
 from carom.friction.dense import add_product
 from carom.impact.multiple import layout as o
 from carom.impact.multiple import normal_law as law
-from carom.impact.multiple.friction import gather_discs, solve_discs
+from carom.impact.multiple.friction import gather_discs, push, slip_of, solve_discs
 from carom.impact.multiple.layer import set_velocity
+from carom.impact.multiple.slip_law import (
+    MOST_TURNS,
+    by_law,
+    crosses_rest,
+    improve_mu,
+    jump,
+    let_go,
+    pull,
+)
 from carom.impact.thresholds import (
     CHANGE_TOLERANCE,
     INSTANT,
     INSTANT_STEP,
+    PULL,
     SHORTEST_PART,
     SLIP_END,
     SLIP_SHARE,
@@ -59,18 +70,24 @@ DEFECT = WEIGHTS - np.array([
 
 
 @unit
-def by_stages(k, work, rtol, p) -> tuple[float, bool]:
+def by_stages(k, work, rtol, passage) -> tuple[float, bool]:
     """Take an implicit step, cut at the first change of mode; return its length and whether a mode changes."""
-    m, clock, when = gather_discs(k, work), work.clock[0], work.vector[o.WHEN]
+    clock, when, u = work.clock[0], work.vector[o.WHEN], work.vector[o.NOW_U]
     clock.stretched = 0
+    if passage.by_slip:
+        begin_to_stick(k, work, passage.exponent, slip_at_rest(rtol))
+        let_go(k, work, passage, slip_at_rest(rtol))
+    m = gather_discs(k, work, u, math.inf)
     h, slow = clock.step, slip_at_rest(rtol)
-    present_forces(k, m, work, h, p, rtol)
+    if not passage.by_slip:
+        present_forces(k, m, work, h, passage.exponent, rtol)
     while True:
-        error = implicit_step(k, m, work, h, p, rtol)
+        error = implicit_step(k, m, work, h, passage, rtol)
         clock.steps += 1
         allowed = rtol
         if regime_changes(m, work, slow):
             allowed *= CHANGE_TOLERANCE
+            error = max(error, CHANGE_TOLERANCE * greatest_jump(m, work, passage, h))
         if not (error > allowed and h > SHORTEST_PART):
             break
         h *= max(0.2, 0.9 * (allowed / error) ** 0.25)
@@ -81,11 +98,14 @@ def by_stages(k, work, rtol, p) -> tuple[float, bool]:
     changes = first <= h
     if changes:
         if first > INSTANT:
-            h = _land(k, m, work, first, p, rtol)
+            h = _land(k, m, work, first, passage, rtol)
             for i in range(k):  # times of changes, relative to the new length of the step
                 when[i] -= first - h
         else:
             return first, True
+    if passage.by_slip:
+        length = break_away(k, m, work, h, passage, rtol)
+        h, changes = length, changes and length == h
     advance(k, work, h)
     set_velocity(k, work)
     set_regime(m, work, slow)
@@ -99,7 +119,7 @@ def slip_at_rest(rtol):
 
 
 @kernel
-def _land(k, m, work, h, p, rtol):
+def _land(k, m, work, h, passage, rtol):
     """Step to the change of mode near `h`, by Newton's iteration for the length of the step."""
     when, lead = work.vector[o.WHEN], 0
     for i in range(k):
@@ -107,7 +127,7 @@ def _land(k, m, work, h, p, rtol):
             lead = i
     c = work.contact[lead]
     for turn in range(5):
-        implicit_step(k, m, work, h, p, rtol)
+        implicit_step(k, m, work, h, passage, rtol)
         work.clock[0].steps += 1
         d, u_n = work.vector[o.NEW_D, lead], work.vector[o.NEW_U, 3 * lead]
         if c.mode == law.OPEN:
@@ -132,12 +152,18 @@ def _land(k, m, work, h, p, rtol):
 
 @kernel
 def _sticks(s, work, slow):
-    """Return 1 if disc `s` ends the step at rest, with friction inside the disc."""
+    """Return 1 if disc `s` ends the step at rest, with friction inside the disc.
+
+    A law holds what sticks until it is pulled away, and it may hold a slip that would pass through 0.
+    """
     t, i = work.vector[o.DISC_T], work.index[o.IN_DISC, s]
     u, n = work.vector[o.NEW_U], work.stage[o.FORCE, 5, 3 * i]
+    c = work.contact[i]
+    if by_law(c) and (c.sticks == 1 or crosses_rest(work, i)):
+        return 1
     size = math.sqrt(t[2 * s] * t[2 * s] + t[2 * s + 1] * t[2 * s + 1])
-    speed = math.sqrt(u[3 * i + 1] * u[3 * i + 1] + u[3 * i + 2] * u[3 * i + 2])
-    return 1 if size < work.contact[i].mu * n * (1.0 - 1e-9) and speed < slow else 0
+    held = size < work.vector[o.SLIP_MU, i] * n * (1.0 - 1e-9)
+    return 1 if held and slip_of(u, i) < slow else 0
 
 
 @kernel
@@ -156,16 +182,66 @@ def set_regime(m, work, slow):
         work.contact[work.index[o.IN_DISC, s]].sticks = _sticks(s, work, slow)
 
 
+@kernel
+def greatest_jump(m, work, passage, h):
+    """Return the greatest error of laws in whose slip a step of length h passes through 0."""
+    most = 0.0
+    for s in range(m):
+        i = work.index[o.IN_DISC, s]
+        c = work.contact[i]
+        if by_law(c) and c.sticks == 0 and crosses_rest(work, i):
+            most = max(most, jump(c, i, work, passage, h))
+    return most
+
+
+@kernel
+def begin_to_stick(k, work, p, slow):
+    """Let contacts with a law stick that close at rest, and others slip that close."""
+    for i in range(k):
+        c = work.contact[i]
+        if by_law(c) and not law.force(c, work.vector[o.D, i], p) > slow:
+            c.sticks = 0 if slip_of(work.vector[o.NOW_U], i) > slow else 1
+
+
+@kernel
+def break_away(k, m, work, h, passage, rtol):
+    """Return the length of the step to where a contact with a law breaks away, if that is within `h`; take it.
+
+    The pull of the rest grows from 0 there: a root by secants from beyond.
+    """
+    d, u, slow, low, x = work.vector[o.NEW_D], work.vector[o.NEW_U], slip_at_rest(rtol), 0.0, h
+    now, other, most = pull(k, work, passage, d, u, slow), h, 0.0
+    if not now > PULL:
+        return h
+    for _ in range(MOST_TURNS):
+        root = low
+        if other > h and most > now:
+            root = max(low, h - now * (other - h) / (most - now))
+        if h - root <= INSTANT:
+            break
+        x = root + (0.01 if x == h and other > h else 0.5) * (h - root)
+        implicit_step(k, m, work, x, passage, rtol)
+        work.clock[0].steps += 1
+        a = pull(k, work, passage, d, u, slow)
+        if a > PULL:
+            other, most, h, now = h, now, x, a
+        else:
+            low = x
+    if x != h:
+        implicit_step(k, m, work, h, passage, rtol)
+    return h
+
+
 @unit
-def implicit_step(k, m, work, h, p, rtol) -> float:
-    """Step from (d, P, u) by `h` to the new state; return the error.
+def implicit_step(k, m, work, h, passage, rtol) -> float:
+    """Step from (d, P, u) by `h` to the new state; return the error, infinite if the friction is not found.
 
     ``work.stage[FORCE, 0]`` has the present forces; `m` discs are gathered. At the end
     ``work.stage[FORCE, 5]`` has the forces of the new instant.
     """
     n = 3 * k
     force, rate, W = work.stage[o.FORCE], work.stage[o.STAGE], work.matrix[o.MASS]
-    vector = work.vector
+    vector, worst = work.vector, 0.0
     u, u1, q = vector[o.NOW_U], vector[o.NEW_U], vector[o.SCRATCH]
     for i in range(k):
         rate[0, i] = -u[3 * i]
@@ -177,7 +253,7 @@ def implicit_step(k, m, work, h, p, rtol) -> float:
             for j in range(s):
                 total += EXPLICIT[s, j] * rate[j, i]
             d[i] = vector[o.D, i] + h * total
-        normal_forces(k, work, d, p, force[s])
+        normal_forces(k, work, d, passage.exponent, force[s])
         for i in range(n):
             total = GAMMA * force[s, i]
             for j in range(s):
@@ -185,8 +261,8 @@ def implicit_step(k, m, work, h, p, rtol) -> float:
             q[i] = h * total
             u1[i] = u[i]
         add_product(n, W, q, u1)
-        if m > 0:
-            add_friction(k, m, work, s, GAMMA * h, rtol)
+        if m > 0 and not add_friction((k, m), work, s, GAMMA * h, passage, rtol):
+            worst = math.inf
         for i in range(k):
             a = 3 * i
             rate[s, i] = -u1[a]
@@ -201,7 +277,6 @@ def implicit_step(k, m, work, h, p, rtol) -> float:
         q[i] = h * wrong
         error[i] = 0.0
     add_product(n, W, q, error)
-    worst = 0.0
     for i in range(n):
         worst = max(worst, abs(error[i]))
     for i in range(k):
@@ -237,16 +312,22 @@ def present_forces(k, m, work, h, p, rtol):
 
 
 @kernel
-def add_friction(k, m, work, s, step, rtol):
-    """Add friction of `m` discs to the forces of stage `s`, and its effect within `step` to its velocity."""
-    slot, force, u = work.index[o.IN_DISC], work.stage[o.FORCE, s], work.vector[o.NEW_U]
-    solve_discs(m, work, step, force, u, SLIP_SHARE * rtol)
-    for s in range(m):
-        a = 3 * slot[s] + 1
-        x, y = step * force[a], step * force[a + 1]
-        row1, row2 = work.matrix[o.MASS, a], work.matrix[o.MASS, a + 1]
-        for i in range(3 * k):
-            u[i] += x * row1[i] + y * row2[i]
+def add_friction(sizes, work, s, step, passage, rtol):
+    """Add friction to the forces of stage `s`, and its effect within `step` to its velocity.
+
+    Return whether it is that of this velocity. `sizes` are the numbers of contacts and of discs.
+    """
+    _, m = sizes
+    force, u, least = work.stage[o.FORCE, s], work.vector[o.NEW_U], SLIP_SHARE * rtol
+    for i in range(sizes[0] if passage.by_slip else 0):
+        work.vector[o.MU_BEFORE, i] = work.vector[o.SLIP_MU, i]
+    for _ in range(MOST_TURNS):
+        solve_discs(m, work, step, force, u, least)
+        push(sizes, work, step, force, u)
+        if not passage.by_slip or improve_mu(m, work, passage, step, force, u) <= least:
+            return True
+        push(sizes, work, -step, force, u)
+    return False
 
 
 @kernel

@@ -1,5 +1,7 @@
 """Steps through the layers of a group, until its impact ends: by series for linear forces, otherwise by stages.
 
+So are those of contacts whose friction depends on the slip.
+
 A step by series is cut at the first change of mode, at the end of stick, or where slip reverses.
 """
 
@@ -47,12 +49,12 @@ def pass_layer(k, work, settings, rtol, later) -> int:
         ):
             return TRAPPED
         h, changes = -1.0, False
-        if p == 1.0 and clock.stiff == 0:
+        if p == 1.0 and clock.stiff == 0 and not settings.by_slip:
             h, changes = series_step(k, work, rtol)
         if h < 0.0:
             # as accurate as series
             fine = max(0.1 * rtol, min(rtol, limits.STAGE_ACCURACY)) if p == 1.0 else rtol
-            h, changes = by_stages(k, work, fine, p)
+            h, changes = by_stages(k, work, fine, settings)
             clock.stiff = clock.stiff - 1 if clock.stiff > 0 else _STIFF_STEPS - 1
         if changes:
             latest = h + limits.INSTANT

@@ -83,7 +83,7 @@ class PointOnCurve(OnCurve):
     anchor: VectorOrNone = fields.vector(None)
     side: Value[Any, Any] = fields.direction(None)
     restitution: Value[Any, Any] = number_or_law(0.0)
-    friction: Value[Any, Any] = friction_or_law(0.0)
+    friction: Value[Any, Any] = friction_or_law(0.0, axis=False)
     impact_law: Word = fields.word(IMPACT_LAWS, "newton")
 
     def __post_init__(self):

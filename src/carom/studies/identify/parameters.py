@@ -10,10 +10,13 @@ import numpy as np
 
 from carom import checks
 from carom.fields import keep
+from carom.scene.friction import Friction
 from carom.scene.scene import Scene
 from carom.scene.speed_law import SpeedLaw
 from carom.studies.identify.varied import KNOWN
 from carom.studies.values import Found, components, find, split
+
+LEAST_PART = 1e-6  # of a number of a law that must be above 0
 
 
 @dataclass(frozen=True)
@@ -69,22 +72,32 @@ class Space:
                 f"parameters must be a dict of names and Parameters, got {checks.shown(parameters)}"
             )
         self.names = tuple(parameters)
-        all_of_them = [_parameter(name, parameters[name], scene) for name in self.names]
+        all_of_them = [_parameter(name, parameters, scene) for name in self.names]
+        stems = [n[: -len(".static")] for n in self.names if str(n).endswith(".static")]
+        places: dict[str, int] = {
+            name: i for i, name in enumerate(self.names if scene is not None else ())
+        }
+        #: places of both coefficients of laws of friction
+        self.pairs = [(places[f"{stem}.static"], places[f"{stem}.kinetic"]) for stem in stems
+                      if {f"{stem}.static", f"{stem}.kinetic"} <= places.keys()]  # fmt: skip
         self.start = np.array([p.start for p in all_of_them])
         self.step = np.array([p.step for p in all_of_them])
         self.lower = np.array([p.lower for p in all_of_them])
         self.upper = np.array([p.upper for p in all_of_them])
 
     def clip(self, values: np.ndarray) -> np.ndarray:
-        """Return the values moved inside the bounds."""
-        return np.clip(values, self.lower, self.upper)
+        """Return the values moved inside the bounds, static coefficients up to kinetic ones."""
+        values = np.clip(values, self.lower, self.upper)
+        for static, kinetic in self.pairs:
+            values[static] = max(values[static], values[kinetic])
+        return values
 
     def named(self, values) -> dict[str, float]:
         """Return values by name."""
         return dict(zip(self.names, map(float, values)))
 
 
-def _bounds(name: str, scene: Scene | None) -> tuple[float, float, float]:
+def _bounds(name: str, given: Mapping, scene: Scene | None) -> tuple[float, float, float]:
     """Return the bounds of a parameter, and a step for the start of a search, or 0 if none is known."""
     if scene is None:
         return -np.inf, np.inf, 0.0
@@ -102,14 +115,21 @@ def _bounds(name: str, scene: Scene | None) -> tuple[float, float, float]:
             f"{f'{name}.{label}'!r}"
         )
     if found is not None and isinstance(found.value, SpeedLaw):  # a number of a law
-        found = Found(found.owner, found.field, component)
-    elif component or found is None:
+        low, high = Found(found.owner, found.field, component).bounds
+        if isinstance(law := found.value, Friction):  # 0 is none of its numbers
+            low = max(low, LEAST_PART * getattr(law, component))
+            if component == "kinetic" and f"{stem}.static" not in given:
+                high = law.static
+            elif component == "static" and f"{stem}.kinetic" not in given:
+                low = law.kinetic
+        return low, high, 0.0
+    if component or found is None:
         return -np.inf, np.inf, 0.0
     return (*found.bounds, 0.0)
 
 
-def _parameter(name: str, value, scene: Scene | None) -> Parameter:
-    bounds = _bounds(name, scene)
+def _parameter(name: str, given: Mapping, scene: Scene | None) -> Parameter:
+    bounds, value = _bounds(name, given, scene), given[name]
     if isinstance(value, Parameter):
         low, high = max(value.lower, bounds[0]), min(value.upper, bounds[1])
         return Parameter(value.start, value.step, low, high)
