@@ -243,6 +243,11 @@ def test_values_by_their_formulas():
         (lambda: Friction(0.4, 0.3, speed=0.0), "speed must be finite and above 0"),
         (lambda: Friction(0.4, 0.3, speed=1.0, exponent=20.0), "exponent must be"),
         (lambda: Friction.table([1.0, 0.5], [0.3, 0.2]), "speeds must rise"),
+        (lambda: Friction.table([0.5, 0.5], [0.3, 0.2]), "speeds must rise"),  # a jump
+        (
+            lambda: Friction.table([0.0, 0.5], [0.3, -0.2]),
+            "values must be two numbers or more, at least 0",
+        ),
         (lambda: Friction.table([0.0, 0.5], [0.3, 0.0]), "values must be above 0"),
         (lambda: Friction.table([0.0, 0.5], [0.3, np.nan]), "values must be"),
         (lambda: thrown(carom.Restitution.power(0.5), 0), "friction must be a number or a law"),
