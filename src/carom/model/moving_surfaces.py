@@ -29,7 +29,7 @@ def _axis(part: Part) -> tuple[np.ndarray, Any, np.ndarray]:
     return axis, rate, own if point is None else point
 
 
-def _with_rate(motion):
+def _with_rate(motion) -> Any:
     """Return a motion as a function ``t -> (value, its derivative)``; a polynomial is differentiated."""
     if checks.is_polynomial(motion):
         slope = motion.derivative()
