@@ -19,6 +19,7 @@ from campaigns import (
     rolls,
     slides,
     strikes,
+    surfaces,
     teeth,
     throws,
 )
@@ -29,5 +30,5 @@ FAMILIES = {
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
     "belts": belts.case,
     "rails": rails.case,
-    "laws": laws.case, "frictions": frictions.case,
+    "laws": laws.case, "frictions": frictions.case, "surfaces": surfaces.case,
 }  # fmt: skip
