@@ -1,7 +1,7 @@
 """Bodies on surfaces and materials as they are: laws of friction and restitution, belts, parts, rails, throws.
 
-A scene is one of `GROUNDS` with some of `BODIES` and one material for all pairs, of `frictions` and `laws`. A new
-kind of ground or of body is one more function in its list.
+A scene is one of `GROUNDS` with some of `BODIES` and one material for all pairs, of `frictions` and `laws`. A
+new kind of ground or of body is one more function in its list.
 """
 
 from __future__ import annotations
@@ -175,8 +175,8 @@ BODIES = {"thrown": thrown, "laid": laid, "piled": piled, "parts": by_parts, "ra
 def beyond_cone(s: carom.Solution, bound: float, law: float | FrictionLaw | None) -> float:
     """Return how far forces of persistent contact are beyond their cone, by what is allowed.
 
-    The greatest coefficient bounds all. What sticks has the static one, and what slips the kinetic one of its own slip, if one law is in force and
-    no time-stepping step has the slip of its start.
+    The greatest coefficient bounds all. If one law is in force and no time-stepping step has the slip of its
+    start, what sticks has the static coefficient, and what slips that of its own slip.
     """
     forces = s.forces
     normal, rubbing = forces.force[:, 0], np.hypot(forces.force[:, 1], forces.force[:, 2])
