@@ -31,7 +31,7 @@ LAW_FIELDS = ("restitution", "friction", "friction_held", "rolling_friction", "p
 BODY_FIELDS = ("mass", "inertia")
 #: what no run depends on, and what has no number or word
 LEFT_OUT = ("material", "color")
-SPIN, RATE = "surface_spin", 1  # a tuple, and the place of its rate
+SPIN, PLACE_OF_RATE = "surface_spin", 1  # a tuple, and where its rate is
 AXES, SCALAR_FIRST = ("x", "y", "z"), ("w", "x", "y", "z")
 MOMENTS = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
 ENDS = ("anchor_parent", "anchor_child")
@@ -103,7 +103,7 @@ def components(value) -> dict[str, Any]:
     if isinstance(value, SpeedLaw):
         return {name: name for name in vars(value) if isinstance(getattr(value, name), float)}
     if isinstance(value, tuple):
-        return {"rate": RATE}
+        return {"rate": PLACE_OF_RATE}
     shape = np.shape(value)
     labels = {(3,): AXES, (4,): SCALAR_FIRST}.get(shape, ())
     return MOMENTS if shape == (3, 3) else dict(zip(labels, range(4)))
@@ -142,7 +142,7 @@ def whole(scene: Scene, inputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         if isinstance(value, tuple):
             made[stem] = np.empty(len(rows), dtype=object)
             for k, one in enumerate(rows.tolist()):
-                made[stem][k] = (*value[:RATE], one, *value[RATE + 1 :])
+                made[stem][k] = (*value[:PLACE_OF_RATE], one, *value[PLACE_OF_RATE + 1 :])
             continue
         if stem not in made:
             made[stem] = np.repeat(np.asarray(value)[None], len(rows), axis=0)
