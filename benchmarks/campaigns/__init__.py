@@ -22,6 +22,7 @@ from campaigns import (
     rough,
     slides,
     strikes,
+    surfaces,
     teeth,
     throws,
 )
@@ -31,6 +32,6 @@ FAMILIES = {
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
     "belts": belts.case,
-    "rails": rails.case, "loose rails": loose_rails.case,
+    "rails": rails.case, "loose rails": loose_rails.case, "surfaces": surfaces.case,
     "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "rough": rough.case,
 }  # fmt: skip

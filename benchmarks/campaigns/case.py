@@ -81,9 +81,8 @@ def run(case: Case, tolerances: bool = False) -> Outcome:
         "friction": s.ledger.friction,
         "bounces": s.ledger.bounces,
     }
-    newton = case.label.get("impact_law") == "newton" and case.label["friction"] > 0.0
-    laws = case.scene.contacts
-    if newton or any(law.impact_law == "newton" and bound_of(law.friction) > 0.0 for law in laws):
+    laws = [*case.scene.contacts, *filter(None, [case.scene.contact_default])]
+    if any(law.impact_law == "newton" and bound_of(law.friction) > 0.0 for law in laws):
         del energies["impacts"]  # Newton's law may gain energy by itself
     speed = float(np.max(np.linalg.norm(s.velocity, axis=2), initial=0.0))
     speed = max(speed, case.step * float(np.linalg.norm(case.scene.gravity)))

@@ -310,6 +310,11 @@ def shown(value) -> str:
     return words if len(words) <= LONGEST else f"{words[: LONGEST // 2]} ... {words[-40:]}"
 
 
+def is_polynomial(value) -> bool:
+    """Return whether a value is a piecewise polynomial, as `scipy.interpolate.PPoly` is one."""
+    return hasattr(value, "c") and hasattr(value, "x") and not isinstance(value, type)
+
+
 def _no_number(value) -> bool:
     """Return whether a value, or a member of nested lists, only looks like a number."""
     if isinstance(value, (list, tuple)):

@@ -1,11 +1,13 @@
 """A short form of `benchmarks/campaign.py`: every kind of shape, law and step, thrown on a floor."""
 
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 
 import carom
-from campaigns import belts, crowds, forced, laws, piles, rolls, rough, strikes, throws
-from campaigns.case import run
+from campaigns import belts, crowds, forced, laws, piles, rolls, rough, strikes, surfaces, throws
+from campaigns.case import run, wrong
 from carom.io.files.kept import run_again
 from carom.model.records import FULL_MULTIPLE
 
@@ -78,6 +80,26 @@ def test_belts_end_and_lose_nothing_without_a_name():
         assert found.depth <= 1e-9, seed
         assert found.residual <= 1e-5, seed
         assert found.gained <= 1e-6, seed
+
+
+def test_friction_of_a_given_step_takes_energy():
+    # Slip stopped within a step of a plate over rollers: the weights of its stages are not all positive, and
+    # the line `friction` rose by 1e-6 in silence, by 8e-6 on a turntable (121).
+    found = run(belts.case(138))
+    assert found.status == "SUCCESS"
+    assert found.gained <= 1e-7
+    assert found.residual <= 1e-6
+
+
+def test_surfaces_and_materials_are_right_or_say_so():
+    # Each kind of ground with some bodies; forces within their cones by the law that is in force.
+    quicker = {14: 54, 140: 260, 175: 55, 182: 142}  # of the same kind
+    for seed in (quicker.get(k, k) for k in range(0, 210, 7)):
+        found = run(surfaces.case(seed))
+        assert found.reached == 1.0, seed
+        assert found.gained <= 1e-6, seed
+        assert found.off <= 1.0, seed
+        assert found.warned or not wrong(asdict(found)), seed
 
 
 @pytest.mark.parametrize("seed", [200109, 200195])

@@ -41,6 +41,19 @@ def on_a_spring(m, k, N, V, law, joint=False):
     return scene
 
 
+def on_a_belt(m, k, N, V, law):
+    """Return a block on a belt of the speed V, on which it rides until a spring to the ground pulls it back."""
+    scene = carom.Scene(gravity=(0, 0, -N / m))
+    belt = scene.add_half_space((0, 0, 0), (0, 0, 1), surface_velocity=(V, 0, 0), name="belt")
+    block = scene.add_body(
+        carom.Box(0.2, 0.2, 0.02), mass=m, position=(0, 0, 0.01), velocity=(V, 0, 0), name="block"
+    )
+    scene.add_contact(block, belt, restitution=0.0, friction=law)
+    spring = carom.forces.Spring(k, anchor_parent=(-5, 0, 0.01), anchor_child=(0, 0, 0.01))
+    scene.add_force(spring, carom.GROUND, block)
+    return scene
+
+
 def stick_slip(t, m, k, N, V, law):
     """Return places of the block, and the period: slip ends where its speed is that of the floor again."""
     w, D, x = np.sqrt(k / m), (law.static - law.kinetic) * N / k, law.kinetic * N / k
@@ -74,6 +87,30 @@ def test_stick_slip_has_its_period(seed, tolerance):
     fastest = np.max(found.velocity[:, 0, 0])
     allowed = (1.0 if tolerance > 1e-9 else 8.0) * tolerance * (1.0 + fastest)
     assert found.position[:, 0, 0] == pytest.approx(stick_slip(found.t, *given)[0], abs=allowed)
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
+@pytest.mark.parametrize("seed", range(20))
+def test_stick_slip_on_a_belt_has_the_same_period(seed, tolerance):
+    # as the belt sees it, the block is pulled by an end of the spring that moves
+    m, k, N, V, law = random_case(seed)
+    period = stick_slip(0.0, m, k, N, V, law)[1]
+    start = law.static * N / (k * V)
+    found = carom.simulate(
+        on_a_belt(m, k, N, V, law), start + 3.3 * period, rtol=tolerance, atol=tolerance
+    )
+    # errors of steps add up: 19 of 20 are within the tolerance itself, one by 2.6 times that, at 1e-10
+    fastest = np.max(np.abs(found.velocity[:, 0, 0] - V))
+    allowed = (1.0 if tolerance > 1e-9 else 4.0) * tolerance * (1.0 + fastest)
+    exact = V * found.t - stick_slip(found.t, m, k, N, V, law)[0]
+    assert found.position[:, 0, 0] == pytest.approx(exact, abs=allowed)
+    # persistent from the first cycle on: no impact, and one interval of stick and one of slip a cycle
+    assert len(found.impacts) == 0
+    assert not np.any(found.events.kind == "opens")
+    turns = found.events.time[(found.events.kind == "slips") & (found.events.contact == 0)]
+    turns = turns[np.append(True, np.diff(turns) > 0.5 * period)]
+    assert np.diff(turns) == pytest.approx(period, abs=1e3 * allowed)
+    assert len(turns) == 4
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -122,6 +159,9 @@ def test_stick_slip_by_a_law_of_the_speed(name):
     exact = stribeck(law, m, k, N, V, found.t)
     assert found.position[:, 0, 0] == pytest.approx(exact, abs=1e-7)
     assert np.ptp(exact) > 0.05
+    belt = carom.simulate(on_a_belt(m, k, N, V, law), 4.0, rtol=1e-9, atol=1e-9)
+    exact = V * belt.t - stribeck(law, m, k, N, V, belt.t)
+    assert belt.position[:, 0, 0] == pytest.approx(exact, abs=1e-7)
 
 
 @pytest.mark.parametrize("speed", [0.0, 0.5])
@@ -243,6 +283,11 @@ def test_values_by_their_formulas():
         (lambda: Friction(0.4, 0.3, speed=0.0), "speed must be finite and above 0"),
         (lambda: Friction(0.4, 0.3, speed=1.0, exponent=20.0), "exponent must be"),
         (lambda: Friction.table([1.0, 0.5], [0.3, 0.2]), "speeds must rise"),
+        (lambda: Friction.table([0.5, 0.5], [0.3, 0.2]), "speeds must rise"),  # a jump
+        (
+            lambda: Friction.table([0.0, 0.5], [0.3, -0.2]),
+            "values must be two numbers or more, at least 0",
+        ),
         (lambda: Friction.table([0.0, 0.5], [0.3, 0.0]), "values must be above 0"),
         (lambda: Friction.table([0.0, 0.5], [0.3, np.nan]), "values must be"),
         (lambda: thrown(carom.Restitution.power(0.5), 0), "friction must be a number or a law"),

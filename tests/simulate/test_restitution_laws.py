@@ -242,6 +242,7 @@ def test_faster_impacts_than_a_table_has_are_told():
         (lambda: Restitution.table([1], [0.5]), "speeds must be two numbers or more"),
         (lambda: Restitution.table([1, 1], [0.5, 0.4]), "speeds must rise"),
         (lambda: Restitution.table([0, 1], [0.5, 1.1]), "values must be two numbers or more, from 0 to 1"),
+        (lambda: Restitution.table([0, 1], [0.5, -0.1]), "values must be two numbers or more, from 0 to 1"),
         (lambda: Restitution.table([0, 1], [0.5, 0.4, 0.3]), "speeds and values must have the same length"),
         (lambda: Restitution.table([0, 1], [0.5, np.nan]), "values must be finite"),
         (lambda: ball(lambda v: 0.5), r"restitution must be a number or a law, such as carom.Restitution"),

@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 
+from carom import checks
 from carom._compiled.composed import is_compiled, joined, once
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
@@ -162,7 +163,7 @@ class Elements:
         if d.rate is not None:
             made.rate = d.rate
             return
-        if hasattr(d.motion, "c") and hasattr(d.motion, "x"):
+        if checks.is_polynomial(d.motion):
             made.piece, made.last_piece = self.pieces.add(d.motion)
         else:
             name = f"the motion of {constraint.name!r}"

@@ -246,7 +246,7 @@ class JointInertia(AlongJoint):
 
 def _curve(name: str, given):
     """Return a piecewise polynomial: the given one, or that through the points of a table."""
-    if hasattr(given, "c") and hasattr(given, "x") and not isinstance(given, type):
+    if checks.is_polynomial(given):
         return given
     table = checks.finite_array(name, given, (2, None))
     if table.shape[1] < 2 or not np.all(np.diff(table[0]) > 0.0):

@@ -22,11 +22,24 @@ GivenSpin = (
 )
 
 
+def _of_time(name: str, value, shape: tuple[int, ...]):
+    """Return a function; refuse a piecewise polynomial whose values have another shape."""
+    if checks.is_polynomial(value) and np.shape(value.c)[2:] != shape:
+        raise ValueError(
+            f"{name} as a piecewise polynomial must have values of shape {shape}, got coefficients of shape "
+            f"{np.shape(value.c)}"
+        )
+    return value
+
+
 def _velocity(name: str, value) -> Velocity:
     if callable(value):
-        return value
+        return _of_time(name, value, (3,))
     return checks.finite_array(
-        name, value, (3,), "m/s, or a function t -> (velocity, acceleration)"
+        name,
+        value,
+        (3,),
+        "m/s, a function t -> (velocity, acceleration), or a piecewise polynomial",
     )
 
 
@@ -38,7 +51,9 @@ def _spin(name: str, value) -> Spin:
         )
     axis, rate, point = (*given, None)[:3]
     axis = checks.unit_vector(f"the axis of {name}", axis)
-    if not callable(rate):
+    if callable(rate):
+        rate = _of_time(f"the rate of {name}", rate, ())
+    else:
         rate = checks.number(f"the rate of {name}", rate, unit="rad/s")
     if point is not None:
         point = checks.finite_array(f"the point of {name}", point, (3,), "m")
@@ -90,8 +105,10 @@ def check_in_plane(velocity, spin: Spin | None, normal: np.ndarray) -> None:
     ValueError
         If the velocity, unless it is a function, or the spin would move the plane along its normal.
     """
+    if checks.is_polynomial(velocity):
+        velocity = velocity(velocity.x)
     if velocity is not None and not callable(velocity):
-        if abs(velocity @ normal) > IN_PLANE * np.linalg.norm(velocity):
+        if np.max(np.abs(velocity @ normal)) > IN_PLANE * np.max(np.linalg.norm(velocity, axis=-1)):
             raise ValueError(
                 f"surface_velocity must be in the plane of the half-space, perpendicular to its normal "
                 f"{checks.shown(normal)}, got {checks.shown(velocity)}"

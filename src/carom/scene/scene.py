@@ -220,15 +220,16 @@ class Scene(Shown, TouchingPairs):
             Material of its surface, see `set_contact_default`.
         color : str or (3,)
             Colour in pages, pictures and films, as for `add_body`. Default: grey.
-        surface_velocity : (3,) or callable
+        surface_velocity : (3,), callable or scipy.interpolate.PPoly
             Velocity [m/s] with which its surface moves in itself while the solid stays where it is, as a belt
             does. At a contact only the tangential part acts. Or a function ``t -> (velocity, acceleration)``,
-            each (3,), as that of a `Driver`.
+            each (3,), as that of a `Driver`, or the velocity as a piecewise polynomial with values (3,)
+            (`scipy.interpolate.PPoly`, `CubicSpline`, ...).
         surface_spin : (axis, rate) or (axis, rate, point)
             Its surface turns in itself about an axis (3,) with this rate [rad/s], as those of turntables and
             rollers do, in addition to `surface_velocity`. The axis goes through `position`, or through `point`
-            (3,). The rate may be a function ``t -> (rate, its derivative)``. The work of both drives is in
-            `Ledger.loads`, the power of each in `Solution.surface_power`.
+            (3,). The rate may be a function ``t -> (rate, its derivative)`` or a piecewise polynomial. The work
+            of both drives is in `Ledger.loads`, the power of each in `Solution.surface_power`.
         name
             Name in the scene. Default ``"static1"``, ``"static2"``, ...
         replace : bool

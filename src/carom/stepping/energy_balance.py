@@ -252,7 +252,8 @@ def off_balance(model, data):
 
     The shortest steps are accepted with any error, and the limit is then raised for the following steps, so
     that round-off or a force that jumps does not cut all steps of a run. Forces grow without bound before a
-    jam, so steps towards a jam are halved without a shortest length.
+    jam, so steps towards a jam are halved without a shortest length. A given step in which friction adds energy
+    is cut too: slip stops or turns within it, and the weights of its stages are not all positive.
     """
     controls, active, work = model.controls, data.active, data.work
     result, search, clock, watch = work.result[0], work.search[0], data.clocks[0], data.watch[0]
@@ -265,6 +266,9 @@ def off_balance(model, data):
     off, grows = imbalance(model, data, named, clock.now, dt)
     result.unnamed = max(result.unnamed, off)
     cut = grows or off > (CUT_SHARE if careful else 1.0)
+    round_off = limits.ENERGY_ROUND_OFF * watch.size
+    if controls.order == 0 and search.friction > limits.FRICTION_GAIN * watch.exchanged + round_off:
+        cut = True
     if (cut and not shortest) or (grows and (jams or search.active == 1)):
         return True, 0
     if search.active == 1 and shortest and not jams:

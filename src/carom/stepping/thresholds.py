@@ -9,6 +9,7 @@ FALL_OF_ONE = 4.0  #: time of a fall through a body's least size: longest step: 
 FALL_OF_SEVERAL = 0.03  #: time of a fall through a body's least size: nearness is checked once a step
 SHORTEST_STEP = 1.0 / 1024.0  #: a step of the run: trial steps are not cut below it by the balance of energy
 ENERGY_ROUND_OFF = 1e-13  #: sum of the sizes of energies: error of an energy
+FRICTION_GAIN = 1e-9  #: greatest energy exchanged: a given step in which friction adds more is cut
 ENERGY_GAIN = 0.25  #: energy that a step exchanges: a step that gains more is cut
 STEP_SHARE = 1e-3  #: `Options.energy_tolerance`: energy error that a step of an explicit method may have
 ACTIVE_SHARE = 10.0  #: `STEP_SHARE`: with active points, because the order is lower

@@ -31,6 +31,7 @@ LAW_FIELDS = ("restitution", "friction", "friction_held", "rolling_friction", "p
 BODY_FIELDS = ("mass", "inertia")
 #: what no run depends on, and what has no number or word
 LEFT_OUT = ("material", "color")
+SPIN, PLACE_OF_RATE = "surface_spin", 1  # a tuple, and where its rate is
 AXES, SCALAR_FIRST = ("x", "y", "z"), ("w", "x", "y", "z")
 MOMENTS = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
 ENDS = ("anchor_parent", "anchor_child")
@@ -83,7 +84,7 @@ def fields_of(part) -> Iterator[Found]:
             for field in vars_of(type(owner)):
                 value = getattr(owner, field)
                 plain = value is None or isinstance(value, (float, str, np.ndarray, SpeedLaw))
-                if plain and field not in LEFT_OUT:
+                if (plain or field == SPIN) and field not in LEFT_OUT:
                     yield Found(part, inside, field)
 
 
@@ -98,9 +99,11 @@ def find(scene: Scene, name: str) -> Found | None:
 
 
 def components(value) -> dict[str, Any]:
-    """Return the places of the components of an array, by their names, or the numbers of a law."""
+    """Return the places of components by name: of an array, a law, or the spin of a surface."""
     if isinstance(value, SpeedLaw):
         return {name: name for name in vars(value) if isinstance(getattr(value, name), float)}
+    if isinstance(value, tuple):
+        return {"rate": PLACE_OF_RATE}
     shape = np.shape(value)
     labels = {(3,): AXES, (4,): SCALAR_FIRST}.get(shape, ())
     return MOMENTS if shape == (3, 3) else dict(zip(labels, range(4)))
@@ -137,6 +140,11 @@ def whole(scene: Scene, inputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         value = scene.gravity if found is None else found.value
         if stem in inputs:
             raise ValueError(f"vary must have {stem!r} or its components, got it and {name!r}")
+        if isinstance(value, tuple):
+            made[stem] = np.empty(len(rows), dtype=object)
+            for k, one in enumerate(rows.tolist()):
+                made[stem][k] = (*value[:PLACE_OF_RATE], one, *value[PLACE_OF_RATE + 1 :])
+            continue
         if stem not in made:
             made[stem] = np.repeat(np.asarray(value)[None], len(rows), axis=0)
         at = components(value)[label]
@@ -215,7 +223,8 @@ def _find(scene: Scene, name: str, values: np.ndarray) -> Target:
 def _check_each(name: str, found: Found, values: np.ndarray) -> None:
     """Refuse values that the field does not take; equal ones are looked at once."""
     seen = set()
-    for k, row in enumerate(map(np.asarray, values)):
+    for k in range(len(values)):
+        row = values[k, ...]  # an object is one too
         if (key := row.tobytes()) not in seen:
             seen.add(key)
             try:

@@ -240,7 +240,7 @@ def _frozen(array: np.ndarray) -> np.ndarray:
 
 
 def _is_polynomial(value) -> bool:
-    if not (hasattr(value, "c") and hasattr(value, "x")):
+    if not checks.is_polynomial(value):
         return False
     from scipy.interpolate import PPoly
 

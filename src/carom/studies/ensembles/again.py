@@ -87,4 +87,4 @@ class Again:
 
 
 def _row(values: dict[str, np.ndarray], k: int) -> dict[str, np.ndarray]:
-    return {name: rows[k] for name, rows in values.items()}
+    return {name: rows[k, ...] for name, rows in values.items()}
