@@ -154,7 +154,8 @@ class Strike:
         if self.room is None:
             self.room = new_multiple_workspace(len(self.blows))
         settings = multiple_settings(self.run.options, 1.0)
-        slips = SlipLaws(*(one[closed] for one in self.slips[:3]), self.slips.pieces)
+        first, last, exponent, pieces = self.slips
+        slips = SlipLaws(first[closed], last[closed], exponent[closed], pieces)
         code, found = api.solve(
             W, u, (mu, slips), e, law, np.ones(len(u)), e_t, settings, self.room
         )

@@ -240,7 +240,7 @@ def friction(default: Any = REQUIRED, *, axis: bool = True) -> Value[Any, Any]:
     return Value(checked_friction if axis else without_grain, default)
 
 
-def bound_of(mu: float | SpeedLaw) -> float:
+def bound_of(mu: Any) -> float:
     """Return the coefficient that bounds stick."""
     return mu.bound if isinstance(mu, FrictionLaw) else mu
 
