@@ -1,0 +1,220 @@
+"""A surface phi(x, y, z) = 0 of a function of the user's."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom import arguments, checks
+from carom.fields import keep
+from carom.scene import expressions
+
+SAMPLES = 200  # points of the box at which a function is checked, and from which points of the surface are found
+CORRECTIONS = 20  # by Newton's method, along the gradient, from there to the surface
+STEP = 1e-5  # of differences, relative to the box
+AGREE = 1e-4  # greatest error of derivatives that are given, relative to the greatest ones
+FLAT = 1e-9  # least slope on the surface, relative to the greatest one
+SPARE = 1.25  # the curvature between the points may be greater
+#: numbers of a function: its value, gradient and Hessian (3, 3)
+RESULTS = 13
+
+
+@arguments.known
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Surface:
+    """The surface phi(x, y, z) = 0 of a function, with free space where phi is above 0.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(x, y, z)`` returns phi, of any unit. Without derivatives it must also take symbols of SymPy,
+        by which they are derived: arithmetic, and functions of SymPy such as ``sympy.sin`` in place of
+        ``math.sin``. It is then compiled.
+    bounds : (2, 3)
+        Lowest and highest x, y and z [m] of the box in which bodies touch the surface, in axes of the surface.
+        Here the function is checked, and the surface drawn.
+    gradient, hessian : callable, optional
+        ``gradient(x, y, z)`` (3,) and ``hessian(x, y, z)`` (3, 3), both or none. With them all three are called
+        as they are.
+
+    Raises
+    ------
+    ValueError
+        If phi is not finite in the box, has no zero there or one without a slope, derivatives do not agree
+        with differences, or there are none.
+
+    Notes
+    -----
+    phi must have continuous second derivatives near the surface. Where it is 0 its gradient must not be; that it
+    grows as the distance does is best, but not needed.
+
+    Examples
+    --------
+    A bowl of radius 0.5:
+
+    >>> bowl = carom.surfaces.Surface(
+    ...     lambda x, y, z: 0.25 - x**2 - y**2 - z**2, bounds=[(-0.5, -0.5, -0.5), (0.5, 0.5, 0.5)])
+    >>> bowl
+    Surface(<lambda>, bounds [-0.5 -0.5 -0.5] to [0.5 0.5 0.5] m)
+    """
+
+    function: Callable[[Any, Any, Any], Any]
+    bounds: np.ndarray
+    gradient: Callable | None
+    hessian: Callable | None
+    bend: float
+
+    def __init__(
+        self,
+        function: Callable[[Any, Any, Any], Any],
+        bounds: ArrayLike,
+        gradient: Callable | None = None,
+        hessian: Callable | None = None,
+    ):
+        checks.function("function", function)
+        checks.function("gradient", gradient, optional=True)
+        checks.function("hessian", hessian, optional=True)
+        if (gradient is None) != (hessian is None):
+            raise ValueError(
+                "gradient and hessian must be given both or not at all, got "
+                f"{checks.shown(gradient)} and {checks.shown(hessian)}"
+            )
+        bounds = checks.finite_array("bounds", bounds, (2, 3), "m")
+        if not np.all(bounds[1] > bounds[0]):
+            raise ValueError(
+                "bounds must be (lowest, highest) corners of a box with sides above 0, got "
+                f"{checks.shown(bounds.tolist())}"
+            )
+        keep(self, function=function, bounds=bounds, gradient=gradient, hessian=hessian)
+        keep(self, bend=self._checked())
+
+    def __repr__(self) -> str:
+        name = getattr(self.function, "__name__", type(self.function).__name__)
+        return f"Surface({name}, bounds {self.bounds[0]} to {self.bounds[1]} m)"
+
+    @property
+    def is_compiled(self) -> bool:
+        """Whether derivatives are SymPy's, and all of it is compiled."""
+        return self.gradient is None
+
+    def written(self) -> Callable:
+        """Return ``f(t, x, out)``, which writes value, gradient and Hessian of a function for symbols."""
+        sp: Any = checks.need("sympy", "Surface(function) without derivatives", "sympy")
+        x = sp.symbols("x y z", real=True)
+        try:
+            given = self.function(*x)
+        except Exception as error:
+            raise ValueError(
+                "function must take symbols of SymPy (with sympy.sin in place of math.sin, sympy.Piecewise in "
+                "place of if), or gradient and hessian must be given; with symbols it raised "
+                f"{type(error).__name__}: {error}"
+            ) from None
+        phi = expressions.of("what function(x, y, z) returns for symbols", given)
+        other = sorted(map(str, phi.free_symbols.difference(x)))
+        if other:
+            raise ValueError(f"function must be of x, y and z only, got one of {', '.join(other)}")
+        slope = [sp.diff(phi, one) for one in x]
+        terms = [phi, *slope, *(sp.diff(one, other) for one in slope for other in x)]
+        return expressions.written("surface", terms, list(x), sp.Dummy("t"))
+
+    def joined(self) -> Callable:
+        """Return ``f(t, x)``, the value, gradient and Hessian of three functions in one array."""
+        gradient: Any = self.gradient
+        hessian: Any = self.hessian
+
+        def surface(t, x):
+            at, out = x.tolist(), np.empty(RESULTS)
+            out[0], out[1:4] = self.function(*at), gradient(*at)
+            out[4:] = np.reshape(hessian(*at), 9)
+            return out
+
+        return surface
+
+    def evaluator(self) -> Callable[[np.ndarray], np.ndarray]:
+        """Return a function of a point (3,), with value, gradient and Hessian in one array."""
+        if not self.is_compiled:
+            joined = self.joined()
+            return lambda x: checks.call("function", joined, 0.0, x)
+        code = self.written()
+
+        def surface(x):
+            out = np.empty(RESULTS)
+            code(0.0, x.tolist(), out)
+            return out
+
+        return surface
+
+    def _checked(self) -> float:
+        """Return the greatest curvature [1/m]; refuse a function that is no surface in the box."""
+        evaluate, (low, high) = self.evaluator(), self.bounds
+        places = low + (high - low) * np.random.default_rng(0).random((SAMPLES, 3))
+        found = np.array([self._finite(evaluate, x) for x in places])
+        if self.gradient is not None:
+            self._compare(evaluate, places[:20], found[:20])
+        for _ in range(CORRECTIONS):
+            slope = found[:, 1:4]
+            square = np.maximum(np.sum(slope**2, axis=1, keepdims=True), 1e-300)
+            step = -found[:, :1] / square * slope
+            inside = np.all((places + step >= low) & (places + step <= high), axis=1)
+            if not np.any(inside):
+                raise ValueError(
+                    "bounds must contain a part of the surface function(x, y, z) = 0, got only values from "
+                    f"{found[:, 0].min():.3g} to {found[:, 0].max():.3g} there"
+                )
+            places = (places + step)[inside]
+            found = np.array([self._finite(evaluate, x) for x in places])
+        size = np.linalg.norm(found[:, 1:4], axis=1)
+        rough = np.abs(found[:, 0]) > 1e-6 * np.max(np.linalg.norm(high - low) * size)
+        if np.all(rough) or not np.min(size[~rough]) > FLAT * np.max(size):
+            raise ValueError(
+                "function must have a gradient other than 0 where it is 0, and change its sign there, got one "
+                f"with a gradient of {np.min(size):.3g} near {checks.shown(places[np.argmin(size)].tolist())}"
+            )
+        n = found[~rough, 1:4] / size[~rough, None]
+        flat = np.eye(3) - n[:, :, None] * n[:, None, :]
+        shape = flat @ found[~rough, 4:].reshape(-1, 3, 3) @ flat
+        return SPARE * float(np.max(np.linalg.norm(shape, 2, axis=(1, 2)) / size[~rough]))
+
+    def _finite(self, evaluate: Callable, x: np.ndarray) -> np.ndarray:
+        """Return the numbers of the function at a point, if they are finite."""
+        try:
+            out = checks.real_array("function, gradient and hessian", evaluate(x), "(13,)")
+        except (ArithmeticError, ValueError) as error:
+            if self.gradient is not None:
+                raise
+            out, what = np.full(RESULTS, np.nan), str(error)
+        else:
+            what = str(out[~np.isfinite(out)][:1])
+        if not np.all(np.isfinite(out)):
+            raise ValueError(
+                "function must be finite in the bounds, with its first and second derivatives, got "
+                f"{what} at {checks.shown(x.tolist())}"
+            )
+        return out
+
+    def _compare(self, evaluate: Callable, places: np.ndarray, found: np.ndarray) -> None:
+        """Refuse derivatives that do not agree with central differences."""
+        step = STEP * (self.bounds[1] - self.bounds[0])
+        ways = np.diag(step)
+        ahead, behind = (
+            np.array([[evaluate(x + sign * way)[:4] for way in ways] for x in places])
+            for sign in (1.0, -1.0)
+        )
+        rates = (ahead - behind) / (2.0 * step[:, None])  # (K, direction, value or gradient)
+        for name, given, found_ in (
+            ("gradient", found[:, 1:4], rates[:, :, 0]),
+            ("hessian", found[:, 4:].reshape(-1, 3, 3), rates[:, :, 1:]),
+        ):
+            error, most = np.abs(given - found_), max(np.abs(given).max(), np.abs(found_).max())
+            if not np.max(error) <= AGREE * most:
+                k = int(np.argmax(error.reshape(len(places), -1).max(axis=1)))
+                of = "function" if name == "gradient" else "gradient"
+                raise ValueError(
+                    f"{name} must be the derivative of {of}, got {checks.shown(given[k].tolist())} at "
+                    f"{checks.shown(places[k].tolist())}, where differences are "
+                    f"{checks.shown(found_[k].round(6).tolist())}"
+                )
