@@ -1,0 +1,225 @@
+"""Surfaces of the ground that are not planes: `Scene.add_surface` places them.
+
+A surface is given in its own axes by a function phi(x), which is above 0 in free space and 0 on the surface.
+Everything on its other side is solid. Kernels know it by its kind and numbers (`carom.collision.implicit`).
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Any, ClassVar
+
+import numpy as np
+
+from carom import arguments, checks
+from carom.fields import Number, NumberOrNone, Value, length, number
+from carom.scene.pieces import Piece
+from carom.scene.values import subclasses_in
+
+__all__ = ["InsideCone", "InsideCylinder", "InsideSphere", "InsideTorus"]
+
+_optional_length: Any = partial(Value, checks.length, None)
+
+
+@dataclass(frozen=True, eq=False)
+class SurfacePiece(Piece):
+    """The one piece of a surface: everything beyond it. It is not convex."""
+
+    surface: Any = None
+
+
+class SurfaceDefinition(ABC):
+    """Base class of surfaces: what contacts, files and kernels ask of them."""
+
+    kind: ClassVar[str]  #: its name in `carom.collision.layout.SURFACE_KINDS`
+    has_materials: ClassVar[bool] = False
+    #: greatest length of the gradient of phi; 1 where phi is the distance from the surface
+    steepest: float = 1.0
+
+    @property
+    @abstractmethod
+    def size(self) -> float:
+        """A length of the surface [m], of which round-off is a part."""
+
+    @property
+    @abstractmethod
+    def lengths(self) -> tuple[float, ...]:
+        """Up to three numbers of its kind."""
+
+    @property
+    @abstractmethod
+    def bend(self) -> float:
+        """Greatest curvature with the centre in free space [1/m]; inf for a point or an edge."""
+
+    @property
+    def numbers(self) -> np.ndarray:
+        """Further numbers (L,) of its kind."""
+        return np.zeros(0)
+
+    def write(self, row) -> None:
+        """Write what is more than lengths and numbers to a row of kernels."""
+
+    @cached_property
+    def pieces(self) -> tuple[Piece, ...]:
+        """One piece: the solid beyond the surface."""
+        return (SurfacePiece("implicit", extent=self.size, surface=self),)
+
+    def refusal(self, piece: Piece) -> str | None:
+        """Return why a piece of a body cannot touch the surface, or None."""
+        if piece.kind == "cylinder":
+            return (
+                "rims touch curved ground in several points that wander; give a Capsule, an Ellipsoid or a Convex"
+            )
+        if piece.kind == "ellipsoid":
+            most = max(piece.half) ** 2 / min(piece.half)
+            what = "its greatest radius of curvature"
+        else:
+            most, what = piece.radius, "the radius of its rounding"
+        if most > 0.0 and not most * self.bend < 1.0 and not self._admits(piece):
+            return (
+                f"{what}, {most:g} m, must be less than that of the surface, {1.0 / self.bend:g} m; "
+                "else it touches in several places"
+            )
+        return None
+
+    def _admits(self, piece: Piece) -> bool:
+        """Return whether a piece may touch where the surface is too sharp for its radius."""
+        return False
+
+
+@arguments.known
+@dataclass(frozen=True)
+class InsideSphere(SurfaceDefinition):
+    """The inside of a sphere about the origin: a bowl, a dome.
+
+    Parameters
+    ----------
+    radius : float
+        [m], above 0. The solid is everything farther from the origin.
+    """
+
+    radius: Number = length()
+    kind = "inside_sphere"
+
+    @property
+    def size(self) -> float:
+        """A length of the surface [m]: its radius."""
+        return self.radius
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """Its radius."""
+        return (self.radius,)
+
+    @property
+    def bend(self) -> float:
+        """Greatest curvature with the centre in free space [1/m]."""
+        return 1.0 / self.radius
+
+
+@arguments.known
+@dataclass(frozen=True)
+class InsideCylinder(SurfaceDefinition):
+    """The inside of a circular cylinder about the z axis: a pipe, a well, a half-pipe.
+
+    Parameters
+    ----------
+    radius : float
+        [m], above 0.
+    length : float or None
+        Length [m] of a can: flat ends close it at z = -length/2 and length/2. Default None: it has no ends.
+    """
+
+    radius: Number = length()
+    length: NumberOrNone = _optional_length()
+    kind = "inside_cylinder"
+
+    @property
+    def size(self) -> float:
+        """A length of the surface [m]: its radius, or half its length if that is more."""
+        return max(self.radius, 0.5 * (self.length or 0.0))
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """Its radius, and half its length, 0 for none."""
+        return self.radius, 0.5 * (self.length or 0.0)
+
+    @property
+    def bend(self) -> float:
+        """Greatest curvature with the centre in free space [1/m]."""
+        return 1.0 / self.radius
+
+
+@arguments.known
+@dataclass(frozen=True)
+class InsideCone(SurfaceDefinition):
+    """The inside of a circular cone about the z axis, with its apex at the origin: a funnel.
+
+    Parameters
+    ----------
+    half_angle : float
+        Angle [rad] between the z axis and the surface, above 0 and below pi/2. The cone opens towards +z.
+    """
+
+    half_angle: Number = number(above=0, below=math.pi / 2, unit="rad")
+    kind = "inside_cone"
+
+    @property
+    def size(self) -> float:
+        """A length of the surface [m]; a cone has none of its own."""
+        return 1.0
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """Sine and cosine of its half-angle."""
+        return math.sin(self.half_angle), math.cos(self.half_angle)
+
+    @property
+    def bend(self) -> float:
+        """Greatest curvature with the centre in free space [1/m]: that of the apex."""
+        return math.inf
+
+    def _admits(self, piece: Piece) -> bool:
+        return piece.kind != "ellipsoid"  # a ball touches a ring of the cone, of which four points are enough
+
+
+@arguments.known
+@dataclass(frozen=True)
+class InsideTorus(SurfaceDefinition):
+    """The inside of a tube that is bent to a ring about the z axis.
+
+    Parameters
+    ----------
+    radius : float
+        Radius of the ring, of the centre of the tube [m], above 0.
+    tube_radius : float
+        Inner radius of the tube [m], above 0 and below `radius`.
+    """
+
+    radius: Number = length()
+    tube_radius: Number = length()
+    kind = "inside_torus"
+
+    def __post_init__(self):
+        checks.number("tube_radius", self.tube_radius, above=0, below=self.radius, unit="m")
+
+    @property
+    def size(self) -> float:
+        """A length of the surface [m]: its outer radius."""
+        return self.radius + self.tube_radius
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """Radius of the ring and of the tube."""
+        return self.radius, self.tube_radius
+
+    @property
+    def bend(self) -> float:
+        """Greatest curvature with the centre in free space [1/m]."""
+        return 1.0 / self.tube_radius
+
+
+SURFACES = subclasses_in(globals(), SurfaceDefinition)
