@@ -12,8 +12,16 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.collision.layout import INSIDE_CONE, INSIDE_CYLINDER, INSIDE_SPHERE
+from carom.collision.height_field import height_field_at
+from carom.collision.layout import (
+    FUNCTION,
+    HEIGHT_FIELD,
+    INSIDE_CONE,
+    INSIDE_CYLINDER,
+    INSIDE_SPHERE,
+)
 from carom.collision.thresholds import FOOT_ERROR
+from carom.collision.user_surface import user_surface_at
 from carom.geometry.vectors import cross, dot, plus
 
 MOST_STEPS = 40  # of Newton's method for a nearest point
@@ -35,8 +43,19 @@ def field_at(surface, hulls, p):
         r = math.sqrt(x * x + y * y + z * z)
         u, v, w = (x / r, y / r, z / r) if r > 0.0 else (0.0, 0.0, -1.0)
         f = -1.0 / r if r > 0.0 else -math.inf
-        H = (f * (1.0 - u * u), f * (1.0 - v * v), f * (1.0 - w * w), -f * u * v, -f * u * w, -f * v * w)
+        H = (
+            f * (1.0 - u * u),
+            f * (1.0 - v * v),
+            f * (1.0 - w * w),
+            -f * u * v,
+            -f * u * w,
+            -f * v * w,
+        )
         return size[0] - r, (-u, -v, -w), H
+    if kind == HEIGHT_FIELD:
+        return height_field_at(surface, hulls.numbers, p)
+    if kind == FUNCTION:
+        return user_surface_at(surface, hulls.numbers, p)
     r, c, s = _across(x, y)
     if kind == INSIDE_CYLINDER:
         f = -1.0 / r if r > 0.0 else -math.inf

@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.fields import keep
-from carom.scene.surfaces import SurfaceDefinition
+from carom.scene.surface_definition import SurfaceDefinition
 
 BEYOND = 8  # spacings over which the slope goes on beyond the grid
+
 
 @arguments.known
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -44,9 +45,8 @@ class HeightField(SurfaceDefinition):
 
     Notes
     -----
-    The spline overshoots where heights jump, as at stairs; static boxes are better for those. At the border its
-    third derivatives along the grid are continuous ("not a knot"), so that it is exact for polynomials of degree
-    3 in x and y.
+    The spline overshoots where heights jump, as at stairs; static boxes are better for those. It is "not a knot"
+    at the border, so that it is exact for polynomials of degree 3 in x and y.
 
     A body must be rounded by less than the smallest radius of curvature of valleys (`bend` is a bound of its
     inverse), because it would touch them in two places: others are refused. For a rough terrain take more
@@ -82,9 +82,16 @@ class HeightField(SurfaceDefinition):
 
     def __repr__(self) -> str:
         (n, m), (low, high) = self.heights.shape, (self.heights.min(), self.heights.max())
-        return f"HeightField({n} x {m} places, spacing={self.spacing}, heights {low:g} to {high:g} m)"
+        return (
+            f"HeightField({n} x {m} places, spacing={self.spacing}, heights {low:g} to {high:g} m)"
+        )
 
     kind = "height_field"
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """None of its own."""
+        return ()
 
     @property
     def size(self) -> float:

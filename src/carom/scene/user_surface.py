@@ -12,20 +12,24 @@ from numpy.typing import ArrayLike
 from carom import arguments, checks
 from carom.fields import keep
 from carom.scene import expressions
+from carom.scene.surface_definition import SurfaceDefinition
 
-SAMPLES = 200  # points of the box at which a function is checked, and from which points of the surface are found
+SAMPLES = (
+    200  # points of the box at which a function is checked, and from which the surface is found
+)
 CORRECTIONS = 20  # by Newton's method, along the gradient, from there to the surface
 STEP = 1e-5  # of differences, relative to the box
 AGREE = 1e-4  # greatest error of derivatives that are given, relative to the greatest ones
 FLAT = 1e-9  # least slope on the surface, relative to the greatest one
-SPARE = 1.25  # the curvature between the points may be greater
+SPARE = 1.25  # curvature and slope between the points may be greater
+TINY = 1e-300  # of squares of slopes, which divide
 #: numbers of a function: its value, gradient and Hessian (3, 3)
 RESULTS = 13
 
 
 @arguments.known
 @dataclass(frozen=True, init=False, eq=False, repr=False)
-class Surface:
+class Surface(SurfaceDefinition):
     """The surface phi(x, y, z) = 0 of a function, with free space where phi is above 0.
 
     Parameters
@@ -49,8 +53,8 @@ class Surface:
 
     Notes
     -----
-    phi must have continuous second derivatives near the surface. Where it is 0 its gradient must not be; that it
-    grows as the distance does is best, but not needed.
+    phi must have continuous second derivatives near the surface. Where it is 0 its gradient must not be. That
+    it grows as the distance does is best, but not needed.
 
     Examples
     --------
@@ -66,7 +70,9 @@ class Surface:
     bounds: np.ndarray
     gradient: Callable | None
     hessian: Callable | None
-    bend: float
+    bend: float = 0.0
+    steepest: float = 1.0
+    kind = "function"
 
     def __init__(
         self,
@@ -90,11 +96,26 @@ class Surface:
                 f"{checks.shown(bounds.tolist())}"
             )
         keep(self, function=function, bounds=bounds, gradient=gradient, hessian=hessian)
-        keep(self, bend=self._checked())
+        self._check()
 
     def __repr__(self) -> str:
         name = getattr(self.function, "__name__", type(self.function).__name__)
         return f"Surface({name}, bounds {self.bounds[0]} to {self.bounds[1]} m)"
+
+    @property
+    def size(self) -> float:
+        """A length of the surface [m]: half the diagonal of its box."""
+        return 0.5 * float(np.linalg.norm(self.bounds[1] - self.bounds[0]))
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """None of its own."""
+        return ()
+
+    @property
+    def numbers(self) -> np.ndarray:
+        """Room for a point and the numbers of the function there, for kernels."""
+        return np.zeros(3 + RESULTS)
 
     @property
     def is_compiled(self) -> bool:
@@ -123,14 +144,11 @@ class Surface:
 
     def joined(self) -> Callable:
         """Return ``f(t, x)``, the value, gradient and Hessian of three functions in one array."""
-        gradient: Any = self.gradient
-        hessian: Any = self.hessian
+        parts: Any = ("function", ()), ("gradient", (3,)), ("hessian", (3, 3))
 
         def surface(t, x):
-            at, out = x.tolist(), np.empty(RESULTS)
-            out[0], out[1:4] = self.function(*at), gradient(*at)
-            out[4:] = np.reshape(hessian(*at), 9)
-            return out
+            at = x.tolist()
+            return np.concatenate([_shaped(k, getattr(self, k)(*at), shape) for k, shape in parts])
 
         return surface
 
@@ -148,42 +166,42 @@ class Surface:
 
         return surface
 
-    def _checked(self) -> float:
-        """Return the greatest curvature [1/m]; refuse a function that is no surface in the box."""
+    def _check(self) -> None:
+        """Find bounds of curvature and slope; refuse a function that is no surface in the box."""
         evaluate, (low, high) = self.evaluator(), self.bounds
         places = low + (high - low) * np.random.default_rng(0).random((SAMPLES, 3))
         found = np.array([self._finite(evaluate, x) for x in places])
         if self.gradient is not None:
             self._compare(evaluate, places[:20], found[:20])
+        steepest, values = np.max(np.linalg.norm(found[:, 1:4], axis=1)), found[:, 0]
         for _ in range(CORRECTIONS):
             slope = found[:, 1:4]
-            square = np.maximum(np.sum(slope**2, axis=1, keepdims=True), 1e-300)
-            step = -found[:, :1] / square * slope
-            inside = np.all((places + step >= low) & (places + step <= high), axis=1)
-            if not np.any(inside):
-                raise ValueError(
-                    "bounds must contain a part of the surface function(x, y, z) = 0, got only values from "
-                    f"{found[:, 0].min():.3g} to {found[:, 0].max():.3g} there"
-                )
-            places = (places + step)[inside]
+            step = -found[:, :1] / np.maximum(np.sum(slope**2, axis=1, keepdims=True), TINY) * slope
+            places = np.clip(places + step, low, high)
             found = np.array([self._finite(evaluate, x) for x in places])
         size = np.linalg.norm(found[:, 1:4], axis=1)
-        rough = np.abs(found[:, 0]) > 1e-6 * np.max(np.linalg.norm(high - low) * size)
-        if np.all(rough) or not np.min(size[~rough]) > FLAT * np.max(size):
+        away = np.abs(found[:, 0]) / np.maximum(size, TINY)
+        on = (away < STEP * 2.0 * self.size) & (size > FLAT * steepest)
+        n = found[on, 1:4] / size[on, None]
+        ends = [
+            [self._finite(evaluate, x)[0] for x in places[on] + k * STEP * self.size * n]
+            for k in (-10.0, 10.0)
+        ]
+        if not np.any(np.sign(ends[0]) * np.sign(ends[1]) < 0.0):
             raise ValueError(
-                "function must have a gradient other than 0 where it is 0, and change its sign there, got one "
-                f"with a gradient of {np.min(size):.3g} near {checks.shown(places[np.argmin(size)].tolist())}"
+                "function must be 0 on a surface within the bounds, above 0 on one side and below 0 on the "
+                f"other, with a gradient; got values from {values.min():.3g} to {values.max():.3g} and none such"
             )
-        n = found[~rough, 1:4] / size[~rough, None]
         flat = np.eye(3) - n[:, :, None] * n[:, None, :]
-        shape = flat @ found[~rough, 4:].reshape(-1, 3, 3) @ flat
-        return SPARE * float(np.max(np.linalg.norm(shape, 2, axis=(1, 2)) / size[~rough]))
+        shape = -flat @ found[on, 4:].reshape(-1, 3, 3) @ flat / size[on, None, None]
+        bend = max(float(np.max(np.linalg.eigvalsh(shape))), 0.0)
+        keep(self, bend=SPARE * bend, steepest=SPARE * float(max(steepest, np.max(size))))
 
     def _finite(self, evaluate: Callable, x: np.ndarray) -> np.ndarray:
         """Return the numbers of the function at a point, if they are finite."""
         try:
-            out = checks.real_array("function, gradient and hessian", evaluate(x), "(13,)")
-        except (ArithmeticError, ValueError) as error:
+            out = evaluate(x)
+        except (ArithmeticError, ValueError) as error:  # of `math` at a pole or beyond a domain
             if self.gradient is not None:
                 raise
             out, what = np.full(RESULTS, np.nan), str(error)
@@ -218,3 +236,11 @@ class Surface:
                     f"{checks.shown(places[k].tolist())}, where differences are "
                     f"{checks.shown(found_[k].round(6).tolist())}"
                 )
+
+
+def _shaped(name: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:
+    """Return what one of three functions returned, as a list of numbers."""
+    array = checks.real_array(f"{name}(x, y, z)", value, str(shape))
+    if array.shape != shape:
+        raise ValueError(f"{name}(x, y, z) must have shape {shape}, got shape {array.shape}")
+    return array.ravel()
