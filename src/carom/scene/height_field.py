@@ -45,8 +45,8 @@ class HeightField(SurfaceDefinition):
 
     Notes
     -----
-    The spline overshoots where heights jump, as at stairs; static boxes are better for those. It is "not a knot"
-    at the border, so that it is exact for polynomials of degree 3 in x and y.
+    The spline overshoots where heights jump, as at stairs; static boxes are better for those. It is "not a
+    knot" at the border, so that it is exact for polynomials of degree 3 in x and y.
 
     A body must be rounded by less than the smallest radius of curvature of valleys (`bend` is a bound of its
     inverse), because it would touch them in two places: others are refused. For a rough terrain take more

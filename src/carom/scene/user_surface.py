@@ -190,7 +190,8 @@ class Surface(SurfaceDefinition):
         if not np.any(np.sign(ends[0]) * np.sign(ends[1]) < 0.0):
             raise ValueError(
                 "function must be 0 on a surface within the bounds, above 0 on one side and below 0 on the "
-                f"other, with a gradient; got values from {values.min():.3g} to {values.max():.3g} and none such"
+                "other, with a gradient; got none such, and values from "
+                f"{values.min():.3g} to {values.max():.3g}"
             )
         flat = np.eye(3) - n[:, :, None] * n[:, None, :]
         shape = -flat @ found[on, 4:].reshape(-1, 3, 3) @ flat / size[on, None, None]
