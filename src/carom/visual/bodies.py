@@ -112,6 +112,7 @@ def parts_of(
             )
     rails = [_rail(j, 0.5 * ROD * radius) for j in scene.joints if j.definition.guide == "curve"]
     fixed = [static_part(solid, fineness, centre, radius) for solid in scene.statics]
+    fixed = [part for part in fixed if len(part.triangles)]
     return [*parts.values(), *fixed, *rails, *surface_arrows(scene, radius)]
 
 

@@ -9,6 +9,7 @@ from itertools import permutations
 
 import numpy as np
 
+from carom.io.files.scene_data import MissingFunction
 from carom.scene.height_field import HeightField
 from carom.scene.surface_definition import SurfaceDefinition
 from carom.scene.surfaces import InsideCone, InsideCylinder, InsideSphere, InsideTorus
@@ -17,8 +18,10 @@ from carom.visual.surfaces import turned
 
 CELLS = 64  # along each side of a height field
 CUBES = 20  # along the longest side of a box
+UNEVEN = 0.0417  # of a side of the box
 REACH = 2.0  # of the region of the motion, to which endless surfaces are drawn
 LARGE = 4.0  # a surface so many times larger than the region is drawn there only
+NOTHING = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
 #: tetrahedra of a cube whose corners have the bits of their numbers for coordinates
 TETRAHEDRA = [(0, a, a + b, 7) for a, b, _ in permutations((1, 2, 4))]
 
@@ -26,12 +29,15 @@ TETRAHEDRA = [(0, a, a + b, 7) for a, b, _ in permutations((1, 2, 4))]
 def ground(surface: SurfaceDefinition, centre: np.ndarray, radius: float, n: int):
     """Return vertices and triangles of a surface, in its axes; circles have n sides.
 
-    The motion is in a ball about `centre` (3,), in axes of the surface, of this `radius`.
+    The motion is in a ball about `centre` (3,), in axes of the surface, of this `radius`. There are none of a
+    surface that is elsewhere, or whose function a file does not have.
     """
     if isinstance(surface, HeightField):
         return _field(surface, centre, radius)
     low, high = centre - REACH * radius, centre + REACH * radius
     if isinstance(surface, Surface):
+        if isinstance(surface.function, MissingFunction):
+            return NOTHING
         own = surface.bounds
         if surface.size > LARGE * radius:
             own = np.stack([np.maximum(low, own[0]), np.minimum(high, own[1])])
@@ -93,8 +99,10 @@ def _level(phi, box: np.ndarray):
     """Return the surface phi = 0 in a box, with phi above 0 on its outside: marching tetrahedra."""
     side = np.max(box[1] - box[0]) / CUBES
     count = np.maximum(np.ceil((box[1] - box[0]) / side).astype(int), 1)
-    grid = np.stack(np.meshgrid(*(np.arange(k + 1) for k in count), indexing="ij"), axis=-1)
-    points = box[0] + (box[1] - box[0]) / count * grid.reshape(-1, 3)
+    # not quite even, because many surfaces have the points of an even grid
+    parts = [s + UNEVEN * s * (1.0 - s) for s in (np.arange(k + 1) / k for k in count)]
+    grid = np.stack(np.meshgrid(*parts, indexing="ij"), axis=-1).reshape(-1, 3)
+    points = box[0] + (box[1] - box[0]) * grid
     value = phi(points)
     value[value == 0.0] = np.finfo(float).tiny  # no vertex is on the surface
     number = np.arange(len(points)).reshape(count + 1)
@@ -116,7 +124,7 @@ def _level(phi, box: np.ndarray):
             cuts += [own[many == k][:, ends].reshape(-1, 3, 2) for ends in map(list, triangles)]
     edges = np.concatenate(cuts)
     if not len(edges):
-        return np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
+        return NOTHING
     edges, faces = np.unique(np.sort(edges.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
     low, high = points[edges[:, 0]], points[edges[:, 1]]
     vertices, faces = _zeros(phi, low, high, value[edges]), faces.reshape(-1, 3)

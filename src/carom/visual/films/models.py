@@ -8,11 +8,13 @@ import numpy as np
 
 from carom.scene.shapes.convex import Convex
 from carom.scene.shapes.revolved import Disc
+from carom.scene.surface_definition import SurfaceDefinition
 from carom.visual.bodies import ORIGIN, Part, colours_of, parts_of
 
 MOST_TRIANGLES = 20_000  # triangles of a body, from which on large ones are not split any more
 SHARP = np.cos(np.radians(35.0))  # of the angle from which an edge is one
 FACET = np.cos(np.radians(1.0))  # the same of a polyhedron, whose faces are all flat
+SMOOTH = -1.0  # of what has no edge
 NARROW = 0.8  # inner radius by outer radius from which a ring has no room for lines at its edges
 PALE = 0.55  # of the second colour of round bodies, which shows how they turn
 
@@ -88,6 +90,8 @@ def model_of(part: Part) -> Model:
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     size = np.linalg.norm(normals, axis=1)
     alike = FACET if isinstance(shape, Convex) and not shape.radius else SHARP
+    if isinstance(shape, SurfaceDefinition) and not getattr(shape, "length", None):
+        alike = SMOOTH  # of all curved ground, only a can has edges
     flat = size <= 1e-12 * max(float(size.max()), 1e-300)
     unit = normals / np.where(flat, 1.0, size)[:, None]
     side = {(int(t[k]), int(t[k - 2])): f for f, t in enumerate(triangles) for k in range(3)}

@@ -199,7 +199,7 @@ def _section(axes, part, seen, depth: float) -> None:
     sides, away = sides[cut], away[cut]
     f = (away[:, 0] / (away[:, 0] - away[:, 1]))[:, None]
     ends = ((1.0 - f) * sides[:, 0] + f * sides[:, 1])[:, seen].reshape(-1, 2, 2)  # two a triangle
-    line = LineCollection(list(ends), colors=part.colour or GROUND, linewidths=2.0, zorder=0)
+    line = LineCollection(list(ends), colors=looks.BLACK, linewidths=0.8, zorder=0)
     axes.add_collection(line, autolim=False)
 
 
