@@ -7,13 +7,13 @@ from functools import lru_cache
 from carom._compiled.user_functions import Functions
 from carom.model.contacts import Contacts
 from carom.scene.scene import Scene
-from carom.scene.user_surface import RESULTS, Surface
+from carom.scene.user_surface import RESULTS, Surface, joined, written
 
 
 @lru_cache(maxsize=64)
 def _code(surface: Surface):
     """Return the code of a surface, which is derived once."""
-    return surface.written()
+    return written(surface)
 
 
 def write_addresses(scene: Scene, touching: Contacts, functions: Functions) -> None:
@@ -23,8 +23,8 @@ def write_addresses(scene: Scene, touching: Contacts, functions: Functions) -> N
         if not isinstance(surface, Surface) or place == 0:  # solids of a body that moves come first
             continue
         given = (3,), (RESULTS,), f"the function of the surface {solid.name!r}"
-        if surface.is_compiled:
+        if surface.gradient is None:
             address = functions.written(_code(surface), *given)
         else:
-            address = functions.address(surface.joined(), *given)
+            address = functions.address(joined(surface), *given)
         touching.hulls.surfaces["address"][touching.solids["surface"][place]] = address

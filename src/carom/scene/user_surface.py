@@ -117,58 +117,9 @@ class Surface(SurfaceDefinition):
         """Room for a point and the numbers of the function there, for kernels."""
         return np.zeros(3 + RESULTS)
 
-    @property
-    def is_compiled(self) -> bool:
-        """Whether derivatives are SymPy's, and all of it is compiled."""
-        return self.gradient is None
-
-    def written(self) -> Callable:
-        """Return ``f(t, x, out)``, which writes value, gradient and Hessian of a function for symbols."""
-        sp: Any = checks.need("sympy", "Surface(function) without derivatives", "sympy")
-        x = sp.symbols("x y z", real=True)
-        try:
-            given = self.function(*x)
-        except Exception as error:
-            raise ValueError(
-                "function must take symbols of SymPy (with sympy.sin in place of math.sin, sympy.Piecewise in "
-                "place of if), or gradient and hessian must be given; with symbols it raised "
-                f"{type(error).__name__}: {error}"
-            ) from None
-        phi = expressions.of("what function(x, y, z) returns for symbols", given)
-        other = sorted(map(str, phi.free_symbols.difference(x)))
-        if other:
-            raise ValueError(f"function must be of x, y and z only, got one of {', '.join(other)}")
-        slope = [sp.diff(phi, one) for one in x]
-        terms = [phi, *slope, *(sp.diff(one, other) for one in slope for other in x)]
-        return expressions.written("surface", terms, list(x), sp.Dummy("t"))
-
-    def joined(self) -> Callable:
-        """Return ``f(t, x)``, the value, gradient and Hessian of three functions in one array."""
-        parts: Any = ("function", ()), ("gradient", (3,)), ("hessian", (3, 3))
-
-        def surface(t, x):
-            at = x.tolist()
-            return np.concatenate([_shaped(k, getattr(self, k)(*at), shape) for k, shape in parts])
-
-        return surface
-
-    def evaluator(self) -> Callable[[np.ndarray], np.ndarray]:
-        """Return a function of a point (3,), with value, gradient and Hessian in one array."""
-        if not self.is_compiled:
-            joined = self.joined()
-            return lambda x: checks.call("function", joined, 0.0, x)
-        code = self.written()
-
-        def surface(x):
-            out = np.empty(RESULTS)
-            code(0.0, x.tolist(), out)
-            return out
-
-        return surface
-
     def _check(self) -> None:
         """Find bounds of curvature and slope; refuse a function that is no surface in the box."""
-        evaluate, (low, high) = self.evaluator(), self.bounds
+        evaluate, (low, high) = evaluator(self), self.bounds
         places = low + (high - low) * np.random.default_rng(0).random((SAMPLES, 3))
         found = np.array([self._finite(evaluate, x) for x in places])
         if self.gradient is not None:
@@ -237,6 +188,53 @@ class Surface(SurfaceDefinition):
                     f"{checks.shown(places[k].tolist())}, where differences are "
                     f"{checks.shown(found_[k].round(6).tolist())}"
                 )
+
+
+def written(surface: Surface) -> Callable:
+    """Return ``f(t, x, out)``, which writes value, gradient and Hessian of a function for symbols."""
+    sp: Any = checks.need("sympy", "Surface(function) without derivatives", "sympy")
+    x = sp.symbols("x y z", real=True)
+    try:
+        given = surface.function(*x)
+    except Exception as error:
+        raise ValueError(
+            "function must take symbols of SymPy (with sympy.sin in place of math.sin, sympy.Piecewise in "
+            "place of if), or gradient and hessian must be given; with symbols it raised "
+            f"{type(error).__name__}: {error}"
+        ) from None
+    phi = expressions.of("what function(x, y, z) returns for symbols", given)
+    other = sorted(map(str, phi.free_symbols.difference(x)))
+    if other:
+        raise ValueError(f"function must be of x, y and z only, got one of {', '.join(other)}")
+    slope = [sp.diff(phi, one) for one in x]
+    terms = [phi, *slope, *(sp.diff(one, other) for one in slope for other in x)]
+    return expressions.written("surface", terms, list(x), sp.Dummy("t"))
+
+
+def joined(surface: Surface) -> Callable:
+    """Return ``f(t, x)``, the value, gradient and Hessian of three functions in one array."""
+    parts: Any = ("function", ()), ("gradient", (3,)), ("hessian", (3, 3))
+
+    def numbers(t, x):
+        at = x.tolist()
+        return np.concatenate([_shaped(k, getattr(surface, k)(*at), shape) for k, shape in parts])
+
+    return numbers
+
+
+def evaluator(surface: Surface) -> Callable[[np.ndarray], np.ndarray]:
+    """Return a function of a point (3,), with value, gradient and Hessian in one array."""
+    if surface.gradient is not None:
+        three = joined(surface)
+        return lambda x: checks.call("function", three, 0.0, x)
+    code = written(surface)
+
+    def numbers(x):
+        out = np.empty(RESULTS)
+        code(0.0, x.tolist(), out)
+        return out
+
+    return numbers
 
 
 def _shaped(name: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:

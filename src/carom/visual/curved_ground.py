@@ -13,7 +13,7 @@ from carom.io.files.scene_data import MissingFunction
 from carom.scene.height_field import HeightField
 from carom.scene.surface_definition import SurfaceDefinition
 from carom.scene.surfaces import InsideCone, InsideCylinder, InsideSphere, InsideTorus
-from carom.scene.user_surface import Surface
+from carom.scene.user_surface import Surface, evaluator
 from carom.visual.surfaces import turned
 
 CELLS = 64  # along each side of a height field
@@ -41,7 +41,7 @@ def ground(surface: SurfaceDefinition, centre: np.ndarray, radius: float, n: int
         own = surface.bounds
         if surface.size > LARGE * radius:
             own = np.stack([np.maximum(low, own[0]), np.minimum(high, own[1])])
-        evaluate = surface.evaluator()
+        evaluate = evaluator(surface)
         return _level(lambda x: np.array([evaluate(one)[0] for one in x]), own)
     if not isinstance(surface, InsideCone) and 1.0 / surface.bend > LARGE * radius:
         return _level(lambda x: _distance(surface, x), np.stack([low, high]))
