@@ -72,9 +72,10 @@ class HeightField(SurfaceDefinition):
             raise ValueError(
                 f"heights must be at least 2 along x and y, got an array of shape {heights.shape}"
             )
-        wide = checks.finite_array("spacing", np.broadcast_to(spacing, 2), (2,), "m")
-        for one in wide:
-            checks.length("spacing", one)
+        wide = checks.real_array("spacing", spacing, "() or (2,)")
+        if wide.shape not in ((), (2,)):
+            raise ValueError(f"spacing must be a length or two [m], got shape {wide.shape}")
+        wide = np.array([checks.length("spacing", one) for one in np.broadcast_to(wide, 2)])
         if corner is None:
             corner = -0.5 * wide * (np.array(heights.shape) - 1)
         corner = checks.finite_array("corner", corner, (2,), "m")
