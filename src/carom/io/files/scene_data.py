@@ -44,6 +44,7 @@ from carom.scene.pieces import Piece
 from carom.scene.restitution import LAWS
 from carom.scene.shapes import SHAPES
 from carom.scene.stops import Stop
+from carom.scene.surfaces import SURFACES
 
 #: parts that have a name in the scene
 PARTS = (*FIXED, Body, Joint, AppliedForce, Constraint, Stop, Contact)
@@ -53,6 +54,7 @@ TYPES: dict[str, type[Any]] = {
     for kind in (
         *PARTS,
         *SHAPES,
+        *SURFACES,
         *JOINTS,
         *FORCES,
         *CONSTRAINTS,
@@ -117,7 +119,7 @@ class Encoder:
             return {"ground": True}
         if isinstance(value, PARTS):
             return {"part": value.name}
-        if isinstance(value, SHAPES):
+        if isinstance(value, (*SHAPES, *SURFACES)):
             return {"shape": self._shape(value)}
         if is_dataclass(value) and type(value).__name__ in TYPES:
             return self._record(value, where)
