@@ -10,6 +10,7 @@ from campaigns import (
     crowds,
     forced,
     frictions,
+    grounds,
     laws,
     mechanisms,
     piles,
@@ -30,4 +31,5 @@ FAMILIES = {
     "belts": belts.case,
     "rails": rails.case,
     "laws": laws.case, "frictions": frictions.case,
+    "grounds": grounds.case,
 }  # fmt: skip

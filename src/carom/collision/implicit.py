@@ -183,3 +183,31 @@ def clearance(surface, hulls, p):
     for k in range(planes(surface)):
         least = min(least, plane_at(surface, k, p)[0])
     return least
+
+
+@kernel
+def turn_of_normal(at_foot, d, v):
+    """Return the change of the normal for a displacement v of a point at a distance d over its foot.
+
+    It is (I + d S)^-1 S v; `at_foot` is from `shape_operator`.
+    """
+    _, e, f, S = at_foot
+    u, w = dot(e, v), dot(f, v)
+    u, w = S[0] * u + S[2] * w, S[2] * u + S[1] * w
+    x, y, good = solve_symmetric(1.0 + d * S[0], 1.0 + d * S[1], d * S[2], u, w)
+    if not good:
+        x, y = u, w
+    return plus((x * e[0], x * e[1], x * e[2]), y, f)
+
+
+@kernel
+def curvature_at(surface, hulls, p, d, n):
+    """Return a bound of the curvatures of the surface at the distance d through p; n is the normal there."""
+    if surface["size"][3] == 1.0:
+        _, _, H = field_at(surface, hulls, p)
+        s = H[0] * H[0] + H[1] * H[1] + H[2] * H[2]
+        return math.sqrt(s + 2.0 * (H[3] * H[3] + H[4] * H[4] + H[5] * H[5]))
+    _, _, _, S = shape_operator(surface, hulls, plus(p, -d, n))
+    # what the point moves towards may be more hollow than what is beneath it
+    k = max(math.sqrt(S[0] * S[0] + S[1] * S[1] + 2.0 * S[2] * S[2]), surface["size"][0])
+    return k / (1.0 - k * d) if k * d < 1.0 else math.inf

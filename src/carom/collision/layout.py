@@ -59,8 +59,8 @@ CANDIDATE = [
 #: a surface phi(x) = 0 in its own axes, with free space where phi > 0 (`carom.scene` has its definitions)
 IMPLICIT_SURFACE = [
     ("kind", "i8"),
-    # radii, lengths and angles of its kind; and the greatest length of the gradient, so that |phi| over it is at
-    # most the distance
+    # radii, lengths and angles of its kind; and the greatest length of the gradient: |phi| over it is at most
+    # the distance
     ("size", "f8", 4),
     ("first", "i8"),  # range of its numbers in `Hulls.numbers`
     ("last", "i8"),

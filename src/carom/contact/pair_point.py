@@ -9,10 +9,11 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.collision.layout import Placed, Plane
+from carom.collision.layout import IMPLICIT, Placed, Plane
 from carom.collision.plane import plane_unit
 from carom.collision.touch import touch_unit
 from carom.contact.drift import drift_of_solids
+from carom.contact.drift_on_surface import drift_on_surface
 from carom.contact.level import keep_real_touches, solid_beyond, solid_left
 from carom.contact.place_of_other import on_half_space, pose_of
 from carom.contact.rim import same_point
@@ -172,6 +173,8 @@ def drift(system, contact, feature, point, state) -> tuple[float, float, float]:
     The point must have been written for this state (`write_touch`). For two solids `feature` is not used.
     """
     if not on_half_space(contact):
+        if system.solids[contact.other_solid].kind == IMPLICIT:
+            return drift_on_surface(system, contact, point, state)
         return drift_of_solids(system, contact, contact.other_solid, point, state)
     solid = solid_beyond(system, contact, point, state)
     if solid < 0:

@@ -91,8 +91,8 @@ class HeightField(SurfaceDefinition):
 
     @property
     def lengths(self) -> tuple[float, ...]:
-        """None of its own."""
-        return ()
+        """The bound of its hollow curvatures [1/m]."""
+        return (self.bend,)
 
     @property
     def size(self) -> float:

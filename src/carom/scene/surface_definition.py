@@ -47,7 +47,7 @@ class SurfaceDefinition(ABC):
         """Further numbers (L,) of its kind."""
         return np.zeros(0)
 
-    def write(self, row) -> None:
+    def write(self, row) -> None:  # noqa: B027
         """Write what is more than lengths and numbers to a row of kernels."""
 
     @cached_property
@@ -58,7 +58,7 @@ class SurfaceDefinition(ABC):
     def refusal(self, piece: Piece) -> str | None:
         """Return why a piece of a body cannot touch the surface, or None."""
         if piece.kind == "cylinder":
-            return "rims touch curved ground in several points that wander; give a Capsule, an Ellipsoid or a Convex"
+            return "rims have no fixed points on curved ground; give a Capsule, an Ellipsoid or a Convex"
         if piece.kind == "ellipsoid":
             most = max(piece.half) ** 2 / min(piece.half)
             what = "its greatest radius of curvature"

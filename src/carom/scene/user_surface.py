@@ -109,8 +109,8 @@ class Surface(SurfaceDefinition):
 
     @property
     def lengths(self) -> tuple[float, ...]:
-        """None of its own."""
-        return ()
+        """The bound of its hollow curvatures [1/m]."""
+        return (self.bend,)
 
     @property
     def numbers(self) -> np.ndarray:

@@ -1,0 +1,218 @@
+"""Contact of a solid (A) with a surface that is not convex (B): the points of its core that are nearest.
+
+Points and vertices are looked at one by one. Where the surface is hollow along an edge, the ends of the edge
+are nearest to it; where it is convex, a point between them may be. The nearest point of an ellipsoid is that
+whose normal is opposite to the normal of the surface beneath it, found by Newton's method; it must be
+more curved than the surface (`SurfaceDefinition.refusal`).
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
+from carom.collision.faces import vertex
+from carom.collision.features import (
+    NOBODY,
+    OF_SUPPORT,
+    edge_part,
+    of_edges,
+    of_vertex_a,
+)
+from carom.collision.found import put, put_parts, swap
+from carom.collision.frame import from_a, point_of_a, to_a
+from carom.collision.implicit import (
+    beside,
+    foot_of,
+    plane_at,
+    plane_counts,
+    planes,
+    shape_operator,
+    turn_of_normal,
+)
+from carom.collision.layout import BOX, ELLIPSOID, HULL, INSIDE_CONE, SEGMENT, Pair
+from carom.collision.support import change_of_support
+from carom.geometry.thresholds import LAST_DIGIT
+from carom.geometry.vectors import dot, plus
+
+MOST_TURNS = 40  # of Newton's method for the normal of an ellipsoid
+HALVINGS = 60  # of an edge, for its lowest point
+
+
+@kernel
+def corners(solid):
+    """Return the number of points of a core that are looked at one by one."""
+    if solid.kind == SEGMENT:
+        return 2
+    if solid.kind == BOX:
+        return 8
+    return solid.last - solid.first if solid.kind == HULL else 1
+
+
+@kernel
+def corner(solid, hulls, i):
+    """Return such a point, in the solid's own axes."""
+    if solid.kind == SEGMENT or solid.kind == BOX or solid.kind == HULL:
+        return vertex(solid, hulls, i)
+    return 0.0, 0.0, 0.0
+
+
+@kernel
+def is_hollow(surface):
+    """Return whether a surface is nowhere convex: all its free space is."""
+    return surface.kind <= INSIDE_CONE
+
+
+@kernel
+def support_of_ellipsoid(solid, u):
+    """Return the point of an ellipsoid that is farthest along a unit vector, in its own axes."""
+    h = solid.half
+    a, b, c = h[0] * u[0], h[1] * u[1], h[2] * u[2]
+    f = 1.0 / math.sqrt(a * a + b * b + c * c)
+    return f * h[0] * a, f * h[1] * b, f * h[2] * c
+
+
+@kernel
+def _down(s, n):
+    """Return -n, given in axes of B, in axes of A."""
+    return to_a(s, -n[0], -n[1], -n[2])
+
+
+@kernel
+def _bend_of_a(pair, n, v):
+    """Return H v for the farthest point of A along -n, all in axes of B."""
+    s = pair.state
+    w = change_of_support(pair.a, _down(s, n), to_a(s, v[0], v[1], v[2]))
+    return from_a(s, w[0], w[1], w[2])
+
+
+@kernel
+def lowest_of_ellipsoid(pair, surface):
+    """Return the point of an ellipsoid that is nearest to the curved part, its distance and the normal.
+
+    With p(n) the farthest point along -n and N the normal beneath it, N(p(n)) = n. A change t of n moves p by
+    -H t, so Newton's step solves (I + S_d H) t = N - n, S_d the change of N with p.
+    """
+    s, hulls = pair.state, pair.hulls
+    d, n = foot_of(surface, hulls, point_of_a(s, 0.0, 0.0, 0.0))
+    p = point_of_a(s, 0.0, 0.0, 0.0)
+    for _ in range(MOST_TURNS):
+        u = support_of_ellipsoid(pair.a, _down(s, n))
+        p = point_of_a(s, u[0], u[1], u[2])
+        d, there = foot_of(surface, hulls, p)
+        miss = plus(there, -1.0, n)
+        at = shape_operator(surface, hulls, plus(p, -d, there))
+        e, f = beside(n)
+        He = plus(e, 1.0, turn_of_normal(at, d, _bend_of_a(pair, n, e)))
+        Hf = plus(f, 1.0, turn_of_normal(at, d, _bend_of_a(pair, n, f)))
+        a, b, c, g = dot(e, He), dot(e, Hf), dot(f, He), dot(f, Hf)
+        u, v, determinant = dot(e, miss), dot(f, miss), a * g - b * c
+        if determinant > 0.0 and a + g > 0.0:
+            u, v = (g * u - b * v) / determinant, (a * v - c * u) / determinant
+        n = plus(plus(n, u, e), v, f)
+        k = 1.0 / math.sqrt(dot(n, n))
+        n = (k * n[0], k * n[1], k * n[2])
+        if not u * u + v * v > LAST_DIGIT * LAST_DIGIT:
+            break
+    return p, d, n
+
+
+@kernel
+def _add(pair, count, least, reach, d, n, p, feature, part_a, sheet):
+    """Add a point p of the core at a distance d, unless it is too high; return count and least distance."""
+    found = pair.found
+    if d < least:
+        least = d
+    if not d <= least + reach:
+        return count, least
+    if count == len(found):
+        count = _kept(pair, count, least, reach)
+        if count == len(found):
+            return count, least
+    put(found[count], d - pair.a.radius, n, p, plus(p, -d, n), feature)
+    put_parts(found[count], NOBODY, part_a, OF_SUPPORT | sheet)
+    return count + 1, least
+
+
+@kernel
+def _kept(pair, count, least, reach):
+    """Keep the points that are not too high; return their number."""
+    found, kept = pair.found, 0
+    for i in range(count):
+        if found[i].gap + pair.a.radius <= least + reach:
+            if i != kept:
+                swap(found, kept, i)
+            kept += 1
+    return kept
+
+
+@kernel
+def _between(pair, surface, p, q):
+    """Return the share of the way from p to q at the lowest point of a line, 0 if an end is lowest."""
+    t = plus(q, -1.0, p)
+    _, n = foot_of(surface, pair.hulls, p)
+    _, m = foot_of(surface, pair.hulls, q)
+    low, high, falls, rises = 0.0, 1.0, dot(n, t), dot(m, t)
+    if not (falls < 0.0 and rises > 0.0):
+        return 0.0
+    for k in range(HALVINGS):
+        share = falls / (falls - rises) if k % 3 < 2 else 0.5  # a halving after two secants
+        middle = low + (high - low) * share
+        _, n = foot_of(surface, pair.hulls, plus(p, middle, t))
+        slope = dot(n, t)
+        if slope < 0.0:
+            low, falls = middle, slope
+        else:
+            high, rises = middle, slope
+        if slope == 0.0 or not high - low > LAST_DIGIT:
+            break
+    return low if -falls < rises else high
+
+
+@kernel
+def _on_planes(pair, surface, count, least, reach):
+    """Add the points beside planes of a surface; return the count and the least distance."""
+    s, a = pair.state, pair.a
+    for k in range(planes(surface)):
+        for i in range(corners(a)):
+            u = corner(a, pair.hulls, i)
+            if a.kind == ELLIPSOID:
+                _, n = plane_at(surface, k, u)
+                u = support_of_ellipsoid(a, _down(s, n))
+            p = point_of_a(s, u[0], u[1], u[2])
+            d, n = plane_at(surface, k, p)
+            if plane_counts(surface, k, p):
+                count, least = _add(
+                    pair, count, least, reach, d, n, p, of_vertex_a(i) | (k + 1), OF_SUPPORT, k + 1
+                )
+    return count, least
+
+
+@unit
+def on_surface(a, b, hulls, reach, work):
+    """Find the points of a solid and a surface: their number goes to ``work.state[0].total``."""
+    pair = Pair(a, b, hulls, work.state[0], work.found)
+    s, surface = pair.state, hulls.surfaces[b.surface]
+    count, least = 0, math.inf
+    if a.kind == ELLIPSOID:
+        p, d, n = lowest_of_ellipsoid(pair, surface)
+        count, least = _add(pair, 0, least, reach, d, n, p, of_vertex_a(0), OF_SUPPORT, 0)
+    else:
+        for i in range(corners(a)):
+            u = corner(a, hulls, i)
+            p = point_of_a(s, u[0], u[1], u[2])
+            d, n = foot_of(surface, hulls, p)
+            count, least = _add(pair, count, least, reach, d, n, p, of_vertex_a(i), OF_SUPPORT, 0)
+    if a.kind == SEGMENT and not is_hollow(surface):
+        u, v = corner(a, hulls, 0), corner(a, hulls, 1)
+        p, q = point_of_a(s, u[0], u[1], u[2]), point_of_a(s, v[0], v[1], v[2])
+        share = _between(pair, surface, p, q)
+        if share > 0.0:
+            p = plus(p, share, plus(q, -1.0, p))
+            d, n = foot_of(surface, hulls, p)
+            count, least = _add(
+                pair, count, least, reach, d, n, p, of_edges(0, 1, 0, 0), edge_part(0, 1), 0
+            )
+    count, least = _on_planes(pair, surface, count, least, reach)
+    work.state[0].total = _kept(pair, count, least, reach)
