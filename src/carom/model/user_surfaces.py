@@ -1,30 +1,27 @@
-"""Surfaces of the user's functions: their addresses for kernels."""
+"""Surfaces of the user's functions: what a run keeps of them."""
 
 from __future__ import annotations
-
-from functools import lru_cache
 
 from carom._compiled.user_functions import Functions
 from carom.model.contacts import Contacts
 from carom.scene.scene import Scene
-from carom.scene.user_surface import RESULTS, Surface, joined, written
+from carom.scene.user_surface import RESULTS, Surface, address_of, joined
 
 
-@lru_cache(maxsize=64)
-def _code(surface: Surface):
-    """Return the code of a surface, which is derived once."""
-    return written(surface)
+def add_functions(scene: Scene, touching: Contacts, functions: Functions) -> None:
+    """Add the functions of surfaces, which rows of surfaces have already, to those of a run.
 
-
-def write_addresses(scene: Scene, touching: Contacts, functions: Functions) -> None:
-    """Write the addresses of functions to the surfaces that bodies may touch."""
+    Plain ones get an address of their own, at which the run learns of their errors.
+    """
     for solid in scene.statics:
         surface, place = solid.shape, touching.surfaces.place[len(scene.bodies) + solid.index]
         if not isinstance(surface, Surface) or place == 0:  # solids of a body that moves come first
             continue
-        given = (3,), (RESULTS,), f"the function of the surface {solid.name!r}"
+        own, address = address_of(surface)
         if surface.gradient is None:
-            address = functions.written(_code(surface), *given)
-        else:
-            address = functions.address(joined(surface), *given)
+            functions._kept += own._kept
+            functions._plainly |= own._plainly
+            continue
+        what = f"the function of the surface {solid.name!r}"
+        address = functions.address(joined(surface), (3,), (RESULTS,), what)
         touching.hulls.surfaces["address"][touching.solids["surface"][place]] = address

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +14,9 @@ from carom import arguments, checks
 from carom.fields import keep
 from carom.scene import expressions
 from carom.scene.surface_definition import SurfaceDefinition
+
+if TYPE_CHECKING:
+    from carom._compiled.user_functions import Functions
 
 SAMPLES = (
     200  # points of the box at which a function is checked, and from which the surface is found
@@ -23,6 +27,7 @@ AGREE = 1e-4  # greatest error of derivatives that are given, relative to the gr
 FLAT = 1e-9  # least slope on the surface, relative to the greatest one
 SPARE = 1.25  # curvature and slope between the points may be greater
 TINY = 1e-300  # of squares of slopes, which divide
+MOST_KEPT = 100  # surfaces whose compiled functions are kept
 #: numbers of a function: its value, gradient and Hessian (3, 3)
 RESULTS = 13
 
@@ -116,6 +121,10 @@ class Surface(SurfaceDefinition):
     def numbers(self) -> np.ndarray:
         """Room for a point and the numbers of the function there, for kernels."""
         return np.zeros(3 + RESULTS)
+
+    def write(self, row) -> None:
+        """Write the address of the function to a row of kernels."""
+        row.address = address_of(self)[1]
 
     def _check(self) -> None:
         """Find bounds of curvature and slope; refuse a function that is no surface in the box."""
@@ -220,6 +229,17 @@ def joined(surface: Surface) -> Callable:
         return np.concatenate([_shaped(k, getattr(surface, k)(*at), shape) for k, shape in parts])
 
     return numbers
+
+
+@lru_cache(maxsize=MOST_KEPT)
+def address_of(surface: Surface) -> tuple[Functions, int]:
+    """Return the functions of a surface for kernels, and the address of the one that they call."""
+    from carom._compiled.user_functions import Functions
+
+    made, given = Functions(), ((3,), (RESULTS,), f"the function of {surface!r}")
+    if surface.gradient is None:
+        return made, made.written(written(surface), *given)
+    return made, made.address(joined(surface), *given)
 
 
 def evaluator(surface: Surface) -> Callable[[np.ndarray], np.ndarray]:
