@@ -20,11 +20,12 @@ from carom.collision.layout import (
     INSIDE_CYLINDER,
     INSIDE_SPHERE,
 )
-from carom.collision.thresholds import FOOT_ERROR
+from carom.collision.thresholds import FOOT_ERROR, FOOT_STEP
 from carom.collision.user_surface import user_surface_at
 from carom.geometry.vectors import cross, dot, plus
 
 MOST_STEPS = 40  # of Newton's method for a nearest point
+MOST_HALVINGS = 12  # of one of its steps
 
 
 @kernel
@@ -147,33 +148,59 @@ def solve_symmetric(a, b, c, u, v):
 
 
 @kernel
+def _onto(surface, hulls, p):
+    """Return a point of the surface near p: beneath it on a height field, else along gradients."""
+    if surface.kind == HEIGHT_FIELD:
+        return p[0], p[1], p[2] - field_at(surface, hulls, p)[0]
+    size = math.sqrt(dot(p, p))
+    for _ in range(MOST_STEPS):
+        value, g, _ = field_at(surface, hulls, p)
+        square = dot(g, g)
+        if not square > 0.0:
+            break
+        p = plus(p, -value / square, g)
+        if not abs(value) > FOOT_ERROR * size * math.sqrt(square):
+            break
+    return p
+
+
+@kernel
 def foot_of(surface, hulls, p):
     """Return the distance of a point p from the curved part, negative inside, and the normal there.
 
     Where phi is not the distance, Newton's method finds the point q of the surface with p - q along the normal:
-    a step t in the surface changes the tangential part of p - q by -(1 + d S) t.
+    a step t in the surface changes the tangential part of p - q by -(1 + d S) t. From a point beneath p it goes
+    to nearer ones only, because far from p there are others. The error after a step is about its square.
     """
     phi, g, _ = field_at(surface, hulls, p)
     if surface["size"][3] == 1.0:
         return phi, g
-    k = phi / dot(g, g)
-    q = plus(p, -k, g)
-    n, d, size = g, 0.0, math.sqrt(dot(p, p))
+    q, size = _onto(surface, hulls, p), math.sqrt(dot(p, p))
+    r, n, d = plus(p, -1.0, q), g, 0.0
     for _ in range(MOST_STEPS):
-        value, g, _ = field_at(surface, hulls, q)
         n, e, f, S = shape_operator(surface, hulls, q)
-        r = plus(p, -1.0, q)
-        d = dot(n, r)
-        u, v = dot(e, r), dot(f, r)
+        d, u, v, square = dot(n, r), dot(e, r), dot(f, r), dot(r, r)
         x, y, good = solve_symmetric(1.0 + d * S[0], 1.0 + d * S[1], d * S[2], u, v)
         if not good:
-            x, y = 0.5 * u, 0.5 * v
-        miss = value / math.sqrt(dot(g, g))
-        q = plus(plus(plus(q, x, e), y, f), -miss, n)
-        if not abs(x) + abs(y) + abs(miss) > FOOT_ERROR * (size + abs(d)):
+            x, y = u, v
+        last = not abs(x) + abs(y) > FOOT_STEP * (size + abs(d))
+        nearer, part = False, 1.0
+        for _ in range(MOST_HALVINGS):
+            there = _onto(surface, hulls, plus(plus(q, part * x, e), part * y, f))
+            way = plus(p, -1.0, there)
+            if last or dot(way, way) < square:
+                q, r, nearer = there, way, True
+                break
+            part *= 0.5
+        if last or not nearer:
             break
-    r = plus(p, -1.0, q)
-    return dot(n, r), n
+    return math.copysign(math.sqrt(dot(r, r)), phi), shape_operator(surface, hulls, q)[0]
+
+
+@kernel
+def may_be_nearer(surface, d):
+    """Return whether points of the surface may be nearer than a foot at the distance d: beyond a focus."""
+    return surface["size"][3] != 1.0 and d < math.inf and surface["size"][0] * d >= 1.0
 
 
 @kernel

@@ -140,7 +140,7 @@ def _kept(pair, count, least, reach):
     """Keep the points that are not too high; return their number."""
     found, kept = pair.found, 0
     for i in range(count):
-        if found[i].gap + pair.a.radius <= least + reach:
+        if found[i].gap <= least - pair.a.radius + reach:
             if i != kept:
                 swap(found, kept, i)
             kept += 1

@@ -15,7 +15,15 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.collision.frame import enter, point_of_a, to_a, to_world
-from carom.collision.implicit import clearance, curvature_at, field_at, foot_of, plane_at, planes
+from carom.collision.implicit import (
+    clearance,
+    curvature_at,
+    field_at,
+    foot_of,
+    may_be_nearer,
+    plane_at,
+    planes,
+)
 from carom.collision.layout import ELLIPSOID, Pair, Placed
 from carom.collision.on_surface import corner, corners, lowest_of_ellipsoid, support_of_ellipsoid
 from carom.contact.place_of_other import centre_of_piece, pose_of
@@ -113,7 +121,7 @@ def time_over_surface(system, contact, state, bounds, h, work) -> tuple[float, f
     turning = bounds[1] + bend * spin * spin
     for i in range(corners(solid)):
         p, d, n = _near_curve(system, contact, state, i, way, work)
-        if d - r <= way:
+        if d - r <= way or may_be_nearer(surface, d):
             k = _bent(curvature_at(surface, hulls, p, d, n), way, bend)
             a = turning + k * (speed + bend * spin) ** 2
             time = min(time, _time(d - r, sign * _rate(contact, state, s, p, n), a))
