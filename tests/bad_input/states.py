@@ -114,6 +114,14 @@ def stated():
             material=carom.Material(0.5, 0.1), name="new", color="red", surface_velocity=(1.0, 0, 0),
             surface_spin=((0, 0, 1.0), 2.0, three), replace=True,
         ),
+        "Scene.add_surface": of_scene(
+            "add_surface", definition=carom.surfaces.InsideSphere(9.0), position=three, orientation=(1.0, 0, 0, 0),
+            material=carom.Material(0.5, 0.1), name="new", color="red", replace=True,
+        ),
+        "surfaces.InsideSphere": lambda: (carom.surfaces.InsideSphere, dict(radius=1.0)),
+        "surfaces.InsideCylinder": lambda: (carom.surfaces.InsideCylinder, dict(radius=1.0, length=2.0)),
+        "surfaces.InsideCone": lambda: (carom.surfaces.InsideCone, dict(half_angle=0.5)),
+        "surfaces.InsideTorus": lambda: (carom.surfaces.InsideTorus, dict(radius=2.0, tube_radius=1.0)),
         "Scene.add_joint": of_scene(
             "add_joint", definition=joints.Spherical((0, 0, 0)), parent="@ball", child="@box",
             parent_frame=(three, (1.0, 0, 0, 0)), child_frame=(three, (1.0, 0, 0, 0)), name="new",

@@ -43,10 +43,11 @@ def place(name, rng):
 
 def points_of(shape, x, q, rng):
     """Points of the surface of a shape, among them all corners."""
+    directions = rng.normal(size=(40000 if isinstance(shape, carom.Ellipsoid) else 4000, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
     if isinstance(shape, carom.Ellipsoid):
-        u = unit(rng.normal(size=(40000, 3)))
-        return x + quaternion.rotate(q, u * shape.pieces[0].half)
-    piece, directions = shape.pieces[0], unit(rng.normal(size=(4000, 3)))
+        return x + quaternion.rotate(q, directions * shape.pieces[0].half)
+    piece = shape.pieces[0]
     corners = x + quaternion.rotate(q, piece.corners)
     return (corners[:, None] + piece.radius * directions).reshape(-1, 3)
 

@@ -24,6 +24,7 @@ from carom.collision.found import put, put_parts, swap
 from carom.collision.frame import from_a, point_of_a, to_a
 from carom.collision.implicit import (
     beside,
+    field_at,
     foot_of,
     plane_at,
     plane_counts,
@@ -124,7 +125,7 @@ def _add(pair, count, least, reach, d, n, p, feature, part_a, sheet):
     found = pair.found
     if d < least:
         least = d
-    if not d <= least + reach:
+    if not d - pair.a.radius <= least - pair.a.radius + reach:
         return count, least
     if count == len(found):
         count = _kept(pair, count, least, reach)
@@ -171,6 +172,49 @@ def _between(pair, surface, p, q):
 
 
 @kernel
+def _on_edge(pair, surface, i, j, count, least, reach):
+    """Add the point between two corners that is lower than both, if any; return count and least distance."""
+    s, a, hulls = pair.state, pair.a, pair.hulls
+    u, v = corner(a, hulls, i), corner(a, hulls, j)
+    p, q = point_of_a(s, u[0], u[1], u[2]), point_of_a(s, v[0], v[1], v[2])
+    t = plus(q, -1.0, p)
+    high = field_at(surface, hulls, p)[0] + field_at(surface, hulls, q)[0]
+    most = 2.0 * (least + reach) + math.sqrt(
+        dot(t, t)
+    )  # no point between them is lower than (high - length)/2
+    if high > surface["size"][3] * most:
+        return count, least
+    share = _between(pair, surface, p, q)
+    if not share > 0.0:
+        return count, least
+    p = plus(p, share, t)
+    d, n = foot_of(surface, hulls, p)
+    return _add(pair, count, least, reach, d, n, p, of_edges(i, j, 0, 0), edge_part(i, j), 0)
+
+
+@kernel
+def _on_edges(pair, surface, count, least, reach):
+    """Add the points between the ends of edges; return count and least distance."""
+    a, hulls = pair.a, pair.hulls
+    if a.kind == SEGMENT:
+        return _on_edge(pair, surface, 0, 1, count, least, reach)
+    if a.kind == BOX:
+        for i in range(8):
+            for k in range(3):
+                if i & (1 << k) == 0:
+                    count, least = _on_edge(pair, surface, i, i | (1 << k), count, least, reach)
+    if a.kind == HULL:
+        for f in range(a.first_face, a.last_face):
+            face = hulls.faces[f]
+            for k in range(face.first, face.last):
+                i = hulls.corners[k]
+                j = hulls.corners[k + 1 if k + 1 < face.last else face.first]
+                if i < j:  # the other face of the edge has it the other way round
+                    count, least = _on_edge(pair, surface, i, j, count, least, reach)
+    return count, least
+
+
+@kernel
 def _on_planes(pair, surface, count, least, reach):
     """Add the points beside planes of a surface; return the count and the least distance."""
     s, a = pair.state, pair.a
@@ -204,15 +248,7 @@ def on_surface(a, b, hulls, reach, work):
             p = point_of_a(s, u[0], u[1], u[2])
             d, n = foot_of(surface, hulls, p)
             count, least = _add(pair, count, least, reach, d, n, p, of_vertex_a(i), OF_SUPPORT, 0)
-    if a.kind == SEGMENT and not is_hollow(surface):
-        u, v = corner(a, hulls, 0), corner(a, hulls, 1)
-        p, q = point_of_a(s, u[0], u[1], u[2]), point_of_a(s, v[0], v[1], v[2])
-        share = _between(pair, surface, p, q)
-        if share > 0.0:
-            p = plus(p, share, plus(q, -1.0, p))
-            d, n = foot_of(surface, hulls, p)
-            count, least = _add(
-                pair, count, least, reach, d, n, p, of_edges(0, 1, 0, 0), edge_part(0, 1), 0
-            )
+    if not is_hollow(surface):
+        count, least = _on_edges(pair, surface, count, least, reach)
     count, least = _on_planes(pair, surface, count, least, reach)
     work.state[0].total = _kept(pair, count, least, reach)

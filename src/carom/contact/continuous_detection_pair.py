@@ -138,7 +138,7 @@ def passage_pair(model, data, c) -> tuple[int, float]:
     flies = work.body[contact.body].status == FREE
     if contact.other >= 0:
         flies = flies and work.body[contact.other].status == FREE
-    curved, last, most = on_curved_ground(system, contact), 0.0, bounds[1]
+    curved, first, last, most = on_curved_ground(system, contact), 0.0, 0.0, bounds[1]
     if curved and not touching:
         last, most = time_over_surface(system, contact, end, bounds, -h, work)
     sag = 0.125 * most * h * h
@@ -175,19 +175,21 @@ def passage_pair(model, data, c) -> tuple[int, float]:
         return CLEAR, h
     nearest = nearest_touch(work)
     feature = nearest.feature
-    if not curved:
+    if curved:
+        last = min(last, reach(nearest.gap, -touch_rate(contact, nearest, end), most))
+    else:
         last = time_apart(system, contact, plane_of(nearest), end, bounds, -h)
     if last >= h:
         return CLEAR, h
     if curved:
-        first, _ = time_over_surface(system, contact, start, bounds, h, work)
-        list_touches(system, contact, start, 0.0, work)
-        nearest = nearest_touch(work)
-    else:
-        list_touches(system, contact, start, 0.0, work)
-        nearest = nearest_touch(work)
-        first = time_apart(system, contact, plane_of(nearest), start, bounds, h)
+        first, most = time_over_surface(system, contact, start, bounds, h, work)
+    list_touches(system, contact, start, 0.0, work)
+    nearest = nearest_touch(work)
     rate0 = touch_rate(contact, nearest, start)
+    if curved:
+        first = min(first, reach(nearest.gap, rate0, most))
+    else:
+        first = time_apart(system, contact, plane_of(nearest), start, bounds, h)
     alike = feature == nearest.feature  # the same points are nearest at both ends
     follows = alike and smooth  # the cubic between both ends describes the gap
     if follows and cubic_clears(nearest.gap, rate0, least, rate, h, tiny):

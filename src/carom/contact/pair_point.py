@@ -21,7 +21,7 @@ from carom.contact.roll import roll_on_plane
 from carom.contact.thresholds import ACTIVE_REACH
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.geometry.thresholds import ROUND_OFF
-from carom.geometry.vectors import dot, minus
+from carom.geometry.vectors import dot, minus, plus
 from carom.kinematics.contact_point import carry_field
 from carom.kinematics.wrench import point_velocity
 from carom.model.workspace import STATIC
@@ -76,6 +76,22 @@ def tangents(n0, n1, n2, axes):
 
 
 @kernel
+def turned_axes(n, e, axes):
+    """Write rows n, t1, t2: t1 and t2 are e[1] and e[2] after the shortest turn from e[0] to n.
+
+    They change steadily with n, so that a slip keeps its direction; only at n = -e[0] is the turn not unique.
+    """
+    e0, e1 = (e[0, 0], e[0, 1], e[0, 2]), (e[1, 0], e[1, 1], e[1, 2])
+    way = 1.0 + dot(n, e0)
+    f = -dot(n, e1) / way if way > 0.0 else 0.0
+    t = plus(plus(e1, f, n), f, e0)
+    s = 1.0 / math.sqrt(dot(t, t))
+    axes[0, 0], axes[0, 1], axes[0, 2] = n[0], n[1], n[2]
+    axes[1, 0], axes[1, 1], axes[1, 2] = s * t[0], s * t[1], s * t[2]
+    axes[2, 0], axes[2, 1], axes[2, 2] = cross(n[0], n[1], n[2], s * t[0], s * t[1], s * t[2])
+
+
+@kernel
 def write_touch(contact, touch, state, point):
     """Write a found point as a contact point."""
     n, e = touch.normal, contact.axes[0]
@@ -91,6 +107,9 @@ def write_touch(contact, touch, state, point):
             point.arm_b[k] = touch.on_b[k] - state[contact.other].x[k]
         elif contact.static == 1:
             point.arm_b[k] = touch.on_b[k]
+    if contact.static == 1 and e[0] * e[0] + e[1] * e[1] + e[2] * e[2] > 0.0:  # curved ground
+        turned_axes(n, contact.axes, point.axes)
+        return
     beyond = contact.surface > 0 and not n[0] * e[0] + n[1] * e[1] + n[2] * e[2] > 1.0 - ROUND_OFF
     if beyond or not on_half_space(contact):
         tangents(n[0], n[1], n[2], point.axes)

@@ -27,6 +27,7 @@ from carom.collision.implicit import (
 from carom.collision.layout import ELLIPSOID, Pair, Placed
 from carom.collision.on_surface import corner, corners, lowest_of_ellipsoid, support_of_ellipsoid
 from carom.contact.place_of_other import centre_of_piece, pose_of
+from carom.contact.thresholds import CAUTION
 from carom.geometry.rotation import norm, rotate_back
 from carom.geometry.vectors import cross, dot, minus, plus
 
@@ -121,7 +122,9 @@ def time_over_surface(system, contact, state, bounds, h, work) -> tuple[float, f
     turning = bounds[1] + bend * spin * spin
     for i in range(corners(solid)):
         p, d, n = _near_curve(system, contact, state, i, way, work)
-        if d - r <= way or may_be_nearer(surface, d):
+        if may_be_nearer(surface, d):
+            time = min(time, CAUTION * (d - r) / speed if d > r and speed > 0.0 else 0.0)
+        elif d - r <= way:
             k = _bent(curvature_at(surface, hulls, p, d, n), way, bend)
             a = turning + k * (speed + bend * spin) ** 2
             time = min(time, _time(d - r, sign * _rate(contact, state, s, p, n), a))
