@@ -230,11 +230,12 @@ def turn_of_normal(at_foot, d, v):
 @kernel
 def curvature_at(surface, hulls, p, d, n):
     """Return a bound of the curvatures of the surface at the distance d through p; n is the normal there."""
-    if surface["size"][3] == 1.0:
-        _, _, H = field_at(surface, hulls, p)
-        s = H[0] * H[0] + H[1] * H[1] + H[2] * H[2]
-        return math.sqrt(s + 2.0 * (H[3] * H[3] + H[4] * H[4] + H[5] * H[5]))
-    _, _, _, S = shape_operator(surface, hulls, plus(p, -d, n))
-    # what the point moves towards may be more hollow than what is beneath it
-    k = max(math.sqrt(S[0] * S[0] + S[1] * S[1] + 2.0 * S[2] * S[2]), surface["size"][0])
+    exact = surface["size"][3] == 1.0  # phi is the distance: the Hessian at p has them
+    _, _, _, S = shape_operator(surface, hulls, p if exact else plus(p, -d, n))
+    k = 0.5 * abs(S[0] + S[1]) + math.sqrt(0.25 * (S[0] - S[1]) ** 2 + S[2] * S[2])
+    if exact:
+        return k
+    k = max(
+        k, surface["size"][0]
+    )  # what it moves towards may be more hollow than what is beneath it
     return k / (1.0 - k * d) if k * d < 1.0 else math.inf

@@ -14,7 +14,7 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
-from carom.collision.frame import enter, point_of_a, to_a, to_world
+from carom.collision.frame import enter, from_a, point_of_a, to_a, to_world
 from carom.collision.implicit import (
     clearance,
     curvature_at,
@@ -26,6 +26,7 @@ from carom.collision.implicit import (
 )
 from carom.collision.layout import ELLIPSOID, Pair, Placed
 from carom.collision.on_surface import corner, corners, lowest_of_ellipsoid, support_of_ellipsoid
+from carom.collision.support import change_of_support
 from carom.contact.place_of_other import centre_of_piece, pose_of
 from carom.contact.thresholds import CAUTION
 from carom.geometry.rotation import norm, rotate_back
@@ -94,12 +95,42 @@ def _near_curve(system, contact, state, i, way, work):
 
 
 @kernel
-def _rate(contact, state, s, p, n):
-    """Return the rate of the distance of a point p, both in axes of the surface, which rests."""
+def _velocity(contact, state, s, p):
+    """Return the velocity of the point p of a body in the world; p is in axes of the surface, which rests."""
     body, o = state[contact.body], s.origin
-    u, m = to_world(s, p[0], p[1], p[2]), to_world(s, n[0], n[1], n[2])
+    u = to_world(s, p[0], p[1], p[2])
     arm = (u[0] + o[0] - body.x[0], u[1] + o[1] - body.x[1], u[2] + o[2] - body.x[2])
-    return dot(m, plus(body.v, 1.0, cross(body.w, arm)))
+    return plus(body.v, 1.0, cross(body.w, arm))
+
+
+@kernel
+def _rate(contact, state, s, p, n):
+    """Return the rate of the distance of such a point."""
+    return dot(to_world(s, n[0], n[1], n[2]), _velocity(contact, state, s, p))
+
+
+@kernel
+def _speed_along(contact, state, solid, s, p, n):
+    """Return the speed |v + H (w x n)| with which a nearest point passes over a surface at rest."""
+    v = _velocity(contact, state, s, p)
+    if solid.kind == ELLIPSOID:
+        m = to_world(s, n[0], n[1], n[2])
+        t = to_own(s, cross(state[contact.body].w, m))
+        u = change_of_support(solid, to_a(s, -n[0], -n[1], -n[2]), to_a(s, t[0], t[1], t[2]))
+        u = from_a(s, u[0], u[1], u[2])
+        v = plus(v, 1.0, to_world(s, u[0], u[1], u[2]))
+    return math.sqrt(dot(v, v))
+
+
+@kernel
+def to_own(s, v):
+    """Return a vector of the world in axes of the surface."""
+    W = s.world
+    return (
+        W[0, 0] * v[0] + W[1, 0] * v[1] + W[2, 0] * v[2],
+        W[0, 1] * v[0] + W[1, 1] * v[1] + W[2, 1] * v[2],
+        W[0, 2] * v[0] + W[1, 2] * v[1] + W[2, 2] * v[2],
+    )
 
 
 @unit
@@ -118,15 +149,15 @@ def time_over_surface(system, contact, state, bounds, h, work) -> tuple[float, f
     enter(s, Placed(solid, pose[0, :3], pose[0, 3:]), Placed(other, pose[1, :3], pose[1, 3:]))
     spin, bend = norm(body.w), _greatest_radius(solid)
     speed = norm(body.v) + contact.extent * spin + bounds[1] * abs(h)
-    way, time, most, sign = speed * abs(h), abs(h), bounds[1], math.copysign(1.0, h)
     turning = bounds[1] + bend * spin * spin
+    way, time, most, sign = speed * abs(h), abs(h), turning, math.copysign(1.0, h)
     for i in range(corners(solid)):
         p, d, n = _near_curve(system, contact, state, i, way, work)
         if may_be_nearer(surface, d):
             time = min(time, CAUTION * (d - r) / speed if d > r and speed > 0.0 else 0.0)
         elif d - r <= way:
             k = _bent(curvature_at(surface, hulls, p, d, n), way, bend)
-            a = turning + k * (speed + bend * spin) ** 2
+            a = turning + k * (_speed_along(contact, state, solid, s, p, n) + turning * abs(h)) ** 2
             time = min(time, _time(d - r, sign * _rate(contact, state, s, p, n), a))
             most = max(most, a)
         for j in range(planes(surface)):
