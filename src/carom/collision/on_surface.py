@@ -125,7 +125,7 @@ def _add(pair, count, least, reach, d, n, p, feature, part_a, sheet):
     found = pair.found
     if d < least:
         least = d
-    if not d - pair.a.radius <= least - pair.a.radius + reach:
+    if d - pair.a.radius > least - pair.a.radius + reach:  # what is not finite is kept
         return count, least
     if count == len(found):
         count = _kept(pair, count, least, reach)
@@ -141,7 +141,7 @@ def _kept(pair, count, least, reach):
     """Keep the points that are not too high; return their number."""
     found, kept = pair.found, 0
     for i in range(count):
-        if found[i].gap <= least - pair.a.radius + reach:
+        if not found[i].gap > least - pair.a.radius + reach:
             if i != kept:
                 swap(found, kept, i)
             kept += 1

@@ -155,7 +155,7 @@ def time_over_surface(system, contact, state, bounds, h, work) -> tuple[float, f
         p, d, n = _near_curve(system, contact, state, i, way, work)
         if may_be_nearer(surface, d):
             time = min(time, CAUTION * (d - r) / speed if d > r and speed > 0.0 else 0.0)
-        elif d - r <= way:
+        elif not d - r > way:
             k = _bent(curvature_at(surface, hulls, p, d, n), way, bend)
             a = turning + k * (_speed_along(contact, state, solid, s, p, n) + turning * abs(h)) ** 2
             time = min(time, _time(d - r, sign * _rate(contact, state, s, p, n), a))
