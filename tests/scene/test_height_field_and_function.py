@@ -89,7 +89,7 @@ def test_bounds_of_a_function():
     ("given", "what"),
     [
         (dict(function=lambda x, y, z: math.sin(x)), "must take symbols of SymPy .* raised TypeError"),
-        (dict(function=lambda x, y, z: sp.log(x)), "must be finite in the bounds, .* domain error at"),
+        (dict(function=lambda x, y, z: sp.log(x)), "must be finite where bodies are, .* domain error at"),
         (dict(function=lambda x, y, z: x * x), "above 0 on one side and below 0 on the other"),
         (dict(function=lambda x, y, z: z + 3), "got none such, and values from 2.5"),
         (dict(function=lambda x, y, z: math.nan), "must be a SymPy expression, got nan"),

@@ -11,6 +11,7 @@ from carom.geometry import quaternion
 from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.materials import IMPACT_LAWS, ContactLaw
 from carom.scene.surfaces import SurfaceDefinition
+from carom.scene.user_surface import Surface, check_at, evaluator
 from carom.scene.values import in_scene
 
 __all__ = ["IMPACT_LAWS", "Contact", "check_gap", "check_overlap", "initial_gap"]
@@ -130,6 +131,9 @@ def overlap(body: Body, other: HalfSpace | StaticBody | Body) -> tuple[float, np
         assert other.shape is not None
         places = np.linalg.norm(body.position) + np.linalg.norm(other.position)
         length = body.shape.size + other.shape.size + float(places)
+        if gap != gap and isinstance(other.shape, Surface):  # say why its function does not answer
+            own = quaternion.rotate_back(other.orientation, body.position - other.position)
+            check_at(other.shape, evaluator(other.shape), own)
     return (0.0 if gap >= -TOUCH * length else -gap), normal
 
 

@@ -130,7 +130,7 @@ class Surface(SurfaceDefinition):
         """Find bounds of curvature and slope; refuse a function that is no surface in the box."""
         evaluate, (low, high) = evaluator(self), self.bounds
         places = low + (high - low) * np.random.default_rng(0).random((SAMPLES, 3))
-        found = np.array([self._finite(evaluate, x) for x in places])
+        found = np.array([check_at(self, evaluate, x) for x in places])
         if self.gradient is not None:
             self._compare(evaluate, places[:20], found[:20])
         steepest, values = np.max(np.linalg.norm(found[:, 1:4], axis=1)), found[:, 0]
@@ -138,13 +138,13 @@ class Surface(SurfaceDefinition):
             slope = found[:, 1:4]
             step = -found[:, :1] / np.maximum(np.sum(slope**2, axis=1, keepdims=True), TINY) * slope
             places = np.clip(places + step, low, high)
-            found = np.array([self._finite(evaluate, x) for x in places])
+            found = np.array([check_at(self, evaluate, x) for x in places])
         size = np.linalg.norm(found[:, 1:4], axis=1)
         away = np.abs(found[:, 0]) / np.maximum(size, TINY)
         on = (away < STEP * 2.0 * self.size) & (size > FLAT * steepest)
         n = found[on, 1:4] / size[on, None]
         ends = [
-            [self._finite(evaluate, x)[0] for x in places[on] + k * STEP * self.size * n]
+            [check_at(self, evaluate, x)[0] for x in places[on] + k * STEP * self.size * n]
             for k in (-10.0, 10.0)
         ]
         if not np.any(np.sign(ends[0]) * np.sign(ends[1]) < 0.0):
@@ -157,23 +157,6 @@ class Surface(SurfaceDefinition):
         shape = -flat @ found[on, 4:].reshape(-1, 3, 3) @ flat / size[on, None, None]
         bend = max(float(np.max(np.linalg.eigvalsh(shape))), 0.0)
         keep(self, bend=SPARE * bend, steepest=SPARE * float(max(steepest, np.max(size))))
-
-    def _finite(self, evaluate: Callable, x: np.ndarray) -> np.ndarray:
-        """Return the numbers of the function at a point, if they are finite."""
-        try:
-            out = evaluate(x)
-        except (ArithmeticError, ValueError) as error:  # of `math` at a pole or beyond a domain
-            if self.gradient is not None:
-                raise
-            out, what = np.full(RESULTS, np.nan), str(error)
-        else:
-            what = str(out[~np.isfinite(out)][:1])
-        if not np.all(np.isfinite(out)):
-            raise ValueError(
-                "function must be finite in the bounds, with its first and second derivatives, got "
-                f"{what} at {checks.shown(x.tolist())}"
-            )
-        return out
 
     def _compare(self, evaluate: Callable, places: np.ndarray, found: np.ndarray) -> None:
         """Refuse derivatives that do not agree with central differences."""
@@ -205,6 +188,8 @@ def written(surface: Surface) -> Callable:
     x = sp.symbols("x y z", real=True)
     try:
         given = surface.function(*x)
+    except RuntimeError:
+        raise
     except Exception as error:
         raise ValueError(
             "function must take symbols of SymPy (with sympy.sin in place of math.sin, sympy.Piecewise in "
@@ -232,14 +217,24 @@ def joined(surface: Surface) -> Callable:
 
 
 @lru_cache(maxsize=MOST_KEPT)
+def code_of(surface: Surface) -> tuple[Callable, bool]:
+    """Return ``f(t, x, out)`` and True of a function for symbols, of all others ``f(t, x)`` and False."""
+    if surface.gradient is not None:
+        return joined(surface), False
+    try:
+        return written(surface), True
+    except RuntimeError:  # a file does not have the function: this is raised where it is called
+        return lambda t, x: surface.function(*x), False
+
+
+@lru_cache(maxsize=MOST_KEPT)
 def address_of(surface: Surface) -> tuple[Functions, int]:
     """Return the functions of a surface for kernels, and the address of the one that they call."""
     from carom._compiled.user_functions import Functions
 
-    made, given = Functions(), ((3,), (RESULTS,), f"the function of {surface!r}")
-    if surface.gradient is None:
-        return made, made.written(written(surface), *given)
-    return made, made.address(joined(surface), *given)
+    (code, is_written), made = code_of(surface), Functions()
+    given = (3,), (RESULTS,), f"the function of {surface!r}"
+    return made, made.written(code, *given) if is_written else made.address(code, *given)
 
 
 def evaluator(surface: Surface) -> Callable[[np.ndarray], np.ndarray]:
@@ -255,6 +250,24 @@ def evaluator(surface: Surface) -> Callable[[np.ndarray], np.ndarray]:
         return out
 
     return numbers
+
+
+def check_at(surface: Surface, evaluate: Callable, x: np.ndarray) -> np.ndarray:
+    """Return the numbers of the function at a point, if they are finite."""
+    try:
+        out = evaluate(x)
+    except (ArithmeticError, ValueError) as error:  # of `math` at a pole or beyond a domain
+        if surface.gradient is not None:
+            raise
+        out, what = np.full(RESULTS, np.nan), str(error)
+    else:
+        what = str(out[~np.isfinite(out)][:1])
+    if not np.all(np.isfinite(out)):
+        raise ValueError(
+            "function must be finite where bodies are, with its first and second derivatives, got "
+            f"{what} at {checks.shown(x.tolist())}"
+        )
+    return out
 
 
 def _shaped(name: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:
