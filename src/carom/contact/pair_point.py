@@ -107,7 +107,8 @@ def write_touch(contact, touch, state, point):
             point.arm_b[k] = touch.on_b[k] - state[contact.other].x[k]
         elif contact.static == 1:
             point.arm_b[k] = touch.on_b[k]
-    if contact.static == 1 and e[0] * e[0] + e[1] * e[1] + e[2] * e[2] > 0.0:  # curved ground
+    if contact.static == 1 and e[0] * e[0] + e[1] * e[1] + e[2] * e[2] > 0.0:
+        point.b = -1  # on curved ground points last, as on a plane: their events are located
         turned_axes(n, contact.axes, point.axes)
         return
     beyond = contact.surface > 0 and not n[0] * e[0] + n[1] * e[1] + n[2] * e[2] > 1.0 - ROUND_OFF
