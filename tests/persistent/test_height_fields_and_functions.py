@@ -103,7 +103,7 @@ def test_an_error_in_a_function_is_named():
     )
     scene.add_contact("ball", "map", friction=0.0, restitution=0.0)
     with pytest.raises(
-        carom.SimulationError, match="he function of the surface 'map' raised .*: beyond the map"
+        carom.SimulationError, match=r"he function of the surface 'map' raised .*: beyond the map"
     ):
         carom.simulate(scene, 2.0)
 
