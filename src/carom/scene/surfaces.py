@@ -19,10 +19,6 @@ from carom.scene.surface_definition import SurfaceDefinition
 from carom.scene.user_surface import Surface
 from carom.scene.values import subclasses_in
 
-__all__ = [
-    "HeightField", "InsideCone", "InsideCylinder", "InsideSphere", "InsideTorus", "Surface",
-]  # fmt: skip
-
 _optional_length: Any = partial(Value, checks.length, None)
 
 
@@ -161,3 +157,12 @@ class InsideTorus(SurfaceDefinition):
 
 
 SURFACES = subclasses_in(globals(), SurfaceDefinition)
+
+__all__ = [
+    "HeightField", "InsideCone", "InsideCylinder", "InsideSphere", "InsideTorus", "Surface",
+]  # fmt: skip
+__getattr__ = arguments.members_of("carom.surfaces", __all__)
+
+
+def __dir__() -> list[str]:
+    return __all__

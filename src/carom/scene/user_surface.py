@@ -18,16 +18,16 @@ from carom.scene.surface_definition import SurfaceDefinition
 if TYPE_CHECKING:
     from carom._compiled.user_functions import Functions
 
-SAMPLES = (
+TRIED_POINTS = (
     200  # points of the box at which a function is checked, and from which the surface is found
 )
-CORRECTIONS = 20  # by Newton's method, along the gradient, from there to the surface
+WAYS_TO_SURFACE = 20  # by Newton's method, along the gradient, from there to the surface
 STEP = 1e-5  # of differences, relative to the box
 AGREE = 1e-4  # greatest error of derivatives that are given, relative to the greatest ones
 FLAT = 1e-9  # least slope on the surface, relative to the greatest one
 SPARE = 1.25  # curvature and slope between the points may be greater
 TINY = 1e-300  # of squares of slopes, which divide
-MOST_KEPT = 100  # surfaces whose compiled functions are kept
+MOST_SURFACES = 100  # surfaces whose compiled functions are kept
 #: numbers of a function: its value, gradient and Hessian (3, 3)
 RESULTS = 13
 
@@ -129,12 +129,12 @@ class Surface(SurfaceDefinition):
     def _check(self) -> None:
         """Find bounds of curvature and slope; refuse a function that is no surface in the box."""
         evaluate, (low, high) = evaluator(self), self.bounds
-        places = low + (high - low) * np.random.default_rng(0).random((SAMPLES, 3))
+        places = low + (high - low) * np.random.default_rng(0).random((TRIED_POINTS, 3))
         found = np.array([check_at(self, evaluate, x) for x in places])
         if self.gradient is not None:
             self._compare(evaluate, places[:20], found[:20])
         steepest, values = np.max(np.linalg.norm(found[:, 1:4], axis=1)), found[:, 0]
-        for _ in range(CORRECTIONS):
+        for _ in range(WAYS_TO_SURFACE):
             slope = found[:, 1:4]
             step = -found[:, :1] / np.maximum(np.sum(slope**2, axis=1, keepdims=True), TINY) * slope
             places = np.clip(places + step, low, high)
@@ -216,7 +216,7 @@ def joined(surface: Surface) -> Callable:
     return numbers
 
 
-@lru_cache(maxsize=MOST_KEPT)
+@lru_cache(maxsize=MOST_SURFACES)
 def code_of(surface: Surface) -> tuple[Callable, bool]:
     """Return ``f(t, x, out)`` and True of a function for symbols, of all others ``f(t, x)`` and False."""
     if surface.gradient is not None:
@@ -227,7 +227,7 @@ def code_of(surface: Surface) -> tuple[Callable, bool]:
         return lambda t, x: surface.function(*x), False
 
 
-@lru_cache(maxsize=MOST_KEPT)
+@lru_cache(maxsize=MOST_SURFACES)
 def address_of(surface: Surface) -> tuple[Functions, int]:
     """Return the functions of a surface for kernels, and the address of the one that they call."""
     from carom._compiled.user_functions import Functions

@@ -16,12 +16,12 @@ from carom.scene.surfaces import InsideCone, InsideCylinder, InsideSphere, Insid
 from carom.scene.user_surface import Surface, evaluator
 from carom.visual.surfaces import turned
 
-CELLS = 64  # along each side of a height field
-CUBES = 20  # along the longest side of a box
+GRID_CELLS = 64  # along each side of a height field
+GRID_CUBES = 20  # along the longest side of a box
 UNEVEN = 0.0417  # of a side of the box
-REACH = 2.0  # of the region of the motion, to which endless surfaces are drawn
-LARGE = 4.0  # a surface so many times larger than the region is drawn there only
-NOTHING = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
+DRAWN = 2.0  # of the region of the motion, to which endless surfaces are drawn
+WIDER = 4.0  # a surface so many times larger than the region is drawn there only
+NO_TRIANGLES = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
 #: tetrahedra of a cube whose corners have the bits of their numbers for coordinates
 TETRAHEDRA = [(0, a, a + b, 7) for a, b, _ in permutations((1, 2, 4))]
 
@@ -34,18 +34,18 @@ def ground(surface: SurfaceDefinition, centre: np.ndarray, radius: float, n: int
     """
     if isinstance(surface, HeightField):
         return _field(surface, centre, radius)
-    low, high = centre - REACH * radius, centre + REACH * radius
+    low, high = centre - DRAWN * radius, centre + DRAWN * radius
     if isinstance(surface, Surface):
         if isinstance(surface.function, MissingFunction):
-            return NOTHING
+            return NO_TRIANGLES
         own = surface.bounds
-        if surface.size > LARGE * radius:
+        if surface.size > WIDER * radius:
             own = np.stack([np.maximum(low, own[0]), np.minimum(high, own[1])])
         evaluate = evaluator(surface)
         return _level(lambda x: np.array([evaluate(one)[0] for one in x]), own)
-    if not isinstance(surface, InsideCone) and 1.0 / surface.bend > LARGE * radius:
+    if not isinstance(surface, InsideCone) and 1.0 / surface.bend > WIDER * radius:
         return _level(lambda x: _distance(surface, x), np.stack([low, high]))
-    far = float(np.linalg.norm(centre)) + REACH * radius
+    far = float(np.linalg.norm(centre)) + DRAWN * radius
     vertices, faces = turned(*_profile(surface, far, n))
     return vertices, faces[:, ::-1]
 
@@ -82,22 +82,22 @@ def _distance(surface, x: np.ndarray) -> np.ndarray:
 
 def _field(surface: HeightField, centre: np.ndarray, radius: float):
     """Return a grid on a height field, as fine as the region of the motion needs."""
-    near, sides = LARGE * radius, []
+    near, sides = WIDER * radius, []
     for k in range(2):
         end = surface.corner[k] + surface.spacing[k] * (surface.heights.shape[k] - 1)
         low = max(surface.corner[k], min(centre[k], end) - near)
         high = min(end, max(centre[k], surface.corner[k]) + near)
-        sides.append(np.linspace(low, high, CELLS + 1))
+        sides.append(np.linspace(low, high, GRID_CELLS + 1))
     x, y = np.meshgrid(*sides, indexing="ij")
-    i, j = (k.ravel() for k in np.meshgrid(*2 * [np.arange(CELLS)], indexing="ij"))
-    a, b = i * (CELLS + 1) + j, (i + 1) * (CELLS + 1) + j
+    i, j = (k.ravel() for k in np.meshgrid(*2 * [np.arange(GRID_CELLS)], indexing="ij"))
+    a, b = i * (GRID_CELLS + 1) + j, (i + 1) * (GRID_CELLS + 1) + j
     faces = np.concatenate([np.stack([a, b, b + 1], 1), np.stack([a, b + 1, a + 1], 1)])
     return np.stack([x, y, surface.height(x, y)], axis=-1).reshape(-1, 3), faces
 
 
 def _level(phi, box: np.ndarray):
     """Return the surface phi = 0 in a box, with phi above 0 on its outside: marching tetrahedra."""
-    side = np.max(box[1] - box[0]) / CUBES
+    side = np.max(box[1] - box[0]) / GRID_CUBES
     count = np.maximum(np.ceil((box[1] - box[0]) / side).astype(int), 1)
     # not quite even, because many surfaces have the points of an even grid
     parts = [s + UNEVEN * s * (1.0 - s) for s in (np.arange(k + 1) / k for k in count)]
@@ -124,7 +124,7 @@ def _level(phi, box: np.ndarray):
             cuts += [own[many == k][:, ends].reshape(-1, 3, 2) for ends in map(list, triangles)]
     edges = np.concatenate(cuts)
     if not len(edges):
-        return NOTHING
+        return NO_TRIANGLES
     edges, faces = np.unique(np.sort(edges.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
     low, high = points[edges[:, 0]], points[edges[:, 1]]
     vertices, faces = _zeros(phi, low, high, value[edges]), faces.reshape(-1, 3)
