@@ -35,13 +35,13 @@ def written(name: str, terms: list, x: list, t: Any) -> Any:
     *own, time = sp.symbols(f"x:{len(x)} t", real=True)
     exchange = dict(zip([*x, t], [*own, time]))
     terms = [sp.sympify(term).xreplace(exchange) for term in terms]
-    shared, terms = sp.cse(terms, symbols=sp.numbered_symbols("s"), order="none")
-    used = set().union(*(e.free_symbols for e in [*terms, *(e for _, e in shared)]))
+    shared, short = sp.cse(terms, symbols=sp.numbered_symbols("s"), order="none")
+    used = set().union(*(e.free_symbols for e in [*short, *(e for _, e in shared)]))
     lines = [f"def {name}(t, x, out):"]
     lines += [f"    x{i} = x[{i}]" for i in range(len(x)) if own[i] in used]
     try:
         lines += [f"    {symbol} = {printer.doprint(e)}" for symbol, e in shared]
-        lines += [f"    out[{i}] = {printer.doprint(e)}" for i, e in enumerate(terms)]
+        lines += [f"    out[{i}] = {printer.doprint(e)}" for i, e in enumerate(short)]
     except PrintMethodNotImplementedError as error:
         raise ValueError(
             f"an expression has a function that cannot be compiled, or whose derivative cannot: {error}"

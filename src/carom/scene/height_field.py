@@ -128,7 +128,8 @@ class HeightField(SurfaceDefinition):
             t = u - k
             w = (1 - t) ** 3, 3 * t**3 - 6 * t**2 + 4, 1 + 3 * t * (1 + t - t**2), t**3
             weights.append([(np.clip(k + a, 0, n - 1), w[a] / 6.0) for a in range(4)])
-        return sum(w * v * self.coefficients[i, j] for i, w in weights[0] for j, v in weights[1])
+        parts = [w * v * self.coefficients[i, j] for i, w in weights[0] for j, v in weights[1]]
+        return np.sum(parts, axis=0)
 
     @cached_property
     def steepest(self) -> float:

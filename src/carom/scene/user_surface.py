@@ -232,7 +232,7 @@ def code_of(surface: Surface) -> tuple[Callable, bool]:
 
 
 @lru_cache(maxsize=MOST_SURFACES)
-def address_of(surface: Surface) -> tuple[Functions, int]:
+def address_of(surface: Surface) -> tuple[Functions, Any]:
     """Return the functions of a surface for kernels, and the address of the one that they call."""
     from carom._compiled.user_functions import Functions
 

@@ -6,6 +6,7 @@ Triangles are drawn from their front only, so that a wall between the eye and th
 from __future__ import annotations
 
 from itertools import permutations
+from typing import Any
 
 import numpy as np
 
@@ -50,7 +51,7 @@ def ground(surface: SurfaceDefinition, centre: np.ndarray, radius: float, n: int
     return vertices, faces[:, ::-1]
 
 
-def _profile(surface, far: float, n: int):
+def _profile(surface, far: float, n: int) -> Any:
     """Return the profile of (r, z) of a surface of revolution, n, and whether it is closed."""
     if isinstance(surface, InsideSphere):
         angle = np.linspace(-0.5 * np.pi, 0.5 * np.pi, n // 2 + 1)
