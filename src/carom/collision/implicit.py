@@ -25,7 +25,7 @@ from carom.collision.user_surface import user_surface_at
 from carom.geometry.vectors import cross, dot, plus
 
 MOST_STEPS = 40  # of Newton's method for a nearest point
-MOST_HALVINGS = 12  # of one of its steps
+SHORTEST = 12  # halvings of one of its steps
 
 
 @kernel
@@ -185,7 +185,7 @@ def foot_of(surface, hulls, p):
             x, y = u, v
         last = not abs(x) + abs(y) > FOOT_STEP * (size + abs(d))
         nearer, part = False, 1.0
-        for _ in range(MOST_HALVINGS):
+        for _ in range(SHORTEST):
             there = _onto(surface, hulls, plus(plus(q, part * x, e), part * y, f))
             way = plus(p, -1.0, there)
             if last or dot(way, way) < square:
