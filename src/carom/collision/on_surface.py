@@ -40,7 +40,7 @@ from carom.geometry.thresholds import LAST_DIGIT
 from carom.geometry.vectors import dot, plus
 
 MOST_TURNS = 40  # of Newton's method for the normal of an ellipsoid
-HALVINGS = 60  # of an edge, for its lowest point
+EDGE_HALVINGS = 60  # of an edge, for its lowest point
 
 
 @kernel
@@ -159,7 +159,7 @@ def _between(pair, surface, p, q):
     low, high, falls, rises = 0.0, 1.0, dot(n, t), dot(m, t)
     if not (falls < 0.0 and rises > 0.0):
         return 0.0
-    for k in range(HALVINGS):
+    for k in range(EDGE_HALVINGS):
         share = falls / (falls - rises) if k % 3 < 2 else 0.5  # a halving after two secants
         middle = low + (high - low) * share
         _, n = foot_of(surface, pair.hulls, plus(p, middle, t))
