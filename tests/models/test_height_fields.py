@@ -61,7 +61,9 @@ def test_a_ball_comes_to_rest_on_it():
     place = solution["sphere"].position[-1]
     height = model.geoms["g"].shape.height(place[0], place[1])
     assert 0.05 < place[2] - height < 0.0515
-    assert np.hypot(place[0], place[1]) < 0.4  # rolling friction holds it where the slope is up to 0.2
+    assert (
+        np.hypot(place[0], place[1]) < 0.4
+    )  # rolling friction holds it where the slope is up to 0.2
 
 
 def test_what_is_left_out():

@@ -36,7 +36,7 @@ def test_a_surface_is_a_static_body():
 
 
 @pytest.mark.parametrize(
-    "shape, why",
+    ("shape", "why"),
     [
         (carom.Cylinder(0.1, 0.2), "rims have no fixed points"),
         (carom.Disc(0.1), "rims have no fixed points"),
@@ -62,9 +62,9 @@ def test_a_body_that_starts_in_the_ground_is_refused():
 
 
 @pytest.mark.parametrize(
-    "make, message",
+    ("make", "message"),
     [
-        (lambda: S.InsideTorus(1.0, 2.0), "tube_radius must be finite and above 0 and below 1"),
+        (lambda: S.InsideTorus(1.0, 2.0), "radius must be above tube_radius, got radius=1 m"),
         (lambda: S.InsideCone(2.0), "half_angle must be finite and above 0 and below 1.57"),
         (lambda: S.InsideSphere(0.0), "radius must be finite and above 0"),
         (lambda: S.InsideCylinder(1.0, length=-1.0), "length must be finite and above 0"),

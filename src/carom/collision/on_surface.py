@@ -10,18 +10,20 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import by_reference, kernel
 from carom._compiled.units import unit
 from carom.collision.faces import vertex
 from carom.collision.features import (
+    EDGES,
     NOBODY,
     OF_SUPPORT,
     edge_part,
     of_edges,
     of_vertex_a,
+    vertex_a,
 )
-from carom.collision.found import put, put_parts, swap
-from carom.collision.frame import from_a, point_of_a, to_a
+from carom.collision.found import hand_on, put, put_parts, swap
+from carom.collision.frame import enter, from_a, point_of_a, to_a
 from carom.collision.implicit import (
     beside,
     field_at,
@@ -38,7 +40,7 @@ from carom.geometry.thresholds import LAST_DIGIT
 from carom.geometry.vectors import dot, plus
 
 MOST_TURNS = 40  # of Newton's method for the normal of an ellipsoid
-HALVINGS = 60  # of an edge, for its lowest point
+EDGE_HALVINGS = 60  # of an edge, for its lowest point
 
 
 @kernel
@@ -157,7 +159,7 @@ def _between(pair, surface, p, q):
     low, high, falls, rises = 0.0, 1.0, dot(n, t), dot(m, t)
     if not (falls < 0.0 and rises > 0.0):
         return 0.0
-    for k in range(HALVINGS):
+    for k in range(EDGE_HALVINGS):
         share = falls / (falls - rises) if k % 3 < 2 else 0.5  # a halving after two secants
         middle = low + (high - low) * share
         _, n = foot_of(surface, pair.hulls, plus(p, middle, t))
@@ -252,3 +254,44 @@ def on_surface(a, b, hulls, reach, work):
         count, least = _on_edges(pair, surface, count, least, reach)
     count, least = _on_planes(pair, surface, count, least, reach)
     work.state[0].total = _kept(pair, count, least, reach)
+
+
+@unit
+def feature_on_surface(a, b, hulls, feature, work, out):
+    """Write the point that has a feature, wherever it is, as the first of `out`; arguments as of `touch`.
+
+    Of a list of the lowest points it might be left out.
+    """
+    enter(work.state[0], a, b)
+    pair = by_reference(Pair(a.solid, b.solid, hulls, work.state[0], work.found))
+    s, surface, sheet, part = (
+        pair.state,
+        hulls.surfaces[b.solid.surface],
+        feature & 0x7FFF,
+        OF_SUPPORT,
+    )
+    if feature >> 60 == EDGES:
+        i, j, sheet = (feature >> 45) & 0x7FFF, (feature >> 30) & 0x7FFF, 0
+        u, v = corner(a.solid, hulls, i), corner(a.solid, hulls, j)
+        p, q = point_of_a(s, u[0], u[1], u[2]), point_of_a(s, v[0], v[1], v[2])
+        share = _between(pair, surface, p, q)
+        if share > 0.0:
+            p, part = plus(p, share, plus(q, -1.0, p)), edge_part(i, j)
+        elif foot_of(surface, hulls, q)[0] < foot_of(surface, hulls, p)[0]:
+            p = q
+        d, n = foot_of(surface, hulls, p)
+    elif a.solid.kind == ELLIPSOID and sheet == 0:
+        p, d, n = lowest_of_ellipsoid(pair, surface)
+    else:
+        u = corner(a.solid, hulls, vertex_a(feature))
+        if a.solid.kind == ELLIPSOID:
+            _, n = plane_at(surface, sheet - 1, u)
+            u = support_of_ellipsoid(a.solid, _down(s, n))
+        p = point_of_a(s, u[0], u[1], u[2])
+        if sheet == 0:
+            d, n = foot_of(surface, hulls, p)
+        else:
+            d, n = plane_at(surface, sheet - 1, p)
+    put(pair.found[0], d - a.solid.radius, n, p, plus(p, -d, n), feature)
+    put_parts(pair.found[0], NOBODY, part, OF_SUPPORT | sheet)
+    work.state[0].total = hand_on(pair, 1, False, out)

@@ -10,12 +10,13 @@ import math
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.collision.layout import IMPLICIT, Placed, Plane
+from carom.collision.on_surface import feature_on_surface
 from carom.collision.plane import plane_unit
 from carom.collision.touch import touch_unit
 from carom.contact.drift import drift_of_solids
 from carom.contact.drift_on_surface import drift_on_surface
 from carom.contact.level import keep_real_touches, solid_beyond, solid_left
-from carom.contact.place_of_other import on_half_space, pose_of
+from carom.contact.place_of_other import on_curved_ground, on_half_space, pose_of
 from carom.contact.rim import same_point
 from carom.contact.roll import roll_on_plane
 from carom.contact.thresholds import ACTIVE_REACH
@@ -152,6 +153,10 @@ def touch_of_active(system, contact, feature, p, state, work) -> int:
 
     A point of a level surface that has passed its rim is replaced by one of the solid that it has left.
     """
+    if on_curved_ground(system, contact):
+        a, b = placed(system, contact, contact.other_solid, state, work)
+        feature_on_surface(a, b, system.hulls, feature, work.pair, work.touches)
+        return 0
     list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
     i = which_touch(system, contact, feature, p, state, work)
     if contact.surface == 0:
@@ -161,6 +166,19 @@ def touch_of_active(system, contact, feature, p, state, work) -> int:
         return i
     list_on_solid(system, contact, solid, state, ACTIVE_REACH * smaller(contact), work)
     return which_touch(system, contact, feature, p, state, work)
+
+
+@kernel
+def placed(system, contact, other_solid, state, work):
+    """Return the solid of a body and another one with their poses, which are written to work.solid_pose."""
+    pose, solid, other = work.solid_pose, system.solids[contact.solid], system.solids[other_solid]
+    x, q = pose_of(solid, contact.body, state)
+    pose[0, 0], pose[0, 1], pose[0, 2] = x
+    pose[0, 3], pose[0, 4], pose[0, 5], pose[0, 6] = q
+    x, q = pose_of(other, contact.other, state)
+    pose[1, 0], pose[1, 1], pose[1, 2] = x
+    pose[1, 3], pose[1, 4], pose[1, 5], pose[1, 6] = q
+    return Placed(solid, pose[0, :3], pose[0, 3:]), Placed(other, pose[1, :3], pose[1, 3:])
 
 
 @kernel

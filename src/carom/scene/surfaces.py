@@ -138,7 +138,11 @@ class InsideTorus(SurfaceDefinition):
     kind = "inside_torus"
 
     def __post_init__(self):
-        checks.number("tube_radius", self.tube_radius, above=0, below=self.radius, unit="m")
+        if not self.radius > self.tube_radius:
+            raise ValueError(
+                f"radius must be above tube_radius, got radius={self.radius:g} m and "
+                f"tube_radius={self.tube_radius:g} m"
+            )
 
     @property
     def size(self) -> float:
