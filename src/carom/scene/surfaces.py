@@ -17,7 +17,6 @@ from carom.scene.height_field import HeightField
 from carom.scene.pieces import Piece
 from carom.scene.surface_definition import SurfaceDefinition
 from carom.scene.user_surface import Surface
-from carom.scene.values import subclasses_in
 
 _optional_length: Any = partial(Value, checks.length, None)
 
@@ -160,7 +159,7 @@ class InsideTorus(SurfaceDefinition):
         return 1.0 / self.tube_radius
 
 
-SURFACES = subclasses_in(globals(), SurfaceDefinition)
+SURFACES = (InsideSphere, InsideCylinder, InsideCone, InsideTorus, HeightField, Surface)
 
 __all__ = [
     "HeightField", "InsideCone", "InsideCylinder", "InsideSphere", "InsideTorus", "Surface",
