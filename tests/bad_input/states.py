@@ -117,7 +117,7 @@ def stated():
         "Scene.add_surface": of_scene(
             "add_surface", definition=carom.surfaces.InsideSphere(9.0), position=three,
             orientation=(1.0, 0, 0, 0), material=carom.Material(0.5, 0.1), name="new", color="red",
-            replace=True,
+            surface_velocity=(1.0, 0, 0), surface_spin=((0, 0, 1.0), 2.0, three), replace=True,
         ),
         "surfaces.InsideSphere": lambda: (carom.surfaces.InsideSphere, dict(radius=1.0)),
         "surfaces.InsideCylinder": lambda: (carom.surfaces.InsideCylinder, dict(radius=1.0, length=2.0)),

@@ -212,6 +212,38 @@ def test_ball_bounces_in_a_bowl(e):
         np.testing.assert_allclose(energy, energy[0], rtol=1e-12)
 
 
+@pytest.mark.parametrize("tolerance", TOLERANCES)
+def test_drum_that_turns_carries_a_ball_up(tolerance):
+    # Its surface passes below the ball: this slides, then rolls in its place with the speed of the surface.
+    rate, mu, duration = 3.0, 0.3, 0.12
+
+    def rates(t, y):
+        angle, u, w = y
+        N, slip = G * np.cos(angle) + u * u / L, np.sign(u - BALL * w + rate * BOWL)
+        return u / L, -G * np.sin(angle) - mu * N * slip, 2.5 * mu * N * slip / BALL
+
+    def drum(spin):
+        scene = carom.Scene(gravity=(0, 0, -G))
+        wall = scene.add_surface(
+            S.InsideCylinder(BOWL), orientation=carom.axis_angle((1, 0, 0), 90),
+            surface_spin=((0, 1, 0), rate),
+        )  # fmt: skip
+        ball = scene.add_body(
+            carom.Sphere(BALL), mass=M, position=(0, 0, -L), angular_velocity=(0, spin, 0)
+        )
+        scene.add_contact(ball, wall, restitution=0.0, friction=mu)
+        return scene
+
+    angle, u, w = solve_ivp(rates, (0, duration), (0.0, 0, 0), rtol=1e-12, atol=1e-14).y[:, -1]
+    assert u - BALL * w + rate * BOWL > 0.2  # it still slides
+    x, v, s = run(drum(0.0), duration, tolerance)
+    assert np.abs(x - L * np.array([np.sin(angle), 0, -np.cos(angle)])).max() < 100 * tolerance
+    assert abs(s.angular_velocity[-1, 0, 1] - w) < 100 * tolerance / BALL
+    assert abs(v[0] - u * np.cos(angle)) < 100 * tolerance
+    x, _, _ = run(drum(rate * BOWL / BALL), 1.0, tolerance)
+    assert np.abs(x - (0, 0, -L)).max() < 1e-14
+
+
 def test_box_comes_to_rest_in_a_bowl():
     scene = on(
         S.InsideSphere(BOWL), (0.1, 0, -0.1), 0.4, shape=carom.Box(0.2, 0.14, 0.1), e=0.3,

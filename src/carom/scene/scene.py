@@ -260,6 +260,8 @@ class Scene(Shown, TouchingPairs):
         orientation: Orientation = (1.0, 0.0, 0.0, 0.0),
         material: Material | None = None,
         color: str | ArrayLike | None = None,
+        surface_velocity: ArrayLike | Callable | None = None,
+        surface_spin: GivenSpin | None = None,
         name: str | None = None,
         replace: bool = False,
     ) -> StaticBody:
@@ -280,6 +282,8 @@ class Scene(Shown, TouchingPairs):
             Material of the surface, see `set_contact_default`.
         color : str or (3,)
             Colour in pages, pictures and films, as for `add_body`. Default: grey.
+        surface_velocity, surface_spin
+            Motion of the surface in itself, as for `add_static`: a drum that turns.
         name
             Name in the scene. Default ``"surface1"``, ``"surface2"``, ...
         replace : bool
@@ -298,7 +302,7 @@ class Scene(Shown, TouchingPairs):
         """
         checks.instance("definition", definition, SURFACES)
         index, name = self._parts.new(StaticBody, name, "surface", replace)
-        place: Any = position, orientation, material, color
+        place: Any = position, orientation, material, color, surface_velocity, surface_spin
         return self._parts.add(StaticBody(index, name, definition, *place))
 
     @arguments.known
