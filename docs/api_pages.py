@@ -16,6 +16,7 @@ CALLED = {
     "Sphere", "Box", "Capsule", "Cylinder", "Disc", "Ellipsoid", "Convex", "Mesh", "Compound", "Part",
     "Revolute", "Spherical", "Prismatic", "Cylindrical", "Screw", "Universal", "Planar", "PointOnLine",
     "PointOnPlane", "Fixed", "Distance", "KnifeEdge", "RollingSphere", "RollingDisc",
+    "InsideSphere", "InsideCylinder", "InsideCone", "InsideTorus", "HeightField", "Surface",
     "Gear", "Coupling", "Driver", "Rows",
     "Spring", "Force", "Torque", "Bushing", "JointSpring", "JointForce", "Actuator", "JointFriction",
     "JointInertia", "CurveSpring", "UserForce",
@@ -25,7 +26,7 @@ CALLED = {
 TOPICS = {
     "Scene": {
         "Bodies, static bodies and half-spaces": (
-            "add_body", "add_static", "add_half_space", "bodies", "statics", "half_spaces", "fixed", "gravity",
+            "add_body", "add_static", "add_surface", "add_half_space", "bodies", "statics", "half_spaces", "fixed", "gravity",
         ),
         "Contacts": (
             "add_contact", "set_contact_default", "ignore_contact", "contacts", "contact_law",

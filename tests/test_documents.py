@@ -147,8 +147,8 @@ SHOWN = [
     "Solution", "results.ImpactTable", "results.JointImpulseTable", "resolve_impact", "impact_layer",
     "ensemble",
     "sensitivities", "solve_contacts", "euler", "axis_angle", "Scene.ignore_contact",
-    "Scene.add_static", "Scene.replace", "Run", "contact_inverse_mass", "curves.Curve", "curves.Spline",
-    "Restitution", "Friction", "Part",
+    "Scene.add_static", "Scene.add_surface", "Scene.replace", "Run", "contact_inverse_mass", "curves.Curve",
+    "curves.Spline", "Restitution", "Friction", "Part", "surfaces.HeightField", "surfaces.Surface",
 ]  # fmt: skip
 
 

@@ -11,6 +11,7 @@ from campaigns import (
     forced,
     frictions,
     grains,
+    grounds,
     laws,
     loose_rails,
     mechanisms,
@@ -32,6 +33,6 @@ FAMILIES = {
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
     "belts": belts.case,
-    "rails": rails.case, "loose rails": loose_rails.case, "surfaces": surfaces.case,
+    "rails": rails.case, "loose rails": loose_rails.case, "surfaces": surfaces.case, "grounds": grounds.case,
     "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "rough": rough.case,
 }  # fmt: skip

@@ -34,6 +34,7 @@ from carom.scene import (
     curves,
     forces,
     joints,
+    surfaces,
 )
 from carom.scene import shapes as _shapes
 from carom.simulate import simulate
@@ -116,6 +117,7 @@ __all__ = [
     "sensitivities",
     "simulate",
     "solve_contacts",
+    "surfaces",
     "view",
 ]
 

@@ -108,6 +108,7 @@ _OF_SCENE = {
     "a floor is made by add_half_space": "add_floor add_ground add_plane add_ground_plane",
     "a wall is made by add_half_space, where it has no end, or by add_static": "add_wall",
     "a body that never moves is made by add_static": "add_fixed add_obstacle add_static_body",
+    "curved ground is made by add_surface(carom.surfaces...)": "add_bowl add_pipe add_terrain add_heightfield",
     _SHAPED.format("Box"): "add_box add_cube",
     _SHAPED.format("Sphere"): "add_sphere add_ball add_particle add_point_mass",
     _SHAPED.format("Cylinder"): "add_cylinder",

@@ -1,5 +1,7 @@
 """Calls that state something: shapes, scenes, joints, forces, constraints."""
 
+import numpy as np
+
 import carom
 from bad_input.things import FACES, TETRAHEDRON, of_nothing, parts
 from carom import constraints, forces, joints
@@ -115,6 +117,15 @@ def stated():
             material=carom.Material(0.5, 0.1), name="new", color="red", surface_velocity=(1.0, 0, 0),
             surface_spin=((0, 0, 1.0), 2.0, three), replace=True,
         ),
+        "Scene.add_surface": of_scene(
+            "add_surface", definition=carom.surfaces.InsideSphere(9.0), position=three,
+            orientation=(1.0, 0, 0, 0), material=carom.Material(0.5, 0.1), name="new", color="red",
+            surface_velocity=(1.0, 0, 0), surface_spin=((0, 0, 1.0), 2.0, three), replace=True,
+        ),
+        "surfaces.InsideSphere": lambda: (carom.surfaces.InsideSphere, dict(radius=1.0)),
+        "surfaces.InsideCylinder": lambda: (carom.surfaces.InsideCylinder, dict(radius=1.0, length=2.0)),
+        "surfaces.InsideCone": lambda: (carom.surfaces.InsideCone, dict(half_angle=0.5)),
+        "surfaces.InsideTorus": lambda: (carom.surfaces.InsideTorus, dict(radius=2.0, tube_radius=1.0)),
         "Scene.add_joint": of_scene(
             "add_joint", definition=joints.Spherical((0, 0, 0)), parent="@ball", child="@box",
             parent_frame=(three, (1.0, 0, 0, 0)), child_frame=(three, (1.0, 0, 0, 0)), name="new",
@@ -178,6 +189,18 @@ def stated():
         "curves.Curve.point": lambda: (carom.curves.Spline([three, (0, 0, 0.0)]).point, dict(s=0.1)),
         "curves.Curve.tangent": lambda: (carom.curves.Spline([three, (0, 0, 0.0)]).tangent, dict(s=0.1)),
         "curves.Curve.nearest": lambda: (carom.curves.Spline([three, (0, 0, 0.0)]).nearest, dict(point=three)),
+        "surfaces.HeightField": lambda: (
+            carom.surfaces.HeightField, dict(heights=np.eye(4), spacing=(1.0, 2.0), corner=(0.0, 1.0)),
+        ),
+        "surfaces.HeightField.height": lambda: (
+            carom.surfaces.HeightField(np.eye(4), 1.0).height, dict(x=0.1, y=0.2),
+        ),
+        "surfaces.Surface": lambda: (
+            carom.surfaces.Surface,
+            dict(function=lambda x, y, z: z - 0.1 * x * x, bounds=[(-1.0, -1, -1), (1, 1, 1)],
+                 gradient=lambda x, y, z: (-0.2 * x, 0.0, 1.0),
+                 hessian=lambda x, y, z: np.diag([-0.2, 0.0, 0.0])),
+        ),
         "joints.Distance": lambda: (joints.Distance, dict(anchor_parent=three, anchor_child=(0, 0, 0.0))),
         "joints.KnifeEdge": lambda: (
             joints.KnifeEdge, dict(anchor=three, direction=three, normal=(0, 0, 1.0)),

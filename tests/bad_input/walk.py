@@ -45,7 +45,12 @@ INSTEAD = {
     ("view", "solution"): "path",
 }
 #: whose values may be functions, and so classes
-FUNCTIONS = {("forces.JointForce", "force")}
+FUNCTIONS = {
+    ("forces.JointForce", "force"),
+    ("Scene.add_half_space", "surface_velocity"),
+    ("Scene.add_static", "surface_velocity"),
+    ("Scene.add_surface", "surface_velocity"),
+}
 #: values that are right, and ask for a run of hours, or for a server
 LONG = {"million", "ten to the twelve", "beyond 64 bits"}
 RIGHT = {"duration": LONG, "until": LONG, "export": {"none"}}

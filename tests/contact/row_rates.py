@@ -12,6 +12,7 @@ from carom.geometry import quaternion
 from carom.model.compile import compile_scene
 from carom.model.records import new_work
 from carom.model.workspace import POINT
+from carom.scene.surfaces import SURFACES
 
 
 @entry
@@ -59,7 +60,11 @@ class Touching:
         for shape, motion in ((a, motion_a), (b, motion_b)):
             # two that overlap may not be in one contact of a scene: the first is moved to its place afterwards
             pose = {"position": motion.x + (FAR if other is None else 0), "orientation": motion.q}
-            if motion.v is None:
+            if isinstance(b, SURFACES):  # without end: nothing is far from it
+                pose["position"] = motion.x
+            if isinstance(shape, SURFACES):
+                part = scene.add_surface(shape, **pose)
+            elif motion.v is None:
                 part = scene.add_static(shape, **pose)
             else:
                 speeds = {"velocity": motion.v, "angular_velocity": motion.w}
@@ -69,7 +74,7 @@ class Touching:
             other = part
         compiled = compile_scene(scene, Options())
         self.system, self.start, self.reach = compiled.system, compiled.start, reach
-        self.start[0].x[:] -= FAR
+        self.start[0].x[:] -= 0 if isinstance(b, SURFACES) else FAR
         self.work = new_work(self.system, 1)
         self.size = min(a_shape.extent for a_shape in self.system.solids)
 

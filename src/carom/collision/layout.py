@@ -20,6 +20,11 @@ POINT, SEGMENT, BOX, HULL, CYLINDER, ELLIPSOID = range(6)
 #: kinds that are not convex: a surface given by a function, and a prism over a plane curve
 IMPLICIT, PROFILE = 6, 7
 KINDS = ("point", "segment", "box", "hull", "cylinder", "ellipsoid", "implicit", "profile")
+#: kinds of implicit surfaces
+INSIDE_SPHERE, INSIDE_CYLINDER, INSIDE_CONE, INSIDE_TORUS, HEIGHT_FIELD, FUNCTION = range(6)
+SURFACE_KINDS = (
+    "inside_sphere", "inside_cylinder", "inside_cone", "inside_torus", "height_field", "function",
+)  # fmt: skip
 
 SOLID = [
     ("kind", "i8"),
@@ -54,7 +59,9 @@ CANDIDATE = [
 #: a surface phi(x) = 0 in its own axes, with free space where phi > 0 (`carom.scene` has its definitions)
 IMPLICIT_SURFACE = [
     ("kind", "i8"),
-    ("size", "f8", 4),  # radii, lengths and angles of its kind
+    # radii, lengths and angles of its kind; and the greatest length of the gradient: |phi| over it is at most
+    # the distance
+    ("size", "f8", 4),
     ("first", "i8"),  # range of its numbers in `Hulls.numbers`
     ("last", "i8"),
     ("count", "i8", 2),  # of cells of a height field along x and y
@@ -190,7 +197,7 @@ def solid_table(shapes, turns=None) -> tuple[np.recarray, Hulls]:
     """
     pieces = [(k, piece) for k, shape in enumerate(shapes) for piece in shape.pieces]
     solid, hulls = table(SOLID, len(pieces)), [no_hulls()]
-    end = Count(0, 0, 0, 0, 0)
+    end, surfaces, numbers = Count(0, 0, 0, 0, 0), 0, 0
     for row, (k, piece) in zip(solid, pieces):
         row.kind, row.radius, row.body = KINDS.index(piece.kind), piece.radius, k
         row.half[:], row.inner, row.extent = piece.half, piece.inner, piece.extent
@@ -203,6 +210,10 @@ def solid_table(shapes, turns=None) -> tuple[np.recarray, Hulls]:
             row.cell[1] = row.cell[0] + len(piece.cells[0].starts) - 1
             hulls.append(_hull(piece, end))
             end = Count(*(a + len(part) for a, part in zip(end, hulls[-1])))
+        if piece.kind == "implicit":
+            row.surface, row.bend = surfaces, piece.surface.bend
+            hulls.append(_surface(piece.surface, numbers))
+            surfaces, numbers = surfaces + 1, numbers + len(hulls[-1].numbers)
         row.last, row.last_face = end.vertices, end.faces
     made = Hulls._make(
         part[0] if len(part) == 1 else np.concatenate(part).view(type(part[0]))
@@ -238,3 +249,14 @@ def _hull(piece, before: Count) -> Hulls:
     every = np.concatenate(candidates).view(Columns)
     curved = no_hulls()[5:]
     return Hulls(piece.vertices, faces, corners, np.concatenate(starts), every, *curved)
+
+
+def _surface(surface, before: int) -> Hulls:
+    """Return the tables of an implicit surface; `before` numbers come before its own."""
+    rows = table(IMPLICIT_SURFACE, 1)
+    row, given = rows[0], surface.lengths
+    row.kind, row["size"][: len(given)] = SURFACE_KINDS.index(surface.kind), given
+    row["size"][3] = surface.steepest
+    row.first, row.last = before, before + len(surface.numbers)
+    surface.write(row)
+    return no_hulls()._replace(surfaces=rows, numbers=surface.numbers)

@@ -16,3 +16,6 @@ LINE_CONTACT = 1e-5  #: rad: of a normal to the cross-section of a cylinder that
 #: cosine of the angle: least between the contact normal and that of a reference face; the separation along
 #: the latter must also be at least the least gap minus `reach`
 FACING = 0.7
+FOOT_ERROR = 1e-15  #: distance from the origin of a surface: of a point found on it
+#: distance from the origin of a surface: last step to a nearest point; the error after it is its square
+FOOT_STEP = 1e-9

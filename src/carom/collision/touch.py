@@ -17,7 +17,8 @@ from carom.collision.faces import load_face
 from carom.collision.features import EDGES
 from carom.collision.found import hand_on, swap
 from carom.collision.frame import enter
-from carom.collision.layout import BOX, CYLINDER, POINT, SEGMENT, Pair
+from carom.collision.layout import BOX, CYLINDER, IMPLICIT, POINT, SEGMENT, Pair
+from carom.collision.on_surface import on_surface
 from carom.collision.round import point_point, point_segment, segment_segment
 from carom.collision.segments import ends_of_line
 from carom.collision.support import separation
@@ -54,7 +55,12 @@ def touch_unit(a, b, hulls, reach, work, out):
         a, b = b, a
     enter(work.state[0], a, b)
     pair = by_reference(Pair(a.solid, b.solid, hulls, work.state[0], work.found))
-    work.state[0].total = hand_on(pair, _ordered(pair, reach), flip, out)
+    if b.solid.kind == IMPLICIT:
+        on_surface(a.solid, b.solid, hulls, reach, work)
+        count = work.state[0].total
+    else:
+        count = _ordered(pair, reach)
+    work.state[0].total = hand_on(pair, count, flip, out)
 
 
 @kernel

@@ -15,8 +15,9 @@ from carom.contact.gap import along_normal, gap_and_rate, plane_in_body, round_o
 from carom.contact.groups import unite
 from carom.contact.pair_point import find_touches, own_point, smaller, write_touch
 from carom.contact.parting import beside_face
+from carom.contact.parting_on_surface import room_over_surface
 from carom.contact.place import place_any
-from carom.contact.place_of_other import balls, centre_of_other, on_half_space
+from carom.contact.place_of_other import balls, centre_of_other, on_curved_ground, on_half_space
 from carom.contact.rim import closed_rim, most_of_rim, way_round
 from carom.contact.stop import is_active, place_stop
 from carom.contact.thresholds import REACH, RIM_DISTANCE, RIM_TIME
@@ -58,6 +59,10 @@ def apart(system, contact, state, near):
         x = state[contact.body].x
         return along_normal(contact, x) - contact.offset - contact.radius - contact.extent > near
     for pieces in range(1 + contact.part):
+        if on_curved_ground(system, contact):
+            if room_over_surface(system, contact, state, pieces == 1) > near:
+                return True
+            continue
         x, y, radii = balls(system, contact, state, pieces == 1)
         d = minus(x, y)
         if dot(d, d) > (radii + near) * (radii + near):

@@ -28,8 +28,10 @@ from carom.contact.gap import slow
 from carom.contact.level import related
 from carom.contact.pair_point import find_touches, list_touches, smaller, touch_rate
 from carom.contact.parting import plane_of, stays_beside_face, time_apart
-from carom.contact.place_of_other import balls, centre_of_other, on_half_space
+from carom.contact.parting_on_surface import room_over_surface, time_over_surface
+from carom.contact.place_of_other import balls, centre_of_other, on_curved_ground, on_half_space
 from carom.contact.rim import closed_rim, longest_way, place_of
+from carom.geometry.rotation import norm
 from carom.geometry.thresholds import RESOLUTION
 from carom.geometry.vectors import dot, minus
 from carom.kinematics.flight import relative_bound
@@ -39,9 +41,16 @@ from carom.model.workspace import FREE, RESTS
 @kernel
 def balls_clear(system, data, contact, a, pieces):
     """Return whether the balls around both bodies, or two `pieces` of them, stay apart in the trial step."""
-    time = 0.0
+    time, curved = 0.0, on_curved_ground(system, contact)
     for side in range(2):
         state, sign = (data.state, 1.0) if side == 0 else (data.work.trial, -1.0)
+        if curved:
+            room = room_over_surface(system, contact, state, pieces)
+            if not room > 0.0:
+                return False
+            own = state[contact.body]
+            time += reach(room, -norm(own.v) - (contact.extent * norm(own.w) if pieces else 0.0), a)
+            continue
         x, y, radii = balls(system, contact, state, pieces)
         s, u = minus(x, y), (x[3] - y[3], x[4] - y[4], x[5] - y[5])
         d = math.sqrt(dot(s, s))
@@ -129,7 +138,10 @@ def passage_pair(model, data, c) -> tuple[int, float]:
     flies = work.body[contact.body].status == FREE
     if contact.other >= 0:
         flies = flies and work.body[contact.other].status == FREE
-    sag = 0.125 * bounds[1] * h * h
+    curved, first, last, most = on_curved_ground(system, contact), 0.0, 0.0, bounds[1]
+    if curved and not touching:
+        last, most = time_over_surface(system, contact, end, bounds, -h, work)
+    sag = 0.125 * most * h * h
     short = way_past(contact, data) <= limits.SAFE_DISPLACEMENT * smaller(contact)
     little = short and h * (bounds[3] + bounds[5]) <= limits.SAFE_ROTATION
     smooth = short and (not flies or sag <= RESOLUTION * smaller(contact))
@@ -162,13 +174,22 @@ def passage_pair(model, data, c) -> tuple[int, float]:
     if touching:
         return CLEAR, h
     nearest = nearest_touch(work)
-    last, feature = time_apart(system, contact, plane_of(nearest), end, bounds, -h), nearest.feature
+    feature = nearest.feature
+    if curved:
+        last = min(last, reach(nearest.gap, -touch_rate(contact, nearest, end), most))
+    else:
+        last = time_apart(system, contact, plane_of(nearest), end, bounds, -h)
     if last >= h:
         return CLEAR, h
+    if curved:
+        first, most = time_over_surface(system, contact, start, bounds, h, work)
     list_touches(system, contact, start, 0.0, work)
     nearest = nearest_touch(work)
-    first = time_apart(system, contact, plane_of(nearest), start, bounds, h)
     rate0 = touch_rate(contact, nearest, start)
+    if curved:
+        first = min(first, reach(nearest.gap, rate0, most))
+    else:
+        first = time_apart(system, contact, plane_of(nearest), start, bounds, h)
     alike = feature == nearest.feature  # the same points are nearest at both ends
     follows = alike and smooth  # the cubic between both ends describes the gap
     if follows and cubic_clears(nearest.gap, rate0, least, rate, h, tiny):

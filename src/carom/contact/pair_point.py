@@ -9,18 +9,20 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.collision.layout import Placed, Plane
+from carom.collision.layout import IMPLICIT, Placed, Plane
+from carom.collision.on_surface import feature_on_surface
 from carom.collision.plane import plane_unit
 from carom.collision.touch import touch_unit
 from carom.contact.drift import drift_of_solids
+from carom.contact.drift_on_surface import drift_on_surface
 from carom.contact.level import keep_real_touches, solid_beyond, solid_left
-from carom.contact.place_of_other import on_half_space, pose_of
+from carom.contact.place_of_other import on_curved_ground, on_half_space, pose_of
 from carom.contact.rim import same_point
 from carom.contact.roll import roll_on_plane
 from carom.contact.thresholds import ACTIVE_REACH
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.geometry.thresholds import ROUND_OFF
-from carom.geometry.vectors import dot, minus
+from carom.geometry.vectors import dot, minus, plus
 from carom.kinematics.contact_point import carry_field
 from carom.kinematics.grain import lay_along_grain
 from carom.kinematics.wrench import point_velocity
@@ -76,6 +78,22 @@ def tangents(n0, n1, n2, axes):
 
 
 @kernel
+def turned_axes(n, e, axes):
+    """Write rows n, t1, t2: t1 and t2 are e[1] and e[2] after the shortest turn from e[0] to n.
+
+    They change steadily with n, so that a slip keeps its direction; only at n = -e[0] is the turn not unique.
+    """
+    e0, e1 = (e[0, 0], e[0, 1], e[0, 2]), (e[1, 0], e[1, 1], e[1, 2])
+    way = 1.0 + dot(n, e0)
+    f = -dot(n, e1) / way if way > 0.0 else 0.0
+    t = plus(plus(e1, f, n), f, e0)
+    s = 1.0 / math.sqrt(dot(t, t))
+    axes[0, 0], axes[0, 1], axes[0, 2] = n[0], n[1], n[2]
+    axes[1, 0], axes[1, 1], axes[1, 2] = s * t[0], s * t[1], s * t[2]
+    axes[2, 0], axes[2, 1], axes[2, 2] = cross(n[0], n[1], n[2], s * t[0], s * t[1], s * t[2])
+
+
+@kernel
 def write_touch(contact, touch, state, point):
     """Write a found point as a contact point."""
     n, e = touch.normal, contact.axes[0]
@@ -91,6 +109,10 @@ def write_touch(contact, touch, state, point):
             point.arm_b[k] = touch.on_b[k] - state[contact.other].x[k]
         elif contact.static == 1:
             point.arm_b[k] = touch.on_b[k]
+    if contact.static == 1 and e[0] * e[0] + e[1] * e[1] + e[2] * e[2] > 0.0:
+        point.b = -1  # on curved ground points last, as on a plane: their events are located
+        turned_axes(n, contact.axes, point.axes)
+        return
     beyond = contact.surface > 0 and not n[0] * e[0] + n[1] * e[1] + n[2] * e[2] > 1.0 - ROUND_OFF
     if beyond or not on_half_space(contact):
         tangents(n[0], n[1], n[2], point.axes)
@@ -134,6 +156,10 @@ def touch_of_active(system, contact, feature, p, state, work) -> int:
 
     A point of a level surface that has passed its rim is replaced by one of the solid that it has left.
     """
+    if on_curved_ground(system, contact):
+        a, b = placed(system, contact, contact.other_solid, state, work)
+        feature_on_surface(a, b, system.hulls, feature, work.pair, work.touches)
+        return 0
     list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
     i = which_touch(system, contact, feature, p, state, work)
     if contact.surface == 0:
@@ -143,6 +169,19 @@ def touch_of_active(system, contact, feature, p, state, work) -> int:
         return i
     list_on_solid(system, contact, solid, state, ACTIVE_REACH * smaller(contact), work)
     return which_touch(system, contact, feature, p, state, work)
+
+
+@kernel
+def placed(system, contact, other_solid, state, work):
+    """Return the solid of a body and another one with their poses, which are written to work.solid_pose."""
+    pose, solid, other = work.solid_pose, system.solids[contact.solid], system.solids[other_solid]
+    x, q = pose_of(solid, contact.body, state)
+    pose[0, 0], pose[0, 1], pose[0, 2] = x
+    pose[0, 3], pose[0, 4], pose[0, 5], pose[0, 6] = q
+    x, q = pose_of(other, contact.other, state)
+    pose[1, 0], pose[1, 1], pose[1, 2] = x
+    pose[1, 3], pose[1, 4], pose[1, 5], pose[1, 6] = q
+    return Placed(solid, pose[0, :3], pose[0, 3:]), Placed(other, pose[1, :3], pose[1, 3:])
 
 
 @kernel
@@ -175,6 +214,8 @@ def drift(system, contact, feature, point, state) -> tuple[float, float, float]:
     The point must have been written for this state (`write_touch`). For two solids `feature` is not used.
     """
     if not on_half_space(contact):
+        if system.solids[contact.other_solid].kind == IMPLICIT:
+            return drift_on_surface(system, contact, point, state)
         return drift_of_solids(system, contact, contact.other_solid, point, state)
     solid = solid_beyond(system, contact, point, state)
     if solid < 0:

@@ -27,7 +27,12 @@ from carom._compiled.decorators import kernel
 from carom.collision.farthest import VERTICES, farthest
 from carom.collision.features import NOBODY, OF_A
 from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, SEGMENT
-from carom.contact.place_of_other import centre_of_other, on_half_space, pose_of
+from carom.contact.place_of_other import (
+    centre_of_other,
+    on_curved_ground,
+    on_half_space,
+    pose_of,
+)
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.kinematics.flight import core_extent
 
@@ -199,7 +204,7 @@ def widest_face(system, contact, state):
 @kernel
 def beside_face(system, contact, state, near):
     """Return whether a face of a box shows that the gap of two solids is above `near`."""
-    if on_half_space(contact) or contact.surface > 0:
+    if on_half_space(contact) or contact.surface > 0 or on_curved_ground(system, contact):
         return False
     return widest_face(system, contact, state)[2] > near
 
@@ -212,7 +217,7 @@ def stays_beside_face(system, data, contact, smooth, tiny, bounds):
     `tiny`: its control points are F(h/3), of the start and back from the end, with a = 0. Else the plane must
     separate them at both ends, for the bounds to hold on the way from there.
     """
-    if on_half_space(contact) or contact.surface > 0:
+    if on_half_space(contact) or contact.surface > 0 or on_curved_ground(system, contact):
         return False
     start, end, h = data.state, data.work.trial, data.work.search[0].dt
     plane, face, room = widest_face(system, contact, start)

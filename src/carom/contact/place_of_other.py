@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
+from carom.collision.layout import IMPLICIT
 from carom.geometry.rotation import multiply, rotate
 from carom.kinematics.wrench import point_velocity
 
@@ -11,6 +12,14 @@ from carom.kinematics.wrench import point_velocity
 def on_half_space(contact):
     """Return whether a body touches a half-space."""
     return contact.other < 0 and contact.static == 0
+
+
+@kernel
+def on_curved_ground(system, contact):
+    """Return whether the other side is a surface that is not convex."""
+    if on_half_space(contact):
+        return False
+    return system.solids[contact.other_solid].kind == IMPLICIT
 
 
 @kernel

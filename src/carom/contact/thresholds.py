@@ -14,3 +14,5 @@ RIM_TIME = 1.0 / 64.0  #: step: a rim that turns flat within it counts as flat
 RIM_DISTANCE = 1.5  #: square of the radius: squared displacement of the lowest point to a different one
 #: square of the radius: squared displacement up to which a step follows the point: 10 degrees
 RIM_STEP = 0.03
+#: distance from curved ground: part of it that a body certainly has where another foot may be nearer
+CAUTION = 0.2

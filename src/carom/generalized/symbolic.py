@@ -1,18 +1,17 @@
 """A `GeneralizedSystem` from SymPy expressions, with exact derivatives and generated code for Numba.
 
-SymPy is imported here and nowhere else.
+Its code is written by `carom.scene.expressions`.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from typing import Any
 
 import numpy as np
 
 from carom import checks
+from carom.scene import expressions
 
 
 class SymbolicModel:
@@ -77,7 +76,7 @@ class SymbolicModel:
     def take(self, name: str, expression, allowed: str):
         """Return an expression in the symbols of this model; only those in `allowed` may occur (of t, q, v)."""
         sp = self.sp
-        result = self.expression(name, expression)
+        result = expressions.of(name, expression)
         result = result.subs(list(zip(self.velocities, self.v)))  # first: they may be derivatives
         result = result.subs(list(zip(self.coordinates, self.q)))
         result = result.subs(list(self.parameters.items()))
@@ -94,21 +93,9 @@ class SymbolicModel:
             )
         return result
 
-    def expression(self, name: str, given) -> Any:
-        """Return an expression; raise an error for texts, which SymPy would evaluate, and other objects."""
-        sp = self.sp
-        result: Any = None
-        with suppress(Exception):  # of any kind, in the conversion of a foreign object
-            result = sp.sympify(given, strict=True)
-        infinite = (sp.nan, sp.zoo, sp.oo, -sp.oo)
-        good = isinstance(result, sp.Expr) and not result.has(*infinite)
-        if isinstance(given, np.ndarray) or not good:
-            raise ValueError(f"{name} must be a SymPy expression, got {checks.shown(given)}")
-        return result
-
     def symbols(self, name: str, given) -> list:
         """Return a list of different symbols, functions or derivatives."""
-        found = [self.expression(name, one) for one in checks.listed(name, given, "symbols")]
+        found = [expressions.of(name, one) for one in checks.listed(name, given, "symbols")]
         if any(one.is_number for one in found) or len(set(found)) != len(found):
             raise ValueError(f"{name} must be symbols, each once, got {checks.shown(given)}")
         return found
@@ -215,33 +202,10 @@ class SymbolicModel:
 
     def addresses(self, functions) -> tuple[list[int], list]:
         """Return the addresses of the four compiled functions, which have no parts."""
-        result = []
+        result, x = [], [*self.q, *self.v]
         for name in ("inertia", "loads", "row_terms", "contact_terms"):
             terms = getattr(self, name)()
             given = (2 * self.n,), (len(terms),), f"an expression ({name})"
-            result.append(functions.written(self.write(name, terms), *given) if terms else 0)
+            code = expressions.written(name, terms, x, self.t) if terms else None
+            result.append(functions.written(code, *given) if terms else 0)
         return result, []
-
-    def write(self, name: str, terms: list):
-        """Return ``name(t, x, out)`` as Python code of scalars; common subexpressions are computed once."""
-        from sympy.printing.codeprinter import PrintMethodNotImplementedError
-        from sympy.printing.pycode import PythonCodePrinter
-
-        sp, printer = self.sp, PythonCodePrinter({"fully_qualified_modules": False})
-        *x, t = sp.symbols(f"x:{2 * self.n} t", real=True)
-        exchange = dict(zip([*self.q, *self.v, self.t], [*x, t]))
-        terms = [sp.sympify(term).xreplace(exchange) for term in terms]
-        shared, terms = sp.cse(terms, symbols=sp.numbered_symbols("s"), order="none")
-        used = set().union(*(e.free_symbols for e in [*terms, *(e for _, e in shared)]))
-        lines = [f"def {name}(t, x, out):"]
-        lines += [f"    x{i} = x[{i}]" for i in range(2 * self.n) if x[i] in used]
-        try:
-            lines += [f"    {symbol} = {printer.doprint(e)}" for symbol, e in shared]
-            lines += [f"    out[{i}] = {printer.doprint(e)}" for i, e in enumerate(terms)]
-        except PrintMethodNotImplementedError as error:
-            raise ValueError(
-                f"an expression has a function that cannot be compiled, or whose derivative cannot: {error}"
-            ) from None
-        space: dict[str, Any] = {"math": math, **vars(math)}
-        exec("\n".join(lines), space)
-        return space[name]

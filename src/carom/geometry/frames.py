@@ -34,3 +34,17 @@ def pair_axes(normal: np.ndarray) -> np.ndarray:
     first = along - (along @ normal) * normal
     first /= np.linalg.norm(first)
     return np.stack([normal, first, np.cross(normal, first)])
+
+
+def upright(gravity: np.ndarray) -> np.ndarray:
+    """Return rows n, t1, t2 with n against gravity, or along world z without it."""
+    down = length(gravity)
+    return contact_axes(-gravity / down if down > 0.0 else _AXES[2])
+
+
+def turned_axes(normal: np.ndarray, axes: np.ndarray) -> np.ndarray:
+    """Return rows n, t1, t2 of a contact with curved ground: `axes` after the shortest turn to the normal."""
+    way = 1.0 + normal @ axes[0]
+    first = axes[1] - (normal @ axes[1] / way if way > 0.0 else 0.0) * (normal + axes[0])
+    first /= np.linalg.norm(first)
+    return np.stack([normal, first, np.cross(normal, first)])

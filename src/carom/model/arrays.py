@@ -266,7 +266,8 @@ CONTACT = [
     ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
     ("multiple", "i8"),  # 1: its pair has impacts of its own, one after another
     ("ball_like", "i8"),  # 1 if one of the two is a ball or an ellipsoid
-    ("axes", "f8", (3, 3)),  # of a half-space: rows n, t1, t2
+    # of a half-space: rows n, t1, t2; of curved ground: rows that are turned to those of a point
+    ("axes", "f8", (3, 3)),
     ("offset", "f8"),  # n . point of the plane; for a stop, side times its position
     # of a stop, gap = side q - offset: above 0 for a lower, below 0 for an upper stop; |side| is 1, or a length
     # for an angle

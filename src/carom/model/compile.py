@@ -20,6 +20,7 @@ from carom.model.placement import Placement
 from carom.model.relations import Coordinates, Elements
 from carom.model.stops import with_stops
 from carom.model.thresholds import LARGEST_MASS_RATIO, MASS_RATIO
+from carom.model.user_surfaces import add_functions
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, joined_tables, some_pairs
 from carom.scene.forces import Bushing, CurveSpring, Force, Spring, Torque
@@ -70,6 +71,7 @@ def compile_scene(
     # stops have the numbers after those of all pairs, so no pair may be added later
     may_come = apart and bool(bodies["ballistic"].any()) and not scene.stops
     touching = compile_contacts(scene, to_principal, options, curves, may_come)
+    add_functions(scene, touching, functions)
     contacts = with_stops(scene, touching.rows, elements, options, curves)
     relations = elements.arrays(solver, more)
     system = System(

@@ -12,7 +12,7 @@ from carom._compiled.record_arrays import table
 from carom.collision.layout import SOLID, Hulls, no_hulls, solid_table
 from carom.collision.level_layout import Levels
 from carom.geometry import quaternion
-from carom.geometry.frames import contact_axes, length
+from carom.geometry.frames import contact_axes, length, upright
 from carom.model.arrays import BODY_AXES, CONTACT, OTHER_AXES, WORLD_AXES
 from carom.model.contact_rows import Rows, contact_rows, first_pairs
 from carom.model.cores import Cores, new_cores, singly, swollen_alike
@@ -27,6 +27,7 @@ from carom.scene.materials import MULTIPLE, ContactLaw, Material
 from carom.scene.scene import Scene
 from carom.scene.shapes import Shape
 from carom.scene.speed_law import SpeedLaw
+from carom.scene.surfaces import SurfaceDefinition
 
 
 class Surfaces(NamedTuple):
@@ -198,6 +199,8 @@ def _write_statics(rows: np.recarray, scene: Scene) -> None:
     rows["static"] = rows["other"] >= count
     for b, solid in enumerate(scene.statics, start=count):
         rows["centre"][rows["other"] == b] = solid.position
+        if isinstance(solid.shape, SurfaceDefinition):
+            rows["axes"][rows["other"] == b] = upright(scene.gravity)
     rows["other"][rows["static"] == 1] = -1
     rows["grain_of"][(rows["static"] == 1) & (rows["grain_of"] == OTHER_AXES)] = WORLD_AXES
 

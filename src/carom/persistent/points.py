@@ -19,8 +19,15 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.closed_points import add_touch, write_closed, write_turning
 from carom.contact.continuous_detection_pair import nearest_touch
-from carom.contact.pair_point import find_touches, list_touches, smaller, which_touch
+from carom.contact.pair_point import (
+    find_touches,
+    list_touches,
+    smaller,
+    touch_of_active,
+    which_touch,
+)
 from carom.contact.place import place_any
+from carom.contact.place_of_other import on_curved_ground
 from carom.contact.rim import place_of, same_point
 from carom.contact.stop import is_active
 from carom.contact.thresholds import ACTIVE_REACH, PLACE_ERROR, REACH
@@ -76,11 +83,19 @@ def add_known(system, data, i, k):
 def add_pair(system, data, i, k) -> int:
     """Add the points of two solids: of a face all its corners, else those of the active features.
 
-    Return the new count.
+    On curved ground no two points belong together. Return the new count.
     """
     active, state, work = data.active, data.work.stage, data.work
     c = active.points[i].contact
     contact = system.contacts[c]
+    if on_curved_ground(system, contact):
+        for j in range(i, active.count[0]):
+            if active.points[j].contact == c:
+                one = active.points[j]
+                t = touch_of_active(system, contact, one.feature, one.point, state, work)
+                k = add_found(system, data, c, work.touches[t], j, k)
+                data.group.closed[k - 1].own = 1
+        return k
     list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
     if not on_face(contact, active, i, nearest_touch(work).normal, state):
         for j in range(i, active.count[0]):

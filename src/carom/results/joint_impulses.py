@@ -19,15 +19,17 @@ from carom._compiled.record_arrays import table
 from carom.dynamics.mobility import mass_matrix
 from carom.dynamics.reactions import write_rows
 from carom.geometry import quaternion
-from carom.geometry.frames import contact_axes, pair_axes
+from carom.geometry.frames import contact_axes, pair_axes, turned_axes, upright
 from carom.model import records as r
 from carom.model.arrays import INERTIA, STATE
 from carom.model.compile import compile_scene
 from carom.results import joint_coordinates as jc
 from carom.results.dense_output import curves
 from carom.results.event_tables import JointImpulse, JointImpulseTable
+from carom.scene.bodies import HalfSpace
 from carom.scene.constraints import coordinate_kind
 from carom.scene.more_forces import JointInertia
+from carom.scene.surfaces import SurfaceDefinition
 
 TIMES_AT_ONCE = 256  # times at which states are computed in one go
 SMALLEST = 1e-10  # singular value, relative to the greatest, below which rows depend on each other
@@ -38,9 +40,9 @@ def world_impulses(solution) -> np.ndarray:
     impacts, pairs = solution.impacts, solution.pairs
     out = np.zeros((len(impacts), 3))
     for k in np.flatnonzero(impacts.contact < len(pairs.body)):  # stops come after contacts
-        flat = 0 <= pairs.plane[impacts.contact[k]] < len(solution.scene.half_spaces)
-        axes = contact_axes if flat else pair_axes
-        out[k] = impacts.impulse[k] @ axes(impacts.normal[k])
+        out[k] = impacts.impulse[k] @ _axes(
+            solution.scene, pairs.plane[impacts.contact[k]], impacts.normal[k]
+        )
     for k in np.flatnonzero(impacts.contact >= len(pairs.body)):
         joint = solution.scene.stops[impacts.contact[k] - len(pairs.body)].joint
         if joint.can_be_left:
@@ -49,6 +51,15 @@ def world_impulses(solution) -> np.ndarray:
             along = np.array(jc.direction(jc.sides_of(joint), state, 0))
             out[k] = impacts.impulse[k] @ (n, along, np.cross(n, along))
     return out
+
+
+def _axes(scene, plane: int, normal: np.ndarray) -> np.ndarray:
+    """Return the axes of a contact with a fixed part, by its place in `Scene.fixed`, or of two bodies (-1)."""
+    if plane < 0 or not isinstance(fixed := scene.fixed[plane], HalfSpace):
+        if plane >= 0 and isinstance(fixed.shape, SurfaceDefinition):
+            return turned_axes(normal, upright(scene.gravity))
+        return pair_axes(normal)
+    return contact_axes(normal)
 
 
 def joint_impulses(solution) -> JointImpulseTable:

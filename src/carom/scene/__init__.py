@@ -5,6 +5,7 @@ from carom.scene import curves as curves
 from carom.scene import forces as forces
 from carom.scene import joints as joints
 from carom.scene import shapes as shapes
+from carom.scene import surfaces as surfaces
 from carom.scene.bodies import GROUND as GROUND
 from carom.scene.bodies import Body as Body
 from carom.scene.bodies import Ground as Ground

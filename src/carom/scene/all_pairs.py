@@ -15,6 +15,7 @@ import numpy as np
 
 from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.materials import ContactLaw
+from carom.scene.surfaces import SurfaceDefinition
 from carom.scene.table import Table
 
 MOST_AT_ONCE = 1 << 20  # balls whose distances are looked at in one go
@@ -173,6 +174,9 @@ def near_fixed(
     for h, plane in enumerate(fixed):
         rows = np.flatnonzero(pairs.plane == h)
         body = pairs.body[rows]
+        if isinstance(plane, StaticBody) and isinstance(plane.shape, SurfaceDefinition):
+            reach[rows] = True  # it has no end
+            continue
         if isinstance(plane, StaticBody):
             distance = np.linalg.norm(places[body] - plane.position, axis=1)
             reach[rows] = distance <= sizes[body] + plane.shape.size

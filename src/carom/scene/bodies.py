@@ -22,6 +22,7 @@ from carom.scene.moving_surfaces import (
     surface_velocity,
 )
 from carom.scene.shapes import SHAPES, Shape
+from carom.scene.surfaces import SURFACES, SurfaceDefinition
 from carom.scene.values import in_scene
 
 SLACK = 1e-12  # relative to the largest entry or moment: rounding, not physics
@@ -133,14 +134,17 @@ class HalfSpace:
 @in_scene
 @dataclass(frozen=True, eq=False, repr=False)
 class StaticBody:
-    """A solid that never moves: a wall, a peg, a ramp, a mesh. `Scene.add_static` makes it.
+    """A solid that never moves: a wall, a peg, a ramp, a mesh, a bowl.
+
+    `Scene.add_static` makes it, and `Scene.add_surface`.
 
     Attributes
     ----------
     index : int
         Its index in `Scene.statics`.
     name : str
-    shape : Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh or Compound
+    shape : Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh, Compound or a surface
+        A surface is one of `carom.surfaces`.
     position : (3,)
         Position of the origin of the shape, in the world [m].
     orientation : (4,)
@@ -157,7 +161,7 @@ class StaticBody:
 
     index: int
     name: str
-    shape: Shape
+    shape: Shape | SurfaceDefinition
     position: Vector = fields.vector()
     orientation: Value[np.ndarray, Any] = Value(attitude)
     material: MaterialOrNone = Value(_material, None)
@@ -166,7 +170,7 @@ class StaticBody:
     surface_spin: SurfaceSpin = surface_spin()
 
     def __post_init__(self):
-        checks.instance("shape", self.shape, SHAPES)
+        checks.instance("shape", self.shape, (*SHAPES, *SURFACES))
         _ = self.shape.pieces  # refused by a shape that has nothing to touch with
         keep(self, material=whole_material(self.shape, self.material))
 
@@ -180,7 +184,7 @@ class StaticBody:
         return self.surface_velocity is not None or self.surface_spin is not None
 
 
-def whole_material(shape: Shape, material: Material | None) -> Material | None:
+def whole_material(shape: Shape | SurfaceDefinition, material: Material | None) -> Material | None:
     """Return the material of a body: the given one, or that of its first part if all parts have their own."""
     if material is not None or not shape.has_materials:
         return material

@@ -10,11 +10,26 @@ import numpy as np
 from carom.geometry import quaternion
 from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.materials import IMPACT_LAWS, ContactLaw
+from carom.scene.surfaces import SurfaceDefinition
+from carom.scene.user_surface import Surface, check_at, evaluator
 from carom.scene.values import in_scene
 
 __all__ = ["IMPACT_LAWS", "Contact", "check_gap", "check_overlap", "initial_gap"]
 
 TOUCH = 1e-12  # relative to the lengths at hand: rounding of a body placed on another
+
+
+def check_curvature(body: Body, other: HalfSpace | StaticBody | Body) -> None:
+    """Refuse a body that touches curved ground in places that its contact does not find."""
+    surface = None if isinstance(other, HalfSpace) else other.shape
+    if not isinstance(surface, SurfaceDefinition) or body.shape is None:
+        return
+    for piece in body.shape.pieces:
+        why = surface.refusal(piece)
+        if why:
+            raise ValueError(
+                f"body {body.name!r}, {body.shape!r}, cannot touch {other.name!r}, {surface!r}: {why}"
+            )
 
 
 @in_scene
@@ -44,6 +59,7 @@ class Contact(ContactLaw):
                 if part.shape is None:
                     raise ValueError(f"body must have a shape for contact, got {part!r}")
                 _ = part.shape.pieces  # refused by a shape that has nothing to touch with
+        check_curvature(self.body, self.other)
 
     @property
     def half_space(self) -> HalfSpace | None:
@@ -73,7 +89,8 @@ def check_gap(contact: Contact) -> None:
 
 
 def check_overlap(what: str, body: Body, other: HalfSpace | StaticBody | Body) -> None:
-    """Refuse a pair that overlaps at the start by more than rounding; `what` is its name."""
+    """Refuse a pair that cannot touch or overlaps at the start by more than rounding; `what` is its name."""
+    check_curvature(body, other)
     if far(body, other, body.position, place(other)):
         return
     depth, normal = overlap(body, other)
@@ -98,6 +115,8 @@ def far(body: Body, other: HalfSpace | StaticBody | Body, x: np.ndarray, y: np.n
     assert body.shape is not None
     if isinstance(other, HalfSpace):
         return (x - y) @ other.normal > body.shape.size
+    if isinstance(other.shape, SurfaceDefinition):  # without end
+        return np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y))[:-1], dtype=bool)[()]
     assert other.shape is not None
     return np.sum((x - y) ** 2, axis=-1) > (body.shape.size + other.shape.size) ** 2
 
@@ -112,6 +131,9 @@ def overlap(body: Body, other: HalfSpace | StaticBody | Body) -> tuple[float, np
         assert other.shape is not None
         places = np.linalg.norm(body.position) + np.linalg.norm(other.position)
         length = body.shape.size + other.shape.size + float(places)
+        if gap != gap and isinstance(other.shape, Surface):  # say why its function does not answer
+            own = quaternion.rotate_back(other.orientation, body.position - other.position)
+            check_at(other.shape, evaluator(other.shape), own)
     return (0.0 if gap >= -TOUCH * length else -gap), normal
 
 

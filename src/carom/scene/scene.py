@@ -26,6 +26,7 @@ from carom.scene.shapes.mesh import shape_given
 from carom.scene.shown import Shown
 from carom.scene.stops import RailContact, Stop
 from carom.scene.summary import counts, summary
+from carom.scene.surfaces import SURFACES, SurfaceDefinition
 from carom.scene.touching import TouchingPairs
 from carom.scene.values import in_scene
 
@@ -250,6 +251,60 @@ class Scene(Shown, TouchingPairs):
         shape = shape_given(shape)
         look: Any = material, color, surface_velocity, surface_spin
         return self._parts.add(StaticBody(index, name, shape, position, orientation, *look))
+
+    @arguments.known
+    def add_surface(
+        self,
+        definition: SurfaceDefinition,
+        *,
+        position: ArrayLike = (0.0, 0.0, 0.0),
+        orientation: Orientation = (1.0, 0.0, 0.0, 0.0),
+        material: Material | None = None,
+        color: str | ArrayLike | None = None,
+        surface_velocity: ArrayLike | Callable | None = None,
+        surface_spin: GivenSpin | None = None,
+        name: str | None = None,
+        replace: bool = False,
+    ) -> StaticBody:
+        """Add ground that is not a plane: a bowl, a pipe, a funnel, a field of heights.
+
+        Bodies touch it as they touch static bodies, among which it is listed. It reaches as far as its
+        definition says, without end; one side of it is solid.
+
+        Parameters
+        ----------
+        definition
+            A surface of `carom.surfaces`.
+        position : (3,)
+            Position of its origin, in the world [m].
+        orientation
+            From its axes to the world, as for `add_body`.
+        material
+            Material of the surface, see `set_contact_default`.
+        color : str or (3,)
+            Colour in pages, pictures and films, as for `add_body`. Default: grey.
+        surface_velocity, surface_spin
+            Motion of the surface in itself, as for `add_static`: a drum that turns.
+        name
+            Name in the scene. Default ``"surface1"``, ``"surface2"``, ...
+        replace : bool
+            True: a static body that has this name is replaced, and what refers to it then refers to the new
+            one. Default False: a name that is taken is refused.
+
+        Examples
+        --------
+        A ball rolls in a bowl:
+
+        >>> scene = carom.Scene()
+        >>> bowl = scene.add_surface(carom.surfaces.InsideSphere(0.5), position=(0, 0, 0.5), name="bowl")
+        >>> ball = scene.add_body(carom.Sphere(0.05), mass=1, position=(0, 0, 0.05), name="ball")
+        >>> scene.add_contact(ball, bowl, restitution=0.5, friction=0.3)
+        Contact('ball-bowl', restitution=0.5, friction=0.3, impact_law='newton')
+        """
+        checks.instance("definition", definition, SURFACES)
+        index, name = self._parts.new(StaticBody, name, "surface", replace)
+        place: Any = position, orientation, material, color, surface_velocity, surface_spin
+        return self._parts.add(StaticBody(index, name, definition, *place))
 
     @arguments.known
     def add_joint(

@@ -18,6 +18,8 @@ from carom.scene.joints import CurveOnPoint, Distance, Joint, RollingDisc, Rolli
 from carom.scene.more_forces import CurveSpring
 from carom.scene.shapes import Box, Sphere
 from carom.scene.shapes.revolved import Cylinder
+from carom.scene.surface_definition import SurfaceDefinition
+from carom.visual.curved_ground import ground
 from carom.visual.dice import is_die, pip_colour, pips
 from carom.visual.surface_arrows import arrows_of
 from carom.visual.surfaces import is_round, surface
@@ -30,6 +32,7 @@ PIN = 0.15  # of the size of a body: a pin is no thicker
 COLOURS = ("#56B4E9", "#E69F00", "#009E73", "#F0E442", "#CC79A7", "#999999")
 JOINT, STATIC, ARROW = "#5b6873", "#c3ccd4", "#D55E00"
 ROD = 0.012  # radius of rods of bodies without a shape, as a fraction of the size of the region
+ORIGIN = np.zeros(3)
 RAIL, RING = 400, 8  # most points along a curve, and sides of its tube
 
 
@@ -84,8 +87,10 @@ def colours_of(part: Part, scene) -> list[str]:
     return [pip_colour(one) for one in own] if part.look == "pip" else own
 
 
-def parts_of(scene, radius: float, fineness: int | None = None) -> list[Part]:
-    """Return the surfaces of all bodies; equal ones once. `radius` is that of the region [m]."""
+def parts_of(
+    scene, radius: float, fineness: int | None = None, centre: np.ndarray = ORIGIN
+) -> list[Part]:
+    """Return the surfaces of all bodies; equal ones once. The region of the motion is a ball [m]."""
     parts: dict[tuple, Part] = {}
     known: dict = {}  # many bodies may have one shape
     fineness = fineness or (32 if len(scene.bodies) < 100 else 16)
@@ -106,7 +111,8 @@ def parts_of(scene, radius: float, fineness: int | None = None) -> list[Part]:
                 body.index
             )
     rails = [_rail(j, 0.5 * ROD * radius) for j in scene.joints if j.definition.guide == "curve"]
-    fixed = [_static(solid, fineness) for solid in scene.statics]
+    fixed = [static_part(solid, fineness, centre, radius) for solid in scene.statics]
+    fixed = [part for part in fixed if len(part.triangles)]
     return [*parts.values(), *fixed, *rails, *surface_arrows(scene, radius)]
 
 
@@ -175,9 +181,13 @@ def surface_arrows(scene, radius: float) -> list[Part]:
     return [Part(*arrow, [-1], "static", None, ARROW) for arrow in arrows_of(scene, radius)]
 
 
-def _static(solid, fineness: int) -> Part:
-    """Return the surface of a static body, in the world."""
-    vertices, triangles = surface(solid.shape, fineness)
+def static_part(solid, fineness: int, centre: np.ndarray, radius: float) -> Part:
+    """Return the surface of a static body, in the world; of curved ground a part about the motion."""
+    if isinstance(solid.shape, SurfaceDefinition):
+        middle = quaternion.rotate_back(solid.orientation, centre - solid.position)
+        vertices, triangles = ground(solid.shape, middle, radius, 2 * fineness)
+    else:
+        vertices, triangles = surface(solid.shape, fineness)
     placed = solid.position + quaternion.rotate(solid.orientation, vertices)
     return Part(placed, triangles, [-1], "static", solid.shape, solid.color)
 

@@ -73,7 +73,7 @@ def _of_piece(piece: Piece, n: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the surface of a piece in its own axes."""
     if piece.kind == "cylinder":
         r, z = piece.half[0], piece.half[2]
-        return _turned([(0.0, -z), (r, -z), (r, z), (0.0, z)], 4 * n)
+        return turned([(0.0, -z), (r, -z), (r, z), (0.0, z)], 4 * n)
     ball = _directions(n)
     if piece.kind == "ellipsoid":
         vertices, triangles = _hull(ball)
@@ -109,7 +109,7 @@ def _hull(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return points, faces
 
 
-def _turned(profile, n: int, closed: bool = False) -> tuple[np.ndarray, np.ndarray]:
+def turned(profile, n: int, closed: bool = False) -> tuple[np.ndarray, np.ndarray]:
     """Return a profile of (r, z), from below to above outside, turned about z in n steps.
 
     Its ends lie on the axis, or it is `closed`.
@@ -134,10 +134,10 @@ def _turned(profile, n: int, closed: bool = False) -> tuple[np.ndarray, np.ndarr
 def _disc(radius: float, hole: float, n: int) -> tuple[np.ndarray, np.ndarray]:
     """Return both sides of a disc or a ring, in one plane."""
     if not hole:
-        return _turned([(0.0, 0.0), (radius, 0.0), (0.0, 0.0)], n)
+        return turned([(0.0, 0.0), (radius, 0.0), (0.0, 0.0)], n)
     hole = min(hole, HOOP * radius)
     middle = 0.5 * (radius + hole)  # apart above and below: an edge has two triangles, not four
-    return _turned([(middle, 0.0), (radius, 0.0), (middle, 0.0), (hole, 0.0)], n, closed=True)
+    return turned([(middle, 0.0), (radius, 0.0), (middle, 0.0), (hole, 0.0)], n, closed=True)
 
 
 def _union(parts) -> tuple[np.ndarray, np.ndarray]:

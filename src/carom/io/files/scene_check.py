@@ -25,6 +25,7 @@ from carom.scene.scene import Scene
 from carom.scene.shapes.compound import Compound
 from carom.scene.shapes.convex import Convex
 from carom.scene.shapes.mesh import Mesh
+from carom.scene.user_surface import Surface
 
 ROUNDING = 1e-9  # of what is worked out once more: of unit vectors, lengths, inertias
 CORES = ("point", "segment", "box", "hull", "cylinder", "ellipsoid")
@@ -207,6 +208,19 @@ def _check_curve(curve: Curve) -> None:
         raise ValueError("ends of a closed curve must be equal")
 
 
+def _check_surface(surface: Surface) -> None:
+    """Raise for a surface of a function, which may be missing, with a wrong box or bound."""
+    for name in ("function", "gradient", "hessian"):
+        checks.function(name, getattr(surface, name), optional=name != "function")
+    if (surface.gradient is None) != (surface.hessian is None):
+        raise ValueError("gradient and hessian must be given both or not at all")
+    low, high = checks.finite_array("bounds", surface.bounds, (2, 3))
+    if not np.all(high > low):
+        raise ValueError(f"bounds must have sides above 0, got {checks.shown(surface.bounds)}")
+    checks.number("bend", surface.bend, least=0.0)
+    checks.number("steepest", surface.steepest, above=0.0)
+
+
 def _solid(shape, flat: bool = False) -> None:
     """Refuse a shape without centroid, size and spread; one that is `flat` may have no volume or spread."""
     checks.finite_array("centroid", shape.centroid, (3,))
@@ -245,4 +259,5 @@ def _check_faces(faces, vertices: int) -> None:
 _LOOKS = {
     Convex: _check_convex, Mesh: _check_mesh, Compound: _check_compound, Piece: _check_piece,
     Coupling: _check_coupling, Gear: _check_coupling, Curve: _check_curve, Spline: _check_curve,
+    Surface: _check_surface,
 }  # fmt: skip

@@ -44,6 +44,8 @@ from carom.scene.pieces import Piece
 from carom.scene.restitution import LAWS
 from carom.scene.shapes import SHAPES
 from carom.scene.stops import Stop
+from carom.scene.surfaces import SURFACES
+from carom.scene.user_surface import Surface
 
 #: parts that have a name in the scene
 PARTS = (*FIXED, Body, Joint, AppliedForce, Constraint, Stop, Contact)
@@ -53,6 +55,7 @@ TYPES: dict[str, type[Any]] = {
     for kind in (
         *PARTS,
         *SHAPES,
+        *SURFACES,
         *JOINTS,
         *FORCES,
         *CONSTRAINTS,
@@ -117,7 +120,7 @@ class Encoder:
             return {"ground": True}
         if isinstance(value, PARTS):
             return {"part": value.name}
-        if isinstance(value, SHAPES):
+        if isinstance(value, (*SHAPES, *SURFACES)) and not isinstance(value, Surface):
             return {"shape": self._shape(value)}
         if is_dataclass(value) and type(value).__name__ in TYPES:
             return self._record(value, where)

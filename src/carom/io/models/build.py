@@ -8,7 +8,7 @@ from typing import Any
 
 from carom.io.models.report import Report
 from carom.results.robot import Coordinate
-from carom.scene.bodies import GROUND, Body, Ground, HalfSpace
+from carom.scene.bodies import GROUND, Body, Ground, HalfSpace, StaticBody
 from carom.scene.joints import Joint
 from carom.scene.scene import Scene
 from carom.scene.shapes.convex import Convex
@@ -47,7 +47,7 @@ class Build:
     coordinates: dict[int, Coordinate] = field(default_factory=dict)  # of hinges and slides
     balls: dict[int, Joint] = field(default_factory=dict)  # of ball joints
     lines: list[tuple[Joint, tuple]] = field(default_factory=list)  # slides along tendons
-    geoms: dict[int, Body | HalfSpace] = field(default_factory=dict)
+    geoms: dict[int, Body | HalfSpace | StaticBody] = field(default_factory=dict)
     hulls: dict[int, Convex | None] = field(default_factory=dict)  # of meshes
 
     def moving(self, body: int) -> Body:

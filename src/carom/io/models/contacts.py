@@ -11,10 +11,10 @@ import numpy as np
 from carom.io.models.build import Build
 from carom.io.models.solids import Solid
 from carom.io.models.touching import Filter, Friction
-from carom.scene.bodies import Body, HalfSpace
-from carom.scene.contacts import far, overlap, place
+from carom.scene.bodies import FIXED, Body, HalfSpace, StaticBody
+from carom.scene.contacts import check_curvature, far, overlap, place
 
-Pair = tuple[Body, "Body | HalfSpace"]
+Pair = tuple[Body, Body | HalfSpace | StaticBody]
 BY_MATERIAL = Friction(np.nan, np.nan, np.nan)  # that of each two geoms is given by their materials
 
 
@@ -65,7 +65,7 @@ def _values(friction: Friction) -> dict[str, Any]:
 
 def _ordered(first, second) -> Pair:
     """Return a pair with a body first."""
-    return (second, first) if isinstance(first, HalfSpace) else (first, second)
+    return (second, first) if isinstance(first, FIXED) else (first, second)
 
 
 def touching_pairs(build: Build, solids: list[Solid], rules: Filter) -> dict[Pair, Friction]:
@@ -95,9 +95,18 @@ def touching_pairs(build: Build, solids: list[Solid], rules: Filter) -> dict[Pai
 
 
 def without_overlaps(build: Build, pairs: dict[Pair, Friction], strict: bool) -> dict:
-    """Return the pairs that do not start inside each other; `strict` refuses a model with such ones."""
+    """Return the pairs that do not start inside each other; `strict` refuses a model with such ones.
+
+    Bodies that are too round for a height field do not touch it.
+    """
     kept = {}
     for (body, other), friction in pairs.items():
+        try:
+            check_curvature(body, other)
+        except ValueError as error:
+            called = f"pair {body.name!r}, {other.name!r}"
+            build.report.add(called, str(error), "the two do not touch")
+            continue
         depth = 0.0 if far(body, other, body.position, place(other)) else overlap(body, other)[0]
         if depth <= 0.0:
             kept[body, other] = friction
@@ -116,6 +125,6 @@ def _ignore_what_is_seen(build: Build, solids: list[Solid]) -> None:
     touching = {solid.part for solid in solids if solid.geoms}
     for body in build.scene.bodies:
         if body.shape is not None and body not in touching:
-            for other in (*build.scene.bodies, *build.scene.half_spaces):
+            for other in (*build.scene.bodies, *build.scene.half_spaces, *build.scene.statics):
                 if other is not body:
                     build.scene.ignore_contact(body, other)

@@ -13,7 +13,7 @@ from carom.results.robot import Coordinate, Keyframe, Motor, Robot
 from carom.results.sensors import Sensor
 from carom.results.solution import Solution
 from carom.results.state import SystemState
-from carom.scene.bodies import Body, Ground, HalfSpace
+from carom.scene.bodies import Body, Ground, HalfSpace, StaticBody
 from carom.scene.scene import Scene
 
 
@@ -32,7 +32,7 @@ class Model:
     joints : dict of str to Coordinate
         Hinges and slides by name. ``model.joints["knee"].of(solution)`` returns the angle and its rate as the
         model defines them; ``.joint`` and ``.index`` are the arguments for springs, motors and stops.
-    geoms : dict of str to Body or HalfSpace
+    geoms : dict of str to Body, HalfSpace or StaticBody
         The part of the scene for each geom that may touch.
     restitution : float
         Restitution of all contacts.
@@ -44,7 +44,7 @@ class Model:
     report: Report
     bodies: dict[str, Body | Ground]
     joints: Mapping[str, Coordinate]
-    geoms: dict[str, Body | HalfSpace]
+    geoms: dict[str, Body | HalfSpace | StaticBody]
     restitution: float
     mujoco: Any
 

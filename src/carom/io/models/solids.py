@@ -13,7 +13,8 @@ from carom.io.models.links import IDENTITY, Link, called, name_of, pose_on_link
 from carom.io.models.report import need_mujoco
 from carom.io.models.touching import Filter
 from carom.scene import joints
-from carom.scene.bodies import GROUND, Body, HalfSpace
+from carom.scene.bodies import GROUND, Body, HalfSpace, StaticBody
+from carom.scene.height_field import HeightField
 from carom.scene.materials import Material
 from carom.scene.shapes import Box, Compound, Ellipsoid, Part, Shape, Sphere
 from carom.scene.shapes.revolved import Capsule, Cylinder
@@ -56,7 +57,7 @@ def placed_shape(build: Build, geom: int) -> Placed | None:
     else:
         if kind != kinds.mjGEOM_PLANE:
             what = {
-                int(kinds.mjGEOM_HFIELD): "a height field",
+                int(kinds.mjGEOM_HFIELD): "a height field on a body that moves",
                 int(kinds.mjGEOM_SDF): "a distance field",
             }
             build.report.add(
@@ -94,7 +95,7 @@ def body_shape(parts: list[Placed], centre: np.ndarray) -> Shape | None:
 class Solid(NamedTuple):
     """A part of the scene with the geoms that may touch."""
 
-    part: Body | HalfSpace
+    part: Body | HalfSpace | StaticBody
     geoms: list[int]
     moves: bool
 
@@ -137,14 +138,13 @@ def _parts(build: Build, geoms: list[int]) -> tuple[list[Placed], list[int]]:
 
 
 def add_standing(build: Build, rules: Filter) -> list[Solid]:
-    """Add the geoms of the world that may touch: planes as half-spaces, others as bodies that are fixed."""
-    model, solids = build.model, []
+    """Add the geoms of the world that may touch: planes, height fields, others as bodies that are fixed."""
+    model, solids, kinds = build.model, [], need_mujoco().mjtGeom
+    make = {int(kinds.mjGEOM_PLANE): _half_space, int(kinds.mjGEOM_HFIELD): _terrain}
     for g in range(model.ngeom):
         if model.body_weldid[model.geom_bodyid[g]] != 0 or not rules.touches_at_all(g):
             continue
-        is_plane = model.geom_type[g] == need_mujoco().mjtGeom.mjGEOM_PLANE
-        material = rules.material(g)
-        part = _half_space(build, g, material) if is_plane else _fixed(build, g, material)
+        part = make.get(int(model.geom_type[g]), _fixed)(build, g, rules.material(g))
         if part is not None:
             build.geoms[g] = part
             solids.append(Solid(part, [g], False))
@@ -156,6 +156,28 @@ def _half_space(build: Build, g: int, material: Material | None) -> HalfSpace:
     normal = build.data.geom_xmat[g].reshape(3, 3)[:, 2]
     point, tint = build.data.geom_xpos[g], colour(build, [g])
     return build.scene.add_half_space(point, normal, material=material, color=tint, name=name)
+
+
+def _terrain(build: Build, g: int, material: Material | None) -> StaticBody:
+    """Add a height field: MuJoCo's rows go along y, and its heights are parts of the greatest one."""
+    model, field = build.model, int(build.model.geom_dataid[g])
+    shape = int(model.hfield_nrow[field]), int(model.hfield_ncol[field])
+    first, (wide, deep, high, _) = int(model.hfield_adr[field]), model.hfield_size[field].tolist()
+    heights = model.hfield_data[first : first + shape[0] * shape[1]].reshape(shape).T
+    spacing = 2.0 * wide / (shape[1] - 1), 2.0 * deep / (shape[0] - 1)
+    build.report.add(
+        called(model, "geom", g),
+        "a height field of triangles, with a border",
+        "a smooth surface through its heights, without an end",
+    )
+    return build.scene.add_surface(
+        HeightField(high * heights, spacing),
+        position=build.data.geom_xpos[g],
+        orientation=quaternion.from_matrix(build.data.geom_xmat[g].reshape(3, 3)),
+        material=material,
+        color=colour(build, [g]),
+        name=build.names.new(name_of(model, "geom", g), "geom"),
+    )
 
 
 def _fixed(build: Build, g: int, material: Material | None) -> Body | None:

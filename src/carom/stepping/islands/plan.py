@@ -11,6 +11,8 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.collision.sweep import sweep
 from carom.contact.gap import along_normal
+from carom.contact.parting_on_surface import room_over_surface
+from carom.contact.place_of_other import on_curved_ground
 from carom.geometry.rotation import norm
 from carom.model import records as r
 from carom.model.workspace import FREE, RESTS
@@ -161,6 +163,9 @@ def first_contact(islands, i, j):
 def near_plane(system, c, now, work):
     """Return whether a body may reach a half-space or a static body in the step."""
     contact, x = system.contacts[c], now[system.contacts[c].body].x
+    if on_curved_ground(system, contact):
+        room = room_over_surface(system, contact, now, False)
+        return room <= BALL_SLACK * contact.extent + work.body[contact.body].room
     if contact.static == 1:
         y, reach = contact.centre, (1.0 + BALL_SLACK) * (contact.extent + contact.other_extent)
         reach += work.body[contact.body].room

@@ -8,11 +8,13 @@ import numpy as np
 
 from carom.scene.shapes.convex import Convex
 from carom.scene.shapes.revolved import Disc
-from carom.visual.bodies import Part, colours_of, parts_of
+from carom.scene.surface_definition import SurfaceDefinition
+from carom.visual.bodies import ORIGIN, Part, colours_of, parts_of
 
 MOST_TRIANGLES = 20_000  # triangles of a body, from which on large ones are not split any more
 SHARP = np.cos(np.radians(35.0))  # of the angle from which an edge is one
 FACET = np.cos(np.radians(1.0))  # the same of a polyhedron, whose faces are all flat
+SMOOTH = -1.0  # of what has no edge
 NARROW = 0.8  # inner radius by outer radius from which a ring has no room for lines at its edges
 PALE = 0.55  # of the second colour of round bodies, which shows how they turn
 
@@ -31,14 +33,14 @@ def joined(models) -> Model:
     return Model(*(np.ascontiguousarray(np.concatenate(columns)) for columns in zip(*models)))
 
 
-def models(scene, length: float) -> tuple[Model, np.ndarray]:
+def models(scene, length: float, centre: np.ndarray = ORIGIN) -> tuple[Model, np.ndarray]:
     """Return the triangles of all bodies, and which body each belongs to, -1 for static ones.
 
-    `length` is the size of the scene [m].
+    `length` is the size of the scene [m], and `centre` (3,) is what the camera looks at.
     """
     fineness = 48 if len(scene.bodies) <= 20 else 24 if len(scene.bodies) <= 150 else 16
     made, owner = [], []
-    for part in parts_of(scene, length, fineness):
+    for part in parts_of(scene, length, fineness, centre):
         model = split(model_of(part), length)
         pale = model.colours
         for b, name in zip(part.bodies, colours_of(part, scene)):
@@ -88,13 +90,15 @@ def model_of(part: Part) -> Model:
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     size = np.linalg.norm(normals, axis=1)
     alike = FACET if isinstance(shape, Convex) and not shape.radius else SHARP
+    if isinstance(shape, SurfaceDefinition) and not getattr(shape, "length", None):
+        alike = SMOOTH  # of all curved ground, only a can has edges
     flat = size <= 1e-12 * max(float(size.max()), 1e-300)
     unit = normals / np.where(flat, 1.0, size)[:, None]
     side = {(int(t[k]), int(t[k - 2])): f for f, t in enumerate(triangles) for k in range(3)}
     edges = np.zeros(triangles.shape, dtype=np.int8)
     for (i, j), f in side.items() if look != "pip" else ():
-        other = side[j, i]
-        if unit[f] @ unit[other] < alike and not (flat[f] or flat[other]):
+        other = side.get((j, i), f)  # curved ground has a rim
+        if other == f or (unit[f] @ unit[other] < alike and not (flat[f] or flat[other])):
             opposite = next(k for k in range(3) if triangles[f, k] not in (i, j))
             edges[f, opposite] = 1
     if look == "joint" or (isinstance(shape, Disc) and shape.inner_radius > NARROW * shape.radius):

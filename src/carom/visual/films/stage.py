@@ -9,7 +9,15 @@ import numpy as np
 from carom import arguments, checks
 from carom.geometry import quaternion
 from carom.scene.shapes.revolved import Cylinder
-from carom.visual.bodies import Part, ground_points, links_of, moving, outline_of, turn_to
+from carom.visual.bodies import (
+    Part,
+    ground_points,
+    links_of,
+    moving,
+    outline_of,
+    static_part,
+    turn_to,
+)
 from carom.visual.films import marks
 from carom.visual.films.camera import Camera, axes_of, fitted, vertical
 from carom.visual.films.models import Model, joined, model_of, models, rgb
@@ -82,10 +90,7 @@ class Stage:
         """Return points of what bodies at rest at `places` (N, 3) stand near: static bodies, half-spaces."""
         scene, middle = self.solution.scene, places.mean(axis=0)
         reach = AROUND * float(np.max(np.linalg.norm(places - middle, axis=1) + self.radii))
-        fixed = [
-            s.position + quaternion.rotate(s.orientation, surface(s.shape)[0])
-            for s in scene.statics
-        ]
+        fixed = [static_part(s, 32, middle, reach).vertices for s in scene.statics]
         fixed += [
             places + np.outer((h.point - places) @ h.normal, h.normal) for h in scene.half_spaces
         ]
@@ -93,7 +98,7 @@ class Stage:
 
     def _place_models(self) -> None:
         scene = self.solution.scene
-        self.all, self.owner = models(scene, self.length)
+        self.all, self.owner = models(scene, self.length, self.camera.centre)
         self.links = links_of(scene)
         rod = model_of(Part(*surface(Cylinder(1.0, 1.0), 12), [], "joint"))
         self.rod = rod._replace(colours=rod.colours + LINK)

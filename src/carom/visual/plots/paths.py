@@ -7,6 +7,7 @@ import numpy as np
 from carom import checks
 from carom.arguments import known
 from carom.geometry import quaternion
+from carom.scene.surface_definition import SurfaceDefinition
 from carom.visual.bodies import ground_curves, outline_of, parts_of
 from carom.visual.plots import figure
 from carom.visual.plots import style as looks
@@ -77,7 +78,8 @@ def trajectory(
     scene, parts, colours = solution.scene, [], {}
     if len(times) or scene.statics:
         size = max(outline_of(scene, body).radius for body in scene.bodies)
-        parts = parts_of(scene, 0.5 * float(np.hypot(wide, high)) + size, 48)
+        region = 0.5 * float(np.hypot(wide, high)) + size
+        parts = parts_of(scene, region, 48, x.reshape(-1, 3).mean(axis=0))
     inches = np.clip(2.8 * high / max(wide, 1e-300), 1.0, 3.4) + 0.6  # nearly as the axes are to be
     with figure.drawing(figure.Look(ax, figsize, style), 1, (looks.COLUMN, inches)) as drawn:
         many = len(chosen) > 12
@@ -99,7 +101,9 @@ def trajectory(
             for half_space in scene.half_spaces:
                 _ground(drawn, half_space, seen)
             for part in parts:
-                if part.look == "static" and part.shape is not None:
+                if isinstance(part.shape, SurfaceDefinition):
+                    _section(drawn, part, seen, float(np.mean(x[..., 3 - sum(seen)])))
+                elif part.look == "static" and part.shape is not None:
                     _static(drawn, part, seen)
             for curve in ground_curves(scene):
                 still = {"scalex": False, "scaley": False}  # the view is that of the motion
@@ -183,6 +187,20 @@ def _static(axes, part, seen) -> None:
         zorder=0,
     )
     axes.add_collection(shadow, autolim=False)  # as of the ground, the view is that of the motion
+
+
+def _section(axes, part, seen, depth: float) -> None:
+    """Draw the line in which curved ground cuts the plane of the picture, at the mean depth of the paths."""
+    from matplotlib.collections import LineCollection
+
+    sides = part.vertices[part.triangles[:, [[0, 1], [1, 2], [2, 0]]]]  # (F, 3, 2, 3)
+    away = sides[..., 3 - sum(seen)] - depth
+    cut = (away[..., 0] > 0.0) != (away[..., 1] > 0.0)
+    sides, away = sides[cut], away[cut]
+    f = (away[:, 0] / (away[:, 0] - away[:, 1]))[:, None]
+    ends = ((1.0 - f) * sides[:, 0] + f * sides[:, 1])[:, seen].reshape(-1, 2, 2)  # two a triangle
+    line = LineCollection(list(ends), colors=looks.BLACK, linewidths=0.8, zorder=0)
+    axes.add_collection(line, autolim=False)
 
 
 def _ground(axes, half_space, seen) -> None:

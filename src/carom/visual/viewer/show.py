@@ -73,7 +73,7 @@ def show_of(
     place = frames.place_of(solution, moments, outlines, bodies.ground_points(scene))
     return Show(
         title, solution, moments, place, sizes,
-        bodies.parts_of(scene, place.radius),
+        bodies.parts_of(scene, place.radius, centre=place.centre),
         planes.planes_of(scene, place, moments.position),
         bodies.links_of(scene),
         strikes.strikes_of(solution),

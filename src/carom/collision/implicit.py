@@ -1,0 +1,241 @@
+"""Surfaces phi(x) = 0 that are not convex, in their own axes: value, gradient, Hessian, nearest point.
+
+Free space is where phi > 0. For the closed forms phi is the distance from the surface, as far as the points
+from which two places are nearest (the centre of a sphere, an axis). Hessians are (xx, yy, zz, xy, xz, yz).
+
+A surface may have `planes` beside its curved part: free space is beyond all of them. The ends of a can are two;
+four that touch a cone hold a ball which sits in it, touching it along a ring.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.collision.height_field import height_field_at
+from carom.collision.layout import (
+    FUNCTION,
+    HEIGHT_FIELD,
+    INSIDE_CONE,
+    INSIDE_CYLINDER,
+    INSIDE_SPHERE,
+)
+from carom.collision.thresholds import FOOT_ERROR, FOOT_STEP
+from carom.collision.user_surface import user_surface_at
+from carom.geometry.vectors import cross, dot, plus
+
+MOST_STEPS = 40  # of Newton's method for a nearest point
+SHORTEST = 12  # halvings of one of its steps
+
+
+@kernel
+def _across(x, y):
+    """Return the distance from the z axis and the direction away from it, (1, 0) on the axis."""
+    r = math.sqrt(x * x + y * y)
+    return (r, x / r, y / r) if r > 0.0 else (0.0, 1.0, 0.0)
+
+
+@kernel
+def field_at(surface, hulls, p):
+    """Return phi, its gradient (3) and its Hessian (6) at a point p, all in axes of the surface."""
+    x, y, z = p
+    size, kind = surface["size"], surface.kind
+    if kind == INSIDE_SPHERE:
+        r = math.sqrt(x * x + y * y + z * z)
+        u, v, w = (x / r, y / r, z / r) if r > 0.0 else (0.0, 0.0, -1.0)
+        f = -1.0 / r if r > 0.0 else -math.inf
+        H = (
+            f * (1.0 - u * u),
+            f * (1.0 - v * v),
+            f * (1.0 - w * w),
+            -f * u * v,
+            -f * u * w,
+            -f * v * w,
+        )
+        return size[0] - r, (-u, -v, -w), H
+    if kind == HEIGHT_FIELD:
+        return height_field_at(surface, hulls.numbers, p)
+    if kind == FUNCTION:
+        return user_surface_at(surface, hulls.numbers, p)
+    r, c, s = _across(x, y)
+    if kind == INSIDE_CYLINDER:
+        f = -1.0 / r if r > 0.0 else -math.inf
+        return size[0] - r, (-c, -s, 0.0), (f * s * s, f * c * c, 0.0, -f * c * s, 0.0, 0.0)
+    if kind == INSIDE_CONE:
+        a, b = size[0], size[1]
+        f = -b / r if r > 0.0 else -math.inf
+        H = (f * s * s, f * c * c, 0.0, -f * c * s, 0.0, 0.0)
+        return a * z - b * r, (-b * c, -b * s, a), H
+    # a torus: (u, w) is the direction away from the circle in the half-plane of the point
+    d = r - size[0]
+    D = math.sqrt(d * d + z * z)
+    u, w = (d / D, z / D) if D > 0.0 else (0.0, -1.0)
+    f = -1.0 / D if D > 0.0 else -math.inf
+    along = -u / r if r > 0.0 else 0.0  # curvature along the ring
+    a, b, m = f * w * w, f * u * u, -f * u * w
+    H = (a * c * c + along * s * s, a * s * s + along * c * c, b, (a - along) * c * s, m * c, m * s)
+    return size[1] - D, (-u * c, -u * s, -w), H
+
+
+@kernel
+def planes(surface):
+    """Return the number of planes beside the curved part."""
+    if surface.kind == INSIDE_CYLINDER and surface["size"][1] > 0.0:
+        return 2
+    return 4 if surface.kind == INSIDE_CONE else 0
+
+
+@kernel
+def plane_at(surface, k, p):
+    """Return the height of a point over plane k, and its normal."""
+    if surface.kind == INSIDE_CYLINDER:
+        f = 2.0 * k - 1.0
+        return surface["size"][1] - f * p[2], (0.0, 0.0, -f)
+    a, b = surface["size"][0], surface["size"][1]
+    c, s = (1.0 - k if k % 2 == 0 else 0.0), (2.0 - k if k % 2 == 1 else 0.0)
+    return a * p[2] - b * (c * p[0] + s * p[1]), (-b * c, -b * s, a)
+
+
+@kernel
+def plane_counts(surface, k, p):
+    """Return whether plane k says more than the nearest point: of a cone, away from the latter."""
+    if surface.kind != INSIDE_CONE:
+        return True
+    nearest = math.floor(math.atan2(p[1], p[0]) * (2.0 / math.pi) + 0.5) % 4
+    return k != nearest
+
+
+@kernel
+def times(H, v):
+    """Return the product of a symmetric matrix and a vector."""
+    return (
+        H[0] * v[0] + H[3] * v[1] + H[4] * v[2],
+        H[3] * v[0] + H[1] * v[1] + H[5] * v[2],
+        H[4] * v[0] + H[5] * v[1] + H[2] * v[2],
+    )
+
+
+@kernel
+def beside(n):
+    """Return two unit vectors perpendicular to a unit vector n and to each other."""
+    e = (0.0, -n[2], n[1]) if abs(n[0]) < 0.6 else (n[2], 0.0, -n[0])
+    f = 1.0 / math.sqrt(dot(e, e))
+    e = (f * e[0], f * e[1], f * e[2])
+    return e, cross(n, e)
+
+
+@kernel
+def shape_operator(surface, hulls, q):
+    """Return the normal at a point q of the surface, two tangents e, f, and S = P H P/|grad phi| along them.
+
+    S is e.S e, f.S f, e.S f: a displacement t in the surface changes the normal by S t.
+    """
+    _, g, H = field_at(surface, hulls, q)
+    k = 1.0 / math.sqrt(dot(g, g))
+    n = (k * g[0], k * g[1], k * g[2])
+    e, f = beside(n)
+    He, Hf = times(H, e), times(H, f)
+    return n, e, f, (k * dot(e, He), k * dot(f, Hf), k * dot(e, Hf))
+
+
+@kernel
+def solve_symmetric(a, b, c, u, v):
+    """Return the solution of [a c; c b] (x, y) = (u, v), and whether the matrix is positive definite."""
+    determinant = a * b - c * c
+    good = determinant > 0.0 and a > 0.0
+    k = 1.0 / determinant if good else 0.0
+    return k * (b * u - c * v), k * (a * v - c * u), good
+
+
+@kernel
+def _onto(surface, hulls, p):
+    """Return a point of the surface near p: beneath it on a height field, else along gradients."""
+    if surface.kind == HEIGHT_FIELD:
+        return p[0], p[1], p[2] - field_at(surface, hulls, p)[0]
+    size = math.sqrt(dot(p, p))
+    for _ in range(MOST_STEPS):
+        value, g, _ = field_at(surface, hulls, p)
+        square = dot(g, g)
+        if not square > 0.0:
+            break
+        p = plus(p, -value / square, g)
+        if not abs(value) > FOOT_ERROR * size * math.sqrt(square):
+            break
+    return p
+
+
+@kernel
+def foot_of(surface, hulls, p):
+    """Return the distance of a point p from the curved part, negative inside, and the normal there.
+
+    Where phi is not the distance, Newton's method finds the point q of the surface with p - q along the normal:
+    a step t in the surface changes the tangential part of p - q by -(1 + d S) t. From a point beneath p it goes
+    to nearer ones only, because far from p there are others. The error after a step is about its square.
+    """
+    phi, g, _ = field_at(surface, hulls, p)
+    if surface["size"][3] == 1.0:
+        return phi, g
+    q, size = _onto(surface, hulls, p), math.sqrt(dot(p, p))
+    r, n, d = plus(p, -1.0, q), g, 0.0
+    for _ in range(MOST_STEPS):
+        n, e, f, S = shape_operator(surface, hulls, q)
+        d, u, v, square = dot(n, r), dot(e, r), dot(f, r), dot(r, r)
+        x, y, good = solve_symmetric(1.0 + d * S[0], 1.0 + d * S[1], d * S[2], u, v)
+        if not good:
+            x, y = u, v
+        last = not abs(x) + abs(y) > FOOT_STEP * (size + abs(d))
+        nearer, part = False, 1.0
+        for _ in range(SHORTEST):
+            there = _onto(surface, hulls, plus(plus(q, part * x, e), part * y, f))
+            way = plus(p, -1.0, there)
+            if last or dot(way, way) < square:
+                q, r, nearer = there, way, True
+                break
+            part *= 0.5
+        if last or not nearer:
+            break
+    return math.copysign(math.sqrt(dot(r, r)), phi), shape_operator(surface, hulls, q)[0]
+
+
+@kernel
+def may_be_nearer(surface, d):
+    """Return whether points of the surface may be nearer than a foot at the distance d: beyond a focus."""
+    return surface["size"][3] != 1.0 and d < math.inf and surface["size"][0] * d >= 1.0
+
+
+@kernel
+def clearance(surface, hulls, p):
+    """Return a lower bound of the distance of a point in free space from the solid."""
+    least = field_at(surface, hulls, p)[0] / surface["size"][3]
+    for k in range(planes(surface)):
+        least = min(least, plane_at(surface, k, p)[0])
+    return least
+
+
+@kernel
+def turn_of_normal(at_foot, d, v):
+    """Return the change of the normal for a displacement v of a point at a distance d over its foot.
+
+    It is (I + d S)^-1 S v; `at_foot` is from `shape_operator`.
+    """
+    _, e, f, S = at_foot
+    u, w = dot(e, v), dot(f, v)
+    u, w = S[0] * u + S[2] * w, S[2] * u + S[1] * w
+    x, y, good = solve_symmetric(1.0 + d * S[0], 1.0 + d * S[1], d * S[2], u, w)
+    if not good:
+        x, y = u, w
+    return plus((x * e[0], x * e[1], x * e[2]), y, f)
+
+
+@kernel
+def curvature_at(surface, hulls, p, d, n):
+    """Return a bound of the curvatures of the surface at the distance d through p; n is the normal there."""
+    exact = surface["size"][3] == 1.0  # phi is the distance: the Hessian at p has them
+    _, _, _, S = shape_operator(surface, hulls, p if exact else plus(p, -d, n))
+    k = 0.5 * abs(S[0] + S[1]) + math.sqrt(0.25 * (S[0] - S[1]) ** 2 + S[2] * S[2])
+    if exact:
+        return k
+    k = max(
+        k, surface["size"][0]
+    )  # what it moves towards may be more hollow than what is beneath it
+    return k / (1.0 - k * d) if k * d < 1.0 else math.inf

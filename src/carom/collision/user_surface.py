@@ -1,0 +1,18 @@
+"""A surface phi(x, y, z) = 0 of a function of the user's."""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom._compiled.user_functions import call_function
+
+
+@kernel
+def user_surface_at(surface, numbers, p):
+    """Return phi, its gradient, and its Hessian as (xx, yy, zz, xy, xz, yz) at a point in its axes."""
+    k = surface.first
+    x, out = numbers[k : k + 3], numbers[k + 3 : surface.last]
+    x[0], x[1], x[2] = p
+    call_function(surface.address, math.inf, x, out)
+    return out[0], (out[1], out[2], out[3]), (out[4], out[8], out[12], out[5], out[6], out[9])

@@ -1,0 +1,166 @@
+"""Motion on height fields and on surfaces of functions: against an integration, spheres, and each other."""
+
+import math
+
+import numpy as np
+import pytest
+import sympy as sp
+from scipy.integrate import solve_ivp
+
+import carom
+
+S = carom.surfaces
+G, R, RADIUS, START = 9.81, 0.5, 0.05, 0.2  # z = x^2 / (2 R)
+TIGHT = dict(rtol=1e-10, atol=1e-12)
+BOX = [(-1.0, -1.0, -0.2), (1.0, 1.0, 1.2)]
+
+
+def rolls(ground, duration=1.5):
+    """Return the motion of a ball that rolls from rest on z = (x^2 + y^2)/(2 R)."""
+    scene = carom.Scene(gravity=(0, 0, -G))
+    scene.add_surface(ground, name="ground")
+    normal = np.array([-START / R, 0, 1]) / math.hypot(START / R, 1)
+    place = np.array([START, 0, START**2 / (2 * R)]) + RADIUS * normal
+    scene.add_body(carom.Sphere(RADIUS), mass=0.3, position=place, name="ball")
+    scene.add_contact("ball", "ground", friction=2.0, restitution=0.0)
+    return carom.simulate(scene, duration, **TIGHT)
+
+
+def paraboloid():
+    x = np.linspace(-1, 1, 21)
+    return S.HeightField((x[:, None] ** 2 + x**2) / (2 * R), spacing=0.1)
+
+
+def by_quadrature(times):
+    """x of the centre from 7/10 s(u)^2 u'^2 + g z(u) = const, u the foot, s the way of the centre per u."""
+
+    def centre(u):
+        a = math.atan(u / R)
+        return np.array([u - RADIUS * math.sin(a), u * u / (2 * R) + RADIUS * math.cos(a)])
+
+    def rate(t, y):
+        u, v = y
+        a, da = math.atan(u / R), R / (R * R + u * u)
+        dda = -2 * u * R / (R * R + u * u) ** 2
+        x1, z1 = 1 - RADIUS * math.cos(a) * da, u / R - RADIUS * math.sin(a) * da
+        x2 = RADIUS * (math.sin(a) * da**2 - math.cos(a) * dda)
+        z2 = 1 / R - RADIUS * (math.cos(a) * da**2 + math.sin(a) * dda)
+        square = x1 * x1 + z1 * z1
+        return v, -((x1 * x2 + z1 * z2) * v * v + G * z1 / 1.4) / square
+
+    found = solve_ivp(rate, (0, times[-1]), (START, 0.0), t_eval=times, rtol=1e-12, atol=1e-14)
+    return np.array([centre(u) for u in found.y[0]])
+
+
+def test_a_ball_rolls_on_a_paraboloid():
+    solution = rolls(paraboloid())
+    exact = by_quadrature(solution.t)
+    assert np.ptp(exact[:, 0]) > 0.3
+    assert solution.position[:, 0, [0, 2]] == pytest.approx(exact, abs=1e-8)
+    assert np.ptp(solution.total_energy) < 1e-9
+    same = rolls(S.Surface(lambda x, y, z: z - (x * x + y * y) / (2 * R), BOX))
+    assert same.position == pytest.approx(solution.position, abs=1e-8)
+
+
+def wild(ground, at):
+    """Return a ball that is thrown into a bowl of radius 0.5, bounces, slides and rolls."""
+    scene = carom.Scene(gravity=(0, 0, -G))
+    scene.add_surface(ground, position=at, name="ground")
+    scene.add_body(
+        carom.Sphere(0.06), mass=0.3, position=np.add(at, (0.1, 0.05, 0.1)), velocity=(1.0, -0.5, 0.3),
+        angular_velocity=(3.0, 20.0, -7.0), name="ball",
+    )  # fmt: skip
+    scene.add_contact("ball", "ground", friction=0.3, restitution=0.6)
+    return carom.simulate(scene, 1.2, **TIGHT)
+
+
+@pytest.mark.parametrize("with_functions", [False, True])
+def test_the_function_of_a_sphere_is_a_sphere(with_functions):
+    given = (lambda x, y, z: (-2 * x, -2 * y, -2 * z), lambda *x: -2.0 * np.eye(3)) * with_functions
+    box = [(-0.5, -0.5, -0.5), (0.5, 0.5, 0.5)]
+    one = wild(
+        S.Surface(lambda x, y, z: 0.25 - x * x - y * y - z * z, box, *given), (1.0, 2.0, 3.0)
+    )
+    two = wild(S.InsideSphere(0.5), (1.0, 2.0, 3.0))
+    assert len(one.impacts) == len(two.impacts) > 5
+    assert one.impacts.time == pytest.approx(two.impacts.time, abs=1e-8)
+    assert one.position == pytest.approx(two.position, abs=1e-7)
+
+
+def test_an_error_in_a_function_is_named():
+    def phi(x, y, z):
+        if x > 0.6:
+            raise RuntimeError("beyond the map")
+        return z
+
+    ground = S.Surface(
+        phi, [(-1, -1, -1), (0.5, 1, 1)], lambda *x: (0, 0, 1), lambda *x: np.zeros((3, 3))
+    )
+    scene = carom.Scene(gravity=(0, 0, -G))
+    scene.add_surface(ground, name="map")
+    scene.add_body(
+        carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.1), velocity=(1, 0, 0), name="ball"
+    )
+    scene.add_contact("ball", "map", friction=0.0, restitution=0.0)
+    with pytest.raises(
+        carom.SimulationError, match=r"he function of the surface 'map' raised .*: beyond the map"
+    ):
+        carom.simulate(scene, 2.0)
+
+
+def terrain(seed):
+    """Return a scene of three bodies over smooth random terrain, and the terrain."""
+    rng = np.random.default_rng(seed)
+    waves = np.fft.fftfreq(20)[:, None] ** 2 + np.fft.fftfreq(20) ** 2
+    noise = np.fft.fft2(rng.normal(size=(20, 20))) * np.exp(-200 * waves)
+    heights = np.real(np.fft.ifft2(noise))
+    ground = S.HeightField(0.12 * heights / heights.std(), spacing=0.2)
+    round_by = 0.5 / ground.bend
+    shapes = carom.Sphere(round_by), carom.Box(0.2, 0.15, 0.1), carom.Capsule(round_by, 0.2)
+    scene = carom.Scene(gravity=(0, 0, -G))
+    scene.add_surface(ground, name="ground")
+    for k, shape in enumerate(shapes):
+        x, y = rng.uniform(-1, 1, 2)
+        around = np.linspace(-0.2, 0.2, 9)
+        z = np.max(ground.height(x + around[:, None], y + around)) + shape.size + 0.05
+        turn = rng.normal(size=4)
+        scene.add_body(
+            shape, density=1000, position=(x, y, z), orientation=turn / np.linalg.norm(turn),
+            velocity=rng.normal(size=3), angular_velocity=4 * rng.normal(size=3), name=f"body{k}",
+        )  # fmt: skip
+    scene.set_contact_default(friction=0.6, restitution=0.3, rolling_friction=0.003)
+    scene.ignore_contact([f"body{k}" for k in range(3)])
+    return scene, ground
+
+
+@pytest.mark.parametrize("seed", [0, 2, 4])
+def test_bodies_on_random_terrain(seed):
+    scene, ground = terrain(seed)
+    solution = carom.simulate(scene, 1.5)
+    assert solution.success
+    scale = np.max(solution.kinetic_energy) + np.ptp(solution.potential_energy)
+    assert np.max(np.abs(solution.ledger.residual)) < 1e-6 * scale
+    assert np.max(np.diff(solution.total_energy)) < 1e-9 * scale
+    for body in scene.bodies:
+        corners, radius = body.shape.pieces[0].corners, body.shape.pieces[0].radius
+        turned = carom.geometry.quaternion.rotate(
+            solution.orientation[:, body.index, None], corners
+        )
+        x, y, z = np.moveaxis(solution.position[:, body.index, None] + turned, -1, 0)
+        assert np.min(z - ground.height(x, y)) > radius - 1e-6  # no deeper than over a plane
+
+
+def test_a_wave_of_two_functions():
+    wave = S.Surface(lambda x, y, z: z - 0.1 * sp.cos(4 * x) * sp.cos(3 * y), BOX)
+    assert 1.6 <= wave.bend < 2.1
+    with pytest.raises(ValueError, match=r"Sphere\(radius=0.7\).*radius of its rounding, 0.7 m"):
+        rolls_on(wave, carom.Sphere(0.7))
+    with pytest.raises(ValueError, match="rims have no fixed points"):
+        rolls_on(wave, carom.Cylinder(0.1, 0.1))
+
+
+def rolls_on(ground, shape):
+    scene = carom.Scene()
+    scene.add_surface(ground, name="ground")
+    scene.add_body(shape, mass=1.0, position=(0, 0, 3), name="body")
+    scene.add_contact("body", "ground")
