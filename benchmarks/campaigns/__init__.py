@@ -21,6 +21,7 @@ from campaigns import (
     slides,
     strikes,
     teeth,
+    terrains,
     throws,
 )
 
@@ -31,5 +32,5 @@ FAMILIES = {
     "belts": belts.case,
     "rails": rails.case,
     "laws": laws.case, "frictions": frictions.case,
-    "grounds": grounds.case,
+    "grounds": grounds.case, "terrains": terrains.case,
 }  # fmt: skip
