@@ -26,7 +26,8 @@ CALLED = {
 TOPICS = {
     "Scene": {
         "Bodies, static bodies and half-spaces": (
-            "add_body", "add_static", "add_surface", "add_half_space", "bodies", "statics", "half_spaces", "fixed", "gravity",
+            "add_body", "add_static", "add_surface", "add_half_space", "bodies", "statics", "half_spaces",
+            "fixed", "gravity",
         ),
         "Contacts": (
             "add_contact", "set_contact_default", "ignore_contact", "contacts", "contact_law",

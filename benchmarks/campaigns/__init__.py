@@ -25,6 +25,7 @@ from campaigns import (
     strikes,
     surfaces,
     teeth,
+    terrains,
     throws,
 )
 
@@ -34,5 +35,6 @@ FAMILIES = {
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
     "belts": belts.case,
     "rails": rails.case, "loose rails": loose_rails.case, "surfaces": surfaces.case, "grounds": grounds.case,
+    "terrains": terrains.case,
     "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "rough": rough.case,
 }  # fmt: skip
