@@ -1,7 +1,7 @@
 """The points that carry the contact of two solids: `touch`.
 
 Pairs of spheres, capsules and boxes are solved in closed form, all others by `convex.closest`; so are two boxes
-whose nearest parts are vertices, or edges that do not cross. The points are those of the overlap of two
+whose nearest parts are vertices, or edges that do not cross. Profiles have points of their own (`profile`). The points are those of the overlap of two
 opposite faces, or the ends of the line along which two edges lie. They always include a nearest pair of points.
 """
 
@@ -17,7 +17,8 @@ from carom.collision.faces import load_face
 from carom.collision.features import EDGES
 from carom.collision.found import hand_on, swap
 from carom.collision.frame import enter
-from carom.collision.layout import BOX, CYLINDER, POINT, SEGMENT, Pair
+from carom.collision.layout import BOX, CYLINDER, POINT, PROFILE, SEGMENT, Pair
+from carom.collision.profile import profile_pair
 from carom.collision.round import point_point, point_segment, segment_segment
 from carom.collision.segments import ends_of_line
 from carom.collision.support import separation
@@ -62,6 +63,8 @@ def _ordered(pair, reach):
     """Find the points of a pair in which the kind of A is not above that of B; return their number."""
     a, b = pair.a, pair.b
     boxes = a.kind == BOX and b.kind == BOX
+    if b.kind == PROFILE:
+        return profile_pair(pair, reach)
     if b.kind <= SEGMENT:
         if b.kind == POINT:
             point_point(pair)

@@ -78,14 +78,14 @@ def _in_world(core, a):
 
 
 @inlined
-def _own(core, a):
+def own_axes(core, a):
     """Return a vector in axes of the solid, given in the world."""
     q = core.q
     return rotate_back(q, a)
 
 
 @kernel
-def _bend(core, n, v):
+def bend_of(core, n, v):
     """Return H v, in the world."""
     kind, zero = core.solid.kind, (0.0, 0.0, 0.0)
     if kind != CYLINDER and kind != ELLIPSOID:
@@ -94,11 +94,11 @@ def _bend(core, n, v):
         return zero
     if _kind(core) == EDGE and first_of(core.part) < LOWEST:  # between fixed points of a rim
         return zero
-    return _in_world(core, change_of_support(core.solid, _own(core, n), _own(core, v)))
+    return _in_world(core, change_of_support(core.solid, own_axes(core, n), own_axes(core, v)))
 
 
 @kernel
-def _edge(core):
+def edge_of(core):
     """Return the direction of the edge of a core, in the world."""
     e = along_edge(core.solid, core.hulls, first_of(core.part), second_of(core.part))
     return _in_world(core, e)
@@ -115,7 +115,7 @@ def _across(n):
 @kernel
 def _two_edges(a, b, n):
     """Return n' of two edges, and whether they are not parallel."""
-    e, f = _edge(a), _edge(b)
+    e, f = edge_of(a), edge_of(b)
     s = cross(n, e)
     along, other, sine = -dot(n, cross(a.w, e)), -dot(n, cross(b.w, f)), dot(s, f)
     if not abs(sine) > LEAST_SINE:
@@ -127,7 +127,7 @@ def _two_edges(a, b, n):
 @kernel
 def _bends(a, b, n, d, v):
     """Return (d + H_A + H_B) v."""
-    x = plus(_bend(a, n, v), 1.0, _bend(b, n, v))
+    x = plus(bend_of(a, n, v), 1.0, bend_of(b, n, v))
     return plus(x, d, v)
 
 
@@ -143,11 +143,11 @@ def _rate_of_normal(a, b, n, d, owner):
             return rate
     sharp = RESOLUTION * min(a.solid.extent, b.solid.extent)
     turn_a, turn_b = cross(a.w, n), cross(b.w, n)
-    rate = plus(plus(a.v, -1.0, b.v), 1.0, _bend(a, n, turn_a))
-    rate = plus(rate, 1.0, _bend(b, n, turn_b))
+    rate = plus(plus(a.v, -1.0, b.v), 1.0, bend_of(a, n, turn_a))
+    rate = plus(rate, 1.0, bend_of(b, n, turn_b))
     if edges > 0:
         on_a = _kind(a) == EDGE
-        e, turn = (_edge(a), turn_a) if on_a else (_edge(b), turn_b)
+        e, turn = (edge_of(a), turn_a) if on_a else (edge_of(b), turn_b)
     else:
         e, turn = _across(n), turn_b
     s = cross(n, e)
@@ -168,7 +168,7 @@ def _rate_of_normal(a, b, n, d, owner):
 def _along_support(core, n, rate):
     """Return the velocity of the farthest point along the normal: v_c -+ H (n' - w x n)."""
     turn = plus(rate, -1.0, cross(core.w, n))
-    return plus(core.v, -core.side, _bend(core, n, turn))
+    return plus(core.v, -core.side, bend_of(core, n, turn))
 
 
 @kernel
@@ -187,7 +187,7 @@ def _follow(lead, other, n, d, rate, owner):
     k = lead.side
     p, step = _along_support(lead, n, rate), (k * d * rate[0], k * d * rate[1], k * d * rate[2])
     if _kind(lead) == EDGE and _kind(other) == EDGE:
-        e, s = _edge(lead), cross(n, _edge(other))
+        e, s = edge_of(lead), cross(n, edge_of(other))
         miss = plus(plus(p, -1.0, step), -1.0, _along_support(other, n, rate))
         sine = dot(s, e)
         if abs(sine) > LEAST_SINE:
@@ -201,31 +201,34 @@ def _follow(lead, other, n, d, rate, owner):
 
 
 @kernel
-def drift_of_solids(system, contact, other_solid, point, state):
-    """Return (d/dt G) v, in contact axes, of a point of two solids that `pair_point.write_touch` wrote."""
+def cores_at(system, contact, other_solid, point, state):
+    """Return the two cores at a point of two solids."""
     one, two = system.solids[contact.solid], system.solids[other_solid]
-    # the bodies
     q_a, q_b = pose_of(one, contact.body, state)[1], pose_of(two, contact.other, state)[1]
+    (va, wa), (vb, wb) = motions_of(contact, state)
+    n = _vector(point.axes[0])
+    ua = plus(va, 1.0, cross(wa, plus(point.arm_a, one.radius, n)))
+    ub = plus(vb, 1.0, cross(wb, plus(point.arm_b, -two.radius, n)))
+    a = Core(one, system.hulls, q_a, point.parts[0], 1.0, ua, wa)
+    return a, Core(two, system.hulls, q_b, point.parts[1], -1.0, ub, wb)
+
+
+@kernel
+def motions_of(contact, state):
+    """Return velocity and angular velocity of both bodies; a static one has none."""
     body = state[contact.body]
     va, wa, vb, wb = _vector(body.v), _vector(body.w), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     if contact.other >= 0:
         body = state[contact.other]
         vb, wb = _vector(body.v), _vector(body.w)
-    # the material points of the cores
-    n, ra, rb = _vector(point.axes[0]), one.radius, two.radius
-    ua = plus(va, 1.0, cross(wa, plus(point.arm_a, ra, n)))
-    ub = plus(vb, 1.0, cross(wb, plus(point.arm_b, -rb, n)))
-    a = Core(one, system.hulls, q_a, point.parts[0], 1.0, ua, wa)
-    b = Core(two, system.hulls, q_b, point.parts[1], -1.0, ub, wb)
-    # the motion of the normal and of the points
-    d, owner = point.gap + ra + rb, point.owner
-    rate = _rate_of_normal(a, b, n, d, owner)
-    if _leads(a, b, owner):
-        pa, pb = _follow(a, b, n, d, rate, owner)
-    else:
-        pb, pa = _follow(b, a, n, d, rate, owner)
-    pa, pb = plus(pa, -ra, rate), plus(pb, rb, rate)
-    # the rates of the rows
+    return (va, wa), (vb, wb)
+
+
+@kernel
+def rates_of_rows(contact, point, state, pa, pb, rate):
+    """Return n.u' + n'.u, t.u' for the velocities of both points and the rate of the normal."""
+    (va, wa), (vb, wb) = motions_of(contact, state)
+    n = point.axes[0]
     du = plus(cross(wa, plus(pa, -1.0, va)), -1.0, cross(wb, plus(pb, -1.0, vb)))
     ua, ub = plus(va, 1.0, cross(wa, point.arm_a)), plus(vb, 1.0, cross(wb, point.arm_b))
     u, E = plus(ua, -1.0, ub), point.axes
@@ -234,3 +237,18 @@ def drift_of_solids(system, contact, other_solid, point, state):
         s = field_along(point, plus(pa, -1.0, va))
         t1, t2 = t1 - s[1], t2 - s[2]
     return dot(n, du) + dot(rate, u), t1, t2
+
+
+@kernel
+def drift_of_solids(system, contact, other_solid, point, state):
+    """Return (d/dt G) v, in contact axes, of a point of two solids that `pair_point.write_touch` wrote."""
+    a, b = cores_at(system, contact, other_solid, point, state)
+    n, ra, rb = _vector(point.axes[0]), a.solid.radius, b.solid.radius
+    d, owner = point.gap + ra + rb, point.owner
+    rate = _rate_of_normal(a, b, n, d, owner)
+    if _leads(a, b, owner):
+        pa, pb = _follow(a, b, n, d, rate, owner)
+    else:
+        pb, pa = _follow(b, a, n, d, rate, owner)
+    pa, pb = plus(pa, -ra, rate), plus(pb, rb, rate)
+    return rates_of_rows(contact, point, state, pa, pb, rate)
