@@ -7,6 +7,7 @@ them by the thousand; the tests run a few of each.
 from campaigns import (
     bearings,
     belts,
+    cams,
     crowds,
     forced,
     frictions,
@@ -28,6 +29,7 @@ FAMILIES = {
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
     "belts": belts.case,
+    "cams": cams.case,
     "rails": rails.case,
     "laws": laws.case, "frictions": frictions.case,
 }  # fmt: skip

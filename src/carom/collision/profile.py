@@ -26,9 +26,10 @@ from carom.collision import thresholds as limits
 from carom.collision.faces import normal_of_face, vertex
 from carom.collision.features import NOBODY, OF_A, OF_B, OF_FIXED, OF_SUPPORT, face_part
 from carom.collision.found import put, put_parts
-from carom.collision.frame import from_a, point_of_a
+from carom.collision.frame import from_a, point_of_a, to_a
 from carom.collision.layout import BOX, CYLINDER, HULL, POINT
 from carom.geometry.thresholds import ROUND_OFF
+from carom.geometry.vectors import dot, minus
 
 NEWTON_STEPS = 60
 SCALE = 1 << 30  # of a place on the curve, as a part
@@ -115,6 +116,13 @@ def is_peak(rows, k, mx, my, w, slack):
     return before > 0.0 and after <= 0.0
 
 
+@inlined
+def is_straight(row, h):
+    """Return whether a row is a straight line, not a corner."""
+    c = row.c
+    return h > 0.0 and c[2, 0] == 0.0 and c[2, 1] == 0.0 and c[5, 0] == 0.0 and c[5, 1] == 0.0
+
+
 @kernel
 def _feet(pair, q, r, number, first):
     """Add the feet of a vertex q of A, whose circle has the radius r; return the new count.
@@ -163,6 +171,29 @@ def _feet(pair, q, r, number, first):
 
 
 @kernel
+def _height(pair, face, q):
+    """Return the height of a point over a face of A, in axes of A."""
+    a, hulls = pair.a, pair.hulls
+    n = normal_of_face(a, hulls, face)
+    if a.kind == BOX:
+        return dot(n, q) - a.half[face // 2]
+    p = hulls.vertices[a.first + hulls.corners[hulls.faces[a.first_face + face].first]]
+    return dot(n, minus(q, p))
+
+
+@kernel
+def _leaves_by(pair, face, q, height):
+    """Return whether the way out of A by this face is the shortest, for a point in axes of A inside it."""
+    room = ROUND_OFF * pair.a.extent
+    for k in range(6 if pair.a.kind == BOX else pair.a.last_face - pair.a.first_face):
+        n = normal_of_face(pair.a, pair.hulls, k)
+        side = abs(from_a(pair.state, n[0], n[1], n[2])[2]) < limits.FACING
+        if side and k != face and _height(pair, k, q) > height + room:
+            return False
+    return True
+
+
+@kernel
 def _on_face(pair, face, z, count):
     """Add the points of the curve farthest towards a face of A, beside it; return the new count."""
     s, a, b, rows, found = pair.state, pair.a, pair.b, pair.hulls.outlines, pair.found
@@ -171,35 +202,28 @@ def _on_face(pair, face, z, count):
     across = math.sqrt(mx * mx + my * my)
     if not across > limits.FACING:  # a face across the axis
         return count
-    low, high, level, depth = math.inf, -math.inf, 0.0, 0.0
-    total = 8 if a.kind == BOX else a.last - a.first
-    for i in range(total):
+    low, high, room = math.inf, -math.inf, ROUND_OFF * b.extent
+    for i in range(8 if a.kind == BOX else a.last - a.first):
         p = vertex(a, pair.hulls, i)
-        p = point_of_a(s, p[0], p[1], p[2])
-        height = mx * p[0] + my * p[1] + mz * p[2]
-        level = height if i == 0 else max(level, height)
-        depth = height if i == 0 else min(depth, height)
-    for i in range(total):
-        p = vertex(a, pair.hulls, i)
-        p = point_of_a(s, p[0], p[1], p[2])
-        if mx * p[0] + my * p[1] + mz * p[2] > level - ROUND_OFF * a.extent:
+        if _height(pair, face, p) > -ROUND_OFF * a.extent:
+            p = point_of_a(s, p[0], p[1], p[2])
             along = (mx * p[1] - my * p[0]) / across
             low, high = min(low, along), max(high, along)
-    room = ROUND_OFF * b.extent
     for k in range(b.first, b.last):
         if not is_peak(rows, k, -mx, -my, 0.0, limits.NEARLY_FLAT) or count >= len(found):
             continue
         h = rows[k + 1].start - rows[k].start
-        c = rows[k].c
-        if h > 0.0 and c[2, 0] == 0.0 and c[2, 1] == 0.0 and c[5, 0] == 0.0 and c[5, 1] == 0.0:
-            continue  # a straight line: its corners count
+        if is_straight(rows[k], h):  # its corners count
+            continue
         t = peak_in_row(rows[k], h, -mx, -my, 0.0) if h > 0.0 else 0.0
         x, y, _, _, _, _ = curve_at(rows[k], t)
-        along, gap = (mx * y - my * x) / across, mx * x + my * y + mz * z - level
-        if not (low - room <= along <= high + room) or -gap > 0.5 * (level - depth) + a.radius:
+        along, q = (mx * y - my * x) / across, to_a(s, x - s.p[0], y - s.p[1], z - s.p[2])
+        gap = _height(pair, face, q)
+        if not (low - room <= along <= high + room):
             continue
-        number = (1 << 14) | face
-        name = (number << 30) | stretch(b, pair.hulls, rows[k].start + t, math.inf)
+        if gap < -room and not _leaves_by(pair, face, q, gap):
+            continue
+        name = (((1 << 14) | face) << 30) | stretch(b, pair.hulls, rows[k].start + t, math.inf)
         on_a = (x - gap * mx, y - gap * my, z - gap * mz)
         put(found[count], gap - a.radius, (-mx, -my, -mz), on_a, (x, y, z), (2 << 60) | name)
         put_parts(found[count], OF_A, face_part(face), part_of_place(b, pair.hulls, k, t))
@@ -323,8 +347,7 @@ def lowest_of_profile(a, hulls, seen, reach, found):
         if not is_peak(rows, k, -ux, -uy, 0.0, limits.NEARLY_FLAT):
             continue
         h = rows[k + 1].start - rows[k].start
-        c = rows[k].c
-        if h > 0.0 and c[2, 0] == 0.0 and c[2, 1] == 0.0 and c[5, 0] == 0.0 and c[5, 1] == 0.0:
+        if is_straight(rows[k], h):
             continue
         t = peak_in_row(rows[k], h, -ux, -uy, 0.0) if h > 0.0 else 0.0
         x, y, _, _, _, _ = curve_at(rows[k], t)
