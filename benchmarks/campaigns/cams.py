@@ -35,7 +35,7 @@ def case(seed: int) -> Case:
 def outline(rng, size: float, hollow: float):
     """Return a periodic function of the angle: a cam with some lobes."""
     lobes = rng.integers(1, 6, 3)
-    parts = hollow * rng.uniform(-1, 1, 3) / (1.0 + lobes**2)
+    parts = hollow * rng.uniform(-1, 1, 3) / (3.0 + lobes**2)
     phase = rng.uniform(0, 6, 3)
     return lambda a: size * (1.0 + float(np.sum(parts * np.cos(lobes * a + phase))))
 
@@ -68,7 +68,7 @@ def _cam(scene, shape, rng):
 
 def _follower(scene, kind, law, rng):
     """Add a cam and a follower: a flat face, a roller, or a swinging arm with a roller or a flat face."""
-    shape = carom.Profile(outline(rng, 0.05, rng.choice([0.5, 2.0])), thickness=rng.uniform(0.005, 0.03))
+    shape = carom.Profile(outline(rng, 0.05, rng.choice([0.5, 1.5])), thickness=rng.uniform(0.005, 0.03))
     cam = _cam(scene, shape, rng)
     r, width = rng.uniform(0.004, 0.02), rng.uniform(0.05, 0.2)
     if kind == "flat" or (kind == "swing" and rng.random() < 0.5):
@@ -120,7 +120,7 @@ def _ratchet(scene, kind, law, rng):
 
 def _bumps(scene, kind, law, rng):
     """Add a profile at rest, with bodies in its plane above it."""
-    ground = carom.Profile(outline(rng, 0.3, rng.choice([1.0, 4.0])), thickness=0.1)
+    ground = carom.Profile(outline(rng, 0.3, rng.choice([0.5, 1.5])), thickness=0.1)
     scene.add_static(ground, position=ground.centroid, name="cam")
     pairs, top = [], _highest(ground, 0.0, -0.4, 0.4)
     for k in range(int(rng.integers(1, 3))):

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import carom
 from mechanisms.cams import G, Lift, cam_scene, flat_height, follower, roller_height
@@ -43,12 +44,17 @@ def test_flat_follower_leaves_an_eccentric_disc(tolerance):
         carom.simulate(eccentric(omega, shape, load, mass), 0.3, rtol=tolerance, atol=tolerance)
         for shape in (disc(), carom.Cylinder(R, 0.02))
     ]
-    for run in runs:
+    place, rate = C * math.sin(omega * leaves), C * omega * math.cos(omega * leaves)
+
+    def above(t):
+        flight = t - leaves
+        return place + rate * flight - 0.5 * pull * flight**2 - C * math.sin(omega * t)
+
+    lands = brentq(above, leaves + 0.02, leaves + 0.2, xtol=1e-14)
+    for run in runs:  # the same disc as a profile and as a cylinder
         opened = run.events.time[run.events.kind == "opens"]
-        assert opened[0] == pytest.approx(leaves, abs=10 * tolerance)
-    # the same disc as a cylinder
-    times = [run.impacts.time[:1] for run in runs]
-    np.testing.assert_allclose(times[0], times[1], atol=10 * tolerance)
+        assert 0.0 <= opened[0] - leaves < 0.3 / 200  # the end of its step
+        assert run.impacts.time[0] == pytest.approx(lands, abs=10 * tolerance)
 
 
 def wavy(lobes=3, depth=0.12):
@@ -72,7 +78,7 @@ def test_roller_on_a_cam_that_is_not_convex(tolerance, fast, stiffness, e, rolle
     struck = np.unique(s.impacts.time[s.impacts.time > 0.0])  # of both ends of the line of contact
     np.testing.assert_allclose(struck, exact.lands, atol=100 * tolerance)
     np.testing.assert_allclose(s["follower"].position[:, 1], exact.y, atol=10 * tolerance)
-    assert np.max(np.abs(s.ledger.residual)) < 1e-2 * tolerance
+    assert np.max(np.abs(s.ledger.residual)) < 100.0 * tolerance * np.max(np.abs(s.ledger.loads))
 
 
 @pytest.fixture(scope="module")

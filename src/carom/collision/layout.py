@@ -209,7 +209,7 @@ def solid_table(shapes, turns=None) -> tuple[np.recarray, Hulls]:
             hulls.append(_curve(piece))
             row.first, row.last = curves, curves + len(piece.outline) - 1
             row.first_face, row.last_face = row.last + 1, row.last + 1 + len(piece.hollows)
-            row.bend, curves = np.max(-piece.hollows[:, 1], initial=0.0), row.last_face
+            row.bend, curves = piece.bend, row.last_face
     made = Hulls._make(
         part[0] if len(part) == 1 else np.concatenate(part).view(type(part[0]))
         for part in zip(*hulls)

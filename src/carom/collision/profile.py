@@ -170,6 +170,12 @@ def _feet(pair, q, r, number, first):
     return kept
 
 
+@inlined
+def _faces(a):
+    """Return the number of faces of a box or a hull; 0 for others."""
+    return 6 if a.kind == BOX else a.last_face - a.first_face if a.kind == HULL else 0
+
+
 @kernel
 def _height(pair, face, q):
     """Return the height of a point over a face of A, in axes of A."""
@@ -182,15 +188,56 @@ def _height(pair, face, q):
 
 
 @kernel
-def _leaves_by(pair, face, q, height):
-    """Return whether the way out of A by this face is the shortest, for a point in axes of A inside it."""
-    room = ROUND_OFF * pair.a.extent
-    for k in range(6 if pair.a.kind == BOX else pair.a.last_face - pair.a.first_face):
+def _shallowest(pair, q):
+    """Return the face of A along the axis over which a point, in axes of A, is highest, and its height."""
+    best, chosen = -math.inf, 0
+    for k in range(_faces(pair.a)):
         n = normal_of_face(pair.a, pair.hulls, k)
-        side = abs(from_a(pair.state, n[0], n[1], n[2])[2]) < limits.FACING
-        if side and k != face and _height(pair, k, q) > height + room:
-            return False
+        height = _height(pair, k, q)
+        if height > best and abs(from_a(pair.state, n[0], n[1], n[2])[2]) < limits.FACING:
+            best, chosen = height, k
+    return chosen, best
+
+
+@kernel
+def _leaves_by(pair, face, row, q, height):
+    """Return whether no other face, towards which row k also is farthest, is nearer to a point inside A."""
+    room = ROUND_OFF * pair.a.extent
+    for k in range(_faces(pair.a)):
+        n = normal_of_face(pair.a, pair.hulls, k)
+        x, y, z = from_a(pair.state, n[0], n[1], n[2])
+        if k == face or not abs(z) < limits.FACING:
+            continue
+        other = _height(pair, k, q)
+        if other > height + room:
+            also = is_peak(pair.hulls.outlines, row, -x, -y, 0.0, limits.NEARLY_FLAT)
+            if also or other > room:
+                return False
     return True
+
+
+@kernel
+def _crossing(pair, z, count):
+    """Add a point of the curve inside A, the deepest of the starts of rows, if there is one: a deep overlap."""
+    s, a, b, rows, found = pair.state, pair.a, pair.b, pair.hulls.outlines, pair.found
+    deepest, at = -ROUND_OFF * a.extent, -1
+    for k in range(b.first, b.last):
+        x, y = rows[k].c[0, 0] - s.p[0], rows[k].c[0, 1] - s.p[1]
+        if x * x + y * y < a.extent * a.extent:
+            height = _shallowest(pair, to_a(s, x, y, z - s.p[2]))[1]
+            if height < deepest:
+                deepest, at = height, k
+    if at < 0 or count >= len(found):
+        return count
+    x, y = rows[at].c[0, 0], rows[at].c[0, 1]
+    face, gap = _shallowest(pair, to_a(s, x - s.p[0], y - s.p[1], z - s.p[2]))
+    n = normal_of_face(a, pair.hulls, face)
+    nx, ny, nz = from_a(s, n[0], n[1], n[2])
+    on_a = (x - gap * nx, y - gap * ny, z - gap * nz)
+    name = (((1 << 14) | face) << 30) | (1 << 28)
+    put(found[count], gap - a.radius, (-nx, -ny, -nz), on_a, (x, y, z), (2 << 60) | name)
+    put_parts(found[count], OF_A, face_part(face), part_of_place(b, pair.hulls, at, 0.0))
+    return count + 1
 
 
 @kernel
@@ -221,7 +268,7 @@ def _on_face(pair, face, z, count):
         gap = _height(pair, face, q)
         if not (low - room <= along <= high + room):
             continue
-        if gap < -room and not _leaves_by(pair, face, q, gap):
+        if gap < -room and not _leaves_by(pair, face, k, q, gap):
             continue
         name = (((1 << 14) | face) << 30) | stretch(b, pair.hulls, rows[k].start + t, math.inf)
         on_a = (x - gap * mx, y - gap * my, z - gap * mz)
@@ -276,7 +323,6 @@ def _sections(pair, low, high, axis):
     which, x, y, z = axis
     sections, count = 2 if high > low else 1, 0
     corners = 8 if a.kind == BOX else a.last - a.first if a.kind == HULL else 1
-    faces = 6 if a.kind == BOX else a.last_face - a.first_face if a.kind == HULL else 0
     for end in range(sections):
         level, before = high if end == 1 else low, count
         for i in range(corners):
@@ -290,7 +336,7 @@ def _sections(pair, low, high, axis):
                 continue
             f = (level - p[2]) / z
             count = _feet(pair, (p[0] + f * x, p[1] + f * y, level), r, i, count)
-        for i in range(faces):
+        for i in range(_faces(a)):
             count = _on_face(pair, i, level, count)
         for k in range(before, count):
             pair.found[k].feature |= end << 29
@@ -326,6 +372,10 @@ def profile_pair(pair, reach):
     least = math.inf
     for k in range(count):
         least = min(least, found[k].gap)
+    if _faces(a) > 0 and least >= -a.radius:
+        before = count
+        count = _crossing(pair, 0.5 * (low + high), count)
+        least = found[before].gap if count > before else least
     kept, most = 0, least + reach + ROUND_OFF * min(a.extent, b.extent)
     for k in range(count):
         if found[k].gap <= most:

@@ -10,6 +10,9 @@ A = a + 2 K (V + a h)^2. A distance that is larger, 1/(2 K), does not vanish wit
 K (V h + a h^2/2) <= 1/8. So each foot that is nearest now stays at a positive distance as long as
 d + d' t - A t^2/2 > 0, forwards and, with h < 0, backwards in time.
 
+Corners need no more: a hollow one is where two solids meet, each with its own distance, which goes on smoothly
+beyond the corner.
+
 Points of the curve that are farthest towards a face change faster the flatter the curve is, so there only
 d >= d(0) - V t - a t^2/2 is used; planes that separate the other solid from the convex hull of the profile
 (`parting`) are better.

@@ -46,7 +46,7 @@ class Body:
     index : int
         Its index in `Scene.bodies`.
     name : str
-    shape : Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh, Compound or None
+    shape : Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh, Profile, Compound or None
     mass : float
         [kg]
     inertia : (3, 3)
@@ -140,7 +140,7 @@ class StaticBody:
     index : int
         Its index in `Scene.statics`.
     name : str
-    shape : Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh or Compound
+    shape : Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh, Profile or Compound
     position : (3,)
         Position of the origin of the shape, in the world [m].
     orientation : (4,)

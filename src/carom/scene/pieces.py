@@ -43,8 +43,9 @@ class Piece:
         Vertices of a hull, in axes of the piece [m].
     faces : tuple of (normal, ring)
         Faces of a hull: outward unit normal and the indices of its vertices, counter-clockwise from outside.
-    outline, hollows : (n, 13), (k, 2)
-        Boundary of a profile, and where it is most hollow (`carom.scene.outline`).
+    outline, hollows, bend : (n, 13), (k, 2), float
+        Boundary of a profile, where it is most hollow (`carom.scene.outline`), and the greatest curvature of its
+        smooth hollows [1/m].
     position, orientation : (3,), (4,)
         Position and orientation of the piece in the axes of the body.
     material : Material or None
@@ -60,6 +61,7 @@ class Piece:
     faces: tuple = ()
     outline: np.ndarray = field(default_factory=lambda: np.zeros((0, 13)))
     hollows: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))
+    bend: float = 0.0
     position: np.ndarray = field(default_factory=lambda: np.zeros(3))
     orientation: np.ndarray = field(default_factory=lambda: np.array(IDENTITY))
     material: Material | None = None

@@ -202,7 +202,7 @@ def _check_piece(piece: Piece) -> None:
     checks.choice("kind", piece.kind, CORES)
     if not np.all(checks.finite_array("half", piece.half, (3,)) >= 0.0):
         raise ValueError(f"half must be at least 0, got {piece.half!r}")
-    for name in ("radius", "inner", "extent"):
+    for name in ("radius", "inner", "extent", "bend"):
         checks.number(name, getattr(piece, name), least=0.0)
     checks.finite_array("position", piece.position, (3,))
     checks.unit_quaternion("orientation", piece.orientation)

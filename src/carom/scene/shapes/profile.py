@@ -16,6 +16,8 @@ from carom.scene import outline
 from carom.scene.curves import Curve, Spline
 from carom.scene.pieces import Piece, Shape
 
+SAMPLED = 1.05  # the greatest curvature by that of the samples of a piece
+
 
 @arguments.known
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -133,8 +135,10 @@ class Profile(Shape):
     def pieces(self) -> tuple[Piece, ...]:
         """One piece: the prism, which is not convex."""
         half = np.array([np.max(np.abs(self.rows[:, k])) for k in (1, 2)] + [0.5 * self.thickness])
-        hollows = outline.hollows(self.rows)
-        return (Piece("profile", half, extent=self.size, outline=self.rows, hollows=hollows),)
+        of_curve = {"outline": self.rows, "hollows": outline.hollows(self.rows)}
+        bend = outline.bends(self.rows)[1]
+        most = SAMPLED * max(0.0, -float(np.min(bend[np.isfinite(bend)], initial=0.0)))
+        return (Piece("profile", half, extent=self.size, bend=most, **of_curve),)
 
     def _inertia(self, mass: float) -> np.ndarray:
         return mass * (np.trace(self._spread) * np.eye(3) - self._spread)
@@ -163,7 +167,7 @@ def _of_function(function: Callable) -> np.ndarray:
         return numbers[0] * math.cos(angle), numbers[0] * math.sin(angle), 0.0
 
     angles = np.linspace(0.0, 2.0 * math.pi, 64, endpoint=False)
-    right = _is_left_hand(np.array([place(a)[:2] for a in angles.tolist()]))
+    right = _area(np.array([place(a)[:2] for a in angles.tolist()])) < 0.0
     whole = 2.0 * math.pi
     curve = Curve(lambda u: place(whole - u if right else u), 0.0, whole, closed=True)
     rows = outline.joined([outline.of_curve(curve)], [curve.length], corners=False)
@@ -171,10 +175,10 @@ def _of_function(function: Callable) -> np.ndarray:
     return rows
 
 
-def _is_left_hand(points: np.ndarray) -> bool:
-    """Return whether a closed polygon (K, 2) runs clockwise."""
+def _area(points: np.ndarray) -> float:
+    """Return the area of a closed polygon (K, 2), negative if it runs clockwise."""
     x, y = (points - points.mean(axis=0)).T
-    return bool(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) < 0.0)
+    return 0.5 * float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
 
 
 def _of_points(given, corners) -> np.ndarray:
@@ -184,7 +188,7 @@ def _of_points(given, corners) -> np.ndarray:
     if n < 3:
         raise ValueError(f"outline must have at least 3 points, got {n}")
     sharp = _corners(corners, n)
-    if _is_left_hand(points):
+    if _area(points) < 0.0:
         points, sharp = points[::-1], sorted(n - 1 - k for k in sharp)
     steps = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
     size = np.max(np.ptp(points, axis=0))
@@ -210,8 +214,9 @@ def _of_points(given, corners) -> np.ndarray:
                 parts.append(outline.of_curve(curve))
                 lengths.append(curve.length)
         rows = outline.joined(parts, lengths, corners=True)
-    outline.check_simple(outline.polygon(rows, 500))
-    if not abs(outline.moments(rows)[0]) > 1e-9 * size**2:
+    drawn = outline.polygon(rows, 500)
+    outline.check_simple(drawn)
+    if not _area(drawn) > 1e-9 * size**2:
         raise ValueError("outline must enclose an area, got points on a line")
     return rows
 
