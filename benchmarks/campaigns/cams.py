@@ -1,4 +1,4 @@
-"""Cams, convex or not, with flat, round and swinging followers; ratchets; rollers and blocks on rough profiles."""
+"""Cams, convex or not, with flat, round and swinging followers; ratchets; rollers and blocks on profiles."""
 
 from __future__ import annotations
 
@@ -68,7 +68,9 @@ def _cam(scene, shape, rng):
 
 def _follower(scene, kind, law, rng):
     """Add a cam and a follower: a flat face, a roller, or a swinging arm with a roller or a flat face."""
-    shape = carom.Profile(outline(rng, 0.05, rng.choice([0.5, 1.5])), thickness=rng.uniform(0.005, 0.03))
+    shape = carom.Profile(
+        outline(rng, 0.05, rng.choice([0.5, 1.5])), thickness=rng.uniform(0.005, 0.03)
+    )
     cam = _cam(scene, shape, rng)
     r, width = rng.uniform(0.004, 0.02), rng.uniform(0.05, 0.2)
     if kind == "flat" or (kind == "swing" and rng.random() < 0.5):
@@ -79,7 +81,9 @@ def _follower(scene, kind, law, rng):
         piece = carom.Sphere(r) if rng.random() < 0.5 else carom.Capsule(r, 0.02)
     x = float(rng.choice([0.0, rng.uniform(-0.01, 0.01)]))
     y = _highest(shape, x, -reach, reach) + half + float(rng.choice([1e-4, 0.01]))
-    rod = scene.add_body(piece, mass=10.0 ** rng.uniform(-2, 1), position=(x, y, 0), name="follower")
+    rod = scene.add_body(
+        piece, mass=10.0 ** rng.uniform(-2, 1), position=(x, y, 0), name="follower"
+    )
     if kind == "swing":
         away = float(rng.choice([-1, 1])) * 0.15
         joint = carom.joints.Revolute(anchor=(x + away, y, 0), axis=(0, 0, 1))
@@ -88,7 +92,9 @@ def _follower(scene, kind, law, rng):
     guide = scene.add_joint(joint, carom.GROUND, rod, name="guide")
     if rng.random() < 0.5:
         stiffness = 10.0 ** rng.uniform(1, 4) * (0.15**2 if kind == "swing" else 1.0)
-        scene.add_force(carom.forces.JointSpring(guide, stiffness=stiffness, damping=0.01 * stiffness**0.5))
+        scene.add_force(
+            carom.forces.JointSpring(guide, stiffness=stiffness, damping=0.01 * stiffness**0.5)
+        )
     scene.add_contact(rod, cam, **law)
     return [(shape, "cam", piece, "follower")]
 
@@ -104,16 +110,23 @@ def _ratchet(scene, kind, law, rng):
     wheel = carom.Profile(points, 0.01, corners=True)
     cam = _cam(scene, wheel, rng)
     length, thick, turn = 0.08, 0.4 * height, 0.3
-    pawl = carom.Box(length, thick, 0.01) if rng.random() < 0.7 else carom.Box(length, thick, 0.01, radius=0.3 * thick)
+    pawl = (
+        carom.Box(length, thick, 0.01)
+        if rng.random() < 0.7
+        else carom.Box(length, thick, 0.01, radius=0.3 * thick)
+    )
     tip = np.array([0.6 * height, r + 0.3 * height])
     c, s = math.cos(turn), math.sin(turn)
     middle = tip + 0.5 * np.array([c * length - s * thick, s * length + c * thick])
     arm = scene.add_body(
-        pawl, mass=10.0 ** rng.uniform(-2, 0), position=(*middle, 0), orientation=carom.euler("z", math.degrees(turn)),
+        pawl, mass=10.0 ** rng.uniform(-2, 0), position=(*middle, 0),
+        orientation=carom.euler("z", math.degrees(turn)),
         name="follower",
     )  # fmt: skip
     pivot = (*(tip + length * np.array([c, s]) + (0, 0.01)), 0)
-    scene.add_joint(carom.joints.Revolute(anchor=pivot, axis=(0, 0, 1)), carom.GROUND, arm, name="guide")
+    scene.add_joint(
+        carom.joints.Revolute(anchor=pivot, axis=(0, 0, 1)), carom.GROUND, arm, name="guide"
+    )
     scene.add_contact(arm, cam, **law)
     return [(wheel, "cam", pawl, "follower")]
 
@@ -126,14 +139,19 @@ def _bumps(scene, kind, law, rng):
     for k in range(int(rng.integers(1, 3))):
         size = rng.uniform(0.01, 0.06)
         which = rng.integers(3)
-        piece = (carom.Cylinder(size, 0.05), carom.Box(2 * size, size, 0.05), carom.Sphere(size))[which]
+        piece = (carom.Cylinder(size, 0.05), carom.Box(2 * size, size, 0.05), carom.Sphere(size))[
+            which
+        ]
         name = f"body {k}"
         body = scene.add_body(
-            piece, mass=10.0 ** rng.uniform(-1, 1), name=name, orientation=carom.euler("z", rng.uniform(0, 360)),
+            piece, mass=10.0 ** rng.uniform(-1, 1), name=name,
+            orientation=carom.euler("z", rng.uniform(0, 360)),
             position=(rng.uniform(-0.1, 0.1), top + 0.08 + 0.15 * k, 0), velocity=(rng.normal(), 0, 0),
             angular_velocity=(0, 0, 3.0 * rng.normal()),
         )  # fmt: skip
-        scene.add_joint(carom.joints.Planar(normal=(0, 0, 1)), carom.GROUND, body, name=f"plane {k}")
+        scene.add_joint(
+            carom.joints.Planar(normal=(0, 0, 1)), carom.GROUND, body, name=f"plane {k}"
+        )
         scene.add_contact(body, "cam", **law)
         pairs.append((ground, "cam", piece, name))
     return pairs
@@ -148,7 +166,9 @@ def _off(s: carom.Solution, shape, cam: str, piece, name: str) -> float:
             x, q = s.scene[cam].position, s.scene[cam].orientation
         else:
             x, q = s[cam].position[k], s[cam].orientation[k]
-        own = quaternion.rotate_back(body.orientation[k], x + quaternion.rotate(q, points) - body.position[k])
+        own = quaternion.rotate_back(
+            body.orientation[k], x + quaternion.rotate(q, points) - body.position[k]
+        )
         if isinstance(piece, carom.Box):
             core = np.array([piece.lx, piece.ly]) / 2 - piece.radius
             out = np.abs(own[:, :2]) - core

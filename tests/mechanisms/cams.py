@@ -91,7 +91,7 @@ def follower(lift, omega, times, load=G, stiffness=0.0, e=0.0):
             grid = np.linspace(t, end, 20000)
             values = np.array([push(s) for s in grid])
             drop = np.flatnonzero(values[1:] < 0.0)
-            there = np.flatnonzero((times >= t))
+            there = np.flatnonzero(times >= t)
             if values[0] < 0.0 or len(drop) == 0:
                 last = t if values[0] < 0.0 else end
             else:
@@ -114,7 +114,10 @@ def follower(lift, omega, times, load=G, stiffness=0.0, e=0.0):
         if not len(ball.t_events[0]):
             break
         t = brentq(
-            lambda s: ball.sol(s)[0] - on(s), ball.t_events[0][0] - 1e-7, ball.t_events[0][0] + 1e-7, xtol=1e-15
+            lambda s, sol=ball.sol: sol(s)[0] - on(s),
+            ball.t_events[0][0] - 1e-7,
+            ball.t_events[0][0] + 1e-7,
+            xtol=1e-15,
         )
         speed = ball.sol(t)[1] - on(t, 1)
         lands.append(t)
@@ -138,11 +141,16 @@ def cam_scene(cam, omega, follower, height, mass=1.0, stiffness=0.0, e=0.0, offs
     scene = carom.Scene(gravity=(0, -G, 0))
     x, y = offset
     wheel = scene.add_body(
-        cam, mass=1.0, position=(x, y, 0), velocity=(-omega * y, omega * x, 0), angular_velocity=(0, 0, omega), name="cam"
+        cam, mass=1.0, position=(x, y, 0), velocity=(-omega * y, omega * x, 0), angular_velocity=(0, 0, omega),
+        name="cam"
     )  # fmt: skip
-    axle = scene.add_joint(carom.joints.Revolute(anchor=(0, 0, 0), axis=(0, 0, 1)), carom.GROUND, wheel, name="axle")
+    axle = scene.add_joint(
+        carom.joints.Revolute(anchor=(0, 0, 0), axis=(0, 0, 1)), carom.GROUND, wheel, name="axle"
+    )
     scene.add_constraint(carom.constraints.Driver(axle, rate=omega), name="drive")
-    rod = scene.add_body(follower, mass=mass, position=(0, height[0], 0), velocity=(0, height[1], 0), name="follower")
+    rod = scene.add_body(
+        follower, mass=mass, position=(0, height[0], 0), velocity=(0, height[1], 0), name="follower"
+    )
     slide = scene.add_joint(carom.joints.Prismatic(axis=(0, 1, 0)), carom.GROUND, rod, name="guide")
     if stiffness:
         scene.add_force(carom.forces.JointSpring(slide, stiffness=stiffness), name="spring")

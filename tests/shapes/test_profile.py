@@ -43,7 +43,9 @@ def test_area_by_polar_integral():
     shape = carom.Profile(lambda t: 0.05 * (1 + 0.3 * math.cos(3 * t)), 0.01)
     assert shape.volume == pytest.approx(0.01 * math.pi * 0.05**2 * (1 + 0.3**2 / 2), rel=1e-11)
     # kappa at the hollows, t = pi/3: (r^2 - r r'')/r^3 with r = .7 R, r'' = 2.7 R
-    np.testing.assert_allclose(shape.pieces[0].hollows[:, 1], (0.7 - 2.7) / 0.7**2 / 0.05, rtol=1e-3)
+    np.testing.assert_allclose(
+        shape.pieces[0].hollows[:, 1], (0.7 - 2.7) / 0.7**2 / 0.05, rtol=1e-3
+    )
 
 
 def test_some_points_are_corners():
@@ -119,7 +121,9 @@ def test_axes_must_be_parallel():
 def test_files_and_pickles(tmp_path):
     scene = carom.Scene(gravity=(0, -9.81, 0))
     wheel = carom.Profile(star(), 0.01, corners=True)
-    both = carom.Compound([(carom.Profile(disc, 0.01), (0, 0, 0)), (carom.Sphere(0.01), (0, 0, 0.05))])
+    both = carom.Compound(
+        [(carom.Profile(disc, 0.01), (0, 0, 0)), (carom.Sphere(0.01), (0, 0, 0.05))]
+    )
     scene.add_body(wheel, mass=1.0, name="wheel")
     scene.add_body(both, mass=1.0, position=(1, 0, 0), name="both")
     floor = scene.add_half_space((0, -0.06, 0), (0, 1, 0))
@@ -127,8 +131,9 @@ def test_files_and_pickles(tmp_path):
         scene.add_contact(name, floor, restitution=0.3, friction=0.2)
     solution = carom.simulate(scene, 0.2)
     solution.save(tmp_path / "run.carom")
-    for again in (carom.Solution.load(tmp_path / "run.carom"), pickle.loads(pickle.dumps(solution))):
+    for again in (
+        carom.Solution.load(tmp_path / "run.carom"),
+        pickle.loads(pickle.dumps(solution)),
+    ):
         np.testing.assert_array_equal(again.scene["wheel"].shape.rows, wheel.rows)
-        np.testing.assert_array_equal(
-            carom.simulate(again.scene, 0.2).position, solution.position
-        )
+        np.testing.assert_array_equal(carom.simulate(again.scene, 0.2).position, solution.position)

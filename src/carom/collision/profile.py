@@ -1,11 +1,11 @@
 """Contact of a prism over a plane curve (B, a profile) with convex solids (A), by sections across its axis.
 
-The curve c(s) runs counter-clockwise, so n = (t_y, -t_x) points out of the solid. In a section, A is a polygon
-rounded by a circle of radius r: one vertex for a ball, a capsule or a cylinder with parallel axis. Each of these
-is a point of the contact:
+The curve c(s) runs counter-clockwise, so n = (t_y, -t_x) points out of the solid. In a section, A is a
+polygon rounded by a circle of radius r: one vertex for a ball, a capsule or a cylinder with parallel axis.
+Each of these is a point of the contact:
 
     a vertex q of A      feet where |c - q| is least nearby: gap = n . (q - c) - r
-    a face of A          points of the curve farthest towards it, beside the face: gap = their height over it - r
+    a face of A          points of the curve farthest towards it, beside the face: gap = height over it - r
 
 Both are greatest values of m . c + w c . c/2, with m = q, w = -1 and with m = -n of the face, w = 0: there
 (m + w c) . c' changes sign from + to -. All rows of the curve are looked at, and Newton's method finds the
@@ -306,7 +306,7 @@ def _beside(pair, z):
 def axis_of(pair):
     """Return which axis of A is most along the axis of the profile, and the direction of that axis of A."""
     s, kind = pair.state, pair.a.kind
-    if kind == HULL or kind == POINT:
+    if kind in (HULL, POINT):
         return 2, 0.0, 0.0, 1.0
     axis = 2
     if kind == BOX:
@@ -329,7 +329,9 @@ def _sections(pair, low, high, axis):
             p = (0.0, 0.0, 0.0)
             if corners > 1:
                 p = vertex(a, hulls, i)
-                if a.kind == BOX and p[which] > 0.0:  # an edge along the axis has one point in a section
+                if (
+                    a.kind == BOX and p[which] > 0.0
+                ):  # an edge along the axis has one point in a section
                     continue
             p = point_of_a(s, p[0], p[1], p[2])
             if a.kind == HULL and p[2] > s.p[2]:
@@ -367,6 +369,9 @@ def profile_pair(pair, reach):
         on_b = (s.p[0], s.p[1], s.p[2] - up * (gap + own))
         put(found[0], gap, (0.0, 0.0, up), (s.p[0], s.p[1], s.p[2] - up * own), on_b, 2 << 60)
         put_parts(found[0], OF_B, OF_SUPPORT, face_part(0))
+        return 1
+    if abs(axis[3]) < limits.PARALLEL:  # such sections are none: the run must end
+        put(found[0], math.nan, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 2 << 60)
         return 1
     count = _sections(pair, low, high, axis)
     least = math.inf
@@ -406,7 +411,14 @@ def lowest_of_profile(a, hulls, seen, reach, found):
             z = a.half[2] if end == 1 else -a.half[2]
             if count < len(found):
                 gap = height + x * ux + y * uy + z * uz
-                put(found[count], gap, (0.0, 0.0, 0.0), (x, y, z), (x, y, z), (1 << 60) | ((name + (end << 14)) << 45))
+                put(
+                    found[count],
+                    gap,
+                    (0.0, 0.0, 0.0),
+                    (x, y, z),
+                    (x, y, z),
+                    (1 << 60) | ((name + (end << 14)) << 45),
+                )
                 put_parts(found[count], NOBODY, part, 0)
                 least = min(least, gap)
                 count += 1

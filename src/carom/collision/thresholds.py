@@ -18,4 +18,5 @@ LINE_CONTACT = 1e-5  #: rad: of a normal to the cross-section of a cylinder that
 FACING = 0.7
 SIDE_REACH = 0.25  #: size of the smaller solid: gap up to which points on both sides of a hollow have names
 ENTERED = 0.8  #: radius of curvature of a hollow: greater circles do not reach its bottom
+PARALLEL = 0.9998  #: cosine of the angle: about 1 degree: greatest of the axes of a profile and its partner
 NEARLY_FLAT = 0.05  #: sine of the angle: of a side of a corner to a face, which may rest on both its ends

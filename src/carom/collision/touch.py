@@ -1,8 +1,9 @@
 """The points that carry the contact of two solids: `touch`.
 
 Pairs of spheres, capsules and boxes are solved in closed form, all others by `convex.closest`; so are two boxes
-whose nearest parts are vertices, or edges that do not cross. Profiles have points of their own (`profile`). The points are those of the overlap of two
+whose nearest parts are vertices, or edges that do not cross. The points are those of the overlap of two
 opposite faces, or the ends of the line along which two edges lie. They always include a nearest pair of points.
+Pairs with a profile have kernels of their own (`carom.collision.profile`).
 """
 
 from __future__ import annotations

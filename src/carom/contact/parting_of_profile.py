@@ -24,12 +24,12 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.collision.features import NOBODY
-from carom.collision.layout import PROFILE, SEGMENT, CYLINDER
+from carom.collision.layout import CYLINDER, PROFILE, SEGMENT
 from carom.contact.continuous_detection import reach
+from carom.contact.drift import motions_of
 from carom.contact.pair_point import list_touches, touch_rate
 from carom.contact.parting import bound_in_frame
 from carom.contact.place_of_other import on_half_space
-from carom.contact.drift import motions_of
 from carom.geometry.vectors import cross, dot, minus, plus
 
 
@@ -55,7 +55,9 @@ def speed_past_profile(system, contact, first, state):
     v = minus(v, cross(wa, d)) if first else plus(v, -1.0, cross(wb, d))
     solid = system.solids[contact.other_solid if first else contact.solid]
     p, own = solid.x, solid.extent - solid.radius
-    if solid.kind <= SEGMENT or solid.kind == CYLINDER:  # in the plane of the curve its axis is a point
+    if (
+        solid.kind <= SEGMENT or solid.kind == CYLINDER
+    ):  # in the plane of the curve its axis is a point
         own = 0.0
     if contact.static == 0 or not first:
         own += math.sqrt(dot(p, p))

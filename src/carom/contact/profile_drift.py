@@ -1,8 +1,8 @@
 """The rate of the rows of a point of a profile and another solid, or a half-space, (d/dt G) v, in closed form.
 
-P is the profile, O the other side, m the normal out of P, t the tangent of its curve at the foot c, and kappa
-the curvature there, positive where it is convex. In the axes of P the foot moves along its curve, and the normal
-with it, c' = t s', m' = kappa t s'.
+P is the profile, O the other side, m the normal out of P, t the tangent of its curve at the foot c, and
+kappa the curvature there, positive where it is convex. In the axes of P the foot moves along its curve, and
+the normal with it, c' = t s', m' = kappa t s'.
 
 *The normal is that of a face of O:* m' = w_O x m in the world, so that s' = t . (m' - w_P x m)/kappa.
 

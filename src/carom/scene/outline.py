@@ -1,12 +1,14 @@
 """The boundary of a plane region as rows of polynomials by arc length, counter-clockwise.
 
-Row k is (start, c): the points c0 + c1 t + ... + c5 t^5 with t = s - start, up to the start of row k + 1. A corner
-is a row of length 0, with the direction in which the curve arrives there; the last row, at the whole length,
-repeats the first point and direction. So the sign of the component of any vector along the curve is known at
+Row k is (start, c): the points c0 + c1 t + ... + c5 t^5 with t = s - start, up to the start of row k + 1. A
+corner is a row of length 0, with the direction in which the curve arrives there; the last row, at the whole
+length, repeats the first point and direction. So the sign of the component of any vector along the curve is known at
 the ends of all rows from c1 alone, at corners too.
 """
 
 from __future__ import annotations
+
+from itertools import pairwise
 
 import numpy as np
 
@@ -19,13 +21,15 @@ TURN, SHARE = 0.2, 1 / 32  # greatest turn [rad] of a piece, and its greatest sh
 SAMPLES = 8  # of a piece, for its curvature and for crossings
 HOLLOW = 1e-3  # rise of the curvature, relative to the greatest, that separates two hollows
 STRAIGHT = 1e-9  # turn at a corner that is none [rad]
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(10)  # exact for moments of second order, of degree 19
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(
+    10
+)  # exact for moments of second order, of degree 19
 
 
 def of_curve(curve: Curve) -> np.ndarray:
     """Return the rows (n, 13) of a curve in the plane z = 0, in pieces that turn little."""
     knots = [curve.knots[:1]]
-    for k, (a, b) in enumerate(zip(curve.knots[:-1], curve.knots[1:])):
+    for a, b in pairwise(curve.knots.tolist()):
         bend = np.max(np.linalg.norm(curve._at(np.linspace(a, b, SAMPLES))[2], axis=1))
         count = int(np.ceil(max(bend * (b - a) / TURN, (b - a) / (SHARE * curve.length))))
         inner = np.linspace(a, b, max(count, 1) + 1)[1:]

@@ -44,8 +44,8 @@ class Piece:
     faces : tuple of (normal, ring)
         Faces of a hull: outward unit normal and the indices of its vertices, counter-clockwise from outside.
     outline, hollows, bend : (n, 13), (k, 2), float
-        Boundary of a profile, where it is most hollow (`carom.scene.outline`), and the greatest curvature of its
-        smooth hollows [1/m].
+        Boundary of a profile, where it is most hollow (`carom.scene.outline`), and the greatest curvature of
+        its smooth hollows [1/m].
     position, orientation : (3,), (4,)
         Position and orientation of the piece in the axes of the body.
     material : Material or None

@@ -23,8 +23,8 @@ def check_profiles(what: str, one: Any, two: Any) -> None:
                 why = _obstacle(other, axis)
                 if why:
                     raise ValueError(
-                        f"{what}: a Profile can touch half-spaces across its plane, spheres, cylinders, discs and "
-                        "capsules with parallel axes, and boxes and convex prisms with edges along its axis, got "
+                        f"{what}: a Profile can touch half-spaces across its plane, spheres, cylinders, discs "
+                        "and capsules with parallel axes, boxes and prisms with edges along its axis, got "
                         f"{other.name!r}, {why}. If the two need not touch: ignore_contact"
                     )
 

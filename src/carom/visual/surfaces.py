@@ -26,9 +26,10 @@ def surface(shape, fineness: int = 32) -> tuple[np.ndarray, np.ndarray]:
     """Return the surface of a shape as triangles, in body axes.
 
     The surface is closed: each edge belongs to two triangles, once in each direction. Sharp shapes (`Box` and
-    `Convex` without a radius, `Mesh`) are exact, and the curve of a `Profile` is a polygon with vertices on it. The vertices of round shapes lie on the shape (of a rounded
-    `Convex`, on it or a little inside), so the enclosed volume of a convex shape is too small, relatively by
-    at most ``24 / fineness**2``. The surface of a `Compound` is that of all its parts, also where they overlap.
+    `Convex` without a radius, `Mesh`) are exact. The curve of a `Profile` is a polygon. The vertices of round
+    shapes lie on the shape (of a rounded `Convex`, on it or a little inside), so the enclosed volume of a convex
+    shape is too small, relatively by at most ``24 / fineness**2``. The surface of a `Compound` is that of all its
+    parts, also where they overlap.
     A `Disc` has both sides in one plane; a hoop (`inner_radius` equal to `radius`) is drawn with a width of 6 %
     of its radius.
 
@@ -77,7 +78,10 @@ def _prism(points: np.ndarray, half: float) -> tuple[np.ndarray, np.ndarray]:
     side, n = np.arange(len(points)), len(points)
     after = np.roll(side, -1)
     top = np.array(_ears(points))
-    walls = [np.stack([side, after, after + n], axis=1), np.stack([side, after + n, side + n], axis=1)]
+    walls = [
+        np.stack([side, after, after + n], axis=1),
+        np.stack([side, after + n, side + n], axis=1),
+    ]
     levels = [np.column_stack([points, np.full(n, z)]) for z in (-half, half)]
     return np.concatenate(levels), np.concatenate([top[:, ::-1], top + n, *walls])
 

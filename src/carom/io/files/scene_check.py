@@ -268,5 +268,6 @@ def _check_faces(faces, vertices: int) -> None:
 #: records that are not made again: their checks
 _LOOKS = {
     Convex: _check_convex, Mesh: _check_mesh, Compound: _check_compound, Piece: _check_piece,
-    Profile: _check_profile, Coupling: _check_coupling, Gear: _check_coupling, Curve: _check_curve, Spline: _check_curve,
+    Profile: _check_profile, Coupling: _check_coupling, Gear: _check_coupling, Curve: _check_curve,
+    Spline: _check_curve,
 }  # fmt: skip

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -35,9 +36,9 @@ class Profile(Shape):
     Parameters
     ----------
     outline : (n, 2) or callable
-        Points [m] through which a closed cubic spline goes, at least 3, the first of which is not repeated at the
-        end. Or a function of the angle from 0 to 2 pi [rad], periodic with continuous curvature, that returns
-        the distance from the axis [m] at this angle, or a point (2,) [m].
+        Points [m] through which a closed cubic spline goes, at least 3, the first of which is not repeated at
+        the end. Or a function of the angle from 0 to 2 pi [rad], periodic with continuous curvature, that
+        returns the distance from the axis [m] at this angle, or a point (2,) [m].
     thickness
         Thickness along z [m], above 0.
     corners : bool or sequence of int
@@ -128,14 +129,14 @@ class Profile(Shape):
         return float(self.rows[-1, 0])
 
     def points(self, count: int = 128) -> np.ndarray:
-        """Return points (K, 2) of the curve in body axes [m], counter-clockwise, about `count` and the corners."""
+        """Return points (K, 2) of the curve in body axes [m], counter-clockwise: about `count`, and corners."""
         return outline.polygon(self.rows, checks.integer("count", count, least=3))
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """One piece: the prism, which is not convex."""
         half = np.array([np.max(np.abs(self.rows[:, k])) for k in (1, 2)] + [0.5 * self.thickness])
-        of_curve = {"outline": self.rows, "hollows": outline.hollows(self.rows)}
+        of_curve: dict[str, Any] = {"outline": self.rows, "hollows": outline.hollows(self.rows)}
         bend = outline.bends(self.rows)[1]
         most = SAMPLED * max(0.0, -float(np.min(bend[np.isfinite(bend)], initial=0.0)))
         return (Piece("profile", half, extent=self.size, bend=most, **of_curve),)
