@@ -47,7 +47,7 @@ def _highest(shape: carom.Profile, x: float, low: float, high: float) -> float:
     return float(np.max(there[:, 1], initial=0.0))
 
 
-def _cam(scene, shape, rng):
+def _cam(scene, shape, rng, driven=True):
     """Add a cam that turns about z through the origin: driven, by a torque, or by itself."""
     rate = float(rng.choice([-1, 1])) * 10.0 ** rng.uniform(0.0, 1.7)
     x, y = shape.centroid[:2]
@@ -58,7 +58,7 @@ def _cam(scene, shape, rng):
     axle = scene.add_joint(
         carom.joints.Revolute(anchor=(0, 0, 0), axis=(0, 0, 1)), carom.GROUND, cam, name="axle"
     )
-    drive = rng.integers(3)
+    drive = rng.integers(0 if driven else 1, 3)
     if drive == 0:
         scene.add_constraint(carom.constraints.Driver(axle, rate=rate))
     elif drive == 1:
@@ -108,7 +108,7 @@ def _ratchet(scene, kind, law, rng):
         a = 0.5 * math.pi + 2.0 * math.pi * k / n
         points += [(q * math.cos(a), q * math.sin(a)) for q in (r, r + height)]
     wheel = carom.Profile(points, 0.01, corners=True)
-    cam = _cam(scene, wheel, rng)
+    cam = _cam(scene, wheel, rng, driven=False)  # a drive against the pawl has no solution
     length, thick, turn = 0.08, 0.4 * height, 0.3
     pawl = (
         carom.Box(length, thick, 0.01)

@@ -2,8 +2,8 @@
 
 Row k is (start, c): the points c0 + c1 t + ... + c5 t^5 with t = s - start, up to the start of row k + 1. A
 corner is a row of length 0, with the direction in which the curve arrives there; the last row, at the whole
-length, repeats the first point and direction. So the sign of the component of any vector along the curve is known at
-the ends of all rows from c1 alone, at corners too.
+length, repeats the first point and direction. So the sign of the component of any vector along the curve is
+known at the ends of all rows from c1 alone, at corners too.
 """
 
 from __future__ import annotations

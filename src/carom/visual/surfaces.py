@@ -27,9 +27,9 @@ def surface(shape, fineness: int = 32) -> tuple[np.ndarray, np.ndarray]:
 
     The surface is closed: each edge belongs to two triangles, once in each direction. Sharp shapes (`Box` and
     `Convex` without a radius, `Mesh`) are exact. The curve of a `Profile` is a polygon. The vertices of round
-    shapes lie on the shape (of a rounded `Convex`, on it or a little inside), so the enclosed volume of a convex
-    shape is too small, relatively by at most ``24 / fineness**2``. The surface of a `Compound` is that of all its
-    parts, also where they overlap.
+    shapes lie on the shape (of a rounded `Convex`, on it or a little inside), so the enclosed volume of a
+    convex shape is too small, relatively by at most ``24 / fineness**2``. The surface of a `Compound` is that
+    of all its parts, also where they overlap.
     A `Disc` has both sides in one plane; a hoop (`inner_radius` equal to `radius`) is drawn with a width of 6 %
     of its radius.
 
