@@ -20,7 +20,7 @@ g, base, depth, roller, mass, stiffness = 9.81, 0.04, 0.2, 0.012, 0.3, 150.0
 
 
 def radius(angle):
-    return base * (1.0 - depth * math.cos(2 * angle))
+    return base * (1.0 + depth * math.cos(2 * angle))
 
 
 cam = carom.Profile(radius, thickness=0.01)
@@ -56,15 +56,15 @@ def run(speed, turns=2.0):
     scene.add_constraint(carom.constraints.Driver(axle, rate=speed), name="drive")
     guide = scene.add_joint(carom.joints.Prismatic(axis=(0, 1, 0)), carom.GROUND, rod, name="guide")
     scene.add_force(carom.forces.JointSpring(guide, stiffness=stiffness), name="spring")
-    scene.add_contact(rod, wheel, restitution=0.3, friction=0.0, name="lift")
+    scene.add_contact(rod, wheel, restitution=0.0, friction=0.0, name="lift")
     end = 2 * math.pi * turns / speed
     return carom.simulate(scene, end, save_at=end / 600)
 
 
 def main(out="out/examples"):
-    slow, fast = run(15.0), run(32.0)
+    slow, fast = run(15.0), run(23.0)
     with picture(f"{out}/jumping_cam.png", height=4.2, rows=2) as (lift, force):
-        for solution, label in ((slow, "15 rad/s"), (fast, "32 rad/s")):
+        for solution, label in ((slow, "15 rad/s"), (fast, "23 rad/s")):
             turn = solution["axle"].coordinate / (2 * math.pi)
             y, contact = solution["follower"].position[:, 1], solution["lift"]
             above = y - heights(solution["axle"].coordinate)

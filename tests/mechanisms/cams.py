@@ -17,9 +17,10 @@ class Lift:
 
     def __init__(self, height, count=512):
         samples = [height(2.0 * math.pi * k / count) for k in range(count)]
-        self.c = np.fft.rfft(samples) / count
-        self.c[1:] *= 2.0
-        self.n = np.arange(len(self.c))
+        c = np.fft.rfft(samples) / count
+        c[1:] *= 2.0
+        self.n = np.flatnonzero(np.abs(c) > 1e-17)
+        self.c = c[self.n]
 
     def __call__(self, angle, order=0):
         return float(np.real(np.sum(self.c * (1j * self.n) ** order * np.exp(1j * self.n * angle))))
@@ -58,7 +59,7 @@ def roller_height(radius, r):
             x, y = radius(a) * math.cos(a + angle), radius(a) * math.sin(a + angle)
             return y + math.sqrt(max(r * r - x * x, 0.0)) if abs(x) < r else -math.inf
 
-        grid = np.linspace(0.0, 2.0 * math.pi, 4000)
+        grid = np.linspace(0.0, 2.0 * math.pi, 1000)
         values = [place(a) for a in grid]
         return highest(place, grid[int(np.argmax(values))], grid[1])
 
@@ -88,7 +89,7 @@ def follower(lift, omega, times, load=G, stiffness=0.0, e=0.0):
     state = None  # in flight: height and speed
     while t < end:
         if state is None:
-            grid = np.linspace(t, end, 20000)
+            grid = np.linspace(t, end, 2000)
             values = np.array([push(s) for s in grid])
             drop = np.flatnonzero(values[1:] < 0.0)
             there = np.flatnonzero(times >= t)

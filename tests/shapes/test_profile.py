@@ -130,9 +130,9 @@ def test_files_and_pickles(tmp_path):
     for name in ("wheel", "both"):
         scene.add_contact(name, floor, restitution=0.3, friction=0.2)
     solution = carom.simulate(scene, 0.2)
-    solution.save(tmp_path / "run.carom")
+    solution.save(tmp_path / "run.nc")
     for again in (
-        carom.Solution.load(tmp_path / "run.carom"),
+        carom.Solution.load(tmp_path / "run.nc"),
         pickle.loads(pickle.dumps(solution)),
     ):
         np.testing.assert_array_equal(again.scene["wheel"].shape.rows, wheel.rows)
