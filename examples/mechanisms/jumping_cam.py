@@ -62,9 +62,9 @@ def run(speed, turns=2.0):
 
 
 def main(out="out/examples"):
-    slow, fast = run(15.0), run(23.0)
+    slow, fast = run(15.0), run(28.0)
     with picture(f"{out}/jumping_cam.png", height=4.2, rows=2) as (lift, force):
-        for solution, label in ((slow, "15 rad/s"), (fast, "23 rad/s")):
+        for solution, label in ((slow, "15 rad/s"), (fast, "28 rad/s")):
             turn = solution["axle"].coordinate / (2 * math.pi)
             y, contact = solution["follower"].position[:, 1], solution["lift"]
             above = y - heights(solution["axle"].coordinate)
