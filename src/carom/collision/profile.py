@@ -96,12 +96,19 @@ def part_of_place(solid, hulls, k, t):
 
 @kernel
 def stretch(solid, hulls, s, length):
-    """Return the number of the stretch between hollows; a circle of radius `length` enters flatter ones."""
-    count, before, rows = 0, 0, hulls.outlines
+    """Return the number of the stretch between hollows; a circle of radius `length` enters flatter ones.
+
+    A curve with one hollow, both sides of which may be touched, has two stretches, each a half of its length.
+    """
+    count, before, at, rows = 0, 0, 0.0, hulls.outlines
     for k in range(solid.first_face, solid.last_face):
         if -rows[k].c[0, 0] * length > limits.ENTERED:
             count += 1
             before += 1 if rows[k].start <= s else 0
+            at = rows[k].start
+    if count == 1:
+        whole = rows[solid.last].start
+        return 1 if (s - at if s >= at else s - at + whole) > 0.5 * whole else 0
     return 0 if before == count else before
 
 
