@@ -31,8 +31,8 @@ from carom.collision.layout import BOX, CYLINDER, HULL, POINT
 from carom.geometry.thresholds import ROUND_OFF
 from carom.geometry.vectors import dot, minus
 
-NEWTON_STEPS = 60
-SCALE = 1 << 30  # of a place on the curve, as a part
+PEAK_STEPS = 60
+FINENESS = 1 << 30  # of a place on the curve, as a part
 
 
 @inlined
@@ -51,7 +51,7 @@ def curve_at(row, t):
 def peak_in_row(row, h, mx, my, w):
     """Return where in a row of length h the sign of (m + w c) . c' changes from + to -."""
     low, high, t = 0.0, h, 0.5 * h
-    for _ in range(NEWTON_STEPS):
+    for _ in range(PEAK_STEPS):
         x, y, dx, dy, ex, ey = curve_at(row, t)
         ux, uy = mx + w * x, my + w * y
         g, slope = ux * dx + uy * dy, w * (dx * dx + dy * dy) + ux * ex + uy * ey
@@ -71,11 +71,11 @@ def peak_in_row(row, h, mx, my, w):
 @kernel
 def place_of_part(solid, hulls, part):
     """Return the row of the curve, and the distance from its start, that a part of a profile stands for."""
-    number = part & (SCALE - 1)
+    number = part & (FINENESS - 1)
     if part >= OF_FIXED:  # a corner
         return solid.first + number, 0.0
     rows = hulls.outlines
-    s, low, high = number * (rows[solid.last].start / SCALE), solid.first, solid.last
+    s, low, high = number * (rows[solid.last].start / FINENESS), solid.first, solid.last
     while high - low > 1:
         middle = (low + high) >> 1
         if rows[middle].start <= s:
@@ -91,7 +91,9 @@ def part_of_place(solid, hulls, k, t):
     rows = hulls.outlines
     if rows[k + 1].start == rows[k].start:
         return OF_FIXED + k - solid.first
-    return OF_SUPPORT + min(int((rows[k].start + t) / rows[solid.last].start * SCALE), SCALE - 1)
+    return OF_SUPPORT + min(
+        int((rows[k].start + t) / rows[solid.last].start * FINENESS), FINENESS - 1
+    )
 
 
 @kernel

@@ -16,9 +16,9 @@ from carom import checks
 from carom.fields import keep
 from carom.scene.curves import Curve
 
-WIDTH = 13  # numbers of a row: start, and 6 coefficients of x and y
+ROW_WIDTH = 13  # numbers of a row: start, and 6 coefficients of x and y
 TURN, SHARE = 0.2, 1 / 32  # greatest turn [rad] of a piece, and its greatest share of the length
-SAMPLES = 8  # of a piece, for its curvature and for crossings
+PLACES = 8  # of a piece, for its curvature and for crossings
 HOLLOW = 1e-3  # rise of the curvature, relative to the greatest, that separates two hollows
 STRAIGHT = 1e-9  # turn at a corner that is none [rad]
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(
@@ -30,7 +30,7 @@ def of_curve(curve: Curve) -> np.ndarray:
     """Return the rows (n, 13) of a curve in the plane z = 0, in pieces that turn little."""
     knots = [curve.knots[:1]]
     for a, b in pairwise(curve.knots.tolist()):
-        bend = np.max(np.linalg.norm(curve._at(np.linspace(a, b, SAMPLES))[2], axis=1))
+        bend = np.max(np.linalg.norm(curve._at(np.linspace(a, b, PLACES))[2], axis=1))
         count = int(np.ceil(max(bend * (b - a) / TURN, (b - a) / (SHARE * curve.length))))
         inner = np.linspace(a, b, max(count, 1) + 1)[1:]
         knots.append(inner)
@@ -39,14 +39,14 @@ def of_curve(curve: Curve) -> np.ndarray:
     ends = np.stack(curve._at(np.minimum(s, curve.length * (1.0 - 1e-16))), axis=1)
     ends[-1] = curve.ends[-1]
     keep(fine, knots=s, ends=ends, closed=False)
-    rows = fine.coefficients[:, :, :2].transpose(1, 0, 2).reshape(-1, WIDTH - 1)
+    rows = fine.coefficients[:, :, :2].transpose(1, 0, 2).reshape(-1, ROW_WIDTH - 1)
     return np.column_stack([s[:-1], rows])
 
 
 def straight(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Return the row of a straight line between two points (2,)."""
     way = b - a
-    row = np.zeros((1, WIDTH))
+    row = np.zeros((1, ROW_WIDTH))
     row[0, 1:3], row[0, 3:5] = a, way / np.linalg.norm(way)
     return row
 
@@ -55,10 +55,10 @@ def joined(parts: list[np.ndarray], lengths: list[float], corners: bool) -> np.n
     """Return the rows of a closed curve from those of its parts, between which there may be corners."""
     rows, at = [], 0.0
     for part, length in zip(parts, lengths):
-        rows.append(part + at * (np.arange(WIDTH) == 0))
+        rows.append(part + at * (np.arange(ROW_WIDTH) == 0))
         at += length
         if corners:
-            end = np.zeros((1, WIDTH))
+            end = np.zeros((1, ROW_WIDTH))
             x, d, _ = points_of(part[-1:], np.array([length - part[-1, 0]]))
             end[0, 0], end[0, 1:3], end[0, 3:5] = at, x[0], d[0] / np.linalg.norm(d[0])
             rows.append(end)
@@ -130,8 +130,8 @@ def bends(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     s, bend = [], []
     for k, h in enumerate(np.diff(rows[:, 0])):
         if h > 0.0:
-            t = h * (np.arange(SAMPLES) + 0.5) / SAMPLES
-            _, d, e = points_of(np.repeat(rows[k : k + 1], SAMPLES, axis=0), t)
+            t = h * (np.arange(PLACES) + 0.5) / PLACES
+            _, d, e = points_of(np.repeat(rows[k : k + 1], PLACES, axis=0), t)
             s.append(rows[k, 0] + t)
             bend.append((d[:, 0] * e[:, 1] - d[:, 1] * e[:, 0]) / np.sum(d**2, axis=1) ** 1.5)
         else:
