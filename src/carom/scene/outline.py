@@ -18,7 +18,7 @@ from carom.scene.curves import Curve
 
 ROW_WIDTH = 13  # numbers of a row: start, and 6 coefficients of x and y
 TURN, SHARE = 0.2, 1 / 32  # greatest turn [rad] of a piece, and its greatest share of the length
-PLACES = 8  # of a piece, for its curvature and for crossings
+PLACES_IN_ROW = 8  # of a piece, for its curvature and for crossings
 HOLLOW = 1e-3  # rise of the curvature, relative to the greatest, that separates two hollows
 STRAIGHT = 1e-9  # turn at a corner that is none [rad]
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(
@@ -30,7 +30,7 @@ def of_curve(curve: Curve) -> np.ndarray:
     """Return the rows (n, 13) of a curve in the plane z = 0, in pieces that turn little."""
     knots = [curve.knots[:1]]
     for a, b in pairwise(curve.knots.tolist()):
-        bend = np.max(np.linalg.norm(curve._at(np.linspace(a, b, PLACES))[2], axis=1))
+        bend = np.max(np.linalg.norm(curve._at(np.linspace(a, b, PLACES_IN_ROW))[2], axis=1))
         count = int(np.ceil(max(bend * (b - a) / TURN, (b - a) / (SHARE * curve.length))))
         inner = np.linspace(a, b, max(count, 1) + 1)[1:]
         knots.append(inner)
@@ -130,8 +130,8 @@ def bends(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     s, bend = [], []
     for k, h in enumerate(np.diff(rows[:, 0])):
         if h > 0.0:
-            t = h * (np.arange(PLACES) + 0.5) / PLACES
-            _, d, e = points_of(np.repeat(rows[k : k + 1], PLACES, axis=0), t)
+            t = h * (np.arange(PLACES_IN_ROW) + 0.5) / PLACES_IN_ROW
+            _, d, e = points_of(np.repeat(rows[k : k + 1], PLACES_IN_ROW, axis=0), t)
             s.append(rows[k, 0] + t)
             bend.append((d[:, 0] * e[:, 1] - d[:, 1] * e[:, 0]) / np.sum(d**2, axis=1) ** 1.5)
         else:
