@@ -107,7 +107,7 @@ def _ratchet(scene, kind, law, rng):
     for k in range(n):
         a = 0.5 * math.pi + 2.0 * math.pi * k / n
         points += [(q * math.cos(a), q * math.sin(a)) for q in (r, r + height)]
-    wheel = carom.Profile(points, 0.01, corners=True)
+    wheel = carom.Profile(points, 0.01, corners="all")
     cam = _cam(scene, wheel, rng, driven=False)  # a drive against the pawl has no solution
     length, thick, turn = 0.08, 0.4 * height, 0.3
     pawl = (

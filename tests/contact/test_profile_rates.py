@@ -12,7 +12,7 @@ TURNS = [0.25 * math.pi * k for k in range(8)]
 CURVES = {
     "smooth": carom.Profile(lambda a: 0.5 * (1 + 0.25 * math.cos(3 * a) + 0.1 * math.sin(a)), 0.2),
     "corners": carom.Profile(
-        [(r * math.cos(a), r * math.sin(a)) for a in TURNS for r in (0.4, 0.5)], 0.3, corners=True
+        [(r * math.cos(a), r * math.sin(a)) for a in TURNS for r in (0.4, 0.5)], 0.3, corners="all"
     ),
 }
 HEXAGON = [

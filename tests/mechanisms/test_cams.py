@@ -115,7 +115,7 @@ def ratchet(torque):
     wheel = carom.Profile(
         [(r * math.cos(a), r * math.sin(a)) for a in turns for r in (0.05, 0.06)],
         0.01,
-        corners=True,
+        corners="all",
     )
     scene = carom.Scene(gravity=(0, -G, 0))
     body = scene.add_body(wheel, mass=0.5, position=wheel.centroid, name="wheel")
@@ -164,7 +164,7 @@ def test_geneva_wheel_advances_by_a_quarter_a_turn():
     for k in range(4):
         c, s = math.cos(math.pi * (0.5 * k - 0.25)), math.sin(math.pi * (0.5 * k - 0.25))
         points += [(c * x - s * y, s * x + c * y) for x, y in slot]
-    wheel = carom.Profile(points, 0.01, corners=True)
+    wheel = carom.Profile(points, 0.01, corners="all")
     scene = carom.Scene(gravity=(0, 0, -G))
     body = scene.add_body(wheel, mass=0.3, position=wheel.centroid, name="wheel")
     axle = scene.add_joint(

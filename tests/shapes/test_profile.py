@@ -30,7 +30,7 @@ def test_circle_is_a_cylinder(way):
 
 
 def test_square_is_a_box():
-    square = carom.Profile([(0, 0), (0, 1), (1, 1), (1, 0)], 2.0, corners=True)
+    square = carom.Profile([(0, 0), (0, 1), (1, 1), (1, 0)], 2.0, corners="all")
     box = carom.Box(1, 1, 2)
     assert square.volume == pytest.approx(box.volume)
     np.testing.assert_allclose(square.inertia(3.0), box.inertia(3.0), atol=1e-14)
@@ -59,7 +59,7 @@ def test_some_points_are_corners():
 
 
 def test_surface_is_closed_and_encloses_the_volume():
-    shape = carom.Profile(star(), 0.01, corners=True)
+    shape = carom.Profile(star(), 0.01, corners="all")
     vertices, triangles = surface(shape)
     assert np.linalg.det(vertices[triangles]).sum() / 6 == pytest.approx(shape.volume)
     edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
@@ -69,13 +69,13 @@ def test_surface_is_closed_and_encloses_the_volume():
 @pytest.mark.parametrize(
     ("outline", "corners", "words"),
     [
-        ([(0, 0), (1, 1), (1, 0), (0, 1)], True, "cross itself"),
-        ([(0, 0), (1, 0)], True, "at least 3"),
-        ([(0, 0), (1, 0), (1, 0), (1, 1)], True, "differ from the next"),
-        ([(0, 0), (1, 0), (2, 0)], True, "enclose an area"),
-        (lambda a: abs(a - 3.0) + 1.0, False, "smooth"),
-        (lambda a: math.cos(a), False, "above 0"),
-        (lambda a: (1.0, 2.0, 3.0), False, "or a point"),
+        ([(0, 0), (1, 1), (1, 0), (0, 1)], "all", "cross itself"),
+        ([(0, 0), (1, 0)], "all", "at least 3"),
+        ([(0, 0), (1, 0), (1, 0), (1, 1)], "all", "differ from the next"),
+        ([(0, 0), (1, 0), (2, 0)], "all", "enclose an area"),
+        (lambda a: abs(a - 3.0) + 1.0, (), "smooth"),
+        (lambda a: math.cos(a), (), "above 0"),
+        (lambda a: (1.0, 2.0, 3.0), (), "or a point"),
         (lambda a: 1.0, [0], "left out"),
     ],
 )
@@ -88,13 +88,13 @@ def test_curves_that_are_none(outline, corners, words):
     ("other", "words"),
     [
         (carom.Ellipsoid(0.1, 0.2, 0.3), "an Ellipsoid"),
-        (carom.Profile(star(), 0.01, corners=True), "another Profile"),
+        (carom.Profile(star(), 0.01, corners="all"), "another Profile"),
         (carom.Convex([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]), "not parallel"),
     ],
 )
 def test_partners_that_it_has_not(other, words):
     scene = carom.Scene()
-    scene.add_body(carom.Profile(star(), 0.01, corners=True), mass=1.0, name="a")
+    scene.add_body(carom.Profile(star(), 0.01, corners="all"), mass=1.0, name="a")
     scene.add_body(other, mass=1.0, position=(9, 0, 0), name="b")
     with pytest.raises(ValueError, match=words):
         scene.add_contact("a", "b")
@@ -120,7 +120,7 @@ def test_axes_must_be_parallel():
 
 def test_files_and_pickles(tmp_path):
     scene = carom.Scene(gravity=(0, -9.81, 0))
-    wheel = carom.Profile(star(), 0.01, corners=True)
+    wheel = carom.Profile(star(), 0.01, corners="all")
     both = carom.Compound(
         [(carom.Profile(disc, 0.01), (0, 0, 0)), (carom.Sphere(0.01), (0, 0, 0.05))]
     )

@@ -41,9 +41,9 @@ class Profile(Shape):
         returns the distance from the axis [m] at this angle, or a point (2,) [m].
     thickness
         Thickness along z [m], above 0.
-    corners : bool or sequence of int
-        Which of the points are corners, by number; True: all of them, so that the curve is a polygon. Between
-        two corners is a spline, or a straight line if there is no other point. Default False: none.
+    corners : sequence of int or "all"
+        Which of the points are corners, by number; "all": the curve is a polygon. Between two corners is a
+        spline, or a straight line if there is no other point. Default: none.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class Profile(Shape):
     (0.02, 0.1)
     >>> turn = [0.25 * math.pi * k for k in range(8)]
     >>> teeth = [(r * math.cos(a), r * math.sin(a)) for a in turn for r in (0.04, 0.05)]
-    >>> carom.Profile(teeth, thickness=0.01, corners=True)
+    >>> carom.Profile(teeth, thickness=0.01, corners="all")
     Profile(<16 corners>, thickness=0.01)
     """
 
@@ -93,11 +93,11 @@ class Profile(Shape):
         self,
         outline: ArrayLike | Callable,
         thickness: float,
-        corners: bool | Sequence[int] = False,
+        corners: Sequence[int] | str = (),
     ):
         thickness = checks.length("thickness", thickness)
         if callable(outline):
-            if corners is not False:
+            if not isinstance(corners, tuple) or corners:
                 raise ValueError(
                     "corners must be left out where outline is a function, got "
                     f"{checks.shown(corners)}; give points for a curve with corners"
@@ -214,7 +214,7 @@ def _of_points(given, corners) -> np.ndarray:
                 curve = Spline(solid[through])
                 parts.append(outline.of_curve(curve))
                 lengths.append(curve.length)
-        rows = outline.joined(parts, lengths, corners=True)
+        rows = outline.joined(parts, lengths, corners="all")
     drawn = outline.polygon(rows, 500)
     outline.check_simple(drawn)
     if not _area(drawn) > 1e-9 * size**2:
@@ -224,11 +224,12 @@ def _of_points(given, corners) -> np.ndarray:
 
 def _corners(given, n: int) -> list[int]:
     """Return the numbers of corners, in order."""
-    if isinstance(given, (bool, np.bool_)):
-        return list(range(n)) if given else []
-    if isinstance(given, (str, bytes)) or not isinstance(given, (Sequence, np.ndarray)):
-        raise ValueError(
-            f"corners must be True, False or numbers of points, got {checks.shown(given)}"
-        )
+    if isinstance(given, str) and given == "all":
+        return list(range(n))
+    numbers = isinstance(given, Sequence) and not isinstance(given, (str, bytes))
+    if type(given) is np.ndarray:
+        numbers = given.ndim == 1
+    if not numbers:
+        raise ValueError(f"corners must be 'all' or numbers of points, got {checks.shown(given)}")
     found = [checks.integer("corners", k, least=0, most=n - 1) for k in given]
     return sorted(set(found))
