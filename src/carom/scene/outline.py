@@ -101,14 +101,22 @@ def moments(rows: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
     half, weight = 0.5 * length[k], np.tile(WEIGHTS, len(k) // len(NODES)) * 0.5 * length[k]
     x, d, _ = points_of(rows[k], half * (1.0 + np.tile(NODES, len(k) // len(NODES))))
     middle = x.mean(axis=0)
+    area, shift, second = _about(middle, x, d * weight[:, None])
     for _ in range(2):  # again about the centroid, so that nothing cancels
-        (u, v), (du, dv) = (x - middle).T, d.T * weight
-        area = 0.5 * np.sum(u * dv - v * du)
-        shift = np.array([np.sum(u * u * dv), -np.sum(v * v * du)]) / (2.0 * area)
         middle = middle + shift
+        area, shift, second = _about(middle, x, d * weight[:, None])
+    middle = middle + shift
+    return area, middle, second / area - np.outer(shift, shift)
+
+
+def _about(middle: np.ndarray, x: np.ndarray, d: np.ndarray):
+    """Return area, centroid (2,) and second moment (2, 2) from points of the boundary about a point."""
+    (u, v), (du, dv) = (x - middle).T, d.T
+    area = 0.5 * float(np.sum(u * dv - v * du))
+    shift = np.array([np.sum(u * u * dv), -np.sum(v * v * du)]) / (2.0 * area)
     mixed = np.sum(u * u * v * dv) / 2.0
-    second = np.array([[np.sum(u**3 * dv) / 3.0, mixed], [mixed, -np.sum(v**3 * du) / 3.0]])
-    return float(area), middle, second / area - np.outer(shift, shift)
+    second = [[np.sum(u**3 * dv) / 3.0, mixed], [mixed, -np.sum(v**3 * du) / 3.0]]
+    return area, shift, np.array(second)
 
 
 def peaks(rows: np.ndarray, m: np.ndarray, w: float = 0.0) -> np.ndarray:

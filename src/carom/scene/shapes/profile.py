@@ -214,7 +214,7 @@ def _of_points(given, corners) -> np.ndarray:
                 curve = Spline(solid[through])
                 parts.append(outline.of_curve(curve))
                 lengths.append(curve.length)
-        rows = outline.joined(parts, lengths, corners="all")
+        rows = outline.joined(parts, lengths, corners=True)
     drawn = outline.polygon(rows, 500)
     outline.check_simple(drawn)
     if not _area(drawn) > 1e-9 * size**2:
