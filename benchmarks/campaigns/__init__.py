@@ -7,6 +7,7 @@ them by the thousand; the tests run a few of each.
 from campaigns import (
     bearings,
     belts,
+    cams,
     crowds,
     forced,
     frictions,
@@ -35,6 +36,6 @@ FAMILIES = {
     "slides": slides.case, "teeth": teeth.case, "rests": rests.case, "bearings": bearings.case,
     "belts": belts.case,
     "rails": rails.case, "loose rails": loose_rails.case, "surfaces": surfaces.case, "grounds": grounds.case,
-    "terrains": terrains.case,
+    "terrains": terrains.case, "cams": cams.case,
     "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "rough": rough.case,
 }  # fmt: skip

@@ -50,6 +50,10 @@ def stated():
         "Ellipsoid": (carom.Ellipsoid, dict(a=1.0, b=2.0, c=3.0)),
         "Convex": (carom.Convex, dict(points=TETRAHEDRON, radius=0.1)),
         "Mesh": (carom.Mesh, dict(vertices=TETRAHEDRON, faces=FACES, parts=[TETRAHEDRON])),
+        "Profile": (
+            carom.Profile,
+            dict(outline=[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)], thickness=0.1, corners=[0, 1, 2, 3]),
+        ),
         "Compound": (
             carom.Compound,
             dict(parts=[(carom.Sphere(0.1), three), (carom.Sphere(0.1), (-1.0, 0, 0))], masses=[1.0, 2.0],

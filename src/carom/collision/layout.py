@@ -18,7 +18,7 @@ from carom.geometry import quaternion
 #: kinds of cores; a pair is handled with the smaller kind first
 POINT, SEGMENT, BOX, HULL, CYLINDER, ELLIPSOID = range(6)
 #: kinds that are not convex: a surface given by a function, and a prism over a plane curve
-IMPLICIT, PROFILE = 6, 7
+CURVED_GROUND, PROFILE = 6, 7
 KINDS = ("point", "segment", "box", "hull", "cylinder", "ellipsoid", "implicit", "profile")
 #: kinds of implicit surfaces
 INSIDE_SPHERE, INSIDE_CYLINDER, INSIDE_CONE, INSIDE_TORUS, HEIGHT_FIELD, FUNCTION = range(6)
@@ -35,13 +35,13 @@ SOLID = [
     ("extent", "f8"),  # greatest distance of a point of the solid from its origin
     ("first", "i8"),  # range of the vertices of a hull, or of the pieces of a profile
     ("last", "i8"),
-    ("first_face", "i8"),
+    ("first_face", "i8"),  # range of the faces of a hull, or of the hollows of a profile
     ("last_face", "i8"),
     # of directions, for the vertices of a hull and for the normals of its faces (`carom.geometry.cells`)
     ("across", "i8", 2),  # cells along an edge of the cube
     ("cell", "i8", 2),  # the first cell
     ("surface", "i8"),  # number of an implicit surface
-    ("bend", "f8"),  # greatest curvature of a solid that is not convex [1/m]
+    ("bend", "f8"),  # greatest curvature of hollows of a solid that is not convex [1/m]
     ("body", "i8"),  # number of its shape
     ("x", "f8", 3),  # pose in its body
     ("Q", "f8", 4),
@@ -73,7 +73,8 @@ IMPLICIT_SURFACE = [
     ),  # of a compiled function of the user's: x -> value, gradient, Hessian; 0 for none
 ]
 
-#: a piece of the plane curve of a profile: a polynomial of degree 5 in s - start, s the arc length
+#: a piece of the plane curve of a profile (`carom.scene.outline`): a polynomial of s - start, s the arc length;
+#: after the pieces of a curve come its hollows, each with its curvature as c[0, 0]
 PLANE_PIECE = [("start", "f8"), ("c", "f8", (6, 2))]
 
 #: one point of a contact; normal from B to A, points on the two surfaces, all in the world
@@ -197,7 +198,7 @@ def solid_table(shapes, turns=None) -> tuple[np.recarray, Hulls]:
     """
     pieces = [(k, piece) for k, shape in enumerate(shapes) for piece in shape.pieces]
     solid, hulls = table(SOLID, len(pieces)), [no_hulls()]
-    end, surfaces, numbers = Count(0, 0, 0, 0, 0), 0, 0
+    end, surfaces, numbers, curves = Count(0, 0, 0, 0, 0), 0, 0, 0
     for row, (k, piece) in zip(solid, pieces):
         row.kind, row.radius, row.body = KINDS.index(piece.kind), piece.radius, k
         row.half[:], row.inner, row.extent = piece.half, piece.inner, piece.extent
@@ -215,6 +216,11 @@ def solid_table(shapes, turns=None) -> tuple[np.recarray, Hulls]:
             hulls.append(_surface(piece.surface, numbers))
             surfaces, numbers = surfaces + 1, numbers + len(hulls[-1].numbers)
         row.last, row.last_face = end.vertices, end.faces
+        if piece.kind == "profile":
+            hulls.append(_curve(piece))
+            row.first, row.last = curves, curves + len(piece.outline) - 1
+            row.first_face, row.last_face = row.last + 1, row.last + 1 + len(piece.hollows)
+            row.bend, curves = piece.bend, row.last_face
     made = Hulls._make(
         part[0] if len(part) == 1 else np.concatenate(part).view(type(part[0]))
         for part in zip(*hulls)
@@ -230,6 +236,14 @@ class Count(NamedTuple):
     corners: int
     cells: int
     candidates: int
+
+
+def _curve(piece) -> Hulls:
+    """Return the tables of a profile: the rows of its curve, then its hollows, with their curvature."""
+    rows, n = table(PLANE_PIECE, len(piece.outline) + len(piece.hollows)), len(piece.outline)
+    rows.start[:n], rows.c[:n] = piece.outline[:, 0], piece.outline[:, 1:].reshape(-1, 6, 2)
+    rows.start[n:], rows.c[n:, 0, 0] = piece.hollows.T
+    return no_hulls()._replace(outlines=rows)
 
 
 def _hull(piece, before: Count) -> Hulls:

@@ -7,9 +7,10 @@ import math
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.units import unit
 from carom.collision.faces import LOWEST, RIM, rim_point, vertex
-from carom.collision.features import of_vertex_a
-from carom.collision.found import put, spread
-from carom.collision.layout import BOX, CYLINDER, SEGMENT
+from carom.collision.features import NOBODY, of_vertex_a
+from carom.collision.found import put, put_parts, spread
+from carom.collision.layout import BOX, CYLINDER, PROFILE, SEGMENT
+from carom.collision.profile import lowest_of_profile
 from carom.collision.support import support
 from carom.geometry.rotation import rotate, rotate_back
 from carom.geometry.thresholds import ROUND_OFF
@@ -36,6 +37,8 @@ def plane_unit(a, plane, hulls, reach, work, out):
     seen = ux, uy, uz, x[0] * n[0] + x[1] * n[1] + x[2] * n[2] - plane.offset - r
     if a.solid.kind == CYLINDER:
         count = _rims(a.solid, seen, reach, found)
+    elif a.solid.kind == PROFILE:
+        count = lowest_of_profile(a.solid, hulls, seen, reach, found)
     else:
         count = _vertices(a.solid, hulls, seen, reach, found)
     count = spread(found, count)
@@ -45,6 +48,8 @@ def plane_unit(a, plane, hulls, reach, work, out):
         px, py, pz = x[0] + px - r * n[0], x[1] + py - r * n[1], x[2] + pz - r * n[2]
         foot = (px - gap * n[0], py - gap * n[1], pz - gap * n[2])
         put(out[k], gap, (n[0], n[1], n[2]), (px, py, pz), foot, found[k].feature)
+        if a.solid.kind == PROFILE:
+            put_parts(out[k], NOBODY, found[k].parts[0], 0)
     work.state[0].total = count
 
 

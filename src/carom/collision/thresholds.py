@@ -19,3 +19,7 @@ FACING = 0.7
 FOOT_ERROR = 1e-15  #: distance from the origin of a surface: of a point found on it
 #: distance from the origin of a surface: last step to a nearest point; the error after it is its square
 FOOT_STEP = 1e-9
+SIDE_REACH = 0.25  #: size of the smaller solid: gap up to which points on both sides of a hollow have names
+ENTERED = 0.8  #: radius of curvature of a hollow: greater circles do not reach its bottom
+PARALLEL = 0.9998  #: cosine of the angle: about 1 degree: greatest of the axes of a profile and its partner
+NEARLY_FLAT = 0.05  #: sine of the angle: of a side of a corner to a face, which may rest on both its ends

@@ -3,6 +3,7 @@
 Pairs of spheres, capsules and boxes are solved in closed form, all others by `convex.closest`; so are two boxes
 whose nearest parts are vertices, or edges that do not cross. The points are those of the overlap of two
 opposite faces, or the ends of the line along which two edges lie. They always include a nearest pair of points.
+Pairs with a profile have kernels of their own (`carom.collision.profile`).
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ from carom.collision.faces import load_face
 from carom.collision.features import EDGES
 from carom.collision.found import hand_on, swap
 from carom.collision.frame import enter
-from carom.collision.layout import BOX, CYLINDER, IMPLICIT, POINT, SEGMENT, Pair
+from carom.collision.layout import BOX, CURVED_GROUND, CYLINDER, POINT, PROFILE, SEGMENT, Pair
 from carom.collision.on_surface import on_surface
+from carom.collision.profile import profile_pair
 from carom.collision.round import point_point, point_segment, segment_segment
 from carom.collision.segments import ends_of_line
 from carom.collision.support import separation
@@ -55,7 +57,7 @@ def touch_unit(a, b, hulls, reach, work, out):
         a, b = b, a
     enter(work.state[0], a, b)
     pair = by_reference(Pair(a.solid, b.solid, hulls, work.state[0], work.found))
-    if b.solid.kind == IMPLICIT:
+    if b.solid.kind == CURVED_GROUND:
         on_surface(a.solid, b.solid, hulls, reach, work)
         count = work.state[0].total
     else:
@@ -68,6 +70,8 @@ def _ordered(pair, reach):
     """Find the points of a pair in which the kind of A is not above that of B; return their number."""
     a, b = pair.a, pair.b
     boxes = a.kind == BOX and b.kind == BOX
+    if b.kind == PROFILE:
+        return profile_pair(pair, reach)
     if b.kind <= SEGMENT:
         if b.kind == POINT:
             point_point(pair)

@@ -28,6 +28,7 @@ from carom.contact.gap import slow
 from carom.contact.level import related
 from carom.contact.pair_point import find_touches, list_touches, smaller, touch_rate
 from carom.contact.parting import plane_of, stays_beside_face, time_apart
+from carom.contact.parting_of_profile import has_profile, time_off_profile
 from carom.contact.parting_on_surface import room_over_surface, time_over_surface
 from carom.contact.place_of_other import balls, centre_of_other, on_curved_ground, on_half_space
 from carom.contact.rim import closed_rim, longest_way, place_of
@@ -174,11 +175,13 @@ def passage_pair(model, data, c) -> tuple[int, float]:
     if touching:
         return CLEAR, h
     nearest = nearest_touch(work)
-    feature = nearest.feature
+    feature, profile = nearest.feature, has_profile(system, contact)
     if curved:
         last = min(last, reach(nearest.gap, -touch_rate(contact, nearest, end), most))
     else:
         last = time_apart(system, contact, plane_of(nearest), end, bounds, -h)
+    if profile and last < h:
+        last = max(last, time_off_profile(system, contact, end, bounds, -h, work))
     if last >= h:
         return CLEAR, h
     if curved:
@@ -190,12 +193,15 @@ def passage_pair(model, data, c) -> tuple[int, float]:
         first = min(first, reach(nearest.gap, rate0, most))
     else:
         first = time_apart(system, contact, plane_of(nearest), start, bounds, h)
-    alike = feature == nearest.feature  # the same points are nearest at both ends
+    gap, name = nearest.gap, nearest.feature
+    if profile and first + last < h:
+        first = max(first, time_off_profile(system, contact, start, bounds, h, work))
+    alike = feature == name  # the same points are nearest at both ends
     follows = alike and smooth  # the cubic between both ends describes the gap
-    if follows and cubic_clears(nearest.gap, rate0, least, rate, h, tiny):
+    if follows and cubic_clears(gap, rate0, least, rate, h, tiny):
         return CLEAR, first
     bends = sag > tiny or follows or not short
-    if little and max(abs(nearest.gap), abs(least)) <= tiny:
+    if little and max(abs(gap), abs(least)) <= tiny:
         if max(abs(rate0), abs(rate)) <= slow(contact, end):  # it slides or rolls along, unforced
             return CLEAR, first
     leaving = data.active.contact_states[c].leaving

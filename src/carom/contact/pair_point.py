@@ -9,7 +9,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.collision.layout import IMPLICIT, Placed, Plane
+from carom.collision.layout import CURVED_GROUND, PROFILE, Placed, Plane
 from carom.collision.on_surface import feature_on_surface
 from carom.collision.plane import plane_unit
 from carom.collision.touch import touch_unit
@@ -17,6 +17,7 @@ from carom.contact.drift import drift_of_solids
 from carom.contact.drift_on_surface import drift_on_surface
 from carom.contact.level import keep_real_touches, solid_beyond, solid_left
 from carom.contact.place_of_other import on_curved_ground, on_half_space, pose_of
+from carom.contact.profile_drift import drift_of_profile
 from carom.contact.rim import same_point
 from carom.contact.roll import roll_on_plane
 from carom.contact.thresholds import ACTIVE_REACH
@@ -213,11 +214,13 @@ def drift(system, contact, feature, point, state) -> tuple[float, float, float]:
 
     The point must have been written for this state (`write_touch`). For two solids `feature` is not used.
     """
-    if not on_half_space(contact):
-        if system.solids[contact.other_solid].kind == IMPLICIT:
-            return drift_on_surface(system, contact, point, state)
-        return drift_of_solids(system, contact, contact.other_solid, point, state)
-    solid = solid_beyond(system, contact, point, state)
+    plane = on_half_space(contact)
+    solid = solid_beyond(system, contact, point, state) if plane else contact.other_solid
+    if solid >= 0 and system.solids[solid].kind == CURVED_GROUND:
+        return drift_on_surface(system, contact, point, state)
+    curve = system.solids[contact.solid].kind == PROFILE
+    if curve or (solid >= 0 and system.solids[solid].kind == PROFILE):
+        return drift_of_profile(system, contact, solid, point, state)
     if solid < 0:
         return roll_on_plane(system, contact, feature, point, state)
     return drift_of_solids(system, contact, solid, point, state)

@@ -26,7 +26,8 @@ import math
 from carom._compiled.decorators import kernel
 from carom.collision.farthest import VERTICES, farthest
 from carom.collision.features import NOBODY, OF_A
-from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, SEGMENT
+from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, PROFILE, SEGMENT
+from carom.collision.profile import farthest_of_curve
 from carom.contact.place_of_other import (
     centre_of_other,
     on_curved_ground,
@@ -57,6 +58,8 @@ def height(solid, hulls, x, y, z):
     if kind == HULL:
         best, _ = farthest(solid, hulls, VERTICES, x, y, z)
         return base + best
+    if kind == PROFILE:  # of its convex hull
+        return base + farthest_of_curve(solid, hulls, x, y) + h[2] * abs(z)
     return base
 
 

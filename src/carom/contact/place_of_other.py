@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.collision.layout import IMPLICIT
+from carom.collision.layout import CURVED_GROUND
 from carom.geometry.rotation import multiply, rotate
 from carom.kinematics.wrench import point_velocity
 
@@ -19,7 +19,7 @@ def on_curved_ground(system, contact):
     """Return whether the other side is a surface that is not convex."""
     if on_half_space(contact):
         return False
-    return system.solids[contact.other_solid].kind == IMPLICIT
+    return system.solids[contact.other_solid].kind == CURVED_GROUND
 
 
 @kernel

@@ -28,5 +28,6 @@ from carom.scene.shapes import Disc as Disc
 from carom.scene.shapes import Ellipsoid as Ellipsoid
 from carom.scene.shapes import Mesh as Mesh
 from carom.scene.shapes import Part as Part
+from carom.scene.shapes import Profile as Profile
 from carom.scene.shapes import Shape as Shape
 from carom.scene.shapes import Sphere as Sphere

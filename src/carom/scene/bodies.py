@@ -47,7 +47,7 @@ class Body:
     index : int
         Its index in `Scene.bodies`.
     name : str
-    shape : Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh, Compound or None
+    shape : Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh, Profile, Compound or None
     mass : float
         [kg]
     inertia : (3, 3)
@@ -143,7 +143,7 @@ class StaticBody:
     index : int
         Its index in `Scene.statics`.
     name : str
-    shape : Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh, Compound or a surface
+    shape : Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh, Profile, Compound or a surface
         A surface is one of `carom.surfaces`.
     position : (3,)
         Position of the origin of the shape, in the world [m].

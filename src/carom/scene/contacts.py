@@ -10,6 +10,7 @@ import numpy as np
 from carom.geometry import quaternion
 from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.materials import IMPACT_LAWS, ContactLaw
+from carom.scene.profile_pairs import check_profiles
 from carom.scene.surfaces import SurfaceDefinition
 from carom.scene.user_surface import Surface, check_at, evaluator
 from carom.scene.values import in_scene
@@ -60,6 +61,7 @@ class Contact(ContactLaw):
                     raise ValueError(f"body must have a shape for contact, got {part!r}")
                 _ = part.shape.pieces  # refused by a shape that has nothing to touch with
         check_curvature(self.body, self.other)
+        check_profiles(f"contact {self.name!r}", self.body, self.other)
 
     @property
     def half_space(self) -> HalfSpace | None:

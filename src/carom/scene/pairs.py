@@ -22,7 +22,9 @@ from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.contacts import Contact, check_overlap
 from carom.scene.joints import Joint
 from carom.scene.materials import ContactLaw, checked_rule, law_of, law_of_parts
+from carom.scene.profile_pairs import check_profiles
 from carom.scene.registry import Registry
+from carom.scene.shapes import Compound, Profile
 
 
 class Pairs:
@@ -143,12 +145,28 @@ class Pairs:
             return
         for b in np.union1d(found.grounded.body, np.flatnonzero(meeting(found))):
             _ = bodies[b].shape.pieces  # refused by a shape that has nothing to touch with
+        if any(_has_profile(part) for part in (*bodies, *fixed)):
+            _check_profiles(every_pair(found), bodies, fixed)
         pairs = found.grounded
         for k in near_fixed(pairs, bodies, fixed):
             body, plane = bodies[pairs.body[k]], fixed[pairs.plane[k]]
             check_overlap(f"{body.name!r} and {plane.name!r}", body, plane)
         for i, j in zip(*near_each_other(found, bodies)):
             check_overlap(f"{bodies[i].name!r} and {bodies[j].name!r}", bodies[i], bodies[j])
+
+
+def _has_profile(part) -> bool:
+    shape = None if isinstance(part, HalfSpace) else part.shape
+    if isinstance(shape, Compound):
+        return any(piece.kind == "profile" for piece in shape.pieces)
+    return isinstance(shape, Profile)
+
+
+def _check_profiles(pairs: PairTable, bodies, fixed) -> None:
+    """Refuse default pairs with a profile that cannot be treated."""
+    for body, other, plane in zip(pairs.body, pairs.other, pairs.plane):
+        one, two = bodies[body], fixed[plane] if plane >= 0 else bodies[other]
+        check_profiles(f"{one.name!r} and {two.name!r}", one, two)
 
 
 def _key(first, second):

@@ -15,6 +15,7 @@ from carom.fields import keep
 from carom.geometry import quaternion
 from carom.geometry.cells import Cells, cells_of
 from carom.scene.materials import Material
+from carom.scene.outline import peaks
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
 #: of the corners of a box
@@ -28,8 +29,8 @@ class Piece:
 
     Attributes
     ----------
-    kind : {"point", "segment", "box", "hull", "cylinder", "ellipsoid"}
-        Kind of the core. Segments and cylinders lie along z of the piece.
+    kind : {"point", "segment", "box", "hull", "cylinder", "ellipsoid", "profile"}
+        Kind of the core. Segments, cylinders and profiles lie along z of the piece.
     half : (3,)
         Half sizes of the core along its axes [m].
     radius : float
@@ -42,6 +43,9 @@ class Piece:
         Vertices of a hull, in axes of the piece [m].
     faces : tuple of (normal, ring)
         Faces of a hull: outward unit normal and the indices of its vertices, counter-clockwise from outside.
+    outline, hollows, bend : (n, 13), (k, 2), float
+        Boundary of a profile, where it is most hollow (`carom.scene.outline`), and the greatest curvature of
+        its smooth hollows [1/m].
     position, orientation : (3,), (4,)
         Position and orientation of the piece in the axes of the body.
     material : Material or None
@@ -55,6 +59,9 @@ class Piece:
     extent: float = 0.0
     vertices: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     faces: tuple = ()
+    outline: np.ndarray = field(default_factory=lambda: np.zeros((0, 13)))
+    hollows: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))
+    bend: float = 0.0
     position: np.ndarray = field(default_factory=lambda: np.zeros(3))
     orientation: np.ndarray = field(default_factory=lambda: np.array(IDENTITY))
     material: Material | None = None
@@ -98,6 +105,10 @@ class Piece:
             across = np.hypot(d[0], d[1])
             rim = self.half[0] / across if across > 0 else 0.0
             core = np.array([rim * d[0], rim * d[1], np.copysign(self.half[2], d[2])])
+        elif self.kind == "profile":
+            found = peaks(self.outline, d[:2])
+            found = found if len(found) else self.outline[:1, 1:3]
+            core = np.array([*found[np.argmax(found @ d[:2])], np.copysign(self.half[2], d[2])])
         else:
             core = np.copysign(self.half, d)
         core = core + self.radius * d

@@ -138,8 +138,9 @@ class Scene(Shown, TouchingPairs):
         Parameters
         ----------
         shape
-            `Sphere`, `Box`, `Capsule`, `Cylinder`, `Disc`, `Ellipsoid`, `Convex`, `Mesh` or
-            `Compound`; or an object of trimesh, as a `Mesh`. A body without a shape cannot touch anything.
+            `Sphere`, `Box`, `Capsule`, `Cylinder`, `Disc`, `Ellipsoid`, `Convex`, `Mesh`,
+            `Profile` or `Compound`; or an object of trimesh, as a `Mesh`. A body without a shape cannot touch
+            anything.
         mass, density
             Exactly one of the two, above 0: the mass [kg], or the density of the shape [kg/m^3].
         inertia : (3,) or (3, 3)

@@ -12,6 +12,7 @@ from carom.scene.pieces import SIGNS, Piece
 from carom.scene.shapes import SHAPES, Box
 from carom.scene.shapes.compound import Compound
 from carom.scene.shapes.mesh import Mesh
+from carom.scene.shapes.profile import Profile
 from carom.scene.shapes.revolved import Disc
 
 #: kinds of pieces without edges or corners that turn with them
@@ -25,9 +26,10 @@ def surface(shape, fineness: int = 32) -> tuple[np.ndarray, np.ndarray]:
     """Return the surface of a shape as triangles, in body axes.
 
     The surface is closed: each edge belongs to two triangles, once in each direction. Sharp shapes (`Box` and
-    `Convex` without a radius, `Mesh`) are exact. The vertices of round shapes lie on the shape (of a rounded
-    `Convex`, on it or a little inside), so the enclosed volume of a convex shape is too small, relatively by
-    at most ``24 / fineness**2``. The surface of a `Compound` is that of all its parts, also where they overlap.
+    `Convex` without a radius, `Mesh`) are exact. The curve of a `Profile` is a polygon. The vertices of round
+    shapes lie on the shape (of a rounded `Convex`, on it or a little inside), so the enclosed volume of a
+    convex shape is too small, relatively by at most ``24 / fineness**2``. The surface of a `Compound` is that
+    of all its parts, also where they overlap.
     A `Disc` has both sides in one plane; a hoop (`inner_radius` equal to `radius`) is drawn with a width of 6 %
     of its radius.
 
@@ -54,6 +56,8 @@ def surface(shape, fineness: int = 32) -> tuple[np.ndarray, np.ndarray]:
     if isinstance(shape, Mesh):
         used, faces = np.unique(shape.faces, return_inverse=True)
         return shape.points[used] - shape.centroid, faces.reshape(-1, 3).astype(np.int64)
+    if isinstance(shape, Profile):
+        return _prism(shape.points(16 * n), 0.5 * shape.thickness)
     if isinstance(shape, Compound):
         return _union(
             (*surface(part, 4 * n), position - shape.centroid, orientation)
@@ -67,6 +71,43 @@ def surface(shape, fineness: int = 32) -> tuple[np.ndarray, np.ndarray]:
 def is_round(shape) -> bool:
     """Return whether the rotation of a body with this shape is visible only by a pattern on it."""
     return shape.pieces[0].kind in ROUND and not isinstance(shape, (Box, Compound))
+
+
+def _prism(points: np.ndarray, half: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the surface of a prism over a polygon (n, 2), counter-clockwise, convex or not."""
+    side, n = np.arange(len(points)), len(points)
+    after = np.roll(side, -1)
+    top = np.array(_ears(points))
+    walls = [
+        np.stack([side, after, after + n], axis=1),
+        np.stack([side, after + n, side + n], axis=1),
+    ]
+    levels = [np.column_stack([points, np.full(n, z)]) for z in (-half, half)]
+    return np.concatenate(levels), np.concatenate([top[:, ::-1], top + n, *walls])
+
+
+def _ears(points: np.ndarray) -> list[tuple[int, int, int]]:
+    """Return the triangles of a polygon (n, 2), counter-clockwise, by cutting off ears."""
+
+    def turn(a, b, c):
+        u, v = b - a, c - a
+        return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+
+    left, found, k = list(range(len(points))), [], 0
+    misses = 0
+    while len(left) > 3:
+        i, j, m = (left[(k + d) % len(left)] for d in (-1, 0, 1))
+        a, b, c = points[i], points[j], points[m]
+        others = points[[p for p in left if p not in (i, j, m)]]
+        inside = (turn(a, b, others) >= 0) & (turn(b, c, others) >= 0) & (turn(c, a, others) >= 0)
+        # of a polygon that round-off has spoiled any corner is cut off after a round
+        if (turn(a, b, c) > 0.0 and not inside.any()) or misses > len(left):
+            found.append((i, j, m))
+            left.remove(j)
+            k, misses = k + 1, 0  # not the same corner again: the triangles would be slivers
+        else:
+            k, misses = k + 1, misses + 1
+    return [*found, (left[0], left[1], left[2])]
 
 
 def _of_piece(piece: Piece, n: int) -> tuple[np.ndarray, np.ndarray]:

@@ -25,10 +25,11 @@ from carom.scene.scene import Scene
 from carom.scene.shapes.compound import Compound
 from carom.scene.shapes.convex import Convex
 from carom.scene.shapes.mesh import Mesh
+from carom.scene.shapes.profile import Profile
 from carom.scene.user_surface import Surface
 
 ROUNDING = 1e-9  # of what is worked out once more: of unit vectors, lengths, inertias
-CORES = ("point", "segment", "box", "hull", "cylinder", "ellipsoid")
+CORES = ("point", "segment", "box", "hull", "cylinder", "ellipsoid", "profile")
 KINDS = (bodies.Body, *bodies.FIXED)
 
 
@@ -179,16 +180,39 @@ def _check_compound(shape: Compound) -> None:
     _check_pieces(shape._pieces)
 
 
+def _check_profile(shape: Profile) -> None:
+    """Raise for a profile whose fields do not fit each other."""
+    checks.number("thickness", shape.thickness, above=0.0)
+    _solid(shape)
+    _check_outline(shape.rows)
+
+
+def _check_outline(rows) -> None:
+    """Refuse a curve without pieces, or whose pieces do not follow each other, or with wrong directions."""
+    rows = checks.finite_array("outline", rows, (None, 13))
+    if not (len(rows) > 3 and rows[0, 0] == 0.0 and np.all(np.diff(rows[:, 0]) >= 0.0)):
+        raise ValueError("outline must be rows of arc lengths that increase from 0")
+    if not np.all(np.abs(np.linalg.norm(rows[:, 3:5], axis=1) - 1.0) <= ROUNDING):
+        raise ValueError("outline must have directions of length 1")
+    if not _near(rows[-1, 1:5], rows[0, 1:5]):
+        raise ValueError("outline must be closed")
+
+
 def _check_piece(piece: Piece) -> None:
     """Raise for a piece whose fields do not fit each other."""
     checks.choice("kind", piece.kind, CORES)
     if not np.all(checks.finite_array("half", piece.half, (3,)) >= 0.0):
         raise ValueError(f"half must be at least 0, got {piece.half!r}")
-    for name in ("radius", "inner", "extent"):
+    for name in ("radius", "inner", "extent", "bend"):
         checks.number(name, getattr(piece, name), least=0.0)
     checks.finite_array("position", piece.position, (3,))
     checks.unit_quaternion("orientation", piece.orientation)
     checks.instance("material", piece.material, (Material, type(None)))
+    checks.finite_array("hollows", piece.hollows, (None, 2))
+    if piece.kind == "profile":
+        _check_outline(piece.outline)
+    elif len(piece.outline) or len(piece.hollows):
+        raise ValueError(f"outline and hollows must be none of a {piece.kind}")
     vertices = _rows("vertices", piece.vertices, 4 if piece.kind == "hull" else 0)
     if piece.kind == "hull":
         _check_faces(piece.faces, len(vertices))
@@ -258,6 +282,6 @@ def _check_faces(faces, vertices: int) -> None:
 #: records that are not made again: their checks
 _LOOKS = {
     Convex: _check_convex, Mesh: _check_mesh, Compound: _check_compound, Piece: _check_piece,
-    Coupling: _check_coupling, Gear: _check_coupling, Curve: _check_curve, Spline: _check_curve,
-    Surface: _check_surface,
+    Profile: _check_profile, Coupling: _check_coupling, Gear: _check_coupling, Curve: _check_curve,
+    Spline: _check_curve, Surface: _check_surface,
 }  # fmt: skip

@@ -2,7 +2,8 @@
 
 A shape is given in body axes, with its mass centre at the origin. For contact it consists of `pieces`: convex
 cores (a point, a segment, a box, a hull of vertices, a cylinder, an ellipsoid), each rounded by a ball: a piece
-is the set of all points within the radius of the ball from its core.
+is the set of all points within the radius of the ball from its core. Only the piece of a `Profile`, a prism,
+need not be convex.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from carom.scene.shapes.convex import Convex as Convex
 from carom.scene.shapes.mesh import Mesh as Mesh
 from carom.scene.shapes.compound import Compound as Compound
 from carom.scene.shapes.compound import Part as Part
+from carom.scene.shapes.profile import Profile as Profile
 # isort: on
 
 SHAPES = subclasses_in(globals(), Shape)

@@ -1,0 +1,454 @@
+"""Contact of a prism over a plane curve (B, a profile) with convex solids (A), by sections across its axis.
+
+The curve c(s) runs counter-clockwise, so n = (t_y, -t_x) points out of the solid. In a section, A is a
+polygon rounded by a circle of radius r: one vertex for a ball, a capsule or a cylinder with parallel axis.
+Each of these is a point of the contact:
+
+    a vertex q of A      feet where |c - q| is least nearby: gap = n . (q - c) - r
+    a face of A          points of the curve farthest towards it, beside the face: gap = height over it - r
+
+Both are greatest values of m . c + w c . c/2, with m = q, w = -1 and with m = -n of the face, w = 0: there
+(m + w c) . c' changes sign from + to -. All rows of the curve are looked at, and Newton's method finds the
+place within a row. Contacts along the thickness have a point at each end of it.
+
+Between two places where the curve is most hollow only one foot can be nearest to a point outside: between two
+feet is a place where the distance d is greatest, with a curvature below -1/d; it decreases towards one of these
+places, so that a foot beyond the other would be farther. So the number of this stretch of the curve names the
+point. For a small circle, which goes along the bottom of a hollow, the hollow is no end of a stretch.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import inlined, kernel
+from carom.collision import thresholds as limits
+from carom.collision.faces import normal_of_face, vertex
+from carom.collision.features import NOBODY, OF_A, OF_B, OF_FIXED, OF_SUPPORT, face_part
+from carom.collision.found import put, put_parts
+from carom.collision.frame import from_a, point_of_a, to_a
+from carom.collision.layout import BOX, CYLINDER, HULL, POINT
+from carom.geometry.thresholds import ROUND_OFF
+from carom.geometry.vectors import dot, minus
+
+PEAK_STEPS = 60
+FINENESS = 1 << 30  # of a place on the curve, as a part
+
+
+@inlined
+def curve_at(row, t):
+    """Return position, first and second derivative of a row of the curve at the distance t from its start."""
+    c = row.c
+    x, y, dx, dy, ex, ey = c[5, 0], c[5, 1], 0.0, 0.0, 0.0, 0.0
+    for k in range(4, -1, -1):
+        ex, ey = ex * t + 2.0 * dx, ey * t + 2.0 * dy
+        dx, dy = dx * t + x, dy * t + y
+        x, y = x * t + c[k, 0], y * t + c[k, 1]
+    return x, y, dx, dy, ex, ey
+
+
+@kernel
+def peak_in_row(row, h, mx, my, w):
+    """Return where in a row of length h the sign of (m + w c) . c' changes from + to -."""
+    low, high, t = 0.0, h, 0.5 * h
+    for _ in range(PEAK_STEPS):
+        x, y, dx, dy, ex, ey = curve_at(row, t)
+        ux, uy = mx + w * x, my + w * y
+        g, slope = ux * dx + uy * dy, w * (dx * dx + dy * dy) + ux * ex + uy * ey
+        if g > 0.0:
+            low = t
+        else:
+            high = t
+        new = t - g / slope if slope < 0.0 else low
+        if not (low < new < high):
+            new = 0.5 * (low + high)
+        step, t = abs(new - t), new
+        if not step > ROUND_OFF * h:
+            break
+    return t
+
+
+@kernel
+def place_of_part(solid, hulls, part):
+    """Return the row of the curve, and the distance from its start, that a part of a profile stands for."""
+    number = part & (FINENESS - 1)
+    if part >= OF_FIXED:  # a corner
+        return solid.first + number, 0.0
+    rows = hulls.outlines
+    s, low, high = number * (rows[solid.last].start / FINENESS), solid.first, solid.last
+    while high - low > 1:
+        middle = (low + high) >> 1
+        if rows[middle].start <= s:
+            low = middle
+        else:
+            high = middle
+    return low, s - rows[low].start
+
+
+@inlined
+def part_of_place(solid, hulls, k, t):
+    """Return the part of a profile for a place on its curve; a row of length 0 is a corner."""
+    rows = hulls.outlines
+    if rows[k + 1].start == rows[k].start:
+        return OF_FIXED + k - solid.first
+    return OF_SUPPORT + min(
+        int((rows[k].start + t) / rows[solid.last].start * FINENESS), FINENESS - 1
+    )
+
+
+@kernel
+def stretch(solid, hulls, s, length):
+    """Return the number of the stretch between hollows; a circle of radius `length` enters flatter ones.
+
+    A curve with one hollow, both sides of which may be touched, has two stretches, each a half of its length.
+    """
+    count, before, at, rows = 0, 0, 0.0, hulls.outlines
+    for k in range(solid.first_face, solid.last_face):
+        if -rows[k].c[0, 0] * length > limits.ENTERED:
+            count += 1
+            before += 1 if rows[k].start <= s else 0
+            at = rows[k].start
+    if count == 1:
+        whole = rows[solid.last].start
+        return 1 if (s - at if s >= at else s - at + whole) > 0.5 * whole else 0
+    return 0 if before == count else before
+
+
+@kernel
+def is_peak(rows, k, mx, my, w, slack):
+    """Return whether m . c + w c . c/2 has a greatest value in row k; at corners also nearly, by `slack`."""
+    a, b = rows[k].c, rows[k + 1].c
+    before = (mx + w * a[0, 0]) * a[1, 0] + (my + w * a[0, 1]) * a[1, 1]
+    after = (mx + w * b[0, 0]) * b[1, 0] + (my + w * b[0, 1]) * b[1, 1]
+    if slack > 0.0 and rows[k + 1].start == rows[k].start:
+        return before > -slack and after < slack
+    return before > 0.0 and after <= 0.0
+
+
+@inlined
+def is_straight(row, h):
+    """Return whether a row is a straight line, not a corner."""
+    c = row.c
+    return h > 0.0 and c[2, 0] == 0.0 and c[2, 1] == 0.0 and c[5, 0] == 0.0 and c[5, 1] == 0.0
+
+
+@kernel
+def _feet(pair, q, r, number, first):
+    """Add the feet of a vertex q of A, whose circle has the radius r; return the new count.
+
+    The nearest of all tells whether q is outside. If so, feet on whose outer side it is count; else only this.
+    """
+    b, rows, found = pair.b, pair.hulls.outlines, pair.found
+    mx, my, z = q
+    count, nearest, least = first, first, math.inf
+    scale = r + limits.SIDE_REACH * min(pair.a.extent, b.extent)
+    for k in range(b.first, b.last):
+        if not is_peak(rows, k, mx, my, -1.0, 0.0) or count >= len(found):
+            continue
+        h = rows[k + 1].start - rows[k].start
+        t = peak_in_row(rows[k], h, mx, my, -1.0) if h > 0.0 else 0.0
+        x, y, dx, dy, _, _ = curve_at(rows[k], t)
+        f = 1.0 / math.sqrt(dx * dx + dy * dy)
+        nx, ny, ux, uy = f * dy, -f * dx, mx - x, my - y
+        d = nx * ux + ny * uy
+        if h == 0.0:  # a corner: the mean of both normals says on which side q is
+            after = rows[k + 1].c
+            side = d + after[1, 1] * ux - after[1, 0] * uy
+            d = math.copysign(math.sqrt(ux * ux + uy * uy), side)
+            if d != 0.0:
+                nx, ny = ux / d, uy / d
+        row, on_a = found[count], (mx, my, z)
+        if pair.a.kind == CYLINDER:
+            on_a = (mx - r * nx, my - r * ny, z)
+        name = (number << 30) | stretch(b, pair.hulls, rows[k].start + t, scale)
+        put(row, d - r, (nx, ny, 0.0), on_a, (x, y, z), (2 << 60) | name)
+        put_parts(row, NOBODY, OF_SUPPORT, part_of_place(b, pair.hulls, k, t))
+        if abs(d) < least:
+            least, nearest = abs(d), count
+        count += 1
+    if count > first and found[nearest].gap + r < 0.0:
+        if nearest > first:
+            found[first] = found[nearest]
+        return first + 1
+    kept = first
+    for k in range(first, count):
+        if found[k].gap + r >= 0.0:
+            if k > kept:
+                found[kept] = found[k]
+            kept += 1
+    return kept
+
+
+@inlined
+def _faces(a):
+    """Return the number of faces of a box or a hull; 0 for others."""
+    return 6 if a.kind == BOX else a.last_face - a.first_face if a.kind == HULL else 0
+
+
+@kernel
+def _height(pair, face, q):
+    """Return the height of a point over a face of A, in axes of A."""
+    a, hulls = pair.a, pair.hulls
+    n = normal_of_face(a, hulls, face)
+    if a.kind == BOX:
+        return dot(n, q) - a.half[face // 2]
+    p = hulls.vertices[a.first + hulls.corners[hulls.faces[a.first_face + face].first]]
+    return dot(n, minus(q, p))
+
+
+@kernel
+def _shallowest(pair, q):
+    """Return the face of A along the axis over which a point, in axes of A, is highest, and its height."""
+    best, chosen = -math.inf, 0
+    for k in range(_faces(pair.a)):
+        n = normal_of_face(pair.a, pair.hulls, k)
+        height = _height(pair, k, q)
+        if height > best and abs(from_a(pair.state, n[0], n[1], n[2])[2]) < limits.FACING:
+            best, chosen = height, k
+    return chosen, best
+
+
+@kernel
+def _leaves_by(pair, face, row, q, height):
+    """Return whether no other face, towards which row k also is farthest, is nearer to a point inside A."""
+    room = ROUND_OFF * pair.a.extent
+    for k in range(_faces(pair.a)):
+        n = normal_of_face(pair.a, pair.hulls, k)
+        x, y, z = from_a(pair.state, n[0], n[1], n[2])
+        if k == face or not abs(z) < limits.FACING:
+            continue
+        other = _height(pair, k, q)
+        if other > height + room:
+            also = is_peak(pair.hulls.outlines, row, -x, -y, 0.0, limits.NEARLY_FLAT)
+            if also or other > room:
+                return False
+    return True
+
+
+@kernel
+def _crossing(pair, z, count):
+    """Add a point of the curve inside A, the deepest of the starts of rows, if there is one: a deep overlap."""
+    s, a, b, rows, found = pair.state, pair.a, pair.b, pair.hulls.outlines, pair.found
+    deepest, at = -ROUND_OFF * a.extent, -1
+    for k in range(b.first, b.last):
+        x, y = rows[k].c[0, 0] - s.p[0], rows[k].c[0, 1] - s.p[1]
+        if x * x + y * y < a.extent * a.extent:
+            height = _shallowest(pair, to_a(s, x, y, z - s.p[2]))[1]
+            if height < deepest:
+                deepest, at = height, k
+    if at < 0 or count >= len(found):
+        return count
+    x, y = rows[at].c[0, 0], rows[at].c[0, 1]
+    face, gap = _shallowest(pair, to_a(s, x - s.p[0], y - s.p[1], z - s.p[2]))
+    n = normal_of_face(a, pair.hulls, face)
+    nx, ny, nz = from_a(s, n[0], n[1], n[2])
+    on_a = (x - gap * nx, y - gap * ny, z - gap * nz)
+    name = (((1 << 14) | face) << 30) | (1 << 28)
+    put(found[count], gap - a.radius, (-nx, -ny, -nz), on_a, (x, y, z), (2 << 60) | name)
+    put_parts(found[count], OF_A, face_part(face), part_of_place(b, pair.hulls, at, 0.0))
+    return count + 1
+
+
+@kernel
+def _on_face(pair, face, z, count):
+    """Add the points of the curve farthest towards a face of A, beside it; return the new count."""
+    s, a, b, rows, found = pair.state, pair.a, pair.b, pair.hulls.outlines, pair.found
+    m = normal_of_face(a, pair.hulls, face)
+    mx, my, mz = from_a(s, m[0], m[1], m[2])
+    across = math.sqrt(mx * mx + my * my)
+    if not across > limits.FACING:  # a face across the axis
+        return count
+    low, high, room = math.inf, -math.inf, ROUND_OFF * b.extent
+    for i in range(8 if a.kind == BOX else a.last - a.first):
+        p = vertex(a, pair.hulls, i)
+        if _height(pair, face, p) > -ROUND_OFF * a.extent:
+            p = point_of_a(s, p[0], p[1], p[2])
+            along = (mx * p[1] - my * p[0]) / across
+            low, high = min(low, along), max(high, along)
+    for k in range(b.first, b.last):
+        if not is_peak(rows, k, -mx, -my, 0.0, limits.NEARLY_FLAT) or count >= len(found):
+            continue
+        h = rows[k + 1].start - rows[k].start
+        if is_straight(rows[k], h):  # its corners count
+            continue
+        t = peak_in_row(rows[k], h, -mx, -my, 0.0) if h > 0.0 else 0.0
+        x, y, _, _, _, _ = curve_at(rows[k], t)
+        along, q = (mx * y - my * x) / across, to_a(s, x - s.p[0], y - s.p[1], z - s.p[2])
+        gap = _height(pair, face, q)
+        if not (low - room <= along <= high + room):
+            continue
+        if gap < -room and not _leaves_by(pair, face, k, q, gap):
+            continue
+        name = (((1 << 14) | face) << 30) | stretch(b, pair.hulls, rows[k].start + t, math.inf)
+        on_a = (x - gap * mx, y - gap * my, z - gap * mz)
+        put(found[count], gap - a.radius, (-mx, -my, -mz), on_a, (x, y, z), (2 << 60) | name)
+        put_parts(found[count], OF_A, face_part(face), part_of_place(b, pair.hulls, k, t))
+        count += 1
+    return count
+
+
+@kernel
+def _beside(pair, z):
+    """Write the point of a ball at a height beyond the flat sides of the profile: on a side, or on its rim."""
+    b, s, found = pair.b, pair.state, pair.found
+    up, r = math.copysign(1.0, z), pair.a.radius
+    high, x, y = abs(z) - b.half[2], s.p[0], s.p[1]
+    count = _feet(pair, (x, y, z), 0.0, 0, 0)
+    nearest = 0
+    for k in range(1, count):
+        nearest = k if abs(found[k].gap) < abs(found[nearest].gap) else nearest
+    row = found[nearest]
+    d, side = row.gap, up * b.half[2]
+    if d <= 0.0:  # over a flat side
+        put(found[0], high - r, (0.0, 0.0, up), (x, y, z), (x, y, side), (2 << 60) | (1 << 29))
+        put_parts(found[0], OF_B, OF_SUPPORT, face_part(0))
+        return 1
+    away = math.sqrt(d * d + high * high)
+    n = (d * row.normal[0] / away, d * row.normal[1] / away, up * high / away)
+    part, feature = row.parts[1], row.feature | (1 << 28)
+    put(found[0], away - r, n, (x, y, z), (row.on_b[0], row.on_b[1], side), feature)
+    put_parts(found[0], NOBODY, OF_SUPPORT, part)
+    return 1
+
+
+@kernel
+def axis_of(pair):
+    """Return which axis of A is most along the axis of the profile, and the direction of that axis of A."""
+    s, kind = pair.state, pair.a.kind
+    if kind in (HULL, POINT):
+        return 2, 0.0, 0.0, 1.0
+    axis = 2
+    if kind == BOX:
+        for k in range(2):
+            axis = k if abs(s.R[2, k]) > abs(s.R[2, axis]) else axis
+    return axis, s.R[0, axis], s.R[1, axis], s.R[2, axis]
+
+
+@kernel
+def _sections(pair, low, high, axis):
+    """Add the points of sections at both ends of a common thickness; return how many."""
+    s, a, hulls = pair.state, pair.a, pair.hulls
+    r = a.half[0] if a.kind == CYLINDER else a.radius
+    which, x, y, z = axis
+    sections, count = 2 if high > low else 1, 0
+    corners = 8 if a.kind == BOX else a.last - a.first if a.kind == HULL else 1
+    for end in range(sections):
+        level, before = high if end == 1 else low, count
+        for i in range(corners):
+            p = (0.0, 0.0, 0.0)
+            if corners > 1:
+                p = vertex(a, hulls, i)
+                if (
+                    a.kind == BOX and p[which] > 0.0
+                ):  # an edge along the axis has one point in a section
+                    continue
+            p = point_of_a(s, p[0], p[1], p[2])
+            if a.kind == HULL and p[2] > s.p[2]:
+                continue
+            f = (level - p[2]) / z
+            count = _feet(pair, (p[0] + f * x, p[1] + f * y, level), r, i, count)
+        for i in range(_faces(a)):
+            count = _on_face(pair, i, level, count)
+        for k in range(before, count):
+            pair.found[k].feature |= end << 29
+    return count
+
+
+@kernel
+def profile_pair(pair, reach):
+    """Find the points of a convex solid (A) and a profile (B); return their number.
+
+    Beyond its thickness only a ball touches it. For other solids there the gap is a distance along the axis.
+    """
+    s, a, b, found = pair.state, pair.a, pair.b, pair.found
+    half, axis = b.half[2], axis_of(pair)
+    if a.kind == POINT and not abs(s.p[2]) <= half:
+        return _beside(pair, s.p[2])
+    own = 0.0
+    if a.kind == HULL:
+        for i in range(a.last - a.first):
+            p = vertex(a, pair.hulls, i)
+            own = max(own, abs(point_of_a(s, p[0], p[1], p[2])[2] - s.p[2]))
+    elif a.kind != POINT:
+        own = a.half[axis[0]]
+    low, high = max(-half, s.p[2] - own), min(half, s.p[2] + own)
+    if low > high or (low == high and own > 0.0):
+        up = math.copysign(1.0, s.p[2])
+        gap = max(abs(s.p[2]) - half - own, 0.0) + half + own
+        on_b = (s.p[0], s.p[1], s.p[2] - up * (gap + own))
+        put(found[0], gap, (0.0, 0.0, up), (s.p[0], s.p[1], s.p[2] - up * own), on_b, 2 << 60)
+        put_parts(found[0], OF_B, OF_SUPPORT, face_part(0))
+        return 1
+    if abs(axis[3]) < limits.PARALLEL:  # such sections are none: the run must end
+        put(found[0], math.nan, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 2 << 60)
+        return 1
+    count = _sections(pair, low, high, axis)
+    least = math.inf
+    for k in range(count):
+        least = min(least, found[k].gap)
+    if _faces(a) > 0 and least >= -a.radius:
+        before = count
+        count = _crossing(pair, 0.5 * (low + high), count)
+        least = found[before].gap if count > before else least
+    kept, most = 0, least + reach + ROUND_OFF * min(a.extent, b.extent)
+    for k in range(count):
+        if found[k].gap <= most:
+            if k > kept:
+                found[kept] = found[k]
+            kept += 1
+    return kept
+
+
+@kernel
+def lowest_of_profile(a, hulls, seen, reach, found):
+    """Add the lowest points of a profile (A) over a half-space, in axes of the solid; return how many.
+
+    The gap of a point p is seen[3] + p . (seen[0], seen[1], seen[2]).
+    """
+    ux, uy, uz, height = seen
+    rows, count, least = hulls.outlines, 0, math.inf
+    for k in range(a.first, a.last):
+        if not is_peak(rows, k, -ux, -uy, 0.0, limits.NEARLY_FLAT):
+            continue
+        h = rows[k + 1].start - rows[k].start
+        if is_straight(rows[k], h):
+            continue
+        t = peak_in_row(rows[k], h, -ux, -uy, 0.0) if h > 0.0 else 0.0
+        x, y, _, _, _, _ = curve_at(rows[k], t)
+        name, part = stretch(a, hulls, rows[k].start + t, math.inf), part_of_place(a, hulls, k, t)
+        for end in range(2):
+            z = a.half[2] if end == 1 else -a.half[2]
+            if count < len(found):
+                gap = height + x * ux + y * uy + z * uz
+                put(
+                    found[count],
+                    gap,
+                    (0.0, 0.0, 0.0),
+                    (x, y, z),
+                    (x, y, z),
+                    (1 << 60) | ((name + (end << 14)) << 45),
+                )
+                put_parts(found[count], NOBODY, part, 0)
+                least = min(least, gap)
+                count += 1
+    kept, most = 0, least + reach + ROUND_OFF * a.extent
+    for k in range(count):
+        if found[k].gap <= most:
+            if k > kept:
+                found[kept] = found[k]
+            kept += 1
+    return kept
+
+
+@kernel
+def farthest_of_curve(solid, hulls, x, y):
+    """Return the greatest x c_x + y c_y on the curve of a profile."""
+    rows, best = hulls.outlines, -math.inf
+    for k in range(solid.first, solid.last):
+        c = rows[k].c
+        best = max(best, x * c[0, 0] + y * c[0, 1])
+        if is_peak(rows, k, x, y, 0.0, 0.0) and rows[k + 1].start > rows[k].start:
+            t = peak_in_row(rows[k], rows[k + 1].start - rows[k].start, x, y, 0.0)
+            px, py, _, _, _, _ = curve_at(rows[k], t)
+            best = max(best, x * px + y * py)
+    return best

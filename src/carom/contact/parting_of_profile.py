@@ -1,0 +1,89 @@
+"""Bound of the time during which a profile, which is not convex, and another solid stay apart.
+
+Seen from the profile, a point q of the other solid moves at a speed up to V with an acceleration up to a. Its
+distance d from the curve has the second derivative
+
+    d'' = n . q'' + kappa/(1 + kappa d) (t . q')^2.
+
+Let K be the greatest curvature of hollows, -kappa <= K. While K d <= 1/2, d'' is at least -A with
+A = a + 2 K (V + a h)^2. A distance that is larger, 1/(2 K), does not vanish within a time h for which
+K (V h + a h^2/2) <= 1/8. So each foot that is nearest now stays at a positive distance as long as
+d + d' t - A t^2/2 > 0, forwards and, with h < 0, backwards in time.
+
+Corners need no more: a hollow one is where two solids meet, each with its own distance, which goes on smoothly
+beyond the corner.
+
+Points of the curve that are farthest towards a face change faster the flatter the curve is, so there only
+d >= d(0) - V t - a t^2/2 is used; planes that separate the other solid from the convex hull of the profile
+(`parting`) are better.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.collision.features import NOBODY
+from carom.collision.layout import CYLINDER, PROFILE, SEGMENT
+from carom.contact.continuous_detection import reach
+from carom.contact.drift import motions_of
+from carom.contact.pair_point import list_touches, touch_rate
+from carom.contact.parting import bound_in_frame
+from carom.contact.place_of_other import on_half_space
+from carom.geometry.vectors import cross, dot, minus, plus
+
+
+@kernel
+def has_profile(system, contact):
+    """Return whether one of two solids is a profile."""
+    if on_half_space(contact):
+        return False
+    a, b = system.solids[contact.solid], system.solids[contact.other_solid]
+    return a.kind == PROFILE or b.kind == PROFILE
+
+
+@kernel
+def speed_past_profile(system, contact, first, state):
+    """Return the greatest speed of a core point of the other solid in axes of the profile (A if `first`)."""
+    (va, wa), (vb, wb) = motions_of(contact, state)
+    x, y = state[contact.body].x, contact.centre
+    d = (y[0] - x[0], y[1] - x[1], y[2] - x[2])
+    if contact.static == 0:
+        y = state[contact.other].x
+        d = (y[0] - x[0], y[1] - x[1], y[2] - x[2])
+    v, w = minus(vb, va), minus(wb, wa)
+    v = minus(v, cross(wa, d)) if first else plus(v, -1.0, cross(wb, d))
+    solid = system.solids[contact.other_solid if first else contact.solid]
+    p, own = solid.x, solid.extent - solid.radius
+    if (
+        solid.kind <= SEGMENT or solid.kind == CYLINDER
+    ):  # in the plane of the curve its axis is a point
+        own = 0.0
+    if contact.static == 0 or not first:
+        own += math.sqrt(dot(p, p))
+    else:
+        own = contact.other_extent
+    return math.sqrt(dot(v, v)) + own * math.sqrt(dot(w, w))
+
+
+@kernel
+def time_off_profile(system, contact, state, bounds, h, work):
+    """Return how long, up to h, a profile and another solid stay apart; h < 0: in the past."""
+    first = system.solids[contact.solid].kind == PROFILE
+    bend = system.solids[contact.solid if first else contact.other_solid].bend
+    a = bound_in_frame(system, contact, 0 if first else 1, bounds, state, h)
+    speed, sign = speed_past_profile(system, contact, first, state), 1.0 if h > 0.0 else -1.0
+    most = speed + a * abs(h)
+    way = (speed + 0.5 * a * abs(h)) * abs(h)
+    curved = bend * way <= 0.125
+    bent = a + 2.0 * bend * most * most if bend > 0.0 else a
+    list_touches(system, contact, state, way, work)
+    time = abs(h)
+    for i in range(work.pair.state[0].total):
+        touch = work.touches[i]
+        if curved and touch.owner == NOBODY:
+            t = reach(touch.gap, sign * touch_rate(contact, touch, state), bent)
+        else:
+            t = reach(touch.gap, -speed, a)
+        time = min(time, t)
+    return time
