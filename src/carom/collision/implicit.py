@@ -24,7 +24,7 @@ from carom.collision.thresholds import FOOT_ERROR, FOOT_STEP
 from carom.collision.user_surface import user_surface_at
 from carom.geometry.vectors import cross, dot, plus
 
-MOST_STEPS = 40  # of Newton's method for a nearest point
+MOST_STEPS_TO_FOOT = 40  # of Newton's method for a nearest point
 SHORTEST = 12  # halvings of one of its steps
 
 
@@ -153,7 +153,7 @@ def _onto(surface, hulls, p):
     if surface.kind == HEIGHT_FIELD:
         return p[0], p[1], p[2] - field_at(surface, hulls, p)[0]
     size = math.sqrt(dot(p, p))
-    for _ in range(MOST_STEPS):
+    for _ in range(MOST_STEPS_TO_FOOT):
         value, g, _ = field_at(surface, hulls, p)
         square = dot(g, g)
         if not square > 0.0:
@@ -177,7 +177,7 @@ def foot_of(surface, hulls, p):
         return phi, g
     q, size = _onto(surface, hulls, p), math.sqrt(dot(p, p))
     r, n, d = plus(p, -1.0, q), g, 0.0
-    for _ in range(MOST_STEPS):
+    for _ in range(MOST_STEPS_TO_FOOT):
         n, e, f, S = shape_operator(surface, hulls, q)
         d, u, v, square = dot(n, r), dot(e, r), dot(f, r), dot(r, r)
         x, y, good = solve_symmetric(1.0 + d * S[0], 1.0 + d * S[1], d * S[2], u, v)

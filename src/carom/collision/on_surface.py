@@ -39,7 +39,7 @@ from carom.collision.support import change_of_support
 from carom.geometry.thresholds import LAST_DIGIT
 from carom.geometry.vectors import dot, plus
 
-MOST_TURNS = 40  # of Newton's method for the normal of an ellipsoid
+MOST_CORRECTIONS_OF_NORMAL = 40  # of Newton's method for the normal of an ellipsoid
 EDGE_HALVINGS = 60  # of an edge, for its lowest point
 
 
@@ -100,7 +100,7 @@ def lowest_of_ellipsoid(pair, surface):
     s, hulls = pair.state, pair.hulls
     d, n = foot_of(surface, hulls, point_of_a(s, 0.0, 0.0, 0.0))
     p = point_of_a(s, 0.0, 0.0, 0.0)
-    for _ in range(MOST_TURNS):
+    for _ in range(MOST_CORRECTIONS_OF_NORMAL):
         u = support_of_ellipsoid(pair.a, _down(s, n))
         p = point_of_a(s, u[0], u[1], u[2])
         d, there = foot_of(surface, hulls, p)
@@ -122,9 +122,13 @@ def lowest_of_ellipsoid(pair, surface):
 
 
 @kernel
-def _add(pair, count, least, reach, d, n, p, feature, part_a, sheet):
-    """Add a point p of the core at a distance d, unless it is too high; return count and least distance."""
-    found = pair.found
+def _add(pair, lowest, reach, foot, feature, part):
+    """Add a point of the core, unless it is too high.
+
+    `lowest` are the number of points so far and their least distance, which are returned anew; `foot` the
+    distance, the normal, and the point of the core.
+    """
+    found, (count, least), (d, n, p) = pair.found, lowest, foot
     if d < least:
         least = d
     if d - pair.a.radius > least - pair.a.radius + reach:  # what is not finite is kept
@@ -134,8 +138,14 @@ def _add(pair, count, least, reach, d, n, p, feature, part_a, sheet):
         if count == len(found):
             return count, least
     put(found[count], d - pair.a.radius, n, p, plus(p, -d, n), feature)
-    put_parts(found[count], NOBODY, part_a, OF_SUPPORT | sheet)
+    put_parts(found[count], NOBODY, part, OF_SUPPORT | sheet_of(feature))
     return count + 1, least
+
+
+@kernel
+def sheet_of(feature):
+    """Return 1 + the plane of a surface on which a point lies, 0 for its curved part."""
+    return feature & 0x7FFF
 
 
 @kernel
@@ -174,37 +184,36 @@ def _between(pair, surface, p, q):
 
 
 @kernel
-def _on_edge(pair, surface, i, j, count, least, reach):
+def _on_edge(pair, surface, i, j, lowest, reach):
     """Add the point between two corners that is lower than both, if any; return count and least distance."""
     s, a, hulls = pair.state, pair.a, pair.hulls
     u, v = corner(a, hulls, i), corner(a, hulls, j)
     p, q = point_of_a(s, u[0], u[1], u[2]), point_of_a(s, v[0], v[1], v[2])
     t = plus(q, -1.0, p)
     high = field_at(surface, hulls, p)[0] + field_at(surface, hulls, q)[0]
-    most = 2.0 * (least + reach) + math.sqrt(
-        dot(t, t)
-    )  # no point between them is lower than (high - length)/2
+    # no point between them is lower than (high - length)/2
+    most = 2.0 * (lowest[1] + reach) + math.sqrt(dot(t, t))
     if high > surface["size"][3] * most:
-        return count, least
+        return lowest
     share = _between(pair, surface, p, q)
     if not share > 0.0:
-        return count, least
+        return lowest
     p = plus(p, share, t)
     d, n = foot_of(surface, hulls, p)
-    return _add(pair, count, least, reach, d, n, p, of_edges(i, j, 0, 0), edge_part(i, j), 0)
+    return _add(pair, lowest, reach, (d, n, p), of_edges(i, j, 0, 0), edge_part(i, j))
 
 
 @kernel
-def _on_edges(pair, surface, count, least, reach):
+def _on_edges(pair, surface, lowest, reach):
     """Add the points between the ends of edges; return count and least distance."""
     a, hulls = pair.a, pair.hulls
     if a.kind == SEGMENT:
-        return _on_edge(pair, surface, 0, 1, count, least, reach)
+        return _on_edge(pair, surface, 0, 1, lowest, reach)
     if a.kind == BOX:
         for i in range(8):
             for k in range(3):
                 if i & (1 << k) == 0:
-                    count, least = _on_edge(pair, surface, i, i | (1 << k), count, least, reach)
+                    lowest = _on_edge(pair, surface, i, i | (1 << k), lowest, reach)
     if a.kind == HULL:
         for f in range(a.first_face, a.last_face):
             face = hulls.faces[f]
@@ -212,12 +221,12 @@ def _on_edges(pair, surface, count, least, reach):
                 i = hulls.corners[k]
                 j = hulls.corners[k + 1 if k + 1 < face.last else face.first]
                 if i < j:  # the other face of the edge has it the other way round
-                    count, least = _on_edge(pair, surface, i, j, count, least, reach)
-    return count, least
+                    lowest = _on_edge(pair, surface, i, j, lowest, reach)
+    return lowest
 
 
 @kernel
-def _on_planes(pair, surface, count, least, reach):
+def _on_planes(pair, surface, lowest, reach):
     """Add the points beside planes of a surface; return the count and the least distance."""
     s, a = pair.state, pair.a
     for k in range(planes(surface)):
@@ -229,10 +238,9 @@ def _on_planes(pair, surface, count, least, reach):
             p = point_of_a(s, u[0], u[1], u[2])
             d, n = plane_at(surface, k, p)
             if plane_counts(surface, k, p):
-                count, least = _add(
-                    pair, count, least, reach, d, n, p, of_vertex_a(i) | (k + 1), OF_SUPPORT, k + 1
-                )
-    return count, least
+                feature = of_vertex_a(i) | (k + 1)
+                lowest = _add(pair, lowest, reach, (d, n, p), feature, OF_SUPPORT)
+    return lowest
 
 
 @unit
@@ -240,20 +248,20 @@ def on_surface(a, b, hulls, reach, work):
     """Find the points of a solid and a surface: their number goes to ``work.state[0].total``."""
     pair = Pair(a, b, hulls, work.state[0], work.found)
     s, surface = pair.state, hulls.surfaces[b.surface]
-    count, least = 0, math.inf
+    lowest = 0, math.inf
     if a.kind == ELLIPSOID:
         p, d, n = lowest_of_ellipsoid(pair, surface)
-        count, least = _add(pair, 0, least, reach, d, n, p, of_vertex_a(0), OF_SUPPORT, 0)
+        lowest = _add(pair, lowest, reach, (d, n, p), of_vertex_a(0), OF_SUPPORT)
     else:
         for i in range(corners(a)):
             u = corner(a, hulls, i)
             p = point_of_a(s, u[0], u[1], u[2])
             d, n = foot_of(surface, hulls, p)
-            count, least = _add(pair, count, least, reach, d, n, p, of_vertex_a(i), OF_SUPPORT, 0)
+            lowest = _add(pair, lowest, reach, (d, n, p), of_vertex_a(i), OF_SUPPORT)
     if not is_hollow(surface):
-        count, least = _on_edges(pair, surface, count, least, reach)
-    count, least = _on_planes(pair, surface, count, least, reach)
-    work.state[0].total = _kept(pair, count, least, reach)
+        lowest = _on_edges(pair, surface, lowest, reach)
+    lowest = _on_planes(pair, surface, lowest, reach)
+    work.state[0].total = _kept(pair, lowest[0], lowest[1], reach)
 
 
 @unit
@@ -264,14 +272,10 @@ def feature_on_surface(a, b, hulls, feature, work, out):
     """
     enter(work.state[0], a, b)
     pair = by_reference(Pair(a.solid, b.solid, hulls, work.state[0], work.found))
-    s, surface, sheet, part = (
-        pair.state,
-        hulls.surfaces[b.solid.surface],
-        feature & 0x7FFF,
-        OF_SUPPORT,
-    )
+    s, surface = pair.state, hulls.surfaces[b.solid.surface]
+    sheet, part = sheet_of(feature), OF_SUPPORT
     if feature >> 60 == EDGES:
-        i, j, sheet = (feature >> 45) & 0x7FFF, (feature >> 30) & 0x7FFF, 0
+        i, j = (feature >> 45) & 0x7FFF, (feature >> 30) & 0x7FFF
         u, v = corner(a.solid, hulls, i), corner(a.solid, hulls, j)
         p, q = point_of_a(s, u[0], u[1], u[2]), point_of_a(s, v[0], v[1], v[2])
         share = _between(pair, surface, p, q)
