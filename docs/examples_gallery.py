@@ -20,8 +20,8 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 PAGES = Path(__file__).parent / "_static" / "gallery"
 FIRST = (  # of each section; the others follow by name
     "bouncing_sphere", "die", "watch", "own_force", "restitution_laws", "newtons_cradle", "counting_pi",
-    "draw_shot", "ladder", "off_a_sphere", "plank_on_rollers", "stick_slip", "rocking_block", "overhang",
-    "arch", "heap", "rattleback",
+    "draw_shot", "ladder", "off_a_sphere", "plank_on_rollers", "stick_slip", "ball_in_a_bowl", "rocking_block",
+    "overhang", "arch", "heap", "rattleback",
     "trammel", "planetary_gear", "falling_chain", "heavy_top", "rolling_disc", "sleigh", "striking_four_bar",
     "load_a_model", "dice_study",
 )  # fmt: skip
@@ -45,6 +45,7 @@ SEEN = {
 PLOTTED = {
     "a01_pendulum",
     "aim_a_throw",
+    "ball_in_a_bowl",
     "billiard_break",
     "bouncing_sphere",
     "counting_pi",

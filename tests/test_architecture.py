@@ -53,6 +53,15 @@ CAPABILITIES = {
         "impact": 3, "persistent": 1, "scene": 1, "model": 1, "results": 1,
     },
     "surfaces that move": {"persistent": 1, "scene": 2, "model": 1, "kinematics": 1, "visual": 1, "contact": 1},
+    "ground that is not convex": {
+        "collision": 7, "contact": 3, "scene": 8, "visual": 2, "io": 1, "persistent": 1, "stepping": 1,
+    },
+    "cams": {"collision": 5, "contact": 3, "scene": 5, "visual": 1},
+    "rails that can be left": {"kinematics": 1, "scene": 2},
+    "friction that depends on the direction": {"kinematics": 1, "scene": 2},
+    "laws of friction and tangential restitution of several contacts, and in own coordinates": {
+        "impact": 7, "generalized": 1,
+    },
     "curves, and joints on them": {"kinematics": 3, "scene": 5, "model": 1, "dynamics": 1, "results": 1},
 }  # fmt: skip
 

@@ -81,10 +81,15 @@ def stated():
         "axis_angle": lambda: (carom.axis_angle, dict(axis=three, angle=90.0)),
         "Material": lambda: (carom.Material, number),
         "Friction": lambda: (
-            carom.Friction, dict(static=0.5, kinetic=0.3, speed=0.1, exponent=1.0),
+            carom.Friction, dict(
+                static=0.5, kinetic=0.3, speed=0.1, exponent=1.0, axis=None, along=None, across=None, of="body"
+            ),
         ),
         "Friction anisotropic": lambda: (
-            carom.Friction, dict(axis=three, along=0.1, across=0.5, of="world"),
+            carom.Friction, dict(
+                axis=three, along=0.1, across=0.5, of="world", static=None, kinetic=None, speed=None,
+                exponent=1.0,
+            ),
         ),
         "Friction.table": lambda: (carom.Friction.table, dict(speeds=(0.1, 1.0), values=(0.9, 0.5))),
         "Friction.slope": lambda: (carom.Friction(0.5, 0.3, 0.1).slope, dict(speed=1.0)),

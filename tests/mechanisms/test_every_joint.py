@@ -16,6 +16,8 @@ ARGUMENTS = {
     "direction": (1, 0, 0), "axis_parent": (1, 0, 0), "axis_child": (0, 1, 0), "pitch": 0.3, "radius": 1.0,
     "curve": carom.curves.Curve(lambda u: (u, 0.3 * math.sin(u), 1.2 - 0.2 * math.cos(u)), -4, 4),
 }  # fmt: skip
+#: of rails that can be left, which lose energy where they strike
+LOOSE = {"side", "restitution", "friction", "impact_law"}
 
 
 def joined(kind):
@@ -29,7 +31,8 @@ def joined(kind):
         )
         for m, i, x in ((2.0, (0.4, 0.5, 0.6), np.zeros(3)), (1.0, (0.2, 0.3, 0.25), CHILD))
     ]  # fmt: skip
-    given = {name: ARGUMENTS[name] for name in inspect.signature(kind).parameters}
+    names = inspect.signature(kind).parameters.keys() - LOOSE
+    given = {name: ARGUMENTS[name] for name in names}
     if kind.__name__ == "RollingDisc":  # its axis is not that of the plane
         given["axis"] = (0, 1, 0)
     parent = pair[0] if turns else carom.GROUND

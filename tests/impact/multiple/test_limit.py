@@ -10,6 +10,7 @@ from carom.impact.multiple.layout import (
     MultipleSettings,
     new_multiple_result,
     new_multiple_workspace,
+    slip_laws,
 )
 from carom.impact.multiple.resolve import resolve_multiple
 
@@ -22,8 +23,9 @@ def strike(k, left=None):
     u[::3] = -np.abs(u[::3])
     each = np.ones(k)
     numbers = np.full(k, NUMBERS["newton"])
+    mu, slip = slip_laws(0.4 * each)
     contacts = CornerContacts(
-        k, 0, W, u, 0.4 * each, 0.5 * each, numbers, each, np.zeros(k, dtype=np.int64), 0 * each
+        k, 0, W, u, mu, 0.5 * each, numbers, each, np.zeros(k, dtype=np.int64), 0 * each, slip
     )
     settings = MultipleSettings(multiple=MULTIPLE["simultaneous"], rtol=1e-8, exponent=1.0)
     out, workspace = new_multiple_result(k), new_multiple_workspace(k)
