@@ -15,8 +15,8 @@ g, bowl, radius, start, speed, duration = 9.81, 0.3, 0.02, 0.9, 0.5, 12.0
 length = bowl - radius  # the centre of the ball is on a sphere of this radius
 
 # %%
-# The bowl is the inside of a sphere, with its centre at the height of its radius. The ball starts in rolling, at
-# an angle of 0.9 from the bottom, without spin about the normal.
+# The bowl is the inside of a sphere, with its centre at the height of its radius. The ball starts in rolling,
+# at an angle of 0.9 from the bottom, without spin about the normal.
 
 
 def in_the_bowl():
@@ -34,8 +34,8 @@ def in_the_bowl():
 
 
 # %%
-# A ball that rolls has 7/5 of the inertia of a point that slides, so its centre moves as a spherical pendulum with
-# 5/7 of gravity. With the position x of the centre from that of the sphere,
+# A ball that rolls has 7/5 of the inertia of a point that slides, so its centre moves as a spherical pendulum
+# with 5/7 of gravity. With the position x of the centre from that of the sphere,
 #
 # .. math:: \ddot x = -\tfrac57 g\,e_z + \lambda x, \quad
 #    \lambda\,l^2 = \tfrac57 g\,x_z - \dot x \cdot \dot x.

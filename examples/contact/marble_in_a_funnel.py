@@ -1,8 +1,8 @@
 r"""A marble in a funnel
 ====================
 
-A marble goes round in a funnel. Rolling friction takes its energy, so it sinks, goes round ever faster, and comes
-to rest at the bottom: the coin funnel of a museum, and a picture of gravity.
+A marble goes round in a funnel. Rolling friction takes its energy, so it sinks, goes round ever faster, and
+comes to rest at the bottom: the coin funnel of a museum, and a picture of gravity.
 """
 
 import numpy as np
@@ -37,8 +37,8 @@ def in_the_funnel():
 
 
 # %%
-# The marble never slips, so what is lost is the work of the torque of rolling friction. It comes to rest where the
-# slope is below rolling friction over radius.
+# The marble never slips, so what is lost is the work of the torque of rolling friction. It comes to rest where
+# the slope is below rolling friction over radius.
 
 
 def main(out="out/examples"):
