@@ -31,7 +31,7 @@ class CornerImpact:
         [J]. It is at most 0, except for a single contact with Newton's law.
     plastic_change : float
         Part of the change in a plastic event [J]: all of it if every restitution is 0, or the remaining energy
-        of a trapped body; 0 if there was no plastic event.
+        of a body that is trapped, or wedged by friction; 0 if there was no plastic event.
     law_missed : float
         Greatest error of e, as ln(target/reached), if Newton's or Poisson's law cannot hold at some contact; 0
         if all laws hold.
