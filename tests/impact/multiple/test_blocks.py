@@ -10,7 +10,6 @@ from carom.impact.multiple.layout import (
     MultipleSettings,
     new_multiple_result,
     new_multiple_workspace,
-    slip_laws,
 )
 from references.painleve import impact_without_collision
 
@@ -63,8 +62,7 @@ def jam(e, law, mu=1.6):
     settings, workspace, out = MultipleSettings(), new_multiple_workspace(1), new_multiple_result(1)
     one = np.ones(1)
     laws, pair = np.array([law]), np.zeros(1, dtype=np.int64)
-    slip = slip_laws(mu * one)[1]
-    contacts = CornerContacts(1, 0, ROD, SLIPS, mu * one, e * one, laws, one, pair, 0 * one, slip)
+    contacts = CornerContacts(1, 0, ROD, SLIPS, mu * one, e * one, laws, one, pair, 0 * one)
     return impact_without_collision(contacts, settings, workspace, out), out
 
 

@@ -10,7 +10,6 @@ from carom.impact.multiple.layout import (
     MultipleSettings,
     new_multiple_result,
     new_multiple_workspace,
-    slip_laws,
 )
 from carom.impact.multiple.resolve import resolve_multiple
 
@@ -24,9 +23,8 @@ def strike(k, left=None):
     each = np.ones(k)
     numbers = np.full(k, NUMBERS["newton"])
     contacts = CornerContacts(
-        k, 0, W, u, 0.4 * each, 0.5 * each, numbers, each, np.zeros(k, dtype=np.int64), 0 * each,
-        slip_laws(0.4 * each)[1],
-    )  # fmt: skip
+        k, 0, W, u, 0.4 * each, 0.5 * each, numbers, each, np.zeros(k, dtype=np.int64), 0 * each
+    )
     settings = MultipleSettings(multiple=MULTIPLE["simultaneous"], rtol=1e-8, exponent=1.0)
     out, workspace = new_multiple_result(k), new_multiple_workspace(k)
     clock = workspace.work.clock
