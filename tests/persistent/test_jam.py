@@ -83,3 +83,25 @@ def test_jams_by_the_friction_of_contact_that_stays():
     s = jammed(0.3, 0.0, 1, held=1.6)
     assert list(s.events.kind) == ["held", "jams", "sticks"]
     np.testing.assert_allclose(s.impacts.impulse, [(0.3247595264, -0.4375, 0)], rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("step", [1e-3, 2e-3])
+def test_friction_takes_what_is_lost_in_a_jam_within_a_step(step):
+    """An ellipsoid slides until it jams: only an impulse stops its slip, and friction has done all work.
+
+    Steps of 1e-5 s locate the jam, and lose 1.108e-3 J by it and before; a step beyond it has order 1.
+    """
+    scene = carom.Scene()
+    ground = scene.add_half_space((0, 0, 0), (0, 0, 1))
+    body = scene.add_body(
+        carom.Ellipsoid(0.006799792546896313, 0.0035254353668639246, 0.004343705668575818),
+        mass=0.10061911810470593, position=(0, 0, 0.004662845244476286),
+        orientation=(0.5329012869991496, 0.649411913842298, 0.14632817576209262, 0.5223681168031525),
+        velocity=(-0.04954173793846747, -0.1919761046975443, 0.03946242557973437),
+        angular_velocity=(70.90025221797113, 91.8046580420178, 77.76163665583184),
+    )  # fmt: skip
+    scene.add_contact(body, ground, restitution=0.0, friction=2.285)
+    s = carom.simulate(scene, 0.002, step=step)
+    assert s.status == carom.Status.SUCCESS
+    assert np.abs(s.ledger.residual).max() < 1e-7 * s.total_energy[0]
+    assert s.ledger.friction[-1] == pytest.approx(-1.108e-3, rel=0.03)

@@ -15,6 +15,7 @@ LONGEST_IMPULSE = 1e6  #: speed of the impact by W_nn: longest step in p: round-
 ENERGY_BALANCE = 1e-6  #: energy lost in compression, or sum of |p u|: accuracy of the balance of an impact
 GAIN = 1e-9  #: sum of |p u|: the same for Moreau's problem, which is solved without a passage
 VISIBLE_ERROR = 1e-3  #: greatest velocity: a result with more approach or round-off is wrong
+WEDGED_PART = 1e4  #: P.W P: greatest sum of p_n (|u_n-| + |u_n+|): larger impulses are those of a wedge
 IMPACT_ERROR = 1e-13  #: size of the terms: smaller rates, couplings, depths and speeds count as zero
 LEAST_RESTITUTION = 0.01  #: 1: replaces smaller e in the layer: unloading is 1/e^2 stiffer than loading
 INSTANT = 1e-10  #: time of the fastest contact: changes closer in time are simultaneous

@@ -23,7 +23,7 @@ from carom.persistent.members import explicit_member, implicit_member
 from carom.persistent.rows import beyond_stop
 from carom.persistent.springs import FACTORED, count_factors
 from carom.persistent.start import first_modes, first_stage
-from carom.persistent.step_control import note_unnamed
+from carom.persistent.step_control import lost_in_stop, note_unnamed
 from carom.persistent.thresholds import FALLS, STIFF_SLIP
 
 STIFF_ORDER, CLOSING_ORDER = 4, 2
@@ -106,6 +106,7 @@ def step_group(model, data, method, label, h):
         miss[0], miss[1] = max(miss[0], 0.5 * h * h * push), 0.0
     named = result.friction - rubbed + result.applied - had
     note_unnamed(model, data, label, named, h, push)
+    result.friction -= lost_in_stop(model, data, label, named)
     if order > 0:
         result.order = 1 if lets_go else CLOSING_ORDER
 

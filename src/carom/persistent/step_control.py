@@ -13,6 +13,7 @@ from carom.contact.thresholds import SAFE_ROTATION
 from carom.dynamics.energy import kinetic_of
 from carom.dynamics.thresholds import RTOL
 from carom.geometry.rotation import norm
+from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
 from carom.persistent import thresholds as limits
 from carom.persistent.rows import bodies_of
 
@@ -66,6 +67,29 @@ def note_unnamed(model, data, label, named, h, push):
         may *= limits.BODY_LOSS
     over = abs(lost) - min(by_euler, abs(lost))
     result.unnamed = max(result.unnamed, over / may if may > 0.0 else 0.0)
+
+
+@kernel
+def lost_in_stop(model, data, label, named):
+    """Return what a body has lost beside the `named` work in a closing step that has stopped its slip.
+
+    The power of friction is that at the end of such a step, where nothing slips. Points that stay closed have
+    no other loss, so that friction has taken this, also where slip jams and only an impulse stops it. A normal
+    that jumps, of several touches of two bodies, is an impact.
+    """
+    system, active, member, stops = model.system, data.active, data.group.member, False
+    count, loaded = bodies_of(model, data, label)
+    if loaded or count != 1:
+        return 0.0
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        if data.work.body[active_point.body].label == label:
+            jumps = active_point.several == 1 and active_point.touches != 0
+            if jumps or active_point.next == MODE_OPEN:
+                return 0.0
+            stops = stops or (active_point.mode == MODE_SLIP and active_point.next == MODE_STICK)
+    b = member[0]
+    return max(0.0, named + lost_by(system, b, data.state, data.work.trial)) if stops else 0.0
 
 
 @kernel

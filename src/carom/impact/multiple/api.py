@@ -31,7 +31,7 @@ class CornerImpact:
         [J]. It is at most 0, except for a single contact with Newton's law.
     plastic_change : float
         Part of the change in a plastic event [J]: all of it if every restitution is 0, or the remaining energy
-        of a trapped body; 0 if there was no plastic event.
+        of a body that is trapped, or wedged by friction; 0 if there was no plastic event.
     law_missed : float
         Greatest error of e, as ln(target/reached), if Newton's or Poisson's law cannot hold at some contact; 0
         if all laws hold.
@@ -120,7 +120,8 @@ def resolve_impacts(
     Raises
     ------
     ValueError
-        If an argument is invalid.
+        If an argument is invalid, or if no method has a result that keeps the contacts apart without a gain
+        of energy.
 
     Notes
     -----
@@ -142,6 +143,8 @@ def resolve_impacts(
         CAPPED,
         MESSAGES,
         MULTIPLE,
+        NO_RESULT,
+        NOT_RESOLVED,
         MultipleSettings,
         slip_laws,
     )
@@ -162,9 +165,11 @@ def resolve_impacts(
         exponent=checks.number("exponent", exponent, least=1.0, most=4.0),
     )
     code, out = solve(W, np.ascontiguousarray(u), slip_laws(mu), e, numbers, kappa, e_t, settings)
+    summary = out.summary[0]
+    if code == OK and summary["marks"] & NO_RESULT:
+        code = NOT_RESOLVED
     if code != OK:
         raise ValueError(f"the impact could not be solved: {MESSAGES[code]}")
-    summary = out.summary[0]
     return CornerImpact(
         velocity_after=out.velocity.reshape(k, 3).copy(),
         impulse=out.impulse.reshape(k, 3).copy(),

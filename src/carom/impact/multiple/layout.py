@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 SIMULTANEOUS, SEQUENTIAL, BY_NEWTON = 0, 1, 2
 MULTIPLE = {"simultaneous": SIMULTANEOUS, "sequential": SEQUENTIAL, "newton": BY_NEWTON}
 
-#: beside those of `carom.impact.layout`: after every method some contact still approaches
+#: beside those of `carom.impact.layout`: after every method some contact approaches, or energy has grown
 NOT_RESOLVED = 2
 
 MESSAGES = {
     BAD_INPUT: "a number is not finite or out of its range",
-    NOT_RESOLVED: "with every method some contacts still approach at the end",
+    NOT_RESOLVED: "with every method some contacts still approach at the end, or energy is gained",
 }
 
 # Bits of `marks`, beside AT_ONCE and PLASTIC of `carom.impact.layout`.
@@ -34,6 +34,7 @@ MISSED = 2  #: the law of Newton or Poisson was not satisfied; the nearest resul
 CAPPED = 4  #: the law of a contact requires e_* > 1, and is not satisfied: energy cannot grow
 EXACT = 16  #: contacts that move alike, resolved exactly as one
 REPELLED = 32  #: the impulse was changed by round-off, so that energy does not grow
+NO_RESULT = 256  #: after every method a contact approaches, or energy has grown
 
 HAS_STUCK = 2  #: bit of `sticks`: the contact is open, and opened without slip
 

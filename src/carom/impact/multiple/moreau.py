@@ -25,7 +25,7 @@ from carom.impact.layout import AT_ONCE, PLASTIC
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.layer import set_velocity, start
 from carom.impact.multiple.slip_law import MOST_TURNS, by_law, by_secant, in_slip, slip_of
-from carom.impact.thresholds import GAIN, VELOCITY_LEFT, VISIBLE_ERROR
+from carom.impact.thresholds import GAIN, VELOCITY_LEFT, VISIBLE_ERROR, WEDGED_PART
 
 #: in turn: each contact with its own e, all with the least, none with any, and then without friction
 OWN_E, LEAST_E, NO_E, NO_FRICTION = range(4)
@@ -44,11 +44,11 @@ def solve_group(k, work, passage) -> tuple[int, float]:
         for i in range(k):
             c = work.contact[i]
             c.e = c.restitution if way == OWN_E else least if way == LEAST_E else 0.0
-        change = _once(k, work, passage, way == NO_FRICTION)
+        change, residual = _once(k, work, passage, way == NO_FRICTION)
         marks = AT_ONCE if way == OWN_E else AT_ONCE | o.MISSED if way == LEAST_E else PLASTIC
-        if sound(
-            W, vector[o.U0], vector[o.NOW_U], vector[o.NOW_P], 1.0, (3 * k, VELOCITY_LEFT, GAIN)
-        ):
+        before, after, impulse = vector[o.U0], vector[o.NOW_U], vector[o.NOW_P]
+        solved = residual <= VISIBLE_ERROR and bounded(3 * k, before, after, impulse)
+        if solved and sound(W, before, after, impulse, 1.0, (3 * k, VELOCITY_LEFT, GAIN)):
             break
     return marks, change if marks & PLASTIC != 0 else 0.0
 
@@ -69,6 +69,21 @@ def sound(W, before, after, impulse, scale, limits):
         if a % 3 == 0:
             approach = max(approach, -after[a] - own)
     return math.isfinite(gain) and gain <= allowed and approach <= left * scale
+
+
+@kernel
+def bounded(n, before, after, impulse):
+    """Return whether normal impulses are of the size of the change that they bring about.
+
+    If friction wedges contacts against each other, their cones have impulses with W P = 0, and Newton's law may
+    have no solution: what solvers find grows along these, while P.(u+ - u-) = P.W P does not.
+    """
+    push, change = 0.0, 0.0
+    for a in range(n):
+        change += impulse[a] * (after[a] - before[a])
+        if a % 3 == 0:
+            push += abs(impulse[a]) * (abs(before[a]) + abs(after[a]))
+    return push <= WEDGED_PART * change
 
 
 @kernel
@@ -98,8 +113,8 @@ def _mu_changes(k, work, passage, u):
 
 @kernel
 def _once(k, work, passage, smooth):
-    """Solve the contact problem, `smooth` without friction; return the change of energy."""
-    vector, heading, total = work.vector, work.heading, 0.0
+    """Solve the contact problem, `smooth` without friction; return the change of energy and the residual."""
+    vector, heading, total, residual = work.vector, work.heading, 0.0, math.inf
     before, bias, u, impulse = vector[o.U0], vector[o.MOREAU_C], vector[o.NOW_U], vector[o.NOW_P]
     mu, kind = vector[o.MOREAU_MU], work.index[o.MOREAU_KIND]
     for i in range(3 * k):
@@ -115,7 +130,7 @@ def _once(k, work, passage, smooth):
         ContactProblem(W=work.matrix[o.MASS], c=bias, mu=mu, kind=kind, heading=heading)
     )
     for _ in range(MOST_TURNS):
-        solve_cones(k, problem, impulse, work.cones)
+        _, residual, _ = solve_cones(k, problem, impulse, work.cones)
         set_velocity(k, work)
         if smooth or not passage.by_slip or not _mu_changes(k, work, passage, u):
             break
@@ -128,4 +143,4 @@ def _once(k, work, passage, smooth):
         c.absorbed, c.returned = max(0.0, -normal), max(0.0, normal)
         c.loss = max(0.0, -0.5 * rub)
         total += normal + 0.5 * rub
-    return total
+    return total, residual

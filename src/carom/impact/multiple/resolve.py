@@ -93,11 +93,10 @@ def _together(contacts, scale, settings, workspace):
         _finish(contacts, out)
         exact = (result.marks & o.EXACT) != 0  # a single contact may gain energy with Newton's law
         bounds = (3 * k, limits.VISIBLE_ERROR, limits.ENERGY_BALANCE)
-        if (
-            by_newton
-            or exact
-            or sound(contacts.W, contacts.u, out.velocity, out.impulse, scale, bounds)
-        ):
+        if exact or sound(contacts.W, contacts.u, out.velocity, out.impulse, scale, bounds):
+            break
+        if by_newton:
+            result.marks |= o.NO_RESULT
             break
         by_newton = True
         result.marks, result.miss, result.plastic_change = 0, 0.0, 0.0
