@@ -148,7 +148,7 @@ SHOWN = [
     "ensemble",
     "sensitivities", "solve_contacts", "euler", "axis_angle", "Scene.ignore_contact",
     "Scene.add_static", "Scene.add_surface", "Scene.replace", "Run", "contact_inverse_mass", "curves.Curve",
-    "curves.Spline", "Restitution", "Friction", "Part", "surfaces.HeightField", "surfaces.Surface",
+    "curves.Spline", "Restitution", "Friction", "Part", "Profile", "surfaces.HeightField", "surfaces.Surface",
 ]  # fmt: skip
 
 

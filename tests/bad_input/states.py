@@ -92,6 +92,9 @@ def stated():
             ),
         ),
         "Friction.table": lambda: (carom.Friction.table, dict(speeds=(0.1, 1.0), values=(0.9, 0.5))),
+        "Profile.points": lambda: (
+            carom.Profile([(0, 0), (1, 0), (0, 1)], 0.1, "all").points, dict(count=12),
+        ),
         "Friction.slope": lambda: (carom.Friction(0.5, 0.3, 0.1).slope, dict(speed=1.0)),
         "Restitution": lambda: (carom.Restitution.power(0.5), dict(speed=1.0)),
         "Restitution.power": lambda: (

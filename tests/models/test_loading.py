@@ -157,7 +157,7 @@ def test_everything_left_out_is_reported():
     assert len(told) == model.mujoco.nu == len(model.actuators) > 0
     told = {entry.element for entry in model.report.of("sensor ")}
     assert len(told) + len(model.sensors) == model.mujoco.nsensor > len(model.sensors)
-    assert "a height field; left out" in str(model.report)
+    assert "a height field of triangles" in str(model.report)
     assert "more: a scene has none of this kind; left out" in str(model.report)
 
 
