@@ -184,7 +184,8 @@ def test_ratchet_turns_the_other_way():
     assert np.max(np.abs(s.ledger.residual)) < 1e-6
 
 
-def test_geneva_wheel_advances_by_a_quarter_a_turn():
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_geneva_wheel_advances_by_a_quarter_a_turn(friction):
     # The pin enters a slot along it at 45 degrees before the line of centres, and leaves 45 degrees behind.
     centre, pin, omega = 0.1, 0.006, 2.0
     arm, width = centre / math.sqrt(2.0), pin + 3e-4
@@ -208,12 +209,13 @@ def test_geneva_wheel_advances_by_a_quarter_a_turn():
     joint = carom.joints.Revolute(anchor=(centre, 0, 0), axis=(0, 0, 1))
     turn = scene.add_joint(joint, carom.GROUND, crank, name="crank")
     scene.add_constraint(carom.constraints.Driver(turn, rate=-omega))
-    scene.add_contact(crank, body, restitution=0.0, friction=0.0)
+    scene.add_contact(crank, body, restitution=0.0, friction=friction)
     s = carom.simulate(scene, 2 * math.pi, rtol=1e-6, atol=1e-6, save_at=math.pi / 50)
     quarter = s["axle"].coordinate[::50] / (0.5 * math.pi)
     # within the play of the pin in the slot, at the distance of its mouth
     np.testing.assert_allclose(quarter, [0, 1, 2], atol=0.03)
     assert np.max(np.abs(s.ledger.residual)) < 1e-6
+    assert s.stats["whole_steps"] == 0
 
 
 @pytest.mark.parametrize("ground", ["half-space", "box"])
