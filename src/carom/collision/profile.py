@@ -33,7 +33,7 @@ from carom.geometry.thresholds import ROUND_OFF
 from carom.geometry.vectors import dot, minus
 
 PEAK_STEPS = 60
-BLOCK = 16  # rows
+ROWS_TOGETHER = 16  # in a block
 FINENESS = 1 << 30  # of a place on the curve, as a part
 
 
@@ -52,7 +52,7 @@ def curve_at(row, t):
 @inlined
 def block_at(rows, first, last):
     """Return the end of a block of rows, its middle, and how far the block is from the start of that row."""
-    end = min(first + BLOCK, last)
+    end = min(first + ROWS_TOGETHER, last)
     middle = (first + end) >> 1
     arc = max(rows[middle].start - rows[first].start, rows[end].start - rows[middle].start)
     return end, middle, limits.CHORD * arc
@@ -154,12 +154,12 @@ def _feet(pair, q, r, reach, number, first):
     mx, my, z = q
     count, nearest, least, most = first, first, math.inf, math.inf
     scale = r + limits.SIDE_REACH * min(pair.a.extent, b.extent)
-    for k in range(b.first, b.last, BLOCK):
+    for k in range(b.first, b.last, ROWS_TOGETHER):
         _, at, _ = block_at(rows, k, b.last)
         x, y = rows[at].c[0, 0] - mx, rows[at].c[0, 1] - my
         most = min(most, x * x + y * y)
     most = math.sqrt(most) + reach + ROUND_OFF * b.extent
-    for start in range(b.first, b.last, BLOCK):
+    for start in range(b.first, b.last, ROWS_TOGETHER):
         end, at, arc = block_at(rows, start, b.last)
         x, y = rows[at].c[0, 0] - mx, rows[at].c[0, 1] - my
         if x * x + y * y > (most + arc) * (most + arc):
@@ -292,14 +292,14 @@ def _on_face(pair, face, z, reach, count):
             low, high = min(low, along), max(high, along)
     zero = _height(pair, face, to_a(s, -s.p[0], -s.p[1], z - s.p[2]))
     most = math.inf
-    for k in range(b.first, b.last, BLOCK):
+    for k in range(b.first, b.last, ROWS_TOGETHER):
         _, at, _ = block_at(rows, k, b.last)
         x, y = rows[at].c[0, 0], rows[at].c[0, 1]
         height = zero + mx * x + my * y
         if height >= 0.0 and low <= (mx * y - my * x) / across <= high:
             most = min(most, height / across)
     most += reach + room
-    for start in range(b.first, b.last, BLOCK):
+    for start in range(b.first, b.last, ROWS_TOGETHER):
         end, at, arc = block_at(rows, start, b.last)
         x, y = rows[at].c[0, 0], rows[at].c[0, 1]
         along = (mx * y - my * x) / across
@@ -466,11 +466,11 @@ def lowest_of_profile(a, hulls, seen, reach, found):
     ux, uy, uz, height = seen
     rows, count, least = hulls.outlines, 0, math.inf
     across, most = math.sqrt(ux * ux + uy * uy), math.inf
-    for k in range(a.first, a.last, BLOCK):
+    for k in range(a.first, a.last, ROWS_TOGETHER):
         _, at, _ = block_at(rows, k, a.last)
         most = min(most, ux * rows[at].c[0, 0] + uy * rows[at].c[0, 1])
     most += reach + ROUND_OFF * a.extent
-    for start in range(a.first, a.last, BLOCK):
+    for start in range(a.first, a.last, ROWS_TOGETHER):
         end, at, arc = block_at(rows, start, a.last)
         if ux * rows[at].c[0, 0] + uy * rows[at].c[0, 1] > most + across * arc:
             continue
@@ -514,10 +514,10 @@ def lowest_of_profile(a, hulls, seen, reach, found):
 def farthest_of_curve(solid, hulls, x, y):
     """Return the greatest x c_x + y c_y on the curve of a profile."""
     rows, best, across = hulls.outlines, -math.inf, math.sqrt(x * x + y * y)
-    for k in range(solid.first, solid.last, BLOCK):
+    for k in range(solid.first, solid.last, ROWS_TOGETHER):
         _, at, _ = block_at(rows, k, solid.last)
         best = max(best, x * rows[at].c[0, 0] + y * rows[at].c[0, 1])
-    for start in range(solid.first, solid.last, BLOCK):
+    for start in range(solid.first, solid.last, ROWS_TOGETHER):
         end, at, arc = block_at(rows, start, solid.last)
         if x * rows[at].c[0, 0] + y * rows[at].c[0, 1] + across * arc < best:
             continue
