@@ -26,6 +26,7 @@ class Status(IntEnum):
     BLOCKED = 15
     STOPPED = 16
     LEFT_CURVE = 17
+    OUT_OF_PLANE = 18
 
     @property
     def ended(self) -> bool:
@@ -51,7 +52,7 @@ class Status(IntEnum):
 (
     SUCCESS, NO_CONVERGENCE, STEP_CUT_TO_NOTHING, TOO_MANY_IMPACTS, NOT_FINITE, RETURN_MAP_FAILED,
     IMPACT_FAILED, CONSTRAINTS_LOST, FUNCTION_FAILED, INTERRUPTED, TOO_MANY_POINTS, SINGULAR_METRIC,
-    STEP_TOO_SMALL, INACCURATE, UNSTABLE, BLOCKED, STOPPED, LEFT_CURVE,
+    STEP_TOO_SMALL, INACCURATE, UNSTABLE, BLOCKED, STOPPED, LEFT_CURVE, OUT_OF_PLANE,
 ) = map(int, Status)  # fmt: skip
 
 #: cause and remedy; {finer} says how a run gets shorter steps
@@ -124,6 +125,10 @@ _MESSAGES: dict[Status, tuple[str, str]] = {
     Status.LEFT_CURVE: (
         "A point has passed an end of its curve, which is open.",
         "Add stops at its ends (Scene.add_stop), make the curve longer, or close it.",
+    ),
+    Status.OUT_OF_PLANE: (
+        "A body near a Profile has tipped by more than a degree out of the plane in which a Profile touches.",
+        "Hold both in its plane by joints (Planar, Revolute, Prismatic).",
     ),
     Status.INTERRUPTED: (
         "The run was interrupted.", "The solution has all results up to then.",

@@ -56,6 +56,36 @@ def test_flat_follower_leaves_an_eccentric_disc(tolerance):
         assert run.impacts.time[0] == pytest.approx(lands, abs=10 * tolerance)
 
 
+HEXAGON = [
+    (0.03 * math.cos(a), 0.03 * math.sin(a), z)
+    for a in np.arange(6) * math.pi / 3
+    for z in (-0.02, 0.02)
+]
+
+
+@pytest.mark.parametrize("held", [False, True])
+@pytest.mark.parametrize(
+    "shape", [carom.Box(0.06, 0.06, 0.04), carom.Convex(HEXAGON), carom.Cylinder(0.03, 0.04)]
+)
+def test_partner_that_tips_ends_the_run(shape, held):
+    # In flight it turns by .9 degrees, and the blow turns it on; or its weight is beyond the edge of the cam.
+    scene = carom.Scene(gravity=(0, -G, 0))
+    scene.add_static(carom.Profile(lambda a: R * (1 - 0.1 * math.sin(3 * a)), 0.02), name="cam")
+    height = 1.1 * R - shape.support((0, -1, 0))[1] + (0.0 if held else 0.012)
+    body = scene.add_body(
+        shape, mass=0.2, position=(0, height, 0.011 if held else 0.0), name="follower",
+        angular_velocity=(0.0 if held else 0.3, 0, 0),
+    )  # fmt: skip
+    scene.add_contact(body, "cam", restitution=0.0 if held else 0.3, friction=0.2, name="lift")
+    s = carom.simulate(scene, 0.5, step=2e-3, throw=False)
+    assert s.status is carom.Status.OUT_OF_PLANE
+    assert "'lift'" in s.message
+    assert s.t[-1] < 0.1
+    tip = 2 * math.asin(math.hypot(*s["follower"].orientation[-1, 1:3]))
+    assert f"({math.degrees(tip):.1f} degrees" in s.message
+    assert math.degrees(tip) < 3.0  # some steps at most beyond the degree, in flight
+
+
 def wavy(lobes=3, depth=0.12):
     return lambda a: R * (1.0 + depth * math.cos(lobes * (a - 0.3)))
 
@@ -154,7 +184,8 @@ def test_ratchet_turns_the_other_way():
     assert np.max(np.abs(s.ledger.residual)) < 1e-6
 
 
-def test_geneva_wheel_advances_by_a_quarter_a_turn():
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_geneva_wheel_advances_by_a_quarter_a_turn(friction):
     # The pin enters a slot along it at 45 degrees before the line of centres, and leaves 45 degrees behind.
     centre, pin, omega = 0.1, 0.006, 2.0
     arm, width = centre / math.sqrt(2.0), pin + 3e-4
@@ -178,12 +209,13 @@ def test_geneva_wheel_advances_by_a_quarter_a_turn():
     joint = carom.joints.Revolute(anchor=(centre, 0, 0), axis=(0, 0, 1))
     turn = scene.add_joint(joint, carom.GROUND, crank, name="crank")
     scene.add_constraint(carom.constraints.Driver(turn, rate=-omega))
-    scene.add_contact(crank, body, restitution=0.0, friction=0.0)
+    scene.add_contact(crank, body, restitution=0.0, friction=friction)
     s = carom.simulate(scene, 2 * math.pi, rtol=1e-6, atol=1e-6, save_at=math.pi / 50)
     quarter = s["axle"].coordinate[::50] / (0.5 * math.pi)
     # within the play of the pin in the slot, at the distance of its mouth
     np.testing.assert_allclose(quarter, [0, 1, 2], atol=0.03)
     assert np.max(np.abs(s.ledger.residual)) < 1e-6
+    assert s.stats["whole_steps"] == 0
 
 
 @pytest.mark.parametrize("ground", ["half-space", "box"])

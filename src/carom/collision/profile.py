@@ -8,8 +8,9 @@ Each of these is a point of the contact:
     a face of A          points of the curve farthest towards it, beside the face: gap = height over it - r
 
 Both are greatest values of m . c + w c . c/2, with m = q, w = -1 and with m = -n of the face, w = 0: there
-(m + w c) . c' changes sign from + to -. All rows of the curve are looked at, and Newton's method finds the
-place within a row. Contacts along the thickness have a point at each end of it.
+(m + w c) . c' changes sign from + to -, and Newton's method finds the place within a row. Blocks of rows that
+are too far away are passed over: a block is no farther from the start of its middle row than its arc is long.
+Contacts along the thickness have a point at each end of it.
 
 Between two places where the curve is most hollow only one foot can be nearest to a point outside: between two
 feet is a place where the distance d is greatest, with a curvature below -1/d; it decreases towards one of these
@@ -32,6 +33,7 @@ from carom.geometry.thresholds import ROUND_OFF
 from carom.geometry.vectors import dot, minus
 
 PEAK_STEPS = 60
+ROWS_TOGETHER = 16  # in a block
 FINENESS = 1 << 30  # of a place on the curve, as a part
 
 
@@ -45,6 +47,15 @@ def curve_at(row, t):
         dx, dy = dx * t + x, dy * t + y
         x, y = x * t + c[k, 0], y * t + c[k, 1]
     return x, y, dx, dy, ex, ey
+
+
+@inlined
+def block_at(rows, first, last):
+    """Return the end of a block of rows, its middle, and how far the block is from the start of that row."""
+    end = min(first + ROWS_TOGETHER, last)
+    middle = (first + end) >> 1
+    arc = max(rows[middle].start - rows[first].start, rows[end].start - rows[middle].start)
+    return end, middle, limits.CHORD * arc
 
 
 @kernel
@@ -133,39 +144,50 @@ def is_straight(row, h):
 
 
 @kernel
-def _feet(pair, q, r, number, first):
+def _feet(pair, q, r, reach, number, first):
     """Add the feet of a vertex q of A, whose circle has the radius r; return the new count.
 
     The nearest of all tells whether q is outside. If so, feet on whose outer side it is count; else only this.
+    Feet that are farther than the nearest by more than `reach` are left out where that spares work.
     """
     b, rows, found = pair.b, pair.hulls.outlines, pair.found
     mx, my, z = q
-    count, nearest, least = first, first, math.inf
+    count, nearest, least, most = first, first, math.inf, math.inf
     scale = r + limits.SIDE_REACH * min(pair.a.extent, b.extent)
-    for k in range(b.first, b.last):
-        if not is_peak(rows, k, mx, my, -1.0, 0.0) or count >= len(found):
+    for k in range(b.first, b.last, ROWS_TOGETHER):
+        _, at, _ = block_at(rows, k, b.last)
+        x, y = rows[at].c[0, 0] - mx, rows[at].c[0, 1] - my
+        most = min(most, x * x + y * y)
+    most = math.sqrt(most) + reach + ROUND_OFF * b.extent
+    for start in range(b.first, b.last, ROWS_TOGETHER):
+        end, at, arc = block_at(rows, start, b.last)
+        x, y = rows[at].c[0, 0] - mx, rows[at].c[0, 1] - my
+        if x * x + y * y > (most + arc) * (most + arc):
             continue
-        h = rows[k + 1].start - rows[k].start
-        t = peak_in_row(rows[k], h, mx, my, -1.0) if h > 0.0 else 0.0
-        x, y, dx, dy, _, _ = curve_at(rows[k], t)
-        f = 1.0 / math.sqrt(dx * dx + dy * dy)
-        nx, ny, ux, uy = f * dy, -f * dx, mx - x, my - y
-        d = nx * ux + ny * uy
-        if h == 0.0:  # a corner: the mean of both normals says on which side q is
-            after = rows[k + 1].c
-            side = d + after[1, 1] * ux - after[1, 0] * uy
-            d = math.copysign(math.sqrt(ux * ux + uy * uy), side)
-            if d != 0.0:
-                nx, ny = ux / d, uy / d
-        row, on_a = found[count], (mx, my, z)
-        if pair.a.kind == CYLINDER:
-            on_a = (mx - r * nx, my - r * ny, z)
-        name = (number << 30) | stretch(b, pair.hulls, rows[k].start + t, scale)
-        put(row, d - r, (nx, ny, 0.0), on_a, (x, y, z), (2 << 60) | name)
-        put_parts(row, NOBODY, OF_SUPPORT, part_of_place(b, pair.hulls, k, t))
-        if abs(d) < least:
-            least, nearest = abs(d), count
-        count += 1
+        for k in range(start, end):
+            if not is_peak(rows, k, mx, my, -1.0, 0.0) or count >= len(found):
+                continue
+            h = rows[k + 1].start - rows[k].start
+            t = peak_in_row(rows[k], h, mx, my, -1.0) if h > 0.0 else 0.0
+            x, y, dx, dy, _, _ = curve_at(rows[k], t)
+            f = 1.0 / math.sqrt(dx * dx + dy * dy)
+            nx, ny, ux, uy = f * dy, -f * dx, mx - x, my - y
+            d = nx * ux + ny * uy
+            if h == 0.0:  # a corner: the mean of both normals says on which side q is
+                after = rows[k + 1].c
+                side = d + after[1, 1] * ux - after[1, 0] * uy
+                d = math.copysign(math.sqrt(ux * ux + uy * uy), side)
+                if d != 0.0:
+                    nx, ny = ux / d, uy / d
+            row, on_a = found[count], (mx, my, z)
+            if pair.a.kind == CYLINDER:
+                on_a = (mx - r * nx, my - r * ny, z)
+            name = (number << 30) | stretch(b, pair.hulls, rows[k].start + t, scale)
+            put(row, d - r, (nx, ny, 0.0), on_a, (x, y, z), (2 << 60) | name)
+            put_parts(row, NOBODY, OF_SUPPORT, part_of_place(b, pair.hulls, k, t))
+            if abs(d) < least:
+                least, nearest = abs(d), count
+            count += 1
     if count > first and found[nearest].gap + r < 0.0:
         if nearest > first:
             found[first] = found[nearest]
@@ -250,8 +272,11 @@ def _crossing(pair, z, count):
 
 
 @kernel
-def _on_face(pair, face, z, count):
-    """Add the points of the curve farthest towards a face of A, beside it; return the new count."""
+def _on_face(pair, face, z, reach, count):
+    """Add the points of the curve farthest towards a face of A, beside it; return the new count.
+
+    A point of the curve beside the face at the height h tells that the gap is at most h.
+    """
     s, a, b, rows, found = pair.state, pair.a, pair.b, pair.hulls.outlines, pair.found
     m = normal_of_face(a, pair.hulls, face)
     mx, my, mz = from_a(s, m[0], m[1], m[2])
@@ -265,25 +290,42 @@ def _on_face(pair, face, z, count):
             p = point_of_a(s, p[0], p[1], p[2])
             along = (mx * p[1] - my * p[0]) / across
             low, high = min(low, along), max(high, along)
-    for k in range(b.first, b.last):
-        if not is_peak(rows, k, -mx, -my, 0.0, limits.NEARLY_FLAT) or count >= len(found):
+    zero = _height(pair, face, to_a(s, -s.p[0], -s.p[1], z - s.p[2]))
+    most = math.inf
+    for k in range(b.first, b.last, ROWS_TOGETHER):
+        _, at, _ = block_at(rows, k, b.last)
+        x, y = rows[at].c[0, 0], rows[at].c[0, 1]
+        height = zero + mx * x + my * y
+        if height >= 0.0 and low <= (mx * y - my * x) / across <= high:
+            most = min(most, height / across)
+    most += reach + room
+    for start in range(b.first, b.last, ROWS_TOGETHER):
+        end, at, arc = block_at(rows, start, b.last)
+        x, y = rows[at].c[0, 0], rows[at].c[0, 1]
+        along = (mx * y - my * x) / across
+        if zero + mx * x + my * y > most + arc:
             continue
-        h = rows[k + 1].start - rows[k].start
-        if is_straight(rows[k], h):  # its corners count
+        if not (low - room - arc <= along <= high + room + arc):
             continue
-        t = peak_in_row(rows[k], h, -mx, -my, 0.0) if h > 0.0 else 0.0
-        x, y, _, _, _, _ = curve_at(rows[k], t)
-        along, q = (mx * y - my * x) / across, to_a(s, x - s.p[0], y - s.p[1], z - s.p[2])
-        gap = _height(pair, face, q)
-        if not (low - room <= along <= high + room):
-            continue
-        if gap < -room and not _leaves_by(pair, face, k, q, gap):
-            continue
-        name = (((1 << 14) | face) << 30) | stretch(b, pair.hulls, rows[k].start + t, math.inf)
-        on_a = (x - gap * mx, y - gap * my, z - gap * mz)
-        put(found[count], gap - a.radius, (-mx, -my, -mz), on_a, (x, y, z), (2 << 60) | name)
-        put_parts(found[count], OF_A, face_part(face), part_of_place(b, pair.hulls, k, t))
-        count += 1
+        for k in range(start, end):
+            if not is_peak(rows, k, -mx, -my, 0.0, limits.NEARLY_FLAT) or count >= len(found):
+                continue
+            h = rows[k + 1].start - rows[k].start
+            if is_straight(rows[k], h):  # its corners count
+                continue
+            t = peak_in_row(rows[k], h, -mx, -my, 0.0) if h > 0.0 else 0.0
+            x, y, _, _, _, _ = curve_at(rows[k], t)
+            along, q = (mx * y - my * x) / across, to_a(s, x - s.p[0], y - s.p[1], z - s.p[2])
+            gap = _height(pair, face, q)
+            if not (low - room <= along <= high + room):
+                continue
+            if gap < -room and not _leaves_by(pair, face, k, q, gap):
+                continue
+            name = (((1 << 14) | face) << 30) | stretch(b, pair.hulls, rows[k].start + t, math.inf)
+            on_a = (x - gap * mx, y - gap * my, z - gap * mz)
+            put(found[count], gap - a.radius, (-mx, -my, -mz), on_a, (x, y, z), (2 << 60) | name)
+            put_parts(found[count], OF_A, face_part(face), part_of_place(b, pair.hulls, k, t))
+            count += 1
     return count
 
 
@@ -293,7 +335,7 @@ def _beside(pair, z):
     b, s, found = pair.b, pair.state, pair.found
     up, r = math.copysign(1.0, z), pair.a.radius
     high, x, y = abs(z) - b.half[2], s.p[0], s.p[1]
-    count = _feet(pair, (x, y, z), 0.0, 0, 0)
+    count = _feet(pair, (x, y, z), 0.0, 0.0, 0, 0)
     nearest = 0
     for k in range(1, count):
         nearest = k if abs(found[k].gap) < abs(found[nearest].gap) else nearest
@@ -315,8 +357,16 @@ def _beside(pair, z):
 def axis_of(pair):
     """Return which axis of A is most along the axis of the profile, and the direction of that axis of A."""
     s, kind = pair.state, pair.a.kind
-    if kind in (HULL, POINT):
+    if kind == POINT:
         return 2, 0.0, 0.0, 1.0
+    if kind == HULL:  # a prism: the normal of a face across the axis
+        x, y, z = 0.0, 0.0, 0.0
+        for k in range(_faces(pair.a)):
+            n = normal_of_face(pair.a, pair.hulls, k)
+            nx, ny, nz = from_a(s, n[0], n[1], n[2])
+            if abs(nz) > abs(z):
+                x, y, z = nx, ny, nz
+        return 2, x, y, z
     axis = 2
     if kind == BOX:
         for k in range(2):
@@ -325,15 +375,23 @@ def axis_of(pair):
 
 
 @kernel
-def _sections(pair, low, high, axis):
+def _sections(pair, low, high, reach, axis):
     """Add the points of sections at both ends of a common thickness; return how many."""
     s, a, hulls = pair.state, pair.a, pair.hulls
     r = a.half[0] if a.kind == CYLINDER else a.radius
     which, x, y, z = axis
     sections, count = 2 if high > low else 1, 0
     corners = 8 if a.kind == BOX else a.last - a.first if a.kind == HULL else 1
+    upright = a.kind != HULL and abs(x) + abs(y) < ROUND_OFF  # both sections are the same
     for end in range(sections):
         level, before = high if end == 1 else low, count
+        if end == 1 and upright:
+            for k in range(min(before, len(pair.found) - before)):
+                row = pair.found[before + k]
+                pair.found[before + k] = pair.found[k]
+                row.on_a[2], row.on_b[2] = level, level
+                row.feature |= 1 << 29
+            return before + min(before, len(pair.found) - before)
         for i in range(corners):
             p = (0.0, 0.0, 0.0)
             if corners > 1:
@@ -346,9 +404,9 @@ def _sections(pair, low, high, axis):
             if a.kind == HULL and p[2] > s.p[2]:
                 continue
             f = (level - p[2]) / z
-            count = _feet(pair, (p[0] + f * x, p[1] + f * y, level), r, i, count)
+            count = _feet(pair, (p[0] + f * x, p[1] + f * y, level), r, reach, i, count)
         for i in range(_faces(a)):
-            count = _on_face(pair, i, level, count)
+            count = _on_face(pair, i, level, reach, count)
         for k in range(before, count):
             pair.found[k].feature |= end << 29
     return count
@@ -382,7 +440,7 @@ def profile_pair(pair, reach):
     if abs(axis[3]) < limits.PARALLEL:  # such sections are none: the run must end
         put(found[0], math.nan, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 2 << 60)
         return 1
-    count = _sections(pair, low, high, axis)
+    count = _sections(pair, low, high, reach, axis)
     least = math.inf
     for k in range(count):
         least = min(least, found[k].gap)
@@ -407,30 +465,42 @@ def lowest_of_profile(a, hulls, seen, reach, found):
     """
     ux, uy, uz, height = seen
     rows, count, least = hulls.outlines, 0, math.inf
-    for k in range(a.first, a.last):
-        if not is_peak(rows, k, -ux, -uy, 0.0, limits.NEARLY_FLAT):
+    across, most = math.sqrt(ux * ux + uy * uy), math.inf
+    for k in range(a.first, a.last, ROWS_TOGETHER):
+        _, at, _ = block_at(rows, k, a.last)
+        most = min(most, ux * rows[at].c[0, 0] + uy * rows[at].c[0, 1])
+    most += reach + ROUND_OFF * a.extent
+    for start in range(a.first, a.last, ROWS_TOGETHER):
+        end, at, arc = block_at(rows, start, a.last)
+        if ux * rows[at].c[0, 0] + uy * rows[at].c[0, 1] > most + across * arc:
             continue
-        h = rows[k + 1].start - rows[k].start
-        if is_straight(rows[k], h):
-            continue
-        t = peak_in_row(rows[k], h, -ux, -uy, 0.0) if h > 0.0 else 0.0
-        x, y, _, _, _, _ = curve_at(rows[k], t)
-        name, part = stretch(a, hulls, rows[k].start + t, math.inf), part_of_place(a, hulls, k, t)
-        for end in range(2):
-            z = a.half[2] if end == 1 else -a.half[2]
-            if count < len(found):
-                gap = height + x * ux + y * uy + z * uz
-                put(
-                    found[count],
-                    gap,
-                    (0.0, 0.0, 0.0),
-                    (x, y, z),
-                    (x, y, z),
-                    (1 << 60) | ((name + (end << 14)) << 45),
-                )
-                put_parts(found[count], NOBODY, part, 0)
-                least = min(least, gap)
-                count += 1
+        for k in range(start, end):
+            if not is_peak(rows, k, -ux, -uy, 0.0, limits.NEARLY_FLAT):
+                continue
+            h = rows[k + 1].start - rows[k].start
+            if is_straight(rows[k], h):
+                continue
+            t = peak_in_row(rows[k], h, -ux, -uy, 0.0) if h > 0.0 else 0.0
+            x, y, _, _, _, _ = curve_at(rows[k], t)
+            name, part = (
+                stretch(a, hulls, rows[k].start + t, math.inf),
+                part_of_place(a, hulls, k, t),
+            )
+            for end in range(2):
+                z = a.half[2] if end == 1 else -a.half[2]
+                if count < len(found):
+                    gap = height + x * ux + y * uy + z * uz
+                    put(
+                        found[count],
+                        gap,
+                        (0.0, 0.0, 0.0),
+                        (x, y, z),
+                        (x, y, z),
+                        (1 << 60) | ((name + (end << 14)) << 45),
+                    )
+                    put_parts(found[count], NOBODY, part, 0)
+                    least = min(least, gap)
+                    count += 1
     kept, most = 0, least + reach + ROUND_OFF * a.extent
     for k in range(count):
         if found[k].gap <= most:
@@ -443,12 +513,19 @@ def lowest_of_profile(a, hulls, seen, reach, found):
 @kernel
 def farthest_of_curve(solid, hulls, x, y):
     """Return the greatest x c_x + y c_y on the curve of a profile."""
-    rows, best = hulls.outlines, -math.inf
-    for k in range(solid.first, solid.last):
-        c = rows[k].c
-        best = max(best, x * c[0, 0] + y * c[0, 1])
-        if is_peak(rows, k, x, y, 0.0, 0.0) and rows[k + 1].start > rows[k].start:
-            t = peak_in_row(rows[k], rows[k + 1].start - rows[k].start, x, y, 0.0)
-            px, py, _, _, _, _ = curve_at(rows[k], t)
-            best = max(best, x * px + y * py)
+    rows, best, across = hulls.outlines, -math.inf, math.sqrt(x * x + y * y)
+    for k in range(solid.first, solid.last, ROWS_TOGETHER):
+        _, at, _ = block_at(rows, k, solid.last)
+        best = max(best, x * rows[at].c[0, 0] + y * rows[at].c[0, 1])
+    for start in range(solid.first, solid.last, ROWS_TOGETHER):
+        end, at, arc = block_at(rows, start, solid.last)
+        if x * rows[at].c[0, 0] + y * rows[at].c[0, 1] + across * arc < best:
+            continue
+        for k in range(start, end):
+            c = rows[k].c
+            best = max(best, x * c[0, 0] + y * c[0, 1])
+            if is_peak(rows, k, x, y, 0.0, 0.0) and rows[k + 1].start > rows[k].start:
+                t = peak_in_row(rows[k], rows[k + 1].start - rows[k].start, x, y, 0.0)
+                px, py, _, _, _, _ = curve_at(rows[k], t)
+                best = max(best, x * px + y * py)
     return best

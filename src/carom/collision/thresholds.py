@@ -23,3 +23,4 @@ SIDE_REACH = 0.25  #: size of the smaller solid: gap up to which points on both 
 ENTERED = 0.8  #: radius of curvature of a hollow: greater circles do not reach its bottom
 PARALLEL = 0.9998  #: cosine of the angle: about 1 degree: greatest of the axes of a profile and its partner
 NEARLY_FLAT = 0.05  #: sine of the angle: of a side of a corner to a face, which may rest on both its ends
+CHORD = 1.000001  #: arc of a curve: bound of its chord, with the error of the table by arc length

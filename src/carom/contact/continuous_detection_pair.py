@@ -63,11 +63,14 @@ def balls_clear(system, data, contact, a, pieces):
 
 @kernel
 def lowest_open(system, data, c, state):
-    """Return the least gap of the points in work.touches that are not active, and its rate."""
+    """Return the least gap of the points in work.touches that are not active, and its rate.
+
+    It is nan where a profile and its partner have no sections: the search for this event ends the run.
+    """
     least, rate, work = math.inf, 0.0, data.work
     for i in range(work.pair.state[0].total):
         touch = work.touches[i]
-        if touch.gap < least and place_of(system, data.active, c, touch, state) < 0:
+        if not touch.gap >= least and place_of(system, data.active, c, touch, state) < 0:
             least, rate = touch.gap, touch_rate(system.contacts[c], touch, state)
     return least, rate
 

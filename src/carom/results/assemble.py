@@ -27,6 +27,7 @@ from carom.results.names import (
     restitution_of,
     row_units,
 )
+from carom.results.tipped_profiles import tipped
 from carom.scene.forces import AppliedForce
 from carom.scene.materials import IMPACT_LAWS
 from carom.scene.more_forces import JointFriction
@@ -82,7 +83,7 @@ def assemble(run, status: Status) -> dict:
         "settings": dict(run.settings),
         "pairs": run.pairs,
         "_run": run,
-        "_reason": run.compiled.functions.reason or locked(run, status),
+        "_reason": run.compiled.functions.reason or locked(run, status) or tipped(run, status),
         "_touch": copied(rec.touch),
         "_written": Written(
             np.array(state["Q"]), copied(series), impact, event,

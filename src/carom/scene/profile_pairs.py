@@ -43,14 +43,32 @@ def _obstacle(other, axis: np.ndarray) -> str:
             continue
         if piece.kind in ("profile", "ellipsoid"):
             return f"which is {'another Profile' if piece.kind == 'profile' else 'an Ellipsoid'}"
-        own = quaternion.rotate_back(_turn(other, piece), axis)
-        if piece.kind in ("segment", "cylinder"):
-            fits = np.hypot(own[0], own[1]) <= PARALLEL
-        elif piece.kind == "box":
-            fits = np.sort(np.abs(own))[1] <= PARALLEL
-        else:
-            along = np.abs(piece.normals @ own)
-            fits = bool(np.all((along <= PARALLEL) | (along >= 1.0 - PARALLEL**2)))
-        if not fits:
+        if _slant(piece, quaternion.rotate_back(_turn(other, piece), axis)) > PARALLEL:
             return "whose axis or edges are not parallel to the axis of the profile"
     return ""
+
+
+def _slant(piece, axis: np.ndarray) -> float:
+    """Return the sine of the greatest angle between an axis, in those of a piece, and its axis or edges."""
+    if piece.kind == "point":
+        return 0.0
+    if piece.kind in ("segment", "cylinder"):
+        return float(np.hypot(axis[0], axis[1]))
+    if piece.kind == "box":
+        return float(np.hypot(*np.sort(np.abs(axis))[:2]))
+    along = np.minimum(np.abs(piece.normals @ axis), 1.0)
+    return float(np.max(np.minimum(along, np.sqrt(1.0 - along**2))))
+
+
+def slant(one, turn, other, other_turn) -> float:
+    """Return the greatest angle [rad] of a profile of one shape to the axes of another, at two attitudes."""
+    most = 0.0
+    for a, q, b, p in ((one, turn, other, other_turn), (other, other_turn, one, turn)):
+        for profile in (piece for piece in a.pieces if piece.kind == "profile"):
+            axis = quaternion.rotate(
+                quaternion.multiply(q, profile.orientation), np.array([0.0, 0.0, 1.0])
+            )
+            for piece in b.pieces:
+                own = quaternion.rotate_back(quaternion.multiply(p, piece.orientation), axis)
+                most = max(most, _slant(piece, own))
+    return float(np.arcsin(min(most, 1.0)))

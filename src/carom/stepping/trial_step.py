@@ -6,6 +6,7 @@ import math
 
 from carom._compiled.decorators import inlined
 from carom.contact.continuous_detection import CLEAR, FLAT_RIM, UNSURE
+from carom.contact.parting_of_profile import has_profile
 from carom.dynamics.adapt import allowed_step, plan_next, shorter, step_error
 from carom.dynamics.explicit import CONSTRAINTS_LOST, rubs
 from carom.dynamics.more_forces import turns_round
@@ -19,7 +20,7 @@ from carom.persistent.contact_step import contact_step
 from carom.persistent.events import note_first_stops
 from carom.persistent.margins import note_due
 from carom.persistent.step_control import too_long
-from carom.status import NOT_FINITE, STEP_TOO_SMALL, UNSTABLE
+from carom.status import NOT_FINITE, OUT_OF_PLANE, STEP_TOO_SMALL, UNSTABLE
 from carom.status import STEP_CUT_TO_NOTHING as STEP_CUT
 from carom.status import TOO_MANY_IMPACTS as TOO_MANY
 from carom.stepping.energy_balance import IN_A_ROW, off_balance
@@ -179,10 +180,14 @@ def fits(model, data):
 @inlined
 def is_root(model, data):
     """Return 0 if the end of the trial step is the event of the search; otherwise ONCE_MORE or a code."""
-    search = data.work.search[0]
+    system, work, search = model.system, data.work, data.work.search[0]
     f, rate = event_value(model, data)
     state = update_bracket(search, search.dt, f, rate)
     if state < 0:
+        if search.kind == EVENT_GAP and finite(work.trial):
+            contact = system.contacts[search.contact]
+            if contact.touches == 1 and has_profile(system, contact):
+                return OUT_OF_PLANE
         return NOT_FINITE
     if state == 0:
         search.dt = next_trial(search)
