@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.closed_points import apart, round_off_of_both
@@ -46,8 +48,9 @@ def least_gap(system, contact, state, work):
 
 @unit
 def least_of_touches(system, contact, state, work) -> float:
-    """Return the least gap of the points of two solids."""
+    """Return the least gap of the points of two solids; -inf if a function of a surface has no value."""
     least = 0.0
     for i in range(find_touches(system, contact, state, 0.0, work)):
-        least = min(least, work.touches[i].gap)
+        gap = work.touches[i].gap
+        least = min(least, gap if gap == gap else -math.inf)
     return least

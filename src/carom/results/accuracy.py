@@ -83,7 +83,7 @@ def sentences(
     found = [
         (_excess(abs(watch.amount[i]), float(allowed(watch))), _of_energy(i, watch)) for i in kinds
     ]
-    if scene is not None and numbers["depth"] > DEEP:
+    if scene is not None and DEEP < numbers["depth"] < np.inf:  # inf: a gap that has no value
         found.append((_excess(watch.depth, TOO_DEEP), _of_depth(watch, scene, pairs)))
     if not numbers["unsolved"] <= POOR * numbers["speed"]:
         found.append((_excess(watch.unsolved, TOO_POOR * watch.speed), _of_contacts(watch)))
