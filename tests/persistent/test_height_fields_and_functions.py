@@ -94,7 +94,8 @@ def no_map(x):
 
 @pytest.mark.parametrize("e", [0.0, 0.6])
 @pytest.mark.parametrize(
-    ("beyond", "said"), [(no_map, "raised .*: beyond the map"), (lambda x: math.nan, "returned nan")]
+    ("beyond", "said"),
+    [(no_map, "raised .*: beyond the map"), (lambda x: math.nan, "returned nan")],
 )
 def test_a_function_without_a_value_ends_the_run(e, beyond, said):
     ground = S.Surface(
@@ -123,7 +124,8 @@ def test_a_compiled_function_without_a_value_ends_the_run():
     scene.add_contact("b", "map", friction=0.0, restitution=0.0)
     solution = carom.simulate(scene, 2.0, throw=False)
     assert solution.status is carom.Status.FUNCTION_FAILED
-    assert "math domain error" in solution.message and 0.59 <= solution.t[-1] <= 0.65
+    assert "math domain error" in solution.message
+    assert 0.59 <= solution.t[-1] <= 0.65
 
 
 def terrain(seed):
