@@ -41,7 +41,7 @@ from carom.geometry.vectors import dot, plus
 
 MOST_CORRECTIONS_OF_NORMAL = 40  # of Newton's method for the normal of an ellipsoid
 EDGE_HALVINGS = 60  # of an edge, for its lowest point
-EDGE_PARTS = 8  # of an edge, in which a lowest point is sought where the distance falls or rises at both ends
+EDGE_PARTS = 8  # of an edge, in which a lowest point is sought where the ends do not show one
 
 
 @kernel
@@ -169,20 +169,23 @@ def _slope(pair, surface, p, t, share):
 
 @kernel
 def _valley(pair, surface, p, t):
-    """Return the ends of a part of the way t from p, between which the distance first falls, and both slopes.
+    """Return the ends of a part of the way t from p in which the distance is least, and the slopes there.
 
-    It is the whole way, or where the surface is hollow at one end a part of it; if none is found the last slope
-    is not above 0.
+    It is the whole way, or where the surface is hollow at an end a part of it, by the gradients of phi, which
+    are along those of the distance near the surface. If none is found a slope has the wrong sign.
     """
-    begin, falls, last = 0.0, _slope(pair, surface, p, t, 0.0), _slope(pair, surface, p, t, 1.0)
-    if (falls < 0.0) == (last > 0.0):
-        return 0.0, 1.0, falls, last if falls < 0.0 else 0.0
-    for k in range(1, EDGE_PARTS + 1):
+    falls, rises = _slope(pair, surface, p, t, 0.0), _slope(pair, surface, p, t, 1.0)
+    if falls < 0.0 and rises > 0.0:
+        return 0.0, 1.0, falls, rises
+    before = 0.0
+    for k in range(EDGE_PARTS + 1):
         share = k / EDGE_PARTS
-        slope = _slope(pair, surface, p, t, share) if k < EDGE_PARTS else last
-        if falls < 0.0 and slope > 0.0:
-            return begin, share, falls, slope
-        begin, falls = share, slope
+        slope = dot(field_at(surface, pair.hulls, plus(p, share, t))[1], t)
+        if before < 0.0 and slope > 0.0:
+            begin = (k - 1) / EDGE_PARTS
+            falls = _slope(pair, surface, p, t, begin)
+            return begin, share, falls, _slope(pair, surface, p, t, share)
+        before = slope
     return 0.0, 1.0, falls, 0.0
 
 
@@ -191,7 +194,7 @@ def _between(pair, surface, p, q):
     """Return the share of the way from p to q at the lowest point of a line, 0 if an end is lowest."""
     t = plus(q, -1.0, p)
     low, high, falls, rises = _valley(pair, surface, p, t)
-    if not rises > 0.0:
+    if not (falls < 0.0 and rises > 0.0):
         return 0.0
     for k in range(EDGE_HALVINGS):
         share = falls / (falls - rises) if k % 3 < 2 else 0.5  # a halving after two secants
