@@ -184,3 +184,16 @@ def rolls_on(ground, shape):
     scene.add_surface(ground, name="ground")
     scene.add_body(shape, mass=1.0, position=(0, 0, 3), name="body")
     scene.add_contact("body", "ground")
+
+
+def test_a_bump_in_a_face_is_said():
+    x = np.linspace(-1, 1, 41)
+    heights = 0.1 * np.exp(-(x[:, None] ** 2 + x**2) / 0.1**2)
+    scene = carom.Scene(gravity=(0, 0, -G))
+    scene.add_surface(S.HeightField(heights, spacing=0.05), name="hill")
+    scene.add_body(carom.Box(0.8, 0.8, 0.1), mass=1.0, position=(0, 0, 0.2), name="plate")
+    scene.add_contact("plate", "hill", friction=0.5, restitution=0.0)
+    solution = carom.simulate(scene, 0.3, throw=False)
+    assert solution.status is carom.Status.INACCURATE
+    assert "'plate' penetrates 'hill'" in solution.message
+    assert "a bump reaches into a face" in solution.message
