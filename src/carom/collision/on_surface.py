@@ -171,8 +171,9 @@ def _slope(pair, surface, p, t, share):
 def _valley(pair, surface, p, t):
     """Return the ends of a part of the way t from p in which the distance is least, and the slopes there.
 
-    It is the whole way, or where the surface is hollow at an end a part of it, by the gradients of phi, which
-    are along those of the distance near the surface. If none is found a slope has the wrong sign.
+    It is the whole way, or where the surface is hollow at an end a part of it, for a core without
+    a radius by gradients of phi, which are along those of the distance near the surface. If none is found a
+    slope has the wrong sign.
     """
     falls, rises = _slope(pair, surface, p, t, 0.0), _slope(pair, surface, p, t, 1.0)
     if falls < 0.0 and rises > 0.0:
@@ -180,7 +181,10 @@ def _valley(pair, surface, p, t):
     before = 0.0
     for k in range(EDGE_PARTS + 1):
         share = k / EDGE_PARTS
-        slope = dot(field_at(surface, pair.hulls, plus(p, share, t))[1], t)
+        if pair.a.radius > 0.0:
+            slope = _slope(pair, surface, p, t, share)
+        else:
+            slope = dot(field_at(surface, pair.hulls, plus(p, share, t))[1], t)
         if before < 0.0 and slope > 0.0:
             begin = (k - 1) / EDGE_PARTS
             falls = _slope(pair, surface, p, t, begin)
