@@ -20,6 +20,7 @@ from carom.scene.friction import bound_of
 DEPTH, GAIN, UNNAMED, IMPULSE = 1e-9, 1e-6, 1e-4, 1e4
 #: of the size of energies: their round-off; saved times at which bodies are looked at that overlap
 ROUND_OFF, LOOKS = 1e-13, 40
+PARTS = 10  # of the way between two corners, at whose ends the depth in curved ground is looked at
 
 
 @dataclass
@@ -177,6 +178,15 @@ def overlap(scene: carom.Scene, s: carom.Solution) -> float:
                 gap = nearest_points(shapes[0], (x[a], q[a]), shapes[1], (x[b], q[b])).gap
                 worst = max(worst, -gap / smaller)
     return worst
+
+
+def points_of(piece) -> np.ndarray:
+    """Return points of the core of a piece: its corners, and some on the ways between any two."""
+    corners = np.asarray(piece.corners)
+    i, j = np.triu_indices(len(corners), 1)
+    shares = np.linspace(0.0, 1.0, PARTS + 1)[1:-1, None, None]
+    between = (1.0 - shares) * corners[i] + shares * corners[j]
+    return np.concatenate([corners, between.reshape(-1, 3)])
 
 
 def as_row(family: str, seed: int, case: Case, outcome: Outcome) -> dict:

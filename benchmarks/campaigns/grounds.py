@@ -6,7 +6,7 @@ import numpy as np
 
 import carom
 from campaigns import draw
-from campaigns.case import DEPTH, Case
+from campaigns.case import DEPTH, Case, points_of
 from carom.collision.api import nearest_points
 from carom.geometry import quaternion
 
@@ -97,7 +97,7 @@ def sunk(s: carom.Solution, wall) -> float:
                 )
                 worst = max(worst, -near.gap)
             continue
-        for corner in piece.corners:
+        for corner in points_of(piece):
             world = s.position[:, 0] + quaternion.rotate(s.orientation[:, 0], corner)
             own = quaternion.rotate_back(wall.orientation, world - wall.position)
             worst = max(worst, float(np.max(piece.radius - height(wall.shape, own))))

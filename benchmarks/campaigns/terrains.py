@@ -6,9 +6,10 @@ import numpy as np
 
 import carom
 from campaigns import draw
-from campaigns.case import DEPTH, Case
+from campaigns.case import DEPTH, Case, points_of
 from carom.geometry import quaternion
 
+FOOT = 40  # steps to the foot of a point: they converge where the curvature times the distance is below 1
 SHAPES = ("sphere", "box", "capsule", "convex", "rod", "compound")
 
 
@@ -52,11 +53,33 @@ def terrain(rng) -> carom.surfaces.HeightField:
 
 
 def sunk(s: carom.Solution) -> float:
-    """Return how far the corners of the body get below the ground, by its size."""
+    """Return how far the body gets below the ground, by its size."""
     body, ground = s.scene.bodies[0], s.scene.statics[0].shape
     worst = 0.0
     for piece in body.shape.pieces:
-        corners = s.position[:, :1] + quaternion.rotate(s.orientation[:, :1], piece.corners)
-        x, y, z = np.moveaxis(corners, -1, 0)  # the height is no less than the distance
-        worst = max(worst, float(np.max(piece.radius - (z - ground.height(x, y)))))
+        for point in points_of(piece):
+            p = s.position[:, 0] + quaternion.rotate(s.orientation[:, 0], point)
+            above = p[:, 2] - ground.height(p[:, 0], p[:, 1])
+            near = above <= piece.radius * np.hypot(1.0, ground.steepest)
+            if near.any():
+                worst = max(worst, float(np.max(piece.radius - distance(ground, p[near]))))
     return worst / body.shape.size
+
+
+def distance(ground, p: np.ndarray) -> np.ndarray:
+    """Return the distance of points (N, 3) from their feet, negative below.
+
+    With g the gradient of the height h, u - x = (z - h(u)) g; (1 + g g^T)^-1 times what is off is a step.
+    """
+    u, d = p[:, :2].copy(), 1e-4 * np.min(ground.spacing)
+    for _ in range(FOOT):
+        x, y = u.T
+        slope = np.stack([
+            ground.height(x + d, y) - ground.height(x - d, y),
+            ground.height(x, y + d) - ground.height(x, y - d),
+        ], axis=1) / (2.0 * d)  # fmt: skip
+        off = u - p[:, :2] - (p[:, 2] - ground.height(x, y))[:, None] * slope
+        square = np.sum(slope * slope, axis=1)
+        u += slope * (np.sum(slope * off, axis=1) / (1.0 + square))[:, None] - off
+    below = p[:, 2] - ground.height(*u.T)
+    return np.copysign(np.hypot(np.linalg.norm(p[:, :2] - u, axis=1), below), below)

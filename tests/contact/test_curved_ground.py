@@ -52,6 +52,20 @@ def points_of(shape, x, q, rng):
     return (corners[:, None] + piece.radius * directions).reshape(-1, 3)
 
 
+def test_an_edge_that_dips_into_the_ground_beyond_where_it_rises():
+    """The inner side of a tube is hollow at one end of an edge, and bulges at the other."""
+    shape, ground = carom.Box(0.5, 0.02, 0.02), S.InsideTorus(1.0, 0.5)
+    x = np.array([-0.19332065, -0.78323897, -0.43937704])
+    q = unit(np.array([-0.80708963, 0.47334381, -0.24545337, 0.25358353]))
+    found = nearest_points(shape, (x, q), ground, (np.zeros(3), (1.0, 0, 0, 0)))
+    corners = x + quaternion.rotate(q, np.array(shape.pieces[0].corners))
+    i, j = np.triu_indices(8, 1)
+    shares = np.linspace(0.0, 1.0, 2001)[:, None, None]
+    heights = height(ground, (1.0 - shares) * corners[i] + shares * corners[j])
+    assert 1 < np.argmin(np.min(heights, axis=1)) < 2000  # between corners
+    assert found.gap == pytest.approx(np.min(heights), abs=1e-6)
+
+
 @pytest.mark.parametrize("name", GROUNDS)
 @pytest.mark.parametrize("kind", SHAPES)
 def test_the_gap_is_that_of_the_nearest_point(kind, name):

@@ -1,6 +1,7 @@
 """Motion on height fields and on surfaces of functions: against an integration, spheres, and each other."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -87,25 +88,44 @@ def test_the_function_of_a_sphere_is_a_sphere(with_functions):
     assert one.position == pytest.approx(two.position, abs=1e-7)
 
 
-def test_an_error_in_a_function_is_named():
-    def phi(x, y, z):
-        if x > 0.6:
-            raise RuntimeError("beyond the map")
-        return z
+def no_map(x):
+    raise RuntimeError("beyond the map")
 
+
+@pytest.mark.parametrize("e", [0.0, 0.6])
+@pytest.mark.parametrize(
+    ("beyond", "said"),
+    [(no_map, "raised .*: beyond the map"), (lambda x: math.nan, "returned nan")],
+)
+def test_a_function_without_a_value_ends_the_run(e, beyond, said):
     ground = S.Surface(
-        phi, [(-1, -1, -1), (0.5, 1, 1)], lambda *x: (0, 0, 1), lambda *x: np.zeros((3, 3))
-    )
+        lambda x, y, z: beyond(x) if x > 0.6 else z, [(-1, -1, -1), (0.5, 1, 1)],
+        lambda *x: (0, 0, 1), lambda *x: np.zeros((3, 3)),
+    )  # fmt: skip
     scene = carom.Scene(gravity=(0, 0, -G))
     scene.add_surface(ground, name="map")
     scene.add_body(
-        carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.1), velocity=(1, 0, 0), name="ball"
+        carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.1 + e), velocity=(1, 0, 0), name="ball"
     )
-    scene.add_contact("ball", "map", friction=0.0, restitution=0.0)
-    with pytest.raises(
-        carom.SimulationError, match=r"he function of the surface 'map' raised .*: beyond the map"
-    ):
-        carom.simulate(scene, 2.0)
+    scene.add_contact("ball", "map", friction=0.0, restitution=e)
+    solution = carom.simulate(scene, 2.0, step=0.01, throw=False)
+    assert solution.status is carom.Status.FUNCTION_FAILED
+    assert re.search(f"he function of the surface 'map' {said}", solution.message)
+    assert 0.59 <= solution.t[-1] <= 0.65  # it does not fall through until the end
+    assert np.min(solution.position[:, 0, 2]) > 0.09
+
+
+def test_a_compiled_function_without_a_value_ends_the_run():
+    # derived and compiled: the logarithm has no value beyond x = 0.6
+    ground = S.Surface(lambda x, y, z: z + 1e-9 * sp.log(0.6 - x), [(-1, -1, -1), (0.5, 1, 1)])
+    scene = carom.Scene(gravity=(0, 0, -G))
+    scene.add_surface(ground, name="map")
+    scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.2), velocity=(1, 0, 0), name="b")
+    scene.add_contact("b", "map", friction=0.0, restitution=0.0)
+    solution = carom.simulate(scene, 2.0, throw=False)
+    assert solution.status is carom.Status.FUNCTION_FAILED
+    assert "math domain error" in solution.message
+    assert 0.59 <= solution.t[-1] <= 0.65
 
 
 def terrain(seed):
@@ -164,3 +184,16 @@ def rolls_on(ground, shape):
     scene.add_surface(ground, name="ground")
     scene.add_body(shape, mass=1.0, position=(0, 0, 3), name="body")
     scene.add_contact("body", "ground")
+
+
+def test_a_bump_in_a_face_is_said():
+    x = np.linspace(-1, 1, 41)
+    heights = 0.1 * np.exp(-(x[:, None] ** 2 + x**2) / 0.1**2)
+    scene = carom.Scene(gravity=(0, 0, -G))
+    scene.add_surface(S.HeightField(heights, spacing=0.05), name="hill")
+    scene.add_body(carom.Box(0.8, 0.8, 0.1), mass=1.0, position=(0, 0, 0.2), name="plate")
+    scene.add_contact("plate", "hill", friction=0.5, restitution=0.0)
+    solution = carom.simulate(scene, 0.3, throw=False)
+    assert solution.status is carom.Status.INACCURATE
+    assert "'plate' penetrates 'hill'" in solution.message
+    assert "a bump reaches into a face" in solution.message

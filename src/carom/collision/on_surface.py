@@ -41,6 +41,7 @@ from carom.geometry.vectors import dot, plus
 
 MOST_CORRECTIONS_OF_NORMAL = 40  # of Newton's method for the normal of an ellipsoid
 EDGE_HALVINGS = 60  # of an edge, for its lowest point
+EDGE_PARTS = 8  # of an edge, in which a lowest point is sought where the ends do not show one
 
 
 @kernel
@@ -161,19 +162,48 @@ def _kept(pair, count, least, reach):
 
 
 @kernel
+def _slope(pair, surface, p, t, share):
+    """Return the change of the distance along t at this share of the way."""
+    return dot(foot_of(surface, pair.hulls, plus(p, share, t))[1], t)
+
+
+@kernel
+def _valley(pair, surface, p, t):
+    """Return the ends of a part of the way t from p in which the distance is least, and the slopes there.
+
+    It is the whole way, or where the surface is hollow at an end a part of it, for a core without
+    a radius by gradients of phi, which are along those of the distance near the surface. If none is found a
+    slope has the wrong sign.
+    """
+    falls, rises = _slope(pair, surface, p, t, 0.0), _slope(pair, surface, p, t, 1.0)
+    if falls < 0.0 and rises > 0.0:
+        return 0.0, 1.0, falls, rises
+    before = 0.0
+    for k in range(EDGE_PARTS + 1):
+        share = k / EDGE_PARTS
+        if pair.a.radius > 0.0:
+            slope = _slope(pair, surface, p, t, share)
+        else:
+            slope = dot(field_at(surface, pair.hulls, plus(p, share, t))[1], t)
+        if before < 0.0 and slope > 0.0:
+            begin = (k - 1) / EDGE_PARTS
+            falls = _slope(pair, surface, p, t, begin)
+            return begin, share, falls, _slope(pair, surface, p, t, share)
+        before = slope
+    return 0.0, 1.0, falls, 0.0
+
+
+@kernel
 def _between(pair, surface, p, q):
     """Return the share of the way from p to q at the lowest point of a line, 0 if an end is lowest."""
     t = plus(q, -1.0, p)
-    _, n = foot_of(surface, pair.hulls, p)
-    _, m = foot_of(surface, pair.hulls, q)
-    low, high, falls, rises = 0.0, 1.0, dot(n, t), dot(m, t)
+    low, high, falls, rises = _valley(pair, surface, p, t)
     if not (falls < 0.0 and rises > 0.0):
         return 0.0
     for k in range(EDGE_HALVINGS):
         share = falls / (falls - rises) if k % 3 < 2 else 0.5  # a halving after two secants
         middle = low + (high - low) * share
-        _, n = foot_of(surface, pair.hulls, plus(p, middle, t))
-        slope = dot(n, t)
+        slope = _slope(pair, surface, p, t, middle)
         if slope < 0.0:
             low, falls = middle, slope
         else:

@@ -8,6 +8,7 @@ import numpy as np
 
 from carom.model.contact_rows import touching_pairs
 from carom.results.ledger import Ledger
+from carom.scene.surface_definition import SurfaceDefinition
 from carom.stepping.energy_balance import ALL, BOUNCES, FRICTION, IMPACTS, RESIDUAL, new_watch
 from carom.stepping.thresholds import ENERGY_ROUND_OFF
 
@@ -83,7 +84,7 @@ def sentences(
     found = [
         (_excess(abs(watch.amount[i]), float(allowed(watch))), _of_energy(i, watch)) for i in kinds
     ]
-    if scene is not None and numbers["depth"] > DEEP:
+    if scene is not None and DEEP < numbers["depth"] < np.inf:  # inf: a gap that has no value
         found.append((_excess(watch.depth, TOO_DEEP), _of_depth(watch, scene, pairs)))
     if not numbers["unsolved"] <= POOR * numbers["speed"]:
         found.append((_excess(watch.unsolved, TOO_POOR * watch.speed), _of_contacts(watch)))
@@ -122,20 +123,20 @@ def _of_contacts(watch: np.record) -> str:
 
 def _of_depth(watch: np.record, scene: Scene, pairs: PairTable | None) -> str:
     """Return the sentence about a body that penetrates another one, or a joint beyond its stop."""
+    why = "events follow each other too fast to be located"
     number, pairs = int(watch.deep_contact), touching_pairs(scene) if pairs is None else pairs
     if number < len(pairs.body):
         other, plane = pairs.other[number], pairs.plane[number]
         what = scene.bodies[pairs.body[number]]
         where = scene.bodies[other] if other >= 0 else scene.fixed[plane]
         said = f"Body {what.name!r} penetrates {where.name!r} by {watch.depth:.2g} of its size"
+        if isinstance(getattr(where, "shape", None), SurfaceDefinition):
+            why += ", or a bump reaches into a face, which touches it at vertices and edges only"
     else:
         stop = scene.stops[number - len(pairs.body)]
         beyond = "penetrates its rail" if stop.joint.can_be_left else "exceeds its stop"
         said = f"Joint {stop.joint.name!r} {beyond} by {watch.depth:.2g} of the size of its body"
-    return (
-        f"{said} at t = {watch.deep_at:.6g} s ({TOO_DEEP:g} is allowed): events follow each other too fast to "
-        "be located. {finer}."
-    )
+    return f"{said} at t = {watch.deep_at:.6g} s ({TOO_DEEP:g} is allowed): {why}. {{finer}}."
 
 
 def _of_energy(i: int, watch: np.record) -> str:

@@ -150,6 +150,8 @@ def finish_step(model, data, grid):
     if is_saved(grid, clock.step):
         if controls.location == LOCATE:
             watch_depth(system, state, clock.now, data.work, data.watch[0])
+            if not data.watch[0].depth < math.inf:  # a surface has no value there
+                return NOT_FINITE
         save(model, data)
     return 0
 
