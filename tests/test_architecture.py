@@ -56,7 +56,7 @@ CAPABILITIES = {
     "ground that is not convex": {
         "collision": 7, "contact": 3, "scene": 8, "visual": 2, "io": 1, "persistent": 1, "stepping": 1,
     },
-    "cams": {"collision": 5, "contact": 3, "scene": 5, "visual": 1},
+    "cams": {"collision": 6, "contact": 3, "scene": 5, "visual": 1},
     "rails that can be left": {"kinematics": 1, "scene": 2},
     "friction that depends on the direction": {"kinematics": 1, "scene": 2},
     "laws of friction and tangential restitution of several contacts, and in own coordinates": {

@@ -7,6 +7,7 @@ import math
 from carom._compiled.decorators import by_reference, entry, inlined, kernel
 from carom._compiled.units import unit
 from carom.contact.depth import watch_depth
+from carom.contact.parting_of_profile import has_profile
 from carom.dynamics.known_end import forget_end
 from carom.dynamics.local_scale import local_controls, note_scale
 from carom.model import records as r
@@ -133,6 +134,20 @@ def note_gain(controls, step, watch):
     watch.speed = max(watch.speed, controls.pull * step.length)
 
 
+@kernel
+def without_gap(system, watch):
+    """Return the status of a run in which a contact has no gap.
+
+    A body has tipped beside a profile, or the function of a surface has no value.
+    """
+    for c in range(system.contacts.shape[0]):
+        contact = system.contacts[c]
+        if contact.number == watch.deep_contact and contact.touches == 1:
+            if has_profile(system, contact):
+                return OUT_OF_PLANE
+    return NOT_FINITE
+
+
 @inlined
 def finish_step(model, data, grid):
     """Set the clock to the end of the step, check the energy balance, and save the state if it is due."""
@@ -150,8 +165,8 @@ def finish_step(model, data, grid):
     if is_saved(grid, clock.step):
         if controls.location == LOCATE:
             watch_depth(system, state, clock.now, data.work, data.watch[0])
-            if not data.watch[0].depth < math.inf:  # a surface has no value there
-                return NOT_FINITE
+            if not data.watch[0].depth < math.inf:
+                return without_gap(system, data.watch[0])
         save(model, data)
     return 0
 
