@@ -11,6 +11,7 @@ import pytest
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 CHROMIUM = next(filter(None, map(shutil.which, NAMES)), None)
+WAIT = 90  # for a page [s]: a busy machine draws in software for long
 FLAGS = (
     "--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--remote-debugging-port=0",
     "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
@@ -79,12 +80,12 @@ class Browser:
         return self._until(lambda: self.run(script))
 
     def _until(self, look):
-        end = time.monotonic() + 30
+        end = time.monotonic() + WAIT
         while time.monotonic() < end:
             if found := look():
                 return found
             time.sleep(0.05)
-        raise TimeoutError("the browser did not get there within 30 s")
+        raise TimeoutError(f"the browser did not get there within {WAIT} s")
 
     @staticmethod
     def _port(folder: Path) -> str:

@@ -53,6 +53,8 @@ def set_friction(system, i, slips, group):
 @kernel
 def follow_laws(system, active, k, group):
     """Write the friction of entries that have a law, by modes; that of a corner without one, by velocity."""
+    if system.curves.shape[0] == 0:  # there are no laws
+        return
     u, fastest = group.v[U], 0.0
     for row in range(3 * k):
         fastest = max(fastest, abs(u[row]))
