@@ -40,6 +40,7 @@ def test_a_surface_is_a_static_body():
     [
         (carom.Cylinder(0.1, 0.2), "rims have no fixed points"),
         (carom.Disc(0.1), "rims have no fixed points"),
+        (carom.Profile([(0, 0), (0.1, 0), (0, 0.1)], 0.02, "all"), "which is curved ground"),
         (carom.Ellipsoid(0.5, 0.3, 0.1), "its greatest radius of curvature, 2.5 m"),
         (carom.Sphere(1.5), "the radius of its rounding, 1.5 m, must be less than"),
     ],

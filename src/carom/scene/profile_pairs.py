@@ -9,6 +9,8 @@ import numpy as np
 from carom.geometry import quaternion
 from carom.scene.bodies import HalfSpace
 
+#: kinds of pieces that no profile touches
+REFUSED = {"profile": "another Profile", "ellipsoid": "an Ellipsoid", "implicit": "curved ground"}
 PARALLEL = 1e-6  # greatest sine of the angle between two axes that are parallel
 
 
@@ -41,8 +43,8 @@ def _obstacle(other, axis: np.ndarray) -> str:
     for piece in other.shape.pieces:
         if piece.kind == "point":
             continue
-        if piece.kind in ("profile", "ellipsoid"):
-            return f"which is {'another Profile' if piece.kind == 'profile' else 'an Ellipsoid'}"
+        if piece.kind in REFUSED:
+            return f"which is {REFUSED[piece.kind]}"
         if _slant(piece, quaternion.rotate_back(_turn(other, piece), axis)) > PARALLEL:
             return "whose axis or edges are not parallel to the axis of the profile"
     return ""

@@ -48,7 +48,7 @@ class SurfaceDefinition(ABC):
         return np.zeros(0)
 
     def write(self, row) -> None:  # noqa: B027
-        """Write what is more than lengths and numbers to a row of kernels."""
+        """Write to the row that kernels read what a kind has beside lengths and numbers: nothing."""
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
