@@ -6,8 +6,8 @@
     python benchmarks/all.py --few               fewer and smaller cases: to try the scripts out
     python benchmarks/all.py chain heaps         these alone
 
-Each script runs in a process of its own. A table belongs between <!-- table: NAME --> and <!-- end --> in
-docs/benchmarks.md or docs/howto/accuracy.md.
+Each script runs in a process of its own. A table belongs between <!-- table: NAME --> and <!-- end --> on one
+page: each number has one place, and `tests/test_pages.py` compares sentences with it.
 """
 
 from __future__ import annotations
@@ -25,10 +25,9 @@ HERE = Path(__file__).parent
 ROOT = HERE.parent
 SCRIPTS = (
     "free_step", "impact", "corner", "coulomb", "location", "convergence", "accuracy", "work_precision",
-    "chain", "loops", "methods", "contacts", "heaps", "pairs", "ensembles", "scaling", "allocation", "startup",
-    "short_calls",
+    "chain", "loops", "methods", "heaps", "many_bodies", "pairs", "ensembles", "scaling", "allocation",
+    "startup", "short_calls", "user_functions", "cube_tosses", "real_impacts", "installed",
 )  # fmt: skip
-TABLES = (ROOT / "docs" / "benchmarks.md", ROOT / "docs" / "howto" / "accuracy.md")
 PICTURES = ("work_precision", "accuracy", "scaling", "convergence", "location")
 
 
@@ -44,10 +43,11 @@ def into_docs(out: Path) -> list[str]:
         inside = table.read_text(encoding="utf-8").split("\n", 2)[2].strip()  # without its title
         return f"<!-- table: {found[1]} -->\n{inside}\n<!-- end -->"
 
-    for page in TABLES:
+    for page in (ROOT / "docs").rglob("*.md"):
         text = page.read_text(encoding="utf-8")
         filled = re.sub(r"<!-- table: (\w+) -->\n.*?<!-- end -->", fill, text, flags=re.DOTALL)
-        page.write_text(filled, encoding="utf-8")
+        if filled != text:
+            page.write_text(filled, encoding="utf-8")
     for name in PICTURES:
         if (out / f"{name}.png").exists():
             shutil.copy(out / f"{name}.png", ROOT / "docs" / "_static" / f"{name}.png")

@@ -1,4 +1,4 @@
-"""A chain of N rods: cost against error in energy, beside MuJoCo's RK4 in the same run; cost against N.
+"""A chain of N rods: cost against error in energy, beside MuJoCo's RK4 in the same run.
 
 Long chains are chaotic, so tools are compared by curves over several steps, in a time in which the errors are
 still those of the method.
@@ -12,9 +12,8 @@ import carom
 from carom.bench.measure import TOLERANCE
 from carom.bench.problems import chain
 from carom.bench.problems.chain import METHODS, STEPS, WATCHED
-from common import FEW, peer, pendulum_scene, per_step, report, seconds, spread, stepper
+from common import FEW, peer, per_step, report, seconds
 
-US = 1e-6
 COUNTS = (1, 10) if FEW else (1, 10, 40, 100)
 BOUNDS = (1e-6, 1e-8, 1e-10)
 RTOL = (1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10)
@@ -63,20 +62,6 @@ def ratio(theirs: list[tuple[float, float]], ours: list[tuple[float, float]], bo
     return f"{'> ' if at_least else ''}{value:.2g}" if np.isfinite(value) else "-"
 
 
-def size() -> None:
-    """Report the time of a step against the number of links."""
-    rows = []
-    for links in (*COUNTS, 1000):
-        run = stepper(pendulum_scene(links), 2e-4)
-        times = per_step(run, 50, 50 + 40000 // links)
-        mid = float(np.median(times)) / US
-        rows.append([str(links), spread(times, US), f"{mid / links:.2f}"])
-    report(
-        "chain_size", "A chain of rods: time of a step", ["links", "us a step", "us a link"], rows,
-        "Order 4, step 0.2 ms.",
-    )  # fmt: skip
-
-
 def precision() -> None:
     """Report cost against error, and how much less work carom does for the same error."""
     mujoco = peer("mujoco")
@@ -110,5 +95,4 @@ def precision() -> None:
 
 
 if __name__ == "__main__":
-    size()
     precision()

@@ -1,6 +1,7 @@
 """Whole tosses of a real cube, from flight to rest: simulated against motion capture.
 
-By default the first 24 of them, with fitted parameters; ``--data FILE`` reads another file, ``--fit`` fits.
+By default the table of all starts and parameters, then the first 24 tosses with fitted parameters;
+``--data FILE`` reads another file, ``--fit`` fits.
 
 Data: the 285 tosses with even numbers of an acrylic cube at 148 Hz (ContactNets, Pfrommer, Halm and Posa
 2020; licence beside the file). Parameters are fitted only to these; the odd tosses are kept for a test.
@@ -41,6 +42,7 @@ from carom.studies.identify import (
     varied,
 )
 from carom.visual.plots import style
+from common import report
 
 DT = 1.0 / 148.0  # [s]
 EDGE, MASS, INERTIA = 0.1048, 0.37, 8.1e-4  # [m], [kg], [kg m^2]
@@ -203,6 +205,25 @@ def fitted(start: str, count: int, tosses: list[Recording], **settings) -> Ident
     return identify(template(start), tosses, begin, objective, **{"step": DT, **settings})
 
 
+def table(data=None) -> None:
+    """Report the errors of all tosses for each start and number of fitted parameters."""
+    rows = []
+    for start, count in (("A", 0), ("A", 2), ("A", 5), ("B", 2), ("B", 5)):
+        tossed, chosen = recordings(start, data), CHOSEN[start, count]
+        runs = simulate(start, tossed, chosen)
+        found = levels(runs, tossed)
+        rows.append([
+            start, str(count or "none"), ", ".join(f"{value:g}" for value in chosen.values()),
+            *(f"{of(error):.1f}" for error in found[:2] for of in (np.mean, np.median)),
+            f"{100 * np.mean(found.other_face):.1f}", str(sum(bool(run.message) for run in runs)),
+        ])  # fmt: skip
+    report(
+        "cube_tosses", f"{len(tossed)} tosses of a real cube",
+        ["start", "fitted", "e, mu, mu in persistent contact, inertia, radius / m", "position, mean / %",
+         "median / %", "rotation, mean / deg", "median / deg", "other face / %", "failed"], rows,
+    )  # fmt: skip
+
+
 def checked(start, tossed, chosen):
     half = simulate(start, tossed, chosen, STEP / 2)
     print(f"half the step: {levels(half, tossed)}")
@@ -246,4 +267,7 @@ if __name__ == "__main__":
     parser.add_argument("--halve", action="store_true", help="also half the step, and moved starts")
     parser.add_argument("--most", type=int, help="this many tosses only")
     parser.add_argument("--out", default="out/benchmarks")
-    main(**vars(parser.parse_args()))
+    given = parser.parse_args()
+    if given == parser.parse_args([]):
+        table()
+    main(**vars(given))

@@ -1,7 +1,4 @@
-"""Cost of a step of a heap against the number of spheres that are poured: as they land, and asleep.
-
-`python benchmarks/heaps.py` also pours 500 of them to rest, once.
-"""
+"""Spheres poured to rest. The time of a step while they land is in `scaling.py`."""
 
 from __future__ import annotations
 
@@ -10,10 +7,9 @@ import time
 import numpy as np
 
 import carom
-from common import per_step, report, spread, stepper
+from common import report
 
 STEP, RADIUS = 1e-3, 0.01
-MILLI = 1e-3
 
 
 def poured(count: int, turning: float) -> carom.Scene:
@@ -58,11 +54,6 @@ def to_rest(count: int, duration: float) -> list[str]:
 
 def main() -> None:
     """Measure and report."""
-    rows = []
-    for count in (30, 60, 125, 250, 500):
-        lands = stepper(poured(count, 0.0), STEP)
-        rows.append([str(count), spread(per_step(lands, 150, 250), MILLI)])
-    report("heaps", "A step of spheres that land / milliseconds", ["spheres", "a step"], rows)
     report(
         "heaps_rest", "Spheres poured to rest, rolling and pivoting friction .1 mm",
         ["spheres", "impacts", "held points", "at rest after / s", "processor time / s",

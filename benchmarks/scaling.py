@@ -11,7 +11,6 @@ from carom.bench import measure
 from carom.bench.measure import Spread, per_step, seconds, spread, stepper
 from carom.bench.problems import chain, spatial_die, stack
 from common import FEW, OUT, ROUNDS, decades, die_scene, peer, report
-from contacts import blocks
 from heaps import poured
 from memory import peak
 
@@ -35,6 +34,17 @@ def dice(count: int) -> carom.Scene:
         )  # fmt: skip
         made.add_contact(die, table, restitution=0.5, friction=0.2)
     return made
+
+
+def blocks(count: int, *, stacked: bool, speed: float, friction: float = 0.01) -> carom.Scene:
+    """Return blocks that slide without an end in sight, side by side or on each other, four points each."""
+    scene = carom.Scene(gravity=(0, 0, -9.81))
+    scene.add_half_space((0, 0, 0), (0, 0, 1))
+    for k in range(count):
+        place = (0, 0, 0.05 + 0.1 * k) if stacked else (0, 0.2 * k, 0.05)
+        scene.add_body(carom.Box(0.1, 0.1, 0.1), mass=1.0, position=place, velocity=(speed, 0, 0))
+    scene.set_contact_default(restitution=0.0, friction=friction)
+    return scene
 
 
 def step_of(make: Callable[[int], Callable[[int], object]], sizes, work: int) -> Curve:

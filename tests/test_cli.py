@@ -287,12 +287,21 @@ def test_what_is_not_there_is_one_line(made, capsys, monkeypatch):
     assert 'pip install "carom[paper]"' in one_line(capsys)
 
 
+def test_the_command_itself_is_an_extra(capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "typer", None)
+    assert main(["doctor"]) == FAILED
+    assert one_line(capsys).strip() == (
+        'carom: the command needs the package typer; install it with pip install "carom[command]"'
+    )
+
+
 def test_extras_are_those_of_the_project():
     text = (Path(__file__).parents[1] / "pyproject.toml").read_text(encoding="utf-8")
     told = tomllib.loads(text)["project"]["optional-dependencies"]
     found = extras.requirements()
     assert set(found) == {"", *told} - set(extras.OWN)
-    assert "typer" in found[""]
+    assert found[""] == ("numpy", "scipy", "numba", "tqdm")
+    assert found["command"] == ("typer", "rich")
     assert found["files"] == ("h5netcdf", "h5py", "xarray", "pandas")
     assert extras.pip_line("xarray.core") == 'pip install "carom[files]"'
     assert extras.pip_line("xarray", "ensemble") == 'pip install "carom[ensemble]"'

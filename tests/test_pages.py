@@ -1,6 +1,7 @@
 """Links of the pages lead somewhere, and a number that stands in a sentence is that of its table."""
 
 import re
+import runpy
 from functools import cache
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -13,6 +14,8 @@ PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"]
 PAGES += [p for p in (ROOT / "docs").rglob("*.md") if not MADE & set(p.parts)]
 DEVELOPMENT = ROOT / "docs" / "development"
 FENCED = re.compile(r"^(```|~~~).*?^\1", re.MULTILINE | re.DOTALL)
+TABLE = re.compile(r"^<!-- table: (\w+) -->\n(.*?)^<!-- end -->", re.MULTILINE | re.DOTALL)
+MEASURED = re.compile(r"processor time|\b(ms|us|ns|MiB)\b")  # in the head of a table
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 
 
@@ -27,8 +30,8 @@ def anchors(page: Path) -> set[str]:
     return found
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(ROOT)))
-def test_links_lead_somewhere(page):
+def lost_links(page: Path) -> list[str]:
+    """Return the links of a page that lead nowhere."""
     lost = []
     for link in LINK.findall(FENCED.sub("", page.read_text(encoding="utf-8"))):
         if re.match(r"[a-z]+:", link):
@@ -41,7 +44,12 @@ def test_links_lead_somewhere(page):
             anchor and other.suffix == ".md" and anchor not in anchors(other)
         ):
             lost.append(link)
-    assert not lost
+    return lost
+
+
+def test_links_lead_somewhere():
+    lost = {str(page.relative_to(ROOT)): lost_links(page) for page in PAGES}
+    assert not {page: links for page, links in lost.items() if links}
 
 
 def test_decisions_are_short_and_dated():
@@ -58,43 +66,86 @@ def test_open_ends_are_an_item_a_line():
     assert not [item for item in items if not item.startswith("- **") or len(item) > 200]
 
 
-def cell(table: str, row: tuple[str, ...], column: str) -> float:
-    """The first number of a cell of a table of the benchmarks; `row` are the first cells of its row."""
-    text = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
-    inside = text.split(f"<!-- table: {table} -->")[1].split("<!-- end -->")[0]
-    rows = [
-        [part.strip() for part in line.strip("|").split("|")]
+@cache
+def tables() -> dict[str, list[str]]:
+    """Return the tables that scripts fill in, all of them with this name on all pages."""
+    found: dict[str, list[str]] = {}
+    for page in PAGES:
+        for name, inside in TABLE.findall(page.read_text(encoding="utf-8")):
+            found.setdefault(name, []).append(inside)
+    return found
+
+
+def column(table: str, name: str, row: tuple[str, ...] = ()) -> list[float]:
+    """Return the first numbers of the cells of a column; `row` are the first cells of its rows."""
+    (inside,) = tables()[table]
+    head, _, *rows = [
+        [part.strip() for part in line.strip().strip("|").split("|")]
         for line in inside.splitlines()
         if line.startswith("|")
     ]
-    (found,) = [r for r in rows if tuple(r[: len(row)]) == row]
-    return float(found[rows[0].index(column)].split()[0])
+    found = [r[head.index(name)] for r in rows if tuple(r[: len(row)]) == row]
+    return [float(one.split()[0].replace(",", "")) for one in found]
+
+
+def only(values: list[float]) -> float:
+    (value,) = values
+    return value
 
 
 STACK = ("contacts", "a stack", "180")
 THEIRS = ("contacts", "a stack, MuJoCo", "180")
-SECOND = "throws a second of wall time"
-#: page, sentence with the number, table, row, column
+THROWS = "throws a second of wall time"
+CUBE = ("cube_tosses", "position, mean / %", ())
+#: page, sentence with the number, table, column, first cells of the row, and which of several rows
 NUMBERS = [
-    ("comparison", r"takes (\S+) s to pour 500", "heaps_rest", ("500",), "processor time / s"),
-    ("comparison", r"(\S+) microseconds a step by MuJoCo", "scaling", THEIRS, "cost"),
-    ("comparison", r"by MuJoCo, (\S+) by carom", "scaling", STACK, "cost"),
-    ("comparison", r"carom made (\S+) throws", "ensembles", ("carom", "1 ms", "1"), SECOND),
-    ("comparison", r"beside (\S+) of MuJoCo", "ensembles", ("MuJoCo", "1 ms", "1"), SECOND),
-    ("comparison", r"and (\S+) with steps of 5 ms", "ensembles", ("carom", "5 ms", "1"), SECOND),
-    ("comparison", r"`rtol=1e-8` it made (\d+)", "ensembles", ("carom", "rtol 1e-08", "1"), SECOND),
-    ("comparison", r"first run: (\S+) s of processor", "startup", ("free body",), "cold, once [s]"),
-    ("limits", r"throws some (\S+) dice", "ensembles", ("carom", "rtol 1e-08", "1"), SECOND),
+    ("comparison", r"takes (\S+) s to pour 500", "heaps_rest", "processor time / s", ("500",), only),
+    ("comparison", r"(\S+) microseconds a step by MuJoCo", "scaling", "cost", THEIRS, only),
+    ("comparison", r"by MuJoCo, (\S+) by carom", "scaling", "cost", STACK, only),
+    ("comparison", r"carom made (\S+) throws", "ensembles", THROWS, ("carom", "1 ms", "1"), only),
+    ("comparison", r"beside (\S+) of MuJoCo", "ensembles", THROWS, ("MuJoCo", "1 ms", "1"), only),
+    ("comparison", r"and (\S+) with steps of 5 ms", "ensembles", THROWS, ("carom", "5 ms", "1"), only),
+    ("comparison", r"`rtol=1e-8` it made (\d+)", "ensembles", THROWS, ("carom", "rtol 1e-08", "1"), only),
+    ("comparison", r"first run: (\S+) s of processor", "startup", "cold, once [s]", ("free body",), only),
+    ("comparison", r"\| carom \| pip \| (\d+) \|", "installed", "size / MiB", ("carom",), only),
+    ("comparison", r"\| MuJoCo \| pip \| (\d+) \|", "installed", "size / MiB", ("MuJoCo",), only),
+    ("comparison", r"\| carom \| pip \| \d+ \| (\S+) \|", "startup", "import carom [s]", ("free body",), only),
+    ("comparison", r"average error of (\S+) to", *CUBE, min),
+    ("comparison", r"average error of \S+ to (\S+) %", *CUBE, max),
+    ("limits", r"throws some (\S+) dice", "ensembles", THROWS, ("carom", "rtol 1e-08", "1"), only),
+    ("start", r"in all (\d+) MiB", "installed", "size / MiB", ("carom",), only),
+    ("start", r"everything (\d+) MiB", "installed", "size / MiB", ("carom[all]",), only),
+    ("howto/own_constraint", r"takes (\d+) times as long", "user_functions", "ratio", ("Rows",), only),
+    ("howto/mechanisms", r"function\ntakes (\S+) micro", "user_functions", "a call, plain / us", ("UserForce",), only),
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("number", NUMBERS, ids=lambda n: n[1])
-def test_numbers_of_sentences_are_those_of_the_tables(number):
+def test_numbers_of_sentences_are_those_of_the_tables():
     """To 5 %: a sentence may round."""
-    page, sentence, *place = number
-    text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
-    (said,) = re.findall(sentence, text)
-    assert float(said) == pytest.approx(cell(*place), rel=0.05)
+    wrong = []
+    for page, sentence, table, name, row, of in NUMBERS:
+        text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
+        said = [float(one.replace(",", "")) for one in re.findall(sentence, text)]
+        there = of(column(table, name, row))
+        if len(said) != 1 or said[0] != pytest.approx(there, rel=0.05):
+            wrong.append((page, sentence, said, there))
+    assert not wrong
+
+
+def test_a_number_has_one_place_and_a_script():
+    """Tables that a script fills stand once; other tables have no times or sizes of carom."""
+    scripts = runpy.run_path(str(ROOT / "benchmarks" / "all.py"))["SCRIPTS"]
+    texts = [(ROOT / "benchmarks" / f"{name}.py").read_text(encoding="utf-8") for name in scripts]
+    reported = [name for text in texts for name in re.findall(r'\breport\(\s*"(\w+)"', text)]
+    assert len(reported) == len(set(reported))
+    assert not {name for name, found in tables().items() if len(found) > 1}
+    assert set(tables()) <= set(reported)
+    by_hand = []
+    for page in [ROOT / "docs" / "benchmarks.md", *(ROOT / "docs" / "howto").glob("*.md")]:
+        rest = TABLE.sub("", page.read_text(encoding="utf-8"))
+        heads = re.findall(r"^(\|.*\|)\n\|[ :|-]*\|$", rest, re.MULTILINE)
+        by_hand += [(page.name, head) for head in heads if MEASURED.search(head)]
+    assert not by_hand
 
 
 def test_the_mark_is_that_of_its_script_and_its_ball_obeys_the_law():

@@ -17,9 +17,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; return its exit code."""
     from typing import Any
 
-    import typer
+    from carom import checks
 
-    from carom.cli.app import command
+    try:
+        typer: Any = checks.need("typer", "the command", "command")
+        from carom.cli.app import command
+    except ModuleNotFoundError as error:
+        print("carom:", " ".join(str(error).split()), file=sys.stderr)
+        return FAILED
 
     # BadParameter is a UsageError, which is a ClickException: those classes are Click's own, or copies in typer
     usage_error: Any = typer.BadParameter.__mro__[1]

@@ -1,0 +1,64 @@
+"""Size of an installation: packages that pip brings, and their files; MuJoCo beside it.
+
+`python benchmarks/installed.py` makes an environment for each and needs the package index.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from common import report
+
+ROOT = Path(__file__).parents[1]
+WANTED = {
+    "carom": f"{ROOT}",
+    "carom[command]": f"{ROOT}[command]",
+    "carom[all]": f"{ROOT}[all]",
+    "MuJoCo": "mujoco",
+}  # fmt: skip
+TOOLS = ("pip", "setuptools", "wheel")  # of the environment itself
+MIB = 2.0**20
+
+
+def installed(wanted: str, place: Path) -> tuple[int, float, float]:
+    """Return the number of packages, and the size of their files without and with bytecode [MiB]."""
+    subprocess.run([sys.executable, "-m", "venv", place], check=True)
+    python = place / "bin" / "python"
+    pip = [python, "-m", "pip", "--disable-pip-version-check"]
+    subprocess.run([*pip, "install", "--quiet", wanted], check=True)
+    listed = subprocess.run([*pip, "list", "--format=json"], check=True, capture_output=True)
+    names = [one["name"] for one in json.loads(listed.stdout) if one["name"] not in TOOLS]
+    subprocess.run([*pip, "uninstall", "--quiet", "--yes", "setuptools", "pip"], check=True)
+    files = [file for file in (place / "lib").rglob("*") if file.is_file()]
+    whole = sum(file.stat().st_size for file in files)
+    plain = sum(file.stat().st_size for file in files if file.suffix != ".pyc")
+    return len(names), plain / MIB, whole / MIB
+
+
+def main() -> None:
+    """Measure and report."""
+    rows = []
+    for name, wanted in WANTED.items():
+        place = Path(tempfile.mkdtemp())
+        try:
+            count, plain, whole = installed(wanted, place)
+        except subprocess.CalledProcessError as error:
+            print(f"({name} cannot be installed here: {error})")
+            continue
+        finally:
+            shutil.rmtree(place)
+        rows.append([name, str(count), f"{plain:.0f}", f"{whole:.0f}"])
+    report(
+        "installed", "Size of an installation", ["", "packages", "size / MiB", "with bytecode / MiB"], rows,
+        "Files of all packages that pip installs with it and itself, without pip's own. Bytecode: what Python "
+        "writes beside the sources.",
+    )  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()
