@@ -2,6 +2,9 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
+# bytecode is kept: each of the many processes of the tests would compile all sources anew
+export PYTHONDONTWRITEBYTECODE =
+marked = $(shell grep -rlE --include='*.py' 'mark\.($(1))\b' tests)
 
 .PHONY: paper test test-all lint docs bench history release-check wheel clean
 
@@ -19,11 +22,11 @@ test: $(VENV)/installed-test ## style, types, tests but for the slow ones, a par
 	$(BIN)/ruff format --check .
 	$(BIN)/basedpyright
 	$(BIN)/python -m pytest -n auto -m "not slow"
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto -m plain
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto -m plain $(call marked,plain)
 
 test-all: test ## the slow tests too, and a part of all for another processor
-	$(BIN)/python -m pytest -n auto -m slow
-	NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= $(BIN)/python -m pytest -n auto --dist loadfile -m processors
+	$(BIN)/python -m pytest -n auto -m slow $(call marked,slow)
+	NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= $(BIN)/python -m pytest -n auto --dist loadfile -m processors $(call marked,processors)
 
 lint: $(VENV)/installed-test
 	$(BIN)/ruff check --fix .

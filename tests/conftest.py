@@ -1,9 +1,14 @@
 """For all tests: what is compiled on the way is not spoken of, and random examples are the same in each run.
 
+No process starts a second one that compiles for it: all processors have work, and both would compile the same
+kernels.
+
 ``HYPOTHESIS_PROFILE=search pytest ...`` looks for others.
 """
 
 import os
+
+os.environ["NUMBA_NUM_THREADS"] = "1"  # before Numba is imported, here and in processes that tests start
 
 from hypothesis import settings
 

@@ -42,15 +42,16 @@ def test_all_that_is_public_is_there():
     assert [name for name in public if id(pages.find(f"carom.{name}")) not in known] == []
 
 
-@pytest.mark.parametrize("name", [n for n in carom.__all__ if inspect.ismodule(getattr(carom, n))])
-def test_dir_of_a_module_is_what_is_public(name):
+def test_dir_of_a_module_is_what_is_public():
     """What `dir` and the tabulator key show is on the pages, or a module of which something is."""
-    shown = [one for one in dir(getattr(carom, name)) if not one.startswith("__")]
     known = {id(pages.find(one)) for one in NAMES} | {
         id(pages.find(one.rpartition(".")[0])) for one in NAMES
     }
-    assert shown
-    assert [one for one in shown if id(getattr(getattr(carom, name), one)) not in known] == []
+    for name in [n for n in carom.__all__ if inspect.ismodule(getattr(carom, n))]:
+        shown = [one for one in dir(getattr(carom, name)) if not one.startswith("__")]
+        assert shown, name
+        new = [one for one in shown if id(getattr(getattr(carom, name), one)) not in known]
+        assert new == [], name
 
 
 def listed(name: str) -> set[str]:
@@ -70,10 +71,9 @@ def public(one, cls) -> set[str]:
     return {n for n in dir(one) if not n.startswith("_")} - foreign
 
 
-@pytest.mark.parametrize("name", CLASSES)
-def test_page_of_a_class_has_all_its_members(name):
-    cls = pages.find(name)
-    assert public(cls, cls) - listed(name) == set()
+def test_page_of_a_class_has_all_its_members():
+    missing = {name: public(cls := pages.find(name), cls) - listed(name) for name in CLASSES}
+    assert not {name: members for name, members in missing.items() if members}
 
 
 def falling_box():
@@ -104,11 +104,12 @@ def test_page_has_all_that_an_object_has():
         assert listed(name) - arguments - public(one, type(one)) == set(), name
 
 
-@pytest.mark.parametrize("name", CLASSES)
-def test_page_of_a_class_shows_nothing_private(name):
-    assert not re.search(r"\._|from_run", pages.class_page(name))
-    if not pages.handed_back(pages.find(name)):
-        assert not [p for p in inspect.signature(pages.find(name)).parameters if p[0] == "_"]
+def test_page_of_a_class_shows_nothing_private():
+    for name in CLASSES:
+        assert not re.search(r"\._|from_run", pages.class_page(name)), name
+        if not pages.handed_back(pages.find(name)):
+            given = inspect.signature(pages.find(name)).parameters
+            assert not [p for p in given if p[0] == "_"], name
 
 
 def test_a_member_without_a_topic_is_found_out(monkeypatch):

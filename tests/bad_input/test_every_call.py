@@ -21,6 +21,7 @@ API = Path(__file__).parents[2] / "docs" / "api"
 ENTRY = r"^   carom\.(?:scene\.)?([a-z]\w*(?:\.\w+)+|[A-Za-z]\w*)$"  # of a list in its pages
 SOME = 12  # kinds of wrong values for each parameter, half of them as look like numbers
 FEW = 4  # of calls that take a tenth of a second
+SHARE = 4  # of both, what is tried each time
 DEAR = (
     "simulate to",
     "resume",
@@ -78,17 +79,29 @@ def recipes(tmp_path_factory):
 NAMES = list(walk.recipes(Path()))
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_wrong_values_are_refused_by_name(recipes, name, monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)  # where a word is taken as a path
-    call, arguments = recipes[name]()
+def complaints(name, make, share):
+    """Return what is wrong with the recipe of a callable, and with calls with wrong values."""
+    call, arguments = make()
     missing = walk.parameters(call) - arguments.keys()
-    assert not missing, f"the recipe of {name} must have a value for {missing}"
+    if missing:
+        return [f"the recipe of {name} must have a value for {missing}"]
     call(**arguments)  # what the recipe says works
-    few = FEW if name.startswith(DEAR) else SOME
-    assert walk.complaints(name, recipes[name], few) == []
+    some = FEW if name.startswith(DEAR) else SOME
+    found = walk.complaints(name, make, some // share)
     if "matplotlib.pyplot" in sys.modules:
         sys.modules["matplotlib.pyplot"].close("all")
+    return found
+
+
+@pytest.mark.parametrize("share", [SHARE, pytest.param(1, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("dear", [False, True])
+def test_wrong_values_are_refused_by_name(recipes, dear, share, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)  # where a word is taken as a path
+    found = []
+    for name in NAMES:
+        if name.startswith(DEAR) == dear:
+            found += complaints(name, recipes[name], share)
+    assert found == []
 
 
 def members(prefix, one):

@@ -9,7 +9,6 @@ from functools import cache
 
 import mujoco
 import numpy as np
-import pytest
 
 import carom
 
@@ -297,15 +296,11 @@ def test_each_attribute_is_in_one_list():
         assert sorted(set(listed) - there) == []
 
 
-@pytest.mark.parametrize(
-    ("element", "attribute"), [(e, a) for e, values in CHANGES.items() for a in values]
-)
-def test_an_attribute_is_honoured_or_reported(element, attribute):
-    if (element, attribute) not in schema():
-        pytest.skip("this version of MuJoCo does not have it")
-    other = changed(element, attribute, CHANGES[element][attribute])
-    same = seen(other) == seen(BASE)
-    assert not same
+def test_an_attribute_is_honoured_or_reported():
+    there, base = schema(), seen(BASE)  # this version of MuJoCo may not have all of them
+    asked = [(e, a) for e, values in CHANGES.items() for a in values if (e, a) in there]
+    assert len(asked) > 90
+    assert [one for one in asked if seen(changed(*one, CHANGES[one[0]][one[1]])) == base] == []
 
 
 URDF = """<robot name="r"><link name="base"/><link name="a"><inertial><origin xyz="0 0 .1" rpy="0 0 .1"/>
@@ -322,51 +317,51 @@ URDF = """<robot name="r"><link name="base"/><link name="a"><inertial><origin xy
 <mimic joint="j" multiplier="2.5" offset=".25"/></joint></robot>"""
 
 
-@pytest.mark.parametrize(
-    "attribute",
-    [
-        'xyz="0 0 .1"',
-        'rpy="0 0 .1"',
-        'value="1"',
-        'ixx=".1"',
-        'iyy=".12"',
-        'izz=".15"',
-        'ixy=".001"',
-        'ixz=".002"',
-        'iyz=".003"',
-        'xyz="0 0 .2"',
-        'rpy="0 .1 0"',
-        'size=".1 .2 .3"',
-        'radius=".4"',
-        'radius=".31"',
-        'length=".6"',
-        'xyz="1 0 0" rpy',
-        'rpy=".2 0 0"',
-        'xyz="1 2 0"',
-        'lower="-1"',
-        'upper="1.5"',
-        'damping=".7"',
-        'friction=".8"',
-        'type="revolute"',
-        'multiplier="2.5"',
-        'offset=".25"',
-    ],
+ATTRIBUTES = (
+    'xyz="0 0 .1"',
+    'rpy="0 0 .1"',
+    'value="1"',
+    'ixx=".1"',
+    'iyy=".12"',
+    'izz=".15"',
+    'ixy=".001"',
+    'ixz=".002"',
+    'iyz=".003"',
+    'xyz="0 0 .2"',
+    'rpy="0 .1 0"',
+    'size=".1 .2 .3"',
+    'radius=".4"',
+    'radius=".31"',
+    'length=".6"',
+    'xyz="1 0 0" rpy',
+    'rpy=".2 0 0"',
+    'xyz="1 2 0"',
+    'lower="-1"',
+    'upper="1.5"',
+    'damping=".7"',
+    'friction=".8"',
+    'type="revolute"',
+    'multiplier="2.5"',
+    'offset=".25"',
 )
-def test_an_attribute_of_a_urdf_is_honoured_or_reported(attribute):
+
+
+def test_an_attribute_of_a_urdf_is_honoured_or_reported():
     """Those of <visual> and <material> are not read; effort and velocity limit motors, of which it has none."""
-    assert URDF.count(attribute) == 1 or attribute == 'ixx=".1"'
-    if attribute == 'type="revolute"':
-        other = URDF.replace(attribute, 'type="continuous"')
-    else:
-        other = URDF.replace(
-            attribute, re.sub(r"[1-9]", lambda digit: str(int(digit[0]) % 9 + 1), attribute), 1
-        )
-    same = seen(other) == seen(URDF)
     mimic = "mimic" in str(carom.load_model(URDF).report)
-    assert not same or (mimic and attribute.startswith(("multiplier", "offset")))
+    for attribute in ATTRIBUTES:
+        assert URDF.count(attribute) == 1 or attribute == 'ixx=".1"', attribute
+        if attribute == 'type="revolute"':
+            other = URDF.replace(attribute, 'type="continuous"')
+        else:
+            other = URDF.replace(
+                attribute, re.sub(r"[1-9]", lambda digit: str(int(digit[0]) % 9 + 1), attribute), 1
+            )
+        same = seen(other) == seen(URDF)
+        assert not same or (mimic and attribute.startswith(("multiplier", "offset"))), attribute
 
 
-@pytest.mark.parametrize("element", WHOLE)
-def test_what_a_scene_does_not_have_is_reported(element):
-    model = carom.load_model(BASE.replace("</mujoco>", WHOLE[element] + "</mujoco>"))
-    assert model.report.of(element)
+def test_what_a_scene_does_not_have_is_reported():
+    for element, text in WHOLE.items():
+        model = carom.load_model(BASE.replace("</mujoco>", text + "</mujoco>"))
+        assert model.report.of(element), element
