@@ -25,7 +25,7 @@ test: $(VENV)/installed-test ## style, types, tests but for the slow ones, a par
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto -m plain $(call marked,plain)
 
 test-all: test ## the slow tests too, and a part of all for another processor
-	$(BIN)/python -m pytest -n auto -m slow $(call marked,slow)
+	$(BIN)/python -m pytest -n auto -m slow $(call marked,slow|few)
 	NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= $(BIN)/python -m pytest -n auto --dist loadfile -m processors $(call marked,processors)
 
 lint: $(VENV)/installed-test

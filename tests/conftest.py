@@ -8,8 +8,9 @@ kernels.
 
 import os
 
-os.environ["NUMBA_NUM_THREADS"] = "1"  # before Numba is imported, here and in processes that tests start
+os.environ["NUMBA_NUM_THREADS"] = "1"  # before Numba is imported; for child processes too
 
+import pytest
 from hypothesis import settings
 
 from carom._compiled import notice
@@ -18,3 +19,18 @@ notice.silence()  # tests look at what is on stderr
 settings.register_profile("same", derandomize=True)
 settings.register_profile("search", derandomize=False)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "same"))
+
+
+@pytest.hookimpl(tryfirst=True)  # before ``-m "not slow"``
+def pytest_collection_modifyitems(items):
+    """Of a family of cases with the mark ``few(n)`` all but n, evenly spaced, are slow ones."""
+    families = {}
+    for item in items:
+        if mark := item.get_closest_marker("few"):
+            families.setdefault((item.path, item.originalname), (mark.args[0], []))[1].append(item)
+    for count, cases in families.values():
+        last = len(cases) - 1
+        chosen = {round(k * last / max(count - 1, 1)) for k in range(count)}
+        for k, item in enumerate(cases):
+            if k not in chosen:
+                item.add_marker(pytest.mark.slow)
