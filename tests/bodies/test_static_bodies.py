@@ -62,6 +62,7 @@ def test_an_elastic_ball_is_reflected_by_a_ramp():
     np.testing.assert_allclose(run.velocity[-1, 0], v - 2 * (v @ n) * n, atol=1e-13)
 
 
+@pytest.mark.few(7)
 @pytest.mark.parametrize(
     "solid",
     [

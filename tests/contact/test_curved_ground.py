@@ -66,6 +66,7 @@ def test_an_edge_that_dips_into_the_ground_beyond_where_it_rises():
     assert found.gap == pytest.approx(np.min(heights), abs=1e-6)
 
 
+@pytest.mark.few(10)
 @pytest.mark.parametrize("name", GROUNDS)
 @pytest.mark.parametrize("kind", SHAPES)
 def test_the_gap_is_that_of_the_nearest_point(kind, name):
@@ -89,6 +90,7 @@ def test_the_gap_is_that_of_the_nearest_point(kind, name):
         np.testing.assert_allclose(step, found.gap * found.normal, atol=1e-12)
 
 
+@pytest.mark.few(10)
 @pytest.mark.parametrize("name", GROUNDS)
 @pytest.mark.parametrize("kind", SHAPES)
 def test_rates_of_rows_are_those_of_the_points(kind, name):

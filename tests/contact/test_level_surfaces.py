@@ -82,6 +82,7 @@ def test_steps_and_cracks_are_no_level_surfaces(other):
     assert not np.any(normals[:, 2] > 0.9)
 
 
+@pytest.mark.few(9)
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("ground", [tiles, prisms])
 @pytest.mark.parametrize(("speed", "friction"), [(1.5, 0.0), (3.3, 0.05), (2.4, 0.3)])

@@ -30,6 +30,7 @@ PARTNERS = {
 }
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("curve", CURVES)
 @pytest.mark.parametrize("partner", PARTNERS)
 def test_closed_form_is_the_rate_of_the_points(curve, partner):

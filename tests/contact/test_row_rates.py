@@ -95,6 +95,7 @@ CURVED = {
 }
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("table", ["box", "hull", "cylinder"])
 @pytest.mark.parametrize("name", CURVED)
 def test_the_lowest_point_over_a_face_is_exact(name, table):

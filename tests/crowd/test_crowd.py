@@ -259,6 +259,7 @@ def test_a_step_that_does_not_get_on_is_taken_whole():
     assert exact.impacts.located.sum() >= len(exact.impacts) - 8
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("gap", [0.0, 1e-5, 1e-4])
 @pytest.mark.parametrize(("e", "mu"), [(1.0, 0.0), (0.95, 0.1), (0.5, 0.1)])
 def test_a_break_goes_from_blow_to_blow(e, mu, gap):

@@ -26,7 +26,27 @@ def swung():
     return carom.simulate(pendulum(), 1.0, step=2e-2, options=allowed)
 
 
-@pytest.fixture(params=["thrown", "slid", "swung"])
+RUNS = ["thrown", "slid", "swung"]
+
+
+@pytest.fixture(params=RUNS)
 def run(request):
     """Each of them."""
     return request.getfixturevalue(request.param)
+
+
+@pytest.fixture(scope="session")
+def saved(thrown, slid, swung, tmp_path_factory):
+    """The bytes of their files."""
+    file, found = tmp_path_factory.mktemp("saved") / "run.nc", {}
+    for name, one in zip(RUNS, (thrown, slid, swung)):
+        one.save(file)
+        found[name] = file.read_bytes()
+    return found
+
+
+@pytest.fixture
+def path(saved, tmp_path):
+    """The file of a run."""
+    (tmp_path / "run.nc").write_bytes(saved["thrown"])
+    return tmp_path / "run.nc"

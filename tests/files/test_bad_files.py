@@ -20,13 +20,6 @@ from simulate.scenes import die
 LOADERS = (carom.Solution.load, carom.resume)
 
 
-@pytest.fixture
-def path(thrown, tmp_path):
-    """The file of a run."""
-    thrown.save(tmp_path / "run.nc")
-    return tmp_path / "run.nc"
-
-
 @pytest.mark.parametrize("load", LOADERS)
 def test_no_file(load, tmp_path):
     with pytest.raises(FileNotFoundError, match=r"got '.*none\.nc': it does not exist"):

@@ -19,21 +19,6 @@ from files.scenes import everything
 REFUSED = r"path must be a file of a run, got '.*run\.nc': "
 
 
-@pytest.fixture(scope="module")
-def saved(thrown, tmp_path_factory):
-    """The bytes of the file of a run."""
-    file = tmp_path_factory.mktemp("saved") / "run.nc"
-    thrown.save(file)
-    return file.read_bytes()
-
-
-@pytest.fixture
-def path(saved, tmp_path):
-    """The file of a run."""
-    (tmp_path / "run.nc").write_bytes(saved)
-    return tmp_path / "run.nc"
-
-
 def test_every_place_counts(path):
     # one bit of one byte, in turn through the file: HDF5, the arrays, the index and the line at the end
     whole = path.read_bytes()

@@ -23,8 +23,8 @@ with h5py.File(sys.argv[1]) as file:
 """
 
 
-def test_xarray_reads_what_to_xarray_gives(run, tmp_path):
-    run.save(tmp_path / "run.nc")
+def test_xarray_reads_what_to_xarray_gives(run, request, saved, tmp_path):
+    (tmp_path / "run.nc").write_bytes(saved[request.node.callspec.params["run"]])
     with xr.open_dataset(tmp_path / "run.nc", engine="h5netcdf") as data:
         xr.testing.assert_identical(data.load(), run.to_xarray())
 
@@ -65,9 +65,7 @@ def test_attributes(thrown):
     assert json.loads(data.scene.item())["gravity"] == [0.0, 0.0, -9.81]
 
 
-def test_h5py_alone(thrown, tmp_path):
-    path = tmp_path / "run.nc"
-    thrown.save(path)
+def test_h5py_alone(thrown, path):
     done = subprocess.run(
         [sys.executable, "-c", READER, str(path)], capture_output=True, text=True, check=True
     )
@@ -98,10 +96,9 @@ def test_many_contacts_have_rows_only(tmp_path):
     assert list(data.contact.values) == names
 
 
-def test_nothing_twice(thrown, tmp_path):
+def test_nothing_twice(path):
     # records beside the labelled arrays: only what these do not hold
-    thrown.save(tmp_path / "run.nc")
-    _, index = parts_of(tmp_path / "run.nc")
+    _, index = parts_of(path)
     kept = {name.removeprefix("records/") for name in index["arrays"] if "/" in name}
     assert not kept & {"state_x", "state_v", "state_Q", "series_t", "impact_W", "event_time"}
     assert {"snapshot_v0", "event_kind", "impact_phases"} <= kept

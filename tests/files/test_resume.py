@@ -94,6 +94,7 @@ def test_killed_process(name, late, tmp_path):
 ALLOWED = carom.Options(energy_tolerance=0.01)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("fraction", [0.2, 0.8])
 @pytest.mark.parametrize(
     "settings",

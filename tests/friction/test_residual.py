@@ -76,6 +76,7 @@ def test_an_open_contact_without_friction_and_slip_is_solved():
     assert measure(1, problem, np.array([-0.15, 0.0, 0.0]))[0] > 0.05
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("seed", range(20))
 def test_contacts_and_stops_together(seed):
     """Points with friction and rows of stops, of which some open and some press, to round-off."""

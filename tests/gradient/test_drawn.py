@@ -51,6 +51,7 @@ def drawn(seed):
     return throw, two_sided
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("seed", range(24))
 def test_the_end_of_a_throw(seed):
     throw, two_sided = drawn(seed)

@@ -47,6 +47,7 @@ CASES = {  # and whether the tolerance alone chooses the steps, of the two metho
 }
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("method", ["rk5", "rk8"])
 @pytest.mark.parametrize("case", CASES)
 def test_errors_follow_the_tolerance(case, method):

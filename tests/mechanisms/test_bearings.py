@@ -10,6 +10,7 @@ from campaigns.case import run, wrong
 SEEDS = (3, 9, 14, 22, 29, 36, 40, 44)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_random_bearings(seed):
     """Statuses, energies, and the way of the pin to a corner of the polygon, with 1e-3 of the play."""

@@ -63,6 +63,7 @@ HEXAGON = [
 ]
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("held", [False, True])
 @pytest.mark.parametrize(
     "shape", [carom.Box(0.06, 0.06, 0.04), carom.Convex(HEXAGON), carom.Cylinder(0.03, 0.04)]
@@ -90,6 +91,7 @@ def wavy(lobes=3, depth=0.12):
     return lambda a: R * (1.0 + depth * math.cos(lobes * (a - 0.3)))
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 @pytest.mark.parametrize(
     ("fast", "stiffness", "e"), [(0.9, 0.0, 0.0), (2.5, 2000.0, 0.0), (1.4, 0.0, 0.4)]

@@ -29,6 +29,7 @@ def stretch(t, damping=0.0):
     return 0.1 * np.exp(-a * t) * (np.cos(w * t) + a / w * np.sin(w * t))
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("slider", [False, True])
 @pytest.mark.parametrize("damping", [0.0, 3.0])
 @pytest.mark.parametrize(("method", "order", "h"), [("rk4", 4, 0.02), ("paper", 2, 0.01)])

@@ -28,6 +28,7 @@ def wrench_on_centre(scene, solution, k=0):
     return out
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("looped", [False, True], ids=["tree", "loop"])
 def test_reactions_and_accelerations_equal_a_dense_solve(seed, looped):
@@ -67,6 +68,7 @@ def central(scene, h):
     return (ends[0] - ends[1]) / (2.0 * h)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_both_back_ends_move_alike(seed):
     rows = forest(seed)
@@ -77,6 +79,7 @@ def test_both_back_ends_move_alike(seed):
     np.testing.assert_allclose(loop.orientation[-1, :n], tree.orientation[-1], rtol=0, atol=1e-10)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_energy_and_joints(seed):
     fine, coarse = (carom.simulate(build(forest(seed)), 0.2, step=h) for h in (5e-4, 1e-3))
@@ -88,6 +91,7 @@ def test_energy_and_joints(seed):
     assert drift[1] < drift[0] / 8.0 or drift[0] < 1e-11
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_momentum_of_a_floating_tree(seed):
     """One tree without ground: spatial momenta are constant without gravity, to round-off."""
@@ -126,6 +130,7 @@ def refit(rows, rng):
     return rows
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_order_of_bodies_and_joints_and_flips_do_not_matter(seed):
     rows, rng = forest(seed), np.random.default_rng(seed)
@@ -148,6 +153,7 @@ def test_order_of_bodies_and_joints_and_flips_do_not_matter(seed):
             np.testing.assert_allclose(sign * g[:, 3:], f[:, 3:], rtol=0, atol=1e-8 * scale)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_frame_does_not_matter(seed):
     rows = forest(seed)

@@ -65,6 +65,7 @@ def test_loops_stay_closed(count):
     np.testing.assert_allclose(level, 0.0, rtol=0, atol=1e-10)
 
 
+@pytest.mark.few(14)
 @pytest.mark.parametrize("step", [0.01, 0.00125])
 @pytest.mark.parametrize("offset", [0.0, 1e-6, -1e-5, 1e-4, -1e-3])
 @pytest.mark.parametrize("part", [0.0, 0.5, 1.0])
@@ -113,6 +114,7 @@ def test_papers_method_passes_the_singular_position(count):
         assert abs(angle(runs[-1], bar)[-1] - angle(runs[-1])[-1]) < 1e-10
 
 
+@pytest.mark.few(14)
 @pytest.mark.parametrize("step", [0.01, 0.002, 0.0002])
 @pytest.mark.parametrize("offset", [0.0, 1e-10, 1e-6, -1e-4, 1e-4, 1e-3])
 @pytest.mark.parametrize("part", [0.0, 0.5, 1.0])

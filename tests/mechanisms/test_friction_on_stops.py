@@ -90,6 +90,7 @@ def end_of_slider(friction):
         way = np.sign(force)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("friction", [0.3, 1.0, 1.9])
 @pytest.mark.parametrize("save_at", [[0.5], np.linspace(0, 0.5, 51)])
 def test_slip_turns_while_a_stop_is_closed(friction, save_at):

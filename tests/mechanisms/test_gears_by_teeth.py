@@ -54,6 +54,7 @@ def test_no_tooth_is_skipped(speed):
     assert s.stats["trial_steps"] < 5000  # 500 to 1700; 10 times that with planes at rest
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("seed", "tolerances"),
     [

@@ -99,6 +99,7 @@ def test_a_ball_strikes_a_lever(e):
     assert solution.angular_velocity[-1, 0, 2] == pytest.approx(-arm * p / J, abs=1e-9)
 
 
+@pytest.mark.few(7)
 @pytest.mark.parametrize("turned", [False, True])
 @pytest.mark.parametrize("floats", [False, True])
 @pytest.mark.parametrize("kind", KINDS)

@@ -57,6 +57,7 @@ def test_a_point_that_sticks_slips_before_it_lifts_off():
 # What each was wrong with: forces without bound in slip (1718: 13 times its energy; 404, 1726), thousands of
 # impacts in a step (1173), a body moved by the place where it stuck before (1128, 1133: 1e-3), slip that
 # dropped bounces made (464, 738: friction gave 1e-5).
+@pytest.mark.few(3)
 @pytest.mark.parametrize("seed", [404, 464, 738, 1128, 1133, 1173, 1718, 1726])
 def test_bodies_on_one_joint_that_stay_on_the_ground(seed):
     case = strikes.case(seed)

@@ -118,6 +118,7 @@ def exact_accelerations(scene):
     return np.array([float(v) for v in a]).reshape(-1, 6)
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("seed", range(12))
 def test_accelerations_of_random_loops(seed):
     """Masses from 1e-9 to 1e9 kg in a chain that a ball joint closes; rows by differences are good to 1e-9."""

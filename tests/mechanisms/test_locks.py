@@ -128,6 +128,7 @@ def stretched(rng, rate):
     return one.scene, guide, rate, T, {"ball0", "end"}
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("kind", [four_bar, slider_crank, pulled, stretched])
 def test_a_linkage_that_locks_says_so(kind, seed):

@@ -71,6 +71,7 @@ def test_bead_leaves_a_sphere_and_flies(tolerance, error):
     closes(s, error)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize(("tolerance", "error"), TOLERANCES)
 def test_bead_falls_off_the_top_of_a_loop_and_lands(tolerance, error, restitution):

@@ -45,6 +45,7 @@ def test_order_of_chain_and_loop(make, method, steps):
     assert found[-1] < 1e-5
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("make", [pendulum, lambda: chain(3), four_bar, heavy_top.top])
 def test_joints_hold_to_round_off(make, method):
@@ -267,6 +268,7 @@ JOINTS = {
 }
 
 
+@pytest.mark.few(9)
 @pytest.mark.parametrize(
     ("method", "steps"),
     [("rattle", (1e-2, 5e-3)), ("rattle4", (2e-2, 1e-2)), ("rattle6", (4e-2, 2e-2))],

@@ -87,6 +87,7 @@ def rows_of_the_users():
 MAKE = [geared, driven, disc, ball_on_a_turntable, rows_of_the_users]
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("make", MAKE)
 @pytest.mark.parametrize("method", METHODS)
 def test_order_and_constraints(make, method):

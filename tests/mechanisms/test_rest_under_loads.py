@@ -30,6 +30,7 @@ def test_a_torque_on_a_hinge_at_its_stop(restitution, rtol):
     assert np.abs(s.ledger.residual).max() < 20.0 * rtol * TORQUE
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("seed", range(1, 13))
 def test_random_trees(seed):
     case = rests.case(seed)

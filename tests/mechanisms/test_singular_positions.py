@@ -59,6 +59,7 @@ def test_a_step_may_meet_the_position_anywhere(method):
         )  # in such a position what bars differ by is round-off over their angle
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("step", "loops"),
     [(1.436e-3, 2), (2e-3, 2), (2.2014e-3, 2), (3.1425e-3, 2), (5.1721e-3, 2)]

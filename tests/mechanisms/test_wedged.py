@@ -23,6 +23,7 @@ def cube_on_a_slide(friction, restitution, law, scale=1.0):
     return scene
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("scale", [1.0, 1e-9])
 def test_body_on_a_slide_stays_where_it_struck(law, scale):

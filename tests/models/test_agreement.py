@@ -57,6 +57,7 @@ def test_masses_weights_and_places(name, seed):
 
 
 # Of a tree to round-off; where links between stand in loops they are 1e-6 of the body's mass.
+@pytest.mark.few(8)
 @pytest.mark.parametrize(
     ("name", "tolerance"),
     [

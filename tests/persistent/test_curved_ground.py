@@ -40,6 +40,7 @@ def run(scene, duration, tolerance, turn=None):
     return back(q, s.position[-1, 0]), back(q, s.velocity[-1, 0]), s
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 @pytest.mark.parametrize(("friction", "angle"), [(0.0, 0.01), (0.0, 1.2), (1.0, 0.01), (1.0, 0.9)])
 def test_ball_swings_in_a_bowl(friction, angle, tolerance):

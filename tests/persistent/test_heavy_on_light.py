@@ -18,6 +18,7 @@ def stack(ratio, off, shape=None):
     return scene
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("ratio", [1e4, 1e5, 1e6])
 @pytest.mark.parametrize("off", [(0.0, 0.0), (0.03, 0.02), (0.04, -0.05)])
 def test_it_stays(ratio, off):

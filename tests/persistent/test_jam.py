@@ -63,6 +63,7 @@ def test_jams(tips, method):
     assert np.all(s.impacts.energy_change < 0)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("tips", [1, 2])
 @pytest.mark.parametrize("part", [0.9, 0.99, 0.999])
 def test_slides_below_the_critical_friction(tips, part):

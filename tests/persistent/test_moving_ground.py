@@ -24,6 +24,7 @@ PLATES = {
 }
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("plate", PLATES)
 @pytest.mark.parametrize("rtol", [1e-6, 1e-10])
 def test_it_does_not_move_on_the_plate(plate, rtol):

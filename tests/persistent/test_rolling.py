@@ -40,6 +40,7 @@ def test_rolls_to_a_stop(step):
     assert s.ledger.friction[-1] == pytest.approx(-0.7 * 2 * v0**2, rel=1e-12)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("shape", [carom.Sphere(R), carom.Capsule(R, 0.2), carom.Cylinder(R, 0.2)])
 @pytest.mark.parametrize("friction", [1e-3, 5e-3])
 def test_rolls_on_a_static_box(shape, friction):

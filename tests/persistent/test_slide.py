@@ -57,6 +57,7 @@ CASES = {
 }  # fmt: skip
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("case", CASES)
 def test_it_is_the_motion_of_the_body(case):
     """Forces of a body in space, by given steps of order 4 (extrapolated), have the same end."""
@@ -71,6 +72,7 @@ def test_it_is_the_motion_of_the_body(case):
     assert np.linalg.norm(s.position[-1, 0] - known) < (1e-6 if case == "tips" else 1e-9)
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("seed", range(12))
 def test_random_slides_come_to_rest_by_the_tolerance(seed):
     """Errors are those asked for, friction takes what is lost, and v and w end together."""

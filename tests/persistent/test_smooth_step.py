@@ -97,6 +97,7 @@ def known_end(make, duration, step):
     return fine + (fine - coarse) / 15.0
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("case", CASES)
 def test_errors_are_those_asked_for(case):
     make, duration, step, grows = CASES[case]

@@ -36,6 +36,7 @@ def off(wheel, scene, start, v, edge, before, arrives):
     return x, z, s.angular_velocity[-1, 0, 1] - w
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("wheel", WHEELS)
 @pytest.mark.parametrize(("height", "factor"), [(0.06, 0.9), (0.06, 1.1), (0.09, 1.05)])
 def test_it_climbs_a_kerb(wheel, height, factor):
@@ -50,6 +51,7 @@ def test_it_climbs_a_kerb(wheel, height, factor):
     np.testing.assert_allclose(found, 0.0, atol=1e-8)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("wheel", WHEELS)
 @pytest.mark.parametrize("v", [0.3, 0.6])
 def test_it_rolls_off_a_table(wheel, v):

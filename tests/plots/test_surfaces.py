@@ -39,6 +39,7 @@ def volume(vertices, triangles):
     return np.linalg.det(vertices[triangles]).sum() / 6.0
 
 
+@pytest.mark.few(12)
 @pytest.mark.parametrize("shape", SHARP + ROUND + FLAT, ids=repr)
 @pytest.mark.parametrize("fineness", [4, 9])
 def test_each_edge_is_passed_once_in_each_sense(shape, fineness):
@@ -56,6 +57,7 @@ def test_sharp_shapes_are_exact(shape):
     assert volume(*surface(shape)) == pytest.approx(shape.volume, rel=1e-12)
 
 
+@pytest.mark.few(10)
 @pytest.mark.parametrize("shape", ROUND, ids=repr)
 @pytest.mark.parametrize("fineness", [4, 8, 32])
 def test_round_shapes_lose_at_most_the_stated_volume(shape, fineness):

@@ -156,6 +156,7 @@ def test_a_disc_rolls_in_a_circle_at_order_4():
     assert errors[-1] < 1e-10
 
 
+@pytest.mark.few(8)
 @pytest.mark.parametrize("step", [1e-3, 20e-3])
 @pytest.mark.parametrize("friction", [0.0, 0.3, 50.0])
 @pytest.mark.parametrize(

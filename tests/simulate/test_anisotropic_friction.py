@@ -41,6 +41,7 @@ def pull(law, axis, u):
     return -E.T @ (D * w) / np.linalg.norm(w)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 @pytest.mark.parametrize("ratio", [1 / 30, 0.3, 4.0, 30.0])
 def test_a_block_with_a_grooved_foot_drifts(tolerance, ratio):

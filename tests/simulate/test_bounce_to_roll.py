@@ -76,6 +76,7 @@ def test_end_state_of_a_spinning_ball_does_not_depend_on_the_bounces(step):
     np.testing.assert_allclose(a.ledger.residual, 0, rtol=0, atol=1e-12)
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("law", ["newton", "poisson", "stronge"])
 @pytest.mark.parametrize("method", ["rk4", "paper"])
 @pytest.mark.parametrize("push", [(0, 0, 0), (0.1, -0.2, 0)])

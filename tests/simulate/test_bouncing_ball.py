@@ -11,6 +11,7 @@ from simulate.scenes import LAWS, G, ball, bounce_times, event_times, total, zen
 STEPS = (0.5, 0.1, 0.03, 0.01, 0.001)
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("e", [1.0, 0.8])
 @pytest.mark.parametrize("step", [0.5, 0.1, 0.013, 1e-3, 1e-4])
 def test_times_and_speeds_of_impacts(e, step):
@@ -52,6 +53,7 @@ def test_heights():
     np.testing.assert_allclose(v[:, 0, 2], 0.0, rtol=0, atol=1e-9)
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("e", [0.5, 0.8, 0.9])
 @pytest.mark.parametrize("step", STEPS)
 def test_rest_at_the_zeno_time(e, step):

@@ -24,6 +24,7 @@ from carom.io.files.kept import run_again
 from carom.model.records import FULL_MULTIPLE
 
 
+@pytest.mark.few(2)
 @pytest.mark.processors
 @pytest.mark.parametrize("first", range(2000, 2090, 15))
 def test_throws_end_and_lose_nothing_without_a_name(first):

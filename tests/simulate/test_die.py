@@ -33,6 +33,7 @@ AFTER = {  # v+, w+ by Newton's law
 }
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize(("spin", "mu"), AFTER)
 @pytest.mark.parametrize("step", [0.05, 1e-3, 1.7e-4])
 def test_first_impact(spin, mu, step):

@@ -50,6 +50,7 @@ def test_a_plate_that_rattles_keeps_energy_and_momentum():
 
 
 # whole steps with e = 0 leave 2e-4 of the energy without a name
+@pytest.mark.few(4)
 @pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
 @pytest.mark.processors
 @pytest.mark.parametrize("law", ["newton", "poisson", "stronge"])

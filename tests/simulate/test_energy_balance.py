@@ -65,6 +65,7 @@ def test_an_oscillator(h_omega, status, warns):
         assert np.max(solution.total_energy) < 2.0 * solution.total_energy[0]
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("h_lambda", [0.01, 3.0, 100.0, 1e4, 1e6])
 @pytest.mark.parametrize("h_omega", [0.1, 1.0, 10.0, 1e3])
 def test_a_stiff_spring_and_damper_is_no_success(h_omega, h_lambda):

@@ -107,6 +107,7 @@ def test_a_box_that_needs_several_points(attitude):
     assert np.max(a.ledger.residual) < 1e-6 * a.total_energy[0]
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("seed", range(12))
 def test_every_thrown_die_ends(seed):
     # Whatever the throw: the run ends, by itself or with a status, its states finite and above the plane.

@@ -93,6 +93,7 @@ KINDS = {
 }  # fmt: skip
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_kind_of_body(kind):
     # start in the body's axes, so that rates of 1e-15 beside 1 are given exactly; turned by about 3 rad, what

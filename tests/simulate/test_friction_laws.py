@@ -74,6 +74,7 @@ def random_case(seed):
     return m, k, N, V, law
 
 
+@pytest.mark.few(10)
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 @pytest.mark.parametrize("seed", range(20))
 def test_stick_slip_has_its_period(seed, tolerance):
@@ -89,6 +90,7 @@ def test_stick_slip_has_its_period(seed, tolerance):
     assert found.position[:, 0, 0] == pytest.approx(stick_slip(found.t, *given)[0], abs=allowed)
 
 
+@pytest.mark.few(10)
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 @pytest.mark.parametrize("seed", range(20))
 def test_stick_slip_on_a_belt_has_the_same_period(seed, tolerance):

@@ -30,6 +30,7 @@ def lost(solution):
     return -float(np.sum(solution.impacts.energy_change))
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("duration", [1.0, 40.0])
 @pytest.mark.parametrize("settings", [{}, {"rtol": 1e-10}, {"save_at": [0.7, 1.0]}])
 def test_bounces_by_a_force_are_those_by_gravity(duration, settings):
@@ -73,6 +74,7 @@ def pushed_down(force, gravity, shape, static):
     return scene
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("static", [False, True])
 @pytest.mark.parametrize("shape", [BALL, BOX])
 @pytest.mark.parametrize(("force", "gravity"), [(10.0, 0.0), (1e5, 0.0), (1e3, -9.81)])

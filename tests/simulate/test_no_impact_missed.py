@@ -41,6 +41,7 @@ def test_just_clear_is_no_impact():
     np.testing.assert_allclose(a.angular_velocity[-1, 0], (0, 40, 0), rtol=0, atol=1e-10)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("method", ["rk4", "paper"])
 @pytest.mark.parametrize("step", [0.5, 0.1, 0.02])
 def test_a_fast_box_with_huge_steps(step, method):

@@ -20,6 +20,7 @@ def down(angle):
     return np.array([np.cos(angle), 0, -np.sin(angle)])
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("method", ["rk4", "paper"])
 @pytest.mark.parametrize("step", [0.1, 0.01, 1e-3])
 def test_slides_then_rolls(method, step):
@@ -66,6 +67,7 @@ def test_slides_across_with_spin():
     np.testing.assert_allclose(a.position[-1, 0, :2], x[:2], rtol=0, atol=1e-9)
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("angle", [0.1, 0.4, 1.0])
 @pytest.mark.parametrize("part", [0.0, 0.5, 0.9, 1.1, 3.0])
 def test_ball_on_an_incline(angle, part):
@@ -160,6 +162,7 @@ def test_sliding_box_face_centre():
     assert a.contact_force[-1, 0, 0] == pytest.approx(G, rel=1e-12)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("lift", [5.0, 9.0, 12.0, 20.0])
 @pytest.mark.parametrize("method", ["rk4", "paper"])
 def test_a_force_lifts_a_ball(lift, method):

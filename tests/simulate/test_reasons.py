@@ -95,6 +95,7 @@ def ended(scene, duration, step):
     return solution, caught.value, float(found[1])
 
 
+@pytest.mark.few(19)
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_function_that_fails_is_named(kind, seed):
@@ -156,6 +157,7 @@ def test_functions_that_numba_has_compiled_are_named():
             assert 0.1037 <= at <= 0.1037 + (step or 0.5 / 200)
 
 
+@pytest.mark.few(11)
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("kind", OWN)
 def test_a_function_of_own_coordinates_is_named(kind, seed):

@@ -54,6 +54,7 @@ def test_values_by_their_formulas():
         assert law.slope(1.7) == pytest.approx(difference, rel=1e-8, abs=1e-10)
 
 
+@pytest.mark.few(4)
 @pytest.mark.plain
 @pytest.mark.parametrize("impact_law", ["newton", "poisson", "stronge"])
 @pytest.mark.parametrize("name", LAWS)

@@ -170,6 +170,7 @@ KINDS = [
 ]  # fmt: skip
 
 
+@pytest.mark.few(8)
 @pytest.mark.parametrize("frames", [False, True])
 @pytest.mark.parametrize("definition", KINDS, ids=lambda d: type(d).__name__)
 def test_coordinates_of_a_joint_at_one_time(definition, frames):

@@ -94,6 +94,7 @@ quiet = pytest.mark.filterwarnings(
 WAYS = ({}, {"step": 0.01}, {"step": 0.01, "method": "implicit"}, {"rtol": 1e-6, "save_at": 0.07})
 
 
+@pytest.mark.few(5)
 @quiet
 @pytest.mark.parametrize("how", WAYS)
 @pytest.mark.parametrize("make", [die, joined, pile, pendulum])

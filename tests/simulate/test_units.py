@@ -194,6 +194,7 @@ def run(make, u):
     return numbers, [(kind, int(c)) for kind, c in zip(s.events.kind, s.events.contact)]
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("make", SCENES, ids=lambda make: make.__name__)
 def test_same_motion_in_other_units(make):
     known, happened = run(make, SI)

@@ -297,7 +297,7 @@ class UserForce:
         ``function(t, states) -> (n, 6)``: `states` (n, 13) has position, orientation (quaternion, scalar first,
         body to world), velocity and angular velocity of each body, world axes. The result has a force [N] and a
         torque about the mass centre [N m] for each body, world axes. Plain Python, or compiled with Numba,
-        which is about 200 times faster.
+        which makes a run of few bodies some ten times faster.
     potential : callable, optional
         ``potential(t, states) -> float`` [J]; the forces are its negative gradient. If it is given, the energy
         of the forces is part of `potential_energy`; otherwise their work is in `ledger.loads`.

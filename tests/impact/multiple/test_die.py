@@ -79,6 +79,7 @@ EDGE_STRIKE = {
 }
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("stiffness", [None, unlike(2)], ids=["as one", "full"])
 @pytest.mark.parametrize("law", ["newton", "poisson", "stronge"])
 @pytest.mark.parametrize("mu", EDGE_STRIKE)

@@ -219,6 +219,7 @@ def test_no_other_name():
         Scene().set_contact_default(multiple="newton")
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("gravity", [(0, 0, 0), (0, 0, -9.81)])
 @pytest.mark.parametrize("speeds", BALLS)
 def test_any_direction(speeds, gravity):
