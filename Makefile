@@ -17,10 +17,11 @@ $(VENV)/installed-%: pyproject.toml
 paper: $(VENV)/installed-paper ## reproduce the paper: figures and table under out/paper
 	$(BIN)/carom paper --out out/paper
 
+# one process compiles everything before the tests: several would compile the same kernels
 test: $(VENV)/installed-test ## style, types, tests but for the slow ones, a part of them without the JIT
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/basedpyright
+	$(BIN)/carom warmup --workers 1 & $(BIN)/basedpyright; types=$$?; wait; exit $$types
 	$(BIN)/python -m pytest -n auto -m "not slow"
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto -m plain $(call marked,plain)
 
