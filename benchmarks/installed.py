@@ -22,11 +22,11 @@ WANTED = {
     "MuJoCo": "mujoco",
 }  # fmt: skip
 TOOLS = ("pip", "setuptools", "wheel")  # of the environment itself
-MIB = 2.0**20
+MIB, BLOCK = 2.0**20, 512
 
 
 def installed(wanted: str, place: Path) -> tuple[int, float, float]:
-    """Return the number of packages, and the size of their files without and with bytecode [MiB]."""
+    """Return the number of packages, and what their files take on disk without and with bytecode [MiB]."""
     subprocess.run([sys.executable, "-m", "venv", place], check=True)
     python = place / "bin" / "python"
     pip = [python, "-m", "pip", "--disable-pip-version-check"]
@@ -35,9 +35,9 @@ def installed(wanted: str, place: Path) -> tuple[int, float, float]:
     names = [one["name"] for one in json.loads(listed.stdout) if one["name"] not in TOOLS]
     subprocess.run([*pip, "uninstall", "--quiet", "--yes", "setuptools", "pip"], check=True)
     files = [file for file in (place / "lib").rglob("*") if file.is_file()]
-    whole = sum(file.stat().st_size for file in files)
-    plain = sum(file.stat().st_size for file in files if file.suffix != ".pyc")
-    return len(names), plain / MIB, whole / MIB
+    sizes = [(file.suffix != ".pyc", file.stat().st_blocks * BLOCK) for file in files]
+    plain = sum(size for source, size in sizes if source)
+    return len(names), plain / MIB, sum(size for _, size in sizes) / MIB
 
 
 def main() -> None:
@@ -55,8 +55,8 @@ def main() -> None:
         rows.append([name, str(count), f"{plain:.0f}", f"{whole:.0f}"])
     report(
         "installed", "Size of an installation", ["", "packages", "size / MiB", "with bytecode / MiB"], rows,
-        "Files of all packages that pip installs with it and itself, without pip's own. Bytecode: what Python "
-        "writes beside the sources.",
+        "On disk, as `du` counts: all packages that pip installs with it and itself, without pip's own. Bytecode: "
+        "what Python writes beside the sources.",
     )  # fmt: skip
 
 

@@ -1,10 +1,10 @@
 """Inner kernels have no wrapper for Python: calling one from Python would end the process."""
 
 import ast
-from functools import cache
 from pathlib import Path
 
 import carom
+from sources import tree
 
 INNER = {"kernel", "inlined", "unit"}
 COMPILED = {*INNER, "entry"}
@@ -20,37 +20,35 @@ def module(path: Path) -> str:
     return ".".join(["carom", *path.relative_to(SOURCE).with_suffix("").parts])
 
 
-@cache  # a file is read once
-def parsed(path: Path) -> ast.Module:
-    return ast.parse(path.read_text())
-
-
 def inner_kernels() -> set[tuple[str, str]]:
     return {
         (module(path), node.name)
         for path in SOURCE.rglob("*.py")
-        for node in parsed(path).body
+        for node in tree(path).body
         if isinstance(node, ast.FunctionDef) and decorators(node) & INNER
     }
 
 
 def called_from_python(path: Path, kernels: set[tuple[str, str]]) -> set[str]:
     """Return the inner kernels that plain functions of a file call."""
-    tree = parsed(path)
+    own = SOURCE in path.parents
+    if not own and not any(where in path.read_text() for where in {where for where, _ in kernels}):
+        return set()  # it imports none
+    parsed = tree(path)
     names = {
         alias.asname or alias.name
-        for node in ast.walk(tree)
+        for node in ast.walk(parsed)
         if isinstance(node, ast.ImportFrom)
         for alias in node.names
         if (node.module, alias.name) in kernels
     }
-    if SOURCE in path.parents:
+    if own:
         names |= {name for where, name in kernels if where == module(path)}
     if not names:
         return names
     return names & {
         call.func.id
-        for node in tree.body
+        for node in parsed.body
         if isinstance(node, ast.FunctionDef) and not decorators(node) & COMPILED
         for call in ast.walk(node)
         if isinstance(call, ast.Call) and isinstance(call.func, ast.Name)
@@ -69,7 +67,7 @@ def test_a_kernel_has_at_most_six_parameters():
     wide = {
         f"{module(path)}.{node.name}"
         for path in SOURCE.rglob("*.py")
-        for node in parsed(path).body
+        for node in tree(path).body
         if isinstance(node, ast.FunctionDef) and decorators(node) & COMPILED
         if len(node.args.args) > 6
     }

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from sources import tree
 from test_architecture import ROOT, modules
 
 TOOL = runpy.run_path(str(Path(__file__).parents[1] / "tools" / "thresholds.py"))
@@ -37,7 +38,7 @@ def test_each_threshold_is_used():
     """By its name, or as an attribute of the module."""
     used = set()
     for path in modules().values():
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in ast.walk(tree(path)):
             if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
                 used.add(node.id)
             elif isinstance(node, ast.Attribute):

@@ -140,7 +140,6 @@ def test_blocks_stick_on_an_incline():
     assert np.all(s.velocity == 0.0)
 
 
-@pytest.mark.plain
 def test_blocks_slide_down_an_incline():
     """All with a = g (sin - mu cos): constant, so as exact as the problem is solved (1e-4 of g h)."""
     mu = 0.5 * np.tan(0.4)

@@ -79,6 +79,7 @@ def test_cases_of_the_campaign(seed, tolerances):
     assert wrong(vars(run(teeth.case(seed), tolerances))) == []
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("seed", "tolerances"), [(258, True), (62, False)])
 def test_every_step_has_its_events(seed, tolerances):
     """258: all 2350 pairs of pieces were looked at after each impact, until no trial steps were left. 62: two

@@ -29,6 +29,7 @@ def test_it_stays(ratio, off):
     np.testing.assert_allclose(s.position[-1], s.position[0], rtol=0, atol=1e-12)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("ratio", [1e4, 1e6])
 def test_both_slide_as_one(ratio):
     """Pushed on ice by a force on the light one alone, both have the acceleration F/(M + m)."""

@@ -39,6 +39,7 @@ def test_throws_end_and_lose_nothing_without_a_name(first):
         assert found.gained <= 1e-6, seed
 
 
+@pytest.mark.few(2)
 @pytest.mark.processors
 @pytest.mark.parametrize("first", range(3001, 3049, 12))
 def test_piles_end_and_lose_nothing_without_a_name(first):
@@ -138,6 +139,7 @@ def test_what_does_not_move_is_not_inaccurate(seed):
 SMALLER = {2000: 2054, 2012: 2048, 2016: 2088, 2019: 2109, 2023: 2059}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("first", range(2000, 2036, 12))
 def test_crowds_end_and_lose_nothing_without_a_name(first):
     # The twelve are of each kind, at two steps. Bounds far above what 2000 others met.
