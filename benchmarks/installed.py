@@ -55,8 +55,8 @@ def main() -> None:
         rows.append([name, str(count), f"{plain:.0f}", f"{whole:.0f}"])
     report(
         "installed", "Size of an installation", ["", "packages", "size / MiB", "with bytecode / MiB"], rows,
-        "On disk, as `du` counts: all packages that pip installs with it and itself, without pip's own. Bytecode: "
-        "what Python writes beside the sources.",
+        "On disk, as `du` counts: all packages that pip installs with it and itself, without pip's own. "
+        "Bytecode: what Python writes beside the sources.",
     )  # fmt: skip
 
 

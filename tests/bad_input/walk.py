@@ -38,6 +38,7 @@ DOCUMENTED = {
 }
 #: what a message may name in the place of the argument: what that does not fit
 INSTEAD = {
+    ("curves.Curve", "start"): "end",
     ("Scene.add_force", "definition"): "parent",
     ("gradient.impact_derivative", "friction"): "the impact",
     ("Solution.plot", "what"): "contacts",

@@ -188,8 +188,8 @@ class Rows:
         ``function(t, poses) -> (rows, 6 n + 1)``: `poses` (n, 7) has position and orientation (quaternion,
         scalar first, body to world) of each body, world axes. A row of the result has six numbers for each
         body (the factors of its velocity, then those of its angular velocity, in world axes) and then b. Plain
-        Python, or compiled with Numba, which makes a run of few bodies ten times faster. It must be smooth in t and the poses:
-        central differences give its change along the motion.
+        Python, or compiled with Numba, which makes a run of few bodies ten times faster. It must be smooth in t
+        and the poses: central differences give its change along the motion.
     rows : int
         Number of rows, 1 to 6.
     position : callable, optional
