@@ -62,6 +62,7 @@ CAPABILITIES = {
     "laws of friction and tangential restitution of several contacts, and in own coordinates": {
         "impact": 7, "generalized": 1,
     },
+    "what bodies look like": {"scene": 1, "io": 2, "visual": 1},
     "curves, and joints on them": {"kinematics": 3, "scene": 5, "model": 1, "dynamics": 1, "results": 1},
 }  # fmt: skip
 

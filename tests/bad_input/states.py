@@ -63,11 +63,15 @@ def stated():
             carom.Part,
             dict(shape=carom.Sphere(0.1), position=three, orientation=(1, 0, 0, 0), material=None),
         ),
+        "Look": (
+            carom.Look,
+            dict(shape=carom.Sphere(0.1), position=three, orientation=(1, 0, 0, 0), color=None),
+        ),
     }  # fmt: skip
     found = {}
     for name, (kind, given) in shapes.items():
         found[name] = lambda kind=kind, given=given: (kind, given)
-        if name == "Part":
+        if name in ("Part", "Look"):
             continue
         found[f"{name}.inertia"] = lambda kind=kind, given=given: (
             kind(**given).inertia,

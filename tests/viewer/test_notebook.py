@@ -113,6 +113,13 @@ solution = carom.simulate(scene, 0.25, step=5e-3)
 solution
 ---
 solution.impacts
+---
+ax = solution.plot("energy")
+---
+ax = solution.plot("impacts")
+---
+import matplotlib.pyplot as plt
+line = plt.plot([1, 2])
 """
 
 
@@ -123,7 +130,11 @@ def test_a_notebook_has_them():
     pytest.importorskip("ipykernel")
     made = nbformat.v4.new_notebook(cells=list(map(nbformat.v4.new_code_cell, CODE.split("---"))))
     nbclient.NotebookClient(made, timeout=120, kernel_name="python3").execute()
-    scene, solution, impacts = (cell.outputs[-1].data["text/html"] for cell in made.cells)
+    scene, solution, impacts = (cell.outputs[-1].data["text/html"] for cell in made.cells[:3])
+    for cell in made.cells[
+        3:
+    ]:  # each figure is shown once, also after the first, and the reader's own
+        assert sum("image/png" in one.get("data", {}) for one in cell.outputs) == 1, cell.source
     assert len(pictures(scene)) == 1
     assert "srcdoc=" in solution
     assert len(cells(impacts)) > 1
