@@ -141,7 +141,7 @@ _OF_SOLUTION = {
     "coordinates of a joint are joint_coordinates(name)": "qpos qvel joint_angles angle angles joints",
     "controls of a model are solution.scene.robot.ctrl(solution)": "ctrl control controls",
     "a sensor of a model is read by its name: solution[name]": "sensors sensor sensordata",
-    "bodies are those of its scene: solution.scene.bodies, solution[name]": "bodies body",
+    "bodies are those of its scene: solution.scene.bodies, solution[name]": "bodies",
 }  # fmt: skip
 _OF_ENSEMBLE = {
     'tables are written by save("runs.csv"), or made by to_pandas()': "to_csv to_excel",

@@ -8,7 +8,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, overload
 
 import numpy as np
 
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     )
     from carom.scene.scene import Scene
 
+Kind = TypeVar("Kind")
 MODES = np.array(["open", "slipping", "sticking"])
 MOST_LISTED = 1000  # contacts whose names are completed
 
@@ -54,6 +55,65 @@ class Source:
     _numbers: Any  # of contacts by name
     _touch: Any  # active points at saved times
     _exerted_by: Callable  # rows of a force
+    _whose = "solution"  # in messages
+
+    @overload
+    def __getitem__(self, name: Body) -> BodyState: ...
+    @overload
+    def __getitem__(self, name: Joint) -> JointView: ...
+    @overload
+    def __getitem__(self, name: AppliedForce) -> ForceView: ...
+    @overload
+    def __getitem__(self, name: Constraint) -> ConstraintView: ...
+    @overload
+    def __getitem__(self, name: Contact | Stop) -> ContactView: ...
+    @overload
+    def __getitem__(self, name: str) -> Any: ...
+    def __getitem__(self, name: Any) -> Any:
+        """Return the results of one part, given by name or as the object; of a solution with the time first.
+
+        A body is a `BodyState` (``solution["die"].velocity``), a joint a `JointView`
+        (``solution["hinge"].torque``), a force a `ForceView` (``solution["motor"].power``), a constraint a
+        `ConstraintView`, a contact or a stop a `ContactView` (``solution["die-ground"].force``). A name that no
+        part has may be that of a sensor of the model. `body`, `joint`, `force`, `constraint` and `contact`
+        return the same, of one kind, which type checkers know.
+
+        Raises
+        ------
+        KeyError
+            If there are no results of this name; the message suggests the nearest one.
+        """
+        return view(self, name, self._whose)
+
+    def body(self, name: str | Body) -> BodyState:
+        """Return the results of a body, as ``solution[name]`` does."""
+        return self._of_kind(name, BodyState, "body")
+
+    def joint(self, name: str | Joint) -> JointView:
+        """Return the results of a joint, as ``solution[name]`` does."""
+        return self._of_kind(name, JointView, "joint")
+
+    def force(self, name: str | AppliedForce) -> ForceView:
+        """Return the results of a force, as ``solution[name]`` does."""
+        return self._of_kind(name, ForceView, "force")
+
+    def constraint(self, name: str | Constraint) -> ConstraintView:
+        """Return the results of a constraint, as ``solution[name]`` does."""
+        return self._of_kind(name, ConstraintView, "constraint")
+
+    def contact(self, name: str | Contact | Stop) -> ContactView:
+        """Return the results of a contact or a stop, as ``solution[name]`` does."""
+        return self._of_kind(name, ContactView, "contact or a stop")
+
+    def _of_kind(self, name: Any, kind: type[Kind], called: str) -> Kind:
+        """Return the results of a part of one kind."""
+        found = view(self, name, self._whose)
+        if not isinstance(found, kind):
+            raise ValueError(
+                f"name must be that of a {called}, got {checks.shown(name)}, which has a "
+                f"{type(found).__name__}"
+            )
+        return found
 
     def _ipython_key_completions_(self) -> list[str]:
         parts = [part.name for part in self._scene._parts if type(part) in VIEWS]
