@@ -199,6 +199,15 @@ class View:
             )
         return table[self.name]
 
+    def _drawn(self, kind: str, options: dict) -> Any:
+        """Return the axes of a plot of this part over a run."""
+        plot = getattr(self._source, "plot", None)
+        if plot is None:
+            raise AttributeError(
+                f"a plot is of a whole run: solution[{self.name!r}], not of a state"
+            )
+        return plot(kind, self.name, **options)
+
     def __repr__(self) -> str:
         listed = ", ".join(n for n in dir(type(self)) if not n.startswith("_") and n != "name")
         return f"<{type(self).__name__} of {self.name!r}: {listed}>"
@@ -243,6 +252,36 @@ class JointView(View):
     def torque(self) -> np.ndarray:
         """Torque on the child about its anchor (T, 3), world axes [N m]."""
         return self._source.joint_reactions[..., self._part.index, 3:]
+
+    @arguments.known
+    def to_pandas(self, *, degrees: bool = False) -> Any:
+        """Return a `pandas.DataFrame` with one row for each saved time, indexed by the time [s].
+
+        Columns are ``coordinate`` and ``rate`` (with an index if there are several: ``coordinate[0]``), and the
+        components of force and torque, ``fx``, ``fy``, ``fz``, ``tx``, ``ty``, ``tz``, as in
+        `Solution.to_pandas`.
+
+        Parameters
+        ----------
+        degrees : bool
+            Whether angles are in degrees. Default False: radians.
+        """
+        pandas = checks.need("pandas", "to_pandas", "files")
+        columns = {}
+        for name, values in zip(("coordinate", "rate"), self.coordinates(degrees=degrees)):
+            rows = np.reshape(values, (-1, np.shape(values)[-1])).T
+            columns |= {
+                f"{name}[{k}]" if len(rows) > 1 else name: one for k, one in enumerate(rows)
+            }
+        for name, values in (("f", self.force), ("t", self.torque)):
+            columns |= {name + axis: one for axis, one in zip("xyz", np.reshape(values, (-1, 3)).T)}
+        return pandas.DataFrame(
+            columns, index=pandas.Index(np.atleast_1d(self._source.t), name="time")
+        )
+
+    def plot(self, **options) -> Any:
+        """Draw coordinates, rates, forces and torques over time, as `carom.plots.joints` does."""
+        return self._drawn("joints", options)
 
     @property
     def impulses(self) -> JointImpulseTable:
@@ -306,6 +345,10 @@ class ForceView(_Coordinate, View):
     def _along(self):
         d = self._part.definition
         return d if isinstance(d, AlongJoint) else None
+
+    def plot(self, **options) -> Any:
+        """Draw the force over time, as `carom.plots.forces` does."""
+        return self._drawn("forces", options)
 
     @property
     def _rows(self) -> np.ndarray:
