@@ -303,6 +303,8 @@ def changed(scene: Scene, targets: list[Target], values: dict[str, np.ndarray]) 
         value = np.array(values[target.name])
         value = value if value.ndim else value.item()
         found = find(scene, target.name)
+        if found is None and target.name != "gravity":
+            continue  # coordinates of a model, to which a run is moved
         if found is None:
             scene._gravity = np.array(value)
             continue
