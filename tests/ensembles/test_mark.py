@@ -11,8 +11,8 @@ import pytest
 
 import carom
 from carom.stepping.settings import checked_settings
-from carom.studies.ensembles.plan import plan_of
 from carom.studies.ensembles.mark import digest, mark_of
+from carom.studies.ensembles.plan import plan_of
 
 VALUES = {"die.position": np.zeros((2, 3))}
 

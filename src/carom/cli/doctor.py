@@ -15,11 +15,10 @@ from carom.cli import FAILED, show
 from carom.cli.extras import requirements, version
 from carom.cli.outcome import warn
 
-
 #: said before the run, because a first one waits for the compiler
 RUNS = (
-    "running a sphere that bounces on a floor; the time loop, free flight, the search of contacts, the impact and "
-    "rest are compiled first where they are not on disk, once, in a minute or more ..."
+    "running a sphere that bounces on a floor; the time loop, free flight, the search of contacts, the impact "
+    "and rest are compiled first where they are not on disk, once, in a minute or more ..."
 )
 
 

@@ -24,7 +24,7 @@ OCTAVES = 100  # of speeds below and above 1 m/s, where no speeds are given
 TINY = 2.0**-180  # speed up to which a function is what it is there; at 0 itself it may jump
 ACCURACY = 1e-10  # of a fit, relative to the greatest value up to there
 LEAST_ACCURACY = 1e-13  # round-off of a quintic through six points
-MOST_PIECES = 5000  # of one function
+MOST_QUINTICS = 5000  # of one function
 NARROWEST = 8.0 * np.finfo(float).eps  # width of a piece relative to its end: a jump
 #: places in a piece, from 0 to 1, at which a quintic is exact, and between them
 NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(6) / 5)
@@ -134,10 +134,10 @@ def _pieces(at: Callable, edges: list[float], accuracy: float, name: str) -> lis
         else:
             middle = 0.5 * (begin + end)
             todo += [(middle, end), (begin, middle)]
-        if len(pieces) + len(todo) > MOST_PIECES:
+        if len(pieces) + len(todo) > MOST_QUINTICS:
             raise ValueError(
                 f"function must be smooth but for a few kinks, got {name}, which needs more than "
-                f"{MOST_PIECES} polynomials for accuracy={accuracy:g}; give a larger one"
+                f"{MOST_QUINTICS} polynomials for accuracy={accuracy:g}; give a larger one"
             )
     joined = [pieces[0]]
     for one in pieces[1:]:

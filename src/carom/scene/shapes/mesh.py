@@ -78,7 +78,7 @@ class Mesh(Shape):
 
     def __init__(
         self,
-        vertices: ArrayLike | Any,
+        vertices: Any,
         faces: ArrayLike | None = None,
         parts: Sequence | str | None = None,
     ):
