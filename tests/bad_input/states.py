@@ -95,6 +95,12 @@ def stated():
                 exponent=1.0,
             ),
         ),
+        "Friction.fit": lambda: (
+            carom.Friction.fit, dict(function=lambda v: 0.5, speeds=(0.1, 1.0), accuracy=1e-8),
+        ),
+        "Restitution.fit": lambda: (
+            carom.Restitution.fit, dict(function=lambda v: 0.5, speeds=(0.1, 1.0), accuracy=1e-8),
+        ),
         "Friction.table": lambda: (carom.Friction.table, dict(speeds=(0.1, 1.0), values=(0.9, 0.5))),
         "Profile.points": lambda: (
             carom.Profile([(0, 0), (1, 0), (0, 1)], 0.1, "all").points, dict(count=12),
@@ -121,12 +127,12 @@ def stated():
         "Scene.add_body": of_scene(
             "add_body", shape=carom.Sphere(0.1), mass=1.0, density=None, inertia=(1.0, 1.0, 1.0),
             position=three, orientation=(1.0, 0, 0, 0), velocity=three, angular_velocity=three,
-            material=carom.Material(0.5, 0.1), name="new", color="red", replace=True,
+            material=carom.Material(0.5, 0.1), name="new", color="red", look=carom.Sphere(0.2), replace=True,
         ),
         "Scene.add_body of a density": of_scene(
             "add_body", shape=carom.Sphere(0.1), mass=None, density=1.0, inertia=None,
             position=three, orientation=(1.0, 0, 0, 0), velocity=three, angular_velocity=three,
-            material=None, name="new", color=None, replace=False,
+            material=None, name="new", color=None, look=None, replace=False,
         ),
         "Scene.add_static": of_scene(
             "add_static", shape=carom.Sphere(0.1), position=three, orientation=(1.0, 0, 0, 0),

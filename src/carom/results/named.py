@@ -107,7 +107,10 @@ class Source:
 
     def _of_kind(self, name: Any, kind: type[Kind], called: str) -> Kind:
         """Return the results of a part of one kind."""
-        found = view(self, name, self._whose)
+        try:
+            found = view(self, name, self._whose)
+        except (KeyError, ValueError) as error:
+            raise ValueError(f"name must be that of a {called}: {error.args[0]}") from None
         if not isinstance(found, kind):
             raise ValueError(
                 f"name must be that of a {called}, got {checks.shown(name)}, which has a "

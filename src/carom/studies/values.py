@@ -30,7 +30,7 @@ POSES = ("position", "orientation")
 LAW_FIELDS = ("restitution", "friction", "friction_held", "rolling_friction", "pivoting_friction")
 BODY_FIELDS = ("mass", "inertia")
 #: what no run depends on, and what has no number or word
-LEFT_OUT = ("material", "color")
+LEFT_OUT = ("material", "color", "look")
 SPIN, PLACE_OF_RATE = "surface_spin", 1  # a tuple, and where its rate is
 AXES, SCALAR_FIRST = ("x", "y", "z"), ("w", "x", "y", "z")
 MOMENTS = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
