@@ -27,7 +27,7 @@ TOPICS = {
     "Scene": {
         "Bodies, static bodies and half-spaces": (
             "add_body", "add_static", "add_surface", "add_half_space", "bodies", "statics", "half_spaces",
-            "fixed", "gravity",
+            "fixed", "gravity", "look",
         ),
         "Contacts": (
             "add_contact", "set_contact_default", "ignore_contact", "contacts", "contact_law",
@@ -41,6 +41,7 @@ TOPICS = {
     },
     "Solution": {
         "Motion": ("t", "position", "orientation", "velocity", "angular_velocity", "evaluate"),
+        "Parts by name": ("body", "joint", "force", "constraint", "contact"),
         "Impacts": ("impacts", "joint_impulses", "impact_history", "events"),
         "Contact that stays": (
             "contacts", "contact_mode", "contact_force", "forces", "surface_power", "held_residual", "pairs",

@@ -63,6 +63,10 @@ CAPABILITIES = {
     "laws of friction and tangential restitution of several contacts, and in own coordinates": {
         "impact": 7, "generalized": 1,
     },
+    "what bodies look like": {"scene": 1, "io": 2, "visual": 1},
+    "laws as functions, results of one kind by name, ensembles of robots, hints for arguments": {
+        "scene": 3, "results": 3, "studies": 3, "hints": 1, "cli": 1,
+    },
     "curves, and joints on them": {"kinematics": 3, "scene": 5, "model": 1, "dynamics": 1, "results": 1},
 }  # fmt: skip
 

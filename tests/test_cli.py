@@ -323,6 +323,24 @@ def test_a_folder_that_cannot_be_made_is_one_line_and_code_1(tmp_path, capsys):
     assert one_line(capsys).startswith("carom paper: ")
 
 
+def test_doctor_speaks_before_it_compiles(capsys, monkeypatch):
+    """What needs no compiler is there, and what is compiled is named, when the run begins."""
+    from carom.cli import doctor
+
+    said = []
+
+    def stop(found):
+        said.append(capsys.readouterr().out)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(doctor, "check_code", stop)
+    with pytest.raises(KeyboardInterrupt):
+        doctor.run(warm=False, json=False)
+    assert f"carom {carom.__version__}" in said[0]
+    assert "numpy" in said[0]
+    assert said[0].endswith(doctor.RUNS + "\n")
+
+
 def test_doctor(capsys):
     code = main(["doctor"])
     out = capsys.readouterr()

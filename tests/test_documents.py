@@ -155,7 +155,8 @@ SHOWN = [
     "ensemble",
     "sensitivities", "solve_contacts", "euler", "axis_angle", "Scene.ignore_contact",
     "Scene.add_static", "Scene.add_surface", "Scene.replace", "Run", "contact_inverse_mass", "curves.Curve",
-    "curves.Spline", "Restitution", "Friction", "Part", "Profile", "surfaces.HeightField", "surfaces.Surface",
+    "curves.Spline", "Restitution", "Restitution.fit", "Friction",
+    "Friction.fit", "Look", "Part", "Profile", "surfaces.HeightField", "surfaces.Surface",
 ]  # fmt: skip
 
 

@@ -2,12 +2,14 @@
 
 import importlib
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import carom
 from carom import hints
+from carom.results.drawn import KINDS
 from carom.results.state import SystemState
 
 OWNERS = {
@@ -18,6 +20,7 @@ OWNERS = {
     "Ensemble": carom.Ensemble,
     "BodyState": carom.results.BodyState,
     "JointView": carom.results.JointView,
+    "plot": SimpleNamespace(**dict.fromkeys(KINDS, None)),
 }
 ENTRIES = [
     (owner, name, ours)
@@ -62,8 +65,12 @@ def named_in(sentence):
         yield carom.Scene, word
 
 
+SENTENCES = {ours for _, _, ours in ENTRIES} | set(hints.PLACES)
+SENTENCES |= {said for table in hints.ARGUMENTS.values() for said in table}
+
+
 def test_what_a_sentence_names_exists():
-    for ours in {ours for _, _, ours in ENTRIES} | set(hints.PLACES):
+    for ours in SENTENCES:
         if ours.isidentifier():
             continue
         for holder, names in named_in(ours):
@@ -78,6 +85,9 @@ def test_no_name_stands_for_itself_or_twice_in_a_table():
     for ours, others in hints.VALUES.items():
         assert ours not in others.split()
         assert len(set(others.split())) == len(others.split())
+    for table in hints.ARGUMENTS.values():
+        names = [name for names in table.values() for name in names.split()]
+        assert len(set(names)) == len(names)
     for owner, table in hints.MEMBERS.items():
         names = [hints._plain(name) for names in table.values() for name in names.split()]
         assert len(set(names)) == len(names), owner
@@ -112,10 +122,17 @@ def run():
             "load has no argument file=; it is called path=",
         ),
         (lambda s: s.joint_coordinates(name="pin"), "it has joint"),
+        (lambda s: s.scene.add_rope(1), r"a rope that may go slack is add_force"),
+        (lambda s: s.scene.add_conveyor(1), "surface_velocity="),
+        (lambda s: s.plot("reactions"), "did you mean 'joints'"),
+        (
+            lambda s: carom.simulate(s.scene, 1.0, step=None),
+            '"auto", which is the default, got None',
+        ),
     ],
 )
 def test_a_solution_says_what_it_has(run, ask, words):
-    with pytest.raises((AttributeError, TypeError), match=words):
+    with pytest.raises((AttributeError, TypeError, ValueError), match=words):
         ask(run)
 
 
@@ -128,6 +145,20 @@ def test_a_solution_says_what_it_has(run, ask, words):
         (lambda: carom.sensitivities(param="die.mass"), "sensitivities has no argument param="),
         (lambda: carom.Scene().ignore_contact(a="die"), "ignore_contact has no argument a="),
         (lambda: carom.GeneralizedSystem(M=1), "GeneralizedSystem has no argument M="),
+        (
+            lambda: carom.joints.Revolute((0, 0, 0), (0, 0, 1), friction=0.1),
+            r"forces\.JointFriction\(joint",
+        ),
+        (
+            lambda: carom.joints.Prismatic((0, 0, 1), limits=(0, 1)),
+            r"scene\.add_stop\(joint, lower=",
+        ),
+        (lambda: carom.joints.Revolute((0, 0, 0), (0, 0, 1), clearance=1), "clearance is no joint"),
+        (
+            lambda: carom.film(resolution=(9, 9)),
+            r"width and height in pixels are size=\(1280, 720\)",
+        ),
+        (lambda: carom.simulate(limits=1), r"scene\.add_stop\(joint"),
     ],
 )
 def test_a_function_says_which_argument_is_meant(call, words):

@@ -9,7 +9,7 @@ from functools import wraps
 from inspect import CO_VARKEYWORDS
 from typing import Any, TypeVar, cast
 
-from carom.hints import ALIKE, MEANT, PLACE, ending, of_member
+from carom.hints import ALIKE, MEANT, PLACE, ending, of_argument, of_member
 
 F = TypeVar("F", bound=Callable)
 T = TypeVar("T")
@@ -116,6 +116,8 @@ def check_known(shown: str, names: list[str], given) -> None:
 def _unknown(shown: str, names: list[str], given, has) -> str:
     unknown = next(name for name in given if name not in has)
     meant = [name for name in MEANT.get(unknown, ()) if name in has]
+    if said := of_argument(shown, unknown):
+        return f"{shown} has no argument {unknown}=; {said}"
     if not meant and unknown in PLACE:
         return f"{shown} has no argument {unknown}=; {PLACE[unknown]}"
     word, unit = _without_unit(unknown)

@@ -88,6 +88,50 @@ PLACES = {
     "it is an argument of carom.simulate": "rtol atol",
     "a body that never moves is made by add_static": "fixed static is_static kinematic",
 }  # fmt: skip
+_JOINTS = (
+    "Revolute Prismatic Spherical Cylindrical Universal Planar Fixed Distance PointOnLine PointOnPlane Screw "
+    "PointOnCurve add_joint"
+)
+#: arguments that functions and classes do not have, with what stands for them: by their names
+ARGUMENTS = {
+    _JOINTS: {
+        "limits of a joint are stops: scene.add_stop(joint, lower=, upper=, restitution=)":
+            "limits limit range lower upper stop stops",
+        "friction of a joint is a force: scene.add_force(carom.forces.JointFriction(joint, ...))":
+            "friction mu friction_torque frictionloss dry_friction",
+        "a spring or a damper of a joint is a force: "
+        "scene.add_force(carom.forces.JointSpring(joint, stiffness=, damping=))":
+            "damping stiffness spring spring_constant damping_coefficient viscous_friction compliance",
+        "clearance is no joint, but a contact: give the pin and its bearing shapes, such as a Cylinder in a "
+        "Compound, without a joint, and scene.add_contact": "clearance backlash play gap tolerance",
+        "a motor is scene.add_constraint(carom.constraints.Driver(joint, rate=)) or "
+        "scene.add_force(carom.forces.JointForce(joint, torque))": "motor torque force speed rate drive "
+        "velocity",
+        "the inertia of a motor is scene.add_force(carom.forces.JointInertia(joint, inertia))":
+            "armature rotor_inertia",
+    },
+    "add_stop": {"they are two arguments: lower= and upper=": "limits limit range bounds"},
+    "film still animate": {
+        "width and height in pixels are size=(1280, 720)": "resolution width height dpi figsize pixels",
+        'the place of the camera is view="oblique", "front", ... and zoom=; follow= keeps a body in the middle':
+            "camera eye elev azim azimuth elevation angle",
+        "the length of the film is the run from start= to end= at speed=": "duration frames slow_motion "
+        "playback",
+    },
+    "simulate ensemble Run": {
+        "limits of a run are in options=carom.Options(...); limits of a joint are stops, "
+        "scene.add_stop(joint, lower=, upper=)": "limits limit",
+        "it is options=carom.Options(max_step=...)": "max_step maxstep hmax dt_max",
+        "gravity is that of the scene: scene.gravity = (0, 0, -9.81)": "gravity",
+        "steps are chosen by the tolerances rtol= and atol=, or given by step=": "substeps n_substeps "
+        "iterations",
+    },
+    "add_contact set_contact_default Material": {
+        "contacts are rigid: what damps an impact is restitution=": "damping c kd solref solimp dissipation",
+        "contacts are rigid; stiffness= shares an impact between several contacts": "compliance young "
+        "modulus E",
+    },
+}  # fmt: skip
 _JOINT = "it is made by add_joint(carom.joints.{}(...), parent, child)"
 _SHAPED = "a body with a shape is made by add_body(carom.{}(...), mass=...)"
 _VIEWED = (
@@ -119,7 +163,19 @@ _OF_SCENE = {
     _JOINT.format("Prismatic"): "add_slider add_slide add_prismatic",
     _JOINT.format("Spherical"): "add_ball_joint add_spherical add_socket",
     _JOINT.format("Fixed"): "add_weld add_fixed_joint",
-    _JOINT.format("Distance"): "add_rod add_rope add_distance",
+    _JOINT.format("Distance"): "add_rod add_distance",
+    "a rope that may go slack is add_force(carom.forces.CurveSpring(...)), whose tension is 0 up to its "
+    "length; a "
+    "massless rod is add_joint(carom.joints.Distance(...))": "add_rope add_cable add_string add_tether "
+    "add_chain",
+    "a conveyor is a fixed part whose surface moves: add_half_space(..., surface_velocity=), or add_static":
+        "add_conveyor add_belt add_conveyor_belt add_treadmill",
+    "a turntable is a fixed part whose surface turns: add_half_space(..., surface_spin=), or add_static":
+        "add_turntable",
+    "stairs are made of static boxes by add_static": "add_stairs add_steps",
+    "a pulley or a belt between joints is add_constraint(carom.constraints.Coupling(...))":
+        "add_pulley add_tendon",
+    "a bushing is add_force(carom.forces.Bushing(...))": "add_bushing add_mount",
     "gravity is an attribute: scene.gravity = (0, 0, -9.81)": "set_gravity",
     "it is stated by set_contact_default, or for one pair by add_contact":
         "set_friction set_restitution set_material collisions add_collision contact_material",
@@ -141,7 +197,7 @@ _OF_SOLUTION = {
     "coordinates of a joint are joint_coordinates(name)": "qpos qvel joint_angles angle angles joints",
     "controls of a model are solution.scene.robot.ctrl(solution)": "ctrl control controls",
     "a sensor of a model is read by its name: solution[name]": "sensors sensor sensordata",
-    "bodies are those of its scene: solution.scene.bodies, solution[name]": "bodies body",
+    "bodies are those of its scene: solution.scene.bodies, solution[name]": "bodies",
 }  # fmt: skip
 _OF_ENSEMBLE = {
     'tables are written by save("runs.csv"), or made by to_pandas()': "to_csv to_excel",
@@ -166,6 +222,19 @@ MEMBERS = {
     "Solution": _OF_SOLUTION,
     "Ensemble": _OF_ENSEMBLE,
     "BodyState": _OF_BODY,
+    #: kinds of plots
+    "plot": {
+        "joints": "angles angle coordinates joint joint_coordinates rates qpos qvel reactions reaction "
+        "joint_reactions",
+        "forces": "force torques torque loads controls",
+        "trajectory": "position positions path paths motion bodies xyz top side",
+        "energy": "energies ledger balance kinetic potential",
+        "contacts": "contact modes intervals gaps",
+        "phase": "phase_plane phase_space portrait velocity velocities speed",
+        "impacts": "collisions hits impulses bounces",
+        "a picture at one time is carom.films.still(solution, time), a film carom.film(solution, path)":
+            "scene 3d still film animation",
+    },
     "JointView": {
         "coordinate": "position", "rate": "velocity speed omega", "force": "reaction reactions load",
         "impulses": "impulse joint_impulses impacts",
@@ -199,13 +268,21 @@ MEMBERS = {
         _ELSEWHERE.format("forces", "Torque"): "Torque",
         _ELSEWHERE.format("constraints", "Driver"): "Motor Driver Actuator",
         _ELSEWHERE.format("constraints", "Gear"): "Gear",
+        "a rope that may go slack is carom.forces.CurveSpring, a massless rod carom.joints.Distance":
+            "Rope Cable Tether",
+        "a conveyor is a fixed part with a surface that moves: scene.add_half_space(..., surface_velocity=)":
+            "Conveyor ConveyorBelt",
+        "a belt over wheels is carom.constraints.Coupling, one that carries is a surface that moves: "
+        "scene.add_half_space(..., surface_velocity=)": "Belt",
     },
     "carom.joints": {
         "Revolute": "hinge rotational pin pivot continuous RevoluteJoint HingeJoint",
         "Spherical": "ball socket BallJoint",
         "Prismatic": "slide slider translational PrismaticJoint",
         "Fixed": "weld rigid FixedJoint",
-        "Distance": "rod rope",
+        "Distance": "rod",
+        "a rope that may go slack is carom.forces.CurveSpring, a rod is Distance": "rope cable tether",
+        "a belt over wheels is carom.constraints.Coupling": "belt chain",
         "a hinge is Revolute, and a rod is Distance": "PinJoint",
         "Universal": "cardan",
         "RollingSphere": "RollingJoint RollingBall",
@@ -228,7 +305,8 @@ MEMBERS = {
         "JointFriction": "DryFriction CoulombFriction",
         "JointInertia": "Armature Rotor ReflectedInertia",
         "Bushing": "Mount",
-        "UserForce": "Drag AirDrag Custom CustomForce Function Field Wrench",
+        "a rope that may go slack is CurveSpring, whose tension is 0 up to its length": "Rope Cable Tether",
+        "UserForce": "Drag AirDrag Wind Buoyancy Magnus Custom CustomForce Function Field Wrench",
         "gravity is that of the scene: carom.Scene(gravity=...)": "Gravity",
         "friction of contacts is stated by scene.add_contact(..., friction=)": "Friction",
     },
@@ -258,12 +336,22 @@ for _ours, _others in VALUES.items():
     for _other in _others.split():
         MEANT.setdefault(_other, []).append(_ours)
 PLACE = {name: said for said, names in PLACES.items() for name in names.split()}
+_ARGUMENT = {
+    function: {name: said for said, names in table.items() for name in names.split()}
+    for functions, table in ARGUMENTS.items()
+    for function in functions.split()
+}
 _MEMBER = {owner: _by_name(table) for owner, table in MEMBERS.items()}
 
 
 def of_member(owner: str, name: str) -> str:
     """Return what a class or module has for a name from elsewhere: a name or a sentence, "" for none."""
     return _MEMBER.get(owner, {}).get(_plain(name), "")
+
+
+def of_argument(function: str, name: str) -> str:
+    """Return the sentence about an argument that a function or a class does not have, "" for none."""
+    return _ARGUMENT.get(function, {}).get(name, "")
 
 
 def ending(owner: str, name: str, members, near: str = "") -> str:

@@ -165,6 +165,6 @@ class Remark(str):
 
 
 class Advice(Remark):
-    """A remark on settings that make a run slow: `simulate` says it as a `MistakeWarning`."""
+    """A remark on what a user will want to change in scene or settings: `simulate` says a `MistakeWarning`."""
 
     __slots__ = ()

@@ -123,6 +123,13 @@ def run(folder):
         "Solution.surface_power": lambda: (solution().surface_power, dict(part="floor")),
         "Solution.joint_coordinates": lambda: (swing().joint_coordinates, dict(joint="j", degrees=True)),
         "results.JointView.coordinates": lambda: (swing()["j"].coordinates, dict(degrees=True)),
+        "results.JointView.to_pandas": lambda: (swing()["j"].to_pandas, dict(degrees=True)),
+        "Solution.body": lambda: (solution().body, dict(name="ball")),
+        "Solution.contact": lambda: (solution().contact, dict(name="ball-floor")),
+        "Solution.force": lambda: (things.driven().force, dict(name="push")),
+        "Solution.constraint": lambda: (things.driven().constraint, dict(name="drive")),
+        "Solution.joint": lambda: (swing().joint, dict(name="j")),
+        "Ensemble.state": lambda: (runs().state, dict(run=0)),
         "Solution.plot": lambda: (solution().plot, dict(kind="impacts", what="ball-floor")),
         "ensemble": lambda: (
             carom.ensemble,

@@ -63,11 +63,15 @@ def stated():
             carom.Part,
             dict(shape=carom.Sphere(0.1), position=three, orientation=(1, 0, 0, 0), material=None),
         ),
+        "Look": (
+            carom.Look,
+            dict(shape=carom.Sphere(0.1), position=three, orientation=(1, 0, 0, 0), color=None),
+        ),
     }  # fmt: skip
     found = {}
     for name, (kind, given) in shapes.items():
         found[name] = lambda kind=kind, given=given: (kind, given)
-        if name == "Part":
+        if name in ("Part", "Look"):
             continue
         found[f"{name}.inertia"] = lambda kind=kind, given=given: (
             kind(**given).inertia,
@@ -90,6 +94,12 @@ def stated():
                 axis=three, along=0.1, across=0.5, of="world", static=None, kinetic=None, speed=None,
                 exponent=1.0,
             ),
+        ),
+        "Friction.fit": lambda: (
+            carom.Friction.fit, dict(function=lambda v: 0.5, speeds=(0.1, 1.0), accuracy=1e-8),
+        ),
+        "Restitution.fit": lambda: (
+            carom.Restitution.fit, dict(function=lambda v: 0.5, speeds=(0.1, 1.0), accuracy=1e-8),
         ),
         "Friction.table": lambda: (carom.Friction.table, dict(speeds=(0.1, 1.0), values=(0.9, 0.5))),
         "Profile.points": lambda: (
@@ -117,12 +127,12 @@ def stated():
         "Scene.add_body": of_scene(
             "add_body", shape=carom.Sphere(0.1), mass=1.0, density=None, inertia=(1.0, 1.0, 1.0),
             position=three, orientation=(1.0, 0, 0, 0), velocity=three, angular_velocity=three,
-            material=carom.Material(0.5, 0.1), name="new", color="red", replace=True,
+            material=carom.Material(0.5, 0.1), name="new", color="red", look=carom.Sphere(0.2), replace=True,
         ),
         "Scene.add_body of a density": of_scene(
             "add_body", shape=carom.Sphere(0.1), mass=None, density=1.0, inertia=None,
             position=three, orientation=(1.0, 0, 0, 0), velocity=three, angular_velocity=three,
-            material=None, name="new", color=None, replace=False,
+            material=None, name="new", color=None, look=None, replace=False,
         ),
         "Scene.add_static": of_scene(
             "add_static", shape=carom.Sphere(0.1), position=three, orientation=(1.0, 0, 0, 0),

@@ -88,6 +88,17 @@ def swing():
     return carom.simulate(model().scene, 0.02, step=0.01)
 
 
+@functools.cache
+def driven():
+    """A slider that is driven and pushed."""
+    scene = carom.Scene()
+    ball = scene.add_body(carom.Sphere(0.1), mass=1.0, velocity=(1.0, 0, 0), name="ball")
+    slide = scene.add_joint(carom.joints.Prismatic((1, 0, 0)), carom.GROUND, ball)
+    scene.add_constraint(carom.constraints.Driver(slide, rate=1.0), name="drive")
+    scene.add_force(carom.forces.Force((0, 0, 1)), ball, name="push")
+    return carom.simulate(scene, 0.02, step=0.01)
+
+
 def oscillator():
     system = carom.GeneralizedSystem(
         lambda q: np.eye(1), [0.5], [0.0], potential=lambda q: 0.5 * float(q @ q)

@@ -11,8 +11,8 @@ import pytest
 
 import carom
 from carom.stepping.settings import checked_settings
-from carom.studies.ensembles.api import _plan
 from carom.studies.ensembles.mark import digest, mark_of
+from carom.studies.ensembles.plan import plan_of
 
 VALUES = {"die.position": np.zeros((2, 3))}
 
@@ -52,7 +52,7 @@ def pendulum(stiffness=3.0, friction=None, force=None):
 
 def mark(scene):
     settings = checked_settings(0.1, 1e-3)
-    return digest(_plan(scene, settings, {}, {}, None)[0], VALUES)
+    return digest(plan_of(scene, settings, {}, {}, None)[0], VALUES)
 
 
 @pytest.mark.plain

@@ -80,6 +80,21 @@ def test_interrupted_on_the_way(tmp_path):
     assert but_settings(carom.resume(path), whole) == []
 
 
+def test_an_interrupted_run_may_end_earlier(tmp_path):
+    """Interrupted at half of .25 s: to any time after that, bit for bit the run of that time."""
+    path = tmp_path / "run.nc"
+    part = interrupted(die(mu=0.3), 0.25, 0.5, path, step=5e-3)
+    for until in (part.t[-1], 0.01):
+        with pytest.raises(ValueError, match=r"until must be .* above 0\.12"):
+            carom.resume(path, until=until)
+    shorter = carom.resume(path, until=0.2)
+    assert but_settings(shorter, carom.simulate(die(mu=0.3), 0.2, step=5e-3)) == []
+    longer = carom.resume(path, until=0.25)
+    assert but_settings(longer, carom.simulate(die(mu=0.3), 0.25, step=5e-3)) == []
+    interrupted(die(mu=0.3), 0.25, 0.5, path)  # with tolerances, to a time between two states
+    assert carom.resume(path, until=0.1933).t[-1] == 0.1933
+
+
 def test_a_run_in_memory_that_has_gone_on_has_no_state_to_save(tmp_path):
     short = carom.simulate(die(), 0.1, step=0.01)
     assert capture(short._run) is not None

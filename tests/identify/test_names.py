@@ -35,6 +35,23 @@ def test_a_component_is_fitted_by_its_name():
     assert abs(fit.parameters["gravity.z"] + 5.0) < 1e-6
 
 
+@pytest.mark.filterwarnings("ignore:Gravity")  # far from the best, to see whether it is excluded
+def test_positions_alone_are_enough():
+    """The same fit without orientations, and an objective that needs them says so."""
+    full = fallen(5.0)
+    positions = Recording(full.t, full.position)
+    fit = carom.identify(
+        ball(), [positions], {"gravity.z": (-9.0, 1.0)}, squared_error(1e-3), resamples=1,
+        tolerance=1e-8, workers=1,
+    )  # fmt: skip
+    assert abs(fit.parameters["gravity.z"] + 5.0) < 1e-6
+    assert np.isnan(fit.final_turn).all()
+    assert 0.0 < fit.error["gravity.z"] < 1e-3
+    with pytest.raises(ValueError, match="angle must be given for a Recording with orientations"):
+        squared_error(1e-3)(full, full)
+    assert carom.identify.mean_error(1.0)(full, positions) == 0.0
+
+
 def test_names_have_the_bounds_of_their_fields():
     names = {
         "ball-floor.restitution": (0.5, 0.1),

@@ -48,6 +48,20 @@ def test_a_rod_on_a_hinge(height, rotor):
     assert np.array_equal(run["hinge 0"].impulses.impulse[0], row.impulse)
 
 
+def test_the_view_of_a_joint_as_table_and_plot():
+    run = carom.simulate(rod_that_strikes(0.9), 0.05)
+    table, view = run["hinge 0"].to_pandas(degrees=True), run.joint("hinge 0")
+    whole = run.to_pandas(degrees=True).joints["hinge 0"]
+    assert table.columns.tolist() == whole.columns.tolist()
+    np.testing.assert_array_equal(table.to_numpy(), whole.to_numpy())
+    np.testing.assert_array_equal(table.index, run.t)
+    axes = view.plot(panel="forces")
+    np.testing.assert_array_equal(axes.lines[0].get_ydata(), np.linalg.norm(view.force, axis=1))
+    assert run.contact("rod-pin").name == "rod-pin"
+    with pytest.raises(ValueError, match="name must be that of a body, got 'hinge 0'"):
+        run.body("hinge 0")
+
+
 def test_two_hinges_share_it():
     """Hinges beside each other are redundant: the least norm divides the impulse into equal parts."""
     one = carom.simulate(rod_that_strikes(0.9), 0.05).joint_impulses[0]

@@ -14,6 +14,7 @@ S = carom.surfaces
 G, R, RADIUS, START = 9.81, 0.5, 0.05, 0.2  # z = x^2 / (2 R)
 TIGHT = dict(rtol=1e-10, atol=1e-12)
 BOX = [(-1.0, -1.0, -0.2), (1.0, 1.0, 1.2)]
+BEYOND = "ignore:Contact .* is outside the bounds"  # where these functions have no value
 
 
 def rolls(ground, duration=1.5):
@@ -93,6 +94,7 @@ def no_map(x):
 
 
 @pytest.mark.parametrize("e", [0.0, 0.6])
+@pytest.mark.filterwarnings(BEYOND)
 @pytest.mark.parametrize(
     ("beyond", "said"),
     [(no_map, "raised .*: beyond the map"), (lambda x: math.nan, "returned nan")],
@@ -115,6 +117,7 @@ def test_a_function_without_a_value_ends_the_run(e, beyond, said):
     assert np.min(solution.position[:, 0, 2]) > 0.09
 
 
+@pytest.mark.filterwarnings(BEYOND)
 def test_a_compiled_function_without_a_value_ends_the_run():
     # derived and compiled: the logarithm has no value beyond x = 0.6
     ground = S.Surface(lambda x, y, z: z + 1e-9 * sp.log(0.6 - x), [(-1, -1, -1), (0.5, 1, 1)])
@@ -197,3 +200,26 @@ def test_a_bump_in_a_face_is_said():
     assert solution.status is carom.Status.INACCURATE
     assert "'plate' penetrates 'hill'" in solution.message
     assert "a bump reaches into a face" in solution.message
+
+
+def test_a_contact_beyond_the_bounds_of_a_function_is_said():
+    """A ball rolls down a slope: from x = .5 at t = sqrt(2 (.5 - .4)/a) on it is outside, a = (5/7) g sin."""
+    slope = 0.1 / np.hypot(1.0, 0.1)
+    for high, out in ((0.5, True), (9.0, False)):
+        scene = carom.Scene()
+        box = [(-1, -1, -1), (high, 1, 1)]
+        ground = scene.add_surface(carom.surfaces.Surface(lambda x, y, z: z + 0.1 * x, bounds=box))
+        n = np.array([slope, 0.0, np.sqrt(1 - slope**2)])
+        ball = scene.add_body(
+            carom.Sphere(0.05), mass=1, position=np.array([0.4, 0, -0.04]) + 0.05 * n
+        )
+        scene.add_contact(ball, ground, restitution=0, friction=0.5)
+        options = carom.Options(project_start=True)
+        if out:
+            with pytest.warns(carom.MistakeWarning, match="outside the bounds of the surface"):
+                run = carom.simulate(scene, 1.0, save_at=0.01, options=options)
+            time = float(run.warnings[-1].split("at t = ")[1].split(" s")[0])
+            rolled = 0.1 / np.sqrt(1 - slope**2)  # along the slope
+            assert time == pytest.approx(np.sqrt(2 * rolled / (5 / 7 * 9.81 * slope)), abs=0.01)
+        else:
+            assert not carom.simulate(scene, 1.0, save_at=0.01, options=options).warnings

@@ -41,6 +41,30 @@ def on_a_spring(m, k, N, V, law, joint=False):
     return scene
 
 
+def test_a_function_is_a_law(tmp_path):
+    """Stribeck's law as a function, which jumps at 0; a kink; and the motion, also of a file."""
+
+    def stribeck(v):
+        return 0.7 if v == 0.0 else 0.2 + 0.4 * np.exp(-v / 0.5)
+
+    law, v = Friction.fit(stribeck), np.append(0.0, np.logspace(-12, 6, 3000))[1:]
+    assert law.bound == 0.7
+    assert np.max(np.abs(law(v) - LAWS["stribeck"](v))) < 1e-10  # of values up to .6
+    kink = Friction.fit(lambda v: max(0.1, 0.4 - 0.3 * v))
+    np.testing.assert_allclose(kink(v), np.maximum(0.1, 0.4 - 0.3 * v), rtol=1e-10)
+    assert len(kink.ends) == 3
+    scenes = [
+        on_a_spring(1.0, 50.0, 10.0, 0.3, one)
+        for one in (lambda v: 0.2 + 0.4 * np.exp(-v / 0.5), LAWS["stribeck"])
+    ]
+    one, two = (carom.simulate(scene, 1.0, save_at=0.1) for scene in scenes)
+    # the stated error of mu, times g t^2 / 2, and what both runs allow themselves
+    assert np.max(np.abs(one.position - two.position)) < 1e-7
+    one.save(tmp_path / "run.nc")
+    again = carom.Solution.load(tmp_path / "run.nc").scene
+    assert again.contacts[0].friction == scenes[0].contacts[0].friction
+
+
 def on_a_belt(m, k, N, V, law):
     """Return a block on a belt of the speed V, on which it rides until a spring to the ground pulls it back."""
     scene = carom.Scene(gravity=(0, 0, -N / m))
@@ -292,8 +316,12 @@ def test_values_by_their_formulas():
         ),
         (lambda: Friction.table([0.0, 0.5], [0.3, 0.0]), "values must be above 0"),
         (lambda: Friction.table([0.0, 0.5], [0.3, np.nan]), "values must be"),
-        (lambda: thrown(carom.Restitution.power(0.5), 0), "friction must be a number or a law"),
-        (lambda: thrown(lambda s: 0.3, 0), "friction must be a number or a law"),
+        (lambda: thrown(carom.Restitution.power(0.5), 0), "friction must be a number, a law"),
+        (
+            lambda: thrown(lambda s: 0.3 - s, 0),
+            "friction: function must be at least 0 at all speeds",
+        ),
+        (lambda: thrown(Friction, 0), "friction must be a number, a law"),
     ],
 )
 def test_nonsense_is_refused(make, words):

@@ -54,6 +54,32 @@ def test_values_by_their_formulas():
         assert law.slope(1.7) == pytest.approx(difference, rel=1e-8, abs=1e-10)
 
 
+def test_a_function_is_a_law():
+    """The power law as a function: a fit to 1e-10, with its kink; and the same bounces."""
+
+    def power(v):
+        return min(0.9, 0.5 * (v / 2.0) ** -0.25)
+
+    law = Restitution.fit(power)
+    v = np.logspace(-6, 4, 3000)
+    assert (
+        np.max(np.abs(law(v) - LAWS["power"](v))) < 2e-10
+    )  # twice the stated accuracy, as a bound
+    assert pickle.loads(pickle.dumps(law)) == law
+    assert len({law, law, Restitution.fit(power, speeds=(0.1, 3))}) == 2
+    times = [
+        carom.simulate(ball(one), 3.0, save_at=0.1).impacts.time for one in (power, LAWS["power"])
+    ]
+    # an error of e of 1e-10 of its value moves the k-th impact by 2 k v / g times that
+    assert np.max(np.abs(times[0] - times[1])) < 1e-8
+    short = Restitution.fit(lambda v: 1.0 - 0.1 * v, speeds=(1.0, 5.0))  # below 0 from 10 m/s on
+    np.testing.assert_allclose(short([0.0, 1.0, 3.0, 99.0]), [0.9, 0.9, 0.7, 0.5], rtol=1e-12)
+    assert short.fastest == 5.0
+    assert law.elastic == 0.0
+    slow = Restitution.fit(lambda v: min(1.0, v**-0.25), speeds=(0.0, 3.0))
+    assert slow.elastic == pytest.approx(1.0, rel=1e-6)
+
+
 @pytest.mark.few(4)
 @pytest.mark.plain
 @pytest.mark.parametrize("impact_law", ["newton", "poisson", "stronge"])
@@ -246,7 +272,12 @@ def test_faster_impacts_than_a_table_has_are_told():
         (lambda: Restitution.table([0, 1], [0.5, -0.1]), "values must be two numbers or more, from 0 to 1"),
         (lambda: Restitution.table([0, 1], [0.5, 0.4, 0.3]), "speeds and values must have the same length"),
         (lambda: Restitution.table([0, 1], [0.5, np.nan]), "values must be finite"),
-        (lambda: ball(lambda v: 0.5), r"restitution must be a number or a law, such as carom.Restitution"),
+        (lambda: ball(lambda v: 1.5), r"restitution: function must be from 0 to 1 at all speeds, got 1.5"),
+        (lambda: ball(lambda v: 1 - v), r"function must be from 0 to 1 .* speeds=\(lowest, highest\)"),
+        (lambda: ball(lambda v: float(v < 2)), "function must be continuous above 0, .* jumps by 1 at 2 m/s"),
+        (lambda: ball(lambda v: "a"), "function must return a finite number .* got 'a'"),
+        (lambda: ball(carom.Friction(0.4, 0.3)), "restitution must be a number, a law, such as carom.Rest"),
+        (lambda: Restitution.fit(lambda v: 0.5, speeds=(2, 1)), "speeds must be the lowest, at least 0, and a"),
     ],
 )  # fmt: skip
 def test_nonsense_is_refused_by_its_name(make, message):

@@ -53,7 +53,9 @@ def test_a_scene_is_a_picture_of_its_start_and_its_parts():
     text = scene._repr_html_()
     (picture,) = pictures(text)
     red, green, _ = picture.transpose(2, 0, 1).astype(int)
-    assert np.mean(red > green + 50) > 0.005  # the die, and nothing else, has this colour
+    assert (
+        np.mean(red > green + 50) > 5e-4
+    )  # the die, and nothing else, has this colour; it is above a floor
     assert "&lt;b&gt;&amp;&#36;x&#36;" in text
     assert "<b>" not in text
     assert "color: #b01020" in text
@@ -71,6 +73,17 @@ def test_the_picture_of_a_scene_has_what_is_near():
     (picture,) = pictures(scene._repr_html_())
     strongest = picture.argmax(axis=-1)[np.ptp(picture.astype(int), axis=-1) > 50]
     assert np.all(np.bincount(strongest) > 0.005 * 400 * 800)
+
+
+def test_the_picture_of_a_scene_has_floor_and_walls():
+    """A ball 1 m above a floor and 2 m from a wall, ten and twenty times its radius."""
+    scene = carom.Scene()
+    scene.add_half_space((0, 0, 0), (0, 0, 1), color="#00ff00")
+    scene.add_static(carom.Box(0.1, 9, 9), position=(-2, 0, 4.5), color="#0000ff")
+    scene.add_body(carom.Sphere(0.1), mass=1, position=(0, 0, 1), color="#ff0000")
+    (picture,) = pictures(scene._repr_html_())
+    strongest = picture.argmax(axis=-1)[np.ptp(picture.astype(int), axis=-1) > 50]
+    assert np.all(np.bincount(strongest, minlength=3) > np.array([0.003, 0.05, 0.05]) * 400 * 800)
 
 
 def test_without_the_package_for_pictures_its_line_is_shown(monkeypatch):
@@ -113,6 +126,13 @@ solution = carom.simulate(scene, 0.25, step=5e-3)
 solution
 ---
 solution.impacts
+---
+ax = solution.plot("energy")
+---
+ax = solution.plot("impacts")
+---
+import matplotlib.pyplot as plt
+line = plt.plot([1, 2])
 """
 
 
@@ -123,7 +143,11 @@ def test_a_notebook_has_them():
     pytest.importorskip("ipykernel")
     made = nbformat.v4.new_notebook(cells=list(map(nbformat.v4.new_code_cell, CODE.split("---"))))
     nbclient.NotebookClient(made, timeout=120, kernel_name="python3").execute()
-    scene, solution, impacts = (cell.outputs[-1].data["text/html"] for cell in made.cells)
+    scene, solution, impacts = (cell.outputs[-1].data["text/html"] for cell in made.cells[:3])
+    for cell in made.cells[
+        3:
+    ]:  # each figure is shown once, also after the first, and the reader's own
+        assert sum("image/png" in one.get("data", {}) for one in cell.outputs) == 1, cell.source
     assert len(pictures(scene)) == 1
     assert "srcdoc=" in solution
     assert len(cells(impacts)) > 1

@@ -15,6 +15,12 @@ from carom.cli import FAILED, show
 from carom.cli.extras import requirements, version
 from carom.cli.outcome import warn
 
+#: said before the run, because a first one waits for the compiler
+RUNS = (
+    "running a sphere that bounces on a floor; the time loop, free flight, the search of contacts, the impact "
+    "and rest are compiled first where they are not on disk, once, in a minute or more ..."
+)
+
 
 def run(
     warm: Annotated[
@@ -37,18 +43,22 @@ def run(
 
     if warm:
         warmup.compile_all()
-    found = examine()
+    found = installation()
+    if not json:
+        _print_installation(found)
+        print(RUNS, flush=True)
+    check_code(found)
     if json:
         show.as_json(found)
     else:
-        _print(found)
+        _print_code(found)
     for line in found["wrong"]:
         warn("doctor", line)
     return FAILED if found["wrong"] else 0
 
 
-def examine() -> dict[str, Any]:
-    """Return versions, extras, the cache, the result of a run, and a list of errors."""
+def installation() -> dict[str, Any]:
+    """Return versions, extras, and a list of errors; nothing is compiled for it."""
     import carom
 
     wrong: list[str] = []
@@ -56,8 +66,6 @@ def examine() -> dict[str, Any]:
     needed = {name: version(name) for name in wanted.pop("")}
     wrong += [f"{n} is missing: pip install {n}" for n, v in needed.items() if v is None]
     extras = {extra: {name: version(name) for name in names} for extra, names in wanted.items()}
-    cache, trouble = _cache()
-    sphere, wrong_run = _smoke()
     return {
         "carom": carom.__version__, "at": str(Path(carom.__file__).parent),
         "python": platform.python_version(), "executable": sys.executable,
@@ -70,8 +78,15 @@ def examine() -> dict[str, Any]:
             }
             for extra, names in extras.items()
         },
-        "cache": cache, "sphere": sphere, "wrong": wrong + trouble + wrong_run,
+        "wrong": wrong,
     }  # fmt: skip
+
+
+def check_code(found: dict[str, Any]) -> None:
+    """Add the cache and the result of a run, which may have to be compiled, and their errors."""
+    found["cache"], trouble = _cache()
+    found["sphere"], wrong = _smoke()
+    found["wrong"] = found.pop("wrong") + trouble + wrong
 
 
 def _cache() -> tuple[dict[str, Any], list[str]]:
@@ -116,7 +131,7 @@ def _smoke() -> tuple[dict[str, float], list[str]]:
     return found, []
 
 
-def _print(found: dict[str, Any]) -> None:
+def _print_installation(found: dict[str, Any]) -> None:
     print(f"carom {found['carom']} at {found['at']}")
     print(f"python {found['python']} at {found['executable']}, {found['machine']}")
     show.table(
@@ -132,6 +147,9 @@ def _print(found: dict[str, Any]) -> None:
     print()
     show.table(["extra", "there?", "packages"], rows, left=3)
     print()
+
+
+def _print_code(found: dict[str, Any]) -> None:
     cache, sphere = found["cache"], found["sphere"]
     if cache["folder"]:
         print(f"compiled code in {cache['folder']} ({cache['megabytes']:.0f} MB)")

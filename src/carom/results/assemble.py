@@ -13,6 +13,7 @@ from carom.impact.layout import AT_END, WEDGED
 from carom.model import records as r
 from carom.results import stiff_forces
 from carom.results.accuracy import sentences
+from carom.results.beyond_bounds import beyond_bounds
 from carom.results.costs import busiest
 from carom.results.dry_friction import with_dry_friction, with_forces
 from carom.results.event_tables import ContactTable, EventTable, ImpactTable, contact_table
@@ -68,6 +69,7 @@ def assemble(run, status: Status) -> dict:
             *sentences(run.watch[0], run.how.finer, run.scene, run.pairs),
             *remarks(impact, event, run),
             *stiff_forces.remarks(run, series, state),
+            *beyond_bounds(run, impact, rec.touch, series["t"]),
         ),
         "stats": {
             "steps": clock["step"], "trial_steps": clock["trials"], "rejected": clock["rejected"],

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from carom import arguments
+from carom.hints import ending
 from carom.scene.shown import Shown
 from carom.status import Status
 
@@ -67,6 +68,10 @@ class Drawn(Shown):
         from carom import checks
         from carom.visual import plots
 
+        if isinstance(kind, str) and kind not in KINDS and (hint := ending("plot", kind, KINDS)):
+            raise ValueError(
+                f"kind must be one of {', '.join(map(repr, KINDS))}, got {kind!r}{hint}"
+            )
         draw = getattr(plots, checks.choice("kind", kind, KINDS))
         if what is not None:
             if kind not in WHAT:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, overload
 
 import numpy as np
 
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     )
     from carom.scene.scene import Scene
 
+Kind = TypeVar("Kind")
 MODES = np.array(["open", "slipping", "sticking"])
 MOST_LISTED = 1000  # contacts whose names are completed
 
@@ -54,6 +55,68 @@ class Source:
     _numbers: Any  # of contacts by name
     _touch: Any  # active points at saved times
     _exerted_by: Callable  # rows of a force
+    _whose = "solution"  # in messages
+
+    @overload
+    def __getitem__(self, name: Body) -> BodyState: ...
+    @overload
+    def __getitem__(self, name: Joint) -> JointView: ...
+    @overload
+    def __getitem__(self, name: AppliedForce) -> ForceView: ...
+    @overload
+    def __getitem__(self, name: Constraint) -> ConstraintView: ...
+    @overload
+    def __getitem__(self, name: Contact | Stop) -> ContactView: ...
+    @overload
+    def __getitem__(self, name: str) -> Any: ...
+    def __getitem__(self, name: Any) -> Any:
+        """Return the results of one part, given by name or as the object; of a solution with the time first.
+
+        A body is a `BodyState` (``solution["die"].velocity``), a joint a `JointView`
+        (``solution["hinge"].torque``), a force a `ForceView` (``solution["motor"].power``), a constraint a
+        `ConstraintView`, a contact or a stop a `ContactView` (``solution["die-ground"].force``). A name that no
+        part has may be that of a sensor of the model. `body`, `joint`, `force`, `constraint` and `contact`
+        return the same, of one kind, which type checkers know.
+
+        Raises
+        ------
+        KeyError
+            If there are no results of this name; the message suggests the nearest one.
+        """
+        return view(self, name, self._whose)
+
+    def body(self, name: str | Body) -> BodyState:
+        """Return the results of a body, as ``solution[name]`` does."""
+        return self._of_kind(name, BodyState, "body")
+
+    def joint(self, name: str | Joint) -> JointView:
+        """Return the results of a joint, as ``solution[name]`` does."""
+        return self._of_kind(name, JointView, "joint")
+
+    def force(self, name: str | AppliedForce) -> ForceView:
+        """Return the results of a force, as ``solution[name]`` does."""
+        return self._of_kind(name, ForceView, "force")
+
+    def constraint(self, name: str | Constraint) -> ConstraintView:
+        """Return the results of a constraint, as ``solution[name]`` does."""
+        return self._of_kind(name, ConstraintView, "constraint")
+
+    def contact(self, name: str | Contact | Stop) -> ContactView:
+        """Return the results of a contact or a stop, as ``solution[name]`` does."""
+        return self._of_kind(name, ContactView, "contact or a stop")
+
+    def _of_kind(self, name: Any, kind: type[Kind], called: str) -> Kind:
+        """Return the results of a part of one kind."""
+        try:
+            found = view(self, name, self._whose)
+        except (KeyError, ValueError) as error:
+            raise ValueError(f"name must be that of a {called}: {error.args[0]}") from None
+        if not isinstance(found, kind):
+            raise ValueError(
+                f"name must be that of a {called}, got {checks.shown(name)}, which has a "
+                f"{type(found).__name__}"
+            )
+        return found
 
     def _ipython_key_completions_(self) -> list[str]:
         parts = [part.name for part in self._scene._parts if type(part) in VIEWS]
@@ -139,6 +202,15 @@ class View:
             )
         return table[self.name]
 
+    def _drawn(self, kind: str, options: dict) -> Any:
+        """Return the axes of a plot of this part over a run."""
+        plot = getattr(self._source, "plot", None)
+        if plot is None:
+            raise AttributeError(
+                f"a plot is of a whole run: solution[{self.name!r}], not of a state"
+            )
+        return plot(kind, self.name, **options)
+
     def __repr__(self) -> str:
         listed = ", ".join(n for n in dir(type(self)) if not n.startswith("_") and n != "name")
         return f"<{type(self).__name__} of {self.name!r}: {listed}>"
@@ -183,6 +255,36 @@ class JointView(View):
     def torque(self) -> np.ndarray:
         """Torque on the child about its anchor (T, 3), world axes [N m]."""
         return self._source.joint_reactions[..., self._part.index, 3:]
+
+    @arguments.known
+    def to_pandas(self, *, degrees: bool = False) -> Any:
+        """Return a `pandas.DataFrame` with one row for each saved time, indexed by the time [s].
+
+        Columns are ``coordinate`` and ``rate`` (with an index if there are several: ``coordinate[0]``), and the
+        components of force and torque, ``fx``, ``fy``, ``fz``, ``tx``, ``ty``, ``tz``, as in
+        `Solution.to_pandas`.
+
+        Parameters
+        ----------
+        degrees : bool
+            Whether angles are in degrees. Default False: radians.
+        """
+        pandas = checks.need("pandas", "to_pandas", "files")
+        columns = {}
+        for name, values in zip(("coordinate", "rate"), self.coordinates(degrees=degrees)):
+            rows = np.reshape(values, (-1, np.shape(values)[-1])).T
+            columns |= {
+                f"{name}[{k}]" if len(rows) > 1 else name: one for k, one in enumerate(rows)
+            }
+        for name, values in (("f", self.force), ("t", self.torque)):
+            columns |= {name + axis: one for axis, one in zip("xyz", np.reshape(values, (-1, 3)).T)}
+        return pandas.DataFrame(
+            columns, index=pandas.Index(np.atleast_1d(self._source.t), name="time")
+        )
+
+    def plot(self, **options) -> Any:
+        """Draw coordinates, rates, forces and torques over time, as `carom.plots.joints` does."""
+        return self._drawn("joints", options)
 
     @property
     def impulses(self) -> JointImpulseTable:
@@ -246,6 +348,10 @@ class ForceView(_Coordinate, View):
     def _along(self):
         d = self._part.definition
         return d if isinstance(d, AlongJoint) else None
+
+    def plot(self, **options) -> Any:
+        """Draw the force over time, as `carom.plots.forces` does."""
+        return self._drawn("forces", options)
 
     @property
     def _rows(self) -> np.ndarray:

@@ -24,7 +24,7 @@ from carom.results.event_tables import (
 from carom.results.exerted import rows_of
 from carom.results.joint_coordinates import coordinates, in_degrees, of_scene, sides_of
 from carom.results.ledger import Ledger
-from carom.results.named import Source, view
+from carom.results.named import Source
 from carom.results.names import ConstraintRows, Numbers, constraint_rows
 from carom.results.portable import Portable
 from carom.status import Status
@@ -205,20 +205,6 @@ class Solution(Portable, Drawn, Source):
     def __contains__(self, name) -> bool:
         """Return whether the scene of this run has a part of this name, or this part."""
         return name in self.scene
-
-    def __getitem__(self, name):
-        """Return the results of one part, given by name or as the object, with the time first.
-
-        A body is a `BodyState` (``solution["die"].velocity``), a joint a `JointView`
-        (``solution["hinge"].torque``), a force a `ForceView` (``solution["motor"].power``), a constraint a
-        `ConstraintView`, a contact or a stop a `ContactView` (``solution["die-ground"].force``).
-
-        Raises
-        ------
-        KeyError
-            If there are no results of this name; the message suggests the nearest one.
-        """
-        return view(self, name, "solution")
 
     @property
     def _scene(self) -> Scene:

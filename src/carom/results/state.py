@@ -13,7 +13,7 @@ from carom.results.event_tables import ForceTable, force_table
 from carom.results.exerted import exerted_by
 from carom.results.instant import Instant
 from carom.results.joint_coordinates import coordinates, in_degrees, of_scene, period, sides_of
-from carom.results.named import Source, view
+from carom.results.named import Source
 from carom.results.names import Numbers
 from carom.scene.more_forces import JointFriction
 
@@ -45,6 +45,8 @@ class SystemState(Source):
     kinetic_energy, potential_energy : float
         Energies of the whole system [J].
     """
+
+    _whose = "state"
 
     def __init__(self, run, known: dict | None = None, given: dict | None = None):
         self._known = {} if known is None else known  # joints prepared so far, names of contacts
@@ -108,13 +110,6 @@ class SystemState(Source):
     def total_energy(self) -> float:
         """Kinetic plus potential energy [J]."""
         return self.kinetic_energy + self.potential_energy
-
-    def __getitem__(self, name):
-        """Return the state of a body, a joint, a force or a contact, given by name or as the object.
-
-        A name that no part has may be that of a sensor of the model.
-        """
-        return view(self, name, "state")
 
     @property
     def _at(self) -> Instant:

@@ -15,6 +15,7 @@ from carom.scene.contacts import Contact as Contact
 from carom.scene.forces import AppliedForce as AppliedForce
 from carom.scene.friction import Friction as Friction
 from carom.scene.joints import Joint as Joint
+from carom.scene.look import Look as Look
 from carom.scene.materials import ContactLaw as ContactLaw
 from carom.scene.materials import Material as Material
 from carom.scene.restitution import Restitution as Restitution

@@ -12,6 +12,7 @@ from carom import checks, fields
 from carom.fields import Number, Value, Vector, keep
 from carom.geometry.attitude import attitude
 from carom.scene.colors import hex_color
+from carom.scene.look import Look, checked_look
 from carom.scene.materials import Material
 from carom.scene.moving_surfaces import (
     SurfaceSpin,
@@ -62,6 +63,8 @@ class Body:
         Material of its surface.
     color : str or None
         Colour ``#rrggbb`` in pages, pictures and films; None: a colour of the palette.
+    look : tuple of Look or None
+        What is seen of it; None: its shape.
     """
 
     index: int
@@ -75,6 +78,7 @@ class Body:
     angular_velocity: Vector = fields.vector()
     material: MaterialOrNone = Value(_material, None)
     color: Color = Value(hex_color, None)
+    look: Value[tuple[Look, ...] | None, Any] = Value(checked_look, None)
 
     def __post_init__(self):
         if self.shape is not None:

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.fields import REQUIRED, Number, NumberOrNone, Value, Word, number, word
+from carom.scene.fitted_law import ACCURACY, FittedLaw, fitted
 from carom.scene.speed_law import Curve, SpeedLaw, TableLaw, number_or_law
 
 #: piece of exp(-z) at z = 0 whose polynomial of degree 5 is exact to round-off, and where exp(-z) is round-off
@@ -55,7 +56,8 @@ class Friction(FrictionLaw):
     *By the speed*, ``Friction(static, kinetic)``: a contact sticks while its tangential force is at most
     `static` times its normal force. In slip the coefficient is `kinetic`, or with `speed` that of Stribeck,
     which falls from `static` as the slip s grows: ``kinetic + (static - kinetic) exp(-(s / speed)^exponent)``.
-    `Friction.table` makes a law of measured points, and ``law(speed)`` is its coefficient in slip.
+    `Friction.table` makes a law of measured points, `Friction.fit` of a function, and
+    ``law(speed)`` is its coefficient in slip.
 
     *By the direction*, ``Friction(axis=..., along=..., across=...)``, for skates, wheels and grooves: the
     tangential force is within the ellipse ``(F_1 / along)^2 + (F_2 / across)^2 <= N^2``, with F_1 along the
@@ -166,6 +168,42 @@ exponent=1.0), impact_law='newton')
         """
         return TableFriction(speeds, values)  # pyright: ignore[reportArgumentType]
 
+    @staticmethod
+    @arguments.known
+    def fit(
+        function: Callable[[float], float],
+        speeds: ArrayLike | None = None,
+        accuracy: float = ACCURACY,
+    ) -> FrictionLaw:
+        """Return the law of a function of the speed of slip; ``friction=function`` makes it too.
+
+        The function is called now, and not in a run: it is fitted by polynomials in pieces. They are what files
+        and copies have. Its value at 0 bounds stick, and may be above that of the slowest slip.
+
+        Parameters
+        ----------
+        function : callable
+            ``function(speed)`` is the coefficient, at least 0, at a speed [m/s]. It must be continuous above 0,
+            smooth but for a few kinks.
+        speeds : (2,) array-like, optional
+            Lowest and highest speed [m/s]; beyond them the values at these ends count. Default: all speeds.
+        accuracy : float
+            Greatest error of the fit, relative to the values there. Default 1e-10.
+
+        Examples
+        --------
+        >>> law = carom.Friction.fit(lambda v: 0.3 + 0.1 / (1 + v))
+        >>> [round(float(mu), 9) for mu in law([0.0, 1.0, 4.0])]
+        [0.4, 0.35, 0.32]
+        """
+        made = fitted(function, speeds, accuracy, (0.0, np.inf))
+        static = FittedFriction(**made, static=0.0).bound
+        if speeds is None or np.min(np.asarray(speeds)) == 0.0:
+            static = max(
+                static, checks.number("the value of function at 0", function(0.0), least=0.0)
+            )
+        return FittedFriction(**made, static=static)
+
     @property
     def bound(self) -> float:
         """The static coefficient; of anisotropic friction the geometric mean of both."""
@@ -220,11 +258,26 @@ class TableFriction(TableLaw, FrictionLaw):
         return self.values[0]
 
 
+@dataclass(frozen=True, repr=False, kw_only=True)
+class FittedFriction(FittedLaw, FrictionLaw):
+    """A function of the speed of slip: `Friction.fit`."""
+
+    static: Number = number(least=0)
+    _kind = "Friction.fit"
+    __hash__ = FittedLaw.__hash__
+
+    @property
+    def bound(self) -> float:
+        """Its value at 0, or that of the slowest slip."""
+        return max(self.static, self.coefficients[0])
+
+
 _BY_SLIP, _BY_WAY = ("static", "kinetic", "speed"), ("axis", "along", "across")
-FRICTION_LAWS = (Friction, TableFriction)
+FRICTION_LAWS = (Friction, TableFriction, FittedFriction)
 checked_friction = partial(
-    number_or_law, law=FrictionLaw, example="carom.Friction(static=0.4, kinetic=0.3)", least=0
-)
+    number_or_law, law=FrictionLaw, of=Friction.fit, example="carom.Friction(static=0.4, kinetic=0.3)",
+    least=0,
+)  # fmt: skip
 
 
 def without_grain(name: str, value) -> float | SpeedLaw:
@@ -236,7 +289,7 @@ def without_grain(name: str, value) -> float | SpeedLaw:
 
 
 def friction(default: Any = REQUIRED, *, axis: bool = True) -> Value[Any, Any]:
-    """Return a field for a coefficient of friction: a number at least 0, or a law, perhaps with an axis."""
+    """Return a field for a coefficient of friction: a number at least 0, a function, or a law."""
     return Value(checked_friction if axis else without_grain, default)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, ClassVar
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.fields import REQUIRED, Number, Value, number
+from carom.scene.fitted_law import ACCURACY, FittedLaw, fitted
 from carom.scene.speed_law import SLOWEST, Curve, SpeedLaw, TableLaw, number_or_law, numbers
 
 
@@ -20,8 +22,8 @@ class Restitution(SpeedLaw):
     """A coefficient of restitution e that depends on the speed of approach v, for ``restitution=``.
 
     Each contact of each impact has the e of its own speed of approach at the start of the impact, by each law
-    of impact. `Restitution.power`, `Restitution.viscoelastic` and `Restitution.table` make such a law, and
-    ``law(speed)`` is its e.
+    of impact. `Restitution.power`, `Restitution.viscoelastic`, `Restitution.table` and `Restitution.fit` make
+    such a law, and ``law(speed)`` is its e.
 
     Examples
     --------
@@ -46,8 +48,8 @@ friction=0, impact_law='newton')
         """Refuse a law of no kind."""
         if cls is Restitution:
             raise TypeError(
-                "Restitution is made by Restitution.power(value), Restitution.viscoelastic(c) or "
-                "Restitution.table(speeds, values)"
+                "Restitution is made by Restitution.power(value), Restitution.viscoelastic(c), "
+                "Restitution.table(speeds, values) or Restitution.fit(function)"
             )
         return super().__new__(cls)
 
@@ -104,6 +106,38 @@ friction=0, impact_law='newton')
             e at these speeds, from 0 to 1.
         """
         return TableRestitution(speeds, values)  # pyright: ignore[reportArgumentType]
+
+    @staticmethod
+    @arguments.known
+    def fit(
+        function: Callable[[float], float],
+        speeds: ArrayLike | None = None,
+        accuracy: float = ACCURACY,
+    ) -> Restitution:
+        """Return the law of a function of the speed of approach; ``restitution=function`` makes it too.
+
+        The function is called now, and not in a run: it is fitted by polynomials in pieces. They are what files
+        and copies have.
+
+        Parameters
+        ----------
+        function : callable
+            ``function(speed)`` is e, from 0 to 1, at a speed [m/s]. It must be continuous above 0, smooth but
+            for a few kinks.
+        speeds : (2,) array-like, optional
+            Lowest and highest speed [m/s]. Slower impacts have the value at the first and faster ones that at
+            the last, and a run with faster ones says so. Default: all speeds.
+        accuracy : float
+            Greatest error of the fit, relative to the values there. Default 1e-10.
+
+        Examples
+        --------
+        >>> law = carom.Restitution.fit(lambda v: 0.9 / (1 + 0.1 * v))
+        >>> [round(float(e), 9) for e in law([0.0, 1.0, 5.0])]
+        [0.9, 0.818181818, 0.6]
+        """
+        made = fitted(function, speeds, accuracy, (0.0, 1.0))
+        return FittedRestitution(**made, stated=np.inf if speeds is None else made["ends"][-1])
 
 
 @dataclass(frozen=True, repr=False)
@@ -175,12 +209,34 @@ class TableRestitution(TableLaw, Restitution):
         return self.speeds[0] if self.values[0] == 1.0 else 0.0
 
 
-LAWS = (PowerRestitution, ViscoelasticRestitution, TableRestitution)
+@dataclass(frozen=True, repr=False, kw_only=True)
+class FittedRestitution(FittedLaw, Restitution):
+    """A function of the speed of approach: `Restitution.fit`."""
+
+    stated: Value[float, Any] = Value(lambda _, value: float(value))
+    _kind = "Restitution.fit"
+    __hash__ = FittedLaw.__hash__
+
+    @property
+    def fastest(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """Last speed of those that were given."""
+        return self.stated
+
+    @property
+    def elastic(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """Greatest speed up to which e is 1, as far as its pieces show."""
+        speeds = np.array(self.ends)
+        below = np.flatnonzero(self(speeds) < 1.0 - ACCURACY)
+        return float(speeds[below[0] - 1]) if len(below) and below[0] > 0 else 0.0
+
+
+LAWS = (PowerRestitution, ViscoelasticRestitution, TableRestitution, FittedRestitution)
 
 
 def restitution(default: Any = REQUIRED) -> Value[Any, Any]:
-    """Return a field for a coefficient of restitution: a number from 0 to 1, or a law."""
+    """Return a field for a coefficient of restitution: a number from 0 to 1, a function, or a law."""
     check = partial(
-        number_or_law, law=Restitution, example="carom.Restitution.power(0.6)", least=0, most=1
-    )
+        number_or_law, law=Restitution, of=Restitution.fit, example="carom.Restitution.power(0.6)",
+        least=0, most=1,
+    )  # fmt: skip
     return Value(check, default)

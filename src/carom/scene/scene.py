@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
@@ -15,6 +15,7 @@ from carom.scene.constraints import CONSTRAINTS, Constraint, ConstraintDefinitio
 from carom.scene.contacts import Contact, check_gap
 from carom.scene.forces import FORCES, AppliedForce, ForceDefinition, force_on, sides
 from carom.scene.joints import JOINTS, Joint, JointDefinition
+from carom.scene.look import Look, checked_look
 from carom.scene.materials import Material
 from carom.scene.moving_surfaces import GivenSpin
 from carom.scene.named_parts import with_parts
@@ -59,6 +60,12 @@ class Scene(Shown, TouchingPairs):
     gravity : (3,), default (0, 0, -9.81)
         Acceleration in world axes [m/s^2]. It may be set later: ``scene.gravity = (0, 0, -1.62)``.
 
+    Attributes
+    ----------
+    look : tuple of Look
+        What is seen in pictures, pages and films besides the parts of the scene, in world axes. It touches
+        nothing. It may be set: ``scene.look = [carom.Look(...)]``.
+
     Examples
     --------
     >>> import carom
@@ -77,6 +84,7 @@ class Scene(Shown, TouchingPairs):
         self._snapshot: tuple = None, None
         self._in_radians: set[str] = set()  # stops whose file has radians
         self._robot: Robot | None = None
+        self._look: tuple[Look, ...] = ()
 
     @arguments.known
     def add_half_space(
@@ -130,6 +138,7 @@ class Scene(Shown, TouchingPairs):
         angular_velocity: ArrayLike = (0.0, 0.0, 0.0),
         material: Material | None = None,
         color: str | ArrayLike | None = None,
+        look: Shape | Look | Sequence[Shape | Look] | None = None,
         name: str | None = None,
         replace: bool = False,
     ) -> Body:
@@ -161,6 +170,9 @@ class Scene(Shown, TouchingPairs):
         color : str or (3,)
             Colour in pages, pictures and films: a colour name of matplotlib (``"tab:red"``, ``"gold"``),
             ``"#rrggbb"``, or red, green and blue from 0 to 1. Default: a colour of the palette.
+        look : Look, shape, or sequence of them
+            What pages, pictures, films and exports show in place of the shape. It touches nothing. Default: the
+            shape. An empty sequence: nothing is seen.
         name
             Name in the scene. A cube with "die" in its name is drawn with pips. Default ``"body1"``,
             ``"body2"``, ...
@@ -188,7 +200,7 @@ class Scene(Shown, TouchingPairs):
         index, name = self._parts.new(Body, name, "body", replace)
         shape = shape_given(shape)
         mass, inertia = mass_and_inertia(shape, mass, density, inertia)
-        motion: Any = position, orientation, velocity, angular_velocity, material, color
+        motion: Any = position, orientation, velocity, angular_velocity, material, color, look
         return self._parts.add(Body(index, name, shape, mass, inertia, *motion))
 
     @arguments.known
@@ -609,6 +621,17 @@ class Scene(Shown, TouchingPairs):
         self._parts.changes()
         gravity.setflags(write=False)
         self._gravity = gravity
+
+    @property
+    def look(self) -> Any:
+        """What is seen besides the parts of the scene: a tuple of `Look`, in world axes."""
+        return self._look
+
+    @look.setter
+    def look(self, value: Look | Shape | Sequence[Look | Shape] | None) -> None:
+        look = () if value is None else checked_look("look", value)
+        self._parts.changes()
+        self._look = look
 
     @property
     def bodies(self) -> tuple[Body, ...]:

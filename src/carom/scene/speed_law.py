@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cache
 from typing import Any, ClassVar, NamedTuple
@@ -123,13 +124,22 @@ class TableLaw(SpeedLaw):
 
 
 def number_or_law(
-    name: str, value, law: type[SpeedLaw], example: str, **bounds
+    name: str, value, law: type[SpeedLaw], of: Callable[[Any], SpeedLaw], example: str, **bounds
 ) -> float | SpeedLaw:
-    """Return a coefficient: a number within `bounds`, or a law of the kind `law`, as in the `example`."""
+    """Return a coefficient: a number within `bounds`, or a law of the kind `law`, as in the `example`.
+
+    ``of(function)`` makes a law of a function of the speed.
+    """
     if isinstance(value, law):
         return value
-    if isinstance(value, (type, SpeedLaw)) or callable(value):
+    if isinstance(value, (type, SpeedLaw)):
         raise ValueError(
-            f"{name} must be a number or a law, such as {example}, got {checks.shown(value)}"
+            f"{name} must be a number, a law, such as {example}, or a function of the speed, got "
+            f"{checks.shown(value)}"
         )
+    if callable(value):
+        try:
+            return of(value)
+        except ValueError as error:
+            raise ValueError(f"{name}: {error}") from error
     return checks.number(name, value, **bounds)

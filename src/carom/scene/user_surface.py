@@ -44,8 +44,9 @@ class Surface(SurfaceDefinition):
         by which they are derived: arithmetic, and functions of SymPy such as ``sympy.sin`` in place of
         ``math.sin``. It is then compiled.
     bounds : (2, 3)
-        Lowest and highest x, y and z [m] of the box in which bodies touch the surface, in axes of the surface.
-        Here the function is checked, and the surface drawn.
+        Lowest and highest x, y and z [m] of the box in which the function is checked and the surface drawn, in
+        axes of the surface. The surface has no end: beyond the box it goes on as the function does, unchecked,
+        and a run with a contact there says so.
     gradient, hessian : callable, optional
         ``gradient(x, y, z)`` (3,) and ``hessian(x, y, z)`` (3, 3), both or none. With them all three are called
         as they are.

@@ -91,6 +91,11 @@ def checked_settings(
         if step != "auto":
             raise ValueError(f'step must be a number [s] or "auto", got {checks.shown(step)}')
         h = None
+    elif step is None:
+        raise ValueError(
+            'step must be a number [s] or "auto", which is the default, got None; without it the tolerances '
+            "choose the steps"
+        )
     else:
         h = checks.number("step", step, above=0.0, unit="s")
     checks.choice("impact_location", impact_location, LOCATIONS)

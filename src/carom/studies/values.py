@@ -30,7 +30,7 @@ POSES = ("position", "orientation")
 LAW_FIELDS = ("restitution", "friction", "friction_held", "rolling_friction", "pivoting_friction")
 BODY_FIELDS = ("mass", "inertia")
 #: what no run depends on, and what has no number or word
-LEFT_OUT = ("material", "color")
+LEFT_OUT = ("material", "color", "look")
 SPIN, PLACE_OF_RATE = "surface_spin", 1  # a tuple, and where its rate is
 AXES, SCALAR_FIRST = ("x", "y", "z"), ("w", "x", "y", "z")
 MOMENTS = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
@@ -303,6 +303,8 @@ def changed(scene: Scene, targets: list[Target], values: dict[str, np.ndarray]) 
         value = np.array(values[target.name])
         value = value if value.ndim else value.item()
         found = find(scene, target.name)
+        if found is None and target.name != "gravity":
+            continue  # coordinates of a model, to which a run is moved
         if found is None:
             scene._gravity = np.array(value)
             continue

@@ -1,7 +1,8 @@
 """The look of bodies: parts of one colour, springs and rods, and how far each body extends.
 
-A body with a shape is its surface, with pips if it is a die and pins at its joints. A body without one is a
-ball or disc that rolls, rods to its joints, or else the ellipsoid of its inertia.
+A body with a look of its own is that. Any other with a shape is its surface, with pips if it is a die and pins
+at its joints. A body without one is a ball or disc that rolls, rods to its joints, or else the ellipsoid of its
+inertia.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from carom.scene.bodies import Body
 from carom.scene.curves import Curve
 from carom.scene.forces import Spring
 from carom.scene.joints import CurveOnPoint, Distance, Joint, RollingDisc, RollingSphere
+from carom.scene.look import Look
 from carom.scene.more_forces import CurveSpring
 from carom.scene.shapes import Box, Sphere
 from carom.scene.shapes.revolved import Cylinder
@@ -44,7 +46,7 @@ class Part(NamedTuple):
     bodies: list[int]  #: -1 for a static one
     look: str  #: "solid", "round" (with a pattern), "joint", "pip" or "static"
     shape: Any = None  #: shape of which it is the whole surface
-    colour: str | None = None  #: of a static body that has one
+    colour: str | None = None  #: of a static body, or of a part of a look, that has one
 
 
 class Link(NamedTuple):
@@ -83,7 +85,7 @@ def colours_of(part: Part, scene) -> list[str]:
     """Return the colour of a part on each of its bodies."""
     if part.look in ("joint", "static"):
         return [JOINT if part.look == "joint" else part.colour or STATIC] * len(part.bodies)
-    own = [colour_of(scene.bodies[b]) for b in part.bodies]
+    own = [part.colour or colour_of(scene.bodies[b]) for b in part.bodies]
     return [pip_colour(one) for one in own] if part.look == "pip" else own
 
 
@@ -96,24 +98,35 @@ def parts_of(
     fineness = fineness or (32 if len(scene.bodies) < 100 else 16)
     for body in scene.bodies:
         shape = body.shape
-        if shape is None:
-            pieces = _without_shape(scene, body, ROD * radius)
+        if body.look is not None:
+            pieces = [_seen(one, fineness) for one in body.look]
+        elif shape is None:
+            pieces = [(*piece, None, None) for piece in _without_shape(scene, body, ROD * radius)]
         else:
             if shape not in known:
                 known[shape] = surface(shape, fineness)
-            pieces = [(*known[shape], "round" if is_round(shape) else "solid")]
-            pieces += [(*pin, "joint") for pin in pins(scene, body, ROD * radius)]
-            pieces += [(*pips(shape), "pip")] if is_die(body) else []
-        for vertices, triangles, look in pieces:
-            key = (vertices.tobytes(), triangles.tobytes(), look)
-            whole = shape if look in ("solid", "round") else None
-            parts.setdefault(key, Part(vertices, triangles, [], look, whole)).bodies.append(
-                body.index
-            )
+            pieces = [(*known[shape], "round" if is_round(shape) else "solid", shape, None)]
+            pieces += [(*pips(shape), "pip", None, None)] if is_die(body) else []
+        if shape is not None:
+            pieces += [(*pin, "joint", None, None) for pin in pins(scene, body, ROD * radius)]
+        for vertices, triangles, look, whole, colour in pieces:
+            key = (vertices.tobytes(), triangles.tobytes(), look, colour)
+            made = Part(vertices, triangles, [], look, whole, colour)
+            parts.setdefault(key, made).bodies.append(body.index)
     rails = [_rail(j, 0.5 * ROD * radius) for j in scene.joints if j.definition.guide == "curve"]
     fixed = [static_part(solid, fineness, centre, radius) for solid in scene.statics]
     fixed = [part for part in fixed if len(part.triangles)]
-    return [*parts.values(), *fixed, *rails, *surface_arrows(scene, radius)]
+    looks = [_seen(one, fineness) for one in scene.look]
+    seen = [Part(v, f, [-1], "static", None, colour) for v, f, _, _, colour in looks]
+    return [*parts.values(), *fixed, *rails, *seen, *surface_arrows(scene, radius)]
+
+
+def _seen(one: Look, fineness: int) -> tuple[np.ndarray, np.ndarray, str, Any, str | None]:
+    """Return a part of a look in body axes: vertices, triangles, kind, shape and colour."""
+    whole = None if isinstance(one.shape, tuple) else one.shape
+    vertices, triangles = one.shape if whole is None else surface(whole, fineness)
+    placed = one.position + quaternion.rotate(one.orientation, vertices)
+    return placed, triangles, "solid", whole, one.color
 
 
 def _rail(joint: Joint, thick: float) -> Part:
@@ -194,6 +207,9 @@ def static_part(solid, fineness: int, centre: np.ndarray, radius: float) -> Part
 
 def outline_of(scene, body: Body) -> Outline:
     """Return the extent of a body; a body without a shape extends to its joints and springs."""
+    if body.look is not None:
+        own = 0.0 if body.shape is None else body.shape.size
+        return Outline([np.zeros(3)], max([own, *(one.reach for one in body.look)]))
     if body.shape is not None:
         return Outline([np.zeros(3)], body.shape.size)
     anchors = _anchors(scene, body)

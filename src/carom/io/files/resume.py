@@ -34,9 +34,9 @@ def resume(
     path : str or path
         File of ``simulate(..., save=path)`` or of `Solution.save`.
     until : float, optional
-        Time at which the run ends, counted from its start [s], later than before; `Solution.simulate` takes the
-        duration after its end instead. States are saved as often as before. Default: the end that the run was
-        to have; a run that has reached it is returned unchanged.
+        Time at which the run ends, counted from its start [s], later than its last state in the file;
+        `Solution.simulate` takes the duration after its end instead. States are saved as often as before.
+        Default: the end that the run was to have; a run that has reached it is returned unchanged.
     functions : mapping, optional
         User-defined functions of the scene, which the file cannot contain: ``"part.field"`` (for example
         ``"motor.force"``) to function. Data that a function itself stores between calls are not restored.
@@ -71,7 +71,10 @@ def resume(
         given = solution.settings
         step = given["step"] if isinstance(given["step"], float) else given["duration"]
         most = 1e12 * step  # steps that have numbers
-        until = checks.number("until", until, above=given["duration"], most=most, unit="s")
+        # an interrupted run has not reached the end that it was to have
+        on_the_way = solution.status is Status.INTERRUPTED
+        least = float(solution.t[-1]) if on_the_way else given["duration"]
+        until = checks.number("until", until, above=least, most=most, unit="s")
     elif solution.status.ended:
         return solution
     can_continue = solution.status is Status.INTERRUPTED or solution.status.ended
@@ -91,6 +94,9 @@ def resume(
         raise ValueError(
             f"path must be a run of this version of carom, got {str(path)!r}: {error}"
         ) from error
+    now = float(run.clock["now"][0])
+    if until is not None and not until > now:  # the last state is not always a saved one
+        raise ValueError(f"until must be above {now:.17g} s, where the run stands, got {until!r}")
     return finish(run, progress, Keeper(run, Path(path), save_seconds), throw)
 
 

@@ -39,6 +39,7 @@ from carom.scene.curves import CURVES
 from carom.scene.forces import FORCES, AppliedForce
 from carom.scene.friction import FRICTION_LAWS
 from carom.scene.joints import JOINTS, Joint
+from carom.scene.look import Look
 from carom.scene.materials import ContactLaw, Material
 from carom.scene.pieces import Piece
 from carom.scene.restitution import LAWS
@@ -66,6 +67,7 @@ TYPES: dict[str, type[Any]] = {
         ContactLaw,
         Material,
         Piece,
+        Look,
         *ROBOT,
     )
 }
@@ -73,6 +75,7 @@ TYPES: dict[str, type[Any]] = {
 LATER: dict[str, Any] = {
     "color": None, "material": None, "of_materials": {"tuple": []}, "tangential_restitution": 0.0,
     "surface_velocity": None, "surface_spin": None, "axis": None, "along": None, "across": None, "of": "body",
+    "look": None,
 }  # fmt: skip
 ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 
@@ -219,6 +222,8 @@ def _is_as_before(record, name: str) -> bool:
         return name != "material" and getattr(record, name) is None
     if isinstance(record, Piece):
         return record.material is None
+    if isinstance(record, Body):
+        return name == "look" and record.look is None
     return isinstance(record, ContactLaw) and name == "of_materials" and not record.of_materials
 
 

@@ -35,6 +35,7 @@ def scene_to_text(scene: Scene, encoder: Encoder | None = None) -> str:
         "contact_values": encoder.value(pairs._values),
         "all_pairs": pairs.default is not None,
         "robot": encoder.value(scene.robot, "robot"),
+        **({"look": encoder.value(scene.look, "look")} if scene.look else {}),
         "functions": list(encoder.functions),
     }
     if encoder.functions:
@@ -86,6 +87,8 @@ def scene_from_text(
     with told("robot"):
         scene._robot = decoder.value(data.get("robot"))
         checks.instance("robot", scene._robot, (Robot, type(None)))
+    with told("look"):
+        scene.look = decoder.value(data.get("look"))
     return scene, decoder.missing
 
 

@@ -49,6 +49,7 @@ class Build:
     lines: list[tuple[Joint, tuple]] = field(default_factory=list)  # slides along tendons
     geoms: dict[int, Body | HalfSpace | StaticBody] = field(default_factory=dict)
     hulls: dict[int, Convex | None] = field(default_factory=dict)  # of meshes
+    triangles: dict[int, tuple] = field(default_factory=dict)  # of meshes that are seen
 
     def moving(self, body: int) -> Body:
         """Return the body of the scene for one of the model that has joints."""

@@ -24,7 +24,15 @@ from carom.io.models.overlaps import lift_out, pose
 from carom.io.models.reading import compiled_model
 from carom.io.models.report import Report
 from carom.io.models.robot import robot_of
-from carom.io.models.solids import Solid, add_standing, colour, covering, geoms_of
+from carom.io.models.solids import (
+    Solid,
+    add_standing,
+    colour,
+    covering,
+    geoms_of,
+    look_of,
+    world_look,
+)
 from carom.io.models.state import as_it_acts, is_off, point_velocity, starting_data
 from carom.io.models.tendons import add_tendons, needs_link
 from carom.io.models.touching import Filter
@@ -157,7 +165,8 @@ def load_model(
     for link in links:
         given = motions.get(link.body, [])
         shape, geoms = covers[link.body]
-        _add_body(build, link, shape, rules.material(geoms[0]) if geoms else None, given)
+        material = rules.material(geoms[0]) if geoms else None
+        _add_body(build, link, shape, material, given, look_of(build, link, covers[link.body]))
         if given:
             drive(build, link, given)
         else:
@@ -175,6 +184,7 @@ def load_model(
         solids = [*moving, *standing]
         add_contacts(build, solids, rules, restitution, friction, impact_law, overlaps == "refuse")
     report_leftovers(model, motions, report)
+    build.scene.look = world_look(build, rules)
     build.scene._robot = robot_of(build, links, motors)
     return _finished(build, model, links, covers, restitution)
 
@@ -207,7 +217,7 @@ def _restitution(model, given: float | None, report: Report) -> float:
     return RESTITUTION
 
 
-def _add_body(build: Build, link: Link, shape, material, motions) -> None:
+def _add_body(build: Build, link: Link, shape, material, motions, look) -> None:
     """Add the body of a link, with its position and motion."""
     centre, orientation = pose(build, link)
     motion = point_velocity(build.model, build.data, link.body, centre)
@@ -227,6 +237,7 @@ def _add_body(build: Build, link: Link, shape, material, motions) -> None:
         angular_velocity=motion[3:],
         material=material,
         color=colour(build, geoms_of(build, link)),
+        look=look,
         name=link.name,
     )
 

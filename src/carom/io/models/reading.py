@@ -12,7 +12,7 @@ import numpy as np
 
 from carom.io.models.limits import check_model, drop_sizes, parsed
 from carom.io.models.report import Report, need_mujoco
-from carom.io.models.urdf import colours, prepared
+from carom.io.models.urdf import colours, drop_visuals, name_visuals, prepared
 
 READ = ("body_", "jnt_", "dof_", "geom_", "eq_", "pair_", "qpos", "mesh_vert", "key_q")  # arrays
 DERIVED = ("body_invweight0", "dof_invweight0", "jnt_actfrcrange", "jnt_range")
@@ -70,7 +70,8 @@ def _compiled(mujoco, source, free_root: bool, package_dirs, report: Report, sai
                 model = spec.compile()
             break
         except (ValueError, RuntimeError) as error:
-            if not _drop_picture(mujoco, spec, _line(error), report):
+            dropped = _drop_picture(mujoco, spec, _line(error), report)
+            if not dropped and not drop_visuals(spec, _line(error), report):
                 raise ValueError(f"{what} does not compile: {_line(error)}") from None
     said += [warning.message for warning in caught]
     pairs = zip(model.eq_type, model.eq_obj1id)
@@ -100,11 +101,12 @@ def _specification(mujoco, source, package_dirs, report: Report) -> tuple[Any, s
     try:
         if root.tag == "robot":
             mimics = [j.get("name", "") for j in root.iter("joint") if j.find("mimic") is not None]
-            tints = colours(root)  # of visuals, which are left out
+            tints = colours(root)  # of visuals, which may be left out
             text = prepared(root, folder, package_dirs, report)
             spec = mujoco.MjSpec.from_string(text)
             for geom in spec.geoms:
                 geom.rgba = tints.get(geom.parent.name, geom.rgba)
+            name_visuals(spec, root, mujoco)
         elif isinstance(text, str):
             spec = mujoco.MjSpec.from_string(text)
         elif _is_utf8(text):

@@ -42,12 +42,16 @@ class Report(Sequence[Entry]):
 
     def __init__(self):
         self._entries: list[Entry] = []
+        self._known: set[Entry] = set()
 
     def add(self, element: str, what: str, instead: str) -> None:
         """Add an entry."""
         for name, given in (("element", element), ("what", what), ("instead", instead)):
             checks.text(name, given)
-        self._entries.append(Entry(element, what, instead))
+        entry = Entry(element, what, instead)
+        if entry not in self._known:
+            self._known.add(entry)
+            self._entries.append(entry)
 
     def __getitem__(self, index):
         return self._entries[index]

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from carom.geometry import quaternion
 from carom.io.models.build import Build
-from carom.io.models.hulls import hull_of_mesh
+from carom.io.models.hulls import hull_of_mesh, triangles_of
 from carom.io.models.links import IDENTITY, Link, called, name_of, pose_on_link
 from carom.io.models.report import need_mujoco
 from carom.io.models.touching import Filter
+from carom.io.models.urdf import VISUAL
 from carom.scene import joints
 from carom.scene.bodies import GROUND, Body, HalfSpace, StaticBody
 from carom.scene.height_field import HeightField
+from carom.scene.look import Look
 from carom.scene.materials import Material
 from carom.scene.shapes import Box, Compound, Ellipsoid, Part, Shape, Sphere
 from carom.scene.shapes.revolved import Capsule, Cylinder
@@ -22,13 +24,14 @@ from carom.scene.shapes.revolved import Capsule, Cylinder
 DENSITY = 1000.0  # [kg/m^3] of what is fixed to the ground, where it makes no difference
 #: red, green, blue and opacity of geoms without a colour: then that of their material counts (mjmodel.h)
 GREY = (0.5, 0.5, 0.5, 1.0)
+SHOWN_GROUPS = (0, 1, 2)  # of geoms, that MuJoCo's viewer shows at first (mjv_defaultOption)
 SAME = 1e-12  # of the size: a shape that lies in the mass centre, along the axes of its body
 
 
 class Placed(NamedTuple):
     """A shape, and where its own centre and axes are in the body that carries the geom."""
 
-    shape: Shape
+    shape: Any  # in a look also vertices and triangles
     position: np.ndarray  # (3,)
     orientation: np.ndarray  # (4,)
     material: Material | None = None
@@ -109,9 +112,9 @@ def geoms_of(build: Build, link: Link) -> list[int]:
 def covering(build: Build, link: Link, rules: Filter) -> tuple[Shape | None, list[int]]:
     """Return the shape of a link, and those of its geoms that may touch.
 
-    If no geom may touch, the shape is that of the visible geoms.
+    If no geom may touch, the shape is that of all geoms, but for the visuals of a URDF.
     """
-    geoms = geoms_of(build, link)
+    geoms = [g for g in geoms_of(build, link) if VISUAL not in build.model.geom(g).name]
     touching = [g for g in geoms if rules.touches_at_all(g)]
     parts, used = _parts(build, touching or geoms)
     if touching:
@@ -119,13 +122,74 @@ def covering(build: Build, link: Link, rules: Filter) -> tuple[Shape | None, lis
     return body_shape(parts, link.centre), used if touching else []
 
 
+def look_of(build: Build, link: Link, cover: tuple) -> tuple[Look, ...] | None:
+    """Return what is seen of a link where geoms of it touch nothing; None where its shape is what is seen.
+
+    Seen are the geoms that MuJoCo's viewer shows at first: those of groups 0 to 2 that are not transparent.
+    """
+    (shape, touching), seen = cover, [g for g in geoms_of(build, link) if is_seen(build, g)]
+    if shape is not None and set(seen) <= set(touching or seen):
+        return None
+    found = [(placed_look(build, g), colour(build, [g])) for g in seen]
+    looks = [Look(p.shape, p.position - link.centre, p.orientation, c) for p, c in found if p]
+    return tuple(looks) or None
+
+
+def world_look(build: Build, rules: Filter) -> list[Look]:
+    """Return what is seen of geoms that are fixed to the world and touch nothing; planes have no end."""
+    model, looks = build.model, []
+    for g in range(model.ngeom):
+        fixed = model.body_weldid[model.geom_bodyid[g]] == 0
+        if not fixed or rules.touches_at_all(g) or not is_seen(build, g):
+            continue
+        if model.geom_type[g] == need_mujoco().mjtGeom.mjGEOM_PLANE:
+            build.report.add(called(model, "geom", g), "a plane that touches nothing", "left out")
+            continue
+        own, axes = placed_look(build, g), build.data.geom_xmat[g].reshape(3, 3)
+        if own is not None:
+            place = build.data.geom_xpos[g]
+            if not isinstance(own.shape, tuple):
+                place = place + axes @ getattr(own.shape, "centroid", np.zeros(3))
+            turn = quaternion.normalize(quaternion.from_matrix(axes))
+            looks.append(Look(own.shape, place, turn, colour(build, [g])))
+    return looks
+
+
+def geoms_on(build: Build, body: int) -> range:
+    """Return all geoms of a body of the model."""
+    first = int(build.model.body_geomadr[body])
+    return range(first, first + int(build.model.body_geomnum[body]))
+
+
+def is_seen(build: Build, geom: int) -> bool:
+    """Return whether MuJoCo's viewer shows a geom at first."""
+    return int(build.model.geom_group[geom]) in SHOWN_GROUPS and tint_of(build, geom)[3] > 0.0
+
+
+def placed_look(build: Build, geom: int) -> Placed | None:
+    """Return what a geom looks like on its link: a mesh as its triangles, any other as its shape."""
+    model, kinds = build.model, need_mujoco().mjtGeom
+    if model.geom_type[geom] != kinds.mjGEOM_MESH:
+        return placed_shape(build, geom)
+    on_body, turn = pose_on_link(model, int(model.geom_bodyid[geom]))
+    position = on_body + quaternion.rotate(turn, model.geom_pos[geom])
+    orientation = quaternion.normalize(quaternion.multiply(turn, model.geom_quat[geom]))
+    return Placed(triangles_of(build, int(model.geom_dataid[geom])), position, orientation)
+
+
+def tint_of(build: Build, geom: int) -> np.ndarray:
+    """Return red, green, blue and opacity of a geom: its own, or those of its material."""
+    model = build.model
+    rgba = model.geom_rgba[geom]
+    if np.allclose(rgba, GREY) and model.geom_matid[geom] >= 0:
+        rgba = model.mat_rgba[model.geom_matid[geom]]
+    return rgba
+
+
 def colour(build: Build, geoms: list[int]) -> np.ndarray | None:
     """Return the colour (3,) of the first of some geoms that has one and is visible; None if none has."""
-    model = build.model
     for g in geoms:
-        rgba = model.geom_rgba[g]
-        if np.allclose(rgba, GREY) and model.geom_matid[g] >= 0:
-            rgba = model.mat_rgba[model.geom_matid[g]]
+        rgba = tint_of(build, g)
         if rgba[3] > 0.0 and not np.allclose(rgba, GREY):
             return np.clip(rgba[:3], 0.0, 1.0)
     return None
@@ -187,8 +251,10 @@ def _fixed(build: Build, g: int, material: Material | None) -> Body | None:
     name = build.names.new(name_of(build.model, "geom", g), "geom")
     axes, place = build.data.geom_xmat[g].reshape(3, 3), build.data.geom_xpos[g]
     offset = getattr(part.shape, "centroid", np.zeros(3))
+    seen = any(is_seen(build, k) for k in geoms_on(build, int(build.model.geom_bodyid[g])))
     wall = build.scene.add_body(
         part.shape,
+        look=() if seen and not is_seen(build, g) else None,
         density=DENSITY,
         position=place + axes @ offset,
         orientation=quaternion.normalize(quaternion.from_matrix(axes)),

@@ -1,6 +1,7 @@
 """Preparation of a URDF for MuJoCo: paths of its meshes, links without joints, and impossible inertias.
 
-MuJoCo does not know ``package://``, and reads only STL, OBJ and MSH. Meshes of ``<visual>`` are not needed.
+MuJoCo does not know ``package://``, and reads only STL, OBJ and MSH. What is in ``<visual>`` is seen, and
+touches nothing: its geoms are named, so that they are told from others.
 Links without joints are kept, so that their names exist (`carom.io.models.links` joins them to their parents).
 """
 
@@ -20,22 +21,69 @@ GIVEN = 1e-9  # mass of a link that moves and has none, as a part of the robot's
 ARM2 = 1e-2  # inertia by mass of what has none [m^2]
 FLOOR = 1e-12  # of moments [kg m^2]: MuJoCo takes none below 1e-15
 SIX: tuple[str, ...] = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+HIDDEN = 3  # group of geoms
+VISUAL = ":visual"  # in the names of geoms
+GREY = [0.5, 0.5, 0.5, 1.0]  # MuJoCo's colour of what has none
 READ = (".stl", ".obj", ".msh")
+
+
+def name_visuals(spec, root: ET.Element, mujoco) -> None:
+    """Give the geoms of ``<visual>`` names and colours of their own, and let their meshes be open.
+
+    What touches is not seen beside them: it is put into a group that MuJoCo's viewer hides.
+    """
+    left = {
+        link.get("name"): [_tint(v.find("material"), root) for v in link.findall("visual")]
+        for link in root.iter("link")
+    }
+    solid, seen = set(), {name for name, visuals in left.items() if visuals}
+    for geom in spec.geoms:
+        tints = left.get(geom.parent.name)
+        if tints and geom.contype == 0 and geom.conaffinity == 0:
+            geom.name = f"{geom.parent.name}{VISUAL}{len(tints)}"
+            geom.rgba = tints.pop(0) or GREY
+        else:
+            solid.add(geom.meshname)
+            geom.group = HIDDEN if geom.parent.name in seen else geom.group
+    for mesh in spec.meshes:
+        if mesh.name not in solid:
+            mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
+
+
+def drop_visuals(spec, error: str, report: Report) -> bool:
+    """Leave out the visuals that an error is about, or all; return whether there were any."""
+    visuals = [geom for geom in spec.geoms if VISUAL in geom.name]
+    named = [g for g in visuals if g.meshname and f"'{g.meshname}'" in error]
+    for geom in named or visuals:
+        mesh = geom.meshname
+        report.add(f"link {geom.parent.name!r}", f"a <visual> is not read ({error})", "left out")
+        spec.delete(geom)
+        if mesh and all(one.meshname != mesh for one in spec.geoms):
+            spec.delete(spec.mesh(mesh))
+    return bool(visuals)
+
+
+def _tint(material: ET.Element | None, root: ET.Element) -> list[float] | None:
+    """Return red, green, blue and opacity of a material, its own or those that the robot states by its name."""
+    if material is None:
+        return None
+    shared = {one.get("name"): one.find("color") for one in root.findall("material")}
+    own = material.find("color")
+    own = shared.get(material.get("name")) if own is None else own
+    with suppress(ValueError):
+        rgba = [float(word) for word in ("" if own is None else own.get("rgba", "")).split()]
+        return rgba if len(rgba) == 4 else None
+    return None
 
 
 def colours(root: ET.Element) -> dict[str, list[float]]:
     """Return red, green, blue and opacity of links with a ``<visual>`` that has a colour, by name."""
-    shared = {one.get("name"): one.find("color") for one in root.findall("material")}
     found: dict[str, list[float]] = {}
     for link in root.iter("link"):
         for material in link.findall("visual/material"):
-            own = material.find("color")
-            own = shared.get(material.get("name")) if own is None else own
-            words = "" if own is None else own.get("rgba", "")
-            with suppress(ValueError):
-                rgba = [float(word) for word in words.split()]
-                if len(rgba) == 4:
-                    found.setdefault(link.get("name", ""), rgba)
+            rgba = _tint(material, root)
+            if rgba is not None:
+                found.setdefault(link.get("name", ""), rgba)
     return found
 
 
@@ -53,17 +101,18 @@ def prepared(root: ET.Element, folder: Path | None, package_dirs: Iterable, repo
     report
         The report, for parts that are left out or changed.
     """
-    for link in root.iter("link"):
-        for visual in link.findall("visual"):
-            link.remove(visual)
     mend_words(root, report)
     for link in root.iter("link"):
-        for collision in link.findall("collision"):
+        for collision in (*link.findall("collision"), *link.findall("visual")):
+            kind = "mesh" if collision.tag == "collision" else "visual mesh"
             mesh, shape = collision.find("geometry/mesh"), collision.find("geometry/*")
             if mesh is None:
                 if shape is None or _is_flat(shape):
                     what = "is empty" if shape is None else "has a size of 0, and touches nothing"
-                    report.add(f"link {link.get('name')!r}", f"a shape of it {what}", "left out")
+                    if kind == "mesh":
+                        report.add(
+                            f"link {link.get('name')!r}", f"a shape of it {what}", "left out"
+                        )
                     link.remove(collision)
                 continue
             name = mesh.get("filename", "")
@@ -72,7 +121,7 @@ def prepared(root: ET.Element, folder: Path | None, package_dirs: Iterable, repo
             if found is not None and why is None:
                 mesh.set("filename", str(found))
                 continue
-            report.add(f"link {link.get('name')!r}", f"its mesh {name!r} {why}", "left out")
+            report.add(f"link {link.get('name')!r}", f"its {kind} {name!r} {why}", "left out")
             link.remove(collision)
     mend_inertias(root, report)
     options = root.find("mujoco")
@@ -81,7 +130,7 @@ def prepared(root: ET.Element, folder: Path | None, package_dirs: Iterable, repo
     compiler = options.find("compiler")
     if compiler is None:
         compiler = ET.SubElement(options, "compiler")
-    compiler.attrib.update(strippath="false", fusestatic="false")
+    compiler.attrib.update(strippath="false", fusestatic="false", discardvisual="false")
     compiler.attrib.pop("meshdir", None)  # meshes have their full paths now
     return ET.tostring(root, encoding="unicode")
 

@@ -34,7 +34,7 @@ class Mesh(Shape):
     Parameters
     ----------
     vertices : (n, 3)
-        Vertices [m].
+        Vertices [m]; or an object with `vertices` and `faces`, such as that of trimesh, in place of both.
     faces : (k, 3)
         Triangles, as indices of vertices, counter-clockwise from outside.
     parts : sequence of (m, 3), "coacd" or None
@@ -76,7 +76,18 @@ class Mesh(Shape):
     _spread: np.ndarray
     radius = 0.0  #: a mesh is not swollen [m]
 
-    def __init__(self, vertices: ArrayLike, faces: ArrayLike, parts: Sequence | str | None = None):
+    def __init__(
+        self,
+        vertices: Any,
+        faces: ArrayLike | None = None,
+        parts: Sequence | str | None = None,
+    ):
+        if faces is None and hasattr(vertices, "vertices") and hasattr(vertices, "faces"):
+            vertices, faces = vertices.vertices, vertices.faces
+        if faces is None:
+            raise TypeError(
+                "Mesh needs faces: Mesh(vertices, faces), or Mesh(an object of trimesh)"
+            )
         points = checks.finite_array("vertices", vertices, (None, 3), unit="m")
         checks.length("the greatest of vertices", np.max(np.abs(points), initial=0.0), zero=True)
         triangles = _checked_faces(faces, points)
@@ -170,7 +181,7 @@ def shape_given(shape) -> Any:
         hasattr(shape, "vertices") and hasattr(shape, "faces")
     ):
         return shape
-    return Mesh(shape.vertices, shape.faces)
+    return Mesh(shape)
 
 
 def _checked_faces(faces, points: np.ndarray) -> np.ndarray:

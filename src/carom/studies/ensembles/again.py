@@ -17,6 +17,7 @@ from carom.model.kept import Snapshot
 from carom.run import Run
 from carom.scene.scene import Scene
 from carom.stepping.settings import Settings
+from carom.studies.ensembles.robots import PLACED, put
 from carom.studies.values import Target, changed, check_places, may_overlap, units
 
 STATES = {"position": "x", "orientation": "Q", "velocity": "v", "angular_velocity": "w"}
@@ -45,7 +46,9 @@ class Again:
             If bodies penetrate each other at the start, or the start violates a joint.
         """
         if not self.light:
-            return Run(changed(self.scene, self.targets, _row(values, k)), self.settings)
+            run = Run(changed(self.scene, self.targets, _row(values, k)), self.settings)
+            put(run, self.targets, _row(values, k))
+            return run
         self.first.put_back()
         if values is not self.values:
             self.take(values)
@@ -54,6 +57,7 @@ class Again:
         for there, rows in self.written:
             there[...] = rows[k]
         run = self.run
+        put(run, self.targets, _row(values, k))
         run.clock["saved"] = 0
         run.compiled.functions.forget()  # the error of a user-defined function in the last run
         run.check(run.scene)
@@ -69,6 +73,8 @@ class Again:
     def writes(self, target: Target, values: dict) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         """Yield arrays of the run, and rows (K, ...) of which each run writes its own there."""
         run, k, value = self.run, target.index, values[target.name]
+        if target.field in PLACED:  # by `put`
+            return
         if target.field in STATES:
             if target.field == "orientation":
                 value = attitudes(units(value), run.to_principal[k])

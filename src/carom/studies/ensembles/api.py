@@ -11,15 +11,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom import arguments, checks
+from carom.io.models.model import Model
 from carom.io.progress import Bar, reporter
 from carom.io.run_to_end import interruption
 from carom.options import Options
 from carom.scene.scene import Scene
 from carom.status import MistakeWarning
 from carom.stepping.settings import (
-    Settings,
     check_handling,
-    check_scene,
     checked_settings,
     mistakes,
 )
@@ -37,7 +36,7 @@ NEVER = 10**15  # `save_every` of runs that save only the first and the last sta
 
 @arguments.known
 def ensemble(
-    scene: Scene | Callable[..., Scene],
+    scene: Scene | Model | Callable[..., Scene],
     duration: float,
     *,
     step: float | str = "auto",
@@ -64,9 +63,9 @@ def ensemble(
 
     Parameters
     ----------
-    scene : Scene, or function
-        A scene whose values are varied; or a function that takes the names in `vary` as keyword arguments and
-        returns the `Scene` of a run. All scenes must have the same number of bodies.
+    scene : Scene, models.Model, or function
+        A scene, or that of a model, whose values are varied; or a function that takes the names in `vary` as
+        keyword arguments and returns the `Scene` of a run. All scenes must have the same number of bodies.
     duration : float
         Duration of each run [s].
     step, method, rtol, atol, options
@@ -84,6 +83,8 @@ def ensemble(
         What is computed from other values by default follows them, unless it is varied itself: inertia the mass
         and the shape, whose mass stays; `friction_held` the friction; `rest_length` the ends of a spring.
         Orientations may also be a SciPy Rotation or matrices.
+        Of a model of `load_model` also ``"qpos"`` (runs, nq), ``"qvel"`` (runs, nv) and ``"ctrl"`` (runs, nu),
+        as in MuJoCo, and ``"elbow.coordinate"`` and ``"elbow.rate"`` of a hinge or slide with the name "elbow".
     runs : int, optional
         Number of runs; not needed if `vary` has an array or a grid. A grid has all combinations of its values.
     seed : int or numpy.random.Generator
@@ -140,9 +141,10 @@ def ensemble(
     >>> thrown.position.shape, bool(np.all(thrown.velocity == 0))  # each die is at rest
     ((8, 1, 3), True)
     """
+    scene = scene.scene if isinstance(scene, Model) else scene
     if not isinstance(scene, Scene) and not callable(scene):
         raise TypeError(
-            f"scene must be a carom.Scene or a function that returns one, got {type(scene).__name__}"
+            f"scene must be a carom.Scene, a Model or a function that returns one, got {type(scene).__name__}"
         )
     vary = as_mapping(vary)
     if not isinstance(vary, Mapping) or not vary:
@@ -170,11 +172,11 @@ def ensemble(
     )
     if observe is None:  # only the end is read
         settings = settings._replace(save_every=NEVER)
-    from carom.studies.ensembles.plan import facts, join
+    from carom.studies.ensembles.plan import facts, join, plan_of
 
     vary, grid, runs = on_grid(vary, runs)
     inputs = draw(vary, runs, checks.seed("seed", seed), sampling)
-    plan, values = _plan(scene, settings, inputs, grid, observe)
+    plan, values = plan_of(scene, settings, inputs, grid, observe)
     for mistake in mistakes(scene, settings):
         warnings.warn(mistake, MistakeWarning, stacklevel=3)
     count = len(next(iter(inputs.values())))
@@ -203,23 +205,6 @@ def ensemble(
         message = f"interrupted after {int(found.done.sum())} of {count} runs{more}"
         raise interruption(message, found, stopped)
     return found
-
-
-def _plan(scene, settings: Settings, inputs: dict[str, np.ndarray], grid, observe):
-    """Return the plan, and the values of the runs as it takes them."""
-    from carom.studies.ensembles.plan import Plan, plain
-    from carom.studies.values import find_targets, whole
-
-    if isinstance(scene, Scene):
-        check_scene(scene, settings)
-        scene = scene._as_it_is()
-        values = whole(scene, inputs)
-        names = [body.name for body in scene.bodies]
-        return Plan(scene, settings, find_targets(scene, values), names, grid, observe), values
-    first = checks.call("scene", lambda: scene(**plain(inputs, 0)))
-    checks.instance("the result of the function scene", first, (Scene,))
-    names = [body.name for body in first.bodies]
-    return Plan(scene, settings, [], names, grid, observe), inputs
 
 
 def _store(save, plan, inputs, chunk):

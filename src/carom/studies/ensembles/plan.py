@@ -19,7 +19,8 @@ from carom.status import Status
 from carom.stepping.settings import Settings, check_scene
 from carom.studies.ensembles.again import Again
 from carom.studies.ensembles.outcome import REFUSED, End, end_of, no_outcomes, write
-from carom.studies.values import Target
+from carom.studies.ensembles.robots import PLACED, of_scene, targets_of
+from carom.studies.values import Target, find_targets, whole
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,23 @@ class Plan:
     grid: dict[str, np.ndarray]  # its axes by name; empty if there is none
     observe: Callable | None
     token: str = field(default_factory=lambda: uuid.uuid4().hex)
+
+
+def plan_of(scene, settings: Settings, inputs: dict[str, np.ndarray], grid, observe):
+    """Return the plan, and the values of the runs as it takes them."""
+    if isinstance(scene, Scene):
+        check_scene(scene, settings)
+        scene = scene._as_it_is()
+        given = of_scene(scene, inputs)
+        placed = {name: given[name] for name in PLACED if name in given}
+        values = whole(scene, {name: one for name, one in given.items() if name not in placed})
+        names = [body.name for body in scene.bodies]
+        targets = [*find_targets(scene, values), *targets_of(placed)]
+        return Plan(scene, settings, targets, names, grid, observe), values | placed
+    first = checks.call("scene", lambda: scene(**plain(inputs, 0)))
+    checks.instance("the result of the function scene", first, (Scene,))
+    names = [body.name for body in first.bodies]
+    return Plan(scene, settings, [], names, grid, observe), inputs
 
 
 def facts(plan: Plan) -> dict[str, str]:

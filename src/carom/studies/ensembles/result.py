@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+    from carom.results.state import SystemState
     from carom.studies.ensembles.plan import Plan
 
 
@@ -120,6 +121,39 @@ class Ensemble(Shown):
         found, numbers = np.unique(self.outcomes["status"], return_counts=True)
         return {WORDS[int(s)]: int(n) for s, n in zip(found, numbers)}
 
+    @property
+    def bodies(self) -> list[str]:
+        """Names of the bodies, in the order of the outcomes."""
+        return list(json.loads(self.about.get("body_names", "[]")))
+
+    def __getitem__(self, name: Any) -> Any:
+        """Return what all runs have of one thing, with one row for each run.
+
+        The name of a body, or the body: its state at the end, ``runs["die"].position`` (R, 3). The name of
+        a joint: its coordinate and rate at the end, ``runs["hinge"].coordinate`` (R,), with angles from -pi to
+        pi. Otherwise the name of an input, of what was observed, or of an outcome: an array (R, ...).
+
+        Raises
+        ------
+        KeyError
+            If there is nothing of this name.
+        """
+        from carom.studies.ensembles.views import view
+
+        return view(self, name)
+
+    def state(self, run: int) -> SystemState:
+        """Return the state at the end of a run, such as for ``model.qpos(runs.state(3))``.
+
+        Raises
+        ------
+        ValueError
+            As of `solution`.
+        """
+        from carom.studies.ensembles.views import state_of
+
+        return state_of(self, checks.integer("run", run, least=0, most=len(self) - 1))
+
     def solution(self, run: int):
         """Return the complete `Solution` of a run; the run is made again.
 
@@ -128,10 +162,13 @@ class Ensemble(Shown):
         ValueError
             If the ensemble was loaded from disk and so has no scene, or there is no run with this number.
         """
+        from carom.io.run_to_end import finish
+        from carom.run import Run
         from carom.scene.scene import Scene
         from carom.simulate import simulate
-        from carom.studies.ensembles.plan import plain
-        from carom.studies.values import changed, whole
+        from carom.studies.ensembles.plan import plain, plan_of
+        from carom.studies.ensembles.robots import PLACED, put
+        from carom.studies.values import changed
 
         run = checks.integer("run", run, least=0, most=len(self) - 1)
         plan = self._plan
@@ -140,13 +177,18 @@ class Ensemble(Shown):
                 "solution needs the scene, but an ensemble from disk has none; call carom.ensemble with the "
                 "same arguments and the same save"
             )
+        how = plan.settings._replace(save_every=1)
         if isinstance(plan.scene, Scene):
             one = {name: array[run : run + 1] for name, array in self.inputs.items()}
-            values = {name: rows[0] for name, rows in whole(plan.scene, one).items()}
+            rows = plan_of(plan.scene, plan.settings, one, {}, None)[1]
+            values = {name: array[0] for name, array in rows.items()}
             scene = changed(plan.scene, plan.targets, values)
+            if any(name in values for name in PLACED):
+                moved = Run(scene, how)
+                put(moved, plan.targets, values)
+                return finish(moved, None, None, False)
         else:
             scene = plan.scene(**plain(self.inputs, run))
-        how = plan.settings._replace(save_every=1)
         return simulate(scene, **how.as_dict(), options=how.options, throw=False)
 
     def save(self, path: str | os.PathLike) -> None:

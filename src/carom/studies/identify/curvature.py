@@ -45,7 +45,8 @@ class Residuals:
         self.evaluate, self.best = evaluate, evaluate.points[evaluate.best]
         here, p = self._poses(self.best), self.best.size
         # noise of positions and of rotations; p numbers of all were fitted
-        freedom = np.sqrt(max(here[0].size - 0.5 * p, 1.0))
+        own = p / np.count_nonzero([len(r) for r in here])
+        freedom = np.sqrt(max(here[0].size - own, 1.0))
         moved = [np.max(np.ptp(r.position, axis=0)) for r in evaluate.recordings]
         least = EXACT * max(*moved, np.finfo(float).tiny), EXACT
         self.noise = [max(np.linalg.norm(r) / freedom, low) for r, low in zip(here, least)]

@@ -20,14 +20,20 @@ class TrajectoryError(NamedTuple):
     """Errors of a simulated motion: means over all samples and bodies."""
 
     position: float  #: distance of the mass centres, relative to `length`
-    rotation: float  #: angle from one attitude to the other [rad], 0 to pi
+    rotation: (
+        float  #: angle from one attitude to the other [rad], 0 to pi; NaN if none was recorded
+    )
 
 
 def offsets(simulated, recorded) -> tuple[np.ndarray, np.ndarray]:
     """Return displacements [m] and rotation vectors [rad] (n, N, 3) from recorded to simulated poses.
 
-    The arguments have a `position` (n, N, 3) and an `orientation` (n, N, 4).
+    The arguments have a `position` (n, N, 3) and an `orientation` (n, N, 4). Of a recording of positions alone
+    there are no rotation vectors, (n, 0, 3).
     """
+    if recorded.orientation is None:
+        away = simulated.position - recorded.position
+        return away, away[:, :0]
     turn = quaternion.between(recorded.orientation, simulated.orientation)
     return simulated.position - recorded.position, turn
 
@@ -64,10 +70,11 @@ def trajectory_error(simulated, recorded, length: float = 1.0) -> TrajectoryErro
             f"{np.shape(recorded.position)}"
         )
     distance, angle = distances(simulated, recorded)
-    return TrajectoryError(float(np.mean(distance)) / length, float(np.mean(angle)))
+    turned = float(np.mean(angle)) if angle.size else float("nan")
+    return TrajectoryError(float(np.mean(distance)) / length, turned)
 
 
-def mean_error(length: float, angle: float) -> Callable:
+def mean_error(length: float, angle: float | None = None) -> Callable:
     """Return an objective for `identify`: half the sum of mean distance / `length` and mean angle / `angle`.
 
     Distances are not squared, so that a few recordings with large errors do not dominate the fit.
@@ -75,19 +82,22 @@ def mean_error(length: float, angle: float) -> Callable:
     Parameters
     ----------
     length, angle : float
-        Errors of position [m] and rotation [rad] with equal weight, above 0.
+        Errors of position [m] and rotation [rad] with equal weight, above 0. Without orientations the objective
+        is mean distance / `length`, and needs no `angle`.
     """
     length = checks.number("length", length, above=0.0, unit="m")
-    angle = checks.number("angle", angle, above=0.0, unit="rad")
+    angle = _angle(angle)
 
     def objective(simulated, recorded) -> float:
         error = trajectory_error(simulated, recorded, length)
-        return 0.5 * (error.position + error.rotation / angle)
+        if recorded.orientation is None:
+            return error.position
+        return 0.5 * (error.position + error.rotation / _needed(angle))
 
     return objective
 
 
-def squared_error(length: float, angle: float) -> Callable:
+def squared_error(length: float, angle: float | None = None) -> Callable:
     """Return an objective for `identify`: least squares, with the value 1 if errors are as large as the noise.
 
     It is best if the simulated motion is a smooth function of the parameters over the whole recording.
@@ -95,16 +105,30 @@ def squared_error(length: float, angle: float) -> Callable:
     Parameters
     ----------
     length, angle : float
-        Standard deviation of one component of a recorded position [m] and rotation [rad], above 0.
+        Standard deviation of one component of a recorded position [m] and rotation [rad], above 0. Recordings
+        without orientations need no `angle`.
     """
     length = checks.number("length", length, above=0.0, unit="m")
-    angle = checks.number("angle", angle, above=0.0, unit="rad")
+    angle = _angle(angle)
 
     def objective(simulated, recorded) -> float:
         distance, turn = distances(simulated, recorded)
-        return float(np.mean((distance / length) ** 2) + np.mean((turn / angle) ** 2)) / 6.0
+        moved = float(np.mean((distance / length) ** 2))
+        if recorded.orientation is None:
+            return moved / 3.0
+        return (moved + float(np.mean((turn / _needed(angle)) ** 2))) / 6.0
 
     return objective
+
+
+def _angle(angle: float | None) -> float | None:
+    return None if angle is None else checks.number("angle", angle, above=0.0, unit="rad")
+
+
+def _needed(angle: float | None) -> float:
+    if angle is None:
+        raise ValueError("angle must be given for a Recording with orientations, got None")
+    return angle
 
 
 def face_up(orientation: Orientation, up: ArrayLike = (0.0, 0.0, 1.0)) -> np.ndarray:

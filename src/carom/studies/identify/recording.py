@@ -34,9 +34,10 @@ class Recording:
         Times, increasing [s]; the simulation starts at the first.
     position : (n, 3) or (n, N, 3)
         Positions of the mass centres, world [m].
-    orientation : (n, 4) or (n, N, 4)
-        Quaternions (w, x, y, z), body to world. They are normalised; a length that differs from 1 by more than
-        1e-3 is refused. A SciPy Rotation, or matrices (n, 3, 3) or (n, N, 3, 3), are also allowed.
+    orientation : (n, 4) or (n, N, 4), optional
+        Quaternions (w, x, y, z), body to world; None (default) if only positions were recorded. They are
+        normalised; a length that differs from 1 by more than 1e-3 is refused. A SciPy Rotation, or matrices
+        (n, 3, 3) or (n, N, 3, 3), are also allowed.
     start : State, optional
         Initial state of the simulation at ``t[0]``: recorded, or from `fit_free_flight`. Default: the initial
         state of the scene.
@@ -51,22 +52,21 @@ class Recording:
 
     t: np.ndarray
     position: np.ndarray
-    orientation: np.ndarray
+    orientation: np.ndarray | None = None
     start: State | None = None
     name: str = ""
 
     def __post_init__(self):
         t = times(self.t)
         x = poses("position", self.position, t.size, 3)
-        q = unit(
-            "orientation",
-            poses("orientation", quaternions("orientation", self.orientation), t.size, 4),
-        )
-        if x.shape[1] != q.shape[1]:
-            raise ValueError(
-                f"orientation must have as many bodies as position, got {q.shape[1]} and {x.shape[1]}"
-            )
-        keep(self, t=t, position=x, orientation=q)
+        keep(self, t=t, position=x)
+        if self.orientation is not None:
+            q = poses("orientation", quaternions("orientation", self.orientation), t.size, 4)
+            if x.shape[1] != q.shape[1]:
+                raise ValueError(
+                    f"orientation must have as many bodies as position, got {q.shape[1]} and {x.shape[1]}"
+                )
+            keep(self, orientation=unit("orientation", q))
         if not isinstance(self.name, str):
             raise ValueError(f"name must be a string, got {checks.shown(self.name)}")
         if self.start is not None:

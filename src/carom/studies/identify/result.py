@@ -120,9 +120,17 @@ class Identification:
 
     @property
     def final_turn(self) -> np.ndarray:
-        """Largest angle (K,) between the last simulated and recorded attitudes of a recording [rad]."""
+        """Largest angle (K,) between the last simulated and recorded attitudes of a recording [rad].
+
+        NaN of recordings without orientations.
+        """
         pairs = zip(self.runs, self.recordings)
-        turns = [quaternion.between(b.orientation[-1], a.orientation[-1]) for a, b in pairs]
+        turns = [
+            np.full((1, 3), np.nan)
+            if b.orientation is None
+            else quaternion.between(b.orientation[-1], a.orientation[-1])
+            for a, b in pairs
+        ]
         return np.array([np.max(np.linalg.norm(turn, axis=-1)) for turn in turns])
 
     def __str__(self) -> str:

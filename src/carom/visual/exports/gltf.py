@@ -32,19 +32,20 @@ def write_glb(show: Show, path: Path, speed: float) -> None:
     root = file.node(show.title, turn=to_y(show.place.up))
     looks: dict[int, list[tuple]] = {}
     scene = show.solution.scene
-    still = iter([*scene.statics, *ground_rails(scene)])  # their parts are in the same order
+    still = [one.name for one in (*scene.statics, *ground_rails(scene))]  # parts are in this order
+    names = iter([*still, *["look"] * len(scene.look)])
     for part in show.parts:
         pieces = file.pieces(part)
         for b, colour in zip(part.bodies, colours_of(part, scene)):
             drawn = tuple((*piece, file.material(rgb(colour), pale)) for piece, pale in pieces)
             if b < 0:
-                name = getattr(next(still, None), "name", "arrow")
+                name = next(names, "arrow")
                 file.node(name, root, file.mesh(name, drawn))
             else:
                 looks.setdefault(b, []).extend(drawn)
     for body in scene.bodies:
         b = body.index
-        mesh = file.mesh(body.name, tuple(looks[b]))
+        mesh = file.mesh(body.name, tuple(looks[b])) if b in looks else None
         node = file.node(body.name, root, mesh, x[0, b], Q[0, b])
         file.move(node, x[:, b], Q[:, b])
     for plane in show.planes:

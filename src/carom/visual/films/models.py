@@ -39,7 +39,8 @@ def models(scene, length: float, centre: np.ndarray = ORIGIN) -> tuple[Model, np
     `length` is the size of the scene [m], and `centre` (3,) is what the camera looks at.
     """
     fineness = 48 if len(scene.bodies) <= 20 else 24 if len(scene.bodies) <= 150 else 16
-    made, owner = [], []
+    none = np.zeros((0, 3, 3))
+    made, owner = [Model(none, none, none[:, 0], np.zeros((0, 3), dtype=np.int8))], []
     for part in parts_of(scene, length, fineness, centre):
         model = split(model_of(part), length)
         pale = model.colours
@@ -47,7 +48,7 @@ def models(scene, length: float, centre: np.ndarray = ORIGIN) -> tuple[Model, np
             colour = rgb(name)
             made.append(model._replace(colours=colour + pale * (1.0 - colour)))
             owner += [b] * len(pale)
-    return joined(made), np.array(owner)
+    return joined(made), np.array(owner, dtype=int)
 
 
 def split(model: Model, longest: float) -> Model:

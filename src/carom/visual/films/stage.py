@@ -34,6 +34,7 @@ FINER = 2  # pixels of the buffer per pixel of the picture, in each direction
 LINE = 0.0022  # width of an edge, as a fraction of the height of the picture
 RECENT = 0.01  # fraction of the run for which a single picture shows an impulse
 AROUND = 8.0  # distance within which bodies at rest are seen with what is there, in their extents
+FAR = 60.0  # the same of floors and walls, whose nearest points are seen
 SAMPLES = 400  # times at which the positions of bodies are used to place the camera
 
 
@@ -87,14 +88,21 @@ class Stage:
         return camera._replace(distance=camera.distance / self.zoom)
 
     def _around(self, places: np.ndarray) -> list[np.ndarray]:
-        """Return points of what bodies at rest at `places` (N, 3) stand near: static bodies, half-spaces."""
+        """Return points of what bodies at rest at `places` (N, 3) stand near: static bodies, half-spaces.
+
+        They are the points of floors and walls that are nearest to bodies, as far as bodies stay large enough
+        to be seen, and the corners of static bodies that are nearer.
+        """
         scene, middle = self.solution.scene, places.mean(axis=0)
-        reach = AROUND * float(np.max(np.linalg.norm(places - middle, axis=1) + self.radii))
-        fixed = [static_part(s, 32, middle, reach).vertices for s in scene.statics]
-        fixed += [
+        size = float(np.max(np.linalg.norm(places - middle, axis=1) + self.radii))
+        fixed = [static_part(s, 32, middle, AROUND * size).vertices for s in scene.statics]
+        beside = [np.clip(places, p.min(axis=0), p.max(axis=0)) for p in fixed if len(p)]
+        beside += [
             places + np.outer((h.point - places) @ h.normal, h.normal) for h in scene.half_spaces
         ]
-        return [points[np.linalg.norm(points - middle, axis=1) < reach] for points in fixed]
+        near = [(points, AROUND) for points in fixed] + [(points, FAR) for points in beside]
+        away = [np.linalg.norm(points - middle, axis=1) for points, _ in near]
+        return [points[one < size * most] for (points, most), one in zip(near, away)]
 
     def _place_models(self) -> None:
         scene = self.solution.scene

@@ -121,8 +121,14 @@ def drawing(
 
 
 def pyplot() -> Any:
-    """Return matplotlib.pyplot, or raise an error with the command that installs it."""
-    return checks.need("matplotlib.pyplot", "a plot", "plot")
+    """Return matplotlib.pyplot with its backend loaded, or raise an error with the command that installs it.
+
+    A backend makes settings of its own when it is loaded: that of notebooks makes matplotlib interactive. They
+    must last, so it is loaded before the settings of a style, which end with the plot.
+    """
+    plt = checks.need("matplotlib.pyplot", "a plot", "plot")
+    plt.draw_if_interactive()
+    return plt
 
 
 def is_bodies(solution) -> bool:

@@ -55,7 +55,7 @@ class Painter {
     for (const { mesh, bodies, look, colour: own } of this.parts)
       for (const b of bodies) {
         const { x, Q } = b < 0 ? STILL : poses[b];
-        const colour = rgba(look === "static" ? own ?? "#c3ccd4" : this.colourOf(b, look));
+        const colour = rgba(own ?? (look === "static" ? "#c3ccd4" : this.colourOf(b, look)));
         out.push({ mesh, colour, model: frame(...axesOf(Q), x), pattern: look === "round" });
       }
     const thick = 0.02 * this.run.place.radius;
