@@ -83,7 +83,7 @@ class Work(NamedTuple):
     sample: np.ndarray  # results there
     slope: np.ndarray  # (n, m) derivatives of m results
     search: np.recarray  # (1,) SEARCH, of an event
-    spent: np.ndarray  # (2,) work of loads and of friction in the last step
+    spent: np.ndarray  # (3,) work of loads and of friction in the last step, kinetic energy at its start
 
 
 #: a contact: its mode; while it persists, first row of R, direction of slip, force with the normal first,
@@ -118,6 +118,7 @@ CLOCK = [
     ("now", "f8"), ("step", "i8"), ("saved", "i8"), ("kind", "i8"), ("index", "i8"), ("trials", "i8"),
     ("kinetic", "f8"), ("potential", "f8"), ("loads", "f8"), ("impacts", "f8"), ("friction", "f8"),
     ("bounces", "f8"),
+    ("exchanged", "f8"),  # greatest kinetic energy, and greatest work, so far
     ("given", "f8"),  # energy that impacts have added where their law allows it (V8)
     # the next step by tolerances, the length that fitted them last, number of steps with too large an error
     ("ahead", "f8"), ("fits", "f8"), ("rejected", "i8"),
@@ -150,7 +151,7 @@ def new_work(system: Coordinates, stages: int) -> Work:
         "L": (n, n), "a": n, "R": (m, n), "D": (m, n), "Z": (m, n), "K": (m, m), "inverse": m, "rhs": m,
         "stages": (stages, 2 * n), "trial": 2 * n, "end": 2 * n, "row_scale": holonomic,
         "gap_scale": contacts, "margin": (NO_EVENT, contacts), "nothing": (NO_EVENT, contacts),
-        "before": (2, contacts), "point": n, "axis": n, "sample": most, "slope": n * most, "spent": 2,
+        "before": (2, contacts), "point": n, "axis": n, "sample": most, "slope": n * most, "spent": 3,
     }  # fmt: skip
     own = {name: np.zeros(shape) for name, shape in shapes.items()}
     return Work(**results, **own, search=table(SEARCH, 1))

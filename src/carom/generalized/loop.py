@@ -20,11 +20,12 @@ from carom.dynamics.thresholds import LEAST_STEP
 from carom.generalized import layout as o
 from carom.generalized.events import locate
 from carom.generalized.linear import copy_row, dot
-from carom.generalized.motion import evaluate, find_metric
+from carom.generalized.motion import evaluate, find_metric, kinetic_energy
 from carom.generalized.step import take
 from carom.model import actions as a
 from carom.model.records import PAUSE
 from carom.status import STEP_TOO_SMALL, SUCCESS
+from carom.stepping.energy_balance import note_exchanged
 from carom.stepping.grid import end_of, is_saved
 
 # Tangents of the greatest angle by which slip turns in a given step (15 degrees: of steps of .02 to .2 s of
@@ -59,6 +60,7 @@ def time_loop(motion, x, plan, until, record):
             copy_row(work.end, x, x.size)
             c.loads += work.spent[0]
             c.friction += work.spent[1]
+            note_exchanged(c, work.spent[2])
             if kind != a.NO_EVENT:
                 c.now += s
                 c.kind, c.index = kind, index
@@ -146,12 +148,11 @@ def step_error(motion, h, plan):
 @kernel
 def save(system, x, record, work):
     """Write the state and its energies into the next row."""
-    clock, n, total = record.clock[0], system.n, 0.0
+    clock = record.clock[0]
     find_metric(system, clock.now, x, work)
     evaluate(system, o.CALL_LOADS, clock.now, x, work.loads, work)
-    for i in range(n):
-        total += x[n + i] * dot(work.M[i], x[n:], n)
-    clock.kinetic, clock.potential = 0.5 * total, work.loads[0]
+    clock.kinetic, clock.potential = kinetic_energy(system, x, work), work.loads[0]
+    note_exchanged(clock, clock.kinetic)
     record.series[clock.saved] = clock
     copy_row(x, record.states[clock.saved], x.size)
     clock.saved += 1

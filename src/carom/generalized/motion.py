@@ -50,6 +50,15 @@ def find_metric(system, t, x, work):
 
 
 @kernel
+def kinetic_energy(system, x, work):
+    """Return v M v / 2 of a state whose metric is in the workspace."""
+    n, total = system.n, 0.0
+    for i in range(n):
+        total += x[n + i] * dot(work.M[i], x[n:], n)
+    return 0.5 * total
+
+
+@kernel
 def persists(active):
     """Return whether any contact persists."""
     for c in range(active.shape[0]):

@@ -14,6 +14,7 @@ from carom.generalized.motion import (
     find_metric,
     find_rows,
     gather,
+    kinetic_energy,
     persists,
     react,
     slip_of,
@@ -38,6 +39,8 @@ def take(motion, t, x, h):
         p, f, code = acceleration(system, active, t + ahead, work.trial, work, work.stages[s])
         if code != 0:
             return code
+        if s == 0:
+            work.spent[2] = kinetic_energy(system, x, work)
         loads += h * method.b[s] * p
         friction += h * method.b[s] * f
     combine(method.b, stages, h, x, work.stages, end)

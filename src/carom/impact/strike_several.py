@@ -40,9 +40,11 @@ def resolve_group(k, pieces, group, multiple) -> int:
             slip=slip,
         )
     )  # fmt: skip
-    given = multiple.settings
+    given, exponent = multiple.settings, exponent_of(k, multiple)
+    if exponent == HERTZ and all_round(k, multiple):
+        stiffen_by_radius(k, multiple)
     settings = MultipleSettings(
-        given.multiple, given.rtol, exponent_of(k, multiple), given.max_events, given.max_steps,
+        given.multiple, given.rtol, exponent, given.max_events, given.max_steps,
         given.max_rounds,
     )  # fmt: skip
     return resolve_multiple(contacts, settings, multiple.workspace, multiple.result)
@@ -53,10 +55,30 @@ def exponent_of(k, multiple):
     """Return the exponent p of the normal forces: as set, or Hertz's if all k points are on round bodies."""
     if multiple.settings.exponent > 0.0:
         return multiple.settings.exponent
+    return HERTZ if all_round(k, multiple) else LINEAR
+
+
+@kernel
+def all_round(k, multiple):
+    """Return whether all k points are on balls or ellipsoids."""
     for i in range(k):
-        if multiple.ball_like[i] == 0:
-            return LINEAR
-    return HERTZ
+        if not multiple.hertz[i] > 0.0:
+            return False
+    return True
+
+
+@kernel
+def stiffen_by_radius(k, multiple):
+    """Multiply the stiffness of k points of round bodies by sqrt R, as Hertz's law has it.
+
+    N = (4/3) E* sqrt(R) d^(3/2) with 1/R = 1/R1 + 1/R2 (Johnson, Contact Mechanics, 1985, §4.2). Only ratios
+    count: relative to the greatest R the factor of equal radii is exactly 1.
+    """
+    most = 0.0
+    for i in range(k):
+        most = max(most, multiple.hertz[i])
+    for i in range(k):
+        multiple.kappa[i] *= math.sqrt(multiple.hertz[i] / most)
 
 
 @kernel
@@ -104,7 +126,7 @@ def strike_several(model, data, c, k):
         first, last, multiple.friction_exponent[i] = law_of(contact, held)
         multiple.friction_piece[0, i], multiple.friction_piece[1, i] = first, last
         multiple.law[i], multiple.kappa[i] = contact.law, contact.stiffness
-        multiple.ball_like[i] = contact.ball_like
+        multiple.hertz[i] = contact.hertz
         multiple.tangential[i] = contact.tangential_restitution
         all_by_pairs = multiple.settings.multiple == SEQUENTIAL
         multiple.pair[i] = pair_of(i, system.contacts, group.closed, all_by_pairs)

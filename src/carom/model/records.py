@@ -43,6 +43,8 @@ CLOCK = [
     ("rounds", "i8"),  # iterations in these steps
     ("whole", "i8"),  # steps in which touching bodies moved as a crowd
     ("residual", "f8"),  # greatest of persistent contacts since the last saved row
+    # greatest energy exchanged so far, besides changes of potential energy, which the step adds at its end
+    ("exchanged", "f8"),
     ("still", "f8"),  # end of the step after which nothing has moved; infinite while bodies move
 ]
 
