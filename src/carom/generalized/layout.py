@@ -64,6 +64,7 @@ class Work(NamedTuple):
     G_rate: np.ndarray  # (C, 3)
     L: np.ndarray  # (n, n) M = L D L^T, D on the diagonal
     a: np.ndarray  # (n,)
+    sum: np.ndarray  # (n,) greatest sum of the terms of each acceleration, in the stages of the last step
     R: np.ndarray  # (m, n) rows that must keep their rate
     D: np.ndarray  # (m, n) directions of their reactions: R itself, except for a slipping contact
     Z: np.ndarray  # (m, n) M^-1 D
@@ -148,7 +149,7 @@ def new_work(system: Coordinates, stages: int) -> Work:
         "G_rate": touch[g:].reshape(contacts, 3),
     }  # fmt: skip
     shapes = {
-        "L": (n, n), "a": n, "R": (m, n), "D": (m, n), "Z": (m, n), "K": (m, m), "inverse": m, "rhs": m,
+        "L": (n, n), "a": n, "sum": n, "R": (m, n), "D": (m, n), "Z": (m, n), "K": (m, m), "inverse": m, "rhs": m,
         "stages": (stages, 2 * n), "trial": 2 * n, "end": 2 * n, "row_scale": holonomic,
         "gap_scale": contacts, "margin": (NO_EVENT, contacts), "nothing": (NO_EVENT, contacts),
         "before": (2, contacts), "point": n, "axis": n, "sample": most, "slope": n * most, "spent": 3,

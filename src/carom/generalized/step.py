@@ -34,6 +34,8 @@ def take(motion, t, x, h):
     n, stages = system.n, method.b.size
     note_slip_directions(system, active, t, x, work)
     loads, friction = 0.0, 0.0
+    for j in range(n):
+        work.sum[j] = 0.0
     for s in range(stages):
         ahead = combine(method.A[s], s, h, x, work.stages, work.trial)
         p, f, code = acceleration(system, active, t + ahead, work.trial, work, work.stages[s])

@@ -142,7 +142,7 @@ class Ensemble(Shown):
             )
         if isinstance(plan.scene, Scene):
             one = {name: array[run : run + 1] for name, array in self.inputs.items()}
-            values = {name: rows[0] for name, rows in whole(plan.scene, one).items()}
+            values = {name: rows[0, ...] for name, rows in whole(plan.scene, one).items()}
             scene = changed(plan.scene, plan.targets, values)
         else:
             scene = plan.scene(**plain(self.inputs, run))
