@@ -45,11 +45,11 @@ def plot(
     matplotlib.use("agg")
     import carom
     from carom.io.files.disk import put
-    from carom.visual.plots.style import picture
+    from carom.visual.plots.style import as_bytes
 
     drawn = carom.Solution.load(file).plot(kind or KINDS[0])
     out = out if out.suffix else out.with_suffix(".png")
-    put(out, [picture(_figure(drawn), out.suffix, dpi=dpi)])
+    put(out, [as_bytes(_figure(drawn), out.suffix, dpi=dpi)])
     print(out)
     return 0
 

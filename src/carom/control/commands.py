@@ -54,12 +54,16 @@ class Controls:
                 )
             wanted[k] = checks.number(f"ctrl[{which!r}]", value)
         else:
-            place, given = self._place(which), checks.real_array("ctrl", value, f"of {len(wanted)} controls")
+            place, given = (
+                self._place(which),
+                checks.real_array("ctrl", value, f"of {len(wanted)} controls"),
+            )
             try:
                 wanted[place] = given
             except ValueError:
                 raise ValueError(
-                    f"ctrl[{checks.shown(which)}] must be {wanted[place].size} controls, got {checks.shown(value)}"
+                    f"ctrl[{checks.shown(which)}] must be {wanted[place].size} controls, got "
+                    f"{checks.shown(value)}"
                 ) from None
             checks.finite_array("ctrl", wanted, (len(wanted),))
         for k in np.flatnonzero(wanted != self._applied.ctrl):

@@ -6,9 +6,9 @@ stages, the error of coordinate i is
 
     miss_i = max(|e_q|, T |e_v|),     T = 1 / max(|v_i|, sqrt |a_i|),
 
-and a step is accepted if miss_i <= LOCAL (atol + rtol max(1, h |v_i|)) for all of them. An acceleration is known
-to the round-off of its terms, which is no error: a coordinate that a contact holds has no other, and T grows
-like the root of its inverse.
+and a step is accepted if miss_i <= LOCAL (atol + rtol max(1, h |v_i|)) for all of them. An acceleration is
+known to the round-off of its terms, which is no error: a coordinate that a contact holds has no other, and T
+grows like the root of its inverse.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, kernel
-from carom.dynamics.adapt import allowed_error, of_two, part_of, shrunk
+from carom.dynamics.adapt import allowed_error, crawls, of_two, part_of, shrunk
 from carom.dynamics.adapt import plan as plan_ahead
 from carom.dynamics.thresholds import LEAST_STEP
 from carom.generalized import layout as o
@@ -93,6 +93,8 @@ def take_accurately(motion, x, left, plan, c):
                 return part, code
             part *= 0.5
             continue
+        if crawls(c, plan.duration - c.now, part, plan.step):
+            return part, STEP_TOO_SMALL
         error = math.inf if code != 0 else step_error(motion, part, plan)
         if error <= 1.0:
             plan_ahead(c, part, error, again, plan.order, plan.step)

@@ -126,7 +126,9 @@ def _checked_inverse_masses(given) -> np.ndarray:
     W = 0.5 * (W + W.swapaxes(-2, -1))
     _all("inverse_mass[..., 0, 0] (normal)", W[..., 0, 0], "above 0", W[..., 0, 0] > 0)
     values = np.linalg.eigvalsh(W)
-    _all("inverse_mass", W, "positive semidefinite", values[..., 0] >= -FILE_DIGITS * values[..., -1])
+    _all(
+        "inverse_mass", W, "positive semidefinite", values[..., 0] >= -FILE_DIGITS * values[..., -1]
+    )
     return W
 
 

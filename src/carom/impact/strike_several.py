@@ -12,6 +12,7 @@ from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.driven import blocked
 from carom.impact.effective_restitution import count_blow, effective_restitution
 from carom.impact.friction_law import PERSISTENT, STRIKES, friction_at, law_of
+from carom.impact.hertz import stiffness
 from carom.impact.layout import OK
 from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSettings, SlipLaws
 from carom.impact.multiple.resolve import resolve_multiple
@@ -42,7 +43,7 @@ def resolve_group(k, pieces, group, multiple) -> int:
     )  # fmt: skip
     given, exponent = multiple.settings, exponent_of(k, multiple)
     if exponent == HERTZ and all_round(k, multiple):
-        stiffen_by_radius(k, multiple)
+        stiffen(k, multiple)
     settings = MultipleSettings(
         given.multiple, given.rtol, exponent, given.max_events, given.max_steps,
         given.max_rounds,
@@ -68,17 +69,16 @@ def all_round(k, multiple):
 
 
 @kernel
-def stiffen_by_radius(k, multiple):
-    """Multiply the stiffness of k points of round bodies by sqrt R, as Hertz's law has it.
+def stiffen(k, multiple):
+    """Multiply the stated stiffness of k points of round bodies by that of Hertz's law.
 
-    N = (4/3) E* sqrt(R) d^(3/2) with 1/R = 1/R1 + 1/R2 (Johnson, Contact Mechanics, 1985, §4.2). Only ratios
-    count: relative to the greatest R the factor of equal radii is exactly 1.
+    Only ratios count: relative to the greatest, the factor of equal points is exactly 1.
     """
     most = 0.0
     for i in range(k):
         most = max(most, multiple.hertz[i])
     for i in range(k):
-        multiple.kappa[i] *= math.sqrt(multiple.hertz[i] / most)
+        multiple.kappa[i] *= multiple.hertz[i] / most
 
 
 @kernel
@@ -126,7 +126,9 @@ def strike_several(model, data, c, k):
         first, last, multiple.friction_exponent[i] = law_of(contact, held)
         multiple.friction_piece[0, i], multiple.friction_piece[1, i] = first, last
         multiple.law[i], multiple.kappa[i] = contact.law, contact.stiffness
-        multiple.hertz[i] = contact.hertz
+        multiple.hertz[i] = 0.0
+        if contact.ball_like == 1:
+            multiple.hertz[i] = stiffness(system, contact, group.points[0][i], state)
         multiple.tangential[i] = contact.tangential_restitution
         all_by_pairs = multiple.settings.multiple == SEQUENTIAL
         multiple.pair[i] = pair_of(i, system.contacts, group.closed, all_by_pairs)

@@ -97,7 +97,7 @@ class MultipleImpact(NamedTuple):
     law: np.ndarray  # (K,)
     kappa: np.ndarray  # (K,)
     pair: np.ndarray  # (K,) of `CornerContacts`
-    hertz: np.ndarray  # (K,) effective radius of balls and ellipsoids, else 0
+    hertz: np.ndarray  # (K,) of a ball or an ellipsoid its stiffness by Hertz's law, else 0
     tangential: np.ndarray  # (K,) e_t
     friction_piece: np.ndarray  # (2, K) range of the pieces of a law, empty for a number
     friction_exponent: np.ndarray  # (K,)

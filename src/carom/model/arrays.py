@@ -265,8 +265,7 @@ CONTACT = [
     ("last_level", "i8"),
     ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
     ("multiple", "i8"),  # 1: its pair has impacts of its own, one after another
-    # effective radius of Hertz's law, 1/(1/R1 + 1/R2), if one of the two is a ball or an ellipsoid, else 0
-    ("hertz", "f8"),
+    ("ball_like", "i8"),  # 1 if one of the two is a ball or an ellipsoid
     # of a half-space: rows n, t1, t2; of curved ground: rows that are turned to those of a point
     ("axes", "f8", (3, 3)),
     ("offset", "f8"),  # n . point of the plane; for a stop, side times its position

@@ -217,21 +217,10 @@ def _write_shapes(rows: np.recarray, which: Rows) -> None:
     """Write form and size of both sides, and which kernels find their contact points."""
     core, other = which.core, which.other
     rows["touches"] = np.where(rows["other"] >= 0, 1, core["curved"])
-    rows["hertz"] = _effective_radius(core["ball"], other["ball"])
+    rows["ball_like"] = np.maximum(core["ball_like"], other["ball_like"])
     rows["part"] = np.maximum(core["several"], other["several"])
     rows["extent"], rows["other_extent"] = core["extent"], other["extent"]
     rows["radius"], rows["core"] = core["radius"] + other["radius"], core["reach"]
-
-
-def _effective_radius(one: np.ndarray, two: np.ndarray) -> np.ndarray:
-    """Return 1/(1/R1 + 1/R2); a side without a radius (0) is flat, and 0 if neither is a ball.
-
-    A hollow has a radius below 0. A ball that fills it has no point contact: it counts as on a plane.
-    """
-    bends = [np.divide(1.0, R, out=np.zeros(len(R)), where=R != 0.0) for R in (one, two)]
-    total, convex = bends[0] + bends[1], np.maximum(bends[0], bends[1])
-    total = np.where(total > 0.0, total, convex)
-    return np.divide(1.0, total, out=np.zeros(len(one)), where=convex > 0.0)
 
 
 def _write_ranges(rows: np.recarray, which: Rows, shared: int) -> None:

@@ -14,13 +14,14 @@ from carom.geometry import quaternion
 from carom.scene.pieces import Piece
 from carom.scene.shapes import Shape
 
+ROUND_KINDS = ("point", "ellipsoid")
 
 #: pieces of a body that touch as one hull of vertices, or one curved piece
 CORE = [
     ("piece", "i8"),  # the first of them
     ("several", "i8"),  # 1 if the body has other pieces
     ("curved", "i8"),  # 1 if it has no vertices
-    ("ball", "f8"),  # radius of a ball or of a spherical hollow, as `Piece.ball` has it
+    ("ball_like", "i8"),  # 1 for a ball or an ellipsoid: point contact, as Hertz's law assumes
     ("radius", "f8"),  # of the ball that enlarges them
     ("extent", "f8"),  # of the whole shape
     ("reach", "f8"),  # largest distance of a core point from the mass centre
@@ -93,7 +94,7 @@ def _cores_of(shape: Shape, split, to_principal: tuple[float, ...]) -> CoresOfSh
         points.append(quaternion.rotate_back(np.array(to_principal), corners))
         rows["piece"][k], rows["radius"][k] = mine[0], pieces[mine[0]].radius
         rows["curved"][k], rows["last"][k] = pieces[mine[0]].corners is None, len(corners)
-        rows["ball"][k] = pieces[mine[0]].ball
+        rows["ball_like"][k] = pieces[mine[0]].kind in ROUND_KINDS
         if len(corners):
             rows["reach"][k] = np.max(np.linalg.norm(points[k], axis=1))
     return CoresOfShape(rows, np.concatenate(points))

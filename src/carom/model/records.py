@@ -37,6 +37,7 @@ CLOCK = [
     ("cuts", "i8"),
     ("trials", "i8"),
     ("rejected", "i8"),  # trial steps with too large an error
+    ("slow", "i8"),  # trial steps so short that the run would not end (`carom.dynamics.adapt`)
     ("located", "i8"),
     ("holds", "i8"),
     ("contact_steps", "i8"),  # steps, and trial steps, of groups in contact at several points

@@ -69,16 +69,6 @@ class Piece:
     def __post_init__(self):
         keep(self, half=np.array(self.half, dtype=float))
 
-    @property
-    def ball(self) -> float:
-        """Radius of a ball, or of the ball of the volume of an ellipsoid [m], for Hertz's law; others have 0.
-
-        That of a spherical hollow is below 0.
-        """
-        if self.kind == "ellipsoid":
-            return float(np.prod(self.half) ** (1.0 / 3.0)) + self.radius
-        return self.radius if self.kind == "point" else 0.0
-
     @cached_property
     def normals(self) -> np.ndarray:
         """Outward unit normals (f,3) of the faces of a hull, in axes of the piece."""

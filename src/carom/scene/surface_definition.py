@@ -18,11 +18,6 @@ class SurfacePiece(Piece):
 
     surface: Any = None
 
-    @property
-    def ball(self) -> float:
-        """Radius of a spherical hollow, below 0 [m]; others have 0."""
-        return self.surface.ball
-
 
 class SurfaceDefinition(ABC):
     """Base class of surfaces: what contacts, files and kernels ask of them."""
@@ -31,7 +26,6 @@ class SurfaceDefinition(ABC):
     has_materials: ClassVar[bool] = False
     #: greatest length of the gradient of phi; 1 where phi is the distance from the surface
     steepest: float = 1.0
-    ball: float = 0.0  #: less the radius of a spherical hollow [m], for Hertz's law
 
     @property
     @abstractmethod

@@ -41,11 +41,6 @@ class InsideSphere(SurfaceDefinition):
         return self.radius
 
     @property
-    def ball(self) -> float:
-        """Less its radius [m]: it is hollow."""
-        return -self.radius
-
-    @property
     def lengths(self) -> tuple[float, ...]:
         """Its radius."""
         return (self.radius,)

@@ -116,9 +116,9 @@ def note_energies(system, now, clock):
 def note_exchanged(clock, kinetic):
     """Note the energy exchanged: the kinetic energy of bodies, and the works since the start.
 
-    This is done at each trial step that is accepted, because what was exchanged may be back at the end of a step
-    of the run (a whole period of a pendulum). Potential energy turns into one of these, so it is not needed. The
-    clock is put back with a step that is repeated.
+    This is done at each trial step that is accepted, because what was exchanged may be back at the end of a
+    step of the run (a whole period of a pendulum). Potential energy turns into one of these, so it is not
+    needed. The clock is put back with a step that is repeated.
     """
     most = max(clock.exchanged, max(kinetic, abs(clock.loads)))
     most = max(most, max(abs(clock.impacts), abs(clock.friction)))

@@ -218,4 +218,8 @@ def csv_of(frame, index: bool = True) -> bytes:
 
 def _no_formula(cell):
     """Return a cell; a word that begins with = + - @ or a control character with an apostrophe before it."""
-    return f"'{cell}" if isinstance(cell, str) and cell[:1] in ("=", "+", "-", "@", "\t", "\r") else cell
+    return (
+        f"'{cell}"
+        if isinstance(cell, str) and cell[:1] in ("=", "+", "-", "@", "\t", "\r")
+        else cell
+    )

@@ -104,8 +104,8 @@ def go_on(solution, duration: float, progress, throw: bool):
     duration = checks.number("duration", duration, above=0.0, most=most, unit="s")
     if not before < before + duration <= most:
         raise ValueError(
-            f"duration must be between round-off of the time reached, {before:g} s, and {most - before:g} s, got "
-            f"{duration:g} s"
+            f"duration must be between round-off of the time reached, {before:g} s, and "
+            f"{most - before:g} s, got {duration:g} s"
         )
     checkpoint, kept = state_at_end(solution), solution._run
     refuse_steps(kept)

@@ -109,7 +109,7 @@ def write(figure, path) -> None:
     """Write a figure as PNG; the folder is made if there is none."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    put(path, [picture(figure, path.suffix, dpi=DPI)])
+    put(path, [as_bytes(figure, path.suffix, dpi=DPI)])
 
 
 def mosaic(width, height, layout, columns, rows=None) -> tuple[Any, Any]:
@@ -123,12 +123,12 @@ def mosaic(width, height, layout, columns, rows=None) -> tuple[Any, Any]:
 def save(figure, folder: Path, name: str) -> list[Path]:
     """Write a figure as PDF and PNG; the same input gives the same bytes."""
     files = [folder / f"{name}.pdf", folder / f"{name}.png"]
-    put(files[0], [picture(figure, ".pdf", metadata={"CreationDate": None})])
-    put(files[1], [picture(figure, ".png", dpi=DPI)])
+    put(files[0], [as_bytes(figure, ".pdf", metadata={"CreationDate": None})])
+    put(files[1], [as_bytes(figure, ".png", dpi=DPI)])
     return files
 
 
-def picture(figure, suffix: str, **options: Any) -> memoryview:
+def as_bytes(figure, suffix: str, **options: Any) -> memoryview:
     """Return a figure as the bytes of a file with this suffix."""
     out = io.BytesIO()
     figure.savefig(out, format=suffix.removeprefix(".") or "png", **options)

@@ -1,8 +1,8 @@
 """Who may talk to a live view: requests whose Host and Origin are those of this server.
 
-A page of another site can make the browser send requests to this machine, also by a name of its own that it lets
-point here (DNS rebinding). Such a request has that name as Host, or its own site as Origin. viser has no setting
-for this, so the function of the package websockets by which it serves is wrapped while it starts.
+A page of another site can make the browser send requests to this machine, also by a name of its own that it
+lets point here (DNS rebinding). Such a request has that name as Host, or its own site as Origin. viser has no
+setting for this, so the function of the package websockets by which it serves is wrapped while it starts.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ REFUSED = "This view can be opened by the address that it was started with only.
 def admits(host: str, headers) -> bool:
     """Return whether a request with these headers is one to the server at `host`.
 
-    Its Host must be an address in numbers, which no other name stands for, or a name of this machine. Its Origin,
-    which browsers send with all that pages ask for, must be the same server.
+    Its Host must be an address in numbers, which no other name stands for, or a name of this machine. Its
+    Origin, which browsers send with all that pages ask for, must be the same server.
     """
     hosts, origins = headers.get_all("Host"), headers.get_all("Origin")
     if len(hosts) != 1 or len(origins) > 1 or not _is_own(host, hosts[0]):
