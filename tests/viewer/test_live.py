@@ -48,7 +48,12 @@ def test_a_name_of_somebody_else_gets_nothing(live):
 
     own = netloc, f"127.0.0.1:{port}", f"[::1]:{port}"
     assert {host: page(host) for host in own} == dict.fromkeys(own, 200)
-    others = f"evil.example:{port}", f"127.0.0.1.evil.example:{port}", f"localhost.evil:{port}", "a b"
+    others = (
+        f"evil.example:{port}",
+        f"127.0.0.1.evil.example:{port}",
+        f"localhost.evil:{port}",
+        "a b",
+    )
     assert {host: page(host) for host in others} == dict.fromkeys(others, 403)
 
     def talk(origin):
@@ -60,7 +65,12 @@ def test_a_name_of_somebody_else_gets_nothing(live):
             return error.response.status_code
 
     assert talk(live.url) is talk(None) is True
-    refused = "http://evil.example", "null", f"https://evil.example:{port}", f"http://localhost:{port}1"
+    refused = (
+        "http://evil.example",
+        "null",
+        f"https://evil.example:{port}",
+        f"http://localhost:{port}1",
+    )
     assert {origin: talk(origin) for origin in refused} == dict.fromkeys(refused, 403)
 
 

@@ -136,7 +136,7 @@ def crawls(clock, left, dt, longest):
     """
     slow = left > limits.MOST_TRIALS * dt and 2.0 * dt < longest
     clock.slow = clock.slow + 1 if slow else max(0, clock.slow - 1)
-    return clock.slow > limits.PATIENCE
+    return clock.slow > limits.SLOW_TRIALS
 
 
 @kernel

@@ -10,7 +10,7 @@ RTOL = 1e-8  #: size and displacement of a body: default of a run; above it more
 ERROR_SHARE = 0.1
 #: trial steps: a run ends if the rest takes more at the present length, a minute or more of computing
 MOST_TRIALS = 3e7
-PATIENCE = 300_000  #: trial steps: so many may be too short by `MOST_TRIALS`: a stiff moment may pass
+SLOW_TRIALS = 300_000  #: trial steps: so many may be too short by `MOST_TRIALS`: a stiff moment may pass
 LEAST_STEP = 1e-14  #: duration: least length of a step
 #: time in which its load moves a body by its size: of a body in contact: it moves by the square
 LOAD_STEP = 0.2

@@ -24,8 +24,7 @@ from carom.contact.place_of_other import pose_of
 from carom.geometry.rotation import rotate_back
 from carom.geometry.thresholds import RESOLUTION
 from carom.geometry.vectors import dot
-
-ROUND = 1e-6  # of two curvatures: a smaller difference changes F by less than 1e-13
+from carom.impact.thresholds import EQUAL_CURVATURES
 
 
 @kernel
@@ -90,7 +89,7 @@ def _vector(a):
 @kernel
 def ellipse(ratio):
     """Return F^(-3/2) for a ratio of curvatures of at least 1; k is found by bisection."""
-    if ratio < 1.0 + ROUND:
+    if ratio < 1.0 + EQUAL_CURVATURES:
         return 1.0
     low, high, k, K, E = 0.0, 1.0, 0.5, 0.0, 0.0
     for _ in range(60):
