@@ -100,7 +100,12 @@ def test_no_cell_of_a_table_is_a_formula(thrown, tmp_path):
         tmp_path / "runs.csv"
     )
     carom.simulate(scene, 0.1, step=0.1).save(tmp_path / "run.csv")
-    cells = [cell for path in tmp_path.iterdir() for row in csv.reader(path.open()) for cell in row]
+    cells = [
+        cell
+        for path in tmp_path.iterdir()
+        for row in csv.reader(path.read_text().splitlines())
+        for cell in row
+    ]
     assert {cell for cell in cells if cell[:1] in tuple("=+-@")} <= {
         cell for cell in cells if is_number(cell)
     }
