@@ -67,6 +67,9 @@ CAPABILITIES = {
     "laws as functions, results of one kind by name, ensembles of robots, hints for arguments": {
         "scene": 3, "results": 3, "studies": 3, "hints": 1, "cli": 1,
     },
+    "stiffness by curvature, whole files with digests, requests of the live view": {
+        "impact": 1, "io": 1, "studies": 1, "visual": 1, "friction": 1,
+    },
     "curves, and joints on them": {"kinematics": 3, "scene": 5, "model": 1, "dynamics": 1, "results": 1},
 }  # fmt: skip
 
@@ -307,3 +310,44 @@ def test_thresholds_are_in_the_files_of_thresholds():
     }
     assert {module: names for module, names in found.items() if names} == OTHER_FLOATS
     assert "ROUND_OFF" in floats(modules()["geometry.thresholds"])
+
+
+#: who writes to the disk: whole files; parts of a folder with a protocol of its own; compiled code, which is
+#: written below all other rooms and read only if it is whole
+WRITERS = ("io.files.disk", "studies.ensembles.store", "_compiled.")
+BY_NAME = {
+    "write_text",
+    "write_bytes",
+    "savefig",
+    "to_csv",
+    "to_parquet",
+    "tofile",
+    "rename",
+    "save_binary",
+}
+IN_MEMORY = ("out", "file", "bytes")  # what is then put
+
+
+def writes(node: ast.AST) -> bool:
+    """Return whether a call may write to a file, other than to an object that holds bytes."""
+    if not isinstance(node, ast.Call):
+        return False
+    name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+    first = node.args[0] if node.args else None
+    if name in BY_NAME:
+        if name in ("to_csv", "rename") and first is None:  # it returns a text; columns of a table
+            return False
+        return getattr(first, "id", "") not in IN_MEMORY
+    modes = [one.value for one in ast.walk(node) if isinstance(one, ast.Constant)]
+    return name == "open" and any(mode in modes for mode in ("w", "wb", "a", "ab", "x", "xb"))
+
+
+def test_all_files_are_written_whole():
+    """By `io.files.disk`: a full disk leaves the old file."""
+    found = {
+        name: [node.lineno for node in ast.walk(ast.parse(path.read_text("utf-8"))) if writes(node)]
+        for name, path in modules().items()
+    }
+    assert not {
+        name: lines for name, lines in found.items() if lines and not name.startswith(WRITERS)
+    }

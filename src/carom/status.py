@@ -103,9 +103,9 @@ _MESSAGES: dict[Status, tuple[str, str]] = {
         "Use other coordinates. {finer}.",
     ),
     Status.STEP_TOO_SMALL: (
-        "The tolerances need a step that is too small: a force jumps or grows without bound, or rtol and atol "
-        "are below round-off.",
-        "Raise rtol and atol, or give a step.",
+        "The tolerances need steps that are too small: a force jumps or grows without bound, rtol and atol are "
+        "below round-off, or the motion is so fast that the rest of the run would take more than 3e7 steps.",
+        "Raise rtol and atol, give a step, or make the run shorter.",
     ),
     Status.INACCURATE: (
         "The run reached its end, but it is inaccurate.",

@@ -1,5 +1,6 @@
 """An ensemble as a table, and in files by their endings; tables, generators and executors that it takes."""
 
+import csv
 import multiprocessing
 from concurrent.futures.process import BrokenProcessPool
 
@@ -68,6 +69,55 @@ def test_saved_by_the_ending(thrown, ending, tmp_path):
             assert values.dtype == new[name].dtype, name
             assert np.array_equal(values, new[name], equal_nan=values.dtype.kind == "f"), name
     assert again.to_pandas()[thrown.to_pandas().columns].equals(thrown.to_pandas())
+
+
+@pytest.mark.parametrize("ending", [".nc", ".parquet"])
+def test_no_damaged_file_is_loaded_with_other_numbers(thrown, ending, tmp_path):
+    """Of a bit that has changed, anywhere: refused, or it was none of the numbers."""
+    pytest.importorskip(NEEDS[ending])
+    thrown.save(whole := tmp_path / f"runs{ending}")
+    data, rng = whole.read_bytes(), np.random.default_rng(5)
+    places = rng.integers(len(data), size=60).tolist()
+    numbers = data.find(thrown.position[1].tobytes())
+    for at in [*places, numbers + 7, len(data) - 20]:
+        made = bytearray(data)
+        made[at] ^= 1 << int(rng.integers(8))
+        (tmp_path / f"x{ending}").write_bytes(made)
+        try:
+            loaded = carom.Ensemble.load(tmp_path / f"x{ending}")
+        except ValueError:
+            pass
+        else:
+            assert ending == ".parquet"
+            assert same(loaded, thrown)
+
+
+def test_no_cell_of_a_table_is_a_formula(thrown, tmp_path):
+    """Spreadsheets take what begins with = + - @ for one: names and words have an apostrophe, numbers none."""
+    scene = carom.Scene()
+    scene.add_body(carom.Sphere(0.1), mass=1.0, velocity=(-1, 0, 0), name="=1+1")
+    carom.ensemble(scene, 0.1, vary={"=1+1.velocity.x": [-2.0, -1.0]}, step=0.1).save(
+        tmp_path / "runs.csv"
+    )
+    carom.simulate(scene, 0.1, step=0.1).save(tmp_path / "run.csv")
+    cells = [
+        cell
+        for path in tmp_path.iterdir()
+        for row in csv.reader(path.read_text().splitlines())
+        for cell in row
+    ]
+    assert {cell for cell in cells if cell[:1] in tuple("=+-@")} <= {
+        cell for cell in cells if is_number(cell)
+    }
+    assert {"'=1+1.vx", "-1.0", "-2.0"} <= set(cells)
+
+
+def is_number(cell):
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
 
 
 def test_files_are_what_their_names_say(thrown, tmp_path):

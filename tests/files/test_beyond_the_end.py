@@ -136,6 +136,13 @@ def test_a_solution_goes_on(make):
     assert short.t[-1] == 0.25
 
 
+def test_it_goes_on_for_a_time_that_has_steps():
+    run = carom.simulate(die(), 0.05, step=0.01)
+    for wait in (1e308, 1e20, 1e-300):
+        with pytest.raises(ValueError, match=r"^duration must be .*, got 1e[+-]?\d+"):
+            run.simulate(wait)
+
+
 def test_a_loaded_solution_goes_on(tmp_path):
     short = carom.simulate(die(mu=0.3), 0.25, step=5e-3)
     short.save(tmp_path / "run.nc")

@@ -7,6 +7,7 @@ says, but for the name of the error.
 import os
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -15,9 +16,14 @@ import carom
 from files.compare import differences
 
 resource = pytest.importorskip("resource")
+#: files for other programs, and what writes them
+PACKAGES = {
+    "html": "carom", "csv": "pandas", "glb": "pygltflib", "pvd": "meshio", "gif": "PIL",
+    "mp4": "imageio_ffmpeg",
+}  # fmt: skip
 TESTS = Path(__file__).parents[1]
 CHILD = """
-import resource, sys, warnings
+import resource, signal, sys, warnings
 import carom
 from files.compare import differences
 from simulate.scenes import die
@@ -25,7 +31,19 @@ from simulate.scenes import die
 path, full = sys.argv[1], int(sys.argv[2])
 hard = resource.getrlimit(resource.RLIMIT_FSIZE)[1]
 straight = carom.simulate(die(), 0.25, step=5e-3)
+write = {
+    "html": lambda p: carom.view(straight, export=p), "glb": straight.export, "pvd": straight.export,
+    "gif": lambda p: carom.film(straight, p, fps=10, size=(64, 48)), "csv": straight.save,
+    "mp4": lambda p: carom.film(straight, p, fps=10, size=(64, 48)),
+}
 resource.setrlimit(resource.RLIMIT_FSIZE, (full, hard))
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+for kind in sys.argv[3:]:
+    out = path.replace("run.nc", f"run.{kind}")
+    try:
+        write[kind](out)
+    except OSError as error:
+        print(f"{kind}: {error.filename == out} {error.strerror}")
 warnings.simplefilter("always")
 with warnings.catch_warnings(record=True) as said:
     try:
@@ -47,12 +65,20 @@ print("then:", differences(carom.Solution.load(path), straight))
 def test_full_disk(full, thrown, tmp_path):
     path = tmp_path / "run.nc"
     path.write_bytes(b"what was there")
+    kinds = [kind for kind, package in PACKAGES.items() if find_spec(package)] if full == 0 else []
+    olds = [tmp_path / f"run.{kind}" for kind in kinds]
+    for old in olds:
+        old.write_bytes(b"what was there")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(TESTS), *sys.path])}
     done = subprocess.run(
-        [sys.executable, "-c", CHILD, str(path), str(full)],
+        [sys.executable, "-c", CHILD, str(path), str(full), *kinds],
         env=environment, capture_output=True, text=True, check=True, timeout=300,
     )  # fmt: skip
     told = dict(line.split(": ", 1) for line in done.stdout.splitlines())
+    for old, kind in zip(olds, kinds):
+        assert old.read_bytes() == b"what was there"
+        assert told[kind].startswith("True ")
+        assert "nothing was written, an old file is unchanged" in told[kind]
     assert "File too large; nothing was written, an old file is unchanged" in told["save"]
     assert "run.nc" in told["save"]
     assert told["simulate"].startswith("The run ended, but its result could not be saved: [Errno ")
@@ -60,4 +86,4 @@ def test_full_disk(full, thrown, tmp_path):
     assert "the run could not be saved to" in told["said"]
     assert told["then"] == "[]"
     assert differences(carom.Solution.load(path), thrown) == []
-    assert list(tmp_path.iterdir()) == [path]
+    assert set(tmp_path.iterdir()) == {path, *olds}

@@ -80,3 +80,18 @@ def test_bad_input(arguments, words):
 def test_bad_options(options, words):
     with pytest.raises(ValueError, match=words):
         carom.solve_contacts(EYE, AWAY, 0.5, **options)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_an_inverse_mass_of_six_digits(seed):
+    """Of a file: by its last digit it is asymmetric, and less than semidefinite; it is solved anyway."""
+    rng = np.random.default_rng(seed)
+    G = rng.normal(size=(9, 6))
+    W, u = G @ G.T, G @ rng.normal(size=6)
+    stored = np.array([[float(f"{w:.5e}") for w in row] for row in W])
+    stored[0, 5] *= 1 + 1e-6
+    found, exact = (carom.solve_contacts(w, u, 0.5) for w in (stored, W))
+    assert found.converged
+    # velocities change by W (some 1e-6 of it) times impulses
+    size = np.abs(W).max() * np.abs(exact.impulse).max() + np.abs(u).max()
+    assert np.abs(found.velocity - exact.velocity).max() < 1e-4 * size

@@ -218,6 +218,18 @@ def stiff(damping):
     return scene
 
 
+def test_a_run_without_an_end_is_ended():
+    """2^63 N m on a hinge: it turns 1e17 times in .02 s. The step meets the tolerances, and there is no end."""
+    scene = carom.Scene()
+    body = scene.add_body(carom.Box(0.1, 0.1, 0.1), mass=1.0)
+    hinge = scene.add_joint(carom.joints.Revolute((0, 0, 0), (0, 1, 0)), GROUND, body)
+    scene.add_force(forces.JointForce(hinge, 2.0**63))
+    s = carom.simulate(scene, 0.02, throw=False)
+    assert s.status is carom.Status.STEP_TOO_SMALL
+    assert s.stats["trial_steps"] < 400_000
+    assert 0.0 < s.t[-1] < 1e-6
+
+
 def test_a_step_too_small_ends_the_run():
     """A damper that stops the bob within 1e-17 s: no explicit step is short enough."""
     s = carom.simulate(stiff(1e17), 1.0, step="auto", throw=False)

@@ -313,6 +313,16 @@ def test_controls_that_are_wrong(arm):
         run.ctrl["gripper"] = 1.0
     with pytest.raises(ValueError, match=r"ctrl\['grip'\] must be finite"):
         run.ctrl["grip"] = math.nan
+    for key in (None, 1.5, (1, 2), {}, b"grip", True, slice("a", "b"), np.zeros((2, 2), bool)):
+        with pytest.raises(ValueError, match=r"the key of ctrl must be the name or the number of"):
+            run.ctrl[key]
+        with pytest.raises(ValueError, match=r"the key of ctrl must be the name or the number of"):
+            run.ctrl[key] = 0.0
+    with pytest.raises(IndexError, match="the run has 6 actuators, got the number 6"):
+        run.ctrl[6]
+    assert len(list(run.ctrl)) == 6
+    with pytest.raises(ValueError, match=r"ctrl\[slice\(None, 2, None\)\] must be 2 controls"):
+        run.ctrl[:2] = [1.0, 2.0, 3.0]
     with pytest.raises(ValueError, match=r"ctrl must have shape \(6,\), got shape \(2,\)"):
         run.ctrl = [1.0, 2.0]
     with pytest.raises(

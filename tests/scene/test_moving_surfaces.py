@@ -103,6 +103,8 @@ def test_ensembles_vary_the_rate_of_a_spin():
         turntable(1.0), 0.1, step=0.01, vary={"table.surface_spin.rate": rates}, executor="serial"
     )
     assert np.allclose(runs.angular_velocity[:, 0, 2], rates, atol=1e-9)
+    again = runs.solution(1)
+    assert np.array_equal(again.angular_velocity[-1], runs.angular_velocity[1])
     with pytest.raises(ValueError, match=r"surface_spin must be \(axis, rate\)"):
         carom.ensemble(turntable(1.0), 0.1, vary={"table.surface_spin": [1.0]})
 

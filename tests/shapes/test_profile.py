@@ -77,6 +77,7 @@ def test_surface_is_closed_and_encloses_the_volume():
         (lambda a: math.cos(a), (), "above 0"),
         (lambda a: (1.0, 2.0, 3.0), (), "or a point"),
         (lambda a: 1.0, [0], "left out"),
+        (lambda a: 10**400, (), "must return the distance from the axis"),
     ],
 )
 def test_curves_that_are_none(outline, corners, words):

@@ -129,6 +129,34 @@ def test_save_every_hides_nothing():
     assert every.warnings == seldom.warnings
 
 
+@pytest.mark.parametrize("rtol", [1e-6, 1e-10])
+def test_a_whole_period_that_is_saved_at_its_end(rtol):
+    """From rest to rest nothing is left of the energy exchanged, k x^2/2; the run has seen it between."""
+    period = 2 * np.pi / np.sqrt(50.0)
+    solution = carom.simulate(spring(50.0), period, rtol=rtol, save_at=[period])
+    assert solution.success
+    assert not solution.warnings
+    assert abs(solution.position[-1, 0, 2] + 1.01) < 10 * rtol
+    # the ends of trial steps are not at the fastest place: a step is less than a radian
+    most = solution._run.watch[0].exchanged / (0.5 * 50.0 * 0.01**2)
+    assert np.cos(0.5) ** 2 < most < 1.0 + rtol
+
+
+def test_a_whole_period_in_own_coordinates():
+    """A bead of 1 kg with q'' = -50 q, from q = .3 back to it."""
+    period = 2 * np.pi / np.sqrt(50.0)
+    system = carom.GeneralizedSystem(
+        metric=lambda q: np.eye(1),
+        potential=lambda q: 25.0 * q[0] ** 2,
+        position=[0.3],
+        velocity=[0.0],
+    )
+    solution = carom.simulate(system, period, rtol=1e-10, save_at=[period])
+    assert solution.success
+    assert not solution.warnings
+    assert solution.q[-1, 0] == pytest.approx(0.3, abs=1e-8)
+
+
 def ledger(**lines):
     zero = np.zeros(5)
     given = {name: np.array(lines.get(name, zero), dtype=float) for name in (
@@ -142,12 +170,12 @@ def test_a_line_that_never_rises(line):
     change = [0.0, -0.6, -1.0, -0.7, -0.9]
     balance = ledger(kinetic=[2.0 + c for c in change], **{line: change})
     assert np.all(np.abs(balance.residual) < 1e-15)
-    watch = watched(np.arange(5.0), balance, 0.0, 1e-4)
+    watch = watched(np.arange(5.0), balance, 0.0, 2.0, 1e-4)
     assert inaccurate(watch)
     (said,) = sentences(watch, FINER)
     assert "0.3 J at t = 3 s, 0.15 of the largest energy exchanged (2 J)" in said
     if line == "impacts":  # Newton's law with friction says so
-        named = watched(np.arange(5.0), balance, np.array([0, 0, 0, 0.3, 0.3]), 1e-4)
+        named = watched(np.arange(5.0), balance, np.array([0, 0, 0, 0.3, 0.3]), 2.0, 1e-4)
         assert not inaccurate(named)
         assert sentences(named, FINER) == ()
 
@@ -157,7 +185,9 @@ def test_round_off_is_relative_to_the_energies(unit):
     # What is said does not depend on the unit: as above in a unit of energy that is tiny, or huge.
     kinetic, impacts = unit * np.array([2.0, 1.0, 1.3]), unit * np.array([0.0, -1.0, -0.7])
     zero = np.zeros(3)
-    watch = watched(np.arange(3.0), Ledger(kinetic, zero, zero, impacts, zero, zero), 0.0, 1e-4)
+    watch = watched(
+        np.arange(3.0), Ledger(kinetic, zero, zero, impacts, zero, zero), 0.0, 2.0 * unit, 1e-4
+    )
     assert inaccurate(watch)
     assert "0.15 of the largest energy exchanged" in sentences(watch, FINER)[0]
 

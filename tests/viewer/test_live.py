@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 import time
+import urllib.error
 import urllib.request
 
 import numpy as np
@@ -27,6 +28,50 @@ def live(thrown):
         time.sleep(0.05)
     assert "ended" in repr(view)
     view.stop()  # a second time
+
+
+def test_a_name_of_somebody_else_gets_nothing(live):
+    """DNS rebinding: a page of another site that lets its own name point here, or that asks from there."""
+    import websockets.sync.client as client
+    from viser import __version__ as version
+    from websockets.exceptions import InvalidStatus
+
+    netloc = live.url.removeprefix("http://")
+    port = netloc.split(":")[1]
+
+    def page(host):
+        request = urllib.request.Request(live.url, headers={"Host": host})
+        try:
+            return urllib.request.urlopen(request, timeout=10).status
+        except urllib.error.HTTPError as error:
+            return error.code
+
+    own = netloc, f"127.0.0.1:{port}", f"[::1]:{port}"
+    assert {host: page(host) for host in own} == dict.fromkeys(own, 200)
+    others = (
+        f"evil.example:{port}",
+        f"127.0.0.1.evil.example:{port}",
+        f"localhost.evil:{port}",
+        "a b",
+    )
+    assert {host: page(host) for host in others} == dict.fromkeys(others, 403)
+
+    def talk(origin):
+        given = {"origin": origin, "subprotocols": [f"viser-v{version}"], "open_timeout": 10}
+        try:
+            with client.connect(f"ws://{netloc}", **given) as socket:
+                return len(socket.recv(timeout=10)) > 0
+        except InvalidStatus as error:
+            return error.response.status_code
+
+    assert talk(live.url) is talk(None) is True
+    refused = (
+        "http://evil.example",
+        "null",
+        f"https://evil.example:{port}",
+        f"http://localhost:{port}1",
+    )
+    assert {origin: talk(origin) for origin in refused} == dict.fromkeys(refused, 403)
 
 
 class Pressed:

@@ -44,9 +44,12 @@ def plot(
 
     matplotlib.use("agg")
     import carom
+    from carom.io.files.disk import put
+    from carom.visual.plots.style import as_bytes
 
     drawn = carom.Solution.load(file).plot(kind or KINDS[0])
-    _figure(drawn).savefig(out, dpi=dpi)
+    out = out if out.suffix else out.with_suffix(".png")
+    put(out, [as_bytes(_figure(drawn), out.suffix, dpi=dpi)])
     print(out)
     return 0
 

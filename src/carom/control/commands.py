@@ -41,7 +41,7 @@ class Controls:
 
     def __getitem__(self, which):
         """Return the control of an actuator by its name, or what an array has at this place."""
-        return self._applied.ctrl[self._number(which) if isinstance(which, str) else which].copy()
+        return self._applied.ctrl[self._place(which)].copy()
 
     def __setitem__(self, which, value: ArrayLike) -> None:
         """Set the control of an actuator by its name, or a part of the array."""
@@ -54,12 +54,41 @@ class Controls:
                 )
             wanted[k] = checks.number(f"ctrl[{which!r}]", value)
         else:
-            wanted[which] = checks.real_array("ctrl", value, f"of {len(wanted)} controls")
+            place, given = (
+                self._place(which),
+                checks.real_array("ctrl", value, f"of {len(wanted)} controls"),
+            )
+            try:
+                wanted[place] = given
+            except ValueError:
+                raise ValueError(
+                    f"ctrl[{checks.shown(which)}] must be {wanted[place].size} controls, got "
+                    f"{checks.shown(value)}"
+                ) from None
             checks.finite_array("ctrl", wanted, (len(wanted),))
         for k in np.flatnonzero(wanted != self._applied.ctrl):
             for part in self._applied.commands[k].parts:
                 self._applied.note(part.index, float(wanted[k]))
         self._applied.ctrl[:] = wanted
+
+    def _place(self, which):
+        """Return what an array takes as the place of one control or of several."""
+        if isinstance(which, str):
+            return self._number(which)
+        count = len(self.names)
+        if isinstance(which, (int, np.integer)) and not isinstance(which, bool):
+            if not -count <= which < count:  # the end of a loop over the controls too
+                raise IndexError(f"the run has {count} actuators, got the number {which}")
+            return int(which)
+        try:
+            if np.ndim(self._applied.ctrl[which]) == 1:
+                return which
+        except (IndexError, TypeError, ValueError):
+            pass
+        raise ValueError(
+            f"the key of ctrl must be the name or the number of one of {count} actuators, or a slice or an "
+            f"array of numbers, got {checks.shown(which)}"
+        )
 
     def _number(self, name: str) -> int:
         if name in self.names:

@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
 from carom.dynamics import thresholds as limits
 from carom.geometry.rotation import norm
 
@@ -125,6 +125,18 @@ def allowed_step(left, work):
 def part_of(left, ahead):
     """Return the next step within the time `left`: `ahead`, or half or all of it if 2 `ahead` do not fit."""
     return ahead if 2.0 * ahead <= left else 0.5 * left if ahead < limits.FINISH * left else left
+
+
+@inlined
+def crawls(clock, left, dt, longest):
+    """Count trial steps of a length dt by which the time `left` would take too many; return whether to end.
+
+    A force of 1e19 N m makes a body spin 1e18 times in a run: each step meets the tolerances, and there is no
+    end. Steps of the longest length that was asked for do not count.
+    """
+    slow = left > limits.MOST_TRIALS * dt and 2.0 * dt < longest
+    clock.slow = clock.slow + 1 if slow else max(0, clock.slow - 1)
+    return clock.slow > limits.SLOW_TRIALS
 
 
 @kernel

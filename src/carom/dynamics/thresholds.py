@@ -8,6 +8,9 @@ FINISH = 0.99  #: time left: a step longer than this takes all of it
 RTOL = 1e-8  #: size and displacement of a body: default of a run; above it more energy may be lost
 #: error that is allowed: share of it for a step, for friction in a step, for a solver: others are added
 ERROR_SHARE = 0.1
+#: trial steps: a run ends if the rest takes more at the present length, a minute or more of computing
+MOST_TRIALS = 3e7
+SLOW_TRIALS = 300_000  #: trial steps: so many may be too short by `MOST_TRIALS`: a stiff moment may pass
 LEAST_STEP = 1e-14  #: duration: least length of a step
 #: time in which its load moves a body by its size: of a body in contact: it moves by the square
 LOAD_STEP = 0.2

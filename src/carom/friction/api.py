@@ -61,7 +61,9 @@ def solve_contacts(
     ----------
     inverse_mass : array_like, shape (3k, 3k) or (k, 3, k, 3)
         Delassus operator W of the contacts [1/kg], symmetric, positive semidefinite, rows (normal, tangent 1,
-        tangent 2) of each contact. It may be singular: four corners of a box have rank 6 of 12.
+        tangent 2) of each contact. It may be singular: four corners of a box have rank 6 of 12. Numbers of a
+        file do: up to 1e-5 of the greatest entry it may be asymmetric, and is made symmetric; and eigenvalues
+        may be down to -1e-5 of the greatest, for which twice the least is taken from the diagonal.
     velocity : array_like, shape (3k,) or (k, 3)
         Relative velocities without the impulses [m/s]; approach is negative.
     friction : float or array_like, shape (k,)

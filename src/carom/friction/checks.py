@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom import checks
+from carom.friction.thresholds import EIGENVALUE_ERROR, FILE_DIGITS
 
 
 def checked_inverse_masses(inverse_mass, k: int) -> np.ndarray:
@@ -23,15 +24,27 @@ def checked_inverse_masses(inverse_mass, k: int) -> np.ndarray:
 
 
 def semidefinite(W: np.ndarray) -> np.ndarray:
-    """Return an inverse mass W (n, n), symmetric; raise ValueError unless it is positive semidefinite."""
-    if not np.max(np.abs(W - W.T)) <= 1e-9 * np.max(np.abs(W)):
-        raise ValueError(f"inverse_mass must be symmetric, got {checks.shown(W)}")
+    """Return an inverse mass W (n, n), symmetric; raise ValueError unless it is positive semidefinite.
+
+    Both hold up to what six digits of a file leave (`FILE_DIGITS`). An eigenvalue below round-off is then
+    mended by twice its size on the diagonal: a contact problem with W < 0 need not have a solution, and of 400
+    problems of six digits 36 were not solved as they are, and one with this.
+    """
+    off = np.max(np.abs(W - W.T), initial=0.0)
+    if not off <= FILE_DIGITS * np.max(np.abs(W), initial=0.0):
+        raise ValueError(
+            f"inverse_mass must be symmetric to {FILE_DIGITS:g} of its greatest entry, got entries that differ "
+            f"by {off:.6g} [1/kg] of {checks.shown(W)}"
+        )
     W = np.ascontiguousarray(0.5 * (W + W.T))
     least, *_, most = np.linalg.eigvalsh(W)
-    if not least >= -1e-9 * most:
+    if not least >= -FILE_DIGITS * most:
         raise ValueError(
-            f"inverse_mass must be positive semidefinite, got an eigenvalue {least:.6g} [1/kg]"
+            f"inverse_mass must be positive semidefinite to {FILE_DIGITS:g} of its greatest eigenvalue "
+            f"{most:.6g}, got an eigenvalue {least:.6g} [1/kg]"
         )
+    if least < -EIGENVALUE_ERROR * most:
+        W[np.diag_indices_from(W)] -= 2.0 * least
     return W
 
 

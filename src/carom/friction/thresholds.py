@@ -1,5 +1,9 @@
 """Thresholds of the contact problem: accuracy, proximal terms, effort."""
 
+#: greatest entry, or eigenvalue, of a given W: asymmetry, or less than semidefinite, that six digits of a file
+#: leave (up to 5e-6 of each entry)
+FILE_DIGITS = 1e-5
+EIGENVALUE_ERROR = 1e-9  #: greatest eigenvalue of a given W: round-off of its least one, if it is computed
 RESIDUAL = 1e-10  #: greatest velocity: residual of a solved contact problem
 ENOUGH_RESIDUAL = 100.0  #: tolerance: from which on few more starting points are tried
 PROXIMAL = 1e-8  #: diagonal of W: weight of the proximal term, which makes redundant impulses unique

@@ -64,6 +64,9 @@ class Work(NamedTuple):
     G_rate: np.ndarray  # (C, 3)
     L: np.ndarray  # (n, n) M = L D L^T, D on the diagonal
     a: np.ndarray  # (n,)
+    sum: (
+        np.ndarray
+    )  # (n,) greatest sum of the terms of each acceleration, in the stages of the last step
     R: np.ndarray  # (m, n) rows that must keep their rate
     D: np.ndarray  # (m, n) directions of their reactions: R itself, except for a slipping contact
     Z: np.ndarray  # (m, n) M^-1 D
@@ -83,7 +86,9 @@ class Work(NamedTuple):
     sample: np.ndarray  # results there
     slope: np.ndarray  # (n, m) derivatives of m results
     search: np.recarray  # (1,) SEARCH, of an event
-    spent: np.ndarray  # (2,) work of loads and of friction in the last step
+    spent: (
+        np.ndarray
+    )  # (3,) work of loads and of friction in the last step, kinetic energy at its start
 
 
 #: a contact: its mode; while it persists, first row of R, direction of slip, force with the normal first,
@@ -118,9 +123,11 @@ CLOCK = [
     ("now", "f8"), ("step", "i8"), ("saved", "i8"), ("kind", "i8"), ("index", "i8"), ("trials", "i8"),
     ("kinetic", "f8"), ("potential", "f8"), ("loads", "f8"), ("impacts", "f8"), ("friction", "f8"),
     ("bounces", "f8"),
+    ("exchanged", "f8"),  # greatest kinetic energy, and greatest work, so far
     ("given", "f8"),  # energy that impacts have added where their law allows it (V8)
     # the next step by tolerances, the length that fitted them last, number of steps with too large an error
     ("ahead", "f8"), ("fits", "f8"), ("rejected", "i8"),
+    ("slow", "i8"),  # trial steps so short that the run would not end
 ]  # fmt: skip
 
 
@@ -147,10 +154,10 @@ def new_work(system: Coordinates, stages: int) -> Work:
         "G_rate": touch[g:].reshape(contacts, 3),
     }  # fmt: skip
     shapes = {
-        "L": (n, n), "a": n, "R": (m, n), "D": (m, n), "Z": (m, n), "K": (m, m), "inverse": m, "rhs": m,
-        "stages": (stages, 2 * n), "trial": 2 * n, "end": 2 * n, "row_scale": holonomic,
+        "L": (n, n), "a": n, "sum": n, "R": (m, n), "D": (m, n), "Z": (m, n), "K": (m, m), "inverse": m,
+        "rhs": m, "stages": (stages, 2 * n), "trial": 2 * n, "end": 2 * n, "row_scale": holonomic,
         "gap_scale": contacts, "margin": (NO_EVENT, contacts), "nothing": (NO_EVENT, contacts),
-        "before": (2, contacts), "point": n, "axis": n, "sample": most, "slope": n * most, "spent": 2,
+        "before": (2, contacts), "point": n, "axis": n, "sample": most, "slope": n * most, "spent": 3,
     }  # fmt: skip
     own = {name: np.zeros(shape) for name, shape in shapes.items()}
     return Work(**results, **own, search=table(SEARCH, 1))

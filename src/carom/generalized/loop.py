@@ -6,7 +6,9 @@ stages, the error of coordinate i is
 
     miss_i = max(|e_q|, T |e_v|),     T = 1 / max(|v_i|, sqrt |a_i|),
 
-and a step is accepted if miss_i <= LOCAL (atol + rtol max(1, h |v_i|)) for all of them.
+and a step is accepted if miss_i <= LOCAL (atol + rtol max(1, h |v_i|)) for all of them. An acceleration is
+known to the round-off of its terms, which is no error: a coordinate that a contact holds has no other, and T
+grows like the root of its inverse.
 """
 
 from __future__ import annotations
@@ -14,17 +16,19 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, kernel
-from carom.dynamics.adapt import allowed_error, of_two, part_of, shrunk
+from carom.dynamics.adapt import allowed_error, crawls, of_two, part_of, shrunk
 from carom.dynamics.adapt import plan as plan_ahead
 from carom.dynamics.thresholds import LEAST_STEP
 from carom.generalized import layout as o
 from carom.generalized.events import locate
 from carom.generalized.linear import copy_row, dot
-from carom.generalized.motion import evaluate, find_metric
+from carom.generalized.motion import evaluate, find_metric, kinetic_energy
 from carom.generalized.step import take
+from carom.geometry.thresholds import SUM_ERROR
 from carom.model import actions as a
 from carom.model.records import PAUSE
 from carom.status import STEP_TOO_SMALL, SUCCESS
+from carom.stepping.energy_balance import note_exchanged
 from carom.stepping.grid import end_of, is_saved
 
 # Tangents of the greatest angle by which slip turns in a given step (15 degrees: of steps of .02 to .2 s of
@@ -59,6 +63,7 @@ def time_loop(motion, x, plan, until, record):
             copy_row(work.end, x, x.size)
             c.loads += work.spent[0]
             c.friction += work.spent[1]
+            note_exchanged(c, work.spent[2])
             if kind != a.NO_EVENT:
                 c.now += s
                 c.kind, c.index = kind, index
@@ -88,6 +93,8 @@ def take_accurately(motion, x, left, plan, c):
                 return part, code
             part *= 0.5
             continue
+        if crawls(c, plan.duration - c.now, part, plan.step):
+            return part, STEP_TOO_SMALL
         error = math.inf if code != 0 else step_error(motion, part, plan)
         if error <= 1.0:
             plan_ahead(c, part, error, again, plan.order, plan.step)
@@ -126,16 +133,16 @@ def step_error(motion, h, plan):
     E, stages, n = motion.method.E, motion.work.stages, motion.system.n
     first, second = 0.0, 0.0
     for i in range(n):
-        pace, speed = 0.0, 0.0
+        pace, speed, known = 0.0, 0.0, SUM_ERROR * motion.work.sum[i]
         for s in range(E.shape[1]):
             speed = max(speed, abs(stages[s, i]))
-            pace = max(pace, math.sqrt(abs(stages[s, n + i])))
+            pace = max(pace, math.sqrt(max(0.0, abs(stages[s, n + i]) - known)))
         pace = max(pace, speed)
         T = 1.0 / pace if pace > 0.0 else 0.0
         allowed = allowed_error(plan.rtol, plan.atol, 1.0, h * speed)
         for e in range(E.shape[0]):
             q, v = dot(E[e], stages[:, i], E.shape[1]), dot(E[e], stages[:, n + i], E.shape[1])
-            miss = h * max(abs(q), T * abs(v)) / allowed
+            miss = h * max(abs(q), T * max(0.0, abs(v) - known)) / allowed
             if e == 0 and not miss <= first and first == first:
                 first = miss
             if e == 1:
@@ -146,12 +153,11 @@ def step_error(motion, h, plan):
 @kernel
 def save(system, x, record, work):
     """Write the state and its energies into the next row."""
-    clock, n, total = record.clock[0], system.n, 0.0
+    clock = record.clock[0]
     find_metric(system, clock.now, x, work)
     evaluate(system, o.CALL_LOADS, clock.now, x, work.loads, work)
-    for i in range(n):
-        total += x[n + i] * dot(work.M[i], x[n:], n)
-    clock.kinetic, clock.potential = 0.5 * total, work.loads[0]
+    clock.kinetic, clock.potential = kinetic_energy(system, x, work), work.loads[0]
+    note_exchanged(clock, clock.kinetic)
     record.series[clock.saved] = clock
     copy_row(x, record.states[clock.saved], x.size)
     clock.saved += 1

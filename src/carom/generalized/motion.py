@@ -50,6 +50,15 @@ def find_metric(system, t, x, work):
 
 
 @kernel
+def kinetic_energy(system, x, work):
+    """Return v M v / 2 of a state whose metric is in the workspace."""
+    n, total = system.n, 0.0
+    for i in range(n):
+        total += x[n + i] * dot(work.M[i], x[n:], n)
+    return 0.5 * total
+
+
+@kernel
 def persists(active):
     """Return whether any contact persists."""
     for c in range(active.shape[0]):
@@ -174,7 +183,7 @@ def acceleration(system, active, t, x, work, rate):
 
     Forces of persistent contacts go to their records.
     """
-    n, a, friction = system.n, work.a, 0.0
+    n, m, a, friction = system.n, 0, work.a, 0.0
     code = find_metric(system, t, x, work)
     if code != 0:
         return 0.0, 0.0, code
@@ -184,8 +193,14 @@ def acceleration(system, active, t, x, work, rate):
     ldl.substitute(n, work.L, a)
     if system.rows > 0 or persists(active):
         find_rows(system, active, t, x, work)
-        react(system, gather(system, active, ACCELERATION, x, work), a, work)
+        m = gather(system, active, ACCELERATION, x, work)
+        react(system, m, a, work)
         friction = note_forces(system, active, x, work)
+    for j in range(n):  # of what the reactions do not leave of it, too
+        total = abs(a[j])
+        for r in range(m):
+            total += 2.0 * abs(work.rhs[r] * work.Z[r, j])
+        work.sum[j] = max(work.sum[j], total)
     copy_row(x[n:], rate, n)
     copy_row(a, rate[n:], n)
     return work.loads[n + 1], friction, 0

@@ -127,7 +127,7 @@ class GeneralizedSolution(Drawn):
             k, which = bad[0]
             name = f"The {run.user._model.kind} {('metric', 'potential')[which]!r}"
             said = (f"{Fault(name, float(t[k]), states[k], returned(energies[k]))}.",)
-        watch = watched(t, ledger, series.given, run.options.energy_tolerance)
+        watch = watched(t, ledger, series.given, series.exchanged[-1], run.options.energy_tolerance)
         watch["size"] = max(watch.size, run.contacts.light)
         warnings = (*said, *sentences(watch, run.how.finer))
         if status is Status.SUCCESS and inaccurate(watch):

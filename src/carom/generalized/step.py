@@ -14,6 +14,7 @@ from carom.generalized.motion import (
     find_metric,
     find_rows,
     gather,
+    kinetic_energy,
     persists,
     react,
     slip_of,
@@ -33,11 +34,15 @@ def take(motion, t, x, h):
     n, stages = system.n, method.b.size
     note_slip_directions(system, active, t, x, work)
     loads, friction = 0.0, 0.0
+    for j in range(n):
+        work.sum[j] = 0.0
     for s in range(stages):
         ahead = combine(method.A[s], s, h, x, work.stages, work.trial)
         p, f, code = acceleration(system, active, t + ahead, work.trial, work, work.stages[s])
         if code != 0:
             return code
+        if s == 0:
+            work.spent[2] = kinetic_energy(system, x, work)
         loads += h * method.b[s] * p
         friction += h * method.b[s] * f
     combine(method.b, stages, h, x, work.stages, end)

@@ -10,6 +10,7 @@ import numpy as np
 
 from carom import checks
 from carom._compiled.decorators import entry
+from carom.friction.thresholds import FILE_DIGITS
 from carom.impact import layout as o
 from carom.impact.api import Impact, phase_names
 from carom.impact.laws import NUMBERS
@@ -121,11 +122,13 @@ def _checked_inverse_masses(given) -> np.ndarray:
         )
     _all("inverse_mass", W, "finite", np.isfinite(W).all(axis=(-2, -1)))
     off = np.abs(W - W.swapaxes(-2, -1)).max(axis=(-2, -1))
-    _all("inverse_mass", W, "symmetric", off <= 1e-9 * np.abs(W).max(axis=(-2, -1)))
+    _all("inverse_mass", W, "symmetric", off <= FILE_DIGITS * np.abs(W).max(axis=(-2, -1)))
     W = 0.5 * (W + W.swapaxes(-2, -1))
     _all("inverse_mass[..., 0, 0] (normal)", W[..., 0, 0], "above 0", W[..., 0, 0] > 0)
     values = np.linalg.eigvalsh(W)
-    _all("inverse_mass", W, "positive semidefinite", values[..., 0] >= -1e-9 * values[..., -1])
+    _all(
+        "inverse_mass", W, "positive semidefinite", values[..., 0] >= -FILE_DIGITS * values[..., -1]
+    )
     return W
 
 

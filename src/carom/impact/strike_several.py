@@ -12,6 +12,7 @@ from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.driven import blocked
 from carom.impact.effective_restitution import count_blow, effective_restitution
 from carom.impact.friction_law import PERSISTENT, STRIKES, friction_at, law_of
+from carom.impact.hertz import stiffness
 from carom.impact.layout import OK
 from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSettings, SlipLaws
 from carom.impact.multiple.resolve import resolve_multiple
@@ -40,9 +41,11 @@ def resolve_group(k, pieces, group, multiple) -> int:
             slip=slip,
         )
     )  # fmt: skip
-    given = multiple.settings
+    given, exponent = multiple.settings, exponent_of(k, multiple)
+    if exponent == HERTZ and all_round(k, multiple):
+        stiffen(k, multiple)
     settings = MultipleSettings(
-        given.multiple, given.rtol, exponent_of(k, multiple), given.max_events, given.max_steps,
+        given.multiple, given.rtol, exponent, given.max_events, given.max_steps,
         given.max_rounds,
     )  # fmt: skip
     return resolve_multiple(contacts, settings, multiple.workspace, multiple.result)
@@ -53,10 +56,29 @@ def exponent_of(k, multiple):
     """Return the exponent p of the normal forces: as set, or Hertz's if all k points are on round bodies."""
     if multiple.settings.exponent > 0.0:
         return multiple.settings.exponent
+    return HERTZ if all_round(k, multiple) else LINEAR
+
+
+@kernel
+def all_round(k, multiple):
+    """Return whether all k points are on balls or ellipsoids."""
     for i in range(k):
-        if multiple.ball_like[i] == 0:
-            return LINEAR
-    return HERTZ
+        if not multiple.hertz[i] > 0.0:
+            return False
+    return True
+
+
+@kernel
+def stiffen(k, multiple):
+    """Multiply the stated stiffness of k points of round bodies by that of Hertz's law.
+
+    Only ratios count: relative to the greatest, the factor of equal points is exactly 1.
+    """
+    most = 0.0
+    for i in range(k):
+        most = max(most, multiple.hertz[i])
+    for i in range(k):
+        multiple.kappa[i] *= multiple.hertz[i] / most
 
 
 @kernel
@@ -104,7 +126,9 @@ def strike_several(model, data, c, k):
         first, last, multiple.friction_exponent[i] = law_of(contact, held)
         multiple.friction_piece[0, i], multiple.friction_piece[1, i] = first, last
         multiple.law[i], multiple.kappa[i] = contact.law, contact.stiffness
-        multiple.ball_like[i] = contact.ball_like
+        multiple.hertz[i] = 0.0
+        if contact.ball_like == 1:
+            multiple.hertz[i] = stiffness(system, contact, group.points[0][i], state)
         multiple.tangential[i] = contact.tangential_restitution
         all_by_pairs = multiple.settings.multiple == SEQUENTIAL
         multiple.pair[i] = pair_of(i, system.contacts, group.closed, all_by_pairs)

@@ -43,3 +43,4 @@ FIRST_DIFFERENCE = 3.0  #: step: part of a first step in which contacts differ, 
 PARALLEL_STEPS = 0.01  #: squared sine of the angle: least between two steps of which both are kept
 ROUND_GAIN = 0.8  #: greatest miss: a round that leaves no more is a gain
 NEAREST_RESULT = 0.1  #: ln(target/reached): greatest at which the nearest result is used
+EQUAL_CURVATURES = 1e-6  #: 1: of two curvatures: less changes the stiffness by less than 1e-13 of it

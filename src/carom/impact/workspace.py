@@ -97,7 +97,7 @@ class MultipleImpact(NamedTuple):
     law: np.ndarray  # (K,)
     kappa: np.ndarray  # (K,)
     pair: np.ndarray  # (K,) of `CornerContacts`
-    ball_like: np.ndarray  # (K,) 1 for a ball or an ellipsoid
+    hertz: np.ndarray  # (K,) of a ball or an ellipsoid its stiffness by Hertz's law, else 0
     tangential: np.ndarray  # (K,) e_t
     friction_piece: np.ndarray  # (2, K) range of the pieces of a law, empty for a number
     friction_exponent: np.ndarray  # (K,)
@@ -149,9 +149,9 @@ def no_multiple(settings: MultipleSettings) -> MultipleImpact:
 
 def new_multiple(k: int, settings: MultipleSettings) -> MultipleImpact:
     """Return the workspace of impacts of `k` points."""
-    law, pair, ball_like = np.zeros((3, k), dtype=np.int64)
+    law, pair = np.zeros((2, k), dtype=np.int64)
     return MultipleImpact(
         workspace=new_multiple_workspace(k), settings=settings, result=new_multiple_result(k),
-        e=np.zeros(k), law=law, kappa=np.zeros(k), pair=pair, ball_like=ball_like,
+        e=np.zeros(k), law=law, kappa=np.zeros(k), pair=pair, hertz=np.zeros(k),
         tangential=np.zeros(k), friction_piece=np.zeros((2, k), dtype=np.int64), friction_exponent=np.zeros(k),
     )  # fmt: skip

@@ -37,12 +37,15 @@ CLOCK = [
     ("cuts", "i8"),
     ("trials", "i8"),
     ("rejected", "i8"),  # trial steps with too large an error
+    ("slow", "i8"),  # trial steps so short that the run would not end (`carom.dynamics.adapt`)
     ("located", "i8"),
     ("holds", "i8"),
     ("contact_steps", "i8"),  # steps, and trial steps, of groups in contact at several points
     ("rounds", "i8"),  # iterations in these steps
     ("whole", "i8"),  # steps in which touching bodies moved as a crowd
     ("residual", "f8"),  # greatest of persistent contacts since the last saved row
+    # greatest energy exchanged so far, besides changes of potential energy, which the step adds at its end
+    ("exchanged", "f8"),
     ("still", "f8"),  # end of the step after which nothing has moved; infinite while bodies move
 ]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from carom.io.files.disk import put
 from carom.paper.figure import page, texts
 
 TITLE = "A Novel Time-Stepping Method for Multibody Systems with Frictional Impacts"
@@ -63,7 +64,7 @@ def make(
         progress("table")
         written += table.write(folder)
         written.append(folder / "index.md")
-        written[-1].write_text(_index(known), encoding="utf-8")
+        put(written[-1], [_index(known).encode()])
     return written
 
 

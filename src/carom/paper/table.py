@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -11,6 +12,7 @@ import numpy as np
 
 from carom import impact_layer, resolve_impact
 from carom.impact.geometry import NormalMotion
+from carom.io.files.disk import put
 from carom.paper.figure import page, table
 from carom.paper.layer import first_impact, hht, least_steps
 from carom.paper.references import Bounce, die_after, die_impact
@@ -192,10 +194,11 @@ def write(folder: Path) -> list[Path]:
     for alpha, least, *errors in found:
         hht_short.append((f"{alpha:g}", least, *(f"{x:.3g}" for x in errors)))
     for path, content in ((files[0], [_HEAD, *full]), (files[1], [_HHT_HEAD, *found])):
-        with path.open("w", newline="", encoding="utf-8") as file:
-            csv.writer(file).writerows(content)
+        out = io.StringIO(newline="")
+        csv.writer(out).writerows(content)
+        put(path, [out.getvalue().encode()])
     text = page("table", table=table(_HEAD, short), hht=table(_HHT_HEAD, hht_short))
-    files[2].write_text(text, encoding="utf-8")
+    put(files[2], [text.encode()])
     return files
 
 

@@ -150,10 +150,11 @@ def _of_energy(i: int, watch: np.record) -> str:
     )
 
 
-def watched(t, ledger: Ledger, given, tolerance: float) -> np.record:
+def watched(t, ledger: Ledger, given, exchanged: float, tolerance: float) -> np.record:
     """Return the record of energy errors from a ledger at saved times t, for loops that do not write one.
 
-    `given` is the energy that impacts have added up to these times by Newton's law with friction.
+    `given` is the energy that impacts have added up to these times by Newton's law with friction, `exchanged`
+    the greatest kinetic energy and the greatest work of all steps.
     """
     watch = new_watch(tolerance)[0]
     rises = {IMPACTS: ledger.impacts - given, FRICTION: ledger.friction, BOUNCES: ledger.bounces}
@@ -164,8 +165,7 @@ def watched(t, ledger: Ledger, given, tolerance: float) -> np.record:
         k = int(np.argmax(np.abs(amounts)))
         watch.amount[i], watch.time[i] = amounts[k], t[k]
     change = ledger.potential - ledger.potential[0]
-    lines = (ledger.kinetic, change, ledger.loads, ledger.impacts, ledger.friction, ledger.bounces)
-    watch.exchanged = max(float(np.max(np.abs(line))) for line in lines)
+    watch.exchanged = max(exchanged, float(np.max(np.abs(change))))
     watch.size = float(np.max(ledger.kinetic + np.abs(ledger.potential)))
     return watch
 

@@ -39,7 +39,7 @@ def points_of(function: Callable, u: np.ndarray) -> np.ndarray:
         point = checks.call("function", function, one)
         try:
             found.append(np.array([float(x) for x in point]))
-        except (TypeError, ValueError):
+        except (OverflowError, TypeError, ValueError):
             found.append(np.zeros(0))
         if found[-1].shape != (3,) or not np.all(np.isfinite(found[-1])):
             raise ValueError(

@@ -1,6 +1,6 @@
 """The energy balance, step by step: the energy error compared with the largest energy exchanged so far.
 
-After each step, with sums since the start,
+After each step, with sums since the start (and `exchanged` within steps too),
 
     residual = T + V - (T_0 + V_0) - loads - impacts - friction - bounces,
     unnamed  = |residual| + sum over entries that never rise of (entry - its lowest value so far),
@@ -112,6 +112,19 @@ def note_energies(system, now, clock):
     return size
 
 
+@inlined
+def note_exchanged(clock, kinetic):
+    """Note the energy exchanged: the kinetic energy of bodies, and the works since the start.
+
+    This is done at each trial step that is accepted, because what was exchanged may be back at the end of a
+    step of the run (a whole period of a pendulum). Potential energy turns into one of these, so it is not
+    needed. The clock is put back with a step that is repeated.
+    """
+    most = max(clock.exchanged, max(kinetic, abs(clock.loads)))
+    most = max(most, max(abs(clock.impacts), abs(clock.friction)))
+    clock.exchanged = max(most, abs(clock.bounces))
+
+
 @kernel
 def watch_step(system, data):
     """Check the balance at the end of a step."""
@@ -120,9 +133,8 @@ def watch_step(system, data):
     kinetic, potential = clock.kinetic, clock.potential
     residual = kinetic + potential - watch.total
     residual -= clock.loads + clock.impacts + clock.friction + clock.bounces
-    exchanged = max(watch.exchanged, max(kinetic, abs(potential - watch.potential)))
-    exchanged = max(exchanged, max(abs(clock.loads), abs(clock.impacts)))
-    exchanged = max(exchanged, max(abs(clock.friction), abs(clock.bounces)))
+    note_exchanged(clock, kinetic)
+    exchanged = max(watch.exchanged, max(clock.exchanged, abs(potential - watch.potential)))
     watch.exchanged, watch.size = exchanged, max(watch.size, size)
     watch.able = max(watch.able, step.able)
     watch.named += given_by_law(system, clock, data.records, watch)

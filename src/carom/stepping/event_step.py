@@ -18,6 +18,7 @@ from carom.contact.parting import beside_face
 from carom.contact.rim import place_of
 from carom.contact.stop import check_stop
 from carom.contact.thresholds import REACH
+from carom.dynamics.energy import kinetic_energy
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.more_forces import note_turns
 from carom.geometry.rotation import norm
@@ -37,6 +38,7 @@ from carom.persistent.step_control import goes_wild, next_pace, unsolved
 from carom.persistent.thresholds import CUT_RESIDUAL, STOP_RESIDUAL
 from carom.status import LEFT_CURVE, NO_CONVERGENCE, NOT_FINITE
 from carom.status import TOO_MANY_IMPACTS as TOO_MANY
+from carom.stepping.energy_balance import note_exchanged
 from carom.stepping.record import finite, grow, save_contacts
 from carom.stepping.trial_step import first_event, propose_step
 
@@ -126,7 +128,7 @@ def accept_step(model, data):
         return NOT_FINITE, NOTHING
 
     # the motion up to the end of the trial step, and the modes at its end
-    accept(data, search)
+    accept(system, data, search)
     if note_turns(system, now):
         return LEFT_CURVE, NOTHING
     search.pace = next_pace(search.pace, work)
@@ -152,7 +154,7 @@ def accept_step(model, data):
 
 
 @inlined
-def accept(data, search):
+def accept(system, data, search):
     """Make the trial state the present one, and add the work done in the step."""
     now, trial, active = data.state, data.work.trial, data.active
     clock, step = data.clocks[0], data.work.step[0]
@@ -166,6 +168,7 @@ def accept(data, search):
     clock.loads += search.applied
     clock.friction += search.friction
     step.owed = max(0.0, step.owed + search.friction)
+    note_exchanged(clock, kinetic_energy(system, now))
     if clock.now > before:
         clock.at_once = 0
 

@@ -7,7 +7,7 @@ import math
 from carom._compiled.decorators import inlined
 from carom.contact.continuous_detection import CLEAR, FLAT_RIM, UNSURE
 from carom.contact.parting_of_profile import has_profile
-from carom.dynamics.adapt import allowed_step, plan_next, shorter, step_error
+from carom.dynamics.adapt import allowed_step, crawls, plan_next, shorter, step_error
 from carom.dynamics.explicit import CONSTRAINTS_LOST, rubs
 from carom.dynamics.more_forces import turns_round
 from carom.dynamics.step import step
@@ -140,6 +140,9 @@ def trial_step(model, data, method):
     own.since += 1.0 + now.shape[0] + active.contact_states.shape[0]
     if overdone(controls, own):
         return TOO_MANY
+    if controls.order > 0 and search.active == 0:
+        if crawls(clock, controls.duration - clock.now, search.dt, controls.interval):
+            return STEP_TOO_SMALL
     if (active.count[0] > 0 or rubs(system)) and code == 0:
         contact_step(model, data, method, search.dt)
         if work.result[0].code != 0:  # a stage without a solution: a shorter step may have one

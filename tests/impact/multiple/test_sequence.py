@@ -96,7 +96,7 @@ def test_the_exponent_is_that_of_the_shapes():
         (-0.0709523536, 0.0764030391, 0.9945493146),
         (-0.1302616951, 0.1502295694, 0.9800321256),
     )
-    ellipsoid = carom.Ellipsoid(R, 1.2 * R, 1.1 * R)
+    ellipsoid = carom.Ellipsoid(R, R, R)  # others have other curvatures: test_hertz.py
     np.testing.assert_allclose(three(carom.Sphere(R)), round_, rtol=0, atol=1e-6)
     np.testing.assert_allclose(three(ellipsoid), round_, rtol=0, atol=1e-6)
     np.testing.assert_allclose(

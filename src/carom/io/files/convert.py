@@ -203,7 +203,23 @@ def write_tables(path: Path, solution) -> None:
 
 def _bytes(frame, kind: str) -> bytes:
     if kind == ".csv":
-        return frame.to_csv(index=False).encode()
+        return csv_of(frame, index=False)
     out = io.BytesIO()
     frame.to_parquet(out, engine="pyarrow", index=False)
     return out.getvalue()
+
+
+def csv_of(frame, index: bool = True) -> bytes:
+    """Return a table as CSV; words that a spreadsheet would take for a formula begin with an apostrophe."""
+    words = frame.select_dtypes(exclude="number").columns
+    frame = frame.assign(**{name: frame[name].map(_no_formula) for name in words})
+    return frame.rename(columns=_no_formula).to_csv(index=index).encode()
+
+
+def _no_formula(cell):
+    """Return a cell; a word that begins with = + - @ or a control character with an apostrophe before it."""
+    return (
+        f"'{cell}"
+        if isinstance(cell, str) and cell[:1] in ("=", "+", "-", "@", "\t", "\r")
+        else cell
+    )

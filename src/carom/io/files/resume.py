@@ -10,6 +10,7 @@ from carom import arguments, checks
 from carom.io.files.kept import KeptRun
 from carom.results.solution import Solution
 from carom.status import Status
+from carom.stepping.thresholds import MOST_STEPS
 
 
 @arguments.formerly(duration="until")
@@ -68,12 +69,10 @@ def resume(
     assert isinstance(kept, KeptRun)
     if until is not None:
         refuse_steps(kept)
-        given = solution.settings
-        step = given["step"] if isinstance(given["step"], float) else given["duration"]
-        most = 1e12 * step  # steps that have numbers
+        most = longest(solution.settings)
         # an interrupted run has not reached the end that it was to have
         on_the_way = solution.status is Status.INTERRUPTED
-        least = float(solution.t[-1]) if on_the_way else given["duration"]
+        least = float(solution.t[-1]) if on_the_way else solution.settings["duration"]
         until = checks.number("until", until, above=least, most=most, unit="s")
     elif solution.status.ended:
         return solution
@@ -107,7 +106,13 @@ def go_on(solution, duration: float, progress, throw: bool):
     from carom.stepping.settings import check_handling
 
     check_handling(progress, throw, 60.0)
-    duration = checks.number("duration", duration, above=0.0, unit="s")
+    before, most = solution.settings["duration"], longest(solution.settings)
+    duration = checks.number("duration", duration, above=0.0, most=most, unit="s")
+    if not before < before + duration <= most:
+        raise ValueError(
+            f"duration must be between round-off of the time reached, {before:g} s, and "
+            f"{most - before:g} s, got {duration:g} s"
+        )
     checkpoint, kept = state_at_end(solution), solution._run
     refuse_steps(kept)
     if not solution.status.ended or checkpoint is None:
@@ -119,7 +124,13 @@ def go_on(solution, duration: float, progress, throw: bool):
         given = kept.scene, solution.settings, kept.options, kept.records, checkpoint
         kept = KeptRun(*given, missing=[], attributes={}, found=kept.found)
     kept.need_functions("by Solution.load to continue")
-    return finish(kept.revived(solution.settings["duration"] + duration), progress, None, throw)
+    return finish(kept.revived(before + duration), progress, None, throw)
+
+
+def longest(settings: Mapping) -> float:
+    """Return the greatest duration of a run with these settings, whose steps still have numbers [s]."""
+    step = settings["step"] if isinstance(settings["step"], float) else settings["duration"]
+    return MOST_STEPS * step
 
 
 def refuse_steps(kept) -> None:

@@ -36,11 +36,20 @@ class Sealed(NamedTuple):
 def seal(parts: list, index: dict[str, Any]) -> list:
     """Return the bytes of a file, in parts: those given, their index, and the line with the digest."""
     text = json.dumps(index, allow_nan=False).encode()
-    parts = [*parts, text, (BEFORE % (FORMAT, len(text))).encode()]
+    return with_digest([*parts, text, (BEFORE % (FORMAT, len(text))).encode()])
+
+
+def with_digest(parts: list) -> list:
+    """Return the bytes of a file, in parts, and their SHA-256 with the end of a line."""
     digest = hashlib.sha256()
     for one in parts:
         digest.update(one)
     return [*parts, f"{digest.hexdigest()}\n".encode()]
+
+
+def agrees(data: memoryview) -> bool:
+    """Return whether the bytes of a file agree with the digest at its end."""
+    return bytes(data[-65:]) == f"{hashlib.sha256(data[:-65]).hexdigest()}\n".encode()
 
 
 def unsealed(path: Path) -> Sealed:
@@ -57,8 +66,8 @@ def unsealed(path: Path) -> Sealed:
     tail = TAIL.fullmatch(data[-LENGTH:])
     if tail is None:
         raise ValueError(refusal(path, _what_it_is(bytes(data[: len(SIGNATURE)]))))
-    version, length, digest = int(tail[1]), int(tail[2]), tail[3].decode()
-    if hashlib.sha256(data[:-65]).hexdigest() != digest:
+    version, length = int(tail[1]), int(tail[2])
+    if not agrees(data):
         raise ValueError(refusal(path, "it is damaged: its digest does not agree with its bytes"))
     if version != FORMAT:
         raise ValueError(

@@ -152,7 +152,7 @@ def _of_function(function: Callable) -> np.ndarray:
         value = checks.call("outline", function, angle)
         try:
             numbers = np.array(value, dtype=float).ravel()
-        except (TypeError, ValueError):
+        except (OverflowError, TypeError, ValueError):
             numbers = np.zeros(0)
         if len(numbers) not in (1, 2) or not np.all(np.isfinite(numbers)):
             raise ValueError(

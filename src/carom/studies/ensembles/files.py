@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from carom import checks
-from carom.io.files.convert import RUN
-from carom.io.files.disk import put
+from carom.io.files.convert import RUN, csv_of
+from carom.io.files.disk import put, replace_folder
 from carom.io.files.layout import Variable
+from carom.io.files.sealed import agrees, with_digest
 from carom.io.files.writing import hdf5
 from carom.studies.ensembles.outcome import no_outcomes
 from carom.studies.ensembles.store import Store, from_file, in_file, is_begun
@@ -30,7 +33,11 @@ from carom.studies.ensembles.table import (
 if TYPE_CHECKING:
     from carom.studies.ensembles.result import Ensemble
 
-FORMAT = "carom ensemble in one file 1"
+FORMAT = "carom ensemble in one file 2"
+OLDER = "carom ensemble in one file 1"  # the same without a digest
+#: after the HDF5 data, where HDF5 does not read, before the SHA-256 of all bytes
+DIGEST = b"\ncarom ensemble, sha256 "
+DAMAGED = "it is damaged: its digest does not agree with its {}"
 FILES = (*RUN, ".parquet", ".csv")
 FACTS = ("carom", "settings", "body_names", "grid")  # of `Ensemble.about`, in all files
 UNITS = {
@@ -115,9 +122,10 @@ def save(path: Path, ensemble: Ensemble) -> None:
             checks.need("pyarrow", "saving as .parquet", "parquet")
         frame = to_pandas(ensemble)
         if kind == ".csv":
-            put(path, [frame.to_csv().encode()])
+            put(path, [csv_of(frame)])
             return
         known = {"format": FORMAT, "about": facts_of(ensemble), "layout": layout(ensemble)}
+        known["digest"] = _digest_of(vars(ensemble))
         frame.attrs = {"carom": json.dumps(known)}
         out = io.BytesIO()
         frame.to_parquet(out, engine="pyarrow")
@@ -171,9 +179,7 @@ def _save_zarr(path: Path, ensemble: Ensemble) -> None:
         said = {k: text for k, text in ensemble.failures.items() if first <= k < first + chunk}
         seen = {name: values[rows] for name, values in ensemble.observed.items()}
         store.write(Part(first, ensemble.outcomes[rows], said, seen))
-    if path.exists():
-        shutil.rmtree(path)
-    new.rename(path)
+    replace_folder(new, path)
 
 
 def _save_netcdf(path: Path, ensemble: Ensemble) -> None:
@@ -190,14 +196,18 @@ def _save_netcdf(path: Path, ensemble: Ensemble) -> None:
         variables.append(one)
     facts = {k: text for k, text in facts_of(ensemble).items() if k in ("carom", "settings")}
     attributes = {**facts, "format": FORMAT, "flags": json.dumps(flags)}
-    put(path, [hdf5(variables, attributes)[0]])
+    put(path, with_digest([hdf5(variables, attributes)[0], DIGEST]))
 
 
 def _load_netcdf(path: Path) -> dict[str, Any]:
     import h5netcdf
 
-    with h5netcdf.File(path, "r") as file:
-        _check_format(str(file.attrs["format"]))
+    data = memoryview(path.read_bytes())
+    sealed = bytes(data[-len(DIGEST) - 65 : -65]) == DIGEST
+    if sealed and not agrees(data):  # before HDF5 reads it: it crashes on some damaged files
+        raise ValueError(DAMAGED.format("bytes"))
+    with h5netcdf.File(io.BytesIO(data), "r") as file:
+        _check_format(str(file.attrs["format"]), sealed)
         flags = json.loads(str(file.attrs["flags"]))
         lead = file.variables["status"].dimensions
         arrays = {name: _values(one[...]) for name, one in file.variables.items()}
@@ -246,14 +256,40 @@ def _load_parquet(path: Path) -> dict[str, Any]:
 
     frame = pandas.read_parquet(path, engine="pyarrow")
     known = json.loads(frame.attrs["carom"])
-    _check_format(known["format"])
     found = {name: np.array(frame[name].tolist()) for name in frame.columns}
-    return from_columns(found, known["layout"], known["about"])
+    fields = from_columns(found, known["layout"], known["about"])
+    _check_format(known["format"], "digest" in known)
+    if "digest" in known and _digest_of(fields) != known["digest"]:
+        raise ValueError(DAMAGED.format("numbers"))
+    return fields
 
 
-def _check_format(known: str) -> None:
-    if known != FORMAT:
-        raise ValueError(f"its format must be {FORMAT!r}, got {known!r}")
+def _check_format(form: str, sealed: bool) -> None:
+    if form != (FORMAT if sealed else OLDER):
+        raise ValueError(
+            f"it is of format {form!r} {'with' if sealed else 'without'} a digest, not {FORMAT!r}"
+        )
+
+
+def _digest_of(fields: dict[str, Any]) -> str:
+    """Return the SHA-256 of all numbers and words of an ensemble, as they are before and after a file."""
+    one, found = SimpleNamespace(**fields), hashlib.sha256()
+    outcomes = {name: one.outcomes[name] for name in one.outcomes.dtype.names}
+    for table in (outcomes, one.inputs, one.observed):
+        for name, values in sorted(table.items()):
+            kind = values.dtype.kind
+            found.update(f"{name} {kind} {values.shape}".encode())
+            if kind in "fc":  # files may keep another NaN
+                values = np.where(np.isnan(values), np.full_like(values, np.nan), values)
+            if kind in "OSU":
+                found.update(json.dumps(values.tolist()).encode())
+            else:
+                found.update(np.ascontiguousarray(values).tobytes())
+    said = [one.about.get(name, "") for name in ("carom", "settings")]
+    words = [said, body_names(one), json.loads(one.about.get("grid", "{}"))]
+    words.append(sorted((int(k), str(text)) for k, text in one.failures.items()))
+    found.update(json.dumps(words).encode())
+    return found.hexdigest()
 
 
 def check_folder(save: Path) -> None:

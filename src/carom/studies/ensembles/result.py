@@ -181,7 +181,7 @@ class Ensemble(Shown):
         if isinstance(plan.scene, Scene):
             one = {name: array[run : run + 1] for name, array in self.inputs.items()}
             rows = plan_of(plan.scene, plan.settings, one, {}, None)[1]
-            values = {name: array[0] for name, array in rows.items()}
+            values = {name: array[0, ...] for name, array in rows.items()}
             scene = changed(plan.scene, plan.targets, values)
             if any(name in values for name in PLACED):
                 moved = Run(scene, how)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,7 @@ AXES: dict[tuple[int, ...], tuple[str, ...]] = {(3,): ("x", "y", "z"), (4,): ("w
 FOLDERS = ("inputs", "observed")
 
 
-def body_names(ensemble: Ensemble) -> list[str]:
+def body_names(ensemble: Ensemble | SimpleNamespace) -> list[str]:
     """Return the names of the bodies; those of a file without them are numbered."""
     count = ensemble.outcomes.dtype["position"].shape[0]
     given = ensemble.about.get("body_names")

@@ -12,6 +12,7 @@ import numpy as np
 
 import carom
 from carom import checks
+from carom.io.files.disk import put
 from carom.scene.shapes.revolved import Cylinder
 from carom.visual.bodies import JOINT, Part, colours_of, ground_rails, turn_to
 from carom.visual.films.models import model_of, rgb
@@ -208,4 +209,4 @@ class File:
             made.animations = [g.Animation(name="motion", samplers=samplers, channels=channels)]
         made.buffers = [g.Buffer(byteLength=len(self.block))]
         made.set_binary_blob(bytes(self.block))
-        made.save_binary(str(path))
+        put(path, made.save_to_bytes())

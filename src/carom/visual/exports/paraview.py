@@ -9,6 +9,7 @@ import numpy as np
 
 from carom import checks
 from carom.geometry import quaternion
+from carom.io.files.disk import staged
 from carom.visual.viewer.show import Show
 from carom.visual.viewer.strikes import world_impulses
 
@@ -16,14 +17,18 @@ from carom.visual.viewer.strikes import world_impulses
 def write_pvd(show: Show, path: Path, speed: float) -> None:
     """Write a show; times are those of the run, whatever the `speed`."""
     meshio = checks.need("meshio", "a file in .pvd", "export")
-    folder = path.with_suffix("")
-    folder.mkdir(exist_ok=True)
+    with staged(path) as folder:
+        _write_all(show, path, folder, meshio)
+
+
+def _write_all(show: Show, path: Path, folder: Path, meshio) -> None:
+    """Write the list of times and all its files into a folder."""
     file = ElementTree.Element("VTKFile", type="Collection", version="0.1")
     found = ElementTree.SubElement(file, "Collection")
 
     def note(t: float, part: int, name: str) -> None:
         ElementTree.SubElement(
-            found, "DataSet", timestep=repr(float(t)), part=str(part), file=f"{folder.name}/{name}"
+            found, "DataSet", timestep=repr(float(t)), part=str(part), file=f"{path.stem}/{name}"
         )  # fmt: skip
 
     fixed = _fixed(show, meshio)
@@ -38,7 +43,7 @@ def write_pvd(show: Show, path: Path, speed: float) -> None:
         if fixed is not None:
             note(t, 2, "fixed.vtu")
     ElementTree.indent(file)
-    ElementTree.ElementTree(file).write(path, encoding="utf-8", xml_declaration=True)
+    ElementTree.ElementTree(file).write(folder / path.name, encoding="utf-8", xml_declaration=True)
 
 
 def _fixed(show: Show, meshio):

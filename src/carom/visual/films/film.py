@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import io
 import math
 from collections.abc import Callable
 from pathlib import Path
@@ -9,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from carom import arguments, checks
+from carom.io.files.disk import put, staged
 from carom.visual.films.marks import LINGER
 from carom.visual.films.stage import Stage, pillow
 from carom.visual.plots.figure import need_bodies
@@ -124,12 +127,35 @@ def _write_mp4(path: Path, pictures, fps: float) -> None:
     for module in ("imageio_ffmpeg", "imageio.v2"):
         what = "a film in MP4 (one in .gif does not)"
         imageio = checks.need(module, what, "film", "imageio-ffmpeg")
-    with imageio.get_writer(
-        path, format="FFMPEG", fps=fps, codec="libx264", pixelformat="yuv420p", macro_block_size=2,  # pyright: ignore
-        output_params=["-crf", "18", "-preset", "medium", "-movflags", "+faststart"],
-    ) as writer:  # fmt: skip
-        for picture in pictures:
-            writer.append_data(picture)  # pyright: ignore[reportAttributeAccessIssue]
+    with staged(path) as folder:
+        made = folder / path.name
+        with imageio.get_writer(
+            made, format="FFMPEG", fps=fps, codec="libx264", pixelformat="yuv420p", macro_block_size=2,  # pyright: ignore
+            output_params=["-crf", "18", "-preset", "medium", "-movflags", "+faststart"],
+        ) as writer:  # fmt: skip
+            for picture in pictures:
+                writer.append_data(picture)  # pyright: ignore[reportAttributeAccessIssue]
+        if not _is_whole(made):
+            raise OSError(errno.EIO, "ffmpeg could not write the film, for example on a full disk")
+
+
+def _is_whole(path: Path) -> bool:
+    """Return whether an MP4 has all its boxes: ffmpeg does not say when its disk was full.
+
+    A box begins with its length (ISO/IEC 14496-12, §4.2): four bytes, or eight after a length of 1.
+    """
+    at, end, names = 0, path.stat().st_size, []
+    with path.open("rb") as file:
+        while at < end:
+            file.seek(at)
+            head = file.read(16)
+            length = int.from_bytes(head[:4], "big")
+            length = int.from_bytes(head[8:], "big") if length == 1 else length
+            names.append(head[4:8])
+            if length < 8:
+                return False
+            at += length
+    return at == end and {b"ftyp", b"moov", b"mdat"} <= set(names)
 
 
 def _write_gif(path: Path, pictures, fps: float) -> None:
@@ -140,7 +166,9 @@ def _write_gif(path: Path, pictures, fps: float) -> None:
     frames = [one.quantize(palette=palette, dither=Image.Dither.NONE) for one in frames]
     # hundredths of a second are what the format has: shared out so that the whole lasts as long as it should
     ends = np.round(100.0 / fps * np.arange(len(frames) + 1)).astype(int)
+    out = io.BytesIO()
     frames[0].save(
-        path, save_all=True, append_images=frames[1:], duration=(10 * np.diff(ends)).tolist(), loop=0,
+        out, "GIF", save_all=True, append_images=frames[1:], duration=(10 * np.diff(ends)).tolist(), loop=0,
         optimize=False,
     )  # fmt: skip
+    put(path, [out.getbuffer()])

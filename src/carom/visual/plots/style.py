@@ -6,6 +6,7 @@ nothing of the caller's matplotlib is touched and no display is needed.
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Mapping
 from contextlib import contextmanager
@@ -14,6 +15,7 @@ from textwrap import shorten
 from typing import Any
 
 from carom import checks
+from carom.io.files.disk import put
 
 COLUMN, PAGE = 3.4, 6.9  # widths of one and of two columns [in]
 
@@ -105,8 +107,9 @@ def picture(path, height=2.6, columns=1, rows=1, width=PAGE, **options):
 
 def write(figure, path) -> None:
     """Write a figure as PNG; the folder is made if there is none."""
-    Path(path).parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=DPI)
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    put(path, [as_bytes(figure, path.suffix, dpi=DPI)])
 
 
 def mosaic(width, height, layout, columns, rows=None) -> tuple[Any, Any]:
@@ -120,6 +123,13 @@ def mosaic(width, height, layout, columns, rows=None) -> tuple[Any, Any]:
 def save(figure, folder: Path, name: str) -> list[Path]:
     """Write a figure as PDF and PNG; the same input gives the same bytes."""
     files = [folder / f"{name}.pdf", folder / f"{name}.png"]
-    figure.savefig(files[0], metadata={"CreationDate": None})
-    figure.savefig(files[1], dpi=DPI)
+    put(files[0], [as_bytes(figure, ".pdf", metadata={"CreationDate": None})])
+    put(files[1], [as_bytes(figure, ".png", dpi=DPI)])
     return files
+
+
+def as_bytes(figure, suffix: str, **options: Any) -> memoryview:
+    """Return a figure as the bytes of a file with this suffix."""
+    out = io.BytesIO()
+    figure.savefig(out, format=suffix.removeprefix(".") or "png", **options)
+    return out.getbuffer()

@@ -14,6 +14,7 @@ import numpy as np
 
 from carom import checks
 from carom.visual.viewer.frames import poses_at
+from carom.visual.viewer.guard import guarded
 from carom.visual.viewer.show import Show, body_number, playing_speed
 
 RATE = 30.0  # pictures a second
@@ -54,10 +55,14 @@ class LiveView:
         self.speed = speed or playing_speed(self.end - self.start)
         self._followed, self._change = follow, threading.RLock()
         self._stopped, self._marked = threading.Event(), 0.0
-        with redirect_stdout(io.StringIO()):  # hide the banner of viser; `wait` prints the address
+        # hide the banner of viser; `wait` prints the address
+        with redirect_stdout(io.StringIO()), guarded(host) as used:
             self.server = viser.ViserServer(
                 host, port or free_port(host), label=show.title, verbose=False
             )
+            if not used:
+                self.server.stop()
+                raise RuntimeError("a live view needs a version of viser that serves by websockets")
         self.stage = LiveScene(self.server, show)
         self.panel = LivePanel(self.server, show, self)
         if len(show.strikes.number):

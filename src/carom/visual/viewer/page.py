@@ -13,6 +13,7 @@ import numpy as np
 
 import carom
 from carom import checks
+from carom.io.files.disk import put
 from carom.visual.bodies import colour_of
 from carom.visual.dice import pip_colour
 from carom.visual.viewer.pack import Packer, header_text
@@ -53,8 +54,9 @@ def write_page(
         more = OTHERS.get(where.suffix.lower(), "")
         raise ValueError(f"export must end in .html, got {checks.shown(str(where))}{more}")
     text = page_text(show, follow, speed)
-    where.write_text(text, encoding="utf-8")
-    return Exported(where, len(text.encode("utf-8")), show.left_out)
+    data = text.encode("utf-8")
+    put(where, [data])
+    return Exported(where, len(data), show.left_out)
 
 
 def page_text(show: Show, follow: str | None = None, speed: float | None = None) -> str:
