@@ -1,7 +1,7 @@
 """The face of a solid whose normal is nearest to a given direction, as a ring of corners.
 
-Segments and lines of the mantle of a cylinder have two corners; points, ellipsoids and rims of discs one. Eight points of the
-rim, fixed in the body, represent a cap of a cylinder.
+Segments and lines of the mantle of a cylinder have two corners; points, ellipsoids and rims of discs have one.
+Eight points of the rim, fixed in the body, represent a cap of a cylinder.
 """
 
 from __future__ import annotations

@@ -98,8 +98,8 @@ def ends_of_line(pair, ends_a, ends_b, least, most, count):
 
     These ends carry a contact along a line. Each has its own distance and normal; those of a line of a mantle
     are found from the axis, exactly at any gap. The normal must be near that of the first point: an end that
-    hangs over another edge is no contact. Two equal segments side by side have two ends, whatever round-off says:
-    ends that lie on each other are one. Return the new count.
+    hangs over another edge is no contact. Ends that lie on each other are one, so that two equal segments side by
+    side have two ends, whatever round-off says. Return the new count.
     """
     s, found = pair.state, pair.found
     p, u, g = _line(s, 0, ends_a)

@@ -133,7 +133,7 @@ def _bends(a, b, n, d, v):
 
 @inlined
 def _least_and_most(e, s, first, other, stiff):
-    """Return the principal directions of the matrix (first, other; other, stiff) in e and s, the greater last."""
+    """Return the principal directions of the matrix (first, other; other, stiff) in e, s; the greater last."""
     angle = 0.5 * math.atan2(2.0 * other, first - stiff)
     c, sine = math.cos(angle), math.sin(angle)
     most = plus((c * e[0], c * e[1], c * e[2]), sine, s)
