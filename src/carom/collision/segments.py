@@ -93,13 +93,14 @@ def edge_on_edge(pair, ends_a, ends_b):
 
 
 @kernel
-def ends_of_line(pair, ends_a, ends_b, least, most, count):
-    """Add the ends of each segment that project into the other, with gaps from `least` to `most`.
+def ends_of_line(pair, ends_a, ends_b, most, count):
+    """Add the ends of each segment that project into the other, with gaps up to `most`.
 
     These ends carry a contact along a line. Each has its own distance and normal; those of a line of a mantle
-    are found from the axis, exactly at any gap. The normal must be near that of the first point: an end that
-    hangs over another edge is no contact. Ends that lie on each other are one, so that two equal segments side by
-    side have two ends, whatever round-off says. Return the new count.
+    are found from the axis, exactly at any gap. The first point may be an end that is higher by round-off. The
+    normal must be near that of the first point: an end that hangs over another edge is no contact. Ends that lie
+    on each other are one, so that two equal segments side by side have two ends, whatever round-off says. Return
+    the new count.
     """
     s, found = pair.state, pair.found
     p, u, g = _line(s, 0, ends_a)
@@ -139,7 +140,7 @@ def ends_of_line(pair, ends_a, ends_b, least, most, count):
         else:  # sharp edges that touch: their distance has no direction
             n, owner = first, first_owner
         beside = n[0] * first[0] + n[1] * first[1] + n[2] * first[2] > SAME_DIRECTION
-        if not (inside and beside and least <= gap <= most):
+        if not (inside and beside and gap <= most):
             continue
         on_a, on_b = plus(on_a, -round_a, n), plus(on_b, round_b, n)
         put(found[count], gap, n, on_a, on_b, feature)

@@ -148,7 +148,7 @@ def _manifold(pair, reach):
     if not (rims or max(on_a, on_b) > 1.0 - ROUND_OFF):  # the sides of a rim's polygon are no edges
         ends_a, ends_b = _lowest_side(s, 0, nx, ny, nz), _lowest_side(s, 1, -nx, -ny, -nz)
         before = count
-        count = ends_of_line(pair, ends_a, ends_b, least - tolerance, most, count)
+        count = ends_of_line(pair, ends_a, ends_b, most, count)
         if found[0].feature >> 60 == EDGES and count == before + 2:
             return _without_first(found, count, least + tolerance, 2)
     if found[0].feature == 0:
