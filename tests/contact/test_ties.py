@@ -47,7 +47,10 @@ LINES = {
     "face": lambda r, length: (Box(2 * r, 2 * r, length), r, 0.0),
 }
 PAIRS = [
-    (a, b) for i, a in enumerate(LINES) for b in list(LINES)[i:] if {a, b} not in ({"edge"}, {"face"})
+    (a, b)
+    for i, a in enumerate(LINES)
+    for b in list(LINES)[i:]
+    if {a, b} not in ({"edge"}, {"face"})
 ]
 
 
@@ -67,12 +70,17 @@ def test_equal_lines_side_by_side_touch_at_both_ends(a, b):
         two, y, about = LINES[b](rng.uniform(0.02, 0.2), length)
         gap = rng.choice([0.0, 1e-15, -1e-15, 1e-6, -1e-9])
         up = turned((1, 0, 0), math.pi * rng.integers(2))
-        q = quaternion.multiply(round_off_of_tilt(rng), quaternion.multiply(up, turned((0, 0, 1), turn)))
+        q = quaternion.multiply(
+            round_off_of_tilt(rng), quaternion.multiply(up, turned((0, 0, 1), turn))
+        )
         beside = Pose(np.array([x + y + gap, 0.0, shift]), q)
         at_origin = Pose(np.zeros(3), turned((0, 0, 1), about))
         (pose, its), back = in_a_random_frame(rng, beside, at_origin)
         found = touching(one, two, pose, its, reach=1e-3 * min(one.size, two.size)).points
-        want = max(-length / 2, shift - other * length / 2), min(length / 2, shift + other * length / 2)
+        want = (
+            max(-length / 2, shift - other * length / 2),
+            min(length / 2, shift + other * length / 2),
+        )
         np.testing.assert_allclose(sorted(back(p)[2] for p in found.on_a), want, atol=1e-9)
         np.testing.assert_allclose(found.gap, gap, atol=1e-11)
 
@@ -89,14 +97,21 @@ def test_equal_faces_on_each_other_touch_all_round(corners):
             solid = Box(radius, rng.uniform(1.0, 2.0) * radius, height)
         turn = rng.choice([0.0, 1e-15, 1e-13, -1e-11, 1e-10])
         if corners:
-            turn += 2 * math.pi * (rng.integers(corners) / corners if k % 2 == 0 else rng.integers(2) / 2)
+            turn += (
+                2
+                * math.pi
+                * (rng.integers(corners) / corners if k % 2 == 0 else rng.integers(2) / 2)
+            )
             turn = turn if corners % 2 == 0 or k % 2 == 0 else 0.0
         elif k % 2 == 0:
             turn = rng.uniform(0, 6)
         off = radius * rng.normal(size=2) * rng.choice([0.0, 1e-16, 1e-13, 1e-11])
         gap = radius * rng.choice([0.0, 1e-15, -1e-15, 1e-6, -1e-9])
         q = quaternion.multiply(round_off_of_tilt(rng), turned((0, 0, 1), turn))
-        over, below = Pose(np.array([*off, height + gap]), q), Pose(np.zeros(3), turned((0, 0, 1), 0.0))
+        over, below = (
+            Pose(np.array([*off, height + gap]), q),
+            Pose(np.zeros(3), turned((0, 0, 1), 0.0)),
+        )
         (pose, its), back = in_a_random_frame(rng, over, below)
         found = touching(solid, solid, pose, its, reach=1e-3 * solid.size).points
         assert len(found) == (corners or 8)

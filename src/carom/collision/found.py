@@ -54,9 +54,10 @@ def _apart(found, i, j):
 def keep_new(found, count, near, exact):
     """Keep the point in row `count` unless it is there already; return the new number of points.
 
-    It is there if a point has its feature, or lies within `near` of it: a corner on an edge, ends of two equal
-    lines side by side. Of two names of one place the smaller number stays (corners of A, of B, edges), so that
-    round-off does not choose it. If it is `exact`, it replaces the first point with its feature.
+    It is there if a point has its feature, or lies within `near` of it with its normal: ends of two equal lines
+    side by side. Of two names the smaller number stays (corners of A, of B, edges), so that round-off does not
+    choose it. A corner that passes an edge has two normals, which are two points. If the new point is `exact`,
+    it replaces the first one with its feature.
     """
     new = found[count]
     for k in range(count):
@@ -66,7 +67,8 @@ def keep_new(found, count, near, exact):
             return count
     for k in range(count):
         named = found[k].feature != 0  # points without a name may have no place yet
-        if named and _apart(found, k, count) <= near * near:
+        alike = dot(found[k].normal, new.normal) > 1.0 - ROUND_OFF
+        if named and alike and _apart(found, k, count) <= near * near:
             if new.feature < found[k].feature:
                 swap(found, k, count)
             return count
