@@ -54,7 +54,7 @@ PAIRS = [
 ]
 
 
-@pytest.mark.parametrize("a, b", PAIRS)
+@pytest.mark.parametrize(("a", "b"), PAIRS)
 def test_equal_lines_side_by_side_touch_at_both_ends(a, b):
     # Segments of the length L, shifted by s along themselves, lie on each other from -L/2 + max(0, s) to
     # L/2 + min(0, s); one of the length K flush at one end has s = +-(L - K)/2.

@@ -48,6 +48,15 @@ def _axis_below(pair, side, p, u):
 
 
 @kernel
+def are_parallel(s, ends_a, ends_b):
+    """Return whether two segments, given by their corners, have no common normal."""
+    _, u, _ = _line(s, 0, ends_a)
+    _, w, _ = _line(s, 1, ends_b)
+    n = cross(u, w)
+    return dot(n, n) <= LEAST_SINE * LEAST_SINE
+
+
+@kernel
 def nearest(d, u, g, w, h):
     """Return t in [0, g] and z in [0, h] where d + t u and z w are nearest; u, w are unit vectors or zero.
 
@@ -98,9 +107,9 @@ def ends_of_line(pair, ends_a, ends_b, most, count):
 
     These ends carry a contact along a line. Each has its own distance and normal; those of a line of a mantle
     are found from the axis, exactly at any gap. The first point may be an end that is higher by round-off. The
-    normal must be near that of the first point: an end that hangs over another edge is no contact. Ends that lie
-    on each other are one, so that two equal segments side by side have two ends, whatever round-off says. Return
-    the new count.
+    normal must be near that of the first point: an end that hangs over another edge is no contact. Ends that
+    lie on each other are one, so that two equal segments side by side have two ends, whatever round-off says.
+    Return the new count.
     """
     s, found = pair.state, pair.found
     p, u, g = _line(s, 0, ends_a)

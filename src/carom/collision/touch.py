@@ -8,6 +8,8 @@ Pairs with a profile have kernels of their own (`carom.collision.profile`).
 
 from __future__ import annotations
 
+import math
+
 from carom._compiled.decorators import by_reference, entry, kernel
 from carom._compiled.units import unit
 from carom.collision.box import point_box, segment_box
@@ -27,7 +29,7 @@ from carom.collision.round import (
     point_segment,
     segment_segment,
 )
-from carom.collision.segments import ends_of_line
+from carom.collision.segments import are_parallel, ends_of_line
 from carom.collision.support import separation
 from carom.collision.thresholds import FACING
 from carom.geometry.thresholds import ROUND_OFF
@@ -150,7 +152,9 @@ def _manifold(pair, reach):
         before = count
         count = ends_of_line(pair, ends_a, ends_b, most, count)
         if found[0].feature >> 60 == EDGES and count == before + 2:
-            return _without_first(found, count, least + tolerance, 2)
+            # a search finds parallel lines of mantles less exactly than their ends are known
+            most = math.inf if are_parallel(s, ends_a, ends_b) else least + tolerance
+            return _without_first(found, count, most, 2)
     if found[0].feature == 0:
         count = _without_first(found, count, least + tolerance, 1)
         found[0].feature = name if found[0].feature == 0 else found[0].feature

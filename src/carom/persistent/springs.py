@@ -213,7 +213,7 @@ def turns_with(group, j, i):
 
 @kernel
 def first_forces(k, n, turn, push, group):
-    """Solve for the forces; return how many points begin or cease to press, -1 if rows that press do not fit."""
+    """Solve for the forces; return how many points begin or cease to press, -1 if the rows do not fit."""
     p, equations, closed = group.v[P], group.equations, group.closed
     rows, x, r = equations.rows, equations.x, equations.r
     for row in range(3 * k):
