@@ -15,7 +15,6 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.friction import lu
 from carom.friction.layout import CONE, SLIDING
 from carom.impact.workspace import C, P, U
 from carom.persistent import thresholds as limits
@@ -43,31 +42,10 @@ def solve_stage(k, hg, group):
         if idle > 0.0 and not newton(k, hg, HALVES, idle, group):
             idle = 0.0
         if not (newton(k, hg, HALVES, 0.0, group) or newton(k, hg, 1, 0.0, group)):
-            if not unload_misfit(k, hg, group):
-                return False
-        elif not change_loads(k, turn, group):
+            return False
+        if not change_loads(k, turn, group):
             return True
     return False
-
-
-@kernel
-def unload_misfit(k, hg, group):
-    """Unload the spring that pulls most if the rows of what is loaded do not fit; return whether there is one.
-
-    With the compliance eps S they have forces, without friction here (`carom.persistent.springs`).
-    """
-    n, p, equations = list_unknowns(k, group), group.v[P], group.equations
-    rows, x = equations.rows, equations.x
-    for i in range(n):
-        p[rows[i]] = 0.0
-    write_equations(k, n, hg, 0.0, group)
-    for i in range(n):
-        x[i] = -equations.r[i]
-    factor(n, rows, group)
-    lu.substitute(equations.factor, n, equations.pivot, x)
-    for i in range(n):
-        p[rows[i]] = x[i]
-    return unload(k, False, group) > 0
 
 
 @kernel

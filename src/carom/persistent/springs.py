@@ -17,9 +17,7 @@ Stick is softer, and among points as 1/(mu N), like micro-slip: what others hold
 that slip together reach their cones together.
 
 Rows that depend on each other (two wheels of an axle) fit each other in a position of the system, and in a
-stage to the error of the stage: what no force removes is left to the return at the end of the step. Where they
-do not fit (four corners of a face that tips over the edge of a table), some of the points open: with eps there
-are forces, of both signs, and what pulls most is unloaded.
+stage to the error of the stage: what no force removes is left to the return at the end of the step.
 """
 
 from __future__ import annotations
@@ -213,7 +211,7 @@ def turns_with(group, j, i):
 
 @kernel
 def first_forces(k, n, turn, push, group):
-    """Solve for the forces; return how many points begin or cease to press, -1 if the rows do not fit."""
+    """Solve for the forces; return how many points begin or cease to press, -1 if the rows cannot be met."""
     p, equations, closed = group.v[P], group.equations, group.closed
     rows, x, r = equations.rows, equations.x, equations.r
     for row in range(3 * k):
@@ -230,8 +228,8 @@ def first_forces(k, n, turn, push, group):
         r[i] = -acceleration_of(k, rows[i], group)
     enough, small = limits.EQUATION_ERROR * push, limits.FORCE_ERROR * push
     left = settle(n, 1.0, enough, small, greatest(3 * k, p), equations)
-    if not left <= limits.DEPENDENT_ERROR * push:  # the forces with eps say what pulls
-        return 1 if unload(k, False, group) > 0 else -1
+    if not left <= limits.DEPENDENT_ERROR * push:
+        return -1
     for i in range(n):
         add_force(k, group, rows[i], x[i])
     changed = load(k, n, push, group)
