@@ -13,10 +13,10 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom.collision import features as of
 from carom.collision.faces import corner_part
-from carom.collision.found import known, put, put_parts
+from carom.collision.found import keep_new, put, put_parts
 from carom.collision.layout import CYLINDER, MOST_CORNERS
 from carom.collision.thresholds import CROSSING, TILT
-from carom.geometry.thresholds import ROUND_OFF
+from carom.geometry.thresholds import RESOLUTION, ROUND_OFF
 from carom.geometry.vectors import cross, dot, minus
 
 
@@ -117,17 +117,17 @@ def overlap(pair, ref, least, most, count):
         for i in range(3):
             s.ring[0, k, i] = s.corner[inc, k, i]
         s.label[0, k], s.side[0, k] = _vertex(inc, s.number[inc, k]), k
-    p, source = s.corner[ref, 0], 0
-    scale = pair.b.extent if ref == 1 else pair.a.extent
+    n, p, source = s.normal[ref], s.corner[ref, 0], 0
+    # sides that lie on each other to this do not cross: round-off would say where
+    same = RESOLUTION * min(pair.a.extent, pair.b.extent)
     for j in range(s.count[ref]):
-        corners = _cut(s, ref, source, corners, j, ROUND_OFF * scale)
+        corners = _cut(s, ref, source, corners, j, same)
         source = 1 - source
-    n = s.normal[ref]
     for k in range(corners):
         x = s.ring[source, k]
         height = dot(minus(x, p), n)
         gap, label = height - (pair.a.radius + pair.b.radius), s.label[source, k]
-        if least <= gap <= most and count < len(found) and not known(found, count, label):
+        if least <= gap <= most and count < len(found):
             m, owner = _normal(pair, ref, source, k, corners, height)
             foot = (x[0] - height * m[0], x[1] - height * m[1], x[2] - height * m[2])
             if ref == 1:
@@ -136,5 +136,5 @@ def overlap(pair, ref, least, most, count):
                 put(found[count], gap, (-m[0], -m[1], -m[2]), foot, (x[0], x[1], x[2]), label)
             parts = _parts(pair, label)
             put_parts(found[count], owner, parts[0], parts[1])
-            count += 1
+            count = keep_new(found, count, same, False)
     return count

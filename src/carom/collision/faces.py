@@ -1,7 +1,7 @@
 """The face of a solid whose normal is nearest to a given direction, as a ring of corners.
 
-Segments and lines of the mantle of a cylinder have two corners, points and ellipsoids one. Eight points of the
-rim, fixed in the body, represent a cap of a cylinder.
+Segments and lines of the mantle of a cylinder have two corners; points, ellipsoids and rims of discs have one.
+Eight points of the rim, fixed in the body, represent a cap of a cylinder.
 """
 
 from __future__ import annotations
@@ -89,9 +89,12 @@ def _hull_face(pair, side, x, y, z):
 
 @kernel
 def _cylinder_face(pair, side, x, y, z):
-    """Write a cap of a cylinder, or a line of its mantle; return the cosine, 0 for the mantle."""
+    """Write a cap of a cylinder, or a line of its mantle; return the cosine, 0 for the mantle.
+
+    The mantle of a disc has no length: its line is one point.
+    """
     s, half, across = pair.state, (pair.a if side == 0 else pair.b).half, math.sqrt(x * x + y * y)
-    if abs(z) >= HALF_ROOT or not across > 0.0 or half[2] == 0.0:
+    if abs(z) >= HALF_ROOT or not across > 0.0:
         up = z > 0.0
         for k in range(RIM):
             _vertex(pair, side, k, RIM * up + k)
@@ -99,8 +102,9 @@ def _cylinder_face(pair, side, x, y, z):
         return abs(z)
     c, v = half[0] * x / across, half[0] * y / across
     _corner(s, side, 0, LOWEST, (c, v, -half[2]))
-    _corner(s, side, 1, LOWEST + 1, (c, v, half[2]))
-    s.count[side] = 2
+    if half[2] > 0.0:
+        _corner(s, side, 1, LOWEST + 1, (c, v, half[2]))
+        s.count[side] = 2
     return 0.0
 
 

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 from carom._compiled.decorators import inlined, kernel
 from carom.collision.features import NOBODY, exchanged
 from carom.collision.frame import to_world
 from carom.collision.layout import MOST_POINTS
+from carom.geometry.thresholds import ROUND_OFF
+from carom.geometry.vectors import dot, minus
 
 
 @inlined
@@ -21,15 +25,6 @@ def put(row, gap, n, on_a, on_b, feature):
 def put_parts(row, owner, part_a, part_b):
     """Write the owner of the normal of a point, and the parts on which it lies."""
     row.owner, row.parts[0], row.parts[1] = owner, part_a, part_b
-
-
-@kernel
-def known(found, count, feature):
-    """Return True if one of the points has this feature."""
-    there = False
-    for k in range(count):
-        there = there or found[k].feature == feature
-    return there
 
 
 @kernel
@@ -56,19 +51,51 @@ def _apart(found, i, j):
 
 
 @kernel
-def spread(found, count):
+def keep_new(found, count, near, exact):
+    """Keep the point in row `count` unless it is there already; return the new number of points.
+
+    It is there if a point has its feature, or lies within `near` of it with its normal: ends of two equal lines
+    side by side. Of two names the smaller number stays (corners of A, of B, edges), so that round-off does not
+    choose it. A corner that passes an edge has two normals, which are two points. If the new point is `exact`,
+    it replaces the first one with its feature.
+    """
+    new = found[count]
+    for k in range(count):
+        if found[k].feature == new.feature:
+            if exact and k == 0:
+                swap(found, 0, count)
+            return count
+    for k in range(count):
+        named = found[k].feature != 0  # points without a name may have no place yet
+        alike = dot(found[k].normal, new.normal) > 1.0 - ROUND_OFF
+        if named and alike and _apart(found, k, count) <= near * near:
+            if new.feature < found[k].feature:
+                swap(found, k, count)
+            return count
+    return count + 1
+
+
+@kernel
+def spread(found, count, tiny):
     """Move the points that are kept to the front; return their number.
 
     If there are too many, the point with the least gap is kept first, and then, again and again, the point
-    farthest from all kept points. This keeps the corners of the polygon.
+    farthest from all kept points. This keeps the corners of the polygon. Of gaps that are equal to `tiny`, that
+    of the point farthest from the mean is the least: so eight of sixteen places where two rims cross are
+    those of every second one, and round-off chooses only between alike halves.
     """
     if count <= MOST_POINTS:
         return count
-    least = 0
-    for k in range(1, count):
-        if found[k].gap < found[least].gap:
-            least = k
-    swap(found, 0, least)
+    least, x, y, z = math.inf, 0.0, 0.0, 0.0
+    for k in range(count):
+        p = found[k].on_b
+        least, x, y, z = min(least, found[k].gap), x + p[0], y + p[1], z + p[2]
+    first, most = 0, -1.0
+    for k in range(count):
+        d = minus(found[k].on_b, (x / count, y / count, z / count))
+        if found[k].gap <= least + tiny and dot(d, d) > most:
+            first, most = k, dot(d, d)
+    swap(found, 0, first)
     for kept in range(1, MOST_POINTS):
         best, where = -1.0, kept
         for k in range(kept, count):
@@ -85,7 +112,7 @@ def spread(found, count):
 def hand_on(pair, count, flip, out):
     """Write the points found to `out`, in world axes and on the surfaces; with `flip` A and B are exchanged."""
     s, found = pair.state, pair.found
-    count = spread(found, count)
+    count = spread(found, count, ROUND_OFF * min(pair.a.extent, pair.b.extent))
     for k in range(count):
         row, point = found[k], out[k]
         n = row.normal

@@ -41,7 +41,7 @@ def plane_unit(a, plane, hulls, reach, work, out):
         count = lowest_of_profile(a.solid, hulls, seen, reach, found)
     else:
         count = _vertices(a.solid, hulls, seen, reach, found)
-    count = spread(found, count)
+    count = spread(found, count, ROUND_OFF * a.solid.extent)
     for k in range(count):
         p, gap = found[k].on_a, found[k].gap
         px, py, pz = rotate(q, p)

@@ -17,7 +17,7 @@ from carom.collision.features import (
     of_vertex_a,
     of_vertex_b,
 )
-from carom.collision.found import known, put, put_parts
+from carom.collision.found import keep_new, put, put_parts
 from carom.collision.layout import CYLINDER
 from carom.collision.thresholds import LEAST_SINE, LINE_CONTACT, SAME_DIRECTION
 from carom.geometry.thresholds import RESOLUTION
@@ -45,6 +45,15 @@ def _axis_below(pair, side, p, u):
         return p, 0.0
     c = (s.p[0], s.p[1], s.p[2]) if side == 0 else (0.0, 0.0, 0.0)
     return plus(c, dot(minus(p, c), u), u), solid.half[0]
+
+
+@kernel
+def are_parallel(s, ends_a, ends_b):
+    """Return whether two segments, given by their corners, have no common normal."""
+    _, u, _ = _line(s, 0, ends_a)
+    _, w, _ = _line(s, 1, ends_b)
+    n = cross(u, w)
+    return dot(n, n) <= LEAST_SINE * LEAST_SINE
 
 
 @kernel
@@ -93,12 +102,14 @@ def edge_on_edge(pair, ends_a, ends_b):
 
 
 @kernel
-def ends_of_line(pair, ends_a, ends_b, least, most, count):
-    """Add the ends of each segment that project into the other, with gaps from `least` to `most`.
+def ends_of_line(pair, ends_a, ends_b, most, count):
+    """Add the ends of each segment that project into the other, with gaps up to `most`.
 
     These ends carry a contact along a line. Each has its own distance and normal; those of a line of a mantle
-    are found from the axis, exactly at any gap. The normal must be near that of the first point: an end that
-    hangs over another edge is no contact. Return the new count.
+    are found from the axis, exactly at any gap. The first point may be an end that is higher by round-off. The
+    normal must be near that of the first point: an end that hangs over another edge is no contact. Ends that
+    lie on each other are one, so that two equal segments side by side have two ends, whatever round-off says.
+    Return the new count.
     """
     s, found = pair.state, pair.found
     p, u, g = _line(s, 0, ends_a)
@@ -114,19 +125,20 @@ def ends_of_line(pair, ends_a, ends_b, least, most, count):
     # of a line of a mantle, found from its axis, is no point of the cylinder
     if round_a + round_b > 0.0 and (1.0 - c * c) * max(g, h) > LINE_CONTACT * radii:
         return count
-    first = found[0].normal
+    m, flush = found[0].normal, RESOLUTION * min(pair.a.extent, pair.b.extent)
+    first, first_owner = (m[0], m[1], m[2]), found[0].owner
     for end in range(4):
         if end < 2:
             t = g * end
             z = dw + c * t
             i = s.number[0, ends_a[end]]
-            inside, feature = 0.0 < z < h, of_vertex_a(i)
+            inside, feature = -flush <= z <= h + flush, of_vertex_a(i)
             part_a, part_b = corner_part(pair.a, i), edge_b
         else:
             z = h * (end - 2)
             t = c * z - du
             i = s.number[1, ends_b[end - 2]]
-            inside, feature = 0.0 < t < g, of_vertex_b(i)
+            inside, feature = -flush <= t <= g + flush, of_vertex_b(i)
             part_a, part_b = edge_a, corner_part(pair.b, i)
         on_a, on_b = plus(p, t, u), plus(q, z, w)
         n = minus(on_a, on_b)
@@ -135,18 +147,13 @@ def ends_of_line(pair, ends_a, ends_b, least, most, count):
         if size > RESOLUTION * (g + h):
             n = n[0] / size, n[1] / size, n[2] / size
         else:  # sharp edges that touch: their distance has no direction
-            n, owner = (first[0], first[1], first[2]), found[0].owner
+            n, owner = first, first_owner
         beside = n[0] * first[0] + n[1] * first[1] + n[2] * first[2] > SAME_DIRECTION
-        if not (inside and beside and least <= gap <= most):
+        if not (inside and beside and gap <= most):
             continue
         on_a, on_b = plus(on_a, -round_a, n), plus(on_b, round_b, n)
-        if not known(found, count, feature):
-            put(found[count], gap, n, on_a, on_b, feature)
-            put_parts(found[count], owner, part_a, part_b)
-            count += 1
-        elif (
-            found[0].feature == feature and round_a + round_b > 0.0
-        ):  # a search found it less exactly
-            put(found[0], gap, n, on_a, on_b, feature)
-            put_parts(found[0], owner, part_a, part_b)
+        put(found[count], gap, n, on_a, on_b, feature)
+        put_parts(found[count], owner, part_a, part_b)
+        # from its axis the end of a line of a mantle is more exact than by a search
+        count = keep_new(found, count, flush, round_a + round_b > 0.0)
     return count

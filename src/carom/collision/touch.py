@@ -8,6 +8,8 @@ Pairs with a profile have kernels of their own (`carom.collision.profile`).
 
 from __future__ import annotations
 
+import math
+
 from carom._compiled.decorators import by_reference, entry, kernel
 from carom._compiled.units import unit
 from carom.collision.box import point_box, segment_box
@@ -15,14 +17,19 @@ from carom.collision.box_box import face_or_edges
 from carom.collision.clip import overlap
 from carom.collision.convex import closest
 from carom.collision.faces import load_face
-from carom.collision.features import EDGES
+from carom.collision.features import EDGES, NOBODY
 from carom.collision.found import hand_on, swap
 from carom.collision.frame import enter
 from carom.collision.layout import BOX, CURVED_GROUND, CYLINDER, POINT, PROFILE, SEGMENT, Pair
 from carom.collision.on_surface import on_surface
 from carom.collision.profile import profile_pair
-from carom.collision.round import point_point, point_segment, segment_segment
-from carom.collision.segments import ends_of_line
+from carom.collision.round import (
+    discs_in_one_plane,
+    point_point,
+    point_segment,
+    segment_segment,
+)
+from carom.collision.segments import are_parallel, ends_of_line
 from carom.collision.support import separation
 from carom.collision.thresholds import FACING
 from carom.geometry.thresholds import ROUND_OFF
@@ -85,6 +92,8 @@ def _ordered(pair, reach):
         return 1
     elif b.kind == BOX and a.kind == SEGMENT:
         segment_box(pair)
+    elif b.kind == CYLINDER and discs_in_one_plane(pair):
+        return 1
     elif not (boxes and face_or_edges(pair)):
         closest(pair)
         boxes = False
@@ -120,7 +129,11 @@ def _manifold(pair, reach):
     on_b = load_face(pair, 1, nx, ny, nz)
     if s.count[0] < 2 or s.count[1] < 2:
         return 1
-    most, count = least + reach, 1
+    most, count, name = least + reach, 1, found[0].feature
+    if name >> 60 == EDGES and found[0].owner != NOBODY:
+        found[
+            0
+        ].feature = 0  # on a face any two edges, or diagonals, cross: `overlap` knows which count
     if max(on_a, on_b) > FACING:
         ref = 1 if on_b + 1e-9 >= on_a else 0
         m, f = s.normal[ref], 2.0 * ref - 1.0
@@ -137,10 +150,15 @@ def _manifold(pair, reach):
     if not (rims or max(on_a, on_b) > 1.0 - ROUND_OFF):  # the sides of a rim's polygon are no edges
         ends_a, ends_b = _lowest_side(s, 0, nx, ny, nz), _lowest_side(s, 1, -nx, -ny, -nz)
         before = count
-        count = ends_of_line(pair, ends_a, ends_b, least - tolerance, most, count)
+        count = ends_of_line(pair, ends_a, ends_b, most, count)
         if found[0].feature >> 60 == EDGES and count == before + 2:
-            return _without_first(found, count, least + tolerance, 2)
-    return _without_first(found, count, least + tolerance, 1) if found[0].feature == 0 else count
+            # a search finds parallel lines of mantles less exactly than their ends are known
+            most = math.inf if are_parallel(s, ends_a, ends_b) else least + tolerance
+            return _without_first(found, count, most, 2)
+    if found[0].feature == 0:
+        count = _without_first(found, count, least + tolerance, 1)
+        found[0].feature = name if found[0].feature == 0 else found[0].feature
+    return count
 
 
 @kernel

@@ -131,6 +131,15 @@ def _bends(a, b, n, d, v):
     return plus(x, d, v)
 
 
+@inlined
+def _least_and_most(e, s, first, other, stiff):
+    """Return the principal directions of the matrix (first, other; other, stiff) in e, s; the greater last."""
+    angle = 0.5 * math.atan2(2.0 * other, first - stiff)
+    c, sine = math.cos(angle), math.sin(angle)
+    most = plus((c * e[0], c * e[1], c * e[2]), sine, s)
+    return plus((c * s[0], c * s[1], c * s[2]), -sine, e), most
+
+
 @kernel
 def _rate_of_normal(a, b, n, d, owner):
     """Return n'."""
@@ -154,12 +163,13 @@ def _rate_of_normal(a, b, n, d, owner):
     bent = _bends(a, b, n, d, s)
     along, other, stiff = dot(e, turn), dot(e, bent), dot(s, bent)
     if edges == 0:
-        bent = _bends(a, b, n, d, e)
-        first = dot(e, bent)
+        first = dot(e, _bends(a, b, n, d, e))
         determinant = first * stiff - other * other
-        if not (determinant > sharp * max(first, stiff) and first > 0.0):
-            return turn
-        along = (dot(e, rate) * stiff - dot(s, rate) * other) / determinant
+        if determinant > sharp * max(first, stiff) and first > 0.0:
+            along = (dot(e, rate) * stiff - dot(s, rate) * other) / determinant
+        else:  # rims bend along themselves only: n turns with B across their tangent s
+            e, s = _least_and_most(e, s, first, other, stiff)
+            along, other, stiff = dot(e, turn), 0.0, first + stiff
     across = (dot(s, rate) - along * other) / stiff if stiff > sharp else dot(s, turn)
     return plus((along * e[0], along * e[1], along * e[2]), across, s)
 

@@ -62,7 +62,8 @@ def take_forces(active_point, i, group):
         return
     active_point.stop = time_to_stop(i, group)
     for r in range(3):
-        active_point.force[r] = group.v[P][3 * i + r]
+        # a contact problem without a solution leaves forces that pull: no contact has them
+        active_point.force[r] = group.v[P][3 * i + r] if group.v[P][3 * i] > 0.0 else 0.0
         for j in range(3):
             active_point.W[r, j] = group.W[3 * i + r, 3 * i + j]
 
