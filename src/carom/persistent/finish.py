@@ -26,6 +26,8 @@ from carom.persistent.joint_rows import JOINT, place_coordinate, radius_of
 from carom.persistent.margins import greatest_push, set_margins, take_forces, time_to_stop
 from carom.persistent.return_to_surfaces import greatest_speed, onto_surfaces, onto_tangents
 from carom.persistent.rows import (
+    PASSED,
+    SAME,
     accelerate_freely,
     bodies_of,
     keep_way,
@@ -37,6 +39,7 @@ from carom.persistent.settle import greatest
 from carom.persistent.slip_law import breaks_away, grip_by_law, has_law, set_friction
 from carom.persistent.springs import solve_springs
 from carom.persistent.step_control import rest_speed
+from carom.persistent.stops import locates, note_left
 from carom.persistent.thresholds import FEW_REST, FRICTION_LIMIT
 
 
@@ -134,9 +137,11 @@ def review(model, data, label, s, h, given) -> bool:
     accelerate_freely(model, data, loaded, count, s)
     k = write_rows(model, data, label, s)
     push = greatest(3 * k, group.v[C])
-    same = set_modes(system, active, k, group)
-    if given and not same:
-        return False
+    way = set_modes(system, active, k, group)
+    if given:
+        if way < (PASSED if locates(model, data) else SAME):
+            return False
+        note_left(model, data, k)
     tolerance = rest_of(model, data, k, h)
     lasts, found = solve_end(model, data, label, k, s, h)
     located = greatest_push(k, group)

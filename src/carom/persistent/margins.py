@@ -19,6 +19,7 @@ from carom.model.actions import (
     EVENT_BREAK,
     EVENT_JAM,
     EVENT_SEPARATE,
+    EVENT_STOP,
     MODE_OPEN,
     MODE_SLIP,
     MODE_STICK,
@@ -104,7 +105,7 @@ def margin(active_point, kind):
 @kernel
 def note_due(active, search, work):
     """Mark the points of the same group that have the event of the search within the trial step."""
-    if search.kind == EVENT_BREAK:
+    if search.kind in (EVENT_BREAK, EVENT_STOP):
         return
     label = work.body[active.points[search.contact].body].label
     for i in range(active.count[0]):
@@ -118,6 +119,8 @@ def switch_due(system, active, search):
     """Set the new mode of the points whose event has been located; return whether it is one of these."""
     if search.kind == EVENT_JAM:
         return False
+    if search.kind == EVENT_STOP:
+        return True  # the modes of the end of the step are those of the stop
     if search.kind == EVENT_BREAK:
         one = system.relations.frictions[search.contact]
         one.next = -1 if one.force > 0.0 else 1

@@ -37,7 +37,7 @@ def first_modes(data, label):
     active = data.active
     for i in range(active.count[0]):
         if data.work.body[active.points[i].body].label == label:
-            active.points[i].next = active.points[i].mode
+            active.points[i].next, active.points[i].left = active.points[i].mode, 1.0
 
 
 @kernel
@@ -131,7 +131,7 @@ def note_way(model, data, i, still):
         if d1 == 0.0 and has_law(system, closed_point):  # it may just have broken away
             d1, speed = float(one.mode), 0.0
         keep_way(system, active, closed_point, d1, d2, speed)
-        one.mode = one.next
+        one.mode, one.left = one.next, 1.0
         set_friction(system, i, one.next != 0, group)
         return True
     active_point, moves = active.points[closed_point.active], d1 != 0.0 or d2 != 0.0
