@@ -85,15 +85,22 @@ def set_margins(active_point, i, push, group):
     else:
         active_point.lift = max(p[q] * W[q, q] / push, EVENT_MARGIN)
     if active_point.mode == MODE_STICK:
-        gain = math.sqrt(a[q + 1] ** 2 + a[q + 2] ** 2) / push
-        if active_point.next == MODE_SLIP:
-            active_point.grip = -max(gain, 2.0 * EVENT_ERROR)
-        elif gain > NO_MARGIN:
-            active_point.grip = -gain
-        else:
-            left = group.mu[i] * p[q] - math.sqrt(p[q + 1] ** 2 + p[q + 2] ** 2)
-            grip = left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push
-            active_point.grip = grip if active_point.several == 0 else max(grip, EVENT_MARGIN)
+        set_grip(active_point, i, push, group)
+
+
+@kernel
+def set_grip(active_point, i, push, group):
+    """Write the grip of point i, which sticks at the start of the step."""
+    q, W, p, a = 3 * i, group.W, group.v[P], group.v[ACCELERATIONS]
+    gain = math.sqrt(a[q + 1] ** 2 + a[q + 2] ** 2) / push
+    if active_point.next == MODE_SLIP:
+        active_point.grip = -max(gain, 2.0 * EVENT_ERROR)
+    elif gain > NO_MARGIN:
+        active_point.grip = -gain
+    else:
+        left = group.mu[i] * p[q] - math.sqrt(p[q + 1] ** 2 + p[q + 2] ** 2)
+        grip = left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push
+        active_point.grip = grip if active_point.several == 0 else max(grip, EVENT_MARGIN)
 
 
 @kernel

@@ -128,12 +128,12 @@ def note_way(model, data, i, still):
     d1, d2, speed = slip_of(system, data, i, still)
     if closed_point.turns == JOINT:
         one = system.relations.frictions[closed_point.active]
-        if d1 == 0.0 and has_law(system, closed_point):  # it may just have broken away
-            d1, speed = float(one.mode), 0.0
         keep_way(system, active, closed_point, d1, d2, speed)
-        one.mode, one.left = one.next, 1.0
-        set_friction(system, i, one.next != 0, group)
-        return True
+        if d1 != 0.0:
+            one.mode = one.next
+        one.left = 1.0
+        set_friction(system, i, one.mode != 0, group)  # without slip it has broken away, or may turn back
+        return d1 != 0.0 or one.mode == 0
     active_point, moves = active.points[closed_point.active], d1 != 0.0 or d2 != 0.0
     if closed_point.own == 0:
         return moves or active_point.next != MODE_SLIP or group.mu[i] == 0.0
