@@ -166,7 +166,7 @@ def implicit_stage(model, data, label, s, hg, closes):
 
 @kernel
 def solve_beyond(model, data, k, hg, closes):
-    """Solve a stage, beyond stops that are to be located as if slip went on; return whether it has a solution."""
+    """Solve a stage, beyond stops that are to be located as if slip went on; return whether this is done."""
     if not solve_stage(k, hg, data.group):
         return False
     if not closes and locates(model, data):

@@ -37,7 +37,6 @@ from carom.persistent.slip_law import follow_laws
 from carom.persistent.springs import bound_per_force
 from carom.persistent.thresholds import SLIP_COSINE, STOPPED_SLIP
 
-
 TURNED, PASSED, SAME = range(3)  # ways of slip within a step (`set_modes`)
 
 

@@ -132,7 +132,8 @@ def note_way(model, data, i, still):
         if d1 != 0.0:
             one.mode = one.next
         one.left = 1.0
-        set_friction(system, i, one.mode != 0, group)  # without slip it has broken away, or may turn back
+        # without slip it has just broken away, or may turn back
+        set_friction(system, i, one.mode != 0, group)
         return d1 != 0.0 or one.mode == 0
     active_point, moves = active.points[closed_point.active], d1 != 0.0 or d2 != 0.0
     if closed_point.own == 0:

@@ -21,7 +21,7 @@ from carom.persistent.settle import dot, greatest
 
 @kernel
 def locates(model, data):
-    """Return whether stops of slip are located: with given steps, unless events follow each other without end."""
+    """Return whether stops are located: with given steps, unless events follow each other without end."""
     return model.controls.order == 0 and data.work.search[0].eager == 1
 
 
