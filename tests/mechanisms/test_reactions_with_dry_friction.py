@@ -122,3 +122,18 @@ def test_a_state_has_the_whole_turns_that_its_run_counts():
     assert abs(axle.coordinates(degrees=True)[0] - np.degrees(q)) < 1e-4
     assert abs(coil.torque + 0.001 * q) < 1e-9
     assert coil.coordinate == axle.coordinate
+
+
+def test_friction_by_a_law_is_that_of_the_run(tmp_path):
+    """In slip it is the law at the rate, m a = m g + F as with a number; held it is up to the static bound."""
+    law, h = carom.Friction(4.0, 2.0, speed=0.5), 1e-3
+    run = carom.simulate(rod(law), 0.3, step=h)
+    dry, rate = run["dry"], run["hinge"].rate
+    np.testing.assert_allclose(dry.torque[5:], -law(rate[5:]), rtol=1e-12)
+    a = (run["rod"].velocity[2:] - run["rod"].velocity[:-2]) / (2 * h)
+    np.testing.assert_allclose(run["hinge"].force[6:-1], (2 * a + [0, 0, 2 * G])[5:], atol=1e-3)
+    run.save(tmp_path / "run.nc")
+    assert np.array_equal(carom.Solution.load(tmp_path / "run.nc")["dry"].torque, dry.torque)
+    live = carom.Run(rod(carom.Friction(12.0, 2.0)), step=0.01)
+    live.advance(0.1)
+    assert live.state["dry"].torque == pytest.approx(-2 * G * 0.5, rel=1e-9)

@@ -32,6 +32,7 @@ CLOSED_POINT = [
     ("bounces", "f8"),  # time that its bounces would still take
     ("point", "f8", 3),  # point of the core, body axes
     ("rows", "i8"),  # number of rows that the return to the surface uses
+    ("passes", "i8"),  # 1 if it has passed its stop in a stage, and keeps its friction (`stops`)
     ("own", "i8"),  # 1 if it is the active point of its place, 0 if that only stands for its pair
     ("loaded", "i8"),  # 1 if it presses: its spring carries
     ("patch", "i8"),  # the first point of its patch

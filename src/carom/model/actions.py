@@ -10,4 +10,4 @@ MODE_OPEN, MODE_SLIP, MODE_STICK = range(3)
 #: a gap closes; a point opens; friction does not suffice for stick; slip jams; the rate of a gap, and the
 #: direction of slip, change sign (`carom.persistent.events`, `carom.generalized.events`)
 EVENT_GAP, EVENT_SEPARATE, EVENT_CONE, EVENT_JAM, EVENT_RATE, EVENT_REVERSE, NO_EVENT = range(7)
-EVENT_BREAK = 7  # a joint with a law of friction breaks away
+EVENT_BREAK, EVENT_STOP = 7, 8  # a joint with friction breaks away; slip stops

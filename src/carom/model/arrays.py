@@ -183,7 +183,9 @@ FRICTION = [
     ("exponent", "f8"),
     ("next", "i8"),  # 1 or -1: slips in this direction; 0 sticks
     ("mode", "i8"),  # the same at the start of the step
-    ("grip", "f8"),  # margin before a joint with a law breaks away (`carom.persistent.margins`)
+    ("grip", "f8"),  # margin before a joint breaks away (`carom.persistent.margins`)
+    # with given steps: part of its slip left at the end of the step, below 0 beyond its stop
+    ("left", "f8"),
     ("speed", "f8"),  # at the start of the step
     ("force", "f8"),  # of the last solve
     ("stop", "f8"),  # time until its slip stops

@@ -45,6 +45,8 @@ ACTIVE_POINT = [
     ("stop", "f8"),  # for several points: time until slip stops under the last forces
     ("lift", "f8"),  # for several points: margin before opening at the end of a step, below 0: open
     ("grip", "f8"),  # the same before slip
+    # with given steps: least part of a slip or turn left at the end, below 0 beyond its stop
+    ("left", "f8"),
     ("due", "i8"),  # 1 if the event of the search may be its own, too
     ("turn_stop", "f8", 2),  # as `stop`, of rolling and of pivoting
     # time that bounces left out would still take: rolling and pivoting friction begin at its end

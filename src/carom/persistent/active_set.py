@@ -29,7 +29,7 @@ def begin_point(active_point, contact, c, feature, mode):
     active_point.body, active_point.other = contact.body, contact.other
     active_point.touches = contact.touches
     active_point.mode, active_point.next, active_point.rest, active_point.several = mode, mode, 0, 1
-    active_point.due, active_point.bounces = 0, 0.0
+    active_point.due, active_point.bounces, active_point.left = 0, 0.0, 1.0
     active_point.heading[0], active_point.heading[1] = 0.0, 0.0
     active_point.W[:] = 0.0
     clear(active_point)

@@ -24,6 +24,7 @@ from carom.persistent.rows import beyond_stop
 from carom.persistent.springs import FACTORED, count_factors
 from carom.persistent.start import first_modes, first_stage
 from carom.persistent.step_control import lost_in_stop, note_unnamed
+from carom.persistent.stops import note_left
 from carom.persistent.thresholds import FALLS, STIFF_SLIP
 
 STIFF_ORDER, CLOSING_ORDER = 4, 2
@@ -117,6 +118,8 @@ def end_implicitly(model, data, A, label, h, closes):
     k = implicit_member(model, data, A, label, h, closes)
     if k == 0:
         return False
+    if not closes:
+        note_left(model, data, k)
     note_modes(model, data, k, h)
     if not land(model, data, label, k):
         return False

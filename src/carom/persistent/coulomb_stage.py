@@ -188,7 +188,7 @@ def write_disc(k, n, i, width, hg, group):
     closed_point = group.closed[unit]
     normal = 3 * (unit if closed_point.turns == 0 else closed_point.parent)  # below 0 for a joint
     scale = 0.5 * (W[a, a] + W[b, b])
-    known = hg == 0.0 and group.kind[unit] == SLIDING
+    known = closed_point.passes == 1 if hg > 0.0 else group.kind[unit] == SLIDING
     first = group.v[C][a] if hg == 0.0 else group.v[U][a] / hg
     second = group.v[C][b] if hg == 0.0 else group.v[U][b] / hg
     ga = first + dot(3 * k, W[a], p)

@@ -5,7 +5,8 @@ The function of an event is positive before it and negative after it, and is eva
     EVENT_SEPARATE   the margin before opening        (`carom.persistent.margins`)
     EVENT_CONE       the margin before slip
     EVENT_JAM        k                                while slipping (`carom.persistent.jam`)
-    EVENT_BREAK      the margin before slip           of a joint whose friction is a law
+    EVENT_BREAK      the margin before slip           of a joint
+    EVENT_STOP       the least part of a slip that is left, with given steps  (`carom.persistent.stops`)
 """
 
 from __future__ import annotations
@@ -17,11 +18,13 @@ from carom.model.actions import (
     EVENT_GAP,
     EVENT_JAM,
     EVENT_SEPARATE,
+    EVENT_STOP,
     MODE_OPEN,
     MODE_SLIP,
 )
 from carom.persistent.jam import jam_margin
 from carom.persistent.margins import margin
+from carom.persistent.stops import least_left
 
 
 @kernel
@@ -62,4 +65,6 @@ def find_contact_event(system, active, work):
     for i in range(frictions.shape[0]):
         if frictions[i].grip < 0.0:
             return EVENT_BREAK, i
+    if least_left(system, active) < 0.0:
+        return EVENT_STOP, 0
     return EVENT_GAP, -1

@@ -23,9 +23,17 @@ from carom.persistent.active_set import clear
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.jam import jams_among
 from carom.persistent.joint_rows import JOINT, place_coordinate, radius_of
-from carom.persistent.margins import greatest_push, set_margins, take_forces, time_to_stop
+from carom.persistent.margins import (
+    greatest_push,
+    set_grip,
+    set_margins,
+    take_forces,
+    time_to_stop,
+)
 from carom.persistent.return_to_surfaces import greatest_speed, onto_surfaces, onto_tangents
 from carom.persistent.rows import (
+    PASSED,
+    SAME,
     accelerate_freely,
     bodies_of,
     keep_way,
@@ -37,6 +45,7 @@ from carom.persistent.settle import greatest
 from carom.persistent.slip_law import breaks_away, grip_by_law, has_law, set_friction
 from carom.persistent.springs import solve_springs
 from carom.persistent.step_control import rest_speed
+from carom.persistent.stops import locates, note_left
 from carom.persistent.thresholds import FEW_REST, FRICTION_LIMIT
 
 
@@ -134,12 +143,14 @@ def review(model, data, label, s, h, given) -> bool:
     accelerate_freely(model, data, loaded, count, s)
     k = write_rows(model, data, label, s)
     push = greatest(3 * k, group.v[C])
-    same = set_modes(system, active, k, group)
-    if given and not same:
-        return False
+    way = set_modes(system, active, k, group)
+    if given:
+        if way < (PASSED if locates(model, data) else SAME):
+            return False
+        note_left(model, data, k)
     tolerance = rest_of(model, data, k, h)
     lasts, found = solve_end(model, data, label, k, s, h)
-    located = greatest_push(k, group)
+    located, exact = greatest_push(k, group), locates(model, data)
     for i in range(active.count[0]):
         if work.body[active.points[i].body].label == label:
             clear(active.points[i])  # it has a force only if it is among the points found
@@ -155,7 +166,8 @@ def review(model, data, label, s, h, given) -> bool:
         if closed_point.turns == JOINT:
             one = system.relations.frictions[closed_point.active]
             one.force, one.stop = group.v[P][3 * i + 1], time_to_stop(i, group)
-            if law:
+            one.grip = 1.0
+            if law or exact:
                 one.grip = grip_by_law(i, push, group) if one.mode == 0 else 1.0
             elif slips and one.next == 0:
                 if work.search[0].active == 0:
@@ -169,15 +181,18 @@ def review(model, data, label, s, h, given) -> bool:
         if not lasts and group.kind[i] == CONE and active_point.next == MODE_SLIP:
             active_point.next = MODE_STICK
         if slips and active_point.next == MODE_STICK:
-            if not ((located > 0.0 or law) and work.search[0].eager == 1):
+            if not ((located > 0.0 or law or exact) and work.search[0].eager == 1):
                 if work.search[0].active == 0:
                     return False
                 active_point.next = MODE_SLIP
         still = max(1e-6 * (h * push), 10.0 * slow(system.contacts[closed_point.contact], end))
         end_mode(active_point, i, still, at_rest, group)
         set_margins(active_point, i, located, group)
-        if law and active_point.mode == MODE_STICK and active_point.next != MODE_OPEN:
-            active_point.grip = grip_by_law(i, push, group)
+        if active_point.mode == MODE_STICK and active_point.next != MODE_OPEN:
+            if law:
+                active_point.grip = grip_by_law(i, push, group)
+            elif exact and located == 0.0:
+                set_grip(active_point, i, push, group)
         if not given:
             active_point.grip = 1.0
         active_point.jams = jams_among(i, found, group)

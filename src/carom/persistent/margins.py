@@ -19,6 +19,7 @@ from carom.model.actions import (
     EVENT_BREAK,
     EVENT_JAM,
     EVENT_SEPARATE,
+    EVENT_STOP,
     MODE_OPEN,
     MODE_SLIP,
     MODE_STICK,
@@ -85,15 +86,22 @@ def set_margins(active_point, i, push, group):
     else:
         active_point.lift = max(p[q] * W[q, q] / push, EVENT_MARGIN)
     if active_point.mode == MODE_STICK:
-        gain = math.sqrt(a[q + 1] ** 2 + a[q + 2] ** 2) / push
-        if active_point.next == MODE_SLIP:
-            active_point.grip = -max(gain, 2.0 * EVENT_ERROR)
-        elif gain > NO_MARGIN:
-            active_point.grip = -gain
-        else:
-            left = group.mu[i] * p[q] - math.sqrt(p[q + 1] ** 2 + p[q + 2] ** 2)
-            grip = left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push
-            active_point.grip = grip if active_point.several == 0 else max(grip, EVENT_MARGIN)
+        set_grip(active_point, i, push, group)
+
+
+@kernel
+def set_grip(active_point, i, push, group):
+    """Write the grip of point i, which sticks at the start of the step."""
+    q, W, p, a = 3 * i, group.W, group.v[P], group.v[ACCELERATIONS]
+    gain = math.sqrt(a[q + 1] ** 2 + a[q + 2] ** 2) / push
+    if active_point.next == MODE_SLIP:
+        active_point.grip = -max(gain, 2.0 * EVENT_ERROR)
+    elif gain > NO_MARGIN:
+        active_point.grip = -gain
+    else:
+        left = group.mu[i] * p[q] - math.sqrt(p[q + 1] ** 2 + p[q + 2] ** 2)
+        grip = left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push
+        active_point.grip = grip if active_point.several == 0 else max(grip, EVENT_MARGIN)
 
 
 @kernel
@@ -105,7 +113,7 @@ def margin(active_point, kind):
 @kernel
 def note_due(active, search, work):
     """Mark the points of the same group that have the event of the search within the trial step."""
-    if search.kind == EVENT_BREAK:
+    if search.kind in (EVENT_BREAK, EVENT_STOP):
         return
     label = work.body[active.points[search.contact].body].label
     for i in range(active.count[0]):
@@ -119,6 +127,8 @@ def switch_due(system, active, search):
     """Set the new mode of the points whose event has been located; return whether it is one of these."""
     if search.kind == EVENT_JAM:
         return False
+    if search.kind == EVENT_STOP:
+        return True  # the modes of the end of the step are those of the stop
     if search.kind == EVENT_BREAK:
         one = system.relations.frictions[search.contact]
         one.next = -1 if one.force > 0.0 else 1

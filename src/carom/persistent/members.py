@@ -34,6 +34,8 @@ from carom.persistent.coulomb_stage import solve_stage
 from carom.persistent.joint_rows import JOINT
 from carom.persistent.rolling_friction import bound_turning
 from carom.persistent.rows import (
+    PASSED,
+    SAME,
     accelerate_freely,
     bodies_of,
     push_bodies,
@@ -43,6 +45,7 @@ from carom.persistent.rows import (
 from carom.persistent.slip_law import first_modes_of_joints, renew_modes
 from carom.persistent.springs import bound_per_force, solve_springs
 from carom.persistent.start import first_modes
+from carom.persistent.stops import locates, pass_stops
 from carom.persistent.thresholds import LAST_CHANGE, STAGE_CHANGE
 
 FIXED_POINT = 25  # iterations of the pose of a stage
@@ -53,6 +56,7 @@ def explicit_member(model, data, method, label, h):
     """Make the stages of the method of the run; return the number of points at its last one, 0 if modes end."""
     start, end, group, work = data.state, data.work.trial, data.group, data.work
     (count, loaded), result, k = bodies_of(model, data, label), work.result[0], 0
+    least = PASSED if locates(model, data) else SAME
     for s in range(1, stages_within(method)):
         for m in range(count):
             b = group.member[m]
@@ -61,7 +65,9 @@ def explicit_member(model, data, method, label, h):
         result.time = result.start + h * node(method.A[s, :s])
         power = accelerate_freely(model, data, loaded, count, s)
         k = write_rows(model, data, label, s)
-        if not (set_modes(model.system, data.active, k, group) and solve_springs(k, group)):
+        if set_modes(model.system, data.active, k, group) < least:
+            return 0
+        if not solve_springs(k, group):
             return 0
         driven, rubbed = push_bodies(model, data, loaded, k, count, s)
         result.applied += h * method.b[s] * (power + driven)
@@ -138,7 +144,9 @@ def implicit_stage(model, data, label, s, hg, closes):
             for row in range(3 * k):
                 group.v[P][row] = 0.0
         lost = iterations[0]
-        if (closes and lost >= budget(k)) or not solve_stage(k, hg, group):
+        for i in range(k):
+            group.closed[i].passes = 0
+        if (closes and lost >= budget(k)) or not solve_beyond(model, data, k, hg, closes):
             if not closes:
                 return -1, 0.0, 0.0
             solve_impulses(model, data, k, hg)
@@ -154,6 +162,18 @@ def implicit_stage(model, data, label, s, hg, closes):
     if model.controls.order > 0 and not closes and not change <= STAGE_CHANGE:
         return -1, 0.0, 0.0
     return k, power, rubbed
+
+
+@kernel
+def solve_beyond(model, data, k, hg, closes):
+    """Solve a stage, beyond stops that are to be located as if slip went on; return whether this is done."""
+    if not solve_stage(k, hg, data.group):
+        return False
+    if not closes and locates(model, data):
+        while pass_stops(model, data, k, hg):
+            if not solve_stage(k, hg, data.group):
+                return False
+    return True
 
 
 @kernel

@@ -37,6 +37,8 @@ from carom.persistent.slip_law import follow_laws
 from carom.persistent.springs import bound_per_force
 from carom.persistent.thresholds import SLIP_COSINE, STOPPED_SLIP
 
+TURNED, PASSED, SAME = range(3)  # ways of slip within a step (`set_modes`)
+
 
 @kernel
 def bodies_of(model, data, label):
@@ -105,11 +107,12 @@ def write_motion(system, k, state, rates, group, work):
 
 @kernel
 def set_modes(system, active, k, group):
-    """Write which of k points slide, and where to; return whether that is the way of the start of the step.
+    """Write which of k points slide, and where to; return what has become of the way of the start of the step.
 
-    All springs press at first.
+    It is `SAME`, or slip has `PASSED` its stop, and keeps its heading, or has `TURNED`. All springs press at
+    first.
     """
-    same, fastest = True, 0.0
+    way, fastest = SAME, 0.0
     for i in range(k):
         u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
         fastest = max(fastest, math.sqrt(u1 * u1 + u2 * u2))
@@ -132,11 +135,14 @@ def set_modes(system, active, k, group):
             continue
         if closed_point.own == 1 and not slip > STOPPED_SLIP * speed:
             continue
+        if closed_point.own == 1 and u1 * d1 + u2 * d2 < -SLIP_COSINE * slip:
+            way = min(way, PASSED)
+            continue
         if closed_point.own == 1 and not u1 * d1 + u2 * d2 > SLIP_COSINE * slip:
-            same = False
+            way = TURNED
         if slip > 0.0:
             group.heading[i, 0], group.heading[i, 1] = u1 / slip, u2 / slip
-    return same
+    return way
 
 
 @kernel

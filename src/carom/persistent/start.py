@@ -27,7 +27,7 @@ from carom.persistent.rows import (
     write_rows,
 )
 from carom.persistent.settle import greatest
-from carom.persistent.slip_law import has_law
+from carom.persistent.slip_law import follow_laws, has_law, set_friction
 from carom.persistent.springs import solve_springs
 
 
@@ -37,7 +37,7 @@ def first_modes(data, label):
     active = data.active
     for i in range(active.count[0]):
         if data.work.body[active.points[i].body].label == label:
-            active.points[i].next = active.points[i].mode
+            active.points[i].next, active.points[i].left = active.points[i].mode, 1.0
 
 
 @kernel
@@ -77,7 +77,13 @@ def first_stage(model, data, label):
     shared = held and within_cones(k, group)
     if not shared:
         found = solve_forces(k, group)
-    known = note_break_away(system, data, k, push) and known
+    none, broke = note_break_away(system, data, k, push)
+    known = none and known
+    for _ in range(k if broke else 0):  # friction that is a law is that of slip then
+        follow_laws(system, data.active, k, group)
+        found = solve_forces(k, group)
+        if not note_break_away(system, data, k, push)[1]:
+            break
     if held and known and not shared:  # nothing begins to slip: the springs share, as in the stages
         k = write_rows(model, data, label, 0)
         set_modes(system, data.active, k, group)
@@ -90,8 +96,11 @@ def first_stage(model, data, label):
 
 @kernel
 def note_break_away(system, data, k, push):
-    """Let points slip that stick but accelerate along their surfaces; return whether there is none."""
-    group, none = data.group, True
+    """Let points slip that stick but accelerate along their surfaces.
+
+    Return whether there is none, and whether one begins whose friction is a law.
+    """
+    group, none, broke = data.group, True, False
     for i in range(k):
         closed_point = group.closed[i]
         smooth = group.mu[i] == 0.0
@@ -101,11 +110,14 @@ def note_break_away(system, data, k, push):
             continue
         none = none and smooth
         if closed_point.turns == JOINT:
-            force = group.v[P][3 * i + 1]
-            system.relations.frictions[closed_point.active].next = -1 if force > 0.0 else 1
+            one, force = system.relations.frictions[closed_point.active], group.v[P][3 * i + 1]
+            broke = broke or (one.next == 0 and has_law(system, closed_point))
+            one.next = one.mode = -1 if force > 0.0 else 1
         elif closed_point.turns == 0 and group.v[P][3 * i] > 0.0:
-            data.active.points[closed_point.active].next = MODE_SLIP
-    return none
+            active_point = data.active.points[closed_point.active]
+            broke = broke or (active_point.next != MODE_SLIP and has_law(system, closed_point))
+            active_point.next = MODE_SLIP
+    return none, broke
 
 
 @kernel
@@ -116,11 +128,13 @@ def note_way(model, data, i, still):
     d1, d2, speed = slip_of(system, data, i, still)
     if closed_point.turns == JOINT:
         one = system.relations.frictions[closed_point.active]
-        if d1 == 0.0 and has_law(system, closed_point):  # it may just have broken away
-            d1, speed = float(one.mode), 0.0
         keep_way(system, active, closed_point, d1, d2, speed)
-        one.mode = one.next
-        return True
+        if d1 != 0.0:
+            one.mode = one.next
+        one.left = 1.0
+        # without slip it has just broken away, or may turn back
+        set_friction(system, i, one.mode != 0, group)
+        return d1 != 0.0 or one.mode == 0
     active_point, moves = active.points[closed_point.active], d1 != 0.0 or d2 != 0.0
     if closed_point.own == 0:
         return moves or active_point.next != MODE_SLIP or group.mu[i] == 0.0
@@ -129,6 +143,7 @@ def note_way(model, data, i, still):
         return True
     if moves and active_point.mode != MODE_SLIP:
         active_point.next = MODE_SLIP  # a corner that has come since: the velocity decides
+        set_friction(system, i, True, group)
     slips = active_point.next == MODE_SLIP
     if slips and not moves and group.mu[i] > 0.0:  # it has stopped
         active_point.next = MODE_STICK

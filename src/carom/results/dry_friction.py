@@ -1,7 +1,8 @@
 """Reactions where dry friction acts in joints: a run does not save its forces.
 
-While a joint slips, the force is its bound against the motion. While it sticks, the force is that of a motor at
-rest in the place of the friction; where this exceeds the bound, the joint is about to slip.
+While a joint slips, the force is its bound against the motion, by a law that at its rate. While it sticks, the
+force is that of a motor at rest in the place of the friction; where this exceeds the bound of stick, the joint
+is about to slip, and has the force of slip.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from carom.model.compile import compile_scene
 from carom.model.records import TOUCH
 from carom.results import joint_coordinates as jc
 from carom.scene.constraints import Driver, coordinate_kind
-from carom.scene.friction import bound_of
+from carom.scene.friction import FrictionLaw, bound_of
 from carom.scene.more_forces import JointFriction
 
 STILL = 1e-9  # of the speeds of the joint: below it the rate is round-off, and the joint sticks
@@ -42,7 +43,8 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
     q, rate = np.stack([np.reshape(pair, (2, times)) for pair in read], axis=-1)
     turns = np.round(q / jc.TURN)
     sticks = np.abs(rate) <= STILL * np.array([_speed(d, states) for d in laws])
-    bound = np.array([d.bound for d in laws])
+    most = np.array([bound_of(d.bound) for d in laws])
+    bound = np.stack([_in_slip(d.bound, np.abs(rate[:, k])) for k, d in enumerate(laws)], axis=-1)
     value = np.where(sticks, 0.0, -bound * np.sign(rate))
     while True:
         values = {force.index: value[:, k] for k, force in enumerate(dry)}
@@ -63,11 +65,16 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
             found = solve(compiled, full)[rows]
             out[rows, :first] = found[:, :first]
             value[np.ix_(rows, np.flatnonzero(held))] = found[:, first : first + held.sum(), 0]
-        beyond = sticks & (np.abs(value) > ABOVE * bound)
+        beyond = sticks & (np.abs(value) > ABOVE * most)
         if not beyond.any():
             return out, {force.index: value[:, k] for k, force in enumerate(dry)}
-        value, sticks = np.clip(value, -bound, bound), sticks & ~beyond
-        value[sticks] = 0.0
+        value = np.where(sticks & ~beyond, 0.0, np.where(beyond, bound * np.sign(value), value))
+        sticks = sticks & ~beyond
+
+
+def _in_slip(bound, speed: np.ndarray) -> np.ndarray:
+    """Return the force (T,) of slip at these speeds."""
+    return bound(speed) if isinstance(bound, FrictionLaw) else np.full(len(speed), bound)
 
 
 def _turned(system, angles: np.ndarray) -> None:

@@ -19,9 +19,10 @@ from carom.contact.gap import gap_and_rate, lowest, plane_in_body, round_off
 from carom.contact.pair_point import smaller
 from carom.contact.stop import passage_stop, stop_gap
 from carom.impact.friction_law import PERSISTENT, depends_on_slip
-from carom.model.actions import EVENT_BREAK, EVENT_CONE, EVENT_GAP, EVENT_JAM
+from carom.model.actions import EVENT_BREAK, EVENT_CONE, EVENT_GAP, EVENT_JAM, EVENT_STOP
 from carom.model.arrays import STOP
 from carom.persistent.events import contact_event_value, find_contact_event
+from carom.persistent.stops import least_left
 from carom.persistent.thresholds import BREAK_AWAY, EVENT_ERROR, EVENT_MARGIN
 
 NEWTON_STEPS = 6  # steps to the root of a cubic from a near start
@@ -71,6 +72,9 @@ def event_value(model, data):
     if search.kind == EVENT_BREAK:
         search.tolerance = BREAK_AWAY
         return system.relations.frictions[search.contact].grip, 0.0
+    if search.kind == EVENT_STOP:
+        search.tolerance = 0.0  # what is round-off of a stop is zero
+        return least_left(system, active), 0.0
     active_point = active.points[search.contact]
     law = depends_on_slip(system.contacts[active_point.contact], PERSISTENT)
     if law and search.kind == EVENT_CONE:
@@ -85,7 +89,7 @@ def begin_search(search, kind, contact, low, high):
     """Start the search for an event between `low` and `high`; its function is negative at `high`."""
     search.active, search.kind, search.contact = 1, kind, contact
     search.low, search.high, search.width = low, high, high
-    search.f_low, search.side, search.tolerance = -1.0, 0, -1.0
+    search.f_low, search.side, search.tolerance = 1.0 if kind == EVENT_STOP else -1.0, 0, -1.0
     search.t, search.f, search.rate = 0.0, 0.0, 0.0
 
 

@@ -25,7 +25,7 @@ from carom.geometry.rotation import norm
 from carom.impact.strike import strike
 from carom.kinematics.contact_point import contact_velocity
 from carom.model import records as r
-from carom.model.actions import EVENT_GAP, NOTHING, PERSIST, PUSHED_IN, STRIKE
+from carom.model.actions import EVENT_GAP, EVENT_STOP, NOTHING, PERSIST, PUSHED_IN, STRIKE
 from carom.model.allowance import overdone, smooth_count
 from carom.model.arrays import STOP
 from carom.model.controls import LOCATE
@@ -137,6 +137,8 @@ def accept_step(model, data):
     if search.dt == search.left:
         work.step[0].spent = work.step[0].length
     met = search.found == 1 and search.kind != EVENT_GAP and switch_due(system, active, search)
+    if search.found == 1 and search.kind == EVENT_STOP:
+        clock.in_moment += 1
     if active.count[0] > 0:
         turn_modes(model, data)
     if search.found == 0:
