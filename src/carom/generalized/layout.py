@@ -119,8 +119,9 @@ CLOCK = [
     ("kinetic", "f8"), ("potential", "f8"), ("loads", "f8"), ("impacts", "f8"), ("friction", "f8"),
     ("bounces", "f8"),
     ("given", "f8"),  # energy that impacts have added where their law allows it (V8)
-    # the next step by tolerances, the length that fitted them last, number of steps with too large an error
-    ("ahead", "f8"), ("fits", "f8"), ("rejected", "i8"),
+    # the next step by tolerances, the length that fitted them last, number of steps with too large an error,
+    # and of those in a row that failed at a kink (`carom.dynamics.adapt`)
+    ("ahead", "f8"), ("fits", "f8"), ("rejected", "i8"), ("kinks", "i8"),
 ]  # fmt: skip
 
 

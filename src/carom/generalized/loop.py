@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, kernel
-from carom.dynamics.adapt import allowed_error, of_two, part_of, shrunk
+from carom.dynamics.adapt import OTHERS, allowed_error, of_kinks, of_two, part_of, shrunk
 from carom.dynamics.adapt import plan as plan_ahead
 from carom.dynamics.thresholds import LEAST_STEP
 from carom.generalized import layout as o
@@ -88,7 +88,7 @@ def take_accurately(motion, x, left, plan, c):
                 return part, code
             part *= 0.5
             continue
-        error = math.inf if code != 0 else step_error(motion, part, plan)
+        error = math.inf if code != 0 else step_error(motion, part, plan, c)
         if error <= 1.0:
             plan_ahead(c, part, error, again, plan.order, plan.step)
             return part, 0
@@ -121,10 +121,10 @@ def turns(motion):
 
 
 @kernel
-def step_error(motion, h, plan):
+def step_error(motion, h, plan, clock):
     """Return the greatest error of the step h whose stages are in the workspace; up to 1 it is accepted."""
     E, stages, n = motion.method.E, motion.work.stages, motion.system.n
-    first, second = 0.0, 0.0
+    first, second, most = 0.0, 0.0, 0.0
     for i in range(n):
         pace, speed = 0.0, 0.0
         for s in range(E.shape[1]):
@@ -140,7 +140,10 @@ def step_error(motion, h, plan):
                 first = miss
             if e == 1:
                 second = max(second, miss)
-    return of_two(first, second)
+            else:
+                most = max(most, miss)
+    error = of_two(first, second)
+    return of_kinks(clock, error, most, second) if E.shape[0] > OTHERS else error
 
 
 @kernel
