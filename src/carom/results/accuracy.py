@@ -91,7 +91,7 @@ def sentences(
     found.sort(key=lambda one: -one[0])
     if numbers["whole"] > 0:
         found.append((0.0, _of_whole(watch)))
-    elif numbers["astray"] > 1.0:
+    if numbers["astray"] > 1.0 and not numbers["astray_size"] <= numbers["whole_error"]:
         found.append((0.0, _of_crowd(watch)))
     return tuple(sentence.replace("{finer}", finer) for _, sentence in found)
 
