@@ -165,9 +165,7 @@ def test_a_thin_floor_is_not_passed(height):
 def driven_cart(parts, shape, speed, slip, friction, cart_first):
     """A body that slides on a cart of flush parts, which a motor drives."""
     ends = np.linspace(-1.0, 1.0, parts + 1) + 0.05 * np.sin(np.arange(parts + 1) * np.pi / parts)
-    boxes = [
-        (carom.Box(b - a, 1, 0.1), (0.5 * (a + b), 0, 0)) for a, b in zip(ends, ends[1:])
-    ]
+    boxes = [(carom.Box(b - a, 1, 0.1), (0.5 * (a + b), 0, 0)) for a, b in zip(ends, ends[1:])]
     scene = carom.Scene(gravity=(0, 0, -G))
 
     def add_rider():

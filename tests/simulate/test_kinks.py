@@ -11,7 +11,12 @@ from scipy.optimize import brentq
 import carom
 from carom.dynamics.methods.dormand_prince import rk8_with_kinks
 
-G, HIGH, FLOOR, R = 9.81, 0.4, 0.1, 0.1  # a ball of radius R falls by HIGH until the spring acts, below FLOOR
+G, HIGH, FLOOR, R = (
+    9.81,
+    0.4,
+    0.1,
+    0.1,
+)  # a ball of radius R falls by HIGH until the spring acts, below FLOOR
 SPEED = sqrt(2.0 * G * HIGH)
 
 

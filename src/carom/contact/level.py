@@ -257,7 +257,7 @@ def is_of_moving(contact):
 
 @kernel
 def related(system, c, d):
-    """Return whether two rows are of the same bodies, and of the same solids or solids with a common surface."""
+    """Return whether two rows are of the same bodies, and of solids that are the same or share a surface."""
     if share_surface(system, c, d):
         return True
     a, b = system.contacts[c], system.contacts[d]

@@ -34,8 +34,10 @@ from carom._compiled.decorators import kernel
 from carom.dynamics import thresholds as limits
 from carom.geometry.rotation import norm
 
-OTHERS, SCALE = 2, 3  # places in `miss`
-KINKS = 2  # trial steps in a row that fail at a kink: a first step may be too long for any estimate
+MISS_OF_OTHERS, MISS_SCALE = 2, 3  # places in `miss`
+KINKS_IN_A_ROW = (
+    2  # trial steps in a row that fail at a kink: a first step may be too long for any estimate
+)
 
 
 @kernel
@@ -43,7 +45,7 @@ def forget_misses(work):
     """Reset the errors of bodies."""
     for b in range(work.body.shape[0]):
         miss = work.body[b].miss
-        miss[0], miss[1], miss[2], miss[SCALE] = 0.0, 0.0, 0.0, 0.0
+        miss[0], miss[1], miss[2], miss[MISS_SCALE] = 0.0, 0.0, 0.0, 0.0
 
 
 @kernel
@@ -69,10 +71,10 @@ def note_miss(system, E, h, longest, b, work):
     pace = max(speed, math.sqrt(L * (bound[0] + L * bound[1])))
     T = min(longest, L / pace if pace > 0.0 else 0.0)
     for e in range(E.shape[0]):
-        m, k = greatest_error(E[e], h, L, T, b, work), min(e, OTHERS)
+        m, k = greatest_error(E[e], h, L, T, b, work), min(e, MISS_OF_OTHERS)
         if not m <= miss[k] and miss[k] == miss[k]:  # NaN stays
             miss[k] = m
-    miss[SCALE] = max(miss[SCALE], max(L, abs(h) * speed))
+    miss[MISS_SCALE] = max(miss[MISS_SCALE], max(L, abs(h) * speed))
     return T
 
 
@@ -108,10 +110,10 @@ def step_error(system, rtol, atol, work):
     greatest = 0.0
     for b in range(work.body.shape[0]):
         miss = work.body[b].miss
-        allowed = allowed_error(rtol, atol, system.bodies[b].extent, miss[SCALE])
+        allowed = allowed_error(rtol, atol, system.bodies[b].extent, miss[MISS_SCALE])
         error = of_two(miss[0] / allowed, miss[1] / allowed)
-        if miss[OTHERS] > 0.0:
-            most = max(miss[0], miss[OTHERS])
+        if miss[MISS_OF_OTHERS] > 0.0:
+            most = max(miss[0], miss[MISS_OF_OTHERS])
             error = of_kinks(work.body[b], error, most / allowed, miss[1] / allowed)
         if not error <= greatest and greatest == greatest:  # NaN stays
             greatest = error
@@ -135,9 +137,9 @@ def of_kinks(memory, error, most, second):
     if not error < math.inf:
         return error
     at_kink = most > limits.KINK * second
-    if memory.kinks < KINKS:
+    if memory.kinks < KINKS_IN_A_ROW:
         memory.kinks = memory.kinks + 1 if at_kink and most > 1.0 else 0
-    if memory.kinks < KINKS:
+    if memory.kinks < KINKS_IN_A_ROW:
         return error
     error = of_two(most, second)
     return max(error, limits.KINK_WEIGHT * most) if at_kink else error

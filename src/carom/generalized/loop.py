@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, kernel
-from carom.dynamics.adapt import OTHERS, allowed_error, of_kinks, of_two, part_of, shrunk
+from carom.dynamics.adapt import MISS_OF_OTHERS, allowed_error, of_kinks, of_two, part_of, shrunk
 from carom.dynamics.adapt import plan as plan_ahead
 from carom.dynamics.thresholds import LEAST_STEP
 from carom.generalized import layout as o
@@ -143,7 +143,7 @@ def step_error(motion, h, plan, clock):
             else:
                 most = max(most, miss)
     error = of_two(first, second)
-    return of_kinks(clock, error, most, second) if E.shape[0] > OTHERS else error
+    return of_kinks(clock, error, most, second) if E.shape[0] > MISS_OF_OTHERS else error
 
 
 @kernel

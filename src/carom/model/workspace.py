@@ -108,7 +108,10 @@ BODY_WORK = [
     ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
     # estimates of the error of a step [m]: of order 5, of 3, the greatest of others of order 5; their scale
     ("miss", "f8", 4),
-    ("kinks", "i8"),  # number of trial steps in a row that failed at a kink; from KINKS on it stays
+    (
+        "kinks",
+        "i8",
+    ),  # number of trial steps in a row that failed at a kink; from KINKS_IN_A_ROW on it stays
     ("ahead", "f8"),  # with tolerances: length of the next step of its island
     ("counts", "f8", COUNTS),  # work of its island that counts against its bounds
     ("fits", "f8"),  # length of a step whose error fits the tolerance, by the last step

@@ -89,6 +89,8 @@ def add_pair(system, data, i, k) -> int:
                 k = add_found(system, data, c, work.touches[t], j, k)
                 data.group.closed[k - 1].own = 1
         return k
+    if is_of_moving(contact) and has_left(system, data, c):
+        return k
     list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
     m = nearest_touch(work).normal
     n = (m[0], m[1], m[2])
@@ -107,6 +109,21 @@ def add_pair(system, data, i, k) -> int:
         if d != c and not is_active(active, d) and related(system, c, d):
             k = add_riding(system, data, d, i, k, n)
     return k
+
+
+@kernel
+def has_left(system, data, c):
+    """Return whether the bodies of a row have passed a seam of its solids, and ride on those of another row."""
+    contact, active, work, state = system.contacts[c], data.active, data.work, data.work.stage
+    if find_touches(system, contact, state, REACH * smaller(contact), work) > 0:
+        return False
+    for j in range(active.count[0]):
+        d = active.points[j].contact
+        if d != c and active.points[j].touches == 1 and related(system, c, d):
+            other = system.contacts[d]
+            if find_touches(system, other, state, REACH * smaller(other), work) > 0:
+                return True
+    return False
 
 
 @kernel

@@ -16,7 +16,7 @@ from carom.stepping.islands.plan import READY, number, root, seek
 
 # of steps of given length: least number of active points of a crowd, and least average number per body
 MANY, EACH = 24, 2
-FACTORS = 20.0  # factors of W, at least, of a step of a group from event to event
+FACTORS = 20  # factors of W, at least, of a step of a group from event to event
 
 
 @kernel
