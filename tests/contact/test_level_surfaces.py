@@ -1,6 +1,7 @@
 """Faces of static solids in one plane are one surface: only steps and cracks are obstacles."""
 
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -165,7 +166,7 @@ def test_a_thin_floor_is_not_passed(height):
 def driven_cart(parts, shape, speed, slip, friction, cart_first):
     """A body that slides on a cart of flush parts, which a motor drives."""
     ends = np.linspace(-1.0, 1.0, parts + 1) + 0.05 * np.sin(np.arange(parts + 1) * np.pi / parts)
-    boxes = [(carom.Box(b - a, 1, 0.1), (0.5 * (a + b), 0, 0)) for a, b in zip(ends, ends[1:])]
+    boxes = [(carom.Box(b - a, 1, 0.1), (0.5 * (a + b), 0, 0)) for a, b in pairwise(ends)]
     scene = carom.Scene(gravity=(0, 0, -G))
 
     def add_rider():
@@ -188,7 +189,7 @@ def driven_cart(parts, shape, speed, slip, friction, cart_first):
     return scene
 
 
-@pytest.mark.parametrize("parts, shape, cart_first", [
+@pytest.mark.parametrize(("parts", "shape", "cart_first"), [
     (2, "box", True), (3, "standing cylinder", False), (5, "box", False),
 ])  # fmt: skip
 def test_a_seam_of_a_moving_compound_is_no_edge(parts, shape, cart_first):
@@ -202,7 +203,7 @@ def test_a_seam_of_a_moving_compound_is_no_edge(parts, shape, cart_first):
 
 
 def test_level_faces_of_a_body_that_moves():
-    """Two flush boxes have four surfaces; the rows of their pieces with another body know them on either side."""
+    """Two flush boxes have four surfaces; rows of their pieces know them on either side."""
     pair = carom.Compound([(carom.Box(1, 1, 1), (0, 0, 0)), (carom.Box(1, 1, 1), (1, 0, 0))])
     scene = carom.Scene()
     scene.add_body(pair, mass=1)

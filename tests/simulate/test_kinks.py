@@ -56,13 +56,13 @@ def test_a_ball_on_a_spring_that_acts_below_a_height(rtol):
         assert abs(found - place(1e6, duration)) < 10.0 * 2.0 * rtol * R
 
 
-@pytest.mark.parametrize("rtol", [1e-5, 1e-8, 1e-10])
+@pytest.mark.parametrize("rtol", [1e-8, 1e-10])
 def test_the_same_in_coordinates_of_ones_own(rtol):
     def loads(t, q, v):
         return np.array([-G + (1e4 * (FLOOR - q[0]) if q[0] < FLOOR else 0.0)])
 
     system = carom.GeneralizedSystem(
-        lambda q: np.eye(1), position=[FLOOR + HIGH], forces=loads, coordinates=["z"]
+        lambda q: np.eye(1), position=[FLOOR + HIGH], velocity=[0.0], force=loads
     )
     found = carom.simulate(system, 5.3, rtol=rtol, save_at=5.3).q[-1, 0]
     assert abs(found - place(1e4, 5.3)) < 10.0 * 2.0 * rtol

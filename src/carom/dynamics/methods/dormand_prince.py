@@ -55,9 +55,9 @@ def rk8_with_error() -> Method:
 def rk8_with_kinks() -> Method:
     """Return the same with two more weights of errors of order 5, for forces that have kinks.
 
-    They are orthogonal to that of Hairer, Norsett and Wanner, and as long. All others of order 5 in the stages 1
-    and 6 to 12 are sums of these three, because the conditions of order 5 have rank 5 in these eight stages. The
-    error of a kink in a step is 0 at some places for each of them, at none for all.
+    They are orthogonal to that of Hairer, Norsett and Wanner, and as long. All others of order 5 in the stages
+    1 and 6 to 12 are sums of these three, since the conditions of order 5 have rank 5 in these eight stages.
+    The error of a kink in a step is 0 at some places for each of them, at none for all.
     """
     others = np.zeros((2, 12))
     others[:, [0, *range(5, 12)]] = [
