@@ -49,7 +49,7 @@ def ball(function):
 
 @pytest.mark.parametrize("rtol", [1e-5, 1e-8, 1e-10])
 def test_a_ball_on_a_spring_that_acts_below_a_height(rtol):
-    # fifty kinks; each error of speed grows by .2 s a bounce. Measured: .1 times the tolerance
+    # fifty kinks; each error of speed counts .2 s a bounce
     scene = ball(spring)
     for duration in (14.6, 14.9):
         found = carom.simulate(scene, duration, rtol=rtol, save_at=duration).position[-1, 0, 2]
@@ -101,7 +101,7 @@ def time_in_spring(k, power):
     if power == 0:
         return 2.0 * SPEED / (k - G)
     energy = lambda s: SPEED**2 + 2 * G * s - 2 * k * s ** (power + 1) / (power + 1)  # noqa: E731
-    deep = brentq(energy, 1e-9, 1e3, xtol=1e-17, rtol=1e-15)
+    deep = float(brentq(energy, 1e-9, 1e3, xtol=1e-17, rtol=1e-15))  # pyright: ignore
 
     def rate(u):  # s = deep (1 - u^2) takes the root out
         s = deep * (1 - u * u)

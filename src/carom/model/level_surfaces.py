@@ -93,7 +93,7 @@ def _of_shape(shape, to_principal: tuple[float, ...], first: int) -> list[tuple]
     back = quaternion.conjugate(np.array(to_principal))
     faces = []
     for k, piece in enumerate(shape.pieces):
-        if is_sharp(piece):
+        if is_sharp(piece) and piece.corners is not None:
             faces += _faces_of(first + k, 0, piece, quaternion.rotate(back, piece.corners))
     surfaces = []
     for group in _joined(faces := _bare(faces), [((), ())]):
@@ -153,7 +153,7 @@ def _faces(scene: Scene, place: np.ndarray) -> Iterator[Face]:
     """Return the faces of all static solids with sharp edges."""
     for s, static in enumerate(scene.statics):
         for k, piece in enumerate(static.shape.pieces):
-            if is_sharp(piece):
+            if is_sharp(piece) and piece.corners is not None:
                 world = static.position + quaternion.rotate(static.orientation, piece.corners)
                 yield from _faces_of(int(place[len(scene.bodies) + s]) + k, s, piece, world)
 
