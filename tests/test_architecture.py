@@ -44,6 +44,9 @@ HUNDREDS = {
 MOST_LINES = 63400
 #: hundreds of lines beyond these bounds that a capability has brought, by room
 CAPABILITIES = {
+    "seams of bodies that move, kinks of forces, errors of time-stepping steps": {
+        "model": 1, "contact": 1, "stepping": 1,
+    },
     "results by name, robots, ensembles as tables, scenes that change, exports, notebooks": {
         "results": 25, "visual": 14, "studies": 9, "scene": 9, "io": 7, "control": 3, "impact": 2,
         "dynamics": 1, "model": 1, "geometry": 1, "hints": 3,

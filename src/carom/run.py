@@ -31,6 +31,7 @@ from carom.results.costs import costs
 from carom.results.solution import Solution
 from carom.scene.all_pairs import PairTable
 from carom.scene.joints import Joint
+from carom.scene.more_forces import has_kinks
 from carom.scene.scene import Scene
 from carom.status import Status
 from carom.stepping import record, time_loop
@@ -96,7 +97,8 @@ class Run(Running):
         ways = kind == THREE_FIELD, kind == IMPLICIT, self.apart
         self.compiled = compiled_once(scene, options, *ways)
         system = self.compiled.system
-        self.method = make_method(settings.method, options, adapts)
+        kinks = adapts and has_kinks(scene)
+        self.method = make_method(settings.method, options, adapts, kinks)
         self.tolerances = complete(settings.rtol, settings.atol, system) if adapts else None
         self.grid = self.make_grid()
         step, tolerances = self.grid.interval, self.tolerances or (0.0, 0.0)

@@ -1,6 +1,7 @@
 """Faces of static solids in one plane are one surface: only steps and cracks are obstacles."""
 
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -161,3 +162,57 @@ def test_a_thin_floor_is_not_passed(height):
     s = carom.simulate(scene, 0.1, step=0.02)
     assert len(s.impacts) == 1
     assert s.velocity[-1, 0] == pytest.approx([0.3, 0, 25.0], abs=1e-9)
+
+
+def driven_cart(parts, shape, speed, slip, friction, cart_first):
+    """A body that slides on a cart of flush parts, which a motor drives."""
+    ends = np.linspace(-1.0, 1.0, parts + 1) + 0.05 * np.sin(np.arange(parts + 1) * np.pi / parts)
+    boxes = [(carom.Box(b - a, 1, 0.1), (0.5 * (a + b), 0, 0)) for a, b in pairwise(ends)]
+    scene = carom.Scene(gravity=(0, 0, -G))
+
+    def add_rider():
+        body, lying = SHAPES[shape]
+        scene.add_body(
+            body, mass=0.5, position=(-0.4, 0.1, 0.05), velocity=(speed + slip, 0, 0), orientation=lying,
+            name="rider",
+        )  # fmt: skip
+
+    if not cart_first:
+        add_rider()
+    scene.add_body(
+        carom.Compound(boxes), mass=100, position=(0, 0, -0.05), velocity=(speed, 0, 0), name="cart"
+    )
+    if cart_first:
+        add_rider()
+    scene.add_joint(carom.joints.Prismatic((1, 0, 0)), carom.GROUND, "cart", name="rail")
+    scene.add_constraint(carom.constraints.Driver("rail", rate=speed))
+    scene.add_contact("rider", "cart", friction=friction, restitution=0)
+    return scene
+
+
+@pytest.mark.parametrize(("parts", "shape", "cart_first"), [
+    (2, "box", True), (3, "standing cylinder", False), (5, "box", False),
+])  # fmt: skip
+def test_a_seam_of_a_moving_compound_is_no_edge(parts, shape, cart_first):
+    # as on one part: x = x_0 + (V + u) t - mu g t^2/2
+    speed, slip, friction, duration = 0.7, 1.2, 0.1, 0.5
+    scene = driven_cart(parts, shape, speed, slip, friction, cart_first)
+    solution = carom.simulate(scene, duration, save_at=duration)
+    x = -0.4 + (speed + slip) * duration - 0.5 * friction * G * duration**2
+    assert solution.position[-1, 1 if cart_first else 0] == pytest.approx([x, 0.1, 0.05], abs=1e-10)
+    assert solution.stats["whole_steps"] == 0
+
+
+def test_level_faces_of_a_body_that_moves():
+    """Two flush boxes have four surfaces; rows of their pieces know them on either side."""
+    pair = carom.Compound([(carom.Box(1, 1, 1), (0, 0, 0)), (carom.Box(1, 1, 1), (1, 0, 0))])
+    scene = carom.Scene()
+    scene.add_body(pair, mass=1)
+    scene.add_body(carom.Sphere(0.5), mass=1, position=(0, 0, 2))
+    scene.add_body(pair, mass=1, position=(0, 0, 4))
+    scene.set_contact_default(friction=0, restitution=0)
+    system = compile_scene(scene, Options()).system
+    assert len(system.levels.surfaces) == 8
+    rows = system.contacts
+    mine, others = rows.last_mine - rows.first_mine, rows.last_level - rows.first_level
+    assert sorted(zip(mine.tolist(), others.tolist())) == [(0, 4)] * 2 + [(4, 0)] * 2 + [(4, 4)] * 4

@@ -40,17 +40,19 @@ RIM_SEGMENT = [("begin", "f8", 3), ("end", "f8", 3)]
 
 
 class Levels(NamedTuple):
-    """All level surfaces of a scene, in the world."""
+    """All level surfaces of a scene, of static solids in the world, of others in the axes of their body."""
 
     surfaces: np.recarray  # (S,) SURFACE
     faces: np.recarray  # (F,) LEVEL_FACE
     sides: np.recarray  # (K,) LEVEL_SIDE
     rims: np.recarray  # (E,) RIM_SEGMENT
-    own: np.ndarray  # (O,) surfaces of which a static solid has faces, solid by solid
+    own: np.ndarray  # (O,) surfaces of which a solid has faces, solid by solid
+    solid_of_own: np.ndarray  # (O,) these solids
 
 
 @cache
 def no_levels() -> Levels:
     """Return the level surfaces of a scene that has none."""
     kinds = SURFACE, LEVEL_FACE, LEVEL_SIDE, RIM_SEGMENT
-    return Levels._make([*(table(kind, 0) for kind in kinds), np.zeros(0, dtype=np.int64)])
+    none = np.zeros(0, dtype=np.int64)
+    return Levels._make([*(table(kind, 0) for kind in kinds), none, none.copy()])

@@ -25,7 +25,7 @@ from carom.contact.continuous_detection import (
     reach,
 )
 from carom.contact.gap import slow
-from carom.contact.level import related
+from carom.contact.level import rides_on, share_surface
 from carom.contact.pair_point import find_touches, list_touches, smaller, touch_rate
 from carom.contact.parting import plane_of, stays_beside_face, time_apart
 from carom.contact.parting_of_profile import has_profile, time_off_profile
@@ -157,6 +157,9 @@ def passage_pair(model, data, c) -> tuple[int, float]:
         hidden = touching or contact.surface > 0
         return (CLEAR, h) if hidden else passage_hidden(system, data, contact, bounds)
     least, rate = lowest_open(system, data, c, end)
+    rides = not touching and rides_on(system, data.active, c, nearest_touch(work))
+    if rides and least >= -RESOLUTION * smaller(contact):
+        return CLEAR, h
     if touching:
         moved = longest_way(system, data, c)
         if moved > limits.RIM_STEP and h > longest:
@@ -233,7 +236,7 @@ def touches_already(system, active, c):
         d = active.points[j].contact
         if d == c:
             return True
-        if contact.first_level < contact.last_level and related(system, c, d):
+        if contact.first_level < contact.last_level and share_surface(system, c, d):
             return True
     return False
 

@@ -4,6 +4,9 @@ The row of a surface is that of a half-space whose points count only where faces
 A row of a static solid has its points on a level surface only at the rim, and only with normals that the whole
 surface has there. So each point counts once, an edge between two level faces is nothing, and a body that
 passes it moves as on one plane.
+
+A body that moves keeps the points on its level surfaces in the rows of its solids; the others are judged alike.
+Rows of two bodies with points on one surface are related: what leaves one solid goes on with the next.
 """
 
 from __future__ import annotations
@@ -28,7 +31,7 @@ from carom.geometry.vectors import dot, minus
 
 
 @unit
-def keep_real_touches(system, contact, work) -> int:
+def keep_real_touches(system, contact, state, work) -> int:
     """Keep the touches that count, note their surfaces, and return their number."""
     pair, kept = work.pair.state[0], 0
     count, pair.hidden = pair.total, 0
@@ -38,7 +41,8 @@ def keep_real_touches(system, contact, work) -> int:
         if contact.surface > 0:
             counts = on_surface(system, contact, touch)
         else:
-            hidden = hiding_surface(system, contact, touch)
+            hidden = hiding_surface(system, contact, touch) if contact.static == 1 else -1
+            hidden = max(hidden, hiding_surface_of_moving(system, contact, touch, state))
             counts = hidden < 0
             pair.hidden = pair.hidden if counts else 1 + hidden
         if counts:
@@ -111,6 +115,44 @@ def hiding_surface(system, contact, touch):
 
 
 @kernel
+def hiding_surface_of_moving(system, contact, touch, state):
+    """Return the surface of a moving body that hides a point, -1 for none; note on which one it lies."""
+    own, x, Q = system.levels.own, state[contact.body].x, state[contact.body].Q
+    n, p = touch.normal, touch.on_a
+    q = rotate_back(Q, (p[0] - x[0], p[1] - x[1], p[2] - x[2]))
+    m = rotate_back(Q, (-n[0], -n[1], -n[2]))
+    for k in range(contact.first_mine, contact.last_mine):
+        if hides_within(system, own[k], q, m, touch):
+            return own[k]
+    if contact.other < 0:
+        return -1
+    x, Q, p = state[contact.other].x, state[contact.other].Q, touch.on_b
+    q = rotate_back(Q, (p[0] - x[0], p[1] - x[1], p[2] - x[2]))
+    m = rotate_back(Q, (n[0], n[1], n[2]))
+    for k in range(contact.first_level, contact.last_level):
+        if hides_within(system, own[k], q, m, touch):
+            return own[k]
+    return -1
+
+
+@kernel
+def hides_within(system, s, q, m, touch):
+    """Return whether surface s of a moving body hides a point q with the normal m out of it, in its axes."""
+    levels, surface = system.levels, system.levels.surfaces[s]
+    room, along, above = MARGIN * surface.tolerance, dot(surface.normal, m), height(surface, q)
+    if above > room or along < BACK_SIDE:
+        return False
+    if above < -room:
+        return buried(system, surface, q, m, above)
+    if face_below(levels, surface.first, surface.last, q, room) < 0:
+        return False
+    if along > 1.0 - ROUND_OFF:
+        touch.surface = s + 1
+        return False
+    return distance_from_rim(levels, surface, q) > 2.0 * room or continues(levels, surface, q, m)
+
+
+@kernel
 def hides(system, contact, s, touch):
     """Return whether surface s hides a point of a static solid, or else note that the point lies on it.
 
@@ -170,31 +212,76 @@ def is_inside(solid, hulls, q, room):
 
 
 @kernel
-def is_on(levels, contact, s):
-    """Return whether a row stands for surface s, or for a solid that has faces of it."""
-    if contact.surface > 0:
-        return contact.surface - 1 == s
-    for k in range(contact.first_level, contact.last_level):
+def has_level(levels, first, last, s):
+    """Return whether surface s is in a range of `Levels.own`."""
+    for k in range(first, last):
         if levels.own[k] == s:
             return True
     return False
 
 
 @kernel
-def share_surface(levels, a, b):
-    """Return whether two rows, of one body, have a level surface in common."""
-    if a.surface > 0:
-        return is_on(levels, b, a.surface - 1)
-    for k in range(a.first_level, a.last_level):
-        if is_on(levels, b, levels.own[k]):
+def share_own(levels, a, b):
+    """Return whether two ranges of `Levels.own` have a surface in common."""
+    for k in range(a[0], a[1]):
+        if has_level(levels, b[0], b[1], levels.own[k]):
             return True
     return False
 
 
 @kernel
-def related(system, c, d):
-    """Return whether two rows are the same, or of the same piece of a body on the same level surface."""
+def share_surface(system, c, d):
+    """Return whether two rows are the same, or of one piece of a body on one level surface of static solids."""
     if c == d:
         return True
     a, b = system.contacts[c], system.contacts[d]
-    return a.body == b.body and a.solid == b.solid and share_surface(system.levels, a, b)
+    if a.body != b.body or a.solid != b.solid or max(a.other, b.other) >= 0:
+        return False
+    levels = system.levels
+    if a.surface > 0 and b.surface > 0:
+        return a.surface == b.surface
+    if a.surface > 0:
+        return has_level(levels, b.first_level, b.last_level, a.surface - 1)
+    if b.surface > 0:
+        return has_level(levels, a.first_level, a.last_level, b.surface - 1)
+    return share_own(levels, (a.first_level, a.last_level), (b.first_level, b.last_level))
+
+
+@kernel
+def is_of_moving(contact):
+    """Return whether a row is of a solid with a level surface of a body that moves."""
+    return contact.first_mine < contact.last_mine or (
+        contact.other >= 0 and contact.first_level < contact.last_level
+    )
+
+
+@kernel
+def related(system, c, d):
+    """Return whether two rows are of the same bodies, and of solids that are the same or share a surface."""
+    if share_surface(system, c, d):
+        return True
+    a, b = system.contacts[c], system.contacts[d]
+    if a.body != b.body or a.other != b.other or a.static != b.static:
+        return False
+    if not (is_of_moving(a) and is_of_moving(b)):
+        return False
+    levels, same = system.levels, a.other_solid == b.other_solid and a.surface == b.surface
+    if not same and not (a.surface == 0 and b.surface == 0):
+        return False
+    mine = share_own(levels, (a.first_mine, a.last_mine), (b.first_mine, b.last_mine))
+    if not (a.solid == b.solid or mine):
+        return False
+    others = (a.first_level, a.last_level), (b.first_level, b.last_level)
+    return same or share_own(levels, others[0], others[1])
+
+
+@kernel
+def rides_on(system, active, c, touch):
+    """Return whether a point lies on a level surface of a moving body that carries another row already."""
+    if touch.surface == 0 or not is_of_moving(system.contacts[c]):
+        return False
+    for j in range(active.count[0]):
+        d = active.points[j].contact
+        if d != c and active.points[j].touches == 1 and related(system, c, d):
+            return True
+    return False

@@ -34,8 +34,8 @@ from carom.model.workspace import STATIC
 def find_touches(system, contact, state, reach, work):
     """Write the points of a contact that count into work.touches; return how many, perhaps none."""
     count = list_touches(system, contact, state, reach, work)
-    if contact.first_level < contact.last_level:
-        return keep_real_touches(system, contact, work)
+    if contact.first_level < contact.last_level or contact.first_mine < contact.last_mine:
+        return keep_real_touches(system, contact, state, work)
     return count
 
 

@@ -13,7 +13,15 @@ moves by its own size. A step is accepted if for all bodies
 
 a fraction of the tolerance of a run, because errors of steps add up. Order 8 has two estimates: miss = miss_5^2
 / sqrt(miss_5^2 + miss_3^2/100) (Hairer, Norsett and Wanner 1993). Groups in contact have the estimates of
-`carom.persistent.members`; free flight has no error. The next step is 0.9 times the length whose error would
+`carom.persistent.members`; free flight has no error.
+
+A kink of a force within a step, at the part s of it, gives every embedded error a term that is 0 at some s, so
+that any of them misses the kink there. Where forces may have kinks there are three errors of order 5, which are
+not 0 together: the greatest of them, miss_k, is at least a third of the error of a kink or jump. In smooth
+steps of a useful length miss_k is below a tenth of miss_3, at kinks above, which tells them apart. A body that
+has met a kink has miss_k in the place of miss_5 from then on (others keep longer steps), and the error of a
+step with a kink counts a hundredfold, since flights between them add up what each kink does to the speed.
+ The next step is 0.9 times the length whose error would
 equal the tolerance, between 0.2 and 10 times the last length. Each island has steps of its own: `ahead` of its
 bodies.
 """
@@ -26,13 +34,18 @@ from carom._compiled.decorators import inlined, kernel
 from carom.dynamics import thresholds as limits
 from carom.geometry.rotation import norm
 
+MISS_OF_OTHERS, MISS_SCALE = 2, 3  # places in `miss`
+KINKS_IN_A_ROW = (
+    2  # trial steps in a row that fail at a kink: a first step may be too long for any estimate
+)
+
 
 @kernel
 def forget_misses(work):
     """Reset the errors of bodies."""
     for b in range(work.body.shape[0]):
         miss = work.body[b].miss
-        miss[0], miss[1], miss[2] = 0.0, 0.0, 0.0
+        miss[0], miss[1], miss[2], miss[MISS_SCALE] = 0.0, 0.0, 0.0, 0.0
 
 
 @kernel
@@ -58,10 +71,10 @@ def note_miss(system, E, h, longest, b, work):
     pace = max(speed, math.sqrt(L * (bound[0] + L * bound[1])))
     T = min(longest, L / pace if pace > 0.0 else 0.0)
     for e in range(E.shape[0]):
-        m = greatest_error(E[e], h, L, T, b, work)
-        if not m <= miss[e] and miss[e] == miss[e]:  # NaN stays
-            miss[e] = m
-    miss[2] = max(miss[2], max(L, abs(h) * speed))
+        m, k = greatest_error(E[e], h, L, T, b, work), min(e, MISS_OF_OTHERS)
+        if not m <= miss[k] and miss[k] == miss[k]:  # NaN stays
+            miss[k] = m
+    miss[MISS_SCALE] = max(miss[MISS_SCALE], max(L, abs(h) * speed))
     return T
 
 
@@ -97,8 +110,11 @@ def step_error(system, rtol, atol, work):
     greatest = 0.0
     for b in range(work.body.shape[0]):
         miss = work.body[b].miss
-        allowed = allowed_error(rtol, atol, system.bodies[b].extent, miss[2])
+        allowed = allowed_error(rtol, atol, system.bodies[b].extent, miss[MISS_SCALE])
         error = of_two(miss[0] / allowed, miss[1] / allowed)
+        if miss[MISS_OF_OTHERS] > 0.0:
+            most = max(miss[0], miss[MISS_OF_OTHERS])
+            error = of_kinks(work.body[b], error, most / allowed, miss[1] / allowed)
         if not error <= greatest and greatest == greatest:  # NaN stays
             greatest = error
     return greatest
@@ -110,6 +126,23 @@ def of_two(first, second):
     if second > 0.0:
         return first * first / math.sqrt(first * first + 0.01 * second * second)
     return first
+
+
+@kernel
+def of_kinks(memory, error, most, second):
+    """Return the error where forces may have kinks, and note whether the body or system has met some.
+
+    `most` is the greatest of the estimates of order 5, and `error` the error without kinks.
+    """
+    if not error < math.inf:
+        return error
+    at_kink = most > limits.KINK * second
+    if memory.kinks < KINKS_IN_A_ROW:
+        memory.kinks = memory.kinks + 1 if at_kink and most > 1.0 else 0
+    if memory.kinks < KINKS_IN_A_ROW:
+        return error
+    error = of_two(most, second)
+    return max(error, limits.KINK_WEIGHT * most) if at_kink else error
 
 
 @kernel

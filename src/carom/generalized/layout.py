@@ -125,8 +125,9 @@ CLOCK = [
     ("bounces", "f8"),
     ("exchanged", "f8"),  # greatest kinetic energy, and greatest work, so far
     ("given", "f8"),  # energy that impacts have added where their law allows it (V8)
-    # the next step by tolerances, the length that fitted them last, number of steps with too large an error
-    ("ahead", "f8"), ("fits", "f8"), ("rejected", "i8"),
+    # the next step by tolerances, the length that fitted them last, number of steps with too large an error,
+    # and of those in a row that failed at a kink (`carom.dynamics.adapt`)
+    ("ahead", "f8"), ("fits", "f8"), ("rejected", "i8"), ("kinks", "i8"),
     ("slow", "i8"),  # trial steps so short that the run would not end
 ]  # fmt: skip
 

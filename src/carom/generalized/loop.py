@@ -16,7 +16,15 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, kernel
-from carom.dynamics.adapt import allowed_error, crawls, of_two, part_of, shrunk
+from carom.dynamics.adapt import (
+    MISS_OF_OTHERS,
+    allowed_error,
+    crawls,
+    of_kinks,
+    of_two,
+    part_of,
+    shrunk,
+)
 from carom.dynamics.adapt import plan as plan_ahead
 from carom.dynamics.thresholds import LEAST_STEP
 from carom.generalized import layout as o
@@ -95,7 +103,7 @@ def take_accurately(motion, x, left, plan, c):
             continue
         if crawls(c, plan.duration - c.now, part, plan.step):
             return part, STEP_TOO_SMALL
-        error = math.inf if code != 0 else step_error(motion, part, plan)
+        error = math.inf if code != 0 else step_error(motion, part, plan, c)
         if error <= 1.0:
             plan_ahead(c, part, error, again, plan.order, plan.step)
             return part, 0
@@ -128,10 +136,10 @@ def turns(motion):
 
 
 @kernel
-def step_error(motion, h, plan):
+def step_error(motion, h, plan, clock):
     """Return the greatest error of the step h whose stages are in the workspace; up to 1 it is accepted."""
     E, stages, n = motion.method.E, motion.work.stages, motion.system.n
-    first, second = 0.0, 0.0
+    first, second, most = 0.0, 0.0, 0.0
     for i in range(n):
         pace, speed, known = 0.0, 0.0, SUM_ERROR * motion.work.sum[i]
         for s in range(E.shape[1]):
@@ -147,7 +155,10 @@ def step_error(motion, h, plan):
                 first = miss
             if e == 1:
                 second = max(second, miss)
-    return of_two(first, second)
+            else:
+                most = max(most, miss)
+    error = of_two(first, second)
+    return of_kinks(clock, error, most, second) if E.shape[0] > MISS_OF_OTHERS else error
 
 
 @kernel

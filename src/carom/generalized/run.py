@@ -55,7 +55,7 @@ class GeneralizedRun(Running):
         self.functions.forget()
         self.system = self.made.system
         n = self.n = self.system.n
-        self.method = make_method(settings.method, options, settings.adapts)
+        self.method = make_method(settings.method, options, settings.adapts, kinks=True)
         self.work = o.new_work(self.system, len(self.method.b))
         x = np.concatenate([system.position, system.velocity])
         begin, x, active = start or (0.0, x, table(o.CONTACT, self.system.contacts))

@@ -262,9 +262,11 @@ CONTACT = [
     ("other_solid", "i8"),
     # 1 + the number of the level surface that the row stands for (`carom.contact.level`), 0 for other rows
     ("surface", "i8"),
-    # range of its faces; of a static solid, range of its surfaces in `Levels.own`
+    # range of its faces; of the other solid, range of its surfaces in `Levels.own`; the same of the first solid
     ("first_level", "i8"),
     ("last_level", "i8"),
+    ("first_mine", "i8"),
+    ("last_mine", "i8"),
     ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
     ("multiple", "i8"),  # 1: its pair has impacts of its own, one after another
     ("ball_like", "i8"),  # 1 if one of the two is a ball or an ellipsoid
@@ -436,6 +438,6 @@ class System(NamedTuple):
     vertices: np.ndarray  # (V, 3) of all contacts, body axes
     solids: np.recarray  # SOLID of `carom.collision`, of bodies that may touch each other
     hulls: Hulls
-    levels: Levels  # faces of static solids in one plane
+    levels: Levels  # faces of solids of one body, or of static ones, in one plane
     moving: MovingSurfaces
     solver: Solver

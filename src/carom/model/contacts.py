@@ -16,7 +16,7 @@ from carom.geometry.frames import contact_axes, length, upright
 from carom.model.arrays import BODY_AXES, CONTACT, OTHER_AXES, WORLD_AXES
 from carom.model.contact_rows import Rows, contact_rows, first_pairs
 from carom.model.cores import Cores, new_cores, singly, swollen_alike
-from carom.model.level_surfaces import find_levels, with_level_rows
+from carom.model.level_surfaces import find_levels, note_own, with_level_rows
 from carom.model.more_forces import RESTITUTION, Pieces
 from carom.model.moving_surfaces import write_fields
 from carom.options import Options
@@ -39,6 +39,7 @@ class Surfaces(NamedTuple):
     place: np.ndarray  # (N,) first solid of each body
     curves: Pieces  # of coefficients that are laws
     turns: np.ndarray  # (N + S, 4) from principal to body axes; of static bodies from world axes
+    levels: Levels
 
 
 class Contacts(NamedTuple):
@@ -110,11 +111,11 @@ def _contacts(scene: Scene, known: PairTable, later, curves, to_principal, optio
     ranges = (which.core[end][flat & ~curved].tolist() for end in ("first", "last"))
     own = [grounded.vertices[first:last] for first, last in zip(*ranges)]
     vertices = np.concatenate([*own, single.vertices])
+    levels, regions = find_levels(scene, pairs, place, every, to_principal)
     surfaces = Surfaces(
-        grounded, single, len(vertices) - len(single.vertices), place, curves, to_principal
+        grounded, single, len(vertices) - len(single.vertices), place, curves, to_principal, levels
     )
-    rows = _rows(scene, options, pairs, which, surfaces)
-    rows, levels = with_level_rows(rows, *find_levels(scene, pairs, place))
+    rows = with_level_rows(_rows(scene, options, pairs, which, surfaces), levels, regions)
     return Contacts(rows, vertices, solids, hulls, levels, known, surfaces, later)
 
 
@@ -166,6 +167,7 @@ def _rows(scene, options: Options, pairs: PairTable, which: Rows, surfaces: Surf
     _write_solids(rows, which, surfaces.place)
     _write_laws(rows, scene, pairs, which, surfaces)
     _write_statics(rows, scene)
+    note_own(rows, surfaces.levels)
     extent = rows["extent"]
     rows["still"] = 1e-14 * _speed(scene, extent)
     rows["width"] = 1e-5 * extent if options.layer_width is None else options.layer_width

@@ -1,4 +1,4 @@
-"""Find the level surfaces of the static solids of a scene, and make the rows of contacts that stand for them.
+"""Find the level surfaces of the solids of a scene, and make the rows of contacts that stand for them.
 
 Two faces are level if each corner of one is within the tolerance RESOLUTION times the size of the larger solid
 from the plane of the other, and their normals agree. A surface is a set of level faces that are joined: each
@@ -8,12 +8,16 @@ of a solid is an obstacle. Solids whose edges are rounded have none: there is a 
 A body has one row for each surface, as for a half-space whose points count only above the faces
 (`carom.contact.level`). Where the laws of contact differ, each part of a surface with one law has its own row.
 The rows of the solids themselves then have only contacts at the rims, and at other faces.
+
+Faces of one moving body are level in its own axes. Its solids keep their points, each with its law; only what
+the surface hides is left out, and points on one surface belong together.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -68,14 +72,40 @@ class Region(NamedTuple):
     last: int
 
 
-def find_levels(scene: Scene, pairs: PairTable, place: np.ndarray) -> tuple[Levels, list[Region]]:
-    """Return the level surfaces of a scene, and their regions.
+def find_levels(
+    scene: Scene, pairs: PairTable, place: np.ndarray, every: list, to_principal: np.ndarray
+) -> tuple[Levels, list[Region]]:
+    """Return the level surfaces of a scene, those of static solids first, and their regions.
 
     In `pairs`, static bodies have the numbers after those of bodies that move; `place` has the first solid of
-    each.
+    each, and `every` its shape if it may touch other bodies.
     """
-    if not scene.statics:
-        return no_levels(), []
+    surfaces, regions = _of_statics(scene, pairs, place) if scene.statics else ([], [])
+    for b, shape in enumerate(every[: len(scene.bodies)]):
+        if shape is not None and len(shape.pieces) > 1:
+            surfaces += _of_shape(shape, tuple(to_principal[b].tolist()), int(place[b]))
+    return (_tables(surfaces), regions) if surfaces else (no_levels(), [])
+
+
+@lru_cache(maxsize=64)
+def _of_shape(shape, to_principal: tuple[float, ...], first: int) -> list[tuple]:
+    """Return the surfaces of a body that moves, in its principal axes; `first` is its first solid."""
+    back = quaternion.conjugate(np.array(to_principal))
+    faces = []
+    for k, piece in enumerate(shape.pieces):
+        if is_sharp(piece) and piece.corners is not None:
+            faces += _faces_of(first + k, 0, piece, quaternion.rotate(back, piece.corners))
+    surfaces = []
+    for group in _joined(faces := _bare(faces), [((), ())]):
+        members = [faces[i] for i in group]
+        rims = _rims(members) if len(group) > 1 else None
+        if rims is not None and len(rims[1]) < sum(len(face.corners) for face in members):
+            surfaces.append((members, *rims))
+    return surfaces
+
+
+def _of_statics(scene: Scene, pairs: PairTable, place: np.ndarray) -> tuple[list, list[Region]]:
+    """Return the surfaces of static solids, and their regions."""
     laws = _laws_of_statics(scene, pairs)
     faces = _bare([face for face in _faces(scene, place) if laws[face.static][0]])
     groups = [group for group in _joined(faces, laws) if len(group) > 1]
@@ -86,8 +116,6 @@ def find_levels(scene: Scene, pairs: PairTable, place: np.ndarray) -> tuple[Leve
             continue
         group = sorted(group, key=lambda i: (laws[faces[i].static][1], faces[i].material))
         surfaces.append(([faces[i] for i in group], *rims))
-    if not surfaces:
-        return no_levels(), []
     at = 0
     for s, (members, *_) in enumerate(surfaces):
         keys = [(laws[face.static][1], face.material) for face in members]
@@ -95,7 +123,7 @@ def find_levels(scene: Scene, pairs: PairTable, place: np.ndarray) -> tuple[Leve
         for first, last in zip([0, *changes], [*changes, len(keys)]):
             regions.append(Region(s, at + first, at + last))
         at += len(members)
-    return _tables(surfaces), regions
+    return surfaces, regions
 
 
 def _laws_of_statics(scene: Scene, pairs: PairTable) -> list[tuple[tuple, tuple]]:
@@ -125,15 +153,20 @@ def _faces(scene: Scene, place: np.ndarray) -> Iterator[Face]:
     """Return the faces of all static solids with sharp edges."""
     for s, static in enumerate(scene.statics):
         for k, piece in enumerate(static.shape.pieces):
-            if piece.radius > 0.0 or piece.kind not in ("box", "hull"):
-                continue
-            local = piece.corners
-            assert local is not None
-            world = static.position + quaternion.rotate(static.orientation, local)
-            for ring in BOX_RINGS if piece.kind == "box" else (r for _, r in piece.faces):
-                yield _face(
-                    int(place[len(scene.bodies) + s]) + k, s, piece, world, world[list(ring)]
-                )
+            if is_sharp(piece) and piece.corners is not None:
+                world = static.position + quaternion.rotate(static.orientation, piece.corners)
+                yield from _faces_of(int(place[len(scene.bodies) + s]) + k, s, piece, world)
+
+
+def is_sharp(piece: Piece) -> bool:
+    """Return whether a piece has faces with sharp edges."""
+    return piece.radius == 0.0 and piece.kind in ("box", "hull")
+
+
+def _faces_of(solid: int, static: int, piece: Piece, corners: np.ndarray) -> list[Face]:
+    """Return the faces of a solid with these vertices."""
+    rings = BOX_RINGS if piece.kind == "box" else (ring for _, ring in piece.faces)
+    return [_face(solid, static, piece, corners, corners[list(ring)]) for ring in rings]
 
 
 def _face(solid: int, static: int, piece: Piece, every: np.ndarray, corners: np.ndarray) -> Face:
@@ -327,7 +360,12 @@ def _tables(surfaces: list[tuple[list[Face], float, np.ndarray]]) -> Levels:
             mine["inward"], mine["level"], mine["corner"] = face.inward, face.levels, face.corners
             side_at += count
         face_at, rim_at = face_at + len(faces), rim_at + len(rims)
-    return Levels(surface, face_rows, side_rows, rim_rows, np.zeros(0, dtype=np.int64))
+    surface_of = np.repeat(np.arange(len(surface)), surface["last"] - surface["first"])
+    pairs = np.unique(np.stack([face_rows["solid"], surface_of], axis=1), axis=0)
+    solids, own = np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1])
+    face_rows["first_own"] = np.searchsorted(solids, face_rows["solid"], "left")
+    face_rows["last_own"] = np.searchsorted(solids, face_rows["solid"], "right")
+    return Levels(surface, face_rows, side_rows, rim_rows, own, solids)
 
 
 def _rounded(normal: np.ndarray) -> np.ndarray:
@@ -336,35 +374,30 @@ def _rounded(normal: np.ndarray) -> np.ndarray:
     return normal / np.linalg.norm(normal)
 
 
-def with_level_rows(
-    rows: np.recarray, levels: Levels, regions: list[Region]
-) -> tuple[np.recarray, Levels]:
-    """Return the rows of contacts with those of level surfaces, sorted by number, and the complete `Levels`."""
+def with_level_rows(rows: np.recarray, levels: Levels, regions: list[Region]) -> np.recarray:
+    """Return the rows of contacts with those of level surfaces, sorted by number."""
     if not regions:
-        return rows, levels
-    levels = _note_own(rows, levels)
+        return rows
     more = [rows]
     for region in regions:
         surface, first = levels.surfaces[region.surface], levels.faces[region.first]
         chosen = (rows["static"] == 1) & (rows["other_solid"] == first.solid)
         more.append(_surface_rows(rows[chosen].view(Columns), surface, region))
     joined = np.concatenate(more)
-    return joined[np.argsort(joined["number"], kind="stable")].view(Columns), levels
+    return joined[np.argsort(joined["number"], kind="stable")].view(Columns)
 
 
-def _note_own(rows: np.recarray, levels: Levels) -> Levels:
-    """Write to the rows of static solids the ranges of their surfaces."""
-    surface_of = np.repeat(
-        np.arange(len(levels.surfaces)), levels.surfaces["last"] - levels.surfaces["first"]
-    )
-    pairs = np.unique(np.stack([levels.faces["solid"], surface_of], axis=1), axis=0)
-    static = rows["static"] == 1
-    solids, others, own = pairs[:, 0], rows["other_solid"][static], levels.faces["solid"]
-    rows["first_level"][static] = np.searchsorted(solids, others, "left")
-    rows["last_level"][static] = np.searchsorted(solids, others, "right")
-    levels.faces["first_own"] = np.searchsorted(solids, own, "left")
-    levels.faces["last_own"] = np.searchsorted(solids, own, "right")
-    return levels._replace(own=np.ascontiguousarray(pairs[:, 1]))
+def note_own(rows: np.recarray, levels: Levels) -> None:
+    """Write to rows of two solids the ranges of the surfaces of both in `Levels.own`."""
+    if not len(levels.own):
+        return
+    pair = (rows["other"] >= 0) | (rows["static"] == 1)
+    for first, last, solid in (
+        ("first_level", "last_level", "other_solid"), ("first_mine", "last_mine", "solid"),
+    ):  # fmt: skip
+        own = rows[solid][pair]
+        rows[first][pair] = np.searchsorted(levels.solid_of_own, own, "left")
+        rows[last][pair] = np.searchsorted(levels.solid_of_own, own, "right")
 
 
 def _surface_rows(rows: np.recarray, surface: np.record, region: Region) -> np.recarray:

@@ -37,7 +37,8 @@ class Method(NamedTuple):
     kind: int
     A: np.ndarray  # (S, S) strictly lower triangular
     b: np.ndarray  # (S,) weights
-    E: np.ndarray  # weights of its error estimates: (0, S) none; (1, S); (2, S) of orders 5 and 3
+    # weights of its error estimates: (0, S) none; (1, S); (2, S) of orders 5 and 3; (4, S) with two more of 5
+    E: np.ndarray
     parts: np.ndarray  # RATTLE: (P,) of h, sum 1
     # THREE_FIELD
     ode: int  # 1: second-order equations of the multipliers, 0: exact constraints
@@ -68,3 +69,4 @@ class Definition(NamedTuple):
     order: int  # of convergence
     coefficients: Callable[[Options], Method]
     with_error: Callable[[], Method] | None = None  # with E: for steps of varying length
+    with_kinks: Callable[[], Method] | None = None  # with more rows of E: for forces with kinks

@@ -108,7 +108,12 @@ BODY_WORK = [
     ("wrench", "f8", 6),  # input of a solve: force and torque, or impulse
     ("motion", "f8", 6),  # result of a solve: linear, angular
     ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
-    ("miss", "f8", 3),  # two estimates of the error of a step [m], and their scale
+    # estimates of the error of a step [m]: of order 5, of 3, the greatest of others of order 5; their scale
+    ("miss", "f8", 4),
+    (
+        "kinks",
+        "i8",
+    ),  # number of trial steps in a row that failed at a kink; from KINKS_IN_A_ROW on it stays
     ("ahead", "f8"),  # with tolerances: length of the next step of its island
     ("counts", "f8", COUNTS),  # work of its island that counts against its bounds
     ("fits", "f8"),  # length of a step whose error fits the tolerance, by the last step
@@ -120,6 +125,10 @@ BODY_WORK = [
     ("spin", "f8", 3),  # angular velocity that belongs to `momentum`, in the three-field step
     ("momentum", "f8", 3),  # spatial angular momentum
     *FLIGHT,
+    # of time-stepping pieces: mean accelerations of the last one, its end, and the sum of their errors [m]
+    ("mean", "f8", 6),
+    ("piece_end", "f8"),
+    ("astray", "f8"),
     ("whole_until", "i8"),  # the body moves in a crowd up to this step
     ("whole_for", "i8"),  # number of such steps at the last decision
     ("home", "f8", 3),  # centre at the start of the step

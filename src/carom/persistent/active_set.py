@@ -9,7 +9,7 @@ from carom._compiled.units import unit
 from carom.contact.closed_points import apart, closed_within
 from carom.contact.gap import slow
 from carom.contact.groups import label_groups
-from carom.contact.level import related
+from carom.contact.level import is_of_moving, related
 from carom.contact.pair_point import find_touches, own_point, smaller, touch_rate
 from carom.contact.place_of_other import on_half_space
 from carom.contact.rim import place_of, same_point
@@ -158,6 +158,8 @@ def refresh_pairs(system, controls, data) -> bool:
                 own_point(contact, touch, state, active_point.point)
                 there = True
         if there:
+            if is_of_moving(contact) and is_first(active, i):
+                changed = add_riding(system, controls, data, i) or changed
             i += 1
             continue
         mode, f = active_point.mode, active_point.force
@@ -168,7 +170,7 @@ def refresh_pairs(system, controls, data) -> bool:
         changed = True
         for d in range(system.contacts.shape[0]):
             if related(system, c, d):
-                replace_points(system, controls, data, d, mode)
+                replace_points(system, controls, data, d, mode, d != c and is_of_moving(contact))
         for j in range(before, active.count[0]):  # they share its force, until the next step
             for r in range(3):
                 active.points[j].force[r] = force[r] / (active.count[0] - before)
@@ -176,8 +178,30 @@ def refresh_pairs(system, controls, data) -> bool:
 
 
 @kernel
-def replace_points(system, controls, data, c, mode):
+def is_first(active, i):
+    """Return whether an active point is the first of its contact."""
+    for j in range(i):
+        if active.points[j].contact == active.points[i].contact:
+            return False
+    return True
+
+
+@kernel
+def add_riding(system, controls, data, i):
+    """Activate points of related rows on the level surface of active point i; return whether there are any."""
+    active, before = data.active, data.active.count[0]
+    c, mode = active.points[i].contact, active.points[i].mode
+    for d in range(system.contacts.shape[0]):
+        if d != c and related(system, c, d):
+            replace_points(system, controls, data, d, mode, True)
+    return active.count[0] > before
+
+
+@kernel
+def replace_points(system, controls, data, c, mode, rides):
     """Activate the closed points of contact c, in place of a point that no longer exists.
+
+    Only those on level surfaces of moving bodies, if it `rides` there.
 
     Points that approach faster than a contact problem may leave unsolved are not persistent: of two bodies they
     strike (the edge of a cam whose flat top becomes level with its follower).
@@ -193,6 +217,8 @@ def replace_points(system, controls, data, c, mode):
         touch = work.touches[t]
         free = active.count[0] < active.points.shape[0]
         if touch.gap > near or place_of(system, active, c, touch, state) >= 0:
+            continue
+        if rides and touch.surface == 0:
             continue
         if touch_rate(contact, touch, state) < -still:
             active.contact_states[c].near = max(active.contact_states[c].near, 0 if plane else 1)

@@ -104,7 +104,7 @@ def step_group(model, data, method, label, h):
     for m in range(members(work, label, group.member)):
         miss, b = work.body[group.member[m]].miss, group.member[m]
         bound_accelerations_of(work, b, 2)
-        miss[0], miss[1] = max(miss[0], 0.5 * h * h * push), 0.0
+        miss[0], miss[1], miss[2] = max(miss[0], 0.5 * h * h * push), 0.0, 0.0
     named = result.friction - rubbed + result.applied - had
     note_unnamed(model, data, label, named, h, push)
     result.friction -= lost_in_stop(model, data, label, named)
@@ -164,7 +164,7 @@ def note_errors(model, data, E, label, k, h):
         work.body[b].bound[:3] = 0.0
         bound_accelerations_of(work, b, E.shape[1])
         if controls.order > 0:
-            work.body[b].miss[:3] = 0.0
+            work.body[b].miss[:4] = 0.0
             if controls.pull > 0.0:
                 longest = FALLS * math.sqrt(system.bodies[b].extent / controls.pull)
             T = note_miss(system, E, h, longest, b, work)

@@ -19,6 +19,7 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.closed_points import add_touch, write_closed, write_turning
 from carom.contact.continuous_detection_pair import nearest_touch
+from carom.contact.level import is_of_moving, related
 from carom.contact.pair_point import (
     find_touches,
     list_touches,
@@ -33,9 +34,10 @@ from carom.contact.stop import is_active
 from carom.contact.thresholds import ACTIVE_REACH, PLACE_ERROR, REACH
 from carom.dynamics.thresholds import NORMAL_ERROR
 from carom.geometry.rotation import cross, rotate_back
-from carom.geometry.thresholds import ROUND_OFF
+from carom.geometry.thresholds import RESOLUTION, ROUND_OFF
 from carom.kinematics.contact_point import copy_point
 from carom.kinematics.grain import lengths_of_tangents, turn_plain
+from carom.persistent.active_set import is_first
 from carom.persistent.joint_rows import add_frictions
 
 
@@ -55,15 +57,6 @@ def find_points(system, data, label):
     k = add_frictions(system, label, work.stage, k, group, work)
     weigh(system, k, group)
     return k
-
-
-@kernel
-def is_first(active, i):
-    """Return whether an active point is the first of its contact."""
-    for j in range(i):
-        if active.points[j].contact == active.points[i].contact:
-            return False
-    return True
 
 
 @kernel
@@ -96,8 +89,12 @@ def add_pair(system, data, i, k) -> int:
                 k = add_found(system, data, c, work.touches[t], j, k)
                 data.group.closed[k - 1].own = 1
         return k
+    if is_of_moving(contact) and has_left(system, data, c):
+        return k
     list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
-    if not on_face(contact, active, i, nearest_touch(work).normal, state):
+    m = nearest_touch(work).normal
+    n = (m[0], m[1], m[2])
+    if not on_face(contact, active, i, n, state):
         for j in range(i, active.count[0]):
             if active.points[j].contact == c:
                 k = add_nearest(system, data, j, k)
@@ -108,6 +105,39 @@ def add_pair(system, data, i, k) -> int:
         beside = d != c and other.body == contact.body and other.surface == contact.surface
         if beside and not is_active(active, d):
             k = add_face(system, data, d, i, k)
+    for d in range(system.contacts.shape[0] if is_of_moving(contact) else 0):
+        if d != c and not is_active(active, d) and related(system, c, d):
+            k = add_riding(system, data, d, i, k, n)
+    return k
+
+
+@kernel
+def has_left(system, data, c):
+    """Return whether the bodies of a row have passed a seam of its solids, and ride on those of another row."""
+    contact, active, work, state = system.contacts[c], data.active, data.work, data.work.stage
+    if find_touches(system, contact, state, REACH * smaller(contact), work) > 0:
+        return False
+    for j in range(active.count[0]):
+        d = active.points[j].contact
+        if d != c and active.points[j].touches == 1 and related(system, c, d):
+            other = system.contacts[d]
+            if find_touches(system, other, state, REACH * smaller(other), work) > 0:
+                return True
+    return False
+
+
+@kernel
+def add_riding(system, data, c, i, k, n):
+    """Add the corners of a related row on the level surface with the normal n of active point i."""
+    state, work, contact = data.work.stage, data.work, system.contacts[c]
+    near = RESOLUTION * smaller(contact)
+    for t in range(find_touches(system, contact, state, near, work)):
+        touch = work.touches[t]
+        across = 0.0
+        for r in range(3):
+            across = max(across, abs(touch.normal[r] - n[r]))
+        if touch.surface > 0 and touch.gap <= near and across <= NORMAL_ERROR:
+            k = add_found(system, data, c, touch, i, k)
     return k
 
 

@@ -91,6 +91,8 @@ def sentences(
     found.sort(key=lambda one: -one[0])
     if numbers["whole"] > 0:
         found.append((0.0, _of_whole(watch)))
+    if numbers["astray"] > 1.0 and not numbers["astray_size"] <= numbers["whole_error"]:
+        found.append((0.0, _of_crowd(watch)))
     return tuple(sentence.replace("{finer}", finer) for _, sentence in found)
 
 
@@ -108,6 +110,15 @@ def _of_whole(watch: np.record) -> str:
         f"{watch.whole_at:.6g} s of {watch.whole_bodies} bodies: {why}. Their "
         f"impacts are at the ends of these steps: a body is misplaced by up to {watch.whole_error:.2g} of its "
         "size. {finer}."
+    )
+
+
+def _of_crowd(watch: np.record) -> str:
+    """Return the sentence about time-stepping steps of many bodies."""
+    return (
+        "Bodies that touch at many points took time-stepping (Moreau) steps, with impacts at their ends: by "
+        f"the changes of their forces from step to step a body is misplaced by up to {watch.astray_size:.2g} "
+        f"of its size, {watch.astray:.2g} times the tolerance. This falls in proportion to Options.max_step."
     )
 
 

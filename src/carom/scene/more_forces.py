@@ -306,3 +306,14 @@ class UserForce:
     bodies: Bodies = Value(distinct_bodies)
     function: Function = fields.function()
     potential: FunctionOrNone = fields.function(None)
+
+
+def has_kinks(scene) -> bool:
+    """Return whether forces of a scene are functions of the user or curves: these may have kinks and jumps."""
+    for force in scene.forces:
+        one = force.definition
+        if isinstance(one, (UserForce, CurveSpring)):
+            return True
+        if isinstance(one, JointForce) and callable(one.force):
+            return True
+    return False

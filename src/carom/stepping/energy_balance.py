@@ -60,6 +60,9 @@ WATCH = [
     ("whole_error", "f8"),
     ("whole_bodies", "i8"),
     ("whole_code", "i8"),
+    # greatest error of a body by time-stepping steps so far: relative to its tolerance, and to its size
+    ("astray", "f8"),
+    ("astray_size", "f8"),
     ("gains", "i8"),  # shortest steps in a row that gained
     ("share", "f8"),  # allowed error of a step, as a part of the energy exchanged
 ]

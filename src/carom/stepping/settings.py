@@ -10,7 +10,7 @@ from carom import checks
 from carom.dynamics.methods import ADAPTIVE, CARRIES, EXPLICIT, METHODS
 from carom.dynamics.thresholds import RTOL
 from carom.options import Options
-from carom.scene.more_forces import JointFriction, JointInertia
+from carom.scene.more_forces import JointFriction, JointInertia, has_kinks
 from carom.scene.remarks import check_location, remarks
 from carom.scene.scene import Scene
 from carom.stepping.thresholds import MOST_STEPS, SMOOTH_RTOL, TIGHT_RTOL
@@ -125,9 +125,14 @@ def checked_settings(
 
 
 def default_method(h: float | None, rtol: float, scene) -> str:
-    """Return the method of a run that names none: where no event cuts its steps order 8 costs the least."""
+    """Return the method of a run that names none: where no event cuts its steps order 8 costs the least.
+
+    Where forces may have kinks it has order 8 too, since that alone sees each of them (`dynamics.adapt`).
+    """
     if h is not None:
         return "rk4"
+    if isinstance(scene, Scene) and has_kinks(scene):
+        return "rk8"
     return "rk8" if rtol <= (SMOOTH_RTOL if is_smooth(scene) else TIGHT_RTOL) else "rk5"
 
 

@@ -16,6 +16,7 @@ from carom.model.controls import LOCATE
 from carom.model.data import Data, Model
 from carom.persistent.active_set import regroup
 from carom.status import BLOCKED, LEFT_CURVE, OUT_OF_PLANE, STEP_TOO_SMALL
+from carom.stepping.crowd.error import watch_error
 from carom.stepping.crowd.layout import SPOTS
 from carom.stepping.crowd.step import step_crowd
 from carom.stepping.energy_balance import note_whole, watch_step
@@ -193,6 +194,8 @@ def move_island(model, data, method):
     code = work.result[0].code
     if code == 0 and left_ball(model.system, data.state, work.step[0].length, work):
         return r.LEFT_BALL
+    if code == 0 and model.controls.order > 0:
+        watch_error(model.system, model.controls, work, data.watch[0])
     return code
 
 

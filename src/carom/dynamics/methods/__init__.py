@@ -22,7 +22,12 @@ CARRIES = tuple(name for name, one in METHODS.items() if one.kind in (RUNGE_KUTT
 ADAPTIVE = tuple(name for name, one in METHODS.items() if one.with_error is not None)
 
 
-def make_method(name: str, options: Options, adapts: bool = False) -> Method:
-    """Return the coefficients of a method by its name; with error weights if it `adapts` its steps."""
+def make_method(name: str, options: Options, adapts: bool = False, kinks: bool = False) -> Method:
+    """Return the coefficients of a method by its name; with error weights if it `adapts` its steps.
+
+    `kinks` means that forces may have them.
+    """
     one = METHODS[name]
+    if adapts and kinks and one.with_kinks:
+        return one.with_kinks()
     return one.with_error() if adapts and one.with_error else one.coefficients(options)

@@ -30,6 +30,7 @@ from carom.persistent.thresholds import SHORTEST_CUT
 from carom.status import LEFT_CURVE, NOT_FINITE
 from carom.stepping import thresholds as limits
 from carom.stepping.crowd.balance import energy_gained, off, slow_down, take_out, take_over
+from carom.stepping.crowd.error import note_error
 from carom.stepping.crowd.finish import finish
 from carom.stepping.crowd.free_motion import (
     TOO_LONG,
@@ -168,6 +169,8 @@ def move_on(model, data, method, h, patient, careful):
             slow_down(system, left, end[0])
     clock.loads += applied
     clock.friction += rubbed
+    if model.controls.order > 0:
+        note_error(system, clock.now, h, now, end, work)
     for b in range(n):
         copy_state(end[b], now[b])
     return LEFT_CURVE if note_turns(system, now) else 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.dynamics.explicit import copy_state, mark_active
 from carom.kinematics.flight import free_flight
-from carom.model.allowance import keep_count
+from carom.model.allowance import COUNT_FACTORS, keep_count, left
 from carom.model.arrays import Solver, System
 from carom.model.workspace import ActiveSet, Work
 from carom.persistent.active_set import regroup
@@ -14,9 +14,9 @@ from carom.stepping.islands.layout import ASLEEP, FLIES
 from carom.stepping.islands.order import comes_before
 from carom.stepping.islands.plan import READY, number, root, seek
 
-# least number of active points of a crowd, and least average number per body: a group that moves from event to
-# event is solved with a full matrix W, which costs the cube of the number of points
+# of steps of given length: least number of active points of a crowd, and least average number per body
 MANY, EACH = 24, 2
+FACTORS = 20  # factors of W, at least, of a step of a group from event to event
 
 
 @kernel
@@ -162,17 +162,35 @@ def slot_of(islands, i, active_point):
 def choose(part, controls, active, number, work):
     """Note whether an island moves as a crowd in step `number`: it is large, or has failed as events lately.
 
-    It is large if bodies lie on each other at many points, two per body or more. Bodies that roll on a table or
-    strike in flight move from event to event.
+    With tolerances it is large if it cannot afford to move one of its groups from event to event, which takes
+    factors of a full matrix W. With given steps it is large if bodies lie on each other at many points, two per
+    body or more. Bodies that roll on a table or strike in flight move from event to event.
     """
-    n = part.bodies.shape[0]
-    crowd = active.count[0] >= max(MANY, EACH * n)
+    n, step = part.bodies.shape[0], work.step[0]
+    if controls.order > 0:
+        k = float(largest_group(active, work))
+        crowd = FACTORS * k * k * k > left(controls, step, COUNT_FACTORS)
+    else:
+        crowd = active.count[0] >= max(MANY, EACH * n)
     for b in range(n):
         crowd = crowd or work.body[b].whole_until > number
-    work.step[0].crowd = 1 if crowd and controls.retry == 1 else 0
-    for b in range(n if work.step[0].crowd == 0 else 0):
+    step.crowd = 1 if crowd and controls.retry == 1 else 0
+    for b in range(n if step.crowd == 0 else 0):
         if work.body[b].whole_until < number:
             work.body[b].whole_for //= 2
+
+
+@kernel
+def largest_group(active, work):
+    """Return the greatest number of active points of a group that moves."""
+    most, joined, n = 0, 0, work.body.shape[0]
+    for i in range(active.count[0]):
+        label = work.body[active.points[i].body].label
+        if label == n:
+            joined += 1
+        elif active.points[i].rest == 0:
+            most = max(most, work.body[label].n_active)
+    return max(most, joined)
 
 
 @kernel
