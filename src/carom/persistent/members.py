@@ -139,6 +139,7 @@ def implicit_stage(model, data, label, s, hg, closes):
         k = write_rows(model, data, label, s)
         for m in range(count):
             b = group.member[m]
+            copy_state(work.stage[b], group.free[b])  # its place: a surface may turn beneath it
             add_velocity(group.base[b], hg, work.stages[s, b], group.free[b])
         velocities(k, group.points[0], group.free, group.v[U])
         if k != before:
