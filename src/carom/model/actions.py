@@ -11,3 +11,4 @@ MODE_OPEN, MODE_SLIP, MODE_STICK = range(3)
 #: direction of slip, change sign (`carom.persistent.events`, `carom.generalized.events`)
 EVENT_GAP, EVENT_SEPARATE, EVENT_CONE, EVENT_JAM, EVENT_RATE, EVENT_REVERSE, NO_EVENT = range(7)
 EVENT_BREAK = 7  # a joint with a law of friction breaks away
+EVENT_KINK, EVENT_KINK_OF_JOINT = 8, 9  # slip passes a speed at which its law has no derivatives

@@ -184,6 +184,11 @@ FRICTION = [
     ("next", "i8"),  # 1 or -1: slips in this direction; 0 sticks
     ("mode", "i8"),  # the same at the start of the step
     ("grip", "f8"),  # margin before a joint with a law breaks away (`carom.persistent.margins`)
+    (
+        "began",
+        "f8",
+    ),  # its speed at the start of the step, and margins before a kink of its law, as of
+    ("kink", "f8", 2),  # an active point
     ("speed", "f8"),  # at the start of the step
     ("force", "f8"),  # of the last solve
     ("stop", "f8"),  # time until its slip stops
@@ -206,7 +211,13 @@ USER_FORCE = [
 ]
 
 #: a piece of a polynomial in (t - start)
-PIECE = [("start", "f8"), ("end", "f8"), ("c", "f8", 6)]  # c: constant term first
+PIECE = [
+    ("start", "f8"),
+    ("end", "f8"),
+    ("c", "f8", 6),  # constant term first
+    # of a law: nearest places at or below its start, and at or above its end, where a derivative jumps
+    ("kinks", "f8", 2),
+]
 
 SPRING = [
     ("parent", "i8"),

@@ -45,6 +45,9 @@ ACTIVE_POINT = [
     ("stop", "f8"),  # for several points: time until slip stops under the last forces
     ("lift", "f8"),  # for several points: margin before opening at the end of a step, below 0: open
     ("grip", "f8"),  # the same before slip
+    ("began", "f8"),  # speed of slip at the start of the step
+    # margin before the slip passes a kink of its law, at start and end of the step: below 0 if it has passed
+    ("kink", "f8", 2),
     ("due", "i8"),  # 1 if the event of the search may be its own, too
     ("turn_stop", "f8", 2),  # as `stop`, of rolling and of pivoting
     # time that bounces left out would still take: rolling and pivoting friction begin at its end

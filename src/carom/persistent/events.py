@@ -6,6 +6,7 @@ The function of an event is positive before it and negative after it, and is eva
     EVENT_CONE       the margin before slip
     EVENT_JAM        k                                while slipping (`carom.persistent.jam`)
     EVENT_BREAK      the margin before slip           of a joint whose friction is a law
+    EVENT_KINK       the margin before a kink of the law (`carom.dynamics.curve`)
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from carom.model.actions import (
     EVENT_CONE,
     EVENT_GAP,
     EVENT_JAM,
+    EVENT_KINK,
+    EVENT_KINK_OF_JOINT,
     EVENT_SEPARATE,
     MODE_OPEN,
     MODE_SLIP,
@@ -62,4 +65,9 @@ def find_contact_event(system, active, work):
     for i in range(frictions.shape[0]):
         if frictions[i].grip < 0.0:
             return EVENT_BREAK, i
+        if frictions[i].kink[1] < 0.0:
+            return EVENT_KINK_OF_JOINT, i
+    for i in range(active.count[0] if system.curves.shape[0] > 0 else 0):
+        if active.points[i].kink[1] < 0.0:
+            return EVENT_KINK, i
     return EVENT_GAP, -1

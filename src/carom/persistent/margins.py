@@ -18,6 +18,8 @@ from carom.impact.workspace import ACCELERATIONS, C, P, U
 from carom.model.actions import (
     EVENT_BREAK,
     EVENT_JAM,
+    EVENT_KINK,
+    EVENT_KINK_OF_JOINT,
     EVENT_SEPARATE,
     MODE_OPEN,
     MODE_SLIP,
@@ -104,7 +106,7 @@ def margin(active_point, kind):
 @kernel
 def note_due(active, search, work):
     """Mark the points of the same group that have the event of the search within the trial step."""
-    if search.kind == EVENT_BREAK:
+    if search.kind in (EVENT_BREAK, EVENT_KINK, EVENT_KINK_OF_JOINT):
         return
     label = work.body[active.points[search.contact].body].label
     for i in range(active.count[0]):
@@ -118,6 +120,8 @@ def switch_due(system, active, search):
     """Set the new mode of the points whose event has been located; return whether it is one of these."""
     if search.kind == EVENT_JAM:
         return False
+    if search.kind in (EVENT_KINK, EVENT_KINK_OF_JOINT):
+        return True
     if search.kind == EVENT_BREAK:
         one = system.relations.frictions[search.contact]
         one.next = -1 if one.force > 0.0 else 1

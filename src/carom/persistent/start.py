@@ -119,7 +119,7 @@ def note_way(model, data, i, still):
         if d1 == 0.0 and has_law(system, closed_point):  # it may just have broken away
             d1, speed = float(one.mode), 0.0
         keep_way(system, active, closed_point, d1, d2, speed)
-        one.mode = one.next
+        one.mode, one.began = one.next, speed
         return True
     active_point, moves = active.points[closed_point.active], d1 != 0.0 or d2 != 0.0
     if closed_point.own == 0:
@@ -132,6 +132,7 @@ def note_way(model, data, i, still):
     slips = active_point.next == MODE_SLIP
     if slips and not moves and group.mu[i] > 0.0:  # it has stopped
         active_point.next = MODE_STICK
+    active_point.began = speed
     note_normal(group.points[0][i], active_point)
     keep_way(system, active, closed_point, d1 if slips else 0.0, d2 if slips else 0.0, speed)
     return moves or not slips or group.mu[i] == 0.0

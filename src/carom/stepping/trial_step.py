@@ -11,14 +11,15 @@ from carom.dynamics.adapt import allowed_step, plan_next, shorter, step_error
 from carom.dynamics.explicit import CONSTRAINTS_LOST, rubs
 from carom.dynamics.more_forces import turns_round
 from carom.dynamics.step import step
-from carom.dynamics.thresholds import LEAST_STEP
+from carom.dynamics.thresholds import LEAST_STEP, SAFETY
 from carom.model import records as r
-from carom.model.actions import EVENT_GAP, MODE_SLIP, STRIKE
+from carom.model.actions import EVENT_GAP, EVENT_KINK, EVENT_KINK_OF_JOINT, MODE_SLIP, STRIKE
 from carom.model.allowance import COUNT_SEARCHES, COUNT_TRIALS, mark_count, overdone
 from carom.model.controls import LOCATE
 from carom.persistent.contact_step import contact_step
 from carom.persistent.events import note_first_stops
 from carom.persistent.margins import note_due
+from carom.persistent.slip_law import share_before_kink
 from carom.persistent.step_control import too_long
 from carom.status import NOT_FINITE, OUT_OF_PLANE, STEP_TOO_SMALL, UNSTABLE
 from carom.status import STEP_CUT_TO_NOTHING as STEP_CUT
@@ -29,6 +30,7 @@ from carom.stepping.event_search import (
     detect_event,
     event_value,
     first_through,
+    kink_of,
     next_trial,
     update_bracket,
 )
@@ -166,7 +168,10 @@ def fits(model, data):
             return 0
         if not dt > LEAST_STEP * controls.duration:
             return code if code != 0 else STEP_TOO_SMALL
+        share = share_before_kink(model, data.active) if code == 0 else 1.0
         search.dt, search.again = shorter(dt, error, clock, work), 1
+        if share < 1.0:  # a kink of a law is the reason: the step goes as far as that
+            search.dt = max(search.dt, min(share, SAFETY) * dt)
         return ONCE_MORE
     if code == CONSTRAINTS_LOST and dt > SHORTEST_STEP * controls.step:
         search.active = 0
@@ -261,6 +266,8 @@ def bracket(model, data):
         search.found = 1
         return 0
     f, rate = event_value(model, data)
+    if search.kind in (EVENT_KINK, EVENT_KINK_OF_JOINT):  # known at the start, too
+        search.f_low = kink_of(system, data.active, search)[0]
     update_bracket(search, search.dt, f, rate)
     dt = next_trial(search)
     if search.kind == EVENT_GAP and system.contacts[search.contact].touches == 0:
