@@ -40,7 +40,7 @@ def value_at(pieces, law, speed):
 
 @kernel
 def margin_before_kink(pieces, law, before, after, here):
-    """Return how far a law is from its next kink at the speed `here`, relative to that of the kink; 1 without one.
+    """Return how far a law is from its next kink at the speed `here`, relative to that of the kink; 1 if none.
 
     The kink is the next one on the way of the speed from `before` to `after`: below 0 it has been passed. One
     at `before` is none, since a step that ends at a kink is followed by one that starts there.

@@ -177,8 +177,8 @@ def move_stage(base, hg, length, stage, out):
     """Write the state base + h g times its own derivative; return change and size of its velocities.
 
     `length` is the size of the body, at which rotation counts. The attitude has the equation of the stage in
-    R^4, Q = Q_base + h g/2 (0, w) Q, exactly: with a = h g/2 (0, w), Q = (1 + a) Q_base/(1 + |a|^2). An iterate,
-    or a base of length 1, would leave an error of order h^3 that no estimate sees.
+    R^4, Q = Q_base + h g/2 (0, w) Q, exactly: with a = h g/2 (0, w), Q = (1 + a) Q_base/(1 + |a|^2). An
+    iterate, or a base of length 1, would leave an error of order h^3 that no estimate sees.
     """
     size, change = 0.0, 0.0
     for r in range(3):

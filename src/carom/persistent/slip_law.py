@@ -107,7 +107,7 @@ def grip_by_law(i, push, group):
 
 @kernel
 def note_kink(system, active, closed_point, slip):
-    """Write the margins before the next kink of the law of a point, or of a joint, that ends a step at a slip."""
+    """Write the margins before the next kink of a law, of a point or a joint, at start and end of a step."""
     if closed_point.turns == JOINT:
         one = system.relations.frictions[closed_point.active]
         law = (one.piece, one.last_piece, one.exponent)
@@ -124,7 +124,7 @@ def note_kink(system, active, closed_point, slip):
 
 @kernel
 def share_before_kink(model, active):
-    """Return the share of a trial step before the first kink of a law that it passes, by the secant; 1 if none."""
+    """Return the share of a trial step before the first kink of a law that it passes, by the secant."""
     share = 1.0
     for i in range(active.count[0] if model.system.curves.shape[0] > 0 else 0):
         kink = active.points[i].kink

@@ -13,7 +13,15 @@ from carom.dynamics.more_forces import turns_round
 from carom.dynamics.step import step
 from carom.dynamics.thresholds import LEAST_STEP, SAFETY
 from carom.model import records as r
-from carom.model.actions import EVENT_GAP, EVENT_KINK, EVENT_KINK_OF_JOINT, MODE_SLIP, STRIKE
+from carom.model.actions import (
+    EVENT_CONE,
+    EVENT_GAP,
+    EVENT_KINK,
+    EVENT_KINK_OF_JOINT,
+    EVENT_SEPARATE,
+    MODE_SLIP,
+    STRIKE,
+)
 from carom.model.allowance import COUNT_SEARCHES, COUNT_TRIALS, mark_count, overdone
 from carom.model.controls import LOCATE
 from carom.persistent.contact_step import contact_step
@@ -194,6 +202,11 @@ def is_root(model, data):
             if contact.touches == 1 and has_profile(system, contact):
                 return OUT_OF_PLANE
         return NOT_FINITE
+    if state == 0 and search.kind == EVENT_SEPARATE and f > 0.0:
+        # as a force falls to zero its cone does, so slip may come first: beyond the opening nothing shows it
+        if data.active.points[search.contact].grip < 0.0:
+            begin_search(search, EVENT_CONE, search.contact, 0.0, search.dt)
+            return bracket(model, data)
     if state == 0:
         search.dt = next_trial(search)
         return ONCE_MORE
