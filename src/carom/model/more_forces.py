@@ -30,7 +30,7 @@ RESTITUTION = (
 )  # fmt: skip
 
 
-def note_kinks(pieces: np.recarray) -> None:
+def note_kinks(pieces: np.ndarray) -> None:
     """Write to the pieces of a law the places where a derivative jumps, the ends of a table among them.
 
     Beyond its pieces a law is constant. Jumps are those of the coefficients of both sides, by the least width.
