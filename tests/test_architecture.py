@@ -56,6 +56,7 @@ CAPABILITIES = {
     "friction that depends on the slip": {
         "impact": 3, "persistent": 1, "scene": 1, "model": 1, "results": 1,
     },
+    "kinks of laws of friction": {"model": 1, "persistent": 1},
     "surfaces that move": {"persistent": 1, "scene": 2, "model": 1, "kinematics": 1, "visual": 1, "contact": 1},
     "ground that is not convex": {
         "collision": 7, "contact": 3, "scene": 8, "visual": 2, "io": 1, "persistent": 1, "stepping": 1,

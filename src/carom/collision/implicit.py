@@ -22,6 +22,7 @@ from carom.collision.layout import (
 )
 from carom.collision.thresholds import FOOT_ERROR, FOOT_STEP
 from carom.collision.user_surface import user_surface_at
+from carom.geometry.thresholds import ROUND_OFF
 from carom.geometry.vectors import cross, dot, plus
 
 MOST_STEPS_TO_FOOT = 40  # of Newton's method for a nearest point
@@ -170,13 +171,15 @@ def foot_of(surface, hulls, p):
 
     Where phi is not the distance, Newton's method finds the point q of the surface with p - q along the normal:
     a step t in the surface changes the tangential part of p - q by -(1 + d S) t. From a point beneath p it goes
-    to nearer ones only, because far from p there are others. The error after a step is about its square.
+    to nearer ones only, because far from p there are others. The error after a step is about its square. A step
+    t changes the square of the distance by t^2, so that short ones are judged with its round-off.
     """
     phi, g, _ = field_at(surface, hulls, p)
     if surface["size"][3] == 1.0:
         return phi, g
     q, size = _onto(surface, hulls, p), math.sqrt(dot(p, p))
     r, n, d = plus(p, -1.0, q), g, 0.0
+    blur = ROUND_OFF * size * math.sqrt(dot(r, r))
     for _ in range(MOST_STEPS_TO_FOOT):
         n, e, f, S = shape_operator(surface, hulls, q)
         d, u, v, square = dot(n, r), dot(e, r), dot(f, r), dot(r, r)
@@ -188,7 +191,7 @@ def foot_of(surface, hulls, p):
         for _ in range(SHORTEST):
             there = _onto(surface, hulls, plus(plus(q, part * x, e), part * y, f))
             way = plus(p, -1.0, there)
-            if last or dot(way, way) < square:
+            if last or dot(way, way) < square + blur:
                 q, r, nearer = there, way, True
                 break
             part *= 0.5

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 from carom._compiled.decorators import kernel
+from carom.dynamics.thresholds import KINK_ERROR
 from carom.kinematics.curve import find_piece
 from carom.scene.speed_law import SLOWEST
 
@@ -33,3 +36,25 @@ def value_at(pieces, law, speed):
     for k in range(5, -1, -1):
         value = value * (x - piece.start) + piece.c[k]
     return value
+
+
+@kernel
+def margin_before_kink(pieces, law, before, after, here):
+    """Return how far a law is from its next kink at the speed `here`, relative to that of the kink; 1 if none.
+
+    The kink is the next one on the way of the speed from `before` to `after`: below 0 it has been passed. One
+    at `before` is none, since a step that ends at a kink is followed by one that starts there.
+    """
+    first, last, exponent = law
+    x, end = max(before, SLOWEST) ** exponent, max(after, SLOWEST) ** exponent
+    way = 1 if end > x else -1
+    i, kink = find_piece(pieces, first, last, x), way * math.inf
+    for _ in range(2):
+        for side in range(2):
+            k = pieces[i].kinks[side if way > 0 else 1 - side]
+            if way * (k - x) > 2.0 * KINK_ERROR * x and way * (kink - k) > 0.0:
+                kink = k
+        i = min(max(i + way, first), last - 1)
+    if not (0.0 < kink < math.inf):
+        return 1.0
+    return way * (kink - max(here, SLOWEST) ** exponent) / kink

@@ -252,7 +252,16 @@ def combine(weights, h, start, stages, out):
 
 @kernel
 def combine_body(weights, h, start, stages, b, out):
-    """Write the same for body b."""
+    """Write the same for body b, with a unit quaternion."""
+    add_stages(weights, h, start, stages, b, out)
+    Q = out.Q
+    if weights.size > 0:
+        Q[0], Q[1], Q[2], Q[3] = normalize((Q[0], Q[1], Q[2], Q[3]))
+
+
+@kernel
+def add_stages(weights, h, start, stages, b, out):
+    """Write start + h sum of weights[r] * derivative of stage r for body b, in R^4 for its attitude."""
     x, v, w, Q = start.x, start.v, start.w, start.Q
     x0, x1, x2, v0, v1, v2, w0, w1, w2 = x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2]
     q0, q1, q2, q3 = Q[0], Q[1], Q[2], Q[3]
@@ -264,8 +273,6 @@ def combine_body(weights, h, start, stages, b, out):
             q0, q1, q2, q3 = q0 + a * d[0], q1 + a * d[1], q2 + a * d[2], q3 + a * d[3]
             v0, v1, v2 = v0 + a * c[0], v1 + a * c[1], v2 + a * c[2]
             w0, w1, w2 = w0 + a * c[3], w1 + a * c[4], w2 + a * c[5]
-    if weights.size > 0:
-        q0, q1, q2, q3 = normalize((q0, q1, q2, q3))
     x, v, w, Q = out.x, out.v, out.w, out.Q
     x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2] = x0, x1, x2, v0, v1, v2, w0, w1, w2
     Q[0], Q[1], Q[2], Q[3] = q0, q1, q2, q3

@@ -11,3 +11,4 @@ MODE_OPEN, MODE_SLIP, MODE_STICK = range(3)
 #: direction of slip, change sign (`carom.persistent.events`, `carom.generalized.events`)
 EVENT_GAP, EVENT_SEPARATE, EVENT_CONE, EVENT_JAM, EVENT_RATE, EVENT_REVERSE, NO_EVENT = range(7)
 EVENT_BREAK, EVENT_STOP = 7, 8  # a joint with friction breaks away; slip stops
+EVENT_KINK, EVENT_KINK_OF_JOINT = 9, 10  # slip passes a speed at which its law has no derivatives

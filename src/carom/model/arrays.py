@@ -186,6 +186,8 @@ FRICTION = [
     ("grip", "f8"),  # margin before a joint breaks away (`carom.persistent.margins`)
     # with given steps: part of its slip left at the end of the step, below 0 beyond its stop
     ("left", "f8"),
+    ("began", "f8"),  # its speed at the start of the step
+    ("kink", "f8", 2),  # margins before a kink of its law, as of an active point
     ("speed", "f8"),  # at the start of the step
     ("force", "f8"),  # of the last solve
     ("stop", "f8"),  # time until its slip stops
@@ -208,7 +210,13 @@ USER_FORCE = [
 ]
 
 #: a piece of a polynomial in (t - start)
-PIECE = [("start", "f8"), ("end", "f8"), ("c", "f8", 6)]  # c: constant term first
+PIECE = [
+    ("start", "f8"),
+    ("end", "f8"),
+    ("c", "f8", 6),  # constant term first
+    # of a law: nearest places at or below its start, and at or above its end, where a derivative jumps
+    ("kinks", "f8", 2),
+]
 
 SPRING = [
     ("parent", "i8"),

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from carom._compiled.composed import is_compiled, joined, once
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
 from carom.model.arrays import FRICTION, PIECE, PUSH, USER_FORCE
+from carom.model.thresholds import LAW_KINK
 from carom.scene.friction import bound_of, grain
 from carom.scene.more_forces import (
     Actuator,
@@ -25,6 +28,26 @@ DEGREE = 5
 RESTITUTION = (
     "restitution", "restitution_piece", "last_restitution_piece", "restitution_exponent",
 )  # fmt: skip
+
+
+def note_kinks(pieces: np.ndarray) -> None:
+    """Write to the pieces of a law the places where a derivative jumps, the ends of a table among them.
+
+    Beyond its pieces a law is constant. Jumps are those of the coefficients of both sides, by the least width.
+    """
+    width, c = pieces["end"] - pieces["start"], pieces["c"]
+    after = np.vstack([c, np.zeros(DEGREE + 1)])
+    before = np.zeros_like(after)
+    for k in range(1, DEGREE + 1):
+        for j in range(k, DEGREE + 1):
+            before[1:, k] += math.comb(j, k) * c[:, j] * width ** (j - k)
+    least = np.minimum(np.append(width, np.inf), np.insert(width, 0, np.inf))
+    k = np.arange(1, DEGREE - 1)  # quintics have jumps above: two derivatives at each end are given
+    jumps = np.max(np.abs(after - before)[:, k] * least[:, None] ** k, axis=1)
+    places = np.append(pieces["start"], pieces["end"][-1])
+    kinks = jumps > LAW_KINK * np.max(np.abs(c[:, 0]))
+    pieces["kinks"][:, 0] = np.maximum.accumulate(np.where(kinks, places, -np.inf))[:-1]
+    pieces["kinks"][:, 1] = np.minimum.accumulate(np.where(kinks, places, np.inf)[::-1])[::-1][1:]
 
 
 class Pieces:
@@ -55,7 +78,9 @@ class Pieces:
             return 0, 0, 0.0
         if (law, length) not in self.known:
             curve = curve_of(law).scaled(length)
-            self.known[law, length] = *self.add(curve), curve.exponent
+            first, last = self.add(curve)
+            note_kinks(self.rows[first:last])
+            self.known[law, length] = first, last, curve.exponent
         return self.known[law, length]
 
     def add_restitution(self, e: float | SpeedLaw, length: float = 1.0) -> tuple[float, ...]:

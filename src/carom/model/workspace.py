@@ -47,6 +47,9 @@ ACTIVE_POINT = [
     ("grip", "f8"),  # the same before slip
     # with given steps: least part of a slip or turn left at the end, below 0 beyond its stop
     ("left", "f8"),
+    ("began", "f8"),  # speed of slip at the start of the step
+    # margin before the slip passes a kink of its law, at start and end of the step: below 0 if it has passed
+    ("kink", "f8", 2),
     ("due", "i8"),  # 1 if the event of the search may be its own, too
     ("turn_stop", "f8", 2),  # as `stop`, of rolling and of pivoting
     # time that bounces left out would still take: rolling and pivoting friction begin at its end

@@ -40,6 +40,7 @@ def clear(active_point):
     """Take force, margins and stops from an active point."""
     active_point.stop, active_point.jams, active_point.comes_to_rest = math.inf, 0, 0
     active_point.lift, active_point.grip = 1.0, 1.0
+    active_point.kink[0], active_point.kink[1] = 1.0, 1.0
     active_point.turn_stop[0], active_point.turn_stop[1] = math.inf, math.inf
     for r in range(3):
         active_point.force[r], active_point.torque[r] = 0.0, 0.0

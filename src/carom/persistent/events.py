@@ -7,6 +7,7 @@ The function of an event is positive before it and negative after it, and is eva
     EVENT_JAM        k                                while slipping (`carom.persistent.jam`)
     EVENT_BREAK      the margin before slip           of a joint
     EVENT_STOP       the least part of a slip that is left, with given steps  (`carom.persistent.stops`)
+    EVENT_KINK       the margin before a kink of the law (`carom.dynamics.curve`)
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ from carom.model.actions import (
     EVENT_CONE,
     EVENT_GAP,
     EVENT_JAM,
+    EVENT_KINK,
+    EVENT_KINK_OF_JOINT,
     EVENT_SEPARATE,
     EVENT_STOP,
     MODE_OPEN,
@@ -65,6 +68,11 @@ def find_contact_event(system, active, work):
     for i in range(frictions.shape[0]):
         if frictions[i].grip < 0.0:
             return EVENT_BREAK, i
+        if frictions[i].kink[1] < 0.0:
+            return EVENT_KINK_OF_JOINT, i
+    for i in range(active.count[0] if system.curves.shape[0] > 0 else 0):
+        if active.points[i].kink[1] < 0.0:
+            return EVENT_KINK, i
     if least_left(system, active) < 0.0:
         return EVENT_STOP, 0
     return EVENT_GAP, -1

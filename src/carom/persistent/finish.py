@@ -42,7 +42,13 @@ from carom.persistent.rows import (
     write_rows,
 )
 from carom.persistent.settle import greatest
-from carom.persistent.slip_law import breaks_away, grip_by_law, has_law, set_friction
+from carom.persistent.slip_law import (
+    breaks_away,
+    grip_by_law,
+    has_law,
+    note_kink,
+    set_friction,
+)
 from carom.persistent.springs import solve_springs
 from carom.persistent.step_control import rest_speed
 from carom.persistent.stops import locates, note_left
@@ -160,6 +166,8 @@ def review(model, data, label, s, h, given) -> bool:
         if closed_point.own == 0:
             continue
         law = has_law(system, closed_point)
+        if law:
+            note_kink(system, active, closed_point, slip_at_end(i, group))
         slips = (
             given and not lasts and (breaks_away(i, push, group) if law else gains(i, push, group))
         )
@@ -199,6 +207,12 @@ def review(model, data, label, s, h, given) -> bool:
     add_forces_of_corners(active, k, group)
     note_residual(active, k, group, work)
     return True
+
+
+@kernel
+def slip_at_end(i, group):
+    """Return the speed of slip of a point, or of a joint."""
+    return math.hypot(group.v[U][3 * i + 1], group.v[U][3 * i + 2])
 
 
 @kernel

@@ -18,6 +18,8 @@ from carom.impact.workspace import ACCELERATIONS, C, P, U
 from carom.model.actions import (
     EVENT_BREAK,
     EVENT_JAM,
+    EVENT_KINK,
+    EVENT_KINK_OF_JOINT,
     EVENT_SEPARATE,
     EVENT_STOP,
     MODE_OPEN,
@@ -113,7 +115,7 @@ def margin(active_point, kind):
 @kernel
 def note_due(active, search, work):
     """Mark the points of the same group that have the event of the search within the trial step."""
-    if search.kind in (EVENT_BREAK, EVENT_STOP):
+    if search.kind in (EVENT_BREAK, EVENT_STOP, EVENT_KINK, EVENT_KINK_OF_JOINT):
         return
     label = work.body[active.points[search.contact].body].label
     for i in range(active.count[0]):
@@ -127,8 +129,8 @@ def switch_due(system, active, search):
     """Set the new mode of the points whose event has been located; return whether it is one of these."""
     if search.kind == EVENT_JAM:
         return False
-    if search.kind == EVENT_STOP:
-        return True  # the modes of the end of the step are those of the stop
+    if search.kind in (EVENT_STOP, EVENT_KINK, EVENT_KINK_OF_JOINT):
+        return True  # the modes of the end of the step are those of the stop, or of slip
     if search.kind == EVENT_BREAK:
         one = system.relations.frictions[search.contact]
         one.next = -1 if one.force > 0.0 else 1

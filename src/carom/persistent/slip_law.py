@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.dynamics.curve import value_at
+from carom.dynamics.curve import margin_before_kink, value_at
 from carom.geometry.thresholds import REMAINDER
-from carom.impact.friction_law import PERSISTENT, depends_on_slip, in_slip
+from carom.impact.friction_law import PERSISTENT, depends_on_slip, in_slip, law_of
 from carom.impact.workspace import ACCELERATIONS, P, U
 from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.persistent.joint_rows import JOINT, radius_of
@@ -103,6 +103,37 @@ def grip_by_law(i, push, group):
         return -math.hypot(a[q + 1], a[q + 2]) / push
     left = radius_of(group, i) - math.hypot(p[q + 1], p[q + 2])
     return max(left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push, 0.01 * BREAK_AWAY)
+
+
+@kernel
+def note_kink(system, active, closed_point, slip):
+    """Write the margins before the next kink of a law, of a point or a joint, at start and end of a step."""
+    if closed_point.turns == JOINT:
+        one = system.relations.frictions[closed_point.active]
+        law = (one.piece, one.last_piece, one.exponent)
+        before, kink, slips = one.began, one.kink, one.mode != 0
+    else:
+        active_point = active.points[closed_point.active]
+        law = law_of(system.contacts[closed_point.contact], PERSISTENT)
+        before, kink, slips = active_point.began, active_point.kink, active_point.mode == MODE_SLIP
+    kink[0], kink[1] = 1.0, 1.0
+    if slips:
+        kink[0] = margin_before_kink(system.curves, law, before, slip, before)
+        kink[1] = margin_before_kink(system.curves, law, before, slip, slip)
+
+
+@kernel
+def share_before_kink(model, active):
+    """Return the share of a trial step before the first kink of a law that it passes, by the secant."""
+    share = 1.0
+    for i in range(active.count[0] if model.system.curves.shape[0] > 0 else 0):
+        kink = active.points[i].kink
+        share = min(share, kink[0] / (kink[0] - kink[1]) if kink[1] < 0.0 else 1.0)
+    frictions = model.system.relations.frictions
+    for i in range(frictions.shape[0]):
+        kink = frictions[i].kink
+        share = min(share, kink[0] / (kink[0] - kink[1]) if kink[1] < 0.0 else 1.0)
+    return share
 
 
 @kernel

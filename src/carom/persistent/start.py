@@ -131,7 +131,7 @@ def note_way(model, data, i, still):
         keep_way(system, active, closed_point, d1, d2, speed)
         if d1 != 0.0:
             one.mode = one.next
-        one.left = 1.0
+        one.began, one.left = speed, 1.0
         # without slip it has just broken away, or may turn back
         set_friction(system, i, one.mode != 0, group)
         return d1 != 0.0 or one.mode == 0
@@ -147,6 +147,7 @@ def note_way(model, data, i, still):
     slips = active_point.next == MODE_SLIP
     if slips and not moves and group.mu[i] > 0.0:  # it has stopped
         active_point.next = MODE_STICK
+    active_point.began = speed
     note_normal(group.points[0][i], active_point)
     keep_way(system, active, closed_point, d1 if slips else 0.0, d2 if slips else 0.0, speed)
     return moves or not slips or group.mu[i] == 0.0

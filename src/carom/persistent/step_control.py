@@ -136,13 +136,19 @@ def too_long(model, data):
     if shortest:
         return False
     part = limits.CUT_SHARE if search.pace < math.inf else 1.0
-    return not (result.unnamed <= part * max(1.0, controls.rtol / RTOL))
+    return not (result.unnamed <= part * by_tolerance(controls))
+
+
+@kernel
+def by_tolerance(controls):
+    """Return by how much the tolerance of a run allows a greater loss than its default."""
+    return max(1.0, controls.rtol / RTOL)
 
 
 @inlined
-def goes_wild(work):
+def goes_wild(controls, work):
     """Return whether a group loses too much energy even in a step that must not be cut further."""
-    return work.result[0].unnamed > limits.LOSS_LIMIT
+    return work.result[0].unnamed > limits.LOSS_LIMIT * by_tolerance(controls)
 
 
 @inlined

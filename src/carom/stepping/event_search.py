@@ -18,8 +18,17 @@ from carom.contact.continuous_detection_pair import lowest_pair, passage_pair
 from carom.contact.gap import gap_and_rate, lowest, plane_in_body, round_off
 from carom.contact.pair_point import smaller
 from carom.contact.stop import passage_stop, stop_gap
+from carom.dynamics.thresholds import KINK_ERROR
 from carom.impact.friction_law import PERSISTENT, depends_on_slip
-from carom.model.actions import EVENT_BREAK, EVENT_CONE, EVENT_GAP, EVENT_JAM, EVENT_STOP
+from carom.model.actions import (
+    EVENT_BREAK,
+    EVENT_CONE,
+    EVENT_GAP,
+    EVENT_JAM,
+    EVENT_KINK,
+    EVENT_KINK_OF_JOINT,
+    EVENT_STOP,
+)
 from carom.model.arrays import STOP
 from carom.persistent.events import contact_event_value, find_contact_event
 from carom.persistent.stops import least_left
@@ -75,6 +84,9 @@ def event_value(model, data):
     if search.kind == EVENT_STOP:
         search.tolerance = 0.0  # what is round-off of a stop is zero
         return least_left(system, active), 0.0
+    if search.kind in (EVENT_KINK, EVENT_KINK_OF_JOINT):
+        search.tolerance = KINK_ERROR
+        return kink_of(system, active, search)[1], 0.0
     active_point = active.points[search.contact]
     law = depends_on_slip(system.contacts[active_point.contact], PERSISTENT)
     if law and search.kind == EVENT_CONE:
@@ -82,6 +94,16 @@ def event_value(model, data):
     elif active_point.several == 1 and search.kind != EVENT_JAM:
         search.tolerance = EVENT_ERROR
     return contact_event_value(system, active_point, search.kind), 0.0
+
+
+@kernel
+def kink_of(system, active, search):
+    """Return the margins of the search before a kink of a law, at start and end of the step."""
+    if search.kind == EVENT_KINK:
+        kink = active.points[search.contact].kink
+    else:
+        kink = system.relations.frictions[search.contact].kink
+    return kink[0], kink[1]
 
 
 @kernel

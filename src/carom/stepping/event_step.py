@@ -122,7 +122,7 @@ def accept_step(model, data):
     bearable = CUT_RESIDUAL if controls.retry == 1 else STOP_RESIDUAL
     if active.count[0] > 0 and unsolved(controls, work, bearable):
         return NO_CONVERGENCE, NOTHING
-    if active.count[0] > 0 and controls.retry == 1 and goes_wild(work):
+    if active.count[0] > 0 and controls.retry == 1 and goes_wild(controls, work):
         return NO_CONVERGENCE, NOTHING
     if not finite(work.trial):
         return NOT_FINITE, NOTHING

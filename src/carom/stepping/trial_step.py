@@ -11,14 +11,23 @@ from carom.dynamics.adapt import allowed_step, crawls, plan_next, shorter, step_
 from carom.dynamics.explicit import CONSTRAINTS_LOST, rubs
 from carom.dynamics.more_forces import turns_round
 from carom.dynamics.step import step
-from carom.dynamics.thresholds import LEAST_STEP
+from carom.dynamics.thresholds import LEAST_STEP, SAFETY
 from carom.model import records as r
-from carom.model.actions import EVENT_GAP, MODE_SLIP, STRIKE
+from carom.model.actions import (
+    EVENT_CONE,
+    EVENT_GAP,
+    EVENT_KINK,
+    EVENT_KINK_OF_JOINT,
+    EVENT_SEPARATE,
+    MODE_SLIP,
+    STRIKE,
+)
 from carom.model.allowance import COUNT_SEARCHES, COUNT_TRIALS, mark_count, overdone
 from carom.model.controls import LOCATE
 from carom.persistent.contact_step import contact_step
 from carom.persistent.events import note_first_stops
 from carom.persistent.margins import note_due
+from carom.persistent.slip_law import share_before_kink
 from carom.persistent.step_control import too_long
 from carom.status import NOT_FINITE, OUT_OF_PLANE, STEP_TOO_SMALL, UNSTABLE
 from carom.status import STEP_CUT_TO_NOTHING as STEP_CUT
@@ -29,6 +38,7 @@ from carom.stepping.event_search import (
     detect_event,
     event_value,
     first_through,
+    kink_of,
     next_trial,
     update_bracket,
 )
@@ -169,7 +179,10 @@ def fits(model, data):
             return 0
         if not dt > LEAST_STEP * controls.duration:
             return code if code != 0 else STEP_TOO_SMALL
+        share = share_before_kink(model, data.active) if code == 0 else 1.0
         search.dt, search.again = shorter(dt, error, clock, work), 1
+        if share < 1.0:  # a kink of a law is the reason: the step goes as far as that
+            search.dt = max(search.dt, min(share, SAFETY) * dt)
         return ONCE_MORE
     if code == CONSTRAINTS_LOST and dt > SHORTEST_STEP * controls.step:
         search.active = 0
@@ -192,6 +205,11 @@ def is_root(model, data):
             if contact.touches == 1 and has_profile(system, contact):
                 return OUT_OF_PLANE
         return NOT_FINITE
+    if state == 0 and search.kind == EVENT_SEPARATE and f > 0.0:
+        # as a force falls to zero its cone does, so slip may come first: beyond the opening nothing shows it
+        if data.active.points[search.contact].grip < 0.0:
+            begin_search(search, EVENT_CONE, search.contact, 0.0, search.dt)
+            return bracket(model, data)
     if state == 0:
         search.dt = next_trial(search)
         return ONCE_MORE
@@ -264,6 +282,8 @@ def bracket(model, data):
         search.found = 1
         return 0
     f, rate = event_value(model, data)
+    if search.kind in (EVENT_KINK, EVENT_KINK_OF_JOINT):  # known at the start, too
+        search.f_low = kink_of(system, data.active, search)[0]
     update_bracket(search, search.dt, f, rate)
     dt = next_trial(search)
     if search.kind == EVENT_GAP and system.contacts[search.contact].touches == 0:
