@@ -1,14 +1,14 @@
 """For all tests: what is compiled on the way is not spoken of, and random examples are the same in each run.
 
-``HYPOTHESIS_PROFILE=search pytest ...`` looks for others. ``CAROM_TEST_NUDGE=1 pytest ...`` moves all bodies by a
-unit in the last place (`nudge.py`).
+``HYPOTHESIS_PROFILE=search pytest ...`` looks for others. ``CAROM_TEST_NUDGE=1 pytest ...`` moves all bodies
+by a unit in the last place (`nudge.py`).
 """
 
 import os
 
-import nudge
 from hypothesis import settings
 
+import nudge
 from carom._compiled import notice
 
 notice.silence()  # tests look at what is on stderr

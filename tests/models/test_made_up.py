@@ -101,7 +101,7 @@ def test_damaged_files(tmp_path):
     for _ in range(150):
         data = bytearray(text.encode())
         for _ in range(rng.randrange(1, 4)):
-            data[rng.randrange(len(data))] = rng.randrange(256)
+            data[rng.randrange(len(data))] = rng.choice([rng.randrange(256), *b"015 <e"])
         file.write_bytes(data[: rng.choice([len(data)] * 5 + [rng.randrange(len(data))])])
         try:
             carom.load_model(file)
