@@ -18,15 +18,17 @@ paper: $(VENV)/installed-paper ## reproduce the paper: figures and table under o
 	$(BIN)/carom paper --out out/paper
 
 # one process compiles everything before the tests: several would compile the same kernels
-test: $(VENV)/installed-test ## style, types, tests but for the slow ones, a part of them without the JIT
+test: $(VENV)/installed-test ## style, types, tests but for the slow ones, a tenth of them nudged, a part without the JIT
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/carom warmup --workers 1 & $(BIN)/basedpyright; types=$$?; wait; exit $$types
 	$(BIN)/python -m pytest -n auto -m "not slow"
+	CAROM_TEST_NUDGE=1 CAROM_TEST_TENTH=today $(BIN)/python -m pytest -n auto -m "not slow"
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto -m plain $(call marked,plain)
 
-test-all: test ## the slow tests too, and a part of all for another processor
+test-all: test ## the slow tests too, all nudged, and a part of all for another processor
 	$(BIN)/python -m pytest -n auto -m slow $(call marked,slow|few)
+	for units in 1 -1 3; do CAROM_TEST_NUDGE=$$units $(BIN)/python -m pytest -n auto -m "not slow" || exit 1; done
 	NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= $(BIN)/python -m pytest -n auto --dist loadfile -m processors $(call marked,processors)
 
 lint: $(VENV)/installed-test

@@ -3,7 +3,8 @@
 No process starts a second one that compiles for it: all processors have work, and both would compile the same
 kernels.
 
-``HYPOTHESIS_PROFILE=search pytest ...`` looks for others.
+``HYPOTHESIS_PROFILE=search pytest ...`` looks for others. ``CAROM_TEST_NUDGE=1 pytest ...`` moves all bodies
+by a unit in the last place (`nudge.py`).
 """
 
 import os
@@ -13,17 +14,20 @@ os.environ["NUMBA_NUM_THREADS"] = "1"  # before Numba is imported; for child pro
 import pytest
 from hypothesis import settings
 
+import nudge
 from carom._compiled import notice
 
 notice.silence()  # tests look at what is on stderr
 settings.register_profile("same", derandomize=True)
 settings.register_profile("search", derandomize=False)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "same"))
+nudge.choose_tenth()  # before other processes of the run begin
+nudge.begin()
 
 
 @pytest.hookimpl(tryfirst=True)  # before ``-m "not slow"``
-def pytest_collection_modifyitems(items):
-    """Of a family of cases with the mark ``few(n)`` all but n, evenly spaced, are slow ones."""
+def pytest_collection_modifyitems(config, items):
+    """Leave out what a lane does not run; of a family marked ``few(n)`` all but n, evenly spaced, are slow."""
     families = {}
     for item in items:
         if mark := item.get_closest_marker("few"):
@@ -34,3 +38,6 @@ def pytest_collection_modifyitems(items):
         for k, item in enumerate(cases):
             if k not in chosen:
                 item.add_marker(pytest.mark.slow)
+    left_out = [item for item in items if not nudge.is_chosen(item)]
+    items[:] = [item for item in items if nudge.is_chosen(item)]
+    config.hook.pytest_deselected(items=left_out)

@@ -62,19 +62,33 @@ def test_wall(slope):
         assert p[::3][lowest].sum() == pytest.approx(len(isle.inverse_mass) * G * STEP, rel=1e-10)
 
 
+def nudged(isle, seed):
+    """Return an island with data that differ by units in the last place; seed 0 is the island itself."""
+    rng = np.random.default_rng(seed)
+    data = {
+        name: value + np.spacing(value) * rng.integers(-2, 3, size=value.shape) * (seed > 0)
+        for name, value in isle._asdict().items()
+        if name in ("rows", "c", "inverse_mass")
+    }
+    return isle._replace(**data)
+
+
+@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("mu", [0.1, 0.3, 0.6])
-def test_pile_of_spheres(mu):
-    # 56 spheres, 231 contacts that hold or roll on one another; it spreads, so that its mass centre falls
-    isle = pile(6)
+def test_pile_of_spheres(mu, seed):
+    # 56 spheres, 231 contacts that hold or roll on one another; it spreads, so that its mass centre falls.
+    # Contacts at the edge of their cones make Newton's matrix almost singular: half of such piles, the same
+    # but for round-off, were left at 1e-9, 20 of 20 end within what SOLVED promises, 1e-10 of the velocity.
+    isle = nudged(pile(6), seed)
     assert len(isle.body) == 231
     status, residual, _, p = solve_sparse(isle, mu)
     assert status == SOLVED
-    assert residual <= 1e-12 * G * STEP
+    assert residual <= 1e-10 * G * STEP
     carried = p[::3][isle.body[:, 1] < 0].sum()
     assert 0.5 * 56 * G * STEP < carried < 0.999 * 56 * G * STEP
     W, c = dense(isle)
     w = W @ p + c
-    assert w[::3].min() >= -1e-12 * G * STEP
+    assert w[::3].min() >= -1e-10 * G * STEP
     assert p @ (w + c) < 0.0  # energy falls
 
 

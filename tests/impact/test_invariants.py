@@ -39,7 +39,8 @@ def test_momentum_work_energy_and_cone(problem, law):
     assert a.energy_change == pytest.approx(change, abs=1e-8 * kinetic(W, u))
     # Where strong coupling compresses again, compression ends with the last zero of u_n; only
     # Stronge's law then keeps the work before it negative.
-    assert a.compression_work < 0 or law != "stronge"
+    if law == "stronge" or "jam" not in a.phases:
+        assert a.compression_work < 0
     assert a.restitution_work >= -1e-15 * scale  # e near round-off
     assert a.friction_loss >= 0
 

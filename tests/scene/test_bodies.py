@@ -42,7 +42,8 @@ def test_flat_plate_has_the_sum_exactly():
     # A lamina: Jz = Jx + Jy, the edge of what is possible, also where rounding puts it beyond.
     turn = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
     for inertia in (np.diag([0.1, 0.2, 0.1 + 0.2]), turn @ np.diag([0.1, 0.2, 0.3]) @ turn.T):
-        Scene().add_body(mass=1, inertia=inertia)
+        body = Scene().add_body(mass=1, inertia=inertia)
+        np.testing.assert_allclose(body.inertia, inertia, rtol=0, atol=1e-15)
 
 
 def test_nearly_unit_quaternion_is_normalised():

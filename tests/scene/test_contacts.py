@@ -56,14 +56,14 @@ def test_gap_at_the_start(shape, orientation, lowest):
 
 
 def test_tilted_plane_far_from_the_origin():
-    # Shape up to the rounding of coordinates of 1e3 m.
+    # Touching up to the rounding of coordinates of 1e3 m: their last place is 1e-13 m.
     normal, far = np.array([0.48, 0.6, 0.64]), np.array([1e3, -7e2, 3e2])
     along = np.cross(normal, (1, 0, 0))
     for k in range(20):
         scene = Scene()
         plane = scene.add_half_space(far, normal)
         ball = scene.add_body(Sphere(0.01), mass=1, position=far + 0.01 * normal + 0.37 * k * along)
-        scene.add_contact(ball, plane)
+        assert abs(initial_gap(scene.add_contact(ball, plane))) < 1e-12
 
 
 def test_inside_says_how_deep_and_what_to_do():

@@ -46,7 +46,8 @@ CENTRE = 7  # centre of the proximal term
 START_BEST = 8  # the best p of one start
 BEST = 9  # the best p of all
 GIVEN = 10  # p at the start
-VECTORS = 11
+UNDAMPED_START = 11  # p before undamped steps of Newton's method
+VECTORS = 12
 
 
 # Places in `count`, the numbers of a search.

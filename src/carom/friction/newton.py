@@ -14,9 +14,10 @@ from carom._compiled.units import unit
 from carom.friction import layout as o
 from carom.friction.cone import project
 from carom.friction.operators import factor, multiply, solve
-from carom.friction.thresholds import CHORD_GAIN, NEWTON_FLOOR, SHORTEST_SEARCH
+from carom.friction.thresholds import CHORD_GAIN, NEWTON_FLOOR, SHORTEST_SEARCH, UNDAMPED_MISMATCH
 
 _LIMIT = 100
+_UNDAMPED = 10  # greatest number of undamped steps in a row
 
 
 @unit
@@ -25,9 +26,14 @@ def newton(work, k, eps, patient):
 
     A step must reduce |f|; if `patient`, it must only be below the greatest of the last four |f|, which helps
     to pass a kink. Existing factors (work.count[ROWS] >= 0) are tried first.
+
+    Near a solution whose matrix is almost singular, a whole step makes |f| greater by the curvature of cones,
+    and the next one removes that: damped, such steps creep along a curved valley. So where no shorter step
+    reduces a small |f|, some undamped steps follow, which count if they halve it (a watchdog: Chamberlain et
+    al. 1982).
     """
     p, step, change = work.vector[o.ITERATE], work.vector[o.STEP], work.vector[o.CHANGE]
-    count = 0
+    count, undamped, least = 0, 0, 0.0
     size = _arrive(work, k, eps)
     before1, before2, before3 = 0.0, 0.0, 0.0
     while count < _LIMIT and size > work.mismatch[o.ENOUGH]:
@@ -40,12 +46,15 @@ def newton(work, k, eps, patient):
             change[i] = eps * step[i]
         multiply(work, k, step, change)
         t = 1.0
-        if not chord:
+        if not chord and undamped == 0:
             bound = max(size, before1, before2, before3) if patient else size
             t = _search(work, k, bound)
             if t == 0.0:
-                break
-        elif not _mismatch(work, k, t) < CHORD_GAIN * size:
+                if not size < UNDAMPED_MISMATCH * largest_impulse(work, k):
+                    break
+                copy(k, p, work.vector[o.UNDAMPED_START])
+                t, undamped, least = 1.0, 1, size
+        elif chord and not _mismatch(work, k, t) < CHORD_GAIN * size:
             work.count[o.FACTOR_ROWS] = -1
             if size < NEWTON_FLOOR * largest_impulse(work, k):
                 break
@@ -58,6 +67,13 @@ def newton(work, k, eps, patient):
             break
         if not size < CHORD_GAIN * before1:
             work.count[o.FACTOR_ROWS] = -1
+        if undamped > 0:
+            undamped = 0 if size < 0.5 * least else undamped + 1
+            if undamped > _UNDAMPED or not size < math.inf:
+                break
+    if undamped > 0 and not size < least:
+        copy(k, work.vector[o.UNDAMPED_START], p)
+        size = least
     work.count[o.ITERATIONS] += count
     work.mismatch[0] = size
 

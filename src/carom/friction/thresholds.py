@@ -14,6 +14,7 @@ RELEASE_START = 0.1  #: diagonal of W: first weight of the proximal term in a re
 RELEASE_FACTOR = 0.3  #: weight before: by which it decreases after a round that converges
 NEWTON_FLOOR = 1e-13  #: 1 + |p|: a smaller |f| is enough, unless a step still halves it
 SHORTEST_SEARCH = 1e-3  #: step of Newton's method: shortest step of the line search
+UNDAMPED_MISMATCH = 1e-6  #: 1 + |p|: below it Newton's method is near a solution, and may take undamped steps
 CHORD_GAIN = 0.1  #: |f| before: a step that leaves more converges slowly; otherwise factors are used again
 LEAST_PIVOT = 1e-14  #: scaled diagonal of W: smaller pivots are replaced by it
 RELAXATION = 1.6  #: step of the iteration: over-relaxation (1.5 to 1.8: Boyd et al. 2011)

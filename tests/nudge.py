@@ -1,0 +1,68 @@
+"""A lane that moves the bodies of all scenes by units in the last place, as another processor would.
+
+``CAROM_TEST_NUDGE=1 pytest ...`` (or -1, 3) moves masses, moments of inertia and velocities of all bodies by
+that many units in the last place, where a scene becomes arrays: behind the checks of arguments, and before
+anything is computed from them. A test that this fails hangs on round-off, and so on the processor, the C
+library, and the versions of NumPy and BLAS. Tests of bits, of what a part keeps, and of other processes
+are marked ``bits`` and left out. ``CAROM_TEST_TENTH=0`` to ``9``, or ``today``, runs a tenth of the tests.
+"""
+
+from __future__ import annotations
+
+import os
+from datetime import date
+from zlib import crc32
+
+import numpy as np
+
+UNITS = "CAROM_TEST_NUDGE"
+TENTH = "CAROM_TEST_TENTH"
+
+
+def units() -> int:
+    """Return by how many units in the last place bodies are moved; 0 outside the lane."""
+    return int(os.environ.get(UNITS) or 0)
+
+
+def moved(values: np.ndarray, by: int) -> np.ndarray:
+    """Return an array whose numbers are larger in size by some units in the last place; zeros stay."""
+    away = np.copysign(np.inf if by > 0 else 0.0, values)
+    for _ in range(abs(by)):
+        values = np.where(values == 0.0, values, np.nextafter(values, away))
+    return values
+
+
+def begin() -> None:
+    """Move the bodies of all scenes that are compiled from here on."""
+    by = units()
+    if not by:
+        return
+    from carom.model import compile as compiling
+
+    start_of, bodies_of = compiling._start, compiling._bodies
+
+    def start(scene):
+        state, to_principal, moments = start_of(scene)
+        for name in ("v", "w"):
+            state[name] = moved(state[name], by)
+        return state, to_principal, moved(moments, by)
+
+    def bodies(*given):
+        made = bodies_of(*given)
+        made["mass"] = moved(made["mass"], by)
+        return made
+
+    compiling._start, compiling._bodies = start, bodies
+
+
+def choose_tenth() -> None:
+    """Replace the word ``today`` by its digit, once for all processes of a run: days end at midnight."""
+    if os.environ.get(TENTH) == "today":
+        os.environ[TENTH] = str(date.today().toordinal() % 10)
+
+
+def is_chosen(item) -> bool:
+    """Return whether a test is run: tests of bits not in the lane, and of a tenth only its own."""
+    tenth = os.environ.get(TENTH)
+    outside = tenth is not None and crc32(item.nodeid.encode()) % 10 != int(tenth)
+    return not outside and not (units() and item.get_closest_marker("bits"))
