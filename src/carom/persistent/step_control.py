@@ -147,8 +147,12 @@ def by_tolerance(controls):
 
 @inlined
 def goes_wild(controls, work):
-    """Return whether a group loses too much energy even in a step that must not be cut further."""
-    return work.result[0].unnamed > limits.LOSS_LIMIT * by_tolerance(controls)
+    """Return whether a group loses too much energy even in a step that must not be cut further.
+
+    The limit grows with the root of the tolerance: with the tolerance itself a loss of a tenth of m g times
+    the size would pass at 1e-4, which is more than the tolerance of the energy of a run.
+    """
+    return work.result[0].unnamed > limits.LOSS_LIMIT * math.sqrt(by_tolerance(controls))
 
 
 @inlined
