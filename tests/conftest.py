@@ -8,6 +8,7 @@ by a unit in the last place (`nudge.py`).
 """
 
 import os
+import sys
 
 os.environ["NUMBA_NUM_THREADS"] = "1"  # before Numba is imported; for child processes too
 
@@ -23,6 +24,14 @@ settings.register_profile("search", derandomize=False)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "same"))
 nudge.choose_tenth()  # before other processes of the run begin
 nudge.begin()
+
+
+@pytest.fixture(autouse=True)
+def _closed_figures():
+    """Close the figures of each test: pyplot warns of more than twenty, whichever test opened them."""
+    yield
+    if "matplotlib.pyplot" in sys.modules:
+        sys.modules["matplotlib.pyplot"].close("all")
 
 
 @pytest.hookimpl(tryfirst=True)  # before ``-m "not slow"``

@@ -83,7 +83,8 @@ def test_a_pile_is_held_by_its_static_coefficient():
     slides = 0.5 * G * (np.sin(np.arctan(0.4)) - 0.2 * np.cos(np.arctan(0.4))) * 0.2**2
     assert pile(0.2)[-1, :, 0] == pytest.approx(slides, rel=1e-3)
     assert pile(Friction(0.6, 0.2))[-1, :, 0] == pytest.approx(0.0, abs=1e-6)
-    assert np.array_equal(pile(Friction(0.3, 0.3)), pile(0.3))
+    # a law that is a number is that number, but for round-off of the contact problems
+    assert pile(Friction(0.3, 0.3)) == pytest.approx(pile(0.3), abs=1e-12)
 
 
 def test_what_a_study_varies():
