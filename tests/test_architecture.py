@@ -68,7 +68,7 @@ CAPABILITIES = {
         "impact": 7, "generalized": 1,
     },
     "ties of features, discs in one plane, kinks of forces and laws": {
-        "collision": 1, "dynamics": 1, "persistent": 1,
+        "collision": 1, "dynamics": 1, "persistent": 2,
     },
     "what bodies look like": {"scene": 1, "io": 2, "visual": 1},
     "laws as functions, results of one kind by name, ensembles of robots, hints for arguments": {
