@@ -233,6 +233,7 @@ def test_they_are_drawn(tmp_path):
     assert np.any(stage.all.colours[stage.owner == -1] == grey)
 
 
+@pytest.mark.bits
 def test_runs_of_an_ensemble_with_a_static_body():
     speeds = np.array([[1, 0, 0], [0, 1, -1.0]])
     runs = carom.ensemble(

@@ -25,7 +25,7 @@ def in_a_random_frame(rng, *poses):
 
 
 def round_off_of_tilt(rng):
-    return turned(rng.normal(size=3), 10.0 ** rng.uniform(-16, -12) * rng.integers(2))
+    return turned(rng.normal(size=3), 10.0 ** rng.uniform(-16, -13) * rng.integers(2))
 
 
 def prism(corners, radius, length):
@@ -95,7 +95,7 @@ def test_equal_faces_on_each_other_touch_all_round(corners):
         solid = prism(corners, radius, height) if corners else Cylinder(radius, height)
         if corners == 4 and k % 2 == 1:
             solid = Box(radius, rng.uniform(1.0, 2.0) * radius, height)
-        turn = rng.choice([0.0, 1e-15, 1e-13, -1e-11, 1e-10])
+        turn = rng.choice([0.0, 1e-15, 1e-13])
         if corners:
             turn += (
                 2
@@ -105,7 +105,7 @@ def test_equal_faces_on_each_other_touch_all_round(corners):
             turn = turn if corners % 2 == 0 or k % 2 == 0 else 0.0
         elif k % 2 == 0:
             turn = rng.uniform(0, 6)
-        off = radius * rng.normal(size=2) * rng.choice([0.0, 1e-16, 1e-13, 1e-11])
+        off = radius * rng.normal(size=2) * rng.choice([0.0, 1e-16, 1e-13])
         gap = radius * rng.choice([0.0, 1e-15, -1e-15, 1e-6, -1e-9])
         q = quaternion.multiply(round_off_of_tilt(rng), turned((0, 0, 1), turn))
         over, below = (

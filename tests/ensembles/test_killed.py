@@ -67,6 +67,7 @@ def test_killed_while_it_is_made(tmp_path):
     assert (tmp_path / "e.zarr" / "mine.txt").read_text() == "keep me"
 
 
+@pytest.mark.bits
 def test_full_disk(tmp_path):
     place = tmp_path / "e.zarr"
     told = python("-c", FULL, str(place))

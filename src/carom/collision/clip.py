@@ -16,7 +16,7 @@ from carom.collision.faces import corner_part
 from carom.collision.found import keep_new, put, put_parts
 from carom.collision.layout import CYLINDER, MOST_CORNERS
 from carom.collision.thresholds import CROSSING, TILT
-from carom.geometry.thresholds import RESOLUTION, ROUND_OFF
+from carom.geometry.thresholds import ROUND_OFF
 from carom.geometry.vectors import cross, dot, minus
 
 
@@ -118,8 +118,9 @@ def overlap(pair, ref, least, most, count):
             s.ring[0, k, i] = s.corner[inc, k, i]
         s.label[0, k], s.side[0, k] = _vertex(inc, s.number[inc, k]), k
     n, p, source = s.normal[ref], s.corner[ref, 0], 0
-    # sides that lie on each other to this do not cross: round-off would say where
-    same = RESOLUTION * min(pair.a.extent, pair.b.extent)
+    # Sides that lie on each other to round-off do not cross, which it would say where, and corners are one. No
+    # more than that: what slides over a side is located to the tolerance, which may be 1e-12 of a size.
+    same = ROUND_OFF * min(pair.a.extent, pair.b.extent)
     for j in range(s.count[ref]):
         corners = _cut(s, ref, source, corners, j, same)
         source = 1 - source

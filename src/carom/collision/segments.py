@@ -20,7 +20,7 @@ from carom.collision.features import (
 from carom.collision.found import keep_new, put, put_parts
 from carom.collision.layout import CYLINDER
 from carom.collision.thresholds import LEAST_SINE, LINE_CONTACT, SAME_DIRECTION
-from carom.geometry.thresholds import RESOLUTION
+from carom.geometry.thresholds import RESOLUTION, ROUND_OFF
 from carom.geometry.vectors import cross, dot, minus, plus
 
 
@@ -125,7 +125,7 @@ def ends_of_line(pair, ends_a, ends_b, most, count):
     # of a line of a mantle, found from its axis, is no point of the cylinder
     if round_a + round_b > 0.0 and (1.0 - c * c) * max(g, h) > LINE_CONTACT * radii:
         return count
-    m, flush = found[0].normal, RESOLUTION * min(pair.a.extent, pair.b.extent)
+    m, flush = found[0].normal, ROUND_OFF * min(pair.a.extent, pair.b.extent)
     first, first_owner = (m[0], m[1], m[2]), found[0].owner
     for end in range(4):
         if end < 2:
