@@ -42,6 +42,7 @@ def agrees(e, k):
     return all(np.array_equal(getattr(e, name)[k], values[-1]) for name, values in ends.items())
 
 
+@pytest.mark.bits
 def test_each_run_is_that_of_simulate():
     e = throw()
     assert all(agrees(e, k) for k in range(0, 24, 3))
@@ -274,16 +275,19 @@ def test_observe_may_fail_in_later_runs():
         ]  # no number is cut to an integer
 
 
+@pytest.mark.bits
 def test_processes():
     assert same(throw(runs=4), throw(runs=4, executor="processes", workers=1, chunk=2))
 
 
+@pytest.mark.bits
 def test_by_tolerance():
     e = carom.ensemble(die(), 0.3, rtol=1e-7, vary=THROWN, runs=3)
     assert all(agrees(e, k) for k in range(3))
     assert not same(e, carom.ensemble(die(), 0.3, vary=THROWN, runs=3))  # 1e-8
 
 
+@pytest.mark.bits
 def test_workspace_is_no_state():
     """What impacts of several corners have left in their workspace is nothing to the next run."""
     e = carom.ensemble(die(), 0.6, step=2e-3, vary=THROWN, runs=60, executor="serial")

@@ -28,6 +28,7 @@ class StopAfter:
             raise KeyboardInterrupt
 
 
+@pytest.mark.bits
 def test_streamed_and_read_again(tmp_path):
     e, plain = throw(tmp_path / "e.zarr"), throw()
     again = carom.Ensemble.load(tmp_path / "e.zarr")

@@ -61,6 +61,7 @@ print("then:", differences(carom.Solution.load(path), straight))
 """
 
 
+@pytest.mark.bits
 @pytest.mark.parametrize("full", [0, 30000])
 def test_full_disk(full, thrown, tmp_path):
     path = tmp_path / "run.nc"

@@ -59,6 +59,7 @@ def interrupted(scene, duration, fraction, path, **settings):
 
 
 # the die is stopped after it has struck, the block while it slides on the plane
+@pytest.mark.bits
 @pytest.mark.parametrize(("name", "late"), [("die", 300), ("slider", 120)])
 def test_killed_process(name, late, tmp_path):
     path = tmp_path / "run.nc"

@@ -196,7 +196,9 @@ def test_a_belt_moves_a_crowd():
     scene.set_contact_default(friction=0.6, restitution=0.0)
     s = carom.simulate(scene, 1.0, step=0.005)
     assert s.stats["whole_steps"] > 0
-    assert np.median(s.velocity[-1, :, 0]) == pytest.approx(1.0, abs=1e-3)  # a top may have fallen off
+    assert np.median(s.velocity[-1, :, 0]) == pytest.approx(
+        1.0, abs=1e-3
+    )  # a top may have fallen off
     assert np.max(s.ledger.friction) <= 1e-12
     assert s.ledger.loads[-1] > 4.5
     # Columns that lean on each other are chaotic. Where the first step is a closing one it has an error of the

@@ -194,6 +194,7 @@ def test_the_first_impact_of_two_among_others():
     assert carom.simulate(scene, 1.0, events="first impact of a and c").status.name == "SUCCESS"
 
 
+@pytest.mark.bits
 def test_one_that_turns_round_at_the_end_of_a_step_is_not_at_rest():
     """Thrown up at 1 m/s where g is 1 m/s^2 its speed is exactly 0 after 1 s, the end of a step."""
     scene = carom.Scene(gravity=(0, 0, -1))

@@ -253,6 +253,7 @@ def test_a_solution_keeps_its_scene_as_it_was(tmp_path):
     np.testing.assert_array_equal(carom.Solution.load(tmp_path / "a.nc").position, a.position)
 
 
+@pytest.mark.bits
 def test_an_ensemble_keeps_its_scene_as_it_was():
     scene = ball(E)
     e = carom.ensemble(scene, 0.2, step=0.01, vary={"body1.velocity": [[0, 0, 0], [1, 0, 0]]})

@@ -143,8 +143,8 @@ class LiveView:
 
     def wait(self) -> None:
         """Print the address, and return when Ctrl-C is pressed."""
-        print(f"{self.show.title}: {self.url} (Ctrl-C ends it)", flush=True)
         try:
+            print(f"{self.show.title}: {self.url} (Ctrl-C ends it)", flush=True)
             while not self._stopped.wait(0.5):
                 pass
         except KeyboardInterrupt:
