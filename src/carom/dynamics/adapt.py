@@ -19,8 +19,9 @@ A kink of a force within a step, at the part s of it, gives every embedded error
 that any of them misses the kink there. Where forces may have kinks there are three errors of order 5, which are
 not 0 together: the greatest of them, miss_k, is at least a third of the error of a kink or jump. In smooth
 steps of a useful length miss_k is below a tenth of miss_3, at kinks above, which tells them apart. A body that
-has met a kink has miss_k in the place of miss_5 from then on (others keep longer steps), and the error of a
-step with a kink counts a hundredfold, since flights between them add up what each kink does to the speed.
+has met a kink has miss_k in the place of miss_5 from then on (others keep longer steps), and a hundredfold of
+it is an error, too: a kink near the start of a step hides behind miss_3, and flights between kinks add up what
+each does to the speed.
 
 The next step is 0.9 times the length whose error would equal the tolerance, between 0.2 and 10 times the last
 length. Each island has steps of its own: `ahead` of its bodies.
@@ -136,13 +137,11 @@ def of_kinks(memory, error, most, second):
     """
     if not error < math.inf:
         return error
-    at_kink = most > limits.KINK * second
     if memory.kinks < KINKS_IN_A_ROW:
-        memory.kinks = memory.kinks + 1 if at_kink and most > 1.0 else 0
-    if memory.kinks < KINKS_IN_A_ROW:  # what one estimate alone would let pass is refused, too
-        return most if at_kink and most > 1.0 >= error else error
-    error = of_two(most, second)
-    return max(error, limits.KINK_WEIGHT * most) if at_kink else error
+        memory.kinks = memory.kinks + 1 if most > 1.0 and most > limits.KINK * second else 0
+    if memory.kinks < KINKS_IN_A_ROW:
+        return error
+    return max(of_two(most, second), limits.KINK_WEIGHT * most)
 
 
 @kernel

@@ -5,7 +5,7 @@ SHRINKAGE = 0.2  #: step before: least length of the next step
 GROWTH = 10.0  #: step before: greatest length of the next step
 FIRST_STEP = 1e-3  #: a step of the run: length of the first trial step
 KINK = 0.1  #: estimate of order 3: an estimate of order 5 above it is that of a kink
-KINK_WEIGHT = 100.0  #: error of a step with a kink: as what it counts
+KINK_WEIGHT = 100.0  #: error of order 5 of a body that has met a kink: as what it counts
 FINISH = 0.99  #: time left: a step longer than this takes all of it
 RTOL = 1e-8  #: size and displacement of a body: default of a run; above it more energy may be lost
 #: error that is allowed: share of it for a step, for friction in a step, for a solver: others are added
