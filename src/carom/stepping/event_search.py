@@ -19,6 +19,7 @@ from carom.contact.gap import gap_and_rate, lowest, plane_in_body, round_off
 from carom.contact.pair_point import smaller
 from carom.contact.stop import passage_stop, stop_gap
 from carom.dynamics.thresholds import KINK_ERROR
+from carom.geometry.thresholds import ROUND_OFF
 from carom.impact.friction_law import PERSISTENT, depends_on_slip
 from carom.model.actions import (
     EVENT_BREAK,
@@ -39,9 +40,15 @@ NEWTON_STEPS = 6  # steps to the root of a cubic from a near start
 
 @inlined
 def detect_event(model, data):
-    """Return the first event of the trial step: verdict, event, contact, a time before it."""
-    system, active = model.system, data.active
+    """Return the first event of the trial step: verdict, event, contact, a time before it.
+
+    A gap may jump, as when another part of a body becomes the nearest: the search then ends inside,
+    and what else is inside there has come earlier.
+    """
+    system, active, search = model.system, data.active, data.work.search[0]
     found, which, low = CLEAR, -1, 0.0
+    narrowed = search.active == 1 and search.dt < (1.0 - ROUND_OFF) * search.width
+    known = search.contact if narrowed and search.kind == EVENT_GAP else -1
     for c in range(active.contact_states.shape[0]):
         contact = system.contacts[c]
         if contact.touches == 0:
@@ -52,7 +59,7 @@ def detect_event(model, data):
             verdict, first = passage_pair(model, data, c)
         if verdict in (UNSURE, FLAT_RIM):
             return verdict, EVENT_GAP, c, 0.0
-        if verdict == BELOW and found == CLEAR:
+        if verdict == BELOW and (found == CLEAR or which == known):
             found, which, low = BELOW, c, 0.5 * first
         elif verdict == CLEAR and active.contact_states[c].leaving == 1 and first > 0.0:
             active.contact_states[c].leaving = 0
