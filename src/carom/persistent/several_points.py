@@ -15,7 +15,6 @@ from carom.contact.depth import least_gap
 from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.contact.pair_point import smaller
-from carom.dynamics.contact_impulse import alone
 from carom.dynamics.energy import energies
 from carom.dynamics.several_points import inverse_masses
 from carom.friction.layout import CONE, SLIDING
@@ -170,17 +169,17 @@ def leave_unreachable(system, state, k, group):
     """Let points bounce on whose velocities cannot all be removed; return whether forces were written over.
 
     Where a driver moves a body the rows of two points may depend on each other while their velocities do not:
-    two flanks of a tooth on a gear that can only turn. The fastest are left until the others agree.
+    two flanks of a tooth on a gear that can only turn. And where a corner comes to an edge next to a point that
+    carries, both can stay only without rotation. The fastest are left until the others agree.
     """
     written = False
     for _ in range(k):
-        fastest, joined, left = -1, False, 0.0
+        fastest, left = -1, 0.0
         for i in range(k):
             if group.closed[i].stays == 1:
-                joined = joined or not alone(system, group.points[0][i])
                 if fastest < 0 or group.v[U][3 * i] > group.v[U][3 * fastest]:
                     fastest = i
-        if not joined:
+        if fastest < 0:
             return written
         most = group.v[U][3 * fastest]
         if not most > slow(system.contacts[group.closed[fastest].contact], state):
