@@ -129,9 +129,9 @@ def two_cylinders(seed, far=False):
     return scene
 
 
-# ten times the default tolerance: a contact that slides over a rim opens with its whole force, so that all
-# runs must find the rim at the same place to 1e-8 m
-ALIKE = 2e-8
+# ten tolerances, 1e-8 of the path and the size together (0.5 m), of each of two runs; 119 that differ by
+# round-off are 2e-8 m apart at most: a contact that slides over a rim opens with its whole force
+ALIKE = 1e-7
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2, 5, 6, 8, 10])

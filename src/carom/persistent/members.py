@@ -36,6 +36,7 @@ from carom.friction.layout import (
 from carom.friction.solve import solve_cones
 from carom.friction.strategy import budget
 from carom.geometry.rotation import multiply, normalize
+from carom.geometry.thresholds import ROUND_OFF
 from carom.impact.workspace import C, P, U
 from carom.persistent.coulomb_stage import solve_stage
 from carom.persistent.joint_rows import JOINT
@@ -130,7 +131,7 @@ def implicit_stage(model, data, label, s, hg, closes):
     for m in range(count):
         copy_state(group.base[group.member[m]], work.stage[group.member[m]])
     for turn in range(FIXED_POINT):
-        change, size = 0.0, 0.0
+        last, change, size = change, 0.0, 0.0
         for m in range(count):
             b = group.member[m]
             length, stage = model.system.bodies[b].extent, work.stages[s, b]
@@ -138,7 +139,8 @@ def implicit_stage(model, data, label, s, hg, closes):
             change, size = max(change, own[0]), max(size, own[1])
         if change > 0.0:  # a body that stops has errors of the others
             change = change / size if size > 0.0 else math.inf
-        if turn > 0 and change <= LAST_CHANGE and not turned:
+        settled = change <= LAST_CHANGE or (change <= ROUND_OFF and change >= 0.5 * last)
+        if turn > 0 and settled and not turned:  # it is round-off, which grows with the forces
             break
         applied = accelerate_freely(model, data, loaded, count, s)
         before = k
