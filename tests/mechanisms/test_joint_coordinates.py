@@ -81,6 +81,59 @@ def test_whole_turns_are_counted():
     np.testing.assert_allclose(rate, 25.0, rtol=1e-12)
 
 
+def double_pendulum():
+    """The lower of two links whirls: it turns three times in 1.5 s."""
+    scene = Scene(gravity=(0, 0, -G))
+    for k, whirl in enumerate((0.0, 15.0)):
+        scene.add_body(
+            mass=1.0, inertia=(0.02, 0.02, 1e-3), position=(0.2 + 0.4 * k, 0, 0),
+            velocity=(0, 0, -0.2 * whirl), angular_velocity=(0, whirl, 0), name=f"link{k}",
+        )  # fmt: skip
+    scene.add_joint(joints.Revolute((0, 0, 0), (0, 1, 0)), GROUND, "link0", name="upper")
+    scene.add_joint(joints.Revolute((0.4, 0, 0), (0, 1, 0)), "link0", "link1", name="lower")
+    return scene
+
+
+def test_turns_are_those_of_the_run_whatever_is_saved(tmp_path):
+    """Of what swings freely, of a part of the scene, in files, and of a run that goes on from its file."""
+    every = carom.simulate(double_pendulum(), 1.5, rtol=1e-10)
+    path, how = tmp_path / "ends.nc", dict(save_at=[1.5], rtol=1e-10)
+    ends = carom.simulate(double_pendulum(), 1.5, save=path, **how)
+    scene = double_pendulum()
+    scene.add_body(carom.Sphere(0.1), mass=1.0, position=(9, 0, 0))  # moves in an island of its own
+    beside = carom.simulate(scene, 1.5, **how)
+    loaded = carom.Solution.load(path)
+    on = carom.resume(path, until=1.8)
+    long = carom.simulate(double_pendulum(), 1.8, rtol=1e-10)
+    for name in ("upper", "lower"):
+        q = every.joint_coordinates(name)[0]
+        assert np.max(np.abs(np.diff(q[:, 0]))) < np.pi  # steps are short enough to tell
+        for one in (ends, loaded, beside):
+            np.testing.assert_allclose(one.joint_coordinates(name)[0][-1], q[-1], atol=1e-6)
+        q, found = (one.joint_coordinates(name)[0][-1] for one in (on, long))
+        np.testing.assert_allclose(q, found, atol=1e-6)
+    assert found[0] > 4.0 * np.pi
+
+
+@pytest.mark.parametrize("rtol", [None, 1e-8])
+def test_a_free_wheel_turns_far_between_two_saved_times(rtol):
+    """3000 rad in a second, saved once: (w h)^4/120 of 0.3 rad a given step."""
+    scene = Scene(gravity=(0, 0, 0))
+    scene.add_body(mass=1.0, inertia=(1, 1, 2), angular_velocity=(0, 0, 3000), name="wheel")
+    scene.add_joint(joints.Revolute((0, 0, 0), (0, 0, 1)), GROUND, "wheel", name="hinge")
+    how = {"step": 1e-4} if rtol is None else {"rtol": rtol}
+    q, _ = carom.simulate(scene, 1.0, save_at=[1.0], **how).joint_coordinates("hinge")
+    assert q[-1, 0] == pytest.approx(3000.0, rel=1e-4 if rtol is None else 1e-7)
+
+
+def test_files_of_earlier_versions_count_turns_by_the_rates():
+    s = carom.simulate(double_pendulum(), 1.5)
+    known, rates = s.joint_coordinates("lower")
+    s._run.records = s._run.records._replace(turn=s._run.records.turn[:, :0])
+    np.testing.assert_array_equal(s.joint_coordinates("lower")[1], rates)
+    np.testing.assert_allclose(s.joint_coordinates("lower")[0], known, atol=1e-12)
+
+
 def test_hinge_and_rod_of_a_pendulum():
     """From (-1, 0): the angle grows by the axis z, as that of the body's centre does."""
     s = carom.simulate(pendulum("Revolute"), 1.0, step=0.01)

@@ -18,7 +18,6 @@ from carom.io.files.checkpoint import capture, state_at_end
 from carom.io.files.kept import KeptRun
 from carom.io.models.model import Model
 from carom.model import records as r
-from carom.model.arrays import REVOLUTE
 from carom.model.compile import attitudes
 from carom.model.method import IMPLICIT
 from carom.options import Options
@@ -35,12 +34,6 @@ from carom.stepping.settings import (
     checked_settings,
     mistakes,
     settings_of,
-)
-
-LOST_TURNS = (
-    "a joint is set by more than half a turn: run.state has its whole turns, "
-    "but run.solution counts them by less than half a turn, so angles, and forces that depend on them, "
-    "differ there; load_model(qpos=...) makes a scene that begins elsewhere"
 )
 
 
@@ -290,8 +283,7 @@ class Run:
             new.clock["saved"] = 0
             new.save_now()
         else:
-            since = self.state.turns
-            new.move(old, lambda: place(new, begin, qpos, qvel, since))
+            new.move(old, lambda: place(new, begin, qpos, qvel))
         self._stand(new, self._applied.history)
 
     @arguments.known
@@ -339,11 +331,8 @@ def _robot(scene: Scene, name: str) -> Robot:
     return scene.robot
 
 
-def place(run: Endless, state: SystemState, qpos, qvel, since: Any = 0.0) -> None:
-    """Write a state, or coordinates of the model in place of its own, into a run before its first step.
-
-    `since` are the turns in the last saved state of a solution.
-    """
+def place(run: Endless, state: SystemState, qpos, qvel) -> None:
+    """Write a state, or coordinates of the model in place of its own, into a run before its first step."""
     hint = "; a keyframe is given by keyframe=, and a solution goes on in carom.Run(solution)"
     checks.instance("state", state, (SystemState,), hint)
     if [b.name for b in state._scene.bodies] != [b.name for b in run.scene.bodies]:
@@ -359,9 +348,6 @@ def place(run: Endless, state: SystemState, qpos, qvel, since: Any = 0.0) -> Non
     if turns is not None:
         for name in ("reference", "begun"):
             run.compiled.system.relations.coordinates[name] = turns
-        angles = run.compiled.system.relations.coordinates["kind"] == REVOLUTE
-        if np.any(np.abs(turns - since)[angles] > np.pi):
-            warnings.warn(LOST_TURNS, MistakeWarning, stacklevel=4)
     run.project()
     run.check(run.scene)
 

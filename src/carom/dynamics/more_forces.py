@@ -21,8 +21,8 @@ from carom.kinematics.curve import (
     is_upright,
     speed_beside,
 )
-from carom.model.arrays import PRISMATIC
-from carom.model.parts_of_system import has_relations
+from carom.model.arrays import PRISMATIC, REVOLUTE
+from carom.model.parts_of_system import has_relations, has_turns
 
 
 @kernel
@@ -126,15 +126,17 @@ def spring_energy(system, spring, length):
     return 0.5 * spring.stiffness * (length - spring.rest_length) ** 2
 
 
-@unit(where=has_relations, otherwise=False)
-def note_turns(system, state) -> bool:
-    """Store the whole turns of all angles, after a trial step has been accepted.
+@unit(where=has_turns, otherwise=False)
+def note_turns(system, state, h) -> bool:
+    """Store the whole turns of all angles, after a trial step of length h has been accepted.
 
     Return whether a point has left its curve.
     """
     left = False
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
+        if c.kind == REVOLUTE:  # what nothing depends on may turn far in a step
+            c.reference += h * rate(system, c, state)
         c.reference = value(system, c, state)
         if is_on_curve(c):
             left = left or is_beyond(system.relations.curves[c.number], c.reference)

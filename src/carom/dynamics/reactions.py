@@ -26,7 +26,7 @@ from carom.dynamics.tree import joint_wrenches
 from carom.kinematics.coordinate import rate, value
 from carom.kinematics.curve import is_on_curve, seek_feet, seek_foot
 from carom.model.arrays import FOREST, LOOPS, ON_CURVE, RELATION
-from carom.model.parts_of_system import has_relations
+from carom.model.parts_of_system import has_turns
 
 
 @kernel
@@ -120,21 +120,24 @@ def add_touch(touch, work):
             wrench[3 + k] += touch.other_moment[k]
 
 
-@unit(where=has_relations)
+@unit(where=has_turns)
 def follow_turns(system, saved, k):
-    """Count the whole turns of all angles at saved state k, from those at the state before.
+    """Write the coordinates at saved state k, with the whole turns that the run has counted.
 
-    The angle of a motor is the prescribed one; others change by the mean of the rates at both times.
+    In files of earlier versions, which do not have them, the angle of a motor is the prescribed one; others
+    change from those at the state before by the mean of the rates at both times.
     """
     relations = system.relations
     for i in range(relations.coordinates.shape[0]):
         c = relations.coordinates[i]
-        if k == 0:
+        if i < saved.turn.shape[1]:
+            c.reference = saved.turn[k, i].angle
+        elif k == 0:
             c.reference = 0.0
         else:
             mean = 0.5 * (rate(system, c, saved.state[k - 1]) + rate(system, c, saved.state[k]))
             c.reference += mean * (saved.series[k].t - saved.series[k - 1].t)
-    for j in range(system.joints.shape[0]):
+    for j in range(system.joints.shape[0] if saved.turn.shape[1] == 0 else 0):
         if system.joints[j].kind == RELATION:
             relation = relations.relations[system.joints[j].number]
             if relation.last - relation.first == 1:

@@ -405,7 +405,8 @@ class Solver(NamedTuple):
 class Relations(NamedTuple):
     """Coordinates of joints, relations between them, and rows of the user's own."""
 
-    there: int  # 1 if any of these arrays has rows
+    there: int  # 1 if there is more than coordinates whose turns are counted
+    counted: int  # the first coordinates: all angles, and places on closed curves
     coordinates: np.recarray  # COORDINATE
     relations: np.recarray  # RELATION_ROW
     terms: np.recarray  # TERM

@@ -55,8 +55,7 @@ def compile_scene(
     start, to_principal, moments = _start(scene)
     placement, functions = Placement(start, to_principal), Functions()
     coordinates = Coordinates(placement)
-    for one in () if scene.robot is None else scene.robot.coordinates:
-        coordinates.number(one.joint, one.index)  # a run counts their whole turns
+    coordinates.count(scene.joints)
     pieces, curves = Pieces(), Pieces()
     sizes = start_sizes(scene)
     elements = Elements(scene, coordinates, functions, pieces, sizes)

@@ -25,6 +25,12 @@ def has_loops(system):
 
 
 @inlined
+def has_turns(system):
+    """Return whether there are coordinates of joints, whose whole turns a run counts."""
+    return system.relations.coordinates.shape[0] > 0
+
+
+@inlined
 def has_relations(system):
     """Return whether there are coordinates of joints with a motor, spring, rotor, stop or the like."""
     return system.relations.there == 1

@@ -50,6 +50,8 @@ CLOCK = [
 ]
 
 SERIES = [("t", "f8"), *ENERGIES, *LEDGER, ("residual", "f8")]
+#: a coordinate at a saved time: an angle with whole turns, or an arc length with laps
+TURN = [("angle", "f8")]
 #: an active point at a saved time; moments about the mass centres (world axes)
 TOUCH = [
     ("saved", "i8"),
@@ -122,10 +124,11 @@ LONG = 5e4
 
 
 class Records(NamedTuple):
-    """T saved steps, K impacts, E events, S snapshots, H touches."""
+    """T saved steps, K impacts, E events, S snapshots, H touches; C coordinates whose turns are counted."""
 
     series: np.recarray  # (T,) SERIES
     state: np.recarray  # (T, N) STATE
+    turn: np.recarray  # (T, C) TURN; files of earlier versions have none: C = 0
     touch: np.recarray  # (H,) TOUCH
     impact: np.recarray  # (K,) IMPACTS
     event: np.recarray  # (E,) EVENT
@@ -182,10 +185,11 @@ def new_work(system: System, stages: int) -> workspace.Work:
 
 def new_records(system: System, saves: int, events: int, points: int = 0) -> Records:
     """Return empty records for `saves` saved steps, `events` impacts and events, and more active `points`."""
-    n = system.bodies.size
+    n, counted = system.bodies.size, system.relations.counted
     return Records(
-        table(SERIES, saves), table(STATE, saves, n), table(TOUCH, events + points),
-        table(IMPACTS, events), table(EVENT, events), table(SNAPSHOT, 2 * events + 2 * n),
+        table(SERIES, saves), table(STATE, saves, n), table(TURN, saves, counted),
+        table(TOUCH, events + points), table(IMPACTS, events), table(EVENT, events),
+        table(SNAPSHOT, 2 * events + 2 * n),
     )  # fmt: skip
 
 
@@ -209,7 +213,7 @@ def with_room(records: Records, saved: int, rows: int = 1) -> Records:
     if need <= known:
         return records
     more = {}
-    for name in ("series", "state"):
+    for name in ("series", "state", "turn"):
         old = getattr(records, name)
         new = np.zeros((need if rows == 1 else max(2 * known, need), *old.shape[1:]), old.dtype)
         new[:saved] = old[:saved]
@@ -229,7 +233,7 @@ def written(records: Records, clock: np.recarray) -> Records:
 
 def ends_of(clock: np.recarray) -> dict[str, int]:
     """Return how many rows of each table were written, by its name."""
-    names = "saved", "saved", "touched", "struck", "event", "snapped"
+    names = "saved", "saved", "saved", "touched", "struck", "event", "snapped"
     return {table: int(clock[name][0]) for table, name in zip(Records._fields, names)}
 
 

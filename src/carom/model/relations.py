@@ -14,7 +14,7 @@ from carom.model import arrays
 from carom.model.curves import Curves
 from carom.model.more_forces import MoreForces, Pieces, is_damped_spring
 from carom.model.placement import Placement
-from carom.scene.constraints import Coupling, Rows, coordinate_kind
+from carom.scene.constraints import Coupling, Rows, coordinate_kind, counted
 from carom.scene.forces import Spring
 from carom.scene.joints import Joint
 from carom.scene.more_forces import Actuator, JointInertia, JointSpring
@@ -28,9 +28,17 @@ class Coordinates:
         self.rows: list[np.recarray] = []
         self.numbers: dict[tuple[int, int], int] = {}
         self.curves = Curves()
+        self.counted, self.used = 0, False
+
+    def count(self, joints) -> None:
+        """Add all angles, and places on closed curves, of joints: a run counts their turns, used or not."""
+        for j, k in counted(joints):
+            self.number(joints[j], k)
+        self.counted, self.used = len(self.rows), False
 
     def number(self, joint: Joint, coordinate: int) -> int:
         """Return the index of a coordinate in the table; a new one is added."""
+        self.used = True
         key = joint.index, coordinate
         if key not in self.numbers:
             self.numbers[key] = len(self.rows)
@@ -173,6 +181,7 @@ class Elements:
         """Return the tables, with the sides that `solver` gave to the bodies."""
         if not (self.kinds or self.coordinates.rows or more.any):
             return no_relations()._replace(pieces=self.pieces.rows)
+        there = 1 if self.kinds or self.coordinates.used or more.any else 0
         terms = []
         relation = iter(range(len(self.relations)))
         inertias = (float(rotor.inertia[0]) for rotor in self.rotors)
@@ -215,7 +224,9 @@ class Elements:
         user = _joined(arrays.USER_ROW, self.user)
         tables = relations, listed, user, self.pieces.rows, *(_joined(*one) for one in forces)
         tables += _joined(arrays.CURVE, curves.rows), _joined(arrays.CURVE_PIECE, curves.pieces)
-        return arrays.Relations._make([1, rows, *tables, named, read, write])
+        return arrays.Relations._make(
+            [there, self.coordinates.counted, rows, *tables, named, read, write]
+        )
 
 
 @cache
@@ -225,7 +236,7 @@ def no_relations() -> arrays.Relations:
     kinds = a.COORDINATE, a.RELATION_ROW, a.TERM, a.USER_ROW, a.PIECE, a.PUSH, a.USER_FORCE
     kinds += a.STIFF_SPRING, a.FRICTION, a.ROTOR, a.CURVE, a.CURVE_PIECE
     named = np.zeros(0, dtype=np.int64)
-    return a.Relations._make([0, *(table(kind, 0) for kind in kinds), named, none, none])
+    return a.Relations._make([0, 0, *(table(kind, 0) for kind in kinds), named, none, none])
 
 
 def _joined(fields, rows) -> np.recarray:

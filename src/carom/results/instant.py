@@ -51,7 +51,7 @@ class Instant:
         """Return reactions on children (1, E, 6) and accelerations under forces at active points."""
         from carom.dynamics.reactions import reactions
         from carom.model.kept import Kept
-        from carom.model.records import SERIES, new_work
+        from carom.model.records import SERIES, TURN, new_work
         from carom.results.assemble import on_children
 
         run, system, touch = self.run, compiled.system, copied(touch)
@@ -70,7 +70,8 @@ class Instant:
         for index, rest in self.laws.items():
             compiled.laws[index].rest = rest
         work = new_work(system, run.method.b.size)
-        saved = run.records._replace(series=series, state=states, touch=touch)
+        turn = table(TURN, 2, 0)  # those that are known are in the system
+        saved = run.records._replace(series=series, state=states, turn=turn, touch=touch)
         reactions(system, run.options.augmentation, saved, (1, 2), work, out)
         kept.restore()
         for index, rest in present.items():

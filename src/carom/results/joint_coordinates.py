@@ -14,9 +14,10 @@ import numpy as np
 from carom import checks
 from carom.geometry import quaternion
 from carom.scene import joints as j
+from carom.scene.constraints import counted
 from carom.scene.joints import Joint
 
-TURN, DEGREES = 2.0 * math.pi, 180.0 / math.pi
+DEGREES = 180.0 / math.pi
 ON_CURVE = (j.PointOnCurve, j.CurveOnPoint)
 Vector = tuple[Any, Any, Any]
 Quaternion = tuple[Any, Any, Any, Any]
@@ -70,10 +71,14 @@ def _numbers(array) -> tuple:
     return tuple(np.asarray(array, dtype=float).tolist())
 
 
-def coordinates(joint: Sides, states, t: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Return coordinates and rates of a joint, (T, n) at times t, or (n,) with angles from -pi to pi.
+def coordinates(
+    joint: Sides, states, t: np.ndarray | None = None, turns=None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return coordinates and rates of a joint, (T, n) at times t, or (n,) of one time.
 
     `states` have position, orientation, velocity and angular velocity (T, N, ...), or (N, ...) of one time.
+    `turns` are the coordinates by their index, with the turns that the run has counted. What it does not
+    have is from minus to plus half a turn at one time, and counted by the rates between several.
     """
     d, atan2 = joint.definition, math.atan2 if t is None else np.arctan2
     p, c = (placed(side, states) for side in (joint.parent, joint.child))
@@ -101,10 +106,13 @@ def coordinates(joint: Sides, states, t: np.ndarray | None = None) -> tuple[np.n
             else:
                 pairs.append((dot(along, gap), dot(along, speed)))
     for k in range(len(d.coordinates)):
-        whole = period(d, k)
+        whole = d.period(k)
         if whole > 0.0:
-            q, rate = pairs[k]
-            q = q - whole * round(q / whole) if t is None else unwrapped(q, rate, t, whole)
+            (q, rate), near = pairs[k], None if turns is None else turns.get(k)
+            if near is not None or t is None:
+                q = q + whole * np.round(((0.0 if near is None else near) - q) / whole)
+            else:
+                q = unwrapped(q, rate, t, whole)
             pairs[k] = q, rate
     if isinstance(d, j.Screw):  # the displacement gives the angle with all whole turns
         pairs[0] = pairs[1][0] / d.scale(), pairs[0][1]
@@ -121,13 +129,6 @@ def _of_cross(d: j.Universal, relative: Quaternion, turns, spin: Vector, atan2) 
     angles = atan2(dot(third, two), dot(second, two)), atan2(dot(first, three), dot(first, one))
     axes = (rotate(turn, axis) for turn, axis in zip(turns, (first, second)))
     return [(angle, dot(axis, spin)) for angle, axis in zip(angles, axes)]
-
-
-def period(d: j.JointDefinition, k: int) -> float:
-    """Return the change of coordinate k after which all is as before: a turn, or a closed curve; 0 for none."""
-    if isinstance(d, ON_CURVE):
-        return d.curve.length if d.curve.closed else 0.0
-    return TURN if d.coordinates[k] == "turn" else 0.0
 
 
 def _along_curve(joint: Sides, p: Placed, c: Placed) -> tuple[Any, Any]:
@@ -244,6 +245,15 @@ def of_scene(scene, joint) -> Joint:
             f"joint must belong to the scene of this solution, got {checks.shown(joint)}"
         )
     return scene[joint.name]
+
+
+def turns_of(joint: Joint, scene, turns: np.ndarray) -> dict[int, Any]:
+    """Return the coordinates (...,) of a joint by their own index, of `turns` (..., C) that a run has counted.
+
+    C is 0 in files of earlier versions.
+    """
+    columns = counted(scene.joints) if turns.shape[-1] else {}
+    return {k: turns[..., column] for (j, k), column in columns.items() if j == joint.index}
 
 
 def unwrapped(q: np.ndarray, rate: np.ndarray, t: np.ndarray, whole: float) -> np.ndarray:

@@ -23,6 +23,7 @@ from carom.geometry import quaternion
 from carom.results.forward_kinematics import Motion, put_ball, put_child, relative
 from carom.results.joint_coordinates import sides_of
 from carom.scene.bodies import Body, Ground
+from carom.scene.constraints import counted
 from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
 from carom.scene.more_forces import Actuator
@@ -70,8 +71,8 @@ class Coordinate:
         Parameters
         ----------
         solution : Solution or SystemState
-            For a solution, also one from a file, q and rate are arrays (T,), with whole turns counted between
-            saved times; for the state of a run they are numbers, with the whole turns that the run has counted.
+            For a solution, also one from a file, q and rate are arrays (T,); for the state of a run they are
+            numbers. Whole turns are those that the run has counted.
         """
         states = checked(solution)
         q, rate = states.joint_coordinates(self.joint.name)
@@ -384,11 +385,14 @@ class Robot:
             spin[b] = quaternion.rotate(Q[b], v[one.velocity + 3 : one.velocity + 6])
             x[b] = q[first : first + 3] + arm
             speed[b] = v[one.velocity : one.velocity + 3] + np.cross(spin[b], arm)
+        columns = {} if turns is None else counted(base._scene.joints)
         by_joint: dict[int, list[Coordinate]] = {}
         for one in self.coordinates:
             by_joint.setdefault(one.joint.index, []).append(one)
-            if turns is not None:
-                turns[one.row] = one.sign * (q[one.position] - one.start)
+            if turns is not None and (one.joint.index, one.index) in columns:
+                turns[columns[one.joint.index, one.index]] = one.sign * (
+                    q[one.position] - one.start
+                )
         links: dict[int, Any] = {k: (some[0].joint, some) for k, some in by_joint.items()}
         links |= {one.joint.index: (one.joint, one) for one in self.balls}
         for _, (joint, of) in sorted(links.items()):  # parents before children, as they were added

@@ -10,6 +10,7 @@ import numpy as np
 
 from carom import arguments, checks
 from carom.geometry import quaternion
+from carom.model.records import written
 from carom.results.dense_output import curves, flights
 from carom.results.drawn import Drawn
 from carom.results.endings import message
@@ -22,7 +23,13 @@ from carom.results.event_tables import (
     force_table,
 )
 from carom.results.exerted import rows_of
-from carom.results.joint_coordinates import coordinates, in_degrees, of_scene, sides_of
+from carom.results.joint_coordinates import (
+    coordinates,
+    in_degrees,
+    of_scene,
+    sides_of,
+    turns_of,
+)
 from carom.results.ledger import Ledger
 from carom.results.named import Source
 from carom.results.names import ConstraintRows, Numbers, constraint_rows
@@ -306,9 +313,9 @@ class Solution(Portable, Drawn, Source):
         rolling
         ==================  ========================================================================
 
-        Angles include whole turns. These are counted with the mean of the rates between two saved times, whose
-        error must be less than half a turn: save often enough (`save_at`). At the time of an impact the rate is
-        the value after it.
+        Angles include whole turns, which the run counts. (In files of earlier versions they are counted
+        with the mean of the rates between two saved times, whose error must be less than half a turn.) At the
+        time of an impact the rate is the value after it.
 
         Parameters
         ----------
@@ -325,7 +332,9 @@ class Solution(Portable, Drawn, Source):
             If `joint` is not a joint, or belongs to another scene.
         """
         joint = of_scene(self.scene, joint)
-        read = coordinates(sides_of(joint), self, self.t)
+        rows = written(self._run.records, self._run.clock).turn["angle"]
+        turns = turns_of(joint, self.scene, rows)
+        read = coordinates(sides_of(joint), self, self.t, turns)
         return in_degrees(joint, *read) if checks.flag("degrees", degrees) else read
 
     @cached_property

@@ -12,7 +12,13 @@ from carom.model.arrays import STATE
 from carom.results.event_tables import ForceTable, force_table
 from carom.results.exerted import exerted_by
 from carom.results.instant import Instant
-from carom.results.joint_coordinates import coordinates, in_degrees, of_scene, period, sides_of
+from carom.results.joint_coordinates import (
+    coordinates,
+    in_degrees,
+    of_scene,
+    sides_of,
+    turns_of,
+)
 from carom.results.named import Source
 from carom.results.names import Numbers
 from carom.scene.more_forces import JointFriction
@@ -175,9 +181,7 @@ class SystemState(Source):
     def joint_coordinates(self, joint, *, degrees: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """Return coordinates and rates (n,) of a joint, as `Solution.joint_coordinates` does.
 
-        Angles include whole turns where the run counts them: of coordinates with a spring, an actuator, another
-        force, a stop or a constraint, of a model, and of a `Screw`. Others are from -pi to pi. Laps of a closed
-        curve are counted.
+        Angles include whole turns, and places on closed curves laps, which the run counts.
 
         Parameters
         ----------
@@ -189,11 +193,8 @@ class SystemState(Source):
         joint = of_scene(self._scene, joint)
         if joint.index not in self._known:
             self._known[joint.index] = sides_of(joint)
-        read = coordinates(self._known[joint.index], self)
-        for k in range(len(joint.definition.coordinates) if self._instant else 0):
-            row, whole = self._instant.numbers.get((joint.index, k)), period(joint.definition, k)
-            if whole > 0.0 and row is not None:
-                read[0][k] += whole * round((self._instant.turns[row] - read[0][k]) / whole)
+        turns = self._instant and turns_of(joint, self._scene, self._instant.turns)
+        read = coordinates(self._known[joint.index], self, turns=turns)
         return in_degrees(joint, *read) if checks.flag("degrees", degrees) else read
 
     def __repr__(self) -> str:

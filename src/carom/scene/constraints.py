@@ -26,6 +26,13 @@ def joint_or_name(name: str, joint) -> Any:
     return joint
 
 
+def counted(joints) -> dict[tuple[int, int], int]:
+    """Return the columns of coordinates whose turns or laps a run counts, by index of joint and coordinate."""
+    every = ((one, k) for one in joints for k in range(len(one.definition.coordinates)))
+    turning = [(one.index, k) for one, k in every if one.definition.period(k) > 0.0]
+    return {key: column for column, key in enumerate(turning)}
+
+
 def coordinate_kind(joint: Joint | str, coordinate: int, name: str = "joint") -> str:
     """Return "turn" or "slide", the kind of a joint coordinate; refuse one that the joint does not have.
 

@@ -129,7 +129,7 @@ def accept_step(model, data):
 
     # the motion up to the end of the trial step, and the modes at its end
     accept(system, data, search)
-    if note_turns(system, now):
+    if note_turns(system, now, search.dt):
         return LEFT_CURVE, NOTHING
     search.pace = next_pace(search.pace, work)
     if left_ball(system, now, search.dt, work):

@@ -65,6 +65,8 @@ def save(model, data):
     row.residual, clock.residual = clock.residual, 0.0
     for b in range(now.shape[0]):
         copy_state(now[b], records.state[k, b])
+    for i in range(records.turn.shape[1]):
+        records.turn[k, i].angle = model.system.relations.coordinates[i].reference
     if data.active.count[0] > 0:
         save_contacts(model, data, k)
     clock.saved += 1

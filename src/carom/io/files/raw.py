@@ -17,13 +17,13 @@ from carom.scene.materials import IMPACT_LAWS
 
 GROUP = "records"
 FIELDS = {
-    "series": r.SERIES, "state": STATE, "touch": r.TOUCH, "impact": r.IMPACTS, "event": r.EVENT,
+    "series": r.SERIES, "state": STATE, "turn": r.TURN, "touch": r.TOUCH, "impact": r.IMPACTS, "event": r.EVENT,
     "snapshot": r.SNAPSHOT,
 }  # fmt: skip
 #: first dimensions; those of vectors follow
 DIMS = {
-    "series": ("time",), "state": ("time", "body"), "touch": ("held",), "impact": ("impact",),
-    "event": ("event",), "snapshot": ("snapshot",),
+    "series": ("time",), "state": ("time", "body"), "turn": ("time", "turn"), "touch": ("held",),
+    "impact": ("impact",), "event": ("event",), "snapshot": ("snapshot",),
 }  # fmt: skip
 TAILS = {(): (), (3,): ("axis",), (4,): ("quaternion",), (3, 3): ("axis", "contact_axis")}
 #: where a labelled variable may hold a column

@@ -165,10 +165,14 @@ class _Arrays:
 
     def __init__(self, file: Sealed, bodies: int):
         self.data, self.index = file.data, file.index
-        self.sizes = {
-            str(dim): checks.integer(f"size of {dim}", n, least=0)
-            for dim, n in file.index["sizes"].items()
-        } | LENGTHS
+        self.sizes = (
+            {"turn": 0}
+            | {  # files of earlier versions have none
+                str(dim): checks.integer(f"size of {dim}", n, least=0)
+                for dim, n in file.index["sizes"].items()
+            }
+            | LENGTHS
+        )
         if self.sizes["time"] < 1 or self.sizes["body"] != bodies:
             raise ValueError(f"it has {bodies} bodies, and {self.sizes['body']} rows for them")
         for dims in raw.DIMS.values():

@@ -76,7 +76,7 @@ def file_of(solution, checkpoint: Checkpoint | None = None, whole: bool = True) 
         "scene": known["scene"].item(),
         "sizes": {
             dim: n for one in variables for dim, n in zip(one.dims, one.data.shape)
-        } | {dim: len(getattr(records, dim)) for dim in ("snapshot",)},
+        } | {"snapshot": len(records.snapshot), "turn": records.turn.shape[1]},
         "arrays": arrays,
         "words": {name: _coded(known[name], words) for name, words in raw.WORDS.items()},
         "user_events": index_of(solution),

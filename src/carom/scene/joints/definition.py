@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -70,6 +71,10 @@ class JointDefinition:
     def scale(self) -> float:
         """Return the length [m] of the joint, `length` in the kernels."""
         return 0.0
+
+    def period(self, coordinate: int) -> float:
+        """Return the change of a coordinate after which all is as before: a turn [rad]; 0 for none."""
+        return 2.0 * math.pi if self.coordinates[coordinate] == "turn" else 0.0
 
     def coordinate_frame(self, coordinate: int) -> np.ndarray:
         """Return the axes (3, 3) of a coordinate as columns; the coordinate is along or about the first."""

@@ -39,6 +39,10 @@ class OnCurve(JointDefinition):
     curve: CurveField = Value(_curve)
     side: ClassVar[Any] = None
 
+    def period(self, coordinate: int) -> float:
+        """Return the length of a closed curve [m], after which all is as before; 0 for an open one."""
+        return self.curve.length if self.curve.closed else 0.0
+
     def feet(self, points: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """Return the arc lengths (K,) of the feet of points (K, 3) with velocities (K, 3)."""
         return self.curve.feet(points, velocity)

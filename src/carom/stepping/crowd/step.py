@@ -173,7 +173,7 @@ def move_on(model, data, method, h, patient, careful):
         note_error(system, clock.now, h, now, end, work)
     for b in range(n):
         copy_state(end[b], now[b])
-    return LEFT_CURVE if note_turns(system, now) else 0
+    return LEFT_CURVE if note_turns(system, now, h) else 0
 
 
 @kernel
