@@ -82,7 +82,7 @@ def test_whole_turns_are_counted():
 
 
 def double_pendulum():
-    """The lower of two links whirls: it turns three times in 1.5 s."""
+    """The lower of two links whirls: both turn round in 1.8 s."""
     scene = Scene(gravity=(0, 0, -G))
     for k, whirl in enumerate((0.0, 15.0)):
         scene.add_body(
@@ -112,7 +112,7 @@ def test_turns_are_those_of_the_run_whatever_is_saved(tmp_path):
             np.testing.assert_allclose(one.joint_coordinates(name)[0][-1], q[-1], atol=1e-6)
         q, found = (one.joint_coordinates(name)[0][-1] for one in (on, long))
         np.testing.assert_allclose(q, found, atol=1e-6)
-    assert found[0] > 4.0 * np.pi
+        assert found[0] > 2.0 * np.pi
 
 
 @pytest.mark.parametrize("rtol", [None, 1e-8])
