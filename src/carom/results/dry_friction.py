@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from carom._compiled.record_arrays import Columns, table
+from carom.kinematics.coordinate import TURN
 from carom.model.arrays import RELATION
 from carom.model.compile import compile_scene
 from carom.model.records import TOUCH
@@ -41,7 +42,7 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
     laws: list[Any] = [force.definition for force in dry]
     read = [np.array(states.joint_coordinates(d.joint))[..., d.coordinate] for d in laws]
     q, rate = np.stack([np.reshape(pair, (2, times)) for pair in read], axis=-1)
-    turns = np.round(q / jc.TURN)
+    turns = np.round(q / TURN)
     sticks = np.abs(rate) <= STILL * np.array([_speed(d, states) for d in laws])
     most = np.array([bound_of(d.bound) for d in laws])
     bound = np.stack([_in_slip(d.bound, np.abs(rate[:, k])) for k, d in enumerate(laws)], axis=-1)
@@ -61,7 +62,7 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
             rows = np.flatnonzero(np.all(alike == each, axis=1))
             first = len(scene.joints) + len(scene.constraints)
             compiled = compile_scene(made, run.options)
-            _turned(compiled.system, jc.TURN * each[len(laws) :][held])
+            _turned(compiled.system, TURN * each[len(laws) :][held])
             found = solve(compiled, full)[rows]
             out[rows, :first] = found[:, :first]
             value[np.ix_(rows, np.flatnonzero(held))] = found[:, first : first + held.sum(), 0]
