@@ -25,13 +25,14 @@ import importlib
 import inspect
 import pickle
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import llvmlite.binding as llvm
 import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
+from numba.core.errors import TypingError
 from numba.extending import intrinsic
 
 from carom._compiled import ahead
@@ -186,6 +187,13 @@ def asked_before() -> set[tuple[str, tuple]]:
             with contextlib.suppress(Exception):  # a file of another version of Numba
                 out.add((name, unpack(packed)))
     return out
+
+
+def compile_asked(wanted: Iterable[tuple[str, tuple]]) -> None:
+    """Compile units for types of arguments; those of an earlier version, which no code calls now, are left."""
+    for name, kinds in wanted:
+        with contextlib.suppress(TypingError):
+            address(name, kinds)
 
 
 def find(name: str) -> Any:

@@ -97,10 +97,9 @@ def asked_by_disk() -> set:
 
 def compile_units(wanted: list) -> set:
     """Compile units by name and types of arguments; return all that compiled code of this process may call."""
-    from carom._compiled.units import ASKED, address
+    from carom._compiled.units import ASKED, compile_asked
 
-    for name, kinds in wanted:
-        address(name, kinds)
+    compile_asked(wanted)
     return set(ASKED)
 
 
