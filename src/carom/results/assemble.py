@@ -260,6 +260,11 @@ def ranges_of(run, compiled, saved: int):
     return run.rows_of_forces(compiled, saved) if hasattr(run, "rows_of_forces") else [(0, saved)]
 
 
+def counted_turns(run) -> np.ndarray:
+    """Return the coordinates (T, C) at saved times whose turns the run has counted."""
+    return r.written(run.records, run.clock).turn["angle"]
+
+
 def accelerations(solution) -> np.ndarray:
     """Return the accelerations (T, N, 6) of all bodies at saved times, linear and angular, world axes.
 

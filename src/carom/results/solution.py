@@ -10,7 +10,6 @@ import numpy as np
 
 from carom import arguments, checks
 from carom.geometry import quaternion
-from carom.model.records import written
 from carom.results.dense_output import curves, flights
 from carom.results.drawn import Drawn
 from carom.results.endings import message
@@ -332,7 +331,7 @@ class Solution(Portable, Drawn, Source):
             If `joint` is not a joint, or belongs to another scene.
         """
         joint = of_scene(self.scene, joint)
-        rows = written(self._run.records, self._run.clock).turn["angle"]
+        rows = self._assemble.counted_turns(self._run)
         turns = turns_of(joint, self.scene, rows)
         read = coordinates(sides_of(joint), self, self.t, turns)
         return in_degrees(joint, *read) if checks.flag("degrees", degrees) else read
