@@ -1,5 +1,7 @@
 """Ensembles on disk: streamed, interrupted, gone on with; what is no such thing is refused."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -98,6 +100,17 @@ def test_a_part_without_its_status_is_done_again(tmp_path):
     group["outcomes/position"][4:8] = 3.0
     assert not carom.Ensemble.load(tmp_path / "e.zarr").complete
     assert same(throw(tmp_path / "e.zarr"), throw())
+
+
+@pytest.mark.parametrize("column", ["outcomes/position", "outcomes/status", "inputs/die.velocity"])
+def test_a_column_that_is_said_to_be_endless_is_refused(tmp_path, column):
+    """Before it is read: 1e11 rows are more than any memory holds."""
+    throw(tmp_path / "e.zarr", runs=2)
+    about = tmp_path / "e.zarr" / column / "zarr.json"
+    known = json.loads(about.read_text())
+    about.write_text(json.dumps({**known, "shape": [10**11, *known["shape"][1:]]}))
+    with pytest.raises(ValueError, match="is damaged"):
+        carom.Ensemble.load(tmp_path / "e.zarr")
 
 
 def test_failures_are_kept(tmp_path):
