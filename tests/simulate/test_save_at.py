@@ -114,3 +114,12 @@ def test_bad_input(save_at, message):
 def test_two_ways_to_say_it():
     with pytest.raises(ValueError, match="save_every must be left out with save_at, got 2"):
         carom.simulate(ball(), 1.0, save_at=0.1, save_every=2)
+
+
+def test_more_states_than_memory_are_refused():
+    """1e12 states of three bodies take 3e14 bytes: more than a processor can address."""
+    scene = carom.Scene()
+    for k in range(3):
+        scene.add_body(carom.Sphere(0.1), mass=1.0, position=(k, 0, 0))
+    with pytest.raises(MemoryError, match="saved states of 3 bodies need .* GiB .* save_every="):
+        carom.simulate(scene, 9e7, step=1e-4)

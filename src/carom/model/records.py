@@ -184,11 +184,24 @@ def new_work(system: System, stages: int) -> workspace.Work:
 
 
 def new_records(system: System, saves: int, events: int, points: int = 0) -> Records:
-    """Return empty records for `saves` saved steps, `events` impacts and events, and more active `points`."""
+    """Return empty records for `saves` saved steps, `events` impacts and events, and more active `points`.
+
+    Raises
+    ------
+    MemoryError
+        If there is too little memory for the saved states.
+    """
     n, counted = system.bodies.size, system.relations.counted
+    try:
+        saved = table(SERIES, saves), table(STATE, saves, n), table(TURN, saves, counted)
+    except MemoryError:
+        size = saves * n * np.dtype(STATE, align=True).itemsize / 2**30
+        raise MemoryError(
+            f"{saves} saved states of {n} bodies need {size:.3g} GiB of memory, more than there is: "
+            "save fewer, by save_every= or save_at="
+        ) from None
     return Records(
-        table(SERIES, saves), table(STATE, saves, n), table(TURN, saves, counted),
-        table(TOUCH, events + points), table(IMPACTS, events), table(EVENT, events),
+        *saved, table(TOUCH, events + points), table(IMPACTS, events), table(EVENT, events),
         table(SNAPSHOT, 2 * events + 2 * n),
     )  # fmt: skip
 
