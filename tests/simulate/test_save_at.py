@@ -121,5 +121,5 @@ def test_more_states_than_memory_are_refused():
     scene = carom.Scene()
     for k in range(3):
         scene.add_body(carom.Sphere(0.1), mass=1.0, position=(k, 0, 0))
-    with pytest.raises(MemoryError, match="saved states of 3 bodies need .* GiB .* save_every="):
+    with pytest.raises(MemoryError, match=r"saved states of 3 bodies need .* GiB .* save_every="):
         carom.simulate(scene, 9e7, step=1e-4)
