@@ -43,18 +43,12 @@ from carom.impact.resolve import (
 from carom.impact.slip_step import normal_rate
 from carom.impact.thresholds import LONGEST_IMPULSE, RAY_LENGTH, SLIP_ERROR
 from carom.impact.wedge import drowned
+from carom.model.tableaus import DORMAND_PRINCE
 
 MOST_SLIP_STEPS = 50_000
-_A = (
-    (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-    (1 / 5, 0.0, 0.0, 0.0, 0.0, 0.0),
-    (3 / 40, 9 / 40, 0.0, 0.0, 0.0, 0.0),
-    (44 / 45, -56 / 15, 32 / 9, 0.0, 0.0, 0.0),
-    (19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729, 0.0, 0.0),
-    (9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656, 0.0),
-    (35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84),
-)
-_E = (71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525)  # and -1/40 at the end
+#: six stages and the end, as tuples; the error of the six, and -1/40 of the end
+_A = tuple(map(tuple, DORMAND_PRINCE.A[:, :6].tolist()))
+_E = tuple((0.0 - DORMAND_PRINCE.E[0, :6]).tolist())
 _NONE = (0.0, 0.0, 0.0, 0.0)
 
 

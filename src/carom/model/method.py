@@ -7,28 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.model.tableaus import CLOSING, KENNEDY_CARPENTER
 from carom.options import Options
 
 #: kinds: explicit Runge-Kutta; symplectic, in parts; implicit for stiff springs; the paper's three fields
 RUNGE_KUTTA, RATTLE, IMPLICIT, THREE_FIELD = range(4)
-
-#: ESDIRK4(3)6L[2]SA of Kennedy and Carpenter (2003): L-stable, stiffly accurate, stage order 2
-ESDIRK = np.array([
-    [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [1 / 4, 1 / 4, 0.0, 0.0, 0.0, 0.0],
-    [8611 / 62500, -1743 / 31250, 1 / 4, 0.0, 0.0, 0.0],
-    [5012029 / 34652500, -654441 / 2922500, 174375 / 388108, 1 / 4, 0.0, 0.0],
-    [15267082809 / 155376265600, -71443401 / 120774400, 730878875 / 902184768, 2285395 / 8070912, 1 / 4, 0.0],
-    [82889 / 524892, 0.0, 15625 / 83664, 69875 / 102672, -2260 / 8211, 1 / 4],
-])  # fmt: skip
-#: the weights of its order 4 minus those of its order 3
-ESDIRK_ERROR = ESDIRK[5:] - np.array([
-    4586570599 / 29645900160, 0.0, 178811875 / 945068544, 814220225 / 1159782912, -3700637 / 11593932,
-    61727 / 225920,
-])  # fmt: skip
-#: implicit Euler, and the same minus the trapezoidal rule
-CLOSING = np.array([[0.0, 0.0], [0.0, 1.0]])
-CLOSING_ERROR = np.array([[-0.5, 0.5]])
 
 
 class Method(NamedTuple):
@@ -48,10 +31,10 @@ class Method(NamedTuple):
     tolerance: float
     most: int  # iterations
     # a diagonally implicit method of six stages, the first explicit, the last at the end of the step
-    stiff: np.ndarray = ESDIRK  # (6, 6)
-    stiff_E: np.ndarray = ESDIRK_ERROR  # (1, 6) weights of its error estimate
-    closing: np.ndarray = CLOSING  # (2, 2) the same of one stage: implicit Euler
-    closing_E: np.ndarray = CLOSING_ERROR  # (1, 2)
+    stiff: np.ndarray = KENNEDY_CARPENTER.A  # (6, 6)
+    stiff_E: np.ndarray = KENNEDY_CARPENTER.E  # (1, 6) weights of its error estimate
+    closing: np.ndarray = CLOSING.A  # (2, 2) the same of one stage: implicit Euler
+    closing_E: np.ndarray = CLOSING.E  # (1, 2)
 
 
 def explicit(A: np.ndarray, b: np.ndarray) -> Method:

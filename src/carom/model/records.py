@@ -10,7 +10,7 @@ from carom._compiled.record_arrays import Columns, table
 from carom.collision.layout import new_pair_work, new_points
 from carom.model import workspace
 from carom.model.arrays import STATE, System
-from carom.model.method import ESDIRK
+from carom.model.tableaus import KENNEDY_CARPENTER
 
 #: kinds of events, by code
 EVENTS = ("impact", "held", "slips", "sticks", "opens", "jams")
@@ -175,7 +175,7 @@ def new_work(system: System, stages: int) -> workspace.Work:
     body["room"] = np.inf
     return w.Work(
         body=body, joint=table(w.JOINT_WORK, system.joints.size),
-        stages=table(w.STAGE, max(stages, len(ESDIRK)) + 1, n), known=table(w.KNOWN, n),
+        stages=table(w.STAGE, max(stages, len(KENNEDY_CARPENTER.b)) + 1, n), known=table(w.KNOWN, n),
         stage=stage, trial=trial, part=part, middle=middle, iterate=iterate, mean=mean, beside=beside,
         origin=origin, struck=struck, placed=placed, pair=new_pair_work(), touches=new_points(),
         solid_pose=np.zeros((2, 7)), hit=table(w.HIT, 1), result=table(w.RESULT, 1),

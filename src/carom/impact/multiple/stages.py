@@ -11,8 +11,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from carom._compiled.decorators import kernel
 from carom._compiled.simd import LANES
 from carom._compiled.units import unit
@@ -39,34 +37,10 @@ from carom.impact.thresholds import (
     SLIP_END,
     SLIP_SHARE,
 )
+from carom.model.tableaus import KENNEDY_CARPENTER, KENNEDY_CARPENTER_EXPLICIT
 
-EXPLICIT = np.array([
-    [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [1 / 2, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [13861 / 62500, 6889 / 62500, 0.0, 0.0, 0.0, 0.0],
-    [-116923316275 / 2393684061468, -2731218467317 / 15368042101831,
-     9408046702089 / 11113171139209, 0.0, 0.0, 0.0],
-    [-451086348788 / 2902428689909, -2682348792572 / 7519795681897,
-     12662868775082 / 11960479115383, 3355817975965 / 11060851509271, 0.0, 0.0],
-    [647845179188 / 3216320057751, 73281519250 / 8382639484533, 552539513391 / 3454668386233,
-     3354512671639 / 8306763924573, 4040 / 17871, 0.0],
-])  # fmt: skip
-GAMMA = 1 / 4
-IMPLICIT = np.array([
-    [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [1 / 4, GAMMA, 0.0, 0.0, 0.0, 0.0],
-    [8611 / 62500, -1743 / 31250, GAMMA, 0.0, 0.0, 0.0],
-    [5012029 / 34652500, -654441 / 2922500, 174375 / 388108, GAMMA, 0.0, 0.0],
-    [15267082809 / 155376265600, -71443401 / 120774400, 730878875 / 902184768,
-     2285395 / 8070912, GAMMA, 0.0],
-    [82889 / 524892, 0.0, 15625 / 83664, 69875 / 102672, -2260 / 8211, GAMMA],
-])  # fmt: skip
-WEIGHTS = IMPLICIT[5].copy()
-#: weights minus those of the embedded method of order three
-DEFECT = WEIGHTS - np.array([
-    4586570599 / 29645900160, 0.0, 178811875 / 945068544, 814220225 / 1159782912,
-    -3700637 / 11593932, 61727 / 225920,
-])  # fmt: skip
+EXPLICIT, IMPLICIT = KENNEDY_CARPENTER_EXPLICIT.A, KENNEDY_CARPENTER.A
+GAMMA, WEIGHTS, DEFECT = float(IMPLICIT[1, 1]), KENNEDY_CARPENTER.b, KENNEDY_CARPENTER.E[0]
 
 
 @unit
