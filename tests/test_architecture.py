@@ -52,6 +52,7 @@ CAPABILITIES = {
         "dynamics": 1, "model": 1, "geometry": 1, "hints": 3,
     },
     "a material for each part of a compound": {"io": 1, "scene": 1},
+    "tableaus of Runge-Kutta methods, each once; turns in the records": {"model": 1},
     "restitution with speed, tangential restitution": {"scene": 3, "impact": 1, "results": 1, "model": 1},
     "friction that depends on the slip": {
         "impact": 3, "persistent": 1, "scene": 1, "model": 1, "results": 1,
@@ -273,8 +274,7 @@ OTHER_FLOATS = {
     "dynamics.double_double": {"SPLITTER"},
     "dynamics.implicit": {"GAMMA"},
     "friction.residual": {"NOTHING"},
-    "impact.multiple.stages": {"GAMMA"},
-    "impact.resolve_by_slip": {"_A", "_E", "_NONE"},
+    "impact.resolve_by_slip": {"_NONE"},
     "impact.spline": {"_X1", "_X2", "_X3", "_W1", "_W2", "_W3"},
     "impact.strike_several": {"HERTZ", "LINEAR"},
     "kinematics.coordinate": {"TURN"},
