@@ -29,7 +29,7 @@ def acceleration(system, state, work, stage):
 
 @kernel
 def accelerations(system, state, work, stage):
-    """Do the same, compiled as a part of the caller."""
+    """Write accelerations and power as `acceleration` does, compiled as a part of the caller."""
     applied = applied_wrenches(system, state, True, work)
     applied += add_stiff(system, state, work)
     bias_joints(system, state, work)

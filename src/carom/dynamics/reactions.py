@@ -210,7 +210,7 @@ def errors_at(system, state, work, position, velocity):
 
 @entry
 def start_errors(system, state, work, position, velocity):
-    """Do the same, called from Python."""
+    """Write the errors of an initial state as `errors_at` does, for Python."""
     errors_at(system, state, work, position, velocity)
 
 

@@ -43,7 +43,7 @@ def solve_loops(system, state, biased, near, work):
 
 @unit
 def solve_spread(system, state, biased, near, work):
-    """Do the same for masses that differ by many orders."""
+    """Solve with closed loops as `solve_loops` does, for masses that differ by many orders."""
     if not near and not same_pose(system.solver.pose, state):
         factor_light(system, state, work)
         keep_poses(state, system.solver.pose)
@@ -100,5 +100,5 @@ def solve(system, state, biased, work):
 
 @inlined
 def solve_near(system, state, work):
-    """Do the same, biased, with the factor of the last position, for a correction nearby."""
+    """Write biased motions as `solve` does, with the factor of the last position, for a correction nearby."""
     _solve(system, state, True, True, work)

@@ -176,5 +176,5 @@ def save(system, x, record, work):
 
 @entry
 def save_now(system, x, record, work):
-    """Do the same as `save`, for Python: at the start, and after a failure."""
+    """Write the state and its energies as `save` does, for Python: at the start, and after a failure."""
     save(system, x, record, work)
