@@ -24,7 +24,7 @@ def step(model, data, method, h):
 
 @unit
 def other_step(model, data, method, h) -> tuple[float, int]:
-    """Write the state a time h later by a method that is not explicit; return work and status as `step` does."""
+    """Write the state a time h later by a method that is not explicit; return what `step` does."""
     if method.kind == RATTLE:
         return rattle_step(model, data, method, h)
     if method.kind == IMPLICIT:
