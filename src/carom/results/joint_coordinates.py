@@ -14,7 +14,6 @@ import numpy as np
 from carom import checks
 from carom.geometry import quaternion
 from carom.scene import joints as j
-from carom.scene.constraints import counted
 from carom.scene.joints import Joint
 
 DEGREES = 180.0 / math.pi
@@ -247,13 +246,15 @@ def of_scene(scene, joint) -> Joint:
     return scene[joint.name]
 
 
-def turns_of(joint: Joint, scene, turns: np.ndarray) -> dict[int, Any]:
+def turns_of(
+    joint: Joint, columns: dict[tuple[int, int], int], turns: np.ndarray
+) -> dict[int, Any]:
     """Return the coordinates (...,) of a joint by their own index, of `turns` (..., C) that a run has counted.
 
-    C is 0 in files of earlier versions.
+    `columns` are as of `carom.scene.constraints.counted`; C is 0 in files of earlier versions.
     """
-    columns = counted(scene.joints) if turns.shape[-1] else {}
-    return {k: turns[..., column] for (j, k), column in columns.items() if j == joint.index}
+    own = ((k, columns.get((joint.index, k))) for k in range(len(joint.definition.coordinates)))
+    return {k: turns[..., column] for k, column in own if column is not None and turns.shape[-1]}
 
 
 def unwrapped(q: np.ndarray, rate: np.ndarray, t: np.ndarray, whole: float) -> np.ndarray:

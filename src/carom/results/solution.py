@@ -33,6 +33,7 @@ from carom.results.ledger import Ledger
 from carom.results.named import Source
 from carom.results.names import ConstraintRows, Numbers, constraint_rows
 from carom.results.portable import Portable
+from carom.scene.constraints import counted
 from carom.status import Status
 from carom.stepping.settings import settings_of
 
@@ -332,7 +333,7 @@ class Solution(Portable, Drawn, Source):
         """
         joint = of_scene(self.scene, joint)
         rows = self._assemble.counted_turns(self._run)
-        turns = turns_of(joint, self.scene, rows)
+        turns = turns_of(joint, counted(self.scene.joints), rows)
         read = coordinates(sides_of(joint), self, self.t, turns)
         return in_degrees(joint, *read) if checks.flag("degrees", degrees) else read
 

@@ -193,7 +193,7 @@ class SystemState(Source):
         joint = of_scene(self._scene, joint)
         if joint.index not in self._known:
             self._known[joint.index] = sides_of(joint)
-        turns = self._instant and turns_of(joint, self._scene, self._instant.turns)
+        turns = self._instant and turns_of(joint, self._instant.numbers, self._instant.turns)
         read = coordinates(self._known[joint.index], self, turns=turns)
         return in_degrees(joint, *read) if checks.flag("degrees", degrees) else read
 

@@ -39,6 +39,7 @@ from carom.results.exerted import rows_of
 from carom.results.joint_impulses import of_joints
 from carom.results.ledger import Ledger
 from carom.results.names import Numbers
+from carom.scene.constraints import counted
 from carom.status import Status
 from carom.stepping.settings import checked_settings
 
@@ -90,6 +91,10 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
     known = records, checkpoint, missing, attributes, found, history
     run = KeptRun(scene, settings, options, *known)
     check_numbers(records, len(run.pairs.body) + len(scene.stops))
+    if records.turn.shape[1] not in (0, turning := len(counted(scene.joints))):
+        raise ValueError(
+            f"it has {records.turn.shape[1]} angles of joints, and the scene {turning}"
+        )
     names = Numbers(scene, run.pairs)
     motion = {name: arrays.array(name, ("time", *dims)) for name, (dims, _, _) in MOTION.items()}
     derived = {name: motion.pop(name) for name in DERIVED}
@@ -165,14 +170,11 @@ class _Arrays:
 
     def __init__(self, file: Sealed, bodies: int):
         self.data, self.index = file.data, file.index
-        self.sizes = (
-            {"turn": 0}
-            | {  # files of earlier versions have none
-                str(dim): checks.integer(f"size of {dim}", n, least=0)
-                for dim, n in file.index["sizes"].items()
-            }
-            | LENGTHS
-        )
+        known = {
+            str(dim): checks.integer(f"size of {dim}", n, least=0)
+            for dim, n in file.index["sizes"].items()
+        }
+        self.sizes = {"turn": 0, **known, **LENGTHS}  # files of earlier versions have no turns
         if self.sizes["time"] < 1 or self.sizes["body"] != bodies:
             raise ValueError(f"it has {bodies} bodies, and {self.sizes['body']} rows for them")
         for dims in raw.DIMS.values():

@@ -114,21 +114,8 @@ class Store:
 
     @property
     def runs(self) -> int:
-        """Number of runs.
-
-        Raises
-        ------
-        ValueError
-            If columns have different numbers of rows.
-        """
-        rows = {name: array.shape[0] for name, array in self.group["outcomes"].arrays()}
-        other = next((name for name in rows if rows[name] != rows["status"]), None)
-        if other is not None:  # before it is read: it may be said to be larger than the memory
-            raise ValueError(
-                f"{self.path} is damaged: outcomes/{other} has {rows[other]} rows, "
-                f"and outcomes/status {rows['status']}"
-            )
-        return rows["status"]
+        """Number of runs."""
+        return self.group["outcomes/status"].shape[0]
 
     def write(self, part: Part) -> None:
         """Write a part, and its mark last.
@@ -197,8 +184,21 @@ class Store:
         return values
 
     def read(self) -> Part:
-        """Return all completed runs as one part; rows of other runs are pending."""
+        """Return all completed runs as one part; rows of other runs are pending.
+
+        Raises
+        ------
+        ValueError
+            If columns have different numbers of rows: one may be said to be larger than the memory.
+        """
         runs = self.runs
+        for folder in ("outcomes", "observed"):
+            for name, array in self.group[folder].arrays():
+                if array.shape[0] != runs:
+                    raise ValueError(
+                        f"{self.path} is damaged: {folder}/{name} has {array.shape[0]} rows, "
+                        f"and outcomes/status {runs}"
+                    )
         whole = join(self._parts(), runs, int(self.group.attrs["bodies"]))
         return whole._replace(failures=dict(sorted(whole.failures.items())))
 
@@ -224,10 +224,6 @@ class Store:
     def _column(self, key: str) -> np.ndarray:
         """Return an array, with zeros for chunks that cannot be read: an incomplete part has no mark."""
         array = self.group[key]
-        if array.shape[0] != self.runs:
-            raise ValueError(
-                f"{self.path} is damaged: {key} has {array.shape[0]} rows for {self.runs} runs"
-            )
         try:
             return np.asarray(array[:])
         except Exception:  # an incomplete file may cause any error of a decoder
