@@ -70,6 +70,15 @@ def test_lost_part(lost, path):
         carom.Solution.load(path)
 
 
+def test_turns_of_joints_that_are_not_there(saved, tmp_path):
+    """Rows of a run that goes on have a place for each angle of the scene, and no other."""
+    path = tmp_path / "run.nc"
+    path.write_bytes(saved["swung"])
+    rewrite(path, lambda index: index["sizes"].update(turn=index["sizes"]["turn"] - 1))
+    with pytest.raises(ValueError, match=r"it has \d angles of joints, and the scene \d"):
+        carom.Solution.load(path)
+
+
 @pytest.mark.parametrize("save", ["no/run.nc", "."])
 def test_nowhere_to_save(save, thrown, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
