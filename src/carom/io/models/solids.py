@@ -123,9 +123,9 @@ def covering(build: Build, link: Link, rules: Filter) -> tuple[Shape | None, lis
 
 
 def look_of(build: Build, link: Link, cover: tuple) -> tuple[Look, ...] | None:
-    """Return what is seen of a link where geoms of it touch nothing; None where its shape is what is seen.
+    """Return the look of a link some of whose geoms touch nothing, or None if its shape is its look.
 
-    Seen are the geoms that MuJoCo's viewer shows at first: those of groups 0 to 2 that are not transparent.
+    A look has the geoms that MuJoCo's viewer shows at first: those of groups 0 to 2 that are not transparent.
     """
     (shape, touching), seen = cover, [g for g in geoms_of(build, link) if is_seen(build, g)]
     if shape is not None and set(seen) <= set(touching or seen):
@@ -136,7 +136,7 @@ def look_of(build: Build, link: Link, cover: tuple) -> tuple[Look, ...] | None:
 
 
 def world_look(build: Build, rules: Filter) -> list[Look]:
-    """Return what is seen of geoms that are fixed to the world and touch nothing; planes have no end."""
+    """Return the looks of geoms that are fixed to the world and touch nothing. Planes have no end."""
     model, looks = build.model, []
     for g in range(model.ngeom):
         fixed = model.body_weldid[model.geom_bodyid[g]] == 0
