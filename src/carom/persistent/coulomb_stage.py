@@ -141,7 +141,10 @@ def newton(k, hg, halves, idle, group):
             part *= 0.5
         if not size < math.inf:
             return False
-        if size >= 0.9 * best and size <= limits.SETTLED_SHARE * push + 1e3 * enough:
+        if size >= 0.9 * best and best <= limits.SETTLED_SHARE * push + 1e3 * enough:
+            if not size <= best:
+                for i in range(n):
+                    p[rows[i]] = before[i]
             return True
         if (
             rest > asked and size <= 2.0 * rest <= limits.DEPENDENT_ERROR * push
