@@ -88,10 +88,10 @@ def test_a_pile_is_held_by_its_static_coefficient():
 
     assert pile(0.2)[-1, :, 0] == pytest.approx(slides(0.2), rel=1e-3)
     assert pile(Friction(0.6, 0.2))[-1, :, 0] == pytest.approx(0.0, abs=1e-6)
-    # A law that is a number is that number, but for steps whose contact problem is not solved to round-off: 9
-    # of 66 runs that differ by it have one, and are 1.1e-5 m off at most.
-    assert pile(Friction(0.3, 0.3))[-1, :, 0] == pytest.approx(slides(0.3), abs=1e-4)
-    assert pile(0.3)[-1, :, 0] == pytest.approx(slides(0.3), abs=1e-4)
+    # A law that is a number is that number, but for steps of the crowd whose contact problem is left at 1e-8 of
+    # its speed: 7 of 66 runs that differ by round-off have one, and are 2.4e-6 m off at most.
+    assert pile(Friction(0.3, 0.3))[-1, :, 0] == pytest.approx(slides(0.3), abs=2.4e-5)
+    assert pile(0.3)[-1, :, 0] == pytest.approx(slides(0.3), abs=2.4e-5)
 
 
 def test_what_a_study_varies():
