@@ -281,7 +281,7 @@ OTHER_FLOATS = {
     "kinematics.torque_free_top": {"FAR"},
     "model.allowance": {"PART", "OF_STEP", "PARTS", "SAVED", "SMOOTH"},
     "model.records": {"LONG"},
-    "stepping.crowd.step": {"DEAR"},
+    "stepping.crowd.step": {"CUT_PRODUCTS"},
 }  # fmt: skip
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom._compiled.mould import Mould, arrays_of
+from carom._compiled.template import Template, arrays_of
 from carom._compiled.units import Entries
 from carom._compiled.user_functions import Functions
 from carom.contact.stop import write_stop_gaps
@@ -69,11 +69,11 @@ class Run(Running):
     costs = costs  # for the progress bar
 
     def __init__(self, scene: Scene, settings: Settings):
-        # from the third run with the same settings on, all but the records is cast from a mould
+        # from the third run with the same settings on, all but the records is made from a template
         known = scene._derived.get(Run, (None, None, (), None))
         again = known[:2] == (type(self), settings)
         if again and known[3] is not None:
-            vars(self).update(zip(known[2], known[3].cast()))
+            vars(self).update(zip(known[2], known[3].make()))
             self.compiled = self.compiled._replace(functions=Functions())
         else:
             self.make(scene, settings)
@@ -81,8 +81,8 @@ class Run(Running):
             self.check(scene)
             if not uses_functions(self.compiled):
                 shared = together(), self.crowd, self.multiple, self.method
-                mould = Mould(tuple(vars(self).values()), shared) if again else None
-                scene._derived[Run] = type(self), settings, tuple(vars(self)), mould
+                template = Template(tuple(vars(self).values()), shared) if again else None
+                scene._derived[Run] = type(self), settings, tuple(vars(self)), template
         self.at_start, system = self.compiled, self.compiled.system
         self.scene = scene._as_it_is()  # the user may edit it afterwards
         self.records = r.new_records(system, self.grid.rows, 512, len(self.active.points))
@@ -323,7 +323,7 @@ class Run(Running):
         self.clock[:] = (islands if islands.apart else start).clock
         step["spent"], step["paused"], search["pending"], active.carries[:] = 0.0, 0, 0, 0
         points = active.points[: active.count[0]]
-        active.carries[points["feature"][points["touches"] == 0]] = 1
+        active.carries[points["feature"][points["kind"] == 0]] = 1
 
     def solution(self, status: Status) -> Solution:
         """Return the solution; after a failure it ends with the last state, saved or not."""

@@ -55,7 +55,7 @@ def test_other_contacts_are_others(name):
         fresh.append(compiled(change))
     assert len(contacts._KNOWN) == 1
     for alone, change in zip(fresh, ({}, CHANGES[name])):
-        again = compiled(change)  # with both kept, one of them from its mould
+        again = compiled(change)  # with both kept, one of them from its template
         assert_same(again.system, alone.system)
         assert_same(again.surfaces, alone.surfaces)
     assert len(contacts._KNOWN) == 2

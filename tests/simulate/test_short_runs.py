@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import carom
-from carom._compiled.mould import arrays_of
 from carom._compiled.record_arrays import Columns, table
+from carom._compiled.template import arrays_of
 from carom._compiled.units import kind
 from carom.model import compile as compiling
 from carom.model import records
@@ -99,7 +99,7 @@ WAYS = ({}, {"step": 0.01}, {"step": 0.01, "method": "implicit"}, {"rtol": 1e-6,
 @pytest.mark.parametrize("how", WAYS)
 @pytest.mark.parametrize("make", [die, joined, pile, pendulum])
 def test_a_scene_is_compiled_once_while_it_does_not_change(make, how, monkeypatch):
-    # Bit for bit the same as of a new scene: at first, from the compiled scene, and cast from a mould.
+    # Bit for bit the same as of a new scene: at first, from the compiled scene, and made from a template.
     count, scene, compile_scene = [], make(), compiling.compile_scene
     monkeypatch.setattr(
         compiling, "compile_scene", lambda *given: count.append(1) or compile_scene(*given)

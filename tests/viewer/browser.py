@@ -30,7 +30,7 @@ class Browser:
         self.process = subprocess.Popen(
             command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
-        self.said, self.loaded, self._number = [], [], 0
+        self.said, self.presses, self._number = [], [], 0
         port = int(self._until(lambda: self._port(folder)))
         with urllib.request.urlopen(f"http://127.0.0.1:{port}/json/list") as answer:
             page = next(one for one in json.load(answer) if one["type"] == "page")
@@ -59,12 +59,12 @@ class Browser:
         elif kind == "Log.entryAdded" and about["entry"]["level"] in ("error", "warning"):
             self.said.append(about["entry"]["text"])
         elif kind == "Network.requestWillBeSent":
-            self.loaded.append(about["request"]["url"])
+            self.presses.append(about["request"]["url"])
 
     def open(self, url: str) -> None:
         """Go to an address."""
         self.said.clear()
-        self.loaded.clear()
+        self.presses.clear()
         self.call("Page.navigate", url=url)
 
     def run(self, script: str):

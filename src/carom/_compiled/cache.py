@@ -24,7 +24,7 @@ SHIPPED = Path(__file__).parent / "shipped"
 class StampedCache(FunctionCache):
     """A function cache that is valid while the stamp of its function does not change."""
 
-    told = False  # whether the warning that the cache cannot be written was given
+    warned = False  # whether the warning that the cache cannot be written was given
 
     def __init__(self, py_func):
         super().__init__(py_func)
@@ -91,8 +91,8 @@ class StampedCache(FunctionCache):
         try:
             super().save_overload(sig, data)
         except OSError as error:
-            if not StampedCache.told:
-                StampedCache.told = True
+            if not StampedCache.warned:
+                StampedCache.warned = True
                 warnings.warn(
                     f"compiled code cannot be kept in {self._cache_path!r} and is compiled again in each "
                     f"process: {error}",

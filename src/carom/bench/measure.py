@@ -132,7 +132,7 @@ def machine() -> dict[str, Any]:
 
 def machine_line() -> str:
     """Return the machine in one line."""
-    told = machine()
-    versions = ", ".join(f"{name} {version}" for name, version in told["versions"].items())
-    load = "" if told["load"] is None else f", load {told['load']:.1f}"
-    return f"{told['date']}; {told['processor']}, {told['cores']} cores{load}; {told['system']}; {versions}"
+    facts = machine()
+    versions = ", ".join(f"{name} {version}" for name, version in facts["versions"].items())
+    load = "" if facts["load"] is None else f", load {facts['load']:.1f}"
+    return f"{facts['date']}; {facts['processor']}, {facts['cores']} cores{load}; {facts['system']}; {versions}"

@@ -47,14 +47,14 @@ class Row(NamedTuple):
 
     def as_dict(self) -> dict[str, Any]:
         """Return the row as a dict of plain values."""
-        told: dict[str, Any] = {
+        facts: dict[str, Any] = {
             "name": self.problem.name, "what": self.problem.what, "unit": self.problem.unit,
             "error_is": self.problem.error,
         }  # fmt: skip
         for name, side in (("carom", self.ours), ("mujoco", self.theirs)):
             if side is not None:
-                told[name] = {**side.time._asdict(), "error": side.error}
-        return told
+                facts[name] = {**side.time._asdict(), "error": side.error}
+        return facts
 
 
 def _of(module, what: str, step: float, unit: str, of: str, name: str = "", **more) -> Problem:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from carom.cli import USAGE, bench, doctor, info, paper, pictures, simulate, throw, view, warmup
-from carom.cli.outcome import told
+from carom.cli.outcome import reported
 
 _ABOUT = """\
 Motion of multibody systems with frictional impacts.
@@ -77,5 +77,5 @@ def command():
     )  # fmt: skip
     app.callback(invoke_without_command=True, help=_laid_out(_ABOUT), epilog=_END)(_top)
     for name, function, extra in COMMANDS:
-        app.command(name, help=_laid_out(function.__doc__))(told(name, extra)(function))
+        app.command(name, help=_laid_out(function.__doc__))(reported(name, extra)(function))
     return typer.main.get_command(app)

@@ -139,10 +139,10 @@ def _print_installation(found: dict[str, Any]) -> None:
     )
     rows = [
         (
-            extra, "yes" if told["complete"] else told["install"],
-            ", ".join(f"{n} {v or '(missing)'}" for n, v in told["packages"].items()),
+            extra, "yes" if facts["complete"] else facts["install"],
+            ", ".join(f"{n} {v or '(missing)'}" for n, v in facts["packages"].items()),
         )
-        for extra, told in found["extras"].items()
+        for extra, facts in found["extras"].items()
     ]  # fmt: skip
     print()
     show.table(["extra", "there?", "packages"], rows, left=3)

@@ -18,9 +18,9 @@ def requirements() -> dict[str, tuple[str, ...]]:
     """
     project = Path(__file__).parents[3] / "pyproject.toml"
     if project.exists() and 'name = "carom"' in (text := project.read_text(encoding="utf-8")):
-        told = tomllib.loads(text)["project"]
-        lines = [("", line) for line in told["dependencies"]]
-        for extra, more in told["optional-dependencies"].items():
+        project = tomllib.loads(text)["project"]
+        lines = [("", line) for line in project["dependencies"]]
+        for extra, more in project["optional-dependencies"].items():
             lines += [(extra, line) for line in more]
     else:
         lines = []

@@ -21,7 +21,7 @@ class Failed(Exception):
     """A failure of the command; the message is one line."""
 
 
-def told(name: str, extra: str = "") -> Callable:
+def reported(name: str, extra: str = "") -> Callable:
     """Wrap a command: errors become one line on stderr and an exit code; `extra` has its packages."""
 
     def wrap(function: Callable[..., int | None]) -> Callable[..., int]:

@@ -190,9 +190,9 @@ def foot_of(surface, hulls, p):
         nearer, part = False, 1.0
         for _ in range(SHORTEST):
             there = _onto(surface, hulls, plus(plus(q, part * x, e), part * y, f))
-            way = plus(p, -1.0, there)
-            if last or dot(way, way) < square + blur:
-                q, r, nearer = there, way, True
+            offset = plus(p, -1.0, there)
+            if last or dot(offset, offset) < square + blur:
+                q, r, nearer = there, offset, True
                 break
             part *= 0.5
         if last or not nearer:

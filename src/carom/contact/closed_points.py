@@ -22,9 +22,10 @@ from carom.contact.rim import closed_rim, most_of_rim, way_round
 from carom.contact.stop import is_active, place_stop
 from carom.contact.thresholds import REACH, RIM_DISTANCE, RIM_TIME
 from carom.geometry.vectors import dot, minus
+from carom.kinematics.anisotropy import turn_plain
 from carom.kinematics.contact_point import place
-from carom.kinematics.grain import turn_plain
-from carom.model.arrays import STOP
+from carom.model.arrays import KIND_PAIR, KIND_STOP, KIND_VERTICES
+from carom.model.workspace import MOTION_POINT
 
 
 @kernel
@@ -86,21 +87,21 @@ def gather_closed(model, data, c, strikes):
     if system.contacts[c].other >= 0:
         unite(work, first, system.contacts[c].other)
     for i in range(system.contacts.shape[0]):
-        active.contact_states[i].seen = 0
+        active.contact_states[i].visited = 0
     while more:
         more = False
         for i in range(system.contacts.shape[0]):
             contact, contact_state = system.contacts[i], active.contact_states[i]
-            if contact_state.seen == 1 or not concerns(contact, work.body[first].label, work):
+            if contact_state.visited == 1 or not concerns(contact, work.body[first].label, work):
                 continue
-            contact_state.seen = 1
+            contact_state.visited = 1
             near, before = closed_within(model.controls, contact, state), group.count[0]
-            if contact.touches == STOP:
+            if contact.kind == KIND_STOP:
                 near = math.inf if is_active(active, i) else near
                 room = add_stop(system, i, near, state, group)
             elif apart(system, contact, state, near):
                 continue
-            elif contact.touches == 0:
+            elif contact.kind == KIND_VERTICES:
                 room = add_vertices(system, active, i, near, state, group)
             else:
                 near = find_closed(system, contact, near, rim_time, state, work)
@@ -197,7 +198,7 @@ def note_active(system, active, k, state, group):
         for j in range(k):
             closed_point, point = group.closed[j], group.points[0][j]
             same = closed_point.contact == one.contact and closed_point.feature == one.feature
-            if same and (one.touches != 1 or is_same_point(system, one, point, state)):
+            if same and (one.kind != KIND_PAIR or is_same_point(system, one, point, state)):
                 closed_point.active = i
 
 
@@ -209,22 +210,22 @@ def place_closed(system, k, state, group, points, work):
         if closed_point.contact < 0:  # friction in a joint
             continue
         place_any(system, closed_point, state, points[i], work)
-        if closed_point.turns > 0:
+        if closed_point.motion != MOTION_POINT:
             contact = system.contacts[closed_point.contact]
-            turn_plain(contact, closed_point.turns, smaller(contact), points[i])
+            turn_plain(contact, closed_point.motion, smaller(contact), points[i])
 
 
 @kernel
 def write_closed(c, feature, p, closed_point):
     """Write one point of a list, which is not known to be active."""
     closed_point.contact, closed_point.feature, closed_point.active = c, feature, -1
-    closed_point.turns = 0
+    closed_point.motion = MOTION_POINT
     for k in range(3):
         closed_point.point[k] = p[k]
 
 
 @kernel
-def write_turning(i, turns, parent, closed_point):
-    """Write the rolling (turns = 1) or pivoting (2) friction of point i of a list."""
+def write_turning(i, motion, parent, closed_point):
+    """Write the rolling (`MOTION_ROLL`) or pivoting friction of point i of a list."""
     write_closed(parent.contact, parent.feature, parent.point, closed_point)
-    closed_point.turns, closed_point.parent, closed_point.active = turns, i, parent.active
+    closed_point.motion, closed_point.parent, closed_point.active = motion, i, parent.active

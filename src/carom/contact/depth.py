@@ -15,7 +15,7 @@ from carom.contact.pair_point import find_touches, smaller
 from carom.contact.place_of_other import on_curved_ground
 from carom.contact.stop import stop_gap
 from carom.geometry.vectors import dot, minus, plus
-from carom.model.arrays import STOP
+from carom.model.arrays import KIND_PAIR, KIND_STOP
 
 FACE_PARTS = 8  # of the way from the middle of a face to a corner, at which its depth is looked at
 
@@ -28,7 +28,7 @@ def watch_depth(system, state, t, work, watch):
         watch.depth, watch.deep_at, watch.deep_contact = depth, t, number
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
-        if contact.touches == 1 and on_curved_ground(system, contact):
+        if contact.kind == KIND_PAIR and on_curved_ground(system, contact):
             depth = depth_of_face(system, contact, state, work)
             if depth > watch.depth:
                 watch.depth, watch.deep_at, watch.deep_contact = depth, t, contact.number
@@ -40,7 +40,7 @@ def deepest(system, state, work):
     most, number = 0.0, -1
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
-        if contact.touches != STOP and apart(system, contact, state, 0.0):
+        if contact.kind != KIND_STOP and apart(system, contact, state, 0.0):
             continue
         depth = -least_gap(system, contact, state, work) - 4.0 * round_off_of_both(contact, state)
         depth /= smaller(contact)
@@ -52,9 +52,9 @@ def deepest(system, state, work):
 @kernel
 def least_gap(system, contact, state, work):
     """Return the least gap of a contact [m], negative inside."""
-    if contact.touches == STOP:
+    if contact.kind == KIND_STOP:
         return stop_gap(system, contact, state, work)[0]
-    if contact.touches == 1:
+    if contact.kind == KIND_PAIR:
         return least_of_touches(system, contact, state, work)
     return lowest(contact, system.vertices, state)[0]
 
@@ -90,9 +90,9 @@ def depth_of_face(system, contact, state, work) -> float:
     for k in range(count):
         middle = plus(middle, 1.0 / count, (corners[k, 0], corners[k, 1], corners[k, 2]))
     for k in range(count):
-        way = minus((corners[k, 0], corners[k, 1], corners[k, 2]), middle)
+        to_corner = minus((corners[k, 0], corners[k, 1], corners[k, 2]), middle)
         for j in range(FACE_PARTS):
-            p = plus(middle, j / FACE_PARTS, way)
+            p = plus(middle, j / FACE_PARTS, to_corner)
             value, g, _ = field_at(hulls.surfaces[b.surface], hulls, p)
             most = max(most, a.radius - value / math.sqrt(dot(g, g)))
     return most / smaller(contact)

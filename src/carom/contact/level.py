@@ -28,6 +28,7 @@ from carom.contact.thresholds import BACK_SIDE, DEPTH
 from carom.geometry.rotation import rotate_back
 from carom.geometry.thresholds import ROUND_OFF
 from carom.geometry.vectors import dot, minus
+from carom.model.arrays import KIND_PAIR
 
 
 @unit
@@ -282,6 +283,6 @@ def rides_on(system, active, c, touch):
         return False
     for j in range(active.count[0]):
         d = active.points[j].contact
-        if d != c and active.points[j].touches == 1 and related(system, c, d):
+        if d != c and active.points[j].kind == KIND_PAIR and related(system, c, d):
             return True
     return False

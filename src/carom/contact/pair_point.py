@@ -24,10 +24,10 @@ from carom.contact.thresholds import ACTIVE_REACH
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.geometry.thresholds import ROUND_OFF
 from carom.geometry.vectors import dot, minus, plus
+from carom.kinematics.anisotropy import lay_along_axis
 from carom.kinematics.contact_point import carry_field
-from carom.kinematics.grain import lay_along_grain
 from carom.kinematics.wrench import point_velocity
-from carom.model.workspace import STATIC
+from carom.model.workspace import MOTION_POINT, STATIC
 
 
 @kernel
@@ -85,8 +85,8 @@ def turned_axes(n, e, axes):
     They change steadily with n, so that a slip keeps its direction; only at n = -e[0] is the turn not unique.
     """
     e0, e1 = (e[0, 0], e[0, 1], e[0, 2]), (e[1, 0], e[1, 1], e[1, 2])
-    way = 1.0 + dot(n, e0)
-    f = -dot(n, e1) / way if way > 0.0 else 0.0
+    divisor = 1.0 + dot(n, e0)
+    f = -dot(n, e1) / divisor if divisor > 0.0 else 0.0
     t = plus(plus(e1, f, n), f, e0)
     s = 1.0 / math.sqrt(dot(t, t))
     axes[0, 0], axes[0, 1], axes[0, 2] = n[0], n[1], n[2]
@@ -98,7 +98,7 @@ def turned_axes(n, e, axes):
 def write_touch(contact, touch, state, point):
     """Write a found point as a contact point."""
     n, e = touch.normal, contact.axes[0]
-    point.a, point.b, point.gap, point.turns = contact.body, contact.other, touch.gap, 0
+    point.a, point.b, point.gap, point.motion = contact.body, contact.other, touch.gap, MOTION_POINT
     point.owner, point.parts[0], point.parts[1] = touch.owner, touch.parts[0], touch.parts[1]
     carry_field(contact, point)
     if contact.static == 1:
@@ -121,8 +121,8 @@ def write_touch(contact, touch, state, point):
         for k in range(3):
             for i in range(3):
                 point.axes[i, k] = contact.axes[i, k]
-    if contact.grain_of != 0:
-        lay_along_grain(contact, state, point)
+    if contact.axis_of != 0:
+        lay_along_axis(contact, state, point)
 
 
 @kernel

@@ -76,7 +76,7 @@ def frame_of(contact, side, n, state):
 
 
 @kernel
-def seen(frame, body):
+def in_frame(frame, body):
     """Return n and n x w - k in body axes, and height and rate along n of the mass centre in a frame."""
     q, w, x, v, (n, k, rate) = body.Q, body.w, body.x, body.v, frame
     mx, my, mz = rotate_back(q, n)
@@ -90,7 +90,7 @@ def seen(frame, body):
 @kernel
 def least_gap(system, contact, frame, state, t, a):
     """Return F(t), negative t for the past; a bounds the relative acceleration of any two points."""
-    m = seen(frame, state[contact.body])
+    m = in_frame(frame, state[contact.body])
     hulls, solid = system.hulls, system.solids[contact.solid]
     gap = m[6] + t * m[7] - contact.radius - 0.5 * a * t * t
     gap -= height(solid, hulls, -m[0] - t * m[3], -m[1] - t * m[4], -m[2] - t * m[5])
@@ -100,7 +100,7 @@ def least_gap(system, contact, frame, state, t, a):
     if contact.static == 1:
         d = height(solid, hulls, n[0] - t * k[0], n[1] - t * k[1], n[2] - t * k[2])
         return gap + t * rate - d
-    m = seen(frame, state[contact.other])
+    m = in_frame(frame, state[contact.other])
     gap -= m[6] + t * m[7]
     return gap - height(solid, hulls, m[0] + t * m[3], m[1] + t * m[4], m[2] + t * m[5])
 

@@ -60,9 +60,9 @@ def _time(gap, rate, a):
 
 
 @kernel
-def _bent(k, way, radius):
+def _bent(k, travel, radius):
     """Return the bound K of curvatures within a way, for a body of radii of curvature up to `radius`."""
-    free = 1.0 - k * (2.0 * way + radius)
+    free = 1.0 - k * (2.0 * travel + radius)
     return k / free if free > 0.0 else math.inf
 
 
@@ -77,7 +77,7 @@ def _greatest_radius(solid):
 
 
 @kernel
-def _near_curve(system, contact, state, i, way, work):
+def _near_curve(system, contact, state, i, travel, work):
     """Return point i of a core, its distance from the curved part, and the normal, in axes of the surface.
 
     The distance is inf if it is more than `way` beyond the ball around the point.
@@ -88,7 +88,7 @@ def _near_curve(system, contact, state, i, way, work):
         return lowest_of_ellipsoid(Pair(solid, other, hulls, s, work.pair.found), surface)
     u = corner(solid, hulls, i)
     p = point_of_a(s, u[0], u[1], u[2])
-    if field_at(surface, hulls, p)[0] > surface["size"][3] * (way + contact.radius):
+    if field_at(surface, hulls, p)[0] > surface["size"][3] * (travel + contact.radius):
         return p, math.inf, (0.0, 0.0, 1.0)
     d, n = foot_of(surface, hulls, p)
     return p, d, n
@@ -150,13 +150,13 @@ def time_over_surface(system, contact, state, bounds, h, work) -> tuple[float, f
     spin, bend = norm(body.w), _greatest_radius(solid)
     speed = norm(body.v) + contact.extent * spin + bounds[1] * abs(h)
     turning = bounds[1] + bend * spin * spin
-    way, time, most, sign = speed * abs(h), abs(h), turning, math.copysign(1.0, h)
+    travel, time, most, sign = speed * abs(h), abs(h), turning, math.copysign(1.0, h)
     for i in range(corners(solid)):
-        p, d, n = _near_curve(system, contact, state, i, way, work)
+        p, d, n = _near_curve(system, contact, state, i, travel, work)
         if may_be_nearer(surface, d):
             time = min(time, CAUTION * (d - r) / speed if d > r and speed > 0.0 else 0.0)
-        elif not d - r > way:
-            k = _bent(curvature_at(surface, hulls, p, d, n), way, bend)
+        elif not d - r > travel:
+            k = _bent(curvature_at(surface, hulls, p, d, n), travel, bend)
             a = turning + k * (_speed_along(contact, state, solid, s, p, n) + turning * abs(h)) ** 2
             time = min(time, _time(d - r, sign * _rate(contact, state, s, p, n), a))
             most = max(most, a)

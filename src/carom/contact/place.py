@@ -6,16 +6,16 @@ from carom._compiled.decorators import kernel
 from carom.contact.pair_point import drift, touch_of_active, write_touch
 from carom.contact.stop import place_stop, stop_drift
 from carom.kinematics.contact_point import place
-from carom.model.arrays import STOP
+from carom.model.arrays import KIND_STOP, KIND_VERTICES
 
 
 @kernel
 def place_any(system, known, state, point, work):
     """Write the contact point in a state of an active or a listed one, or the point that replaces it."""
     contact, p = system.contacts[known.contact], known.point
-    if contact.touches == 0:
+    if contact.kind == KIND_VERTICES:
         place(contact, p, state, point)
-    elif contact.touches == STOP:
+    elif contact.kind == KIND_STOP:
         place_stop(system, contact, state, point)
     else:
         i = touch_of_active(system, contact, known.feature, p, state, work)
@@ -28,6 +28,6 @@ def drift_of(system, contact, feature, point, state, work):
 
     The point must have been written for this state.
     """
-    if contact.touches == STOP:
+    if contact.kind == KIND_STOP:
         return stop_drift(system, contact, state, work)
     return drift(system, contact, feature, point, state)

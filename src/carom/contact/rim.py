@@ -88,8 +88,8 @@ def longest_way(system, data, c):
         for i in range(work.pair.state[0].total if one.contact == c else 0):
             touch = work.touches[i]
             if touch.feature == one.feature:
-                way = way_to(system, system.contacts[c], touch, one.point, work.trial)
-                longest = max(longest, way)
+                distance = way_to(system, system.contacts[c], touch, one.point, work.trial)
+                longest = max(longest, distance)
     return longest
 
 

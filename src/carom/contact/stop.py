@@ -19,7 +19,8 @@ from carom.kinematics.coordinate import along, drift, value
 from carom.kinematics.curve import can_be_left, find_foot, is_on_curve, rail_drift
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.model.actions import NOTHING, PERSIST, STRIKE
-from carom.model.arrays import REVOLUTE, STOP
+from carom.model.arrays import KIND_STOP, REVOLUTE
+from carom.model.workspace import MOTION_POINT, MOTION_STOP_SLIDE, MOTION_STOP_TURN
 
 
 @unit
@@ -43,7 +44,8 @@ def place_stop(system, contact, state, point):
             r = parent_arm(c, state)
             point.arm_b[0], point.arm_b[1], point.arm_b[2] = r
     point.gap = contact.side * value(system, c, state) - contact.offset
-    point.turns, point.length = 3 if c.kind == REVOLUTE else 4, abs(contact.side)
+    point.motion = MOTION_STOP_TURN if c.kind == REVOLUTE else MOTION_STOP_SLIDE
+    point.length = abs(contact.side)
     point.moves = 0
 
 
@@ -59,7 +61,7 @@ def place_on_rail(contact, c, one, state, point):
     n, across, r, s = one.normal[1], one.normal[0], child_arm(c, state), parent_arm(c, state)
     t = cross(across[0], across[1], across[2], n[0], n[1], n[2])
     point.a, point.b, point.gap = contact.body, contact.other, one.gap[1]
-    point.turns, point.length, point.moves = 0, 1.0, 0
+    point.motion, point.length, point.moves = MOTION_POINT, 1.0, 0
     for k in range(3):
         point.core[k], point.arm_a[k], point.arm_b[k] = 0.0, r[k], s[k]
         point.axes[0, k], point.axes[1, k], point.axes[2, k] = n[k], t[k], across[k]
@@ -142,5 +144,5 @@ def safe_time(z0, rate0, z1, rate1, h, tiny):
 def write_stop_gaps(system, state, work, out):
     """Write gap and rate of each stop, (C, 2)."""
     for c in range(system.contacts.shape[0]):
-        if system.contacts[c].touches == STOP:
+        if system.contacts[c].kind == KIND_STOP:
             out[c, 0], out[c, 1] = stop_gap(system, system.contacts[c], state, work)

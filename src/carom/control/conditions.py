@@ -19,7 +19,7 @@ ALLOWED = (
 )
 
 
-class Look(NamedTuple):
+class Observed(NamedTuple):
     """A run between two steps, or at the end of a trial."""
 
     run: Any
@@ -31,10 +31,11 @@ class Condition(NamedTuple):
     """Something that happens where `value` changes its sign."""
 
     name: str  # for messages
-    value: Callable[[Look], float]
+    value: Callable[[Observed], float]
     terminal: int  # the run ends when it has happened so often; 0: never
     direction: float  # above 0: the value must rise; below: fall
-    when: Callable[[Look], float | None] = lambda look: None  # its time, from what was written down
+    #: its time, from what was written down
+    when: Callable[[Observed], float | None] = lambda look: None
     rest: bool = False  # whether it must still be so a step later
 
 
@@ -78,7 +79,7 @@ def _of_function(name: str, function) -> Condition:
         terminal = checks.integer(f"terminal of {name}", terminal, least=0)
     direction = checks.number(f"direction of {name}", getattr(function, "direction", 0.0))
 
-    def value(look: Look) -> float:
+    def value(look: Observed) -> float:
         return checks.number(name, checks.call(name, function, look.state.t, look.state))
 
     called = getattr(function, "__name__", "")
@@ -86,7 +87,7 @@ def _of_function(name: str, function) -> Condition:
     return Condition(f"{name}{known}", value, terminal, direction)
 
 
-def _moves(look: Look) -> float:
+def _moves(look: Observed) -> float:
     """Return 1 while something moves, -1 when nothing does."""
     return 1.0 if math.isinf(look.run.clock["still"][0]) else -1.0
 
@@ -97,10 +98,10 @@ class _Strikes:
     def __init__(self, body: int, other: int, plane: int):
         self.body, self.other, self.plane = body, other, plane
 
-    def __call__(self, look: Look) -> float:
+    def __call__(self, look: Observed) -> float:
         return -1.0 if self.when(look) is None else 1.0
 
-    def when(self, look: Look) -> float | None:
+    def when(self, look: Observed) -> float | None:
         """Return the time of the first such impact in the step, or None."""
         run = look.run
         rows = run.records.impact[look.struck : int(run.clock["struck"][0])]

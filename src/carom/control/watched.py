@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from carom._compiled.user_functions import raised
-from carom.control.conditions import Condition, Look
+from carom.control.conditions import Condition, Observed
 from carom.model.kept import Snapshot
 from carom.model.records import with_room
 from carom.results.solution import Solution
@@ -70,7 +70,7 @@ class Watched:
             self.before.take()
             status = run.go_on(run.steps_done + 1)
             if status is Status.SUCCESS:
-                status = self.review()
+                status = self.check()
         return status
 
     def solution(self, status: Status) -> Solution:
@@ -89,16 +89,16 @@ class Watched:
             _stopped_by=self.stopped_by,
         )
 
-    def look(self) -> Look:
+    def look(self) -> Observed:
         """Return the run as conditions see it."""
-        return Look(self.run, SystemState(self.run, self.joints), self.struck)
+        return Observed(self.run, SystemState(self.run, self.joints), self.struck)
 
-    def value(self, condition: Condition, look: Look) -> float:
+    def value(self, condition: Condition, look: Observed) -> float:
         """Return the value of a condition."""
         self.asked, self.at = condition.name, look.state.t
         return condition.value(look)
 
-    def review(self) -> Status:
+    def check(self) -> Status:
         """Look at the step that was just taken; go back before it where that fails."""
         try:
             return self.find()

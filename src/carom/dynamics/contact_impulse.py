@@ -9,6 +9,13 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.dynamics.solve import free_body, solve
 from carom.kinematics.wrench import add_force
+from carom.model.workspace import (
+    MOTION_JOINT,
+    MOTION_POINT,
+    MOTION_ROLL,
+    MOTION_STOP_SLIDE,
+    MOTION_STOP_TURN,
+)
 
 
 @kernel
@@ -36,31 +43,31 @@ def spread(system, point, state, p, work):
 
 
 @kernel
-def acts(turns, r):
+def acts(motion, r):
     """Return whether an impulse along row r of a point has an effect: see `add_impulse`."""
-    if turns == 0 or turns == 1:
-        return r >= turns
-    return r == (0 if turns == 3 or turns == 4 else 1)
+    if motion in (MOTION_POINT, MOTION_ROLL):
+        return r >= (0 if motion == MOTION_POINT else 1)
+    return r == (0 if motion in (MOTION_STOP_TURN, MOTION_STOP_SLIDE) else 1)
 
 
 @kernel
 def add_impulse(point, p, work):
     """Add G^T p of an impulse p = (p_n, p_t1, p_t2) to the wrenches."""
     E, ln, l1, l2 = point.axes, p[0], p[1], p[2]
-    if point.turns == 3:
+    if point.motion == MOTION_STOP_TURN:
         for k in range(3):
             torque = point.length * ln * E[0, k]
             work.body[point.a].wrench[3 + k] += torque
             if point.b >= 0:
                 work.body[point.b].wrench[3 + k] -= torque
         return
-    if point.turns == 4:
+    if point.motion == MOTION_STOP_SLIDE:
         l1, l2 = 0.0, 0.0
-    elif point.turns == 5:
+    elif point.motion == MOTION_JOINT:
         ln, l1, l2 = l1, 0.0, 0.0
-    elif point.turns > 0:
-        i, j = (1, 2) if point.turns == 1 else (0, 2)
-        f1, f2 = point.length * l1, point.length * l2 if point.turns == 1 else 0.0
+    elif point.motion != MOTION_POINT:
+        i, j = (1, 2) if point.motion == MOTION_ROLL else (0, 2)
+        f1, f2 = point.length * l1, point.length * l2 if point.motion == MOTION_ROLL else 0.0
         for k in range(3):
             torque = f1 * E[i, k] + f2 * E[j, k]
             work.body[point.a].wrench[3 + k] += torque

@@ -47,14 +47,14 @@ def margin_before_kink(pieces, law, before, after, here):
     """
     first, last, exponent = law
     x, end = max(before, SLOWEST) ** exponent, max(after, SLOWEST) ** exponent
-    way = 1 if end > x else -1
-    i, kink = find_piece(pieces, first, last, x), way * math.inf
+    sign = 1 if end > x else -1
+    i, kink = find_piece(pieces, first, last, x), sign * math.inf
     for _ in range(2):
         for side in range(2):
-            k = pieces[i].kinks[side if way > 0 else 1 - side]
-            if way * (k - x) > 2.0 * KINK_ERROR * x and way * (kink - k) > 0.0:
+            k = pieces[i].kinks[side if sign > 0 else 1 - side]
+            if sign * (k - x) > 2.0 * KINK_ERROR * x and sign * (kink - k) > 0.0:
                 kink = k
-        i = min(max(i + way, first), last - 1)
+        i = min(max(i + sign, first), last - 1)
     if not (0.0 < kink < math.inf):
         return 1.0
-    return way * (kink - max(here, SLOWEST) ** exponent) / kink
+    return sign * (kink - max(here, SLOWEST) ** exponent) / kink

@@ -129,7 +129,7 @@ def bias_springs(system, state, h, s, work):
         one.speed = speed
         force = one.stiffness * length + one.damping * speed + g * one.stiffness * start
         work.joint[j].bias[0] = more - force / d
-        row.off, row.compliance[0] = 0, 1.0 / d
+        row.ignored, row.compliance[0] = 0, 1.0 / d
 
 
 @kernel
@@ -142,7 +142,7 @@ def release_springs(system, state, h, s, work):
             if s == 1:  # sum of the rates of the dampers in both stages, minus the first rate
                 one.speed += GAMMA * h * (gain - one.gain)
             one.gain = gain
-            row.off, row.compliance[0] = 1, 0.0
+            row.ignored, row.compliance[0] = 1, 0.0
 
 
 @kernel

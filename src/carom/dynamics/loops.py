@@ -70,7 +70,7 @@ def eliminate(system, drop):
         k = solver.order[place]
         n, row = joints[k].rows, solver.rows[k]
         for r in range(n):
-            ldl.eliminate(n, r, math.inf if row.off == 1 else drop * row.weight[r], block[k])
+            ldl.eliminate(n, r, math.inf if row.ignored == 1 else drop * row.weight[r], block[k])
             row.pivot[r] = 1.0 / block[k, r, r] if block[k, r, r] > 0.0 else 0.0
         for s in range(solver.column[place], solver.column[place + 1]):
             divide(block[joints.shape[0] + s], block[k], row.pivot, joints[solver.row[s]].rows, n)

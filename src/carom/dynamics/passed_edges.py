@@ -13,6 +13,8 @@ from carom.collision.layout import BOX, HULL
 from carom.dynamics.thresholds import EDGE_JUMP, NORMAL_ERROR
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
+from carom.model.arrays import KIND_PAIR
+from carom.model.workspace import MOTION_POINT
 
 
 @kernel
@@ -28,11 +30,11 @@ def note_passed(system, active, k, group, start, end):
     """Mark the points of two bodies that have passed an edge, from their places at the end of a step."""
     for i in range(k):
         closed_point, point = group.closed[i], group.points[0][i]
-        if closed_point.turns > 0 or closed_point.own == 0:
+        if closed_point.motion != MOTION_POINT or closed_point.listed == 0:
             continue
         active_point = active.points[closed_point.active]
         contact, least = system.contacts[active_point.contact], NORMAL_ERROR
-        jumps = active_point.touches == 1 and active_point.owner != NOBODY
+        jumps = active_point.kind == KIND_PAIR and active_point.owner != NOBODY
         if jumps and point.owner == NOBODY:
             jumps, least = are_sharp(system, contact), EDGE_JUMP
         jumps = jumps and jump_of_normal(active_point, point, start, end) > least
@@ -66,4 +68,4 @@ def jump_of_normal(active_point, point, start, end):
 def has_passed(active, i, group):
     """Return whether closed point i has passed an edge."""
     closed_point = group.closed[i]
-    return closed_point.own == 1 and active.points[closed_point.active].passes == 1
+    return closed_point.listed == 1 and active.points[closed_point.active].passes == 1

@@ -13,6 +13,7 @@ from carom.kinematics.contact_point import (
     in_axes,
 )
 from carom.kinematics.rows import inverse_inertia, symmetric_times
+from carom.model.workspace import MOTION_POINT, MOTION_STOP_SLIDE, MOTION_STOP_TURN
 
 
 @kernel
@@ -61,7 +62,7 @@ def inverse_masses(system, k, points, state, work, W):
     for j in range(k):
         for r in range(3):
             m = 3 * j + r
-            if not acts(points[j].turns, r):
+            if not acts(points[j].motion, r):
                 for row in range(3 * k):
                     W[row, m] = 0.0
                 continue
@@ -77,7 +78,8 @@ def inverse_masses(system, k, points, state, work, W):
             m = 0.5 * (W[i, j] + W[j, i])
             W[i, j], W[j, i] = m, m
     for i in range(k):
-        if points[i].turns == 3 or points[i].turns == 4:  # no tangents: any positive values do
+        # a stop has no tangents: any positive values do
+        if points[i].motion in (MOTION_STOP_TURN, MOTION_STOP_SLIDE):
             W[3 * i + 1, 3 * i + 1] = W[3 * i + 2, 3 * i + 2] = W[3 * i, 3 * i]
 
 
@@ -94,7 +96,7 @@ def of_one_body(system, k, points):
 def any_turns(k, points):
     """Return whether a point is one of rolling or pivoting, or a stop."""
     for i in range(k):
-        if points[i].turns != 0:
+        if points[i].motion != MOTION_POINT:
             return True
     return False
 

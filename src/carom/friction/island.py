@@ -23,7 +23,7 @@ from carom.friction.local import solve_prepared
 @unit
 def multiply(work, k, x, out):
     """Add W x to `out`."""
-    impart(work, k, x)
+    write_motion(work, k, x)
     for i in range(k):
         u0, u1, u2 = _pull(work, i)
         out[3 * i] += u0
@@ -77,7 +77,7 @@ def _pull_size(work, i, a):
 def sweep(work, k, backward):
     """Solve each contact in turn, with fixed impulses of the others."""
     p, c = work.vector[o.ITERATE], work.vector[o.BIAS]
-    impart(work, k, p)
+    write_motion(work, k, p)
     for place in range(k):
         i = k - 1 - place if backward else place
         n = 3 * i
@@ -204,7 +204,7 @@ def _add_columns(work, link, side):
 
 
 @kernel
-def impart(work, k, x):
+def write_motion(work, k, x):
     """Write the motion that impulses x cause."""
     _rest(work)
     for i in range(k):

@@ -125,7 +125,7 @@ class Contacts(Strike):
         self.loose = np.zeros((len(self.friction), 2))
         for _ in range(CONTACT_ROUNDS):
             k = len(chosen)
-            code = self.take_out(chosen)
+            code = self.remove_contacts(chosen)
             if k == 0 or code != 0:
                 return code
             driven = [c for c in closed if c not in chosen and self.u[c, 0] < -10.0 * self.still[c]]
@@ -158,7 +158,7 @@ class Contacts(Strike):
             chosen = pressed
         return Status.NO_CONVERGENCE
 
-    def take_out(self, chosen: list[int]) -> int:
+    def remove_contacts(self, chosen: list[int]) -> int:
         """Activate contacts: remove their normal velocities, and slip that has stopped; return a status."""
         run, active, M = self.run, self.run.active, self.seen.M.copy()
         stop = np.where(self.friction > 0.0, 10.0 * self.still, -1.0)

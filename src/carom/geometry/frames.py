@@ -44,7 +44,7 @@ def upright(gravity: np.ndarray) -> np.ndarray:
 
 def turned_axes(normal: np.ndarray, axes: np.ndarray) -> np.ndarray:
     """Return rows n, t1, t2 of a contact with curved ground: `axes` after the shortest turn to the normal."""
-    way = 1.0 + normal @ axes[0]
-    first = axes[1] - (normal @ axes[1] / way if way > 0.0 else 0.0) * (normal + axes[0])
+    divisor = 1.0 + normal @ axes[0]
+    first = axes[1] - (normal @ axes[1] / divisor if divisor > 0.0 else 0.0) * (normal + axes[0])
     first /= np.linalg.norm(first)
     return np.stack([normal, first, np.cross(normal, first)])

@@ -25,13 +25,14 @@ from carom.geometry.rotation import rotate_back
 from carom.geometry.thresholds import RESOLUTION
 from carom.geometry.vectors import dot
 from carom.impact.thresholds import EQUAL_CURVATURES
+from carom.model.arrays import KIND_VERTICES
 
 
 @kernel
 def stiffness(system, contact, point, state):
     """Return R^(1/2) F^(-3/2) of a point of a ball or an ellipsoid."""
     n, t, s = _vector(point.axes[0]), _vector(point.axes[1]), _vector(point.axes[2])
-    if contact.touches == 0:  # a vertex that a ball enlarges, on a half-space
+    if contact.kind == KIND_VERTICES:  # a vertex that a ball enlarges, on a half-space
         a11, a12, a22 = 1.0 / contact.radius, 0.0, 1.0 / contact.radius
     else:
         x, arm = state[point.a].x, point.arm_a

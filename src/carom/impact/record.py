@@ -9,8 +9,8 @@ from carom._compiled.decorators import kernel
 from carom.impact import laws, layout
 from carom.impact.thresholds import NO_RESTITUTION
 from carom.impact.workspace import U
+from carom.kinematics.anisotropy import lengths_of_tangents
 from carom.kinematics.contact_point import power_of_surface
-from carom.kinematics.grain import lengths_of_tangents
 from carom.model.parts_of_system import has_relation_rows
 
 _NOT_LAW_A = layout.PHASE_JAM | layout.WEDGED
@@ -50,7 +50,7 @@ def write_blow(contact, point, state, blow, clock, records):
     row.compression_work, row.restitution_work = blow.compression, blow.restitution
     row.friction_loss, row.energy_change = blow.friction, blow.change
     row.phases, row.duration = blow.phases, blow.duration
-    if contact.grain_of != 0:
+    if contact.axis_of != 0:
         write_plain(row, lengths_of_tangents(point))
     clock.struck += 1
 

@@ -16,10 +16,10 @@ from carom.friction.rays import outgoing, solve_tangential, stick_ratio
 from carom.geometry.thresholds import REMAINDER, ROUND_OFF, SUM_ERROR
 from carom.impact import laws
 from carom.impact import layout as o
-from carom.impact.slip_step import expand, land, moved, normal_rate
+from carom.impact.slip_step import expand, moved, normal_rate, write_end
 from carom.impact.taylor import reach
 from carom.impact.thresholds import IMPACT_ERROR, LONGEST_IMPULSE, SERIES_ACCURACY
-from carom.impact.wedge import drowned, moves_nothing, power_of_two, pushed
+from carom.impact.wedge import below_round_off, moves_nothing, power_of_two, pushed
 
 _SLIP_STEPS = 2000
 
@@ -28,7 +28,7 @@ BENT, STRAIGHT, STICK = range(3)
 
 # The end of a piece of the path: within the phase, where slip stops, at the goal of the phase, where the pair
 # is wedged (no impulse changes the velocity), or nowhere.
-WITHIN, AT_STOP, AT_GOAL, CAUGHT, ENDLESS = range(5)
+WITHIN, AT_STOP, AT_GOAL, AT_WEDGE, WITHOUT_END = range(5)
 
 
 class Contact(NamedTuple):
@@ -152,19 +152,19 @@ def _follow(contact, u, e, law):
         else:
             s, ended, marks = along_line(contact, phase, line, s)
         phases |= marks
-        if ended == ENDLESS:
+        if ended == WITHOUT_END:
             return o.NO_END, steps, phases, s, before, slip_end
         stopped = ended == AT_STOP
 
         # The next phase.
-        if phase.restitution and ended != CAUGHT and s[2] < -at_rest:
+        if phase.restitution and ended != AT_WEDGE and s[2] < -at_rest:
             # Jam: the bodies approach again before restitution ends. Compression continues and includes
             # the restitution so far, so p_c and A_c belong to the last zero of u_n.
             phase = COMPRESSION
             s = (s[0], s[1], s[2], s[3] + before[0], s[4] + before[1], s[5] + before[2],
                  s[6] + before[3], s[7] + before[4])  # fmt: skip
             before = (0.0, 0.0, 0.0, 0.0, 0.0)
-        elif ended in (AT_GOAL, CAUGHT):
+        elif ended in (AT_GOAL, AT_WEDGE):
             if phase.restitution:
                 return o.OK, steps, phases, s, before, slip_end
             before = (s[3], s[4], s[5], s[6], s[7])
@@ -239,9 +239,9 @@ def _along_curve(contact, phase, s):
     h = min(h, 4.0 * max(end, unit) / r)
     new = moved(m, mu, s, t, h)
     if laws.remaining(law, goal, new[2], new[3], new[7]) <= 0.0:
-        return land(contact, phase, s, new, t, h), AT_GOAL, marks
-    if phase.restitution and drowned(m, new[3], new[4], new[5], phase.taken):
-        return new, CAUGHT, marks | o.WEDGED
+        return write_end(contact, phase, s, new, t, h), AT_GOAL, marks
+    if phase.restitution and below_round_off(m, new[3], new[4], new[5], phase.taken):
+        return new, AT_WEDGE, marks | o.WEDGED
     slips = math.sqrt(new[0] * new[0] + new[1] * new[1]) > 1e-3 * ROUND_OFF * size
     return new, WITHIN if slips else AT_STOP, marks
 
@@ -259,13 +259,13 @@ def along_line(contact, phase, line, s):
     caught, marks, ended = moves_nothing(m, t1, t2, k, growth), 0, AT_GOAL
     if phase.restitution and law not in laws.BY_IMPULSE and not (caught or growth < 0.0):
         p, p1, p2 = s[3] + length, s[4] + length * t1, s[5] + length * t2
-        caught = drowned(m, p, p1, p2, phase.taken)
+        caught = below_round_off(m, p, p1, p2, phase.taken)
     if caught:
         if pushed(s[2], contact.size, contact.still):
-            return s, ENDLESS, marks
+            return s, WITHOUT_END, marks
         k, f1, f2, growth = max(0.0, k), 0.0, 0.0, 0.0
         length = left if law in laws.BY_IMPULSE else 0.0
-        marks, ended = o.WEDGED if phase.restitution else 0, CAUGHT
+        marks, ended = o.WEDGED if phase.restitution else 0, AT_WEDGE
     elif k <= 0.0 and line.mode == STRAIGHT:
         marks = o.PHASE_JAM
     if line.mode == STICK and not abs(f1) + abs(f2) > SUM_ERROR * (abs(m[1]) + abs(m[2])):
@@ -278,7 +278,7 @@ def along_line(contact, phase, line, s):
             length, ended = -r / growth, AT_STOP
         loss = mu * length * (r + 0.5 * growth * length)
     if not length < math.inf:
-        return s, ENDLESS, marks
+        return s, WITHOUT_END, marks
     s = (
         s[0] + length * f1, s[1] + length * f2, s[2] + length * k, s[3] + length, s[4] + length * t1,
         s[5] + length * t2, s[6] + loss, s[7] + length * (s[2] + 0.5 * k * length),

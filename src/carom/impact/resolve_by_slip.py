@@ -24,14 +24,14 @@ from carom.impact import layout as o
 from carom.impact.resolve import (
     AT_GOAL,
     AT_STOP,
+    AT_WEDGE,
     BENT,
-    CAUGHT,
     COMPRESSION,
     CURVE,
-    ENDLESS,
     STICK,
     STRAIGHT,
     WITHIN,
+    WITHOUT_END,
     Contact,
     Line,
     Phase,
@@ -42,7 +42,7 @@ from carom.impact.resolve import (
 )
 from carom.impact.slip_step import normal_rate
 from carom.impact.thresholds import LONGEST_IMPULSE, RAY_LENGTH, SLIP_ERROR
-from carom.impact.wedge import drowned
+from carom.impact.wedge import below_round_off
 from carom.model.tableaus import DORMAND_PRINCE
 
 MOST_SLIP_STEPS = 50_000
@@ -110,15 +110,15 @@ def resolve_by_slip(W, u, friction, e, law, out) -> int:
             else:
                 s, ended, marks = along_line(Contact(m, mu, size, still), phase, line, s)
         phases |= marks
-        if ended == ENDLESS:
+        if ended == WITHOUT_END:
             return o.NO_END
         stopped = ended == AT_STOP
-        if phase.restitution and ended != CAUGHT and s[2] < -at_rest:
+        if phase.restitution and ended != AT_WEDGE and s[2] < -at_rest:
             phase = COMPRESSION  # jam: as in `resolve`
             s = (s[0], s[1], s[2], s[3] + before[0], s[4] + before[1], s[5] + before[2],
                  s[6] + before[3], s[7] + before[4])  # fmt: skip
             before = (0.0, 0.0, 0.0, 0.0, 0.0)
-        elif ended in (AT_GOAL, CAUGHT):
+        elif ended in (AT_GOAL, AT_WEDGE):
             ends = phase.restitution
             if not ends:
                 before = (s[3], s[4], s[5], s[6], s[7])
@@ -180,8 +180,8 @@ def _along_curve(slip, phase, s, h):
         return s, WITHIN, marks, h * (wider if share < math.inf else 0.2)
     if laws.remaining(law, goal, new[2], new[3], new[7]) <= 0.0:
         return _land(slip, phase, s, new, h), AT_GOAL, marks, h
-    if phase.restitution and drowned(m, new[3], new[4], new[5], phase.taken):
-        return new, CAUGHT, marks | o.WEDGED, h
+    if phase.restitution and below_round_off(m, new[3], new[4], new[5], phase.taken):
+        return new, AT_WEDGE, marks | o.WEDGED, h
     slips = math.sqrt(new[0] * new[0] + new[1] * new[1]) > 1e-3 * ROUND_OFF * size
     return new, WITHIN if slips else AT_STOP, marks, h * wider
 

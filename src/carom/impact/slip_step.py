@@ -40,7 +40,7 @@ def moved(m, mu, s, t, h):
 
 
 @kernel
-def land(contact, phase, start, end, t, h):
+def write_end(contact, phase, start, end, t, h):
     """Return the state at the goal of the phase, from the series `t` between `start` and `end`, `h` later.
 
     Newton's iteration is kept between the last point before the goal and the first point after it.

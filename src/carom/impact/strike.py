@@ -30,6 +30,7 @@ from carom.impact.work_mode import restore_work
 from carom.impact.workspace import U
 from carom.kinematics.contact_point import contact_velocity
 from carom.kinematics.moving_surfaces import set_surfaces
+from carom.model.arrays import KIND_VERTICES
 from carom.model.controls import LOCATE, WORK
 from carom.model.event_rows import begin_event, end_event
 from carom.model.method import THREE_FIELD
@@ -45,7 +46,7 @@ def onto_surface(system, controls, c, state, work):
     and velocities are projected on the joints again at the new position.
     """
     contact, point = system.contacts[c], work.hit[0].point
-    if contact.touches != 0:
+    if contact.kind != KIND_VERTICES:
         return 0  # found within the tolerance of a located gap
     tie = controls.tie * contact.extent
     tolerance = max(controls.gap * contact.extent, round_off(contact, state))

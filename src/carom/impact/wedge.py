@@ -31,7 +31,7 @@ def moves_nothing(m, t1, t2, k, grow):
 
 
 @kernel
-def drowned(m, p, p1, p2, energy):
+def below_round_off(m, p, p1, p2, energy):
     """Return whether round-off of P.W P, P the impulse of restitution, is visible in the energy balance.
 
     `energy` was lost in compression. Only Newton's law requires such large impulses if k is nearly zero:

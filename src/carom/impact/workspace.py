@@ -17,7 +17,7 @@ from carom.impact.multiple.layout import (
     new_multiple_result,
     new_multiple_workspace,
 )
-from carom.model.arrays import STATE, System
+from carom.model.arrays import KIND_PAIR, STATE, System
 from carom.model.workspace import POINT
 
 #: greatest number of points that are solved together
@@ -33,13 +33,15 @@ CLOSED_POINT = [
     ("point", "f8", 3),  # point of the core, body axes
     ("rows", "i8"),  # number of rows that the return to the surface uses
     ("passes", "i8"),  # 1 if it has passed its stop in a stage, and keeps its friction (`stops`)
-    ("own", "i8"),  # 1 if it is the active point of its place, 0 if that only stands for its pair
-    ("loaded", "i8"),  # 1 if it presses: its spring carries
+    # 1 if the active points have one of its place, 0 if `active` is another one of its pair
+    ("listed", "i8"),
+    ("presses", "i8"),  # 1 if it presses: its spring carries
     ("patch", "i8"),  # the first point of its patch
     ("weight", "f8"),  # stiffness of its spring, as a part of that of its patch
     ("spring", "f8"),  # compliance of its spring [1/kg]
     ("hold", "f8"),  # compliance of its stick [1/kg]
-    ("turns", "i8"),  # as in its POINT, 5 for all friction in joints (then `active` is its number)
+    # as in its POINT; MOTION_JOINT for all friction in joints, with `active` as its number
+    ("motion", "i8"),
     # of a torque of rolling or pivoting friction: the closed point whose normal force bounds it
     ("parent", "i8"),
 ]
@@ -109,7 +111,7 @@ def capacity(system: System, more: bool) -> int:
     if more:
         return MOST_TOGETHER
     contacts, more_rows = system.contacts, len(system.relations.frictions)
-    vertices, found = contacts["last"] - contacts["first"], contacts["touches"] == 1
+    vertices, found = contacts["last"] - contacts["first"], contacts["kind"] == KIND_PAIR
     if found.any():
         points = np.where(found, MOST_POINTS, vertices)
         return max(1, min(MOST_TOGETHER, int(points.sum()) + more_rows))

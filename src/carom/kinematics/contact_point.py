@@ -2,15 +2,22 @@
 
 G maps the velocities of all bodies to u = (u_n, u_t1, u_t2), the velocity of body a relative to body b at
 the point. (Paper, change of coordinates at contact.) With anisotropic friction the tangents have lengths
-(`carom.kinematics.grain`).
+(`carom.kinematics.anisotropy`).
 """
 
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.geometry.rotation import cross, rotate
-from carom.kinematics.grain import lay_along_grain
+from carom.kinematics.anisotropy import lay_along_axis
 from carom.kinematics.wrench import point_velocity
+from carom.model.workspace import (
+    MOTION_JOINT,
+    MOTION_POINT,
+    MOTION_ROLL,
+    MOTION_STOP_SLIDE,
+    MOTION_STOP_TURN,
+)
 
 
 @kernel
@@ -19,7 +26,7 @@ def place(contact, p, state, point):
     b, n, r = contact.body, contact.axes, contact.radius
     q, x, core, arm, axes = state[b].Q, state[b].x, point.core, point.arm_a, point.axes
     core[0], core[1], core[2] = rotate(q, p)
-    point.a, point.b, point.turns = b, -1, 0
+    point.a, point.b, point.motion = b, -1, MOTION_POINT
     gap = -contact.offset
     for k in range(3):
         arm[k] = core[k] - r * n[0, k]
@@ -27,8 +34,8 @@ def place(contact, p, state, point):
         for i in range(3):
             axes[i, k] = n[i, k]
     point.gap = gap
-    if contact.grain_of != 0:
-        lay_along_grain(contact, state, point)
+    if contact.axis_of != 0:
+        lay_along_axis(contact, state, point)
     carry_field(contact, point)
 
 
@@ -51,7 +58,7 @@ def copy_field(p, q):
 @kernel
 def copy_point(p, q):
     """Copy a point."""
-    q.a, q.b, q.gap, q.turns, q.length = p.a, p.b, p.gap, p.turns, p.length
+    q.a, q.b, q.gap, q.motion, q.length = p.a, p.b, p.gap, p.motion, p.length
     q.owner, q.parts[0], q.parts[1], q.moves = p.owner, p.parts[0], p.parts[1], p.moves
     if p.moves == 1:
         copy_field(p, q)
@@ -79,9 +86,9 @@ def turning_rows(point, x, y, z):
     For a stop that ends a turn, it is the angular velocity about its axis.
     """
     n, t1, t2 = in_axes(point, x, y, z)
-    if point.turns == 3:
+    if point.motion == MOTION_STOP_TURN:
         return point.length * n, 0.0, 0.0
-    if point.turns == 1:
+    if point.motion == MOTION_ROLL:
         return 0.0, point.length * t1, point.length * t2
     return 0.0, point.length * n, 0.0
 
@@ -89,9 +96,9 @@ def turning_rows(point, x, y, z):
 @kernel
 def own_rows(point, u):
     """Return u; for a stop that ends a slide, or a slide with friction, only the normal component."""
-    if point.turns == 4:
+    if point.motion == MOTION_STOP_SLIDE:
         return u[0], 0.0, 0.0
-    if point.turns == 5:
+    if point.motion == MOTION_JOINT:
         return 0.0, u[0], 0.0
     return u
 
@@ -103,7 +110,7 @@ def own_field(point, state, i):
     The surface moves in itself: the normal component counts for nothing.
     """
     s, w, x, r = point.field[i], point.field[i + 1], state[point.a].x, point.arm_a
-    if point.turns != 0:
+    if point.motion != MOTION_POINT:
         return turning_rows(point, w[0], w[1], w[2])
     vx, vy, vz = cross(w[0], w[1], w[2], x[0] + r[0], x[1] + r[1], x[2] + r[2])
     _, t1, t2 = in_axes(point, s[0] + vx, s[1] + vy, s[2] + vz)
@@ -140,7 +147,7 @@ def power_of_surface(point, state, p):
 @kernel
 def contact_velocity(point, state):
     """Return u = G v, in contact axes; relative to a surface that moves in itself."""
-    if 0 < point.turns < 4:
+    if MOTION_POINT < point.motion < MOTION_STOP_SLIDE:
         w, z = state[point.a].w, (0.0, 0.0, 0.0)
         if point.b >= 0:
             z = (state[point.b].w[0], state[point.b].w[1], state[point.b].w[2])
@@ -163,7 +170,7 @@ def motion_there(motion, r):
 @kernel
 def contact_motion(point, work):
     """Return G of the motions that the last solve wrote, in contact axes."""
-    if 0 < point.turns < 4:
+    if MOTION_POINT < point.motion < MOTION_STOP_SLIDE:
         m, z = work.body[point.a].motion, (0.0, 0.0, 0.0)
         if point.b >= 0:
             o = work.body[point.b].motion
@@ -183,7 +190,7 @@ def contact_acceleration(point, state, stage):
     This is for a half-space, whose normal is constant. For two bodies and for stops the result is only G times
     the accelerations.
     """
-    if 0 < point.turns < 4:
+    if MOTION_POINT < point.motion < MOTION_STOP_SLIDE:
         m, z = stage[point.a].rate, (0.0, 0.0, 0.0)
         if point.b >= 0:
             o = stage[point.b].rate

@@ -79,7 +79,7 @@ def is_upright(piece):
 
 
 @kernel
-def seen(one, v):
+def across_side(one, v):
     """Return a vector without its component along the free side."""
     n = one.side
     f = n[0] * v[0] + n[1] * v[1] + n[2] * v[2]
@@ -93,7 +93,7 @@ def place_at(one, pieces, i, t):
         one.x[k], one.slope[k], one.second[k] = polynomial(pieces[i].c, k, t)
     if is_upright(pieces[i]):
         for v in (one.x, one.slope, one.second):
-            v[0], v[1], v[2] = seen(one, v)
+            v[0], v[1], v[2] = across_side(one, v)
 
 
 @kernel
@@ -146,7 +146,7 @@ def find_foot(system, c, state):
     one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
     point, free = point_of(c, state), can_be_left(one)
     if is_upright(pieces[one.first]):
-        one.s, place = follow(one, pieces, seen(one, point), c.reference)
+        one.s, place = follow(one, pieces, across_side(one, point), c.reference)
         write_upright(c, one, pieces[place], point, state)
         return
     one.s, place = follow(one, pieces, point, c.reference)
@@ -236,7 +236,7 @@ def write_upright(c, one, piece, point, state):
         t -= one.period * math.floor((one.s - one.low) / one.period)
     n, h, s = one.side, one.slope, 1.0 / math.sqrt(dot(one.slope, one.slope))
     across = cross(n[0], n[1], n[2], h[0], h[1], h[2])
-    write_axes(c, one, across, seen(one, point), state)
+    write_axes(c, one, across, across_side(one, point), state)
     rise, height, bend, square, along = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(3):
         x, slope, second = polynomial(piece.c, k, t)
@@ -262,7 +262,7 @@ def seek_foot(system, c, state):
     one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
     point, before = point_of(c, state), c.reference
     if is_upright(pieces[one.first]):
-        point = seen(one, point)
+        point = across_side(one, point)
     u = to_owner(c, state, anchor_speed(c, state))
     speed, least, found = dot(u, u), math.inf, before
     for i in range(one.first, one.last):

@@ -260,13 +260,13 @@ CONTACT = [
     ("other", "i8"),  # -1 for a half-space or a static body
     ("static", "i8"),  # 1 if the other solid is static: its pose is one in the world
     ("centre", "f8", 3),  # of the static solid
-    ("touches", "i8"),  # 0 in vertices, 1 in points that `carom.collision` finds; 2 a stop
+    ("kind", "i8"),  # `KIND_VERTICES`, ...
     ("part", "i8"),  # 1 if a body has several pieces
     ("first", "i8"),  # range of the vertices of the body
     ("last", "i8"),
     ("other_first", "i8"),  # of the other body
     ("other_last", "i8"),
-    ("solid", "i8"),  # the two solids, if `touches` is 1; coordinate of a stop
+    ("solid", "i8"),  # the two solids of `KIND_PAIR`; coordinate of a stop
     ("other_solid", "i8"),
     # 1 + the number of the level surface that the row stands for (`carom.contact.level`), 0 for other rows
     ("surface", "i8"),
@@ -292,10 +292,10 @@ CONTACT = [
     ("friction_piece", "i8", 2),
     ("last_friction_piece", "i8", 2),
     ("friction_exponent", "f8", 2),
-    # of anisotropic friction, with the geometric mean as mu: an axis fixed to the body (`grain_of` BODY_AXES),
+    # of anisotropic friction, with the geometric mean as mu: an axis fixed to the body (`axis_of` BODY_AXES),
     # to the other body or to the world, 0 for none; and mu across it over that along it
-    ("grain_of", "i8"),
-    ("grain", "f8", 3),
+    ("axis_of", "i8"),
+    ("friction_axis", "f8", 3),
     ("across", "f8"),
     ("turning", "f8", 2),  # rolling and pivoting friction [m]
     ("restitution", "f8"),  # e; NaN if it is a law of the speed of approach, which has the pieces
@@ -343,7 +343,7 @@ LINK = [
 ROW = [
     ("first", "i8"),  # range of its sides; of a joint the child, and the parent if it is a body
     ("last", "i8"),
-    ("off", "i8"),  # 1 if its rows are ignored
+    ("ignored", "i8"),  # 1 if its rows are ignored
     ("compliance", "f8", 6),  # added to the diagonal of A M^-1 A^T
     ("pivot", "f8", 6),  # reciprocal pivots, 0 = dropped
     ("weight", "f8", 6),  # diagonal of A M^-1 A^T before elimination
@@ -358,10 +358,11 @@ SIDE = [
     ("Y", "f8", (6, 6)),  # A M^-1
 ]
 
-#: value of `touches` for a stop in a joint
-STOP = 2
+#: `kind` of a contact: vertices of a body on a half-space; points of two solids, which `carom.collision` finds;
+#: a stop in a joint
+KIND_VERTICES, KIND_PAIR, KIND_STOP = range(3)
 
-#: `grain_of`: to what the axis of anisotropic friction is fixed
+#: `axis_of`: to what the axis of anisotropic friction is fixed
 BODY_AXES, OTHER_AXES, WORLD_AXES = 1, 2, 3
 
 

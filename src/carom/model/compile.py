@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom._compiled.mould import Mould
 from carom._compiled.record_arrays import Columns, table
+from carom._compiled.template import Template
 from carom._compiled.user_functions import Functions
 from carom.geometry import quaternion
 from carom.geometry.frames import triad
@@ -89,12 +89,12 @@ def compile_scene(
 
 def compiled_once(scene: Scene, options: Options, *ways: bool) -> Compiled:
     """Return what `compile_scene` does; the scene keeps the last result while it does not change."""
-    key, mould = scene._derived.get(Compiled, (None, None))
+    key, template = scene._derived.get(Compiled, (None, None))
     if key == (options, ways):
-        return mould.cast()._replace(functions=Functions())
+        return template.make()._replace(functions=Functions())
     made = compile_scene(scene, options, *ways)
     if not uses_functions(made):
-        scene._derived[Compiled] = (options, ways), Mould(made)
+        scene._derived[Compiled] = (options, ways), Template(made)
     return made
 
 

@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom._compiled.mould import Mould
 from carom._compiled.record_arrays import table
+from carom._compiled.template import Template
 from carom.collision.layout import SOLID, Hulls, no_hulls, solid_table
 from carom.collision.level_layout import Levels
 from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes, length, upright
-from carom.model.arrays import BODY_AXES, CONTACT, OTHER_AXES, WORLD_AXES
+from carom.model.arrays import BODY_AXES, CONTACT, KIND_PAIR, KIND_VERTICES, OTHER_AXES, WORLD_AXES
 from carom.model.contact_rows import Rows, contact_rows, first_pairs
 from carom.model.cores import Cores, new_cores, singly, swollen_alike
 from carom.model.level_surfaces import find_levels, note_own, with_level_rows
@@ -22,7 +22,7 @@ from carom.model.moving_surfaces import write_fields
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, meeting
 from carom.scene.contacts import IMPACT_LAWS
-from carom.scene.friction import FIXED_TO, bound_of, grain
+from carom.scene.friction import FIXED_TO, anisotropy_of, bound_of
 from carom.scene.materials import MULTIPLE, ContactLaw, Material
 from carom.scene.scene import Scene
 from carom.scene.shapes import Shape
@@ -78,18 +78,18 @@ def compile_contacts(
         *((plane.point.tobytes(), plane.normal.tobytes()) for plane in scene.half_spaces),
         *(body.shape for body in scene.bodies),
     )  # fmt: skip
-    mould = _KNOWN.get(key)
-    if mould is not None:
-        return mould.cast()._replace(pairs=known)
+    template = _KNOWN.get(key)
+    if template is not None:
+        return template.make()._replace(pairs=known)
     if len(_KNOWN) >= MOST_KNOWN:
         _KNOWN.clear()
     made = _contacts(scene, known, None, curves, to_principal, options)
-    _KNOWN[key] = Mould(made._replace(pairs=None))
+    _KNOWN[key] = Template(made._replace(pairs=None))
     return made
 
 
 #: contacts by all that they depend on
-_KNOWN: dict[tuple, Mould] = {}
+_KNOWN: dict[tuple, Template] = {}
 FEW_CONTACTS = 64  # pairs of a scene whose contacts are kept
 MOST_KNOWN = 64  # such scenes
 
@@ -204,7 +204,7 @@ def _write_statics(rows: np.recarray, scene: Scene) -> None:
         if isinstance(solid.shape, SurfaceDefinition):
             rows["axes"][rows["other"] == b] = upright(scene.gravity)
     rows["other"][rows["static"] == 1] = -1
-    rows["grain_of"][(rows["static"] == 1) & (rows["grain_of"] == OTHER_AXES)] = WORLD_AXES
+    rows["axis_of"][(rows["static"] == 1) & (rows["axis_of"] == OTHER_AXES)] = WORLD_AXES
 
 
 def _write_half_spaces(rows: np.recarray, scene: Scene, plane: np.ndarray) -> None:
@@ -218,7 +218,7 @@ def _write_half_spaces(rows: np.recarray, scene: Scene, plane: np.ndarray) -> No
 def _write_shapes(rows: np.recarray, which: Rows) -> None:
     """Write form and size of both sides, and which kernels find their contact points."""
     core, other = which.core, which.other
-    rows["touches"] = np.where(rows["other"] >= 0, 1, core["curved"])
+    rows["kind"] = np.where((rows["other"] >= 0) | (core["curved"] == 1), KIND_PAIR, KIND_VERTICES)
     rows["ball_like"] = np.maximum(core["ball_like"], other["ball_like"])
     rows["part"] = np.maximum(core["several"], other["several"])
     rows["extent"], rows["other_extent"] = core["extent"], other["extent"]
@@ -231,7 +231,7 @@ def _write_ranges(rows: np.recarray, which: Rows, shared: int) -> None:
     Each row with a half-space has its own vertices. Points of two bodies are found anew in each state, so all
     contacts of a piece share its vertices, which begin at `shared`.
     """
-    core, other, flat = which.core, which.other, rows["touches"] == 0
+    core, other, flat = which.core, which.other, rows["kind"] == KIND_VERTICES
     count = flat * (core["last"] - core["first"])
     last = count.cumsum()
     rows["first"], rows["last"] = flat * (last - count), flat * last
@@ -284,17 +284,17 @@ def _write_laws(rows: np.recarray, scene: Scene, pairs: PairTable, which: Rows, 
     for k, name in enumerate(("friction_piece", "last_friction_piece", "friction_exponent")):
         rows[name] = by_slip[:, :, k]
     if law[:, -5].any():
-        _write_grains(rows, law[:, -5:], surfaces.turns)
+        _write_anisotropy(rows, law[:, -5:], surfaces.turns)
 
 
-def _write_grains(rows: np.recarray, grains: np.ndarray, turns: np.ndarray) -> None:
+def _write_anisotropy(rows: np.recarray, anisotropies: np.ndarray, turns: np.ndarray) -> None:
     """Write the axes of anisotropic friction, in the axes of the bodies that they are fixed to."""
-    of, body, other = grains[:, 0].astype(int), rows["body"], rows["other"]
+    of, body, other = anisotropies[:, 0].astype(int), rows["body"], rows["other"]
     of = np.where((of == OTHER_AXES) & (other < 0), WORLD_AXES, of)  # of a half-space
     side = np.where(of == BODY_AXES, body, other)
-    turned = quaternion.rotate_back(turns[side], grains[:, 1:4])
-    rows["grain"] = np.where((of == WORLD_AXES)[:, None], grains[:, 1:4], turned)
-    rows["grain_of"], rows["across"] = of, grains[:, 4]
+    turned = quaternion.rotate_back(turns[side], anisotropies[:, 1:4])
+    rows["friction_axis"] = np.where((of == WORLD_AXES)[:, None], anisotropies[:, 1:4], turned)
+    rows["axis_of"], rows["across"] = of, anisotropies[:, 4]
 
 
 def _numbers(laws: list[ContactLaw], curves: Pieces) -> np.ndarray:
@@ -305,15 +305,15 @@ def _numbers(laws: list[ContactLaw], curves: Pieces) -> np.ndarray:
             IMPACT_LAWS.index(one.impact_law),
             MULTIPLE.index(one.multiple), *curves.add_restitution(one.restitution),
             one.tangential_restitution, one.rolling_friction, one.pivoting_friction,
-            *curves.add_law(one.friction), *curves.add_law(one.friction_held), *_grain_numbers(one),
+            *curves.add_law(one.friction), *curves.add_law(one.friction_held), *_anisotropy_numbers(one),
         )
         for one in laws
     ]  # fmt: skip
     return np.array(numbers, dtype=float).reshape(-1, len(OF_LAW) + 13)
 
 
-def _grain_numbers(law: ContactLaw) -> tuple[float, ...]:
-    found = grain(law.friction)
+def _anisotropy_numbers(law: ContactLaw) -> tuple[float, ...]:
+    found = anisotropy_of(law.friction)
     return (0.0,) * 5 if found is None else (1 + FIXED_TO.index(found.of), *found.axis, found.ratio)
 
 
@@ -352,7 +352,7 @@ def _checked(law: ContactLaw, whole: ContactLaw, surface: Surface) -> ContactLaw
     """Return the law of two parts; refuse coefficients of parts that are different laws of the speed."""
     for name in ("restitution", "friction", "friction_held"):
         e = getattr(law, name), getattr(whole, name)
-        if e[0] != e[1] and any(isinstance(one, SpeedLaw) and not grain(one) for one in e):
+        if e[0] != e[1] and any(isinstance(one, SpeedLaw) and not anisotropy_of(one) for one in e):
             raise ValueError(
                 f"{name} must be a number for each part of {surface.name!r}, or one law for all, "
                 f"got {e[0]:g} and {e[1]:g}"

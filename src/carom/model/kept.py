@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom._compiled.mould import arrays_of
+from carom._compiled.template import arrays_of
 
 
 class Kept:

@@ -34,10 +34,10 @@ from carom.collision.level_layout import (
 from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes
 from carom.geometry.thresholds import RESOLUTION
-from carom.model.arrays import CONTACT
+from carom.model.arrays import CONTACT, KIND_PAIR
 from carom.model.graph import Sets
 from carom.scene.all_pairs import PairTable
-from carom.scene.friction import grain
+from carom.scene.friction import anisotropy_of
 from carom.scene.pieces import Piece
 from carom.scene.scene import Scene
 from carom.scene.speed_law import SpeedLaw
@@ -138,7 +138,7 @@ def _laws_of_statics(scene: Scene, pairs: PairTable) -> list[tuple[tuple, tuple]
                     body, *_sortable(one.friction), *_sortable(one.friction_held), *_sortable(one.restitution),
                     one.tangential_restitution, one.stiffness,
                     one.rolling_friction, one.pivoting_friction, str(one.impact_law), str(one.multiple),
-                    other if scene.statics[other - count].moves or grain(one.friction) else -1,
+                    other if scene.statics[other - count].moves or anisotropy_of(one.friction) else -1,
                 )
             )  # fmt: skip
     return [(tuple(sorted(bodies)), tuple(sorted(laws))) for bodies, laws in found]
@@ -406,7 +406,7 @@ def _surface_rows(rows: np.recarray, surface: np.record, region: Region) -> np.r
     out[:] = rows
     for name in ("first", "last", "other_first", "other_last", "other_solid", "static"):
         out[name] = 0
-    out["other"], out["touches"] = -1, 1
+    out["other"], out["kind"] = -1, KIND_PAIR
     out["axes"], out["offset"] = contact_axes(surface.normal), surface.offset
     out["surface"], out["first_level"] = region.surface + 1, region.first
     out["last_level"] = region.last

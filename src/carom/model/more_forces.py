@@ -11,7 +11,7 @@ from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
 from carom.model.arrays import FRICTION, PIECE, PUSH, USER_FORCE
 from carom.model.thresholds import LAW_KINK
-from carom.scene.friction import bound_of, grain
+from carom.scene.friction import anisotropy_of, bound_of
 from carom.scene.more_forces import (
     Actuator,
     CurveSpring,
@@ -74,7 +74,7 @@ class Pieces:
 
     def add_law(self, law: float | SpeedLaw, length: float = 1.0) -> tuple[int, int, float]:
         """Return pieces and exponent of a row whose speeds are `length` times those of a law."""
-        if not isinstance(law, SpeedLaw) or grain(law) is not None:
+        if not isinstance(law, SpeedLaw) or anisotropy_of(law) is not None:
             return 0, 0, 0.0
         if (law, length) not in self.known:
             curve = curve_of(law).scaled(length)

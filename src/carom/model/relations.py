@@ -197,7 +197,7 @@ class Elements:
                 made = self.stiff[number]
                 for name, b in (("child_side", made.child[0]), ("parent_side", made.parent[0])):
                     made[name] = first + bodies.index(b) if b >= 0 else -1
-                solver.rows.off[solver.rows.first == first] = 1
+                solver.rows.ignored[solver.rows.first == first] = 1
                 continue
             k = next(relation)
             self.relations[k].first = len(terms)

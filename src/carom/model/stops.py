@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom._compiled.record_arrays import Columns, table
-from carom.model.arrays import CONTACT, STOP
+from carom.model.arrays import CONTACT, KIND_STOP
 from carom.model.more_forces import RESTITUTION, Pieces
 from carom.model.relations import Elements
 from carom.model.thresholds import DIRECTION
@@ -23,7 +23,7 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, curves
         number = elements.coordinates.number(stop.joint, stop.coordinate)
         c = elements.coordinates.rows[number][0]
         turns = coordinate_kind(stop.joint, stop.coordinate) == "turn"
-        row.number, row.solid, row.touches = first + stop.index, number, STOP
+        row.number, row.solid, row.kind = first + stop.index, number, KIND_STOP
         row.body, row.other = (c.child, c.parent) if c.child >= 0 else (c.parent, -1)
         size = elements.sizes[stop.joint.child.index]
         row.side = stop.side * (size if turns else 1.0)

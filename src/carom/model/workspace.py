@@ -12,7 +12,8 @@ from carom.model.arrays import STATE
 
 #: state of a contact between events
 CONTACT_STATE = [
-    ("seen", "i8"),  # workspace: mark while a group is gathered; in a crowd 1 + first active point
+    # workspace: mark while a group is gathered; in a crowd 1 + first active point
+    ("visited", "i8"),
     # 1 if the last event concerns it: it is checked before the next step; PUSHED_IN: it is judged in any case
     ("near", "i8"),
     ("jams", "i8"),  # 1 if an active point of it jams: an impact without collision must follow
@@ -28,11 +29,11 @@ ACTIVE_POINT = [
     ("feature", "i8"),  # stays the same as long as the same parts touch: number of the vertex
     ("body", "i8"),  # of the contact
     ("other", "i8"),
-    ("touches", "i8"),
+    ("kind", "i8"),  # of its contact
     ("mode", "i8"),  # 0 open, 1 slipping, 2 sticking
     ("next", "i8"),  # mode after the trial step
     ("comes_to_rest", "i8"),  # 1 if that step puts the body to rest
-    ("several", "i8"),  # 1 if it shares its bodies with other active points
+    ("shares", "i8"),  # 1 if it shares its bodies with other active points
     ("rest", "i8"),  # 1 if the body does not move at all
     ("jams", "i8"),  # 1 if it slips and no finite force keeps it closed
     ("point", "f8", 3),  # point of the core that carries the contact, body axes
@@ -75,10 +76,7 @@ POINT = [
     ("gap", "f8"),
     ("owner", "i8"),  # of the normal, and the parts of both solids (`carom.collision.features`)
     ("parts", "i8", 2),
-    # 0 for a usual point; rows of relative rotation: 1 rolling (t1, t2), 2 pivoting (t1), 3 a stop that ends a
-    # turn (n); 4: the normal row alone, of a stop that ends a slide; 5: the same in the place of t1, of a
-    # joint with friction
-    ("turns", "i8"),
+    ("motion", "i8"),  # that its rows measure: `MOTION_POINT`, ...
     ("length", "f8"),  # that converts an angular velocity to a speed
     (
         "moves",
@@ -86,6 +84,11 @@ POINT = [
     ),  # 1 if the surface of the other side moves in itself, as `field` says (`CONTACT`)
     ("field", "f8", (4, 3)),
 ]
+
+#: `motion` of a point: that of two points, in rows n, t1, t2; relative rotation of rolling (t1, t2), of
+#: pivoting (t1) and of a stop that ends a turn (n); of a stop that ends a slide (n); of a joint (t1)
+MOTION_POINT, MOTION_ROLL, MOTION_PIVOT = range(3)
+MOTION_STOP_TURN, MOTION_STOP_SLIDE, MOTION_JOINT = range(3, 6)
 
 #: index that stands for a static body
 STATIC = -2
@@ -215,7 +218,7 @@ SEARCH = [
     ("width", "f8"),
     ("tolerance", "f8"),
     ("eager", "i8"),  # 0 if events of several points wait for the end of the step
-    ("pending", "i8"),  # an action that waits for its unit to be compiled
+    ("pending", "i8"),  # an action that waits until arrays have grown
     ("horizon", "f8"),  # time in which bounces may end
     ("left", "f8"),  # time to the end of the step
     ("dt", "f8"),  # the trial step,

@@ -16,6 +16,7 @@ from carom.contact.rim import place_of, same_point
 from carom.contact.thresholds import REACH
 from carom.kinematics.contact_point import place
 from carom.model.actions import MODE_OPEN, MODE_STICK
+from carom.model.arrays import KIND_PAIR, KIND_VERTICES
 from carom.model.event_rows import begin_event, end_event
 from carom.model.parts_of_system import has_solids
 from carom.model.records import OPENS, SLIPS, STICKS
@@ -27,8 +28,8 @@ def begin_point(active_point, contact, c, feature, mode):
     """Write a new active point of contact c, marked as one of several, without a force."""
     active_point.contact, active_point.feature = c, feature
     active_point.body, active_point.other = contact.body, contact.other
-    active_point.touches = contact.touches
-    active_point.mode, active_point.next, active_point.rest, active_point.several = mode, mode, 0, 1
+    active_point.kind = contact.kind
+    active_point.mode, active_point.next, active_point.rest, active_point.shares = mode, mode, 0, 1
     active_point.due, active_point.bounces, active_point.left = 0, 0.0, 1.0
     active_point.heading[0], active_point.heading[1] = 0.0, 0.0
     active_point.W[:] = 0.0
@@ -54,10 +55,10 @@ def activate(system, data, closed_point):
     active.count[0] = i + 1
     active_point, contact = active.points[i], system.contacts[closed_point.contact]
     begin_point(active_point, contact, closed_point.contact, closed_point.feature, MODE_STICK)
-    active_point.several = 0
+    active_point.shares = 0
     for k in range(3):
         active_point.point[k] = closed_point.point[k]
-    if contact.touches == 0:
+    if contact.kind == KIND_VERTICES:
         active.carries[closed_point.feature] = 1
     active.contact_states[closed_point.contact].leaving = 0
     return i
@@ -66,7 +67,7 @@ def activate(system, data, closed_point):
 @kernel
 def set_anchor(system, active_point, state, work):
     """Store the present position of a vertex, at which it stays while it sticks."""
-    if active_point.touches != 0:
+    if active_point.kind != KIND_VERTICES:
         return
     point, x = work.placed[0], state[active_point.body].x
     place(system.contacts[active_point.contact], active_point.point, state, point)
@@ -77,7 +78,7 @@ def set_anchor(system, active_point, state, work):
 @kernel
 def deactivate(active, i):
     """Remove point i from the active set; the others keep their order."""
-    if active.points[i].touches == 0:
+    if active.points[i].kind == KIND_VERTICES:
         active.carries[active.points[i].feature] = 0
     active.contact_states[active.points[i].contact].leaving = 1
     last = active.count[0] - 1
@@ -121,7 +122,7 @@ def regroup(system, active, work):
     for i in range(active.count[0]):
         label = work.body[active.points[i].body].label
         count = work.body[label].n_active if label < n else joined
-        active.points[i].several = 1 if count > 1 else 0
+        active.points[i].shares = 1 if count > 1 else 0
 
 
 @kernel
@@ -147,7 +148,7 @@ def refresh_pairs(system, controls, data) -> bool:
     changed, i = False, 0
     while i < active.count[0]:
         active_point = active.points[i]
-        if active_point.touches != 1 or active_point.rest == 1:
+        if active_point.kind != KIND_PAIR or active_point.rest == 1:
             i += 1
             continue
         c, contact = active_point.contact, system.contacts[active_point.contact]

@@ -18,7 +18,7 @@ from carom.dynamics.adapt import allowed_error, note_miss
 from carom.dynamics.explicit import CONSTRAINTS_LOST, bound_accelerations_of, rubs, stages_within
 from carom.dynamics.thresholds import ERROR_SHARE
 from carom.model.actions import MODE_OPEN
-from carom.persistent.finish import land, note_modes, review
+from carom.persistent.finish import check_end, note_modes, write_end
 from carom.persistent.members import explicit_member, implicit_member
 from carom.persistent.rows import beyond_stop
 from carom.persistent.springs import FACTORED, count_factors
@@ -45,7 +45,7 @@ def contact_step(model, data, method, h):
     for i in range(active.count[0]):
         label = work.body[active.points[i].body].label
         joined = joined and label != n
-        if active.points[i].rest == 0 and not seen(active, i, label, work):
+        if active.points[i].rest == 0 and not was_visited(active, i, label, work):
             step_group(model, data, method, label, h)
     if joined:  # friction in joints alone: a group without points
         step_group(model, data, method, n, h)
@@ -53,7 +53,7 @@ def contact_step(model, data, method, h):
 
 
 @kernel
-def seen(active, i, label, work):
+def was_visited(active, i, label, work):
     """Return whether an earlier active point belongs to the same group."""
     for j in range(i):
         if work.body[active.points[j].body].label == label:
@@ -76,7 +76,7 @@ def step_group(model, data, method, label, h):
         result.friction = rubbed + h * method.b[0] * friction
         k = explicit_member(model, data, method, label, h)
         s = stages_within(method)
-        if k > 0 and land(model, data, label, k) and review(model, data, label, s, h, True):
+        if k > 0 and write_end(model, data, label, k) and check_end(model, data, label, s, h, True):
             note_errors(model, data, method.E, label, k, h)
             named = result.friction - rubbed + result.applied - had
             note_unnamed(model, data, label, named, 0.0, push)
@@ -121,9 +121,9 @@ def end_implicitly(model, data, A, label, h, closes):
     if not closes:
         note_left(model, data, k)
     note_modes(model, data, k, h)
-    if not land(model, data, label, k):
+    if not write_end(model, data, label, k):
         return False
-    review(model, data, label, A.shape[0], h, False)
+    check_end(model, data, label, A.shape[0], h, False)
     return True
 
 

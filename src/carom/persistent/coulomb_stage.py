@@ -17,8 +17,9 @@ import math
 from carom._compiled.decorators import kernel
 from carom.friction.layout import CONE, SLIDING
 from carom.impact.workspace import C, P, U
+from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent import thresholds as limits
-from carom.persistent.joint_rows import JOINT, is_driven, radius_of
+from carom.persistent.joint_rows import is_driven, radius_of
 from carom.persistent.settle import dot, greatest, settle
 from carom.persistent.sharing import find_idle, share
 from carom.persistent.springs import factor, moves, note_accelerations, unload
@@ -35,7 +36,7 @@ def solve_stage(k, hg, group):
     """
     closed = group.closed
     for i in range(k):
-        closed[i].loaded = 1 if closed[i].weight > 0.0 else 0
+        closed[i].presses = 1 if closed[i].weight > 0.0 else 0
     for turn in range(2 * k + 2):
         share(k, list_unknowns(k, group), group)
         idle = find_idle(k, group)
@@ -69,9 +70,9 @@ def change_loads(k, turn, group):
     if unload(k, turn < TOGETHER, group) > 0:
         return True
     for i in range(k):
-        if closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0:
+        if closed[i].motion == MOTION_POINT and closed[i].presses == 0 and closed[i].weight > 0.0:
             if dot(3 * k, group.W[3 * i], p) + group.v[C][3 * i] < -limits.SETTLED_SHARE * push:
-                closed[i].loaded = 1
+                closed[i].presses = 1
                 return True
     return False
 
@@ -81,9 +82,9 @@ def largest(k, group):
     """Return the greatest normal acceleration, or acceleration by friction of joints, without other forces."""
     push = 0.0
     for i in range(k):
-        if group.closed[i].turns == 0:
+        if group.closed[i].motion == MOTION_POINT:
             push = max(push, abs(group.v[C][3 * i]))
-        elif group.closed[i].turns == JOINT:
+        elif group.closed[i].motion == MOTION_JOINT:
             push = max(push, group.mu[i] * group.W[3 * i + 1, 3 * i + 1])
     return push
 
@@ -94,16 +95,16 @@ def list_unknowns(k, group):
     rows, n = group.equations.rows, 0
     for i in range(k):
         closed_point = group.closed[i]
-        parent = i if closed_point.turns == 0 else closed_point.parent
-        first = 0 if closed_point.turns == 0 else 1
-        bound = closed_point.turns == JOINT or group.closed[parent].loaded == 1
+        parent = i if closed_point.motion == MOTION_POINT else closed_point.parent
+        first = 0 if closed_point.motion == MOTION_POINT else 1
+        bound = closed_point.motion == MOTION_JOINT or group.closed[parent].presses == 1
         for a in range(3):
             row = 3 * i + a
             if bound and a >= first and moves(group, row) and (a == 0 or group.mu[i] > 0.0):
                 rows[n], n = row, n + 1
             else:
                 group.v[P][row] = 0.0
-        if closed_point.turns == JOINT and is_driven(group, i):
+        if closed_point.motion == MOTION_JOINT and is_driven(group, i):
             u = group.v[U][3 * i + 1]
             group.v[P][3 * i + 1] = -group.mu[i] if u > 0.0 else group.mu[i] if u < 0.0 else 0.0
     return n
@@ -189,7 +190,8 @@ def write_disc(k, n, i, width, hg, group):
     W, p = group.W, group.v[P]
     a, b, unit = rows[i], rows[i + width - 1], rows[i] // 3
     closed_point = group.closed[unit]
-    normal = 3 * (unit if closed_point.turns == 0 else closed_point.parent)  # below 0 for a joint
+    # that of the point, or of the parent of a torque; below 0 for a joint
+    normal = 3 * (unit if closed_point.motion == MOTION_POINT else closed_point.parent)
     scale = 0.5 * (W[a, a] + W[b, b])
     known = closed_point.passes == 1 if hg > 0.0 else group.kind[unit] == SLIDING
     first = group.v[C][a] if hg == 0.0 else group.v[U][a] / hg

@@ -58,7 +58,7 @@ def find_contact_event(system, active, work):
         if active_point.mode == MODE_OPEN or active_point.rest == 1:
             continue
         slips = active_point.mode == MODE_SLIP and active_point.next == MODE_SLIP
-        if active_point.several == 0 and slips and jam_margin(system, active_point) <= 0.0:
+        if active_point.shares == 0 and slips and jam_margin(system, active_point) <= 0.0:
             return EVENT_JAM, i
         if active_point.lift < 0.0:
             return EVENT_SEPARATE, i

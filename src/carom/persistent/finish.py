@@ -19,10 +19,11 @@ from carom.geometry.thresholds import REMAINDER, RESOLUTION
 from carom.impact.workspace import ACCELERATIONS, C, P, U
 from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
+from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.active_set import clear
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.jam import jams_among
-from carom.persistent.joint_rows import JOINT, place_coordinate, radius_of
+from carom.persistent.joint_rows import place_coordinate, radius_of
 from carom.persistent.margins import (
     greatest_push,
     set_grip,
@@ -36,9 +37,9 @@ from carom.persistent.rows import (
     SAME,
     accelerate_freely,
     bodies_of,
-    keep_way,
     push_bodies,
     set_modes,
+    store_slip,
     write_rows,
 )
 from carom.persistent.settle import greatest
@@ -56,32 +57,32 @@ from carom.persistent.thresholds import FEW_REST, FRICTION_LIMIT
 
 
 @unit
-def land(model, data, label, k) -> bool:
+def write_end(model, data, label, k) -> bool:
     """Bring bodies back to joints and surfaces, velocities to the tangents; return whether the joints close."""
     system, group, work, end = model.system, data.group, data.work, data.work.trial
     count, loaded = bodies_of(model, data, label)
     if loaded and not (project_position(system, end, True, 1e-14, work) <= RESOLUTION):
         return False
-    show(count, end, group, work)
+    copy_to_stage(count, end, group, work)
     set_surfaces(system, work.result[0].time)
     place_closed(system, k, end, group, group.points[0], work)
     note_passed(system, data.active, k, group, data.state, end)
     onto_surfaces(system, data, k, count, end)
     if loaded:
         project_velocity(system, end, False, work)
-    show(count, end, group, work)
+    copy_to_stage(count, end, group, work)
     for i in range(k):
-        if group.closed[i].turns == JOINT:
+        if group.closed[i].motion == MOTION_JOINT:
             one = system.relations.frictions[group.closed[i].active]
             c = system.relations.coordinates[one.coordinate]
             place_coordinate(system, c, end, group.points[0][i])
     onto_tangents(system, data, k, count)
-    show(count, end, group, work)
+    copy_to_stage(count, end, group, work)
     return True
 
 
 @kernel
-def show(count, state, group, work):
+def copy_to_stage(count, state, group, work):
     """Copy the bodies of a group to `work.stage`."""
     for m in range(count):
         copy_state(state[group.member[m]], work.stage[group.member[m]])
@@ -100,17 +101,18 @@ def note_modes(model, data, k, h):
         closed_point, u, p = group.closed[i], group.v[U], group.v[P]
         slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
         force = math.hypot(p[3 * i + 1], p[3 * i + 2])
-        bare = closed_point.turns == 0 and closed_point.loaded == 0  # round-off is no friction left
+        # of a point that does not press, round-off is no friction left
+        bare = closed_point.motion == MOTION_POINT and closed_point.presses == 0
         free = bare or not force < FRICTION_LIMIT * radius_of(group, i)
         full = slip > still and (free or slip > 2.0 * braked(i, h, group))
         full = full or turns_back(i, h, group)
         group.kind[i] = SLIDING if group.mu[i] == 0.0 or full else CONE
-        if closed_point.own == 0:
+        if closed_point.listed == 0:
             continue
         slides = group.kind[i] == SLIDING and slip > 0.0
         d1, d2 = u[3 * i + 1] / slip if slides else 0.0, u[3 * i + 2] / slip if slides else 0.0
-        keep_way(model.system, active, closed_point, d1, d2, slip if slides else 0.0)
-        if closed_point.turns == 0 and group.mu[i] > 0.0:
+        store_slip(model.system, active, closed_point, d1, d2, slip if slides else 0.0)
+        if closed_point.motion == MOTION_POINT and group.mu[i] > 0.0:
             next_mode = MODE_SLIP if group.kind[i] == SLIDING else MODE_STICK
             active.points[closed_point.active].next = next_mode
 
@@ -120,7 +122,7 @@ def braked(i, h, group):
     """Return the greatest change of the slip of a point, or of the rate of a joint, by friction in a time h."""
     W, q = group.W, 3 * i
     most = W[q + 1, q + 1]
-    if group.closed[i].turns != JOINT:
+    if group.closed[i].motion != MOTION_JOINT:
         most = max(most, W[q + 2, q + 2])
     return h * radius_of(group, i) * most
 
@@ -131,11 +133,13 @@ def turns_back(i, h, group):
 
     Friction cannot have braked it: where W vanishes, a rate of round-off would stop all bodies.
     """
-    return group.closed[i].turns == JOINT and abs(group.v[U][3 * i + 1]) > braked(i, h, group)
+    if group.closed[i].motion != MOTION_JOINT:
+        return False
+    return abs(group.v[U][3 * i + 1]) > braked(i, h, group)
 
 
 @unit
-def review(model, data, label, s, h, given) -> bool:
+def check_end(model, data, label, s, h, given) -> bool:
     """Write forces, margins and modes at the end of a step, in `work.stage`; return whether given modes lasted.
 
     The accelerations there are those of stage s. With `given` modes, slip must not have turned back, and what
@@ -149,9 +153,9 @@ def review(model, data, label, s, h, given) -> bool:
     accelerate_freely(model, data, loaded, count, s)
     k = write_rows(model, data, label, s)
     push = greatest(3 * k, group.v[C])
-    way = set_modes(system, active, k, group)
+    directions = set_modes(system, active, k, group)
     if given:
-        if way < (PASSED if locates(model, data) else SAME):
+        if directions < (PASSED if locates(model, data) else SAME):
             return False
         note_left(model, data, k)
     tolerance = rest_of(model, data, k, h)
@@ -163,7 +167,7 @@ def review(model, data, label, s, h, given) -> bool:
     at_rest = not on_drive(k, group.points[0]) and come_to_rest(system, data, tolerance, count)
     for i in range(k):
         closed_point = group.closed[i]
-        if closed_point.own == 0:
+        if closed_point.listed == 0:
             continue
         law = has_law(system, closed_point)
         if law:
@@ -171,7 +175,7 @@ def review(model, data, label, s, h, given) -> bool:
         slips = (
             given and not lasts and (breaks_away(i, push, group) if law else gains(i, push, group))
         )
-        if closed_point.turns == JOINT:
+        if closed_point.motion == MOTION_JOINT:
             one = system.relations.frictions[closed_point.active]
             one.force, one.stop = group.v[P][3 * i + 1], time_to_stop(i, group)
             one.grip = 1.0
@@ -184,7 +188,7 @@ def review(model, data, label, s, h, given) -> bool:
             continue
         active_point = active.points[closed_point.active]
         take_forces(active_point, i, group)
-        if closed_point.turns > 0:
+        if closed_point.motion != MOTION_POINT:
             continue
         if not lasts and group.kind[i] == CONE and active_point.next == MODE_SLIP:
             active_point.next = MODE_STICK
@@ -229,7 +233,7 @@ def solve_end(model, data, label, k, s, h):
         if stick_where_slip_ends(model, data, k, h):
             onto_tangents(model.system, data, k, count)
             velocities(k, group.points[0], work.trial, group.v[U])
-            show(count, work.trial, group, work)
+            copy_to_stage(count, work.trial, group, work)
             lasts = True
         if lasts:
             return True, True
@@ -262,7 +266,7 @@ def add_forces_of_corners(active, k, group):
     """Add the forces of corners that are no active points to that which stands for their pair."""
     for i in range(k):
         closed_point = group.closed[i]
-        if closed_point.own == 0 and closed_point.turns == 0:
+        if closed_point.listed == 0 and closed_point.motion == MOTION_POINT:
             force = active.points[closed_point.active].force
             for r in range(3):
                 force[r] += group.v[P][3 * i + r]
@@ -302,7 +306,7 @@ def stick_where_slip_ends(model, data, k, h):
     for i in range(k):
         closed_point = group.closed[i]
         closed_point.stays = 0
-        if group.kind[i] != SLIDING or group.mu[i] == 0.0 or closed_point.own == 0:
+        if group.kind[i] != SLIDING or group.mu[i] == 0.0 or closed_point.listed == 0:
             continue
         if turns_back(i, h, group):
             continue
@@ -318,7 +322,7 @@ def stick_where_slip_ends(model, data, k, h):
     for sticks in range(1, -1, -1):
         for i in range(k):
             closed_point = group.closed[i]
-            closed_point.loaded = 1 if closed_point.weight > 0.0 else 0
+            closed_point.presses = 1 if closed_point.weight > 0.0 else 0
             if closed_point.stays == 1:
                 group.kind[i] = CONE if sticks == 1 else SLIDING
                 set_friction(model.system, i, sticks == 0, group)
@@ -328,8 +332,8 @@ def stick_where_slip_ends(model, data, k, h):
         return False
     for i in range(k):
         if group.closed[i].stays == 1:
-            keep_way(model.system, active, group.closed[i], 0.0, 0.0, 0.0)
-            if group.closed[i].turns == 0:
+            store_slip(model.system, active, group.closed[i], 0.0, 0.0, 0.0)
+            if group.closed[i].motion == MOTION_POINT:
                 active.points[group.closed[i].active].next = MODE_STICK
     return True
 
@@ -337,9 +341,9 @@ def stick_where_slip_ends(model, data, k, h):
 @kernel
 def first_stop(system, active, closed_point):
     """Return the time to the stop of a slip that was predicted at the start of the step."""
-    if closed_point.turns == JOINT:
+    if closed_point.motion == MOTION_JOINT:
         return system.relations.frictions[closed_point.active].first_stop
-    return active.points[closed_point.active].first_stop[closed_point.turns]
+    return active.points[closed_point.active].first_stop[closed_point.motion]
 
 
 @kernel
@@ -347,7 +351,8 @@ def note_residual(active, k, group, work):
     """Raise the residual of the step to the greatest forbidden velocity."""
     worst = 0.0
     for i in range(k):
-        if group.closed[i].turns > 0 or not group.v[P][3 * i] > 0.0 or has_passed(active, i, group):
+        presses = group.closed[i].motion == MOTION_POINT and group.v[P][3 * i] > 0.0
+        if not presses or has_passed(active, i, group):
             continue
         worst = max(worst, abs(group.v[U][3 * i]))
         if group.kind[i] == CONE:

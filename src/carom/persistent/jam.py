@@ -16,6 +16,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.friction.layout import SLIDING
 from carom.impact.friction_law import PERSISTENT, depends_on_slip
+from carom.model.workspace import MOTION_POINT
 from carom.persistent.thresholds import JAM_MARGIN
 
 
@@ -42,7 +43,7 @@ def note_jam(active, active_point):
 @kernel
 def jams_among(i, found, group):
     """Return whether point i of several jams: it slips, k <= 0, and the contact problem has no solution."""
-    if found or group.kind[i] != SLIDING or group.closed[i].turns > 0:
+    if found or group.kind[i] != SLIDING or group.closed[i].motion != MOTION_POINT:
         return 0
     q, W = 3 * i, group.W
     along = W[q, q + 1] * group.heading[i, 0] + W[q, q + 2] * group.heading[i, 1]

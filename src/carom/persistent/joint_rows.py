@@ -17,10 +17,8 @@ from carom.impact.workspace import P
 from carom.kinematics.coordinate import along, drift, motion_along, push, speeds_of
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.model.arrays import REVOLUTE
+from carom.model.workspace import MOTION_JOINT, MOTION_PIVOT, MOTION_POINT
 from carom.persistent.thresholds import MOTOR_COMPLIANCE
-
-JOINT = 5  # `turns` of such an entry, and of its point if the coordinate is a displacement
-PIVOT = 2  # of its point if it is an angle
 
 
 @kernel
@@ -41,8 +39,8 @@ def _add_frictions(system, state, k, group, work) -> int:
         c = relations.coordinates[relations.frictions[i].coordinate]
         closed_point, point = group.closed[k], group.points[0][k]
         write_closed(-1, 0, point.core, closed_point)
-        closed_point.turns, closed_point.active, closed_point.parent = JOINT, i, -1
-        closed_point.own, closed_point.weight = 1, 1.0
+        closed_point.motion, closed_point.active, closed_point.parent = MOTION_JOINT, i, -1
+        closed_point.listed, closed_point.weight = 1, 1.0
         place_coordinate(system, c, state, point)
         closed_point.spring = MOTOR_COMPLIANCE * response_alone(system, c, state, work)
         group.mu[k] = relations.frictions[i].bound
@@ -66,7 +64,7 @@ def place_coordinate(system, c, state, point):
             r = parent_arm(c, state)
             point.arm_b[0], point.arm_b[1], point.arm_b[2] = r
     point.gap, point.length, point.moves = 0.0, 1.0, 0
-    point.turns = PIVOT if c.kind == REVOLUTE else JOINT
+    point.motion = MOTION_PIVOT if c.kind == REVOLUTE else MOTION_JOINT
 
 
 @kernel
@@ -98,9 +96,9 @@ def is_driven(group, i):
 def radius_of(group, i):
     """Return the greatest friction of a point or an entry under the forces in P."""
     closed_point = group.closed[i]
-    if closed_point.turns == JOINT:
+    if closed_point.motion == MOTION_JOINT:
         return group.mu[i]
-    normal = closed_point.parent if closed_point.turns > 0 else i
+    normal = closed_point.parent if closed_point.motion != MOTION_POINT else i
     return group.mu[i] * max(0.0, group.v[P][3 * normal])
 
 

@@ -26,6 +26,7 @@ from carom.model.actions import (
     MODE_SLIP,
     MODE_STICK,
 )
+from carom.model.workspace import MOTION_POINT, MOTION_ROLL
 from carom.persistent.rolling_friction import take_torque
 from carom.persistent.settle import greatest
 from carom.persistent.thresholds import EVENT_ERROR, EVENT_MARGIN, NO_MARGIN
@@ -40,8 +41,8 @@ def greatest_push(k, group):
     """
     for i in range(k):
         a = group.closed[i]
-        for j in range(i if a.turns == 0 and group.points[0][i].b != -1 else 0):
-            if group.closed[j].contact == a.contact and group.closed[j].turns == 0:
+        for j in range(i if a.motion == MOTION_POINT and group.points[0][i].b != -1 else 0):
+            if group.closed[j].contact == a.contact and group.closed[j].motion == MOTION_POINT:
                 return 0.0
     return greatest(3 * k, group.v[C])
 
@@ -58,9 +59,9 @@ def time_to_stop(i, group):
 @kernel
 def take_forces(active_point, i, group):
     """Write force and W of the closed point i to its active point, and when slip stops; or its torque."""
-    turns = group.closed[i].turns
-    if turns > 0:
-        active_point.turn_stop[turns - 1] = time_to_stop(i, group)
+    motion = group.closed[i].motion
+    if motion != MOTION_POINT:
+        active_point.turn_stop[motion - MOTION_ROLL] = time_to_stop(i, group)
         take_torque(active_point, i, group)
         return
     active_point.stop = time_to_stop(i, group)
@@ -81,7 +82,7 @@ def set_margins(active_point, i, push, group):
     if active_point.next == MODE_OPEN:
         active_point.lift = -max(a[q] / push, 2.0 * EVENT_ERROR)
         return
-    if active_point.several == 0:  # its force is unique: both are continuous
+    if active_point.shares == 0:  # its force is unique: both are continuous
         active_point.lift = p[q] * W[q, q] / push if p[q] > 0.0 else -a[q] / push
     elif p[q] <= 0.0 and a[q] > NO_MARGIN * push:
         active_point.lift = -a[q] / push
@@ -103,7 +104,7 @@ def set_grip(active_point, i, push, group):
     else:
         left = group.mu[i] * p[q] - math.sqrt(p[q + 1] ** 2 + p[q + 2] ** 2)
         grip = left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push
-        active_point.grip = grip if active_point.several == 0 else max(grip, EVENT_MARGIN)
+        active_point.grip = grip if active_point.shares == 0 else max(grip, EVENT_MARGIN)
 
 
 @kernel

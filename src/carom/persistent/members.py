@@ -38,8 +38,8 @@ from carom.friction.strategy import budget
 from carom.geometry.rotation import multiply, normalize
 from carom.geometry.thresholds import ROUND_OFF
 from carom.impact.workspace import C, P, U
+from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.coulomb_stage import solve_stage
-from carom.persistent.joint_rows import JOINT
 from carom.persistent.rolling_friction import bound_turning
 from carom.persistent.rows import (
     PASSED,
@@ -231,9 +231,9 @@ def solve_impulses(model, data, k, h):
     turning = False
     for i in range(k):
         group.kind[i] = CONE
-        if group.closed[i].turns == JOINT:
+        if group.closed[i].motion == MOTION_JOINT:
             group.kind[i], group.heading[i, 0] = DISC, h * group.mu[i]
-        elif group.closed[i].turns > 0:
+        elif group.closed[i].motion != MOTION_POINT:
             group.mu[i], turning = 1.0, True
     group.cone.mismatch[ENOUGH], count[BUDGET] = 0.0, budget(k)
     problem = by_reference(
@@ -246,7 +246,7 @@ def solve_impulses(model, data, k, h):
         if turning and not change > 1e-14:
             break
     for i in range(k):
-        if 0 < group.closed[i].turns < JOINT:
+        if MOTION_POINT < group.closed[i].motion < MOTION_JOINT:
             group.mu[i] = bound_per_force(model.system, group.points[0][i], group.closed[i])
     for i in range(3 * k):
         p[i] /= h

@@ -35,8 +35,10 @@ from carom.contact.thresholds import ACTIVE_REACH, PLACE_ERROR, REACH
 from carom.dynamics.thresholds import NORMAL_ERROR
 from carom.geometry.rotation import cross, rotate_back
 from carom.geometry.thresholds import RESOLUTION, ROUND_OFF
+from carom.kinematics.anisotropy import lengths_of_tangents, turn_plain
 from carom.kinematics.contact_point import copy_point
-from carom.kinematics.grain import lengths_of_tangents, turn_plain
+from carom.model.arrays import KIND_PAIR
+from carom.model.workspace import MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
 from carom.persistent.active_set import is_first
 from carom.persistent.joint_rows import add_frictions
 
@@ -49,7 +51,7 @@ def find_points(system, data, label):
         active_point = active.points[i]
         if work.body[active_point.body].label != label:
             continue
-        if active_point.touches != 1:
+        if active_point.kind != KIND_PAIR:
             k = add_known(system, data, i, k)
         elif is_first(active, i):
             k = add_pair(system, data, i, k)
@@ -67,7 +69,7 @@ def add_known(system, data, i, k):
         return k
     closed_point = group.closed[k]
     write_closed(one.contact, one.feature, one.point, closed_point)
-    closed_point.active, closed_point.own = i, 1
+    closed_point.active, closed_point.listed = i, 1
     place_any(system, one, work.stage, group.points[0][k], work)
     return k + 1
 
@@ -87,7 +89,7 @@ def add_pair(system, data, i, k) -> int:
                 one = active.points[j]
                 t = touch_of_active(system, contact, one.feature, one.point, state, work)
                 k = add_found(system, data, c, work.touches[t], j, k)
-                data.group.closed[k - 1].own = 1
+                data.group.closed[k - 1].listed = 1
         return k
     if is_of_moving(contact) and has_left(system, data, c):
         return k
@@ -119,7 +121,7 @@ def has_left(system, data, c):
         return False
     for j in range(active.count[0]):
         d = active.points[j].contact
-        if d != c and active.points[j].touches == 1 and related(system, c, d):
+        if d != c and active.points[j].kind == KIND_PAIR and related(system, c, d):
             other = system.contacts[d]
             if find_touches(system, other, state, REACH * smaller(other), work) > 0:
                 return True
@@ -179,7 +181,7 @@ def add_face(system, data, c, i, k):
             k = add_found(system, data, c, work.touches[t], i, k)
             own = place_of(system, data.active, c, work.touches[t], state)
             if own >= 0:
-                data.group.closed[k - 1].active, data.group.closed[k - 1].own = own, 1
+                data.group.closed[k - 1].active, data.group.closed[k - 1].listed = own, 1
     return k
 
 
@@ -196,7 +198,7 @@ def add_nearest(system, data, j, k):
             if same_point(system, contact, touch, touch.feature, group.closed[i].point, state):
                 return k
     k = add_found(system, data, c, touch, j, k)
-    group.closed[k - 1].own = 1
+    group.closed[k - 1].listed = 1
     return k
 
 
@@ -207,7 +209,7 @@ def add_found(system, data, c, touch, j, k):
     if k == group.closed.shape[0]:
         return k
     add_touch(system.contacts[c], c, touch, data.work.stage, k, group)
-    group.closed[k].active, group.closed[k].own = j, 0
+    group.closed[k].active, group.closed[k].listed = j, 0
     return k + 1
 
 
@@ -223,14 +225,14 @@ def add_turning(system, active, k, group):
         turning = system.contacts[closed_point.contact].turning
         if active.points[closed_point.active].bounces > 0.0:
             continue
-        for turns in range(1, 3):
-            if turning[turns - 1] > 0.0 and total < group.closed.shape[0]:
+        for motion in (MOTION_ROLL, MOTION_PIVOT):
+            if turning[motion - MOTION_ROLL] > 0.0 and total < group.closed.shape[0]:
                 more, point = group.closed[total], group.points[0][total]
-                write_turning(i, turns, closed_point, more)
-                more.own = closed_point.own
+                write_turning(i, motion, closed_point, more)
+                more.listed = closed_point.listed
                 copy_point(group.points[0][i], point)
                 contact = system.contacts[closed_point.contact]
-                turn_plain(contact, turns, smaller(contact), point)
+                turn_plain(contact, motion, smaller(contact), point)
                 total += 1
     return total
 
@@ -240,10 +242,10 @@ def weigh(system, k, group):
     """Write weight and compliance of the spring of each point: corners of the hull of its patch have one."""
     points = group.points[0]
     for i in range(k):
-        group.closed[i].weight, group.closed[i].patch, group.closed[i].loaded = -1.0, -1, 0
+        group.closed[i].weight, group.closed[i].patch, group.closed[i].presses = -1.0, -1, 0
     for i in range(k):
         closed_point = group.closed[i]
-        if closed_point.turns > 0:
+        if closed_point.motion != MOTION_POINT:
             closed_point.weight = 1.0
             continue
         if closed_point.weight < 0.0:
@@ -257,7 +259,8 @@ def weigh(system, k, group):
 @kernel
 def in_patch(system, p, q):
     """Return whether two points are of the same bodies, in one plane."""
-    if p.a != q.a or p.turns != 0 or q.turns != 0 or (p.b != q.b and max(p.b, q.b) >= 0):
+    points = p.motion == MOTION_POINT and q.motion == MOTION_POINT
+    if not points or p.a != q.a or (p.b != q.b and max(p.b, q.b) >= 0):
         return False
     n, m, size = p.axes[0], q.axes[0], system.bodies[p.a].extent
     across, height = 0.0, 0.0
@@ -273,7 +276,7 @@ def weigh_patch(system, first, k, group):
     points, closed, perimeter = group.points[0], group.closed, 0.0
     size, start = system.bodies[points[first].a].extent, first
     for j in range(first, k):
-        if closed[j].turns == 0 and closed[j].weight < 0.0:
+        if closed[j].motion == MOTION_POINT and closed[j].weight < 0.0:
             if in_patch(system, points[first], points[j]):
                 closed[j].weight, closed[j].patch = 0.0, first
                 x, y = in_plane(points[first], points[j])

@@ -24,7 +24,9 @@ from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.workspace import RETURN, P
 from carom.kinematics.contact_point import in_axes
 from carom.model.actions import MODE_STICK
-from carom.persistent.joint_rows import JOINT, is_driven
+from carom.model.arrays import KIND_PAIR, KIND_VERTICES
+from carom.model.workspace import MOTION_JOINT, MOTION_POINT
+from carom.persistent.joint_rows import is_driven
 from carom.persistent.settle import greatest, settle
 from carom.persistent.springs import list_given, response
 from carom.persistent.thresholds import EQUATION_ERROR, PROXIMAL_SPRING
@@ -39,7 +41,7 @@ def mark_rows(system, active, k, group):
     some = False
     for i in range(k):
         group.closed[i].rows = 0
-        if group.closed[i].turns > 0:
+        if group.closed[i].motion != MOTION_POINT:
             continue
         active_point, p, q = active.points[group.closed[i].active], group.v[P], 3 * i
         if group.points[0][i].gap < -1e-12 * system.contacts[active_point.contact].extent:
@@ -49,7 +51,7 @@ def mark_rows(system, active, k, group):
             some = True
             friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
             contact = system.contacts[active_point.contact]
-            core = contact.radius == 0.0 and contact.touches == 0
+            core = contact.radius == 0.0 and contact.kind == KIND_VERTICES
             inside = friction < (1.0 - 1e-9) * group.mu[i] * p[q]
             sticks = active_point.mode == MODE_STICK and inside
             # where it sticks to a surface that moves, its velocity alone is returned
@@ -119,9 +121,9 @@ def mark_tangents(active, k, group):
     for i in range(k):
         closed_point, sticks = group.closed[i], group.kind[i] != SLIDING
         closed_point.rows = 0
-        if closed_point.turns == JOINT:
+        if closed_point.motion == MOTION_JOINT:
             closed_point.rows = 1 if sticks and not is_driven(group, i) else 0
-        elif closed_point.turns == 0 and group.v[P][3 * i] > 0.0:
+        elif closed_point.motion == MOTION_POINT and group.v[P][3 * i] > 0.0:
             closed_point.rows = 0 if has_passed(active, i, group) else 3 if sticks else 1
 
 
@@ -172,7 +174,7 @@ def errors(system, data, k, state):
         active_point = data.active.points[closed_point.active]
         contact = system.contacts[closed_point.contact]
         tiny = round_off(contact, state)
-        if contact.touches == 1:
+        if contact.kind == KIND_PAIR:
             tiny = 4.0 * round_off_of_both(contact, state)
         x[3 * i] = point.gap
         small = small and abs(point.gap) <= tiny

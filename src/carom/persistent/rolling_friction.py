@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.impact.workspace import C, P
-from carom.persistent.joint_rows import JOINT
+from carom.model.workspace import MOTION_JOINT, MOTION_POINT, MOTION_ROLL
 
 
 @kernel
@@ -21,10 +21,10 @@ def bound_turning(system, k, group):
     change, largest = 0.0, 0.0
     for i in range(k):
         closed_point = group.closed[i]
-        if closed_point.turns == 0 or closed_point.turns == JOINT:
+        if closed_point.motion == MOTION_POINT or closed_point.motion == MOTION_JOINT:
             continue
         q, W = 3 * i, group.W
-        d = system.contacts[closed_point.contact].turning[closed_point.turns - 1]
+        d = system.contacts[closed_point.contact].turning[closed_point.motion - MOTION_ROLL]
         bound = d / group.points[0][i].length * max(0.0, group.v[P][3 * closed_point.parent])
         W[q, q] = 0.5 * (W[q + 1, q + 1] + W[q + 2, q + 2])
         change = max(change, abs(group.v[C][q] + W[q, q] * bound))
@@ -37,7 +37,7 @@ def bound_turning(system, k, group):
 def take_torque(active_point, i, group):
     """Write the torque of the closed point i, of rolling or of pivoting, to its active point."""
     p, length = group.v[P], group.points[0][i].length
-    if group.closed[i].turns == 1:
+    if group.closed[i].motion == MOTION_ROLL:
         active_point.torque[1] = length * p[3 * i + 1]
         active_point.torque[2] = length * p[3 * i + 2]
     else:

@@ -25,9 +25,9 @@ from carom.kinematics.contact_point import power_of_surface
 from carom.kinematics.flight import free_rates
 from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.actions import MODE_SLIP
+from carom.model.arrays import KIND_VERTICES
+from carom.model.workspace import MOTION_JOINT, MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
 from carom.persistent.joint_rows import (
-    JOINT,
-    PIVOT,
     drift_of_coordinate,
     is_driven,
     mode_of_joint,
@@ -37,7 +37,7 @@ from carom.persistent.slip_law import follow_laws
 from carom.persistent.springs import bound_per_force
 from carom.persistent.thresholds import SLIP_COSINE, STOPPED_SLIP
 
-TURNED, PASSED, SAME = range(3)  # ways of slip within a step (`set_modes`)
+TURNED, PASSED, SAME = range(3)  # what became of directions of slip within a step (`set_modes`)
 
 
 @kernel
@@ -90,16 +90,16 @@ def write_motion(system, k, state, rates, group, work):
     accelerations(k, points, state, rates, group.v[C])
     for i in range(k):
         closed_point = group.closed[i]
-        if closed_point.turns == JOINT:
+        if closed_point.motion == MOTION_JOINT:
             c = drift_of_coordinate(system, closed_point.active, state, work)
             group.v[C][3 * i + 1] += c
             group.mu[i] = system.relations.frictions[closed_point.active].bound
             continue
         contact = system.contacts[closed_point.contact]
         group.mu[i] = contact.friction_held
-        if closed_point.turns > 0:
+        if closed_point.motion != MOTION_POINT:
             group.mu[i] = bound_per_force(system, points[i], closed_point)
-        elif contact.touches != 0:
+        elif contact.kind != KIND_VERTICES:
             d = drift_of(system, contact, closed_point.feature, points[i], state, work)
             for r in range(3):
                 group.v[C][3 * i + r] += d[r]
@@ -107,53 +107,54 @@ def write_motion(system, k, state, rates, group, work):
 
 @kernel
 def set_modes(system, active, k, group):
-    """Write which of k points slide, and where to; return what has become of the way of the start of the step.
+    """Write which of k points slide, and where to; return what became of the directions of slip at the start.
 
-    It is `SAME`, or slip has `PASSED` its stop, and keeps its heading, or has `TURNED`. All springs press at
+    They are the `SAME`, or a slip `PASSED` its stop, and keeps its heading, or `TURNED`. All springs press at
     first.
     """
-    way, fastest = SAME, 0.0
+    directions, fastest = SAME, 0.0
     for i in range(k):
         u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
         fastest = max(fastest, math.sqrt(u1 * u1 + u2 * u2))
     for i in range(k):
         closed_point = group.closed[i]
-        slips, d1, d2, speed = way_of(system, active, closed_point)
+        slips, d1, d2, speed = slip_at_start(system, active, closed_point)
         u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
         slip = math.sqrt(u1 * u1 + u2 * u2)
-        if closed_point.own == 0 and closed_point.turns == 0:  # its own velocity decides
+        # what is not listed slips by its own velocity
+        if closed_point.listed == 0 and closed_point.motion == MOTION_POINT:
             slips = slip > REMAINDER * fastest
-        closed_point.loaded = 1 if closed_point.weight > 0.0 else 0
+        closed_point.presses = 1 if closed_point.weight > 0.0 else 0
         group.kind[i] = SLIDING if slips or group.mu[i] == 0.0 else CONE
         group.heading[i, 0], group.heading[i, 1] = d1, d2
-        if closed_point.turns == JOINT and is_driven(group, i):
+        if closed_point.motion == MOTION_JOINT and is_driven(group, i):
             group.kind[i] = SLIDING
             speed = group.v[U][3 * i + 1]
             group.heading[i, 0] = 1.0 if speed > 0.0 else -1.0 if speed < 0.0 else 0.0
             continue
         if not slips or group.mu[i] == 0.0:
             continue
-        if closed_point.own == 1 and not slip > STOPPED_SLIP * speed:
+        if closed_point.listed == 1 and not slip > STOPPED_SLIP * speed:
             continue
-        if closed_point.own == 1 and u1 * d1 + u2 * d2 < -SLIP_COSINE * slip:
-            way = min(way, PASSED)
+        if closed_point.listed == 1 and u1 * d1 + u2 * d2 < -SLIP_COSINE * slip:
+            directions = min(directions, PASSED)
             continue
-        if closed_point.own == 1 and not u1 * d1 + u2 * d2 > SLIP_COSINE * slip:
-            way = TURNED
+        if closed_point.listed == 1 and not u1 * d1 + u2 * d2 > SLIP_COSINE * slip:
+            directions = TURNED
         if slip > 0.0:
             group.heading[i, 0], group.heading[i, 1] = u1 / slip, u2 / slip
-    return way
+    return directions
 
 
 @kernel
 def beyond_stop(system, active, i, group):
     """Return the speed [m/s] that a point has against its slip at the start of the step, 0 if none."""
     point, u = group.points[0][i], group.v[U]
-    slips, d1, d2, _ = way_of(system, active, group.closed[i])
+    slips, d1, d2, _ = slip_at_start(system, active, group.closed[i])
     speed = -(u[3 * i + 1] * d1 + u[3 * i + 2] * d2)
     if not (slips and speed > 0.0):
         return 0.0
-    return speed * (system.bodies[point.a].extent if point.turns == PIVOT else 1.0)
+    return speed * (system.bodies[point.a].extent if point.motion == MOTION_PIVOT else 1.0)
 
 
 @kernel
@@ -162,7 +163,7 @@ def slip_of(system, data, i, still):
     group, closed_point, state = data.group, data.group.closed[i], data.state
     u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
     speed = math.hypot(u1, u2)
-    if closed_point.turns == JOINT:
+    if closed_point.motion == MOTION_JOINT:
         return float(mode_of_joint(system, closed_point.active, u1, still, state)), 0.0, speed
     if speed > max(10.0 * slow(system.contacts[closed_point.contact], state), still):
         return u1 / speed, u2 / speed, speed
@@ -170,30 +171,30 @@ def slip_of(system, data, i, still):
 
 
 @kernel
-def keep_way(system, active, closed_point, d1, d2, speed):
+def store_slip(system, active, closed_point, d1, d2, speed):
     """Keep direction and speed of the slip of a point, joint or torque for the next step; zeros if it holds."""
-    if closed_point.turns == JOINT:
+    if closed_point.motion == MOTION_JOINT:
         one = system.relations.frictions[closed_point.active]
         one.next, one.speed = 1 if d1 > 0.0 else -1 if d1 < 0.0 else 0, speed
         return
     active_point = active.points[closed_point.active]
-    if closed_point.turns > 0:
-        way = active_point.turning[closed_point.turns - 1]
-        way[0], way[1], way[2] = d1, d2, speed
+    if closed_point.motion != MOTION_POINT:
+        turning = active_point.turning[closed_point.motion - MOTION_ROLL]
+        turning[0], turning[1], turning[2] = d1, d2, speed
         return
     active_point.heading[0], active_point.heading[1], active_point.speed = d1, d2, speed
 
 
 @kernel
-def way_of(system, active, closed_point):
+def slip_at_start(system, active, closed_point):
     """Return whether a point slips (or rolls, or pivots), and direction and speed at the start of the step."""
-    if closed_point.turns == JOINT:
+    if closed_point.motion == MOTION_JOINT:
         one = system.relations.frictions[closed_point.active]
         return one.next != 0, float(one.next), 0.0, one.speed
     active_point = active.points[closed_point.active]
-    if closed_point.turns > 0:
-        way = active_point.turning[closed_point.turns - 1]
-        return way[2] > 0.0, way[0], way[1], way[2]
+    if closed_point.motion != MOTION_POINT:
+        turning = active_point.turning[closed_point.motion - MOTION_ROLL]
+        return turning[2] > 0.0, turning[0], turning[1], turning[2]
     d = active_point.heading
     return active_point.next == MODE_SLIP, d[0], d[1], active_point.speed
 

@@ -23,9 +23,10 @@ from carom.impact.thresholds import VELOCITY_LEFT
 from carom.impact.workspace import ACCELERATIONS, C, P, U
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_OPEN, MODE_STICK, PUSHED_IN
-from carom.model.arrays import STOP
+from carom.model.arrays import KIND_STOP
 from carom.model.event_rows import begin_event, end_event
 from carom.model.records import PERSISTS
+from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.active_set import activate, regroup, set_anchor, switch, unite_loaded
 from carom.persistent.bounces import (
     bounces_end,
@@ -38,7 +39,7 @@ from carom.persistent.bounces import (
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.finish import add_forces_of_corners
 from carom.persistent.jam import jams_among, note_jam
-from carom.persistent.joint_rows import JOINT, add_frictions
+from carom.persistent.joint_rows import add_frictions
 from carom.persistent.margins import take_forces
 from carom.persistent.points import weigh
 from carom.persistent.return_to_surfaces import onto_surfaces
@@ -83,7 +84,7 @@ def activate_several(model, data, k, label, horizon):
     pose_forces(model, data, rows, label)
     for row in range(3 * rows):  # a first guess: those of another group, or of other points
         group.v[P][row] = 0.0
-    judge(model, data, k, rows, horizon)
+    decide_active(model, data, k, rows, horizon)
     if leave_unreachable(system, state, k, group):
         solve_among(system, k, rows, group)
     new, stay, first = -1, False, clock.event
@@ -124,7 +125,7 @@ def pose_forces(model, data, k, label):
 
 
 @kernel
-def judge(model, data, k, rows, horizon):
+def decide_active(model, data, k, rows, horizon):
     """Mark the points that become or stay active; `rows` counts friction in joints too.
 
     First the points that do not leave and have a normal force; then the points whose bounces end within
@@ -228,13 +229,13 @@ def first_forces(model, data, label, first):
     k, _, _, _, found = first_stage(model, data, label)
     for i in range(k):
         closed_point = group.closed[i]
-        if closed_point.own == 0 or closed_point.turns == JOINT:
+        if closed_point.listed == 0 or closed_point.motion == MOTION_JOINT:
             continue
         active_point = active.points[closed_point.active]
         take_forces(active_point, i, group)
         if jams_among(i, found, group) == 1:
             note_jam(active, active_point)
-        if closed_point.turns > 0:
+        if closed_point.motion != MOTION_POINT:
             continue
         mode, before = active_point.next, active_point.mode
         active_point.mode = mode
@@ -269,7 +270,7 @@ def lay_down(model, data, k, label):
     """
     system, state, group, clock, off = model.system, data.state, data.group, data.clocks[0], False
     for i in range(k):
-        if group.closed[i].turns == 0 and group.v[P][3 * i] > 0.0:
+        if group.closed[i].motion == MOTION_POINT and group.v[P][3 * i] > 0.0:
             size = system.contacts[group.closed[i].contact].extent
             off = off or abs(group.points[0][i].gap) > RESOLUTION * size
     if not off:
@@ -279,10 +280,10 @@ def lay_down(model, data, k, label):
     count = members(work, label, group.member)
     for c in range(system.contacts.shape[0]):
         outside = concerns(system.contacts[c], label, work) and not inside(system, c, state, work)
-        active.contact_states[c].seen = 1 if outside else 0
+        active.contact_states[c].visited = 1 if outside else 0
     onto_surfaces(system, data, k, count, state)
     for c in range(system.contacts.shape[0]):
-        if active.contact_states[c].seen == 1 and inside(system, c, state, work):
+        if active.contact_states[c].visited == 1 and inside(system, c, state, work):
             active.contact_states[c].near = PUSHED_IN
     after, at_end, _ = energies(system, state, clock.now)
     clock.bounces += after + at_end - kinetic - potential
@@ -292,7 +293,7 @@ def lay_down(model, data, k, label):
 def inside(system, c, state, work):
     """Return whether the bodies of a contact, which is no stop, penetrate each other."""
     contact = system.contacts[c]
-    if contact.touches == STOP or apart(system, contact, state, 0.0):
+    if contact.kind == KIND_STOP or apart(system, contact, state, 0.0):
         return False
     return least_gap(system, contact, state, work) < -RESOLUTION * smaller(contact)
 

@@ -16,6 +16,7 @@ from carom._compiled.decorators import kernel
 from carom.friction import lu
 from carom.geometry.thresholds import REMAINDER
 from carom.impact.workspace import P
+from carom.model.workspace import MOTION_POINT
 from carom.persistent.joint_rows import radius_of
 from carom.persistent.springs import SHARES, factor, grip, soften
 from carom.persistent.thresholds import FREEDOM_ERROR, PROXIMAL_SPRING
@@ -32,7 +33,7 @@ def find_idle(k, group):
     equations, closed, W, n, size = group.equations, group.closed, group.W, 0, 0.0
     rows, x, Y, Z = equations.chosen, equations.x, group.idle[0], group.idle[1]
     for i in range(k):
-        if closed[i].turns == 0 and closed[i].loaded == 1:
+        if closed[i].motion == MOTION_POINT and closed[i].presses == 1:
             rows[n], n, size = 3 * i, n + 1, max(size, closed[i].spring)
     for i in range(n):
         for j in range(n):

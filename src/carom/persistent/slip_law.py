@@ -15,7 +15,8 @@ from carom.geometry.thresholds import REMAINDER
 from carom.impact.friction_law import PERSISTENT, depends_on_slip, in_slip, law_of
 from carom.impact.workspace import ACCELERATIONS, P, U
 from carom.model.actions import MODE_SLIP, MODE_STICK
-from carom.persistent.joint_rows import JOINT, radius_of
+from carom.model.workspace import MOTION_JOINT, MOTION_POINT
+from carom.persistent.joint_rows import radius_of
 from carom.persistent.settle import dot
 from carom.persistent.thresholds import BREAK_AWAY, FRICTION_LIMIT
 
@@ -25,11 +26,11 @@ TURNS_BACK = 8  # iterations of a stage in which slip that turns back may still 
 @kernel
 def has_law(system, closed_point):
     """Return whether the friction of a point or a joint is a law."""
-    if closed_point.turns == JOINT:
+    if closed_point.motion == MOTION_JOINT:
         one = system.relations.frictions[closed_point.active]
         return one.last_piece > one.piece
     contact = system.contacts[closed_point.contact]
-    return closed_point.turns == 0 and depends_on_slip(contact, PERSISTENT)
+    return closed_point.motion == MOTION_POINT and depends_on_slip(contact, PERSISTENT)
 
 
 @kernel
@@ -39,7 +40,7 @@ def set_friction(system, i, slips, group):
     if not has_law(system, closed_point):
         return
     speed = math.hypot(u[3 * i + 1], u[3 * i + 2])
-    if closed_point.turns == JOINT:
+    if closed_point.motion == MOTION_JOINT:
         one = system.relations.frictions[closed_point.active]
         law = (one.piece, one.last_piece, one.exponent)
         group.mu[i] = value_at(system.curves, law, abs(u[3 * i + 1])) if slips else one.bound
@@ -62,7 +63,7 @@ def follow_laws(system, active, k, group):
         closed_point = group.closed[i]
         if not has_law(system, closed_point):
             continue
-        if closed_point.own == 1:
+        if closed_point.listed == 1:
             set_friction(system, i, slips_by_mode(system, active, closed_point), group)
         else:
             slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
@@ -72,7 +73,7 @@ def follow_laws(system, active, k, group):
 @kernel
 def slips_by_mode(system, active, closed_point):
     """Return whether a point, or a joint, slips by its mode."""
-    if closed_point.turns == JOINT:
+    if closed_point.motion == MOTION_JOINT:
         return system.relations.frictions[closed_point.active].next != 0
     return active.points[closed_point.active].next == MODE_SLIP
 
@@ -108,7 +109,7 @@ def grip_by_law(i, push, group):
 @kernel
 def note_kink(system, active, closed_point, slip):
     """Write the margins before the next kink of a law, of a point or a joint, at start and end of a step."""
-    if closed_point.turns == JOINT:
+    if closed_point.motion == MOTION_JOINT:
         one = system.relations.frictions[closed_point.active]
         law = (one.piece, one.last_piece, one.exponent)
         before, kink, slips = one.began, one.kink, one.mode != 0
@@ -145,7 +146,7 @@ def renew_modes(model, active, k, hg, turn, group):
     system, p, changed = model.system, group.v[P], False
     for i in range(k):
         closed_point, q = group.closed[i], 3 * i
-        if closed_point.own == 0 or not has_law(system, closed_point):
+        if closed_point.listed == 0 or not has_law(system, closed_point):
             continue
         u1 = group.v[U][q + 1] + hg * dot(3 * k, group.W[q + 1], p)
         u2 = group.v[U][q + 2] + hg * dot(3 * k, group.W[q + 2], p)
@@ -155,7 +156,7 @@ def renew_modes(model, active, k, hg, turn, group):
         if slips == (full and not (slips and back)):
             continue
         changed = True
-        if closed_point.turns == JOINT:
+        if closed_point.motion == MOTION_JOINT:
             one = system.relations.frictions[closed_point.active]
             one.next = 0 if slips else 1 if u1 > 0.0 else -1
         else:
@@ -166,7 +167,7 @@ def renew_modes(model, active, k, hg, turn, group):
 @kernel
 def goes_back(system, active, closed_point, u1, u2):
     """Return whether the slip (u1, u2) is against that at the start of the step."""
-    if closed_point.turns == JOINT:
+    if closed_point.motion == MOTION_JOINT:
         one = system.relations.frictions[closed_point.active]
         return one.speed > 0.0 and one.next * u1 <= 0.0
     active_point = active.points[closed_point.active]

@@ -30,8 +30,9 @@ from carom.geometry.thresholds import LAST_DIGIT, REMAINDER, ROUND_OFF
 from carom.impact.thresholds import GROUP_ERROR, LOADED_PART
 from carom.impact.workspace import ACCELERATIONS, C, P
 from carom.model.allowance import COUNT_FACTORS
+from carom.model.workspace import MOTION_JOINT, MOTION_POINT, MOTION_ROLL
 from carom.persistent import thresholds as limits
-from carom.persistent.joint_rows import JOINT, is_driven
+from carom.persistent.joint_rows import is_driven
 from carom.persistent.settle import add_product, greatest, settle
 
 SHARES = 6  # rounds until the compliances of stick are found
@@ -41,14 +42,15 @@ FACTORED = 1  # place of the work of factors in `Equations.iterations`: a point 
 @kernel
 def bound_per_force(system, point, closed_point):
     """Return the greatest impulse in the rows of rolling or pivoting for a unit normal one: d over a length."""
-    return system.contacts[closed_point.contact].turning[closed_point.turns - 1] / point.length
+    turning = system.contacts[closed_point.contact].turning
+    return turning[closed_point.motion - MOTION_ROLL] / point.length
 
 
 @unit
 def solve_springs(k, group) -> bool:
     """Write the forces of given modes, and accelerations of all points; return whether they exist.
 
-    C has the accelerations without forces; `kind` says which points slide along `heading`, `loaded` which
+    C has the accelerations without forces; `kind` says which points slide along `heading`, `presses` which
     press at first.
     """
     push, rounds = greatest(3 * k, group.v[C]), 0
@@ -75,17 +77,17 @@ def rows_of(k, i, group):
     from rolling, two that stick from pivoting.
     """
     closed_point = group.closed[i]
-    if closed_point.turns == JOINT:
+    if closed_point.motion == MOTION_JOINT:
         return 0 if group.kind[i] == SLIDING else 1
-    if closed_point.turns == 0:
-        return 0 if closed_point.loaded == 0 else 1 if group.kind[i] == SLIDING else 3
-    if group.kind[i] == SLIDING or group.closed[closed_point.parent].loaded == 0:
+    if closed_point.motion == MOTION_POINT:
+        return 0 if closed_point.presses == 0 else 1 if group.kind[i] == SLIDING else 3
+    if group.kind[i] == SLIDING or group.closed[closed_point.parent].presses == 0:
         return 0
     press, stick = 0, 0
     for j in range(k):
-        if group.closed[j].turns == 0 and group.closed[j].loaded == 1:
+        if group.closed[j].motion == MOTION_POINT and group.closed[j].presses == 1:
             press, stick = press + 1, stick + (0 if group.kind[j] == SLIDING else 1)
-    if closed_point.turns == 1:
+    if closed_point.motion == MOTION_ROLL:
         return 0 if press > 2 else 2
     return 0 if stick > 1 else 1
 
@@ -124,7 +126,7 @@ def count_factors(group, step):
 def given(group, row):
     """Return whether a row is given and moves its point; that of a torque or joint follows its bound."""
     closed_point = group.closed[row // 3]
-    first = 1 if closed_point.turns > 0 else 0
+    first = 1 if closed_point.motion != MOTION_POINT else 0
     return first <= row % 3 < first + closed_point.rows and moves(group, row)
 
 
@@ -141,9 +143,9 @@ def list_given(k, group):
 @kernel
 def compliance_of(group, row):
     """Return the compliance of a row: that of its point, or of its torque."""
-    if group.closed[row // 3].turns > 0:
+    if group.closed[row // 3].motion != MOTION_POINT:
         return group.W[row, row]
-    if group.closed[row // 3].turns == 0 and row % 3 > 0:
+    if group.closed[row // 3].motion == MOTION_POINT and row % 3 > 0:
         return group.closed[row // 3].hold
     return group.closed[row // 3].spring
 
@@ -160,7 +162,7 @@ def grip(k, group):
     """Let the compliances of stick be as 1/(mu N), as those of micro-slip are; return whether one changes."""
     closed, most, base, count, changed = group.closed, 0.0, 0.0, 0, False
     for i in range(k):
-        if closed[i].turns == 0 and closed[i].rows == 3 and closed[i].loaded == 1:
+        if closed[i].motion == MOTION_POINT and closed[i].rows == 3 and closed[i].presses == 1:
             count += 1
             bound = group.mu[i] * group.v[P][3 * i]
             if bound > most:
@@ -168,7 +170,7 @@ def grip(k, group):
     if count < 2:
         return False
     for i in range(k):
-        if closed[i].turns == 0 and closed[i].rows == 3 and closed[i].loaded == 1:
+        if closed[i].motion == MOTION_POINT and closed[i].rows == 3 and closed[i].presses == 1:
             bound = group.mu[i] * group.v[P][3 * i]
             hold = limits.STICK_COMPLIANCE * base * most / max(bound, LOADED_PART * most)
             changed = changed or abs(hold - closed[i].hold) > REMAINDER * hold
@@ -180,7 +182,7 @@ def grip(k, group):
 def moves(group, row):
     """Return whether a force along a row moves its point; if not, its W is round-off (planar motion)."""
     n, W = row - row % 3, group.W
-    if group.closed[row // 3].turns == JOINT:
+    if group.closed[row // 3].motion == MOTION_JOINT:
         return row % 3 == 1 and not is_driven(group, row // 3)
     return W[row, row] > 1e-12 * (W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2])
 
@@ -206,7 +208,8 @@ def response(k, group, a, row):
 def turns_with(group, j, i):
     """Return whether entry j is a torque of rotation that the normal force of point i bounds."""
     closed_point = group.closed[j]
-    return closed_point.turns > 0 and closed_point.parent == i and group.kind[j] == SLIDING
+    torque = closed_point.motion != MOTION_POINT
+    return torque and closed_point.parent == i and group.kind[j] == SLIDING
 
 
 @kernel
@@ -217,7 +220,7 @@ def first_forces(k, n, turn, push, group):
     for row in range(3 * k):
         p[row] = 0.0
     for i in range(k):
-        if closed[i].turns == JOINT and group.kind[i] == SLIDING:
+        if closed[i].motion == MOTION_JOINT and group.kind[i] == SLIDING:
             p[3 * i + 1] = -group.mu[i] * group.heading[i, 0]
     for i in range(n):
         x[i] = -acceleration_of(k, rows[i], group)
@@ -250,7 +253,9 @@ def load(k, n, push, group):
     closed, equations, p, free = group.closed, group.equations, group.v[P], False
     rows, r = equations.rows, equations.r
     for i in range(k):
-        free = free or (closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0)
+        free = free or (
+            closed[i].motion == MOTION_POINT and closed[i].presses == 0 and closed[i].weight > 0.0
+        )
     if not free:
         return 0
     most, force, count = 0.0, 0.0, 0
@@ -260,13 +265,13 @@ def load(k, n, push, group):
     settle(n, 0.0, limits.SPRING_ERROR * most, 0.0, 0.0, equations)
     for i in range(k):
         row = 3 * i
-        if closed[i].turns == 0 and closed[i].loaded == 0 and closed[i].weight > 0.0:
+        if closed[i].motion == MOTION_POINT and closed[i].presses == 0 and closed[i].weight > 0.0:
             a = acceleration_of(k, row, group)
             for j in range(n):
                 soft = limits.PROXIMAL_SPRING * response(k, group, row, rows[j])
                 a -= soft * equations.x[j]
             if a < -max(ROUND_OFF * push, LAST_DIGIT * force * group.W[row, row]):
-                closed[i].loaded, count = 1, count + 1
+                closed[i].presses, count = 1, count + 1
     return count
 
 
@@ -275,12 +280,14 @@ def unload(k, together, group):
     """Unload the springs that pull, all `together` or those that pull most; return how many."""
     p, closed, most, worst, count = group.v[P], group.closed, 0.0, 0.0, 0
     for i in range(k):
-        if closed[i].turns == 0:
+        if closed[i].motion == MOTION_POINT:
             most, worst = max(most, p[3 * i]), min(worst, p[3 * i])
     limit = -GROUP_ERROR * most if together else min(worst, -GROUP_ERROR * most)
     for i in range(k):
-        if closed[i].turns == 0 and closed[i].loaded == 1 and p[3 * i] < 0.0 and p[3 * i] <= limit:
-            closed[i].loaded, count = 0, count + 1
+        if closed[i].motion != MOTION_POINT or closed[i].presses == 0:
+            continue
+        if p[3 * i] < 0.0 and p[3 * i] <= limit:
+            closed[i].presses, count = 0, count + 1
             for row in range(3 * i, 3 * i + 3):
                 p[row] = 0.0
     return count

@@ -14,16 +14,17 @@ from carom.dynamics.passed_edges import note_normal
 from carom.friction.layout import SLIDING
 from carom.impact.workspace import C, P, U
 from carom.model.actions import MODE_SLIP, MODE_STICK
+from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.finish import gains, within_cones
-from carom.persistent.joint_rows import JOINT, radius_of
+from carom.persistent.joint_rows import radius_of
 from carom.persistent.rows import (
     accelerate_freely,
     bodies_of,
-    keep_way,
     push_bodies,
     set_modes,
     slip_of,
+    store_slip,
     write_rows,
 )
 from carom.persistent.settle import greatest
@@ -58,7 +59,7 @@ def accelerate_start(model, data, label):
 
 @kernel
 def first_stage(model, data, label):
-    """Write the accelerations of a group at the start of a step as stage 0, and the ways of its points.
+    """Write the accelerations of a group at the start of a step as stage 0, and the directions of slip.
 
     Return the number of points, the greatest rate at which friction turns a slip, the greatest acceleration by
     friction, its power, and whether the contact problem has a solution. The power of loads is in `work.result`.
@@ -71,7 +72,7 @@ def first_stage(model, data, label):
     push = greatest(3 * k, group.v[C])
     known = True
     for i in range(k):
-        known = note_way(model, data, i, controls.rest * push * controls.step) and known
+        known = find_slip(model, data, i, controls.rest * push * controls.step) and known
     set_modes(system, data.active, k, group)
     found, held = True, known and solve_springs(k, group)
     shared = held and within_cones(k, group)
@@ -104,16 +105,16 @@ def note_break_away(system, data, k, push):
     for i in range(k):
         closed_point = group.closed[i]
         smooth = group.mu[i] == 0.0
-        if (group.kind[i] == SLIDING and not smooth) or closed_point.own == 0:
+        if (group.kind[i] == SLIDING and not smooth) or closed_point.listed == 0:
             continue
         if not gains(i, push, group):
             continue
         none = none and smooth
-        if closed_point.turns == JOINT:
+        if closed_point.motion == MOTION_JOINT:
             one, force = system.relations.frictions[closed_point.active], group.v[P][3 * i + 1]
             broke = broke or (one.next == 0 and has_law(system, closed_point))
             one.next = one.mode = -1 if force > 0.0 else 1
-        elif closed_point.turns == 0 and group.v[P][3 * i] > 0.0:
+        elif closed_point.motion == MOTION_POINT and group.v[P][3 * i] > 0.0:
             active_point = data.active.points[closed_point.active]
             broke = broke or (active_point.next != MODE_SLIP and has_law(system, closed_point))
             active_point.next = MODE_SLIP
@@ -121,14 +122,14 @@ def note_break_away(system, data, k, push):
 
 
 @kernel
-def note_way(model, data, i, still):
-    """Store the way of the slip of a point at the start of a step; return whether it is known, if it slips."""
+def find_slip(model, data, i, still):
+    """Store direction and speed of slip of a point at the start of a step; return whether they are known."""
     system, group, active = model.system, data.group, data.active
     closed_point = group.closed[i]
     d1, d2, speed = slip_of(system, data, i, still)
-    if closed_point.turns == JOINT:
+    if closed_point.motion == MOTION_JOINT:
         one = system.relations.frictions[closed_point.active]
-        keep_way(system, active, closed_point, d1, d2, speed)
+        store_slip(system, active, closed_point, d1, d2, speed)
         if d1 != 0.0:
             one.mode = one.next
         one.began, one.left = speed, 1.0
@@ -136,10 +137,10 @@ def note_way(model, data, i, still):
         set_friction(system, i, one.mode != 0, group)
         return d1 != 0.0 or one.mode == 0
     active_point, moves = active.points[closed_point.active], d1 != 0.0 or d2 != 0.0
-    if closed_point.own == 0:
+    if closed_point.listed == 0:
         return moves or active_point.next != MODE_SLIP or group.mu[i] == 0.0
-    if closed_point.turns > 0:
-        keep_way(system, active, closed_point, d1, d2, speed if moves else 0.0)
+    if closed_point.motion != MOTION_POINT:
+        store_slip(system, active, closed_point, d1, d2, speed if moves else 0.0)
         return True
     if moves and active_point.mode != MODE_SLIP:
         active_point.next = MODE_SLIP  # a corner that has come since: the velocity decides
@@ -149,7 +150,7 @@ def note_way(model, data, i, still):
         active_point.next = MODE_STICK
     active_point.began = speed
     note_normal(group.points[0][i], active_point)
-    keep_way(system, active, closed_point, d1 if slips else 0.0, d2 if slips else 0.0, speed)
+    store_slip(system, active, closed_point, d1 if slips else 0.0, d2 if slips else 0.0, speed)
     return moves or not slips or group.mu[i] == 0.0
 
 
@@ -167,7 +168,7 @@ def rates(k, group):
             force = max(force, radius_of(group, i))
         braked = force * max(W[q + 1, q + 1], W[q + 2, q + 2])
         most = max(most, braked)
-        if group.closed[i].turns == JOINT:  # where W vanishes it turns back by itself
+        if group.closed[i].motion == MOTION_JOINT:  # where W vanishes it turns back by itself
             most = max(most, abs(group.v[C][q + 1]))
         speed = math.hypot(group.v[U][q + 1], group.v[U][q + 2])
         if group.kind[i] == SLIDING and group.mu[i] > 0.0 and braked > 0.0:

@@ -14,8 +14,8 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.impact.workspace import C, P, U
-from carom.persistent.joint_rows import JOINT
-from carom.persistent.rows import slip_of, way_of
+from carom.model.workspace import MOTION_JOINT
+from carom.persistent.rows import slip_at_start, slip_of
 from carom.persistent.settle import dot, greatest
 
 
@@ -34,14 +34,14 @@ def note_left(model, data, k):
     still = 0.5 * model.controls.rest * greatest(3 * k, group.v[C]) * model.controls.step
     for i in range(k):
         closed_point, u = group.closed[i], group.v[U]
-        slips, d1, d2, speed = way_of(system, active, closed_point)
-        if closed_point.own == 0 or not (slips and speed > 2.0 * still):
+        slips, d1, d2, speed = slip_at_start(system, active, closed_point)
+        if closed_point.listed == 0 or not (slips and speed > 2.0 * still):
             continue
         e1, e2, _ = slip_of(system, data, i, still)
         left = (u[3 * i + 1] * d1 + u[3 * i + 2] * d2) / speed
         if e1 == 0.0 and e2 == 0.0:  # a stop
             left = 0.0
-        if closed_point.turns == JOINT:
+        if closed_point.motion == MOTION_JOINT:
             system.relations.frictions[closed_point.active].left = left
         else:
             active_point = active.points[closed_point.active]
@@ -69,9 +69,9 @@ def pass_stops(model, data, k, hg):
     group, more = data.group, False
     for i in range(k):
         closed_point, p, q = group.closed[i], group.v[P], 3 * i
-        slips, d1, d2, speed = way_of(model.system, data.active, closed_point)
+        slips, d1, d2, speed = slip_at_start(model.system, data.active, closed_point)
         moves = slips and speed > 0.0 and (d1 != 0.0 or d2 != 0.0)
-        if closed_point.own == 0 or closed_point.passes == 1 or not moves:
+        if closed_point.listed == 0 or closed_point.passes == 1 or not moves:
             continue
         u1 = group.v[U][q + 1] + hg * dot(3 * k, group.W[q + 1], p)
         u2 = group.v[U][q + 2] + hg * dot(3 * k, group.W[q + 2], p)

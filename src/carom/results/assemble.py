@@ -37,8 +37,8 @@ from carom.status import Status
 
 #: attributes of contacts that tables show (an ensemble changes them from run to run)
 OF_CONTACTS = (
-    "number", "other", "first", "law", "restitution", "friction", "penetration", "width", "touches", "side",
-    "grain_of",
+    "number", "other", "first", "law", "restitution", "friction", "penetration", "width", "kind", "side",
+    "axis_of",
 )  # fmt: skip
 
 
@@ -175,7 +175,7 @@ def _differs(values: np.ndarray, first: np.ndarray) -> np.ndarray:
 def _not_one_mu(contacts, first: np.ndarray) -> np.ndarray:
     """Return for each contact whether it has several coefficients of friction: of parts, or of directions."""
     return _differs(contacts["friction"], first) | np.maximum.reduceat(
-        contacts["grain_of"] > 0, first
+        contacts["axis_of"] > 0, first
     )
 
 

@@ -28,7 +28,7 @@ class Instant:
             known["given"], known["loads"] = given, tuple(map(np.array, loads(system)))
         self.loads = known["loads"]
         self.laws = {index: law.rest for index, law in run.compiled.laws.items()}
-        self.seen: Any = None  # the states, as those of a run of one time
+        self.one_time: Any = None  # the states, as those of a run of one time
 
     @cached_property
     def solved(self) -> tuple[np.ndarray, dict[int, np.ndarray]]:
@@ -36,7 +36,7 @@ class Instant:
         from carom.results.dry_friction import with_dry_friction
 
         return with_dry_friction(
-            self.run, self.seen, self.touch, lambda *given: self.solve(*given)[0]
+            self.run, self.one_time, self.touch, lambda *given: self.solve(*given)[0]
         )
 
     @cached_property
@@ -45,7 +45,9 @@ class Instant:
         from carom.results.dry_friction import with_forces
 
         run, values = self.run, self.solved[1]
-        return self.solve(run.compiled, with_forces(run.scene, self.seen, values, self.touch))[1]
+        return self.solve(run.compiled, with_forces(run.scene, self.one_time, values, self.touch))[
+            1
+        ]
 
     def solve(self, compiled, touch) -> tuple[np.ndarray, np.ndarray]:
         """Return reactions on children (1, E, 6) and accelerations under forces at active points."""

@@ -497,7 +497,7 @@ class Solution(Portable, Drawn, Source):
                 f"k must be an impact whose friction is a number, got {k}, of a law: the layer of the paper "
                 "has none"
             )
-        if row.grain_of > 0:
+        if row.axis_of > 0:
             raise ValueError(
                 f"k must be an impact whose friction is a number, got {k}, of anisotropic friction"
             )

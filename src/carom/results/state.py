@@ -149,12 +149,12 @@ class SystemState(Source):
 
     @property
     def _solved(self):
-        self._at.seen = _OneTime(self)
+        self._at.one_time = _OneTime(self)
         return self._at.solved
 
     @property
     def _accelerations(self) -> np.ndarray:
-        self._at.seen = _OneTime(self)
+        self._at.one_time = _OneTime(self)
         return self._at.accelerations
 
     @property

@@ -181,6 +181,6 @@ def _of_body(body: Body, values: dict[str, Any]) -> dict[str, Any]:
     return values
 
 
-def told(parts: Iterable) -> str:
+def list_of(parts: Iterable) -> str:
     """Return parts by kind and name, for a message."""
     return ", ".join(f"{KINDS[type(one)]} {one.name!r}" for one in parts)

@@ -111,10 +111,10 @@ class _Panel(NamedTuple):
         """Return position, direction and curvature vector (K, 3, 3) at arc lengths."""
         u, step = 2.0 * s / self.length - 1.0, np.ones(1)
         for _ in range(20):
-            x, d, e, pace, way = self.at(u)
+            x, d, e, pace, length = self.at(u)
             if np.max(np.abs(step)) < 1e-9:  # the error after it is its square
                 break
-            step = (way[:, 0] - s) / pace[:, 0]
+            step = (length[:, 0] - s) / pace[:, 0]
             u = np.clip(u - step, -1.0, 1.0)
         square = np.sum(d**2, axis=1, keepdims=True)
         t = d / np.sqrt(square)
@@ -152,6 +152,9 @@ def _panel(values: np.ndarray, a: float, b: float, size: float) -> _Panel | None
     # a derivative multiplies round-off by up to the square of the degree
     if np.max(np.abs(x[-3:])) > round_off or np.max(np.abs(pace[-3:])) > SERIES**2 * round_off:
         return None
-    way, columns = chebyshev.chebint(pace, lbnd=-1.0), [*x.T, *d.T, *chebyshev.chebder(d).T, pace]
-    series = np.stack([np.pad(one, (0, SERIES + 2 - len(one))) for one in [*columns, way]], axis=1)
-    return _Panel(series, float(np.sum(way)))
+    length = chebyshev.chebint(pace, lbnd=-1.0)
+    columns = [*x.T, *d.T, *chebyshev.chebder(d).T, pace]
+    series = np.stack(
+        [np.pad(one, (0, SERIES + 2 - len(one))) for one in [*columns, length]], axis=1
+    )
+    return _Panel(series, float(np.sum(length)))

@@ -26,7 +26,7 @@ MOST_ANISOTROPIC = 1e3
 FIXED_TO = ("body", "other", "world")
 
 
-class Grain(NamedTuple):
+class Anisotropy(NamedTuple):
     """What is the same of anisotropic friction in impacts and in persistent contact."""
 
     axis: tuple[float, float, float]
@@ -280,17 +280,17 @@ checked_friction = partial(
 )  # fmt: skip
 
 
-def without_grain(name: str, value) -> float | SpeedLaw:
+def isotropic(name: str, value) -> float | SpeedLaw:
     """Return a coefficient that does not depend on the direction."""
     found = checked_friction(name, value)
-    if grain(found) is not None:
+    if anisotropy_of(found) is not None:
         raise ValueError(f"{name} must not depend on the direction here, got {found!r}")
     return found
 
 
 def friction(default: Any = REQUIRED, *, axis: bool = True) -> Value[Any, Any]:
     """Return a field for a coefficient of friction: a number at least 0, a function, or a law."""
-    return Value(checked_friction if axis else without_grain, default)
+    return Value(checked_friction if axis else isotropic, default)
 
 
 def bound_of(mu: Any) -> float:
@@ -298,16 +298,16 @@ def bound_of(mu: Any) -> float:
     return mu.bound if isinstance(mu, FrictionLaw) else mu
 
 
-def grain(mu: Any) -> Grain | None:
+def anisotropy_of(mu: Any) -> Anisotropy | None:
     """Return axis and ratio of anisotropic friction; None if it is not anisotropic."""
     if not isinstance(mu, Friction) or mu.axis is None:
         return None
-    return Grain(mu.axis, mu.of, mu.across / mu.along)
+    return Anisotropy(mu.axis, mu.of, mu.across / mu.along)
 
 
-def check_grains(friction: Any, held: Any) -> None:
+def check_anisotropy(friction: Any, held: Any) -> None:
     """Refuse anisotropic friction that differs in more than its size in impacts and in persistent contact."""
-    one, two = grain(friction), grain(held)
+    one, two = anisotropy_of(friction), anisotropy_of(held)
     if one is None and two is None:
         return
     if one is None or two is None or one[:2] != two[:2] or not math.isclose(one.ratio, two.ratio):
@@ -317,21 +317,21 @@ def check_grains(friction: Any, held: Any) -> None:
         )
 
 
-def combined_grains(
+def combined_anisotropy(
     name: str, first: Any, second: Any, rule: Callable[[float, float], float] | None
 ) -> float | FrictionLaw | None:
     """Return the friction of two materials, one of which is anisotropic; None if no rule says it.
 
     `rule` combines the coefficients along and across with the number of the other material.
     """
-    if grain(first) is not None and grain(second) is not None:
+    if anisotropy_of(first) is not None and anisotropy_of(second) is not None:
         if first == second and first.of == "world":
             return first
         raise ValueError(
             f"{name} must be given for a pair of materials that are both anisotropic, got {first:g} and "
             f"{second:g}; pass {name} of this pair to add_contact"
         )
-    flip = grain(first) is None
+    flip = anisotropy_of(first) is None
     law, mu = (second, first) if flip else (first, second)
     if rule is None or isinstance(mu, FrictionLaw):
         return None

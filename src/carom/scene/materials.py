@@ -15,7 +15,7 @@ from typing import Any
 
 from carom import arguments, checks
 from carom.fields import Number, Value, Word, keep, number, word
-from carom.scene.friction import check_grains, combined_grains, grain
+from carom.scene.friction import anisotropy_of, check_anisotropy, combined_anisotropy
 from carom.scene.friction import friction as friction_or_law
 from carom.scene.restitution import restitution as number_or_law
 from carom.scene.speed_law import SpeedLaw
@@ -88,7 +88,7 @@ class ContactLaw:
     def __post_init__(self):
         if self.friction_held is None:
             keep(self, friction_held=self.friction)
-        check_grains(self.friction, self.friction_held)
+        check_anisotropy(self.friction, self.friction_held)
 
 
 @arguments.known
@@ -191,10 +191,10 @@ def _combined(name: str, first, second, rules: Mapping) -> Any:
     for material in (first.material, second.material):
         value = getattr(material, name)
         values.append(material.friction if value is None else value)
-    rule, grains = RULES.get(rules.get(name, "")), [grain(value) for value in values]
-    law = any(isinstance(v, SpeedLaw) and g is None for v, g in zip(values, grains))
-    if any(grains):
-        found = combined_grains(name, values[0], values[1], rule)
+    rule, anisotropies = RULES.get(rules.get(name, "")), [anisotropy_of(value) for value in values]
+    law = any(isinstance(v, SpeedLaw) and g is None for v, g in zip(values, anisotropies))
+    if any(anisotropies):
+        found = combined_anisotropy(name, values[0], values[1], rule)
         if found is not None:
             return found
     elif rule is not None and not law:

@@ -45,9 +45,9 @@ def of_curve(curve: Curve) -> np.ndarray:
 
 def straight(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Return the row of a straight line between two points (2,)."""
-    way = b - a
+    span = b - a
     row = np.zeros((1, ROW_WIDTH))
-    row[0, 1:3], row[0, 3:5] = a, way / np.linalg.norm(way)
+    row[0, 1:3], row[0, 3:5] = a, span / np.linalg.norm(span)
     return row
 
 
@@ -86,9 +86,9 @@ def polygon(rows: np.ndarray, count: int) -> np.ndarray:
         if b <= a:
             continue
         line = b == a + 1 and not np.any(rows[a, 5:])
-        way = rows[b, 0] - rows[a, 0]
-        n = 1 if line else max(int(np.ceil(count * way / rows[-1, 0])), 2)
-        s = rows[a, 0] + way * np.arange(n) / n
+        span = rows[b, 0] - rows[a, 0]
+        n = 1 if line else max(int(np.ceil(count * span / rows[-1, 0])), 2)
+        s = rows[a, 0] + span * np.arange(n) / n
         k = a + np.searchsorted(rows[a:b, 0], s, side="right") - 1
         points.append(points_of(rows[k], s - rows[k, 0])[0])
     return np.concatenate(points)

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.scene.bodies import GROUND, Body, Ground, HalfSpace, StaticBody, mass_and_inertia
-from carom.scene.changes import KINDS, renewed, told
+from carom.scene.changes import KINDS, list_of, renewed
 from carom.scene.changes import dependents as dependents_of
 from carom.scene.constraints import CONSTRAINTS, Constraint, ConstraintDefinition
 from carom.scene.contacts import Contact, check_gap
@@ -560,7 +560,7 @@ class Scene(Shown, TouchingPairs):
         if others and not checks.flag("dependents", dependents):
             raise ValueError(
                 f"dependents must be True to remove {part.name!r} together with what refers to it: "
-                f"{told(others)}"
+                f"{list_of(others)}"
             )
         removed = part, *found
         self._parts.exchange({id(one): None for one in removed})

@@ -162,9 +162,9 @@ class Surface(SurfaceDefinition):
     def _compare(self, evaluate: Callable, places: np.ndarray, found: np.ndarray) -> None:
         """Refuse derivatives that do not agree with central differences."""
         step = STEP * (self.bounds[1] - self.bounds[0])
-        ways = np.diag(step)
+        offsets = np.diag(step)
         ahead, behind = (
-            np.array([[evaluate(x + sign * way)[:4] for way in ways] for x in places])
+            np.array([[evaluate(x + sign * offset)[:4] for offset in offsets] for x in places])
             for sign in (1.0, -1.0)
         )
         rates = (ahead - behind) / (2.0 * step[:, None])  # (K, direction, value or gradient)

@@ -30,7 +30,7 @@ from carom.model.actions import (
     EVENT_KINK_OF_JOINT,
     EVENT_STOP,
 )
-from carom.model.arrays import STOP
+from carom.model.arrays import KIND_STOP, KIND_VERTICES
 from carom.persistent.events import contact_event_value, find_contact_event
 from carom.persistent.stops import least_left
 from carom.persistent.thresholds import BREAK_AWAY, EVENT_ERROR, EVENT_MARGIN
@@ -51,9 +51,9 @@ def detect_event(model, data):
     known = search.contact if narrowed and search.kind == EVENT_GAP else -1
     for c in range(active.contact_states.shape[0]):
         contact = system.contacts[c]
-        if contact.touches == 0:
+        if contact.kind == KIND_VERTICES:
             verdict, first = passage(model, data, c)
-        elif contact.touches == STOP:
+        elif contact.kind == KIND_STOP:
             verdict, first = passage_stop(model, data, c)
         else:
             verdict, first = passage_pair(model, data, c)
@@ -79,9 +79,9 @@ def event_value(model, data):
     if search.kind == EVENT_GAP:
         contact = system.contacts[search.contact]
         search.tolerance = max(model.controls.gap * smaller(contact), round_off(contact, state))
-        if contact.touches == 0:
+        if contact.kind == KIND_VERTICES:
             return lowest(contact, system.vertices, state)
-        if contact.touches == STOP:
+        if contact.kind == KIND_STOP:
             return stop_gap(system, contact, state, work)
         search.tolerance = 4.0 * max(search.tolerance, round_off_of_both(contact, state))
         return lowest_pair(system, data, search.contact, state)
@@ -98,7 +98,7 @@ def event_value(model, data):
     law = depends_on_slip(system.contacts[active_point.contact], PERSISTENT)
     if law and search.kind == EVENT_CONE:
         search.tolerance = BREAK_AWAY
-    elif active_point.several == 1 and search.kind != EVENT_JAM:
+    elif active_point.shares == 1 and search.kind != EVENT_JAM:
         search.tolerance = EVENT_ERROR
     return contact_event_value(system, active_point, search.kind), 0.0
 

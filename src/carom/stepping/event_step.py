@@ -27,7 +27,7 @@ from carom.kinematics.contact_point import contact_velocity
 from carom.model import records as r
 from carom.model.actions import EVENT_GAP, EVENT_STOP, NOTHING, PERSIST, PUSHED_IN, STRIKE
 from carom.model.allowance import overdone, smooth_count
-from carom.model.arrays import STOP
+from carom.model.arrays import KIND_PAIR, KIND_STOP, KIND_VERTICES
 from carom.model.controls import LOCATE
 from carom.model.workspace import FREE
 from carom.persistent.bounces import horizon_of, time_of_bounces
@@ -281,9 +281,9 @@ def find_due_contact(model, data):
         contact_state, contact = active.contact_states[c], system.contacts[c]
         if contact_state.near == 0:
             continue
-        if contact.touches == 1:
+        if contact.kind == KIND_PAIR:
             action = check_pair(system, controls, active, c, now, data.work)
-        elif contact.touches == STOP:
+        elif contact.kind == KIND_STOP:
             action = check_stop(model, data, c)
         else:
             action = look_at_vertices(system, controls, active, contact, now)
@@ -305,7 +305,7 @@ def may_end(contact, system, controls, state, horizon, work):
 
     This is a first check with a bound of the acceleration, before forces are computed.
     """
-    if contact.touches != 0:
+    if contact.kind != KIND_VERTICES:
         return True
     point = work.struck[0]
     rate = contact_velocity(point, state)[0]

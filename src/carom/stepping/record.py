@@ -8,10 +8,11 @@ from carom._compiled.decorators import entry, inlined, kernel
 from carom.contact.place import place_any
 from carom.dynamics.explicit import copy_state
 from carom.geometry.rotation import cross
+from carom.kinematics.anisotropy import lengths_of_tangents
 from carom.kinematics.contact_point import own_field
-from carom.kinematics.grain import lengths_of_tangents
 from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.records import GROW
+from carom.model.workspace import MOTION_STOP_TURN
 from carom.stepping.energy_balance import begin_watch, note_energies
 
 
@@ -91,12 +92,13 @@ def save_contacts(model, data, k):
         fy = f[0] * E[0, 1] + f[1] * E[1, 1] + f[2] * E[2, 1]
         fz = f[0] * E[0, 2] + f[1] * E[1, 2] + f[2] * E[2, 2]
         a, b = 1.0, 1.0
-        if contact.grain_of != 0:
+        if contact.axis_of != 0:
             a, b = lengths_of_tangents(point)
         tx, ty, tz = cross(arm[0], arm[1], arm[2], fx, fy, fz)
         sx, sy, sz = cross(other[0], other[1], other[2], -fx, -fy, -fz)
         unit = 1.0
-        if point.turns == 3:  # the force of a stop of an angle is a torque divided by a length
+        # the force of a stop of an angle is a torque divided by a length
+        if point.motion == MOTION_STOP_TURN:
             unit = point.length
             tx, ty, tz = unit * fx, unit * fy, unit * fz
             sx, sy, sz = -tx, -ty, -tz

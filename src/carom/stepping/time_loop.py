@@ -12,6 +12,7 @@ from carom.dynamics.known_end import forget_end
 from carom.dynamics.local_scale import local_controls, note_scale
 from carom.model import records as r
 from carom.model.allowance import begin_count, end_count
+from carom.model.arrays import KIND_PAIR
 from carom.model.controls import LOCATE
 from carom.model.data import Data, Model
 from carom.persistent.active_set import regroup
@@ -143,7 +144,7 @@ def without_gap(system, watch):
     """
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
-        if contact.number == watch.deep_contact and contact.touches == 1:
+        if contact.number == watch.deep_contact and contact.kind == KIND_PAIR:
             if has_profile(system, contact):
                 return OUT_OF_PLANE
     return NOT_FINITE

@@ -23,6 +23,7 @@ from carom.model.actions import (
     STRIKE,
 )
 from carom.model.allowance import COUNT_SEARCHES, COUNT_TRIALS, mark_count, overdone
+from carom.model.arrays import KIND_PAIR, KIND_VERTICES
 from carom.model.controls import LOCATE
 from carom.persistent.contact_step import contact_step
 from carom.persistent.events import note_first_stops
@@ -202,7 +203,7 @@ def is_root(model, data):
     if state < 0:
         if search.kind == EVENT_GAP and finite(work.trial):
             contact = system.contacts[search.contact]
-            if contact.touches == 1 and has_profile(system, contact):
+            if contact.kind == KIND_PAIR and has_profile(system, contact):
                 return OUT_OF_PLANE
         return NOT_FINITE
     if state == 0 and search.kind == EVENT_SEPARATE and f > 0.0:
@@ -286,7 +287,7 @@ def bracket(model, data):
         search.f_low = kink_of(system, data.active, search)[0]
     update_bracket(search, search.dt, f, rate)
     dt = next_trial(search)
-    if search.kind == EVENT_GAP and system.contacts[search.contact].touches == 0:
+    if search.kind == EVENT_GAP and system.contacts[search.contact].kind == KIND_VERTICES:
         contact = system.contacts[search.contact]
         guess = first_through(contact, system.vertices, data.active, data.state, search, work.trial)
         dt = guess if search.low < guess < search.high else dt

@@ -8,7 +8,7 @@ import numpy as np
 
 from carom import arguments, checks
 from carom.friction.checks import checked_inverse_masses, codes, per_contact
-from carom.scene.friction import FrictionLaw, without_grain
+from carom.scene.friction import FrictionLaw, isotropic
 
 
 @dataclass(frozen=True)
@@ -194,7 +194,7 @@ def _frictions(given, k: int):
         return per_contact("friction", given, k, least=0.0)
     if len(laws) != k:
         raise ValueError(f"friction must be one value or {k} of them, got {checks.shown(given)}")
-    return [without_grain(f"friction[{i}]", one) for i, one in enumerate(laws)]
+    return [isotropic(f"friction[{i}]", one) for i, one in enumerate(laws)]
 
 
 def solve(W, u, friction, e, law, kappa, tangential, settings, workspace=None):

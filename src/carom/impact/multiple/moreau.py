@@ -39,13 +39,13 @@ def solve_group(k, work, passage) -> tuple[int, float]:
     for i in range(k):
         least = min(least, work.contact[i].restitution)
         most = max(most, work.contact[i].restitution)
-    for way in range(OWN_E if most > 0.0 else NO_E, NO_FRICTION + 1):
+    for tried in range(OWN_E if most > 0.0 else NO_E, NO_FRICTION + 1):
         start(k, work)
         for i in range(k):
             c = work.contact[i]
-            c.e = c.restitution if way == OWN_E else least if way == LEAST_E else 0.0
-        change, residual = _once(k, work, passage, way == NO_FRICTION)
-        marks = AT_ONCE if way == OWN_E else AT_ONCE | o.MISSED if way == LEAST_E else PLASTIC
+            c.e = c.restitution if tried == OWN_E else least if tried == LEAST_E else 0.0
+        change, residual = _once(k, work, passage, tried == NO_FRICTION)
+        marks = AT_ONCE if tried == OWN_E else AT_ONCE | o.MISSED if tried == LEAST_E else PLASTIC
         before, after, impulse = vector[o.U0], vector[o.NOW_U], vector[o.NOW_P]
         solved = residual <= VISIBLE_ERROR and bounded(3 * k, before, after, impulse)
         if solved and sound(W, before, after, impulse, 1.0, (3 * k, VELOCITY_LEFT, GAIN)):

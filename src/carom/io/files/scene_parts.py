@@ -61,7 +61,7 @@ def scene_from_text(
         If the text is not JSON, a scene would refuse a part, or the scene does not have a name in `functions`;
         the message names the part.
     """
-    with told("the text"):
+    with naming("the text"):
         checks.instance("a scene", text, (str,))
         data = json.loads(text, parse_constant=_no_number)
         checks.instance("a scene", data, (dict,))
@@ -72,22 +72,22 @@ def scene_from_text(
         raise ValueError(f"functions must have names of the file ({names}), got {min(unknown)!r}")
     decoder = Decoder(functions)
     for k, shape in enumerate(_list(data, "shapes")):
-        with told(f"shapes[{k}]"):
+        with naming(f"shapes[{k}]"):
             decoder.shapes.append(decoder.value(shape))
-    with told("gravity"):
+    with naming("gravity"):
         scene = Scene(data["gravity"])
     for k, part in enumerate(_list(data, "parts")):
-        with told(f"parts[{k}]"):
+        with naming(f"parts[{k}]"):
             made = decoder.value(part)
             checks.instance("a part", made, PARTS)
             check_part(scene, made)
             decoder.parts[made.name] = scene._parts.add(made)
-    with told("contacts"):
+    with naming("contacts"):
         _put_pairs(scene, data, decoder)
-    with told("robot"):
+    with naming("robot"):
         scene._robot = decoder.value(data.get("robot"))
         checks.instance("robot", scene._robot, (Robot, type(None)))
-    with told("look"):
+    with naming("look"):
         scene.look = decoder.value(data.get("look"))
     return scene, decoder.missing
 
@@ -110,7 +110,7 @@ def _put_pairs(scene: Scene, data: dict, decoder: Decoder) -> None:
 
 
 @contextmanager
-def told(where: str) -> Iterator[None]:
+def naming(where: str) -> Iterator[None]:
     """Name the part of a scene in the message of an error that it causes."""
     try:
         yield
@@ -120,7 +120,7 @@ def told(where: str) -> Iterator[None]:
 
 
 def _list(data: dict, name: str) -> list:
-    with told(name):
+    with naming(name):
         checks.instance(name, data[name], (list,))
     return data[name]
 

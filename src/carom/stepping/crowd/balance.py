@@ -35,7 +35,7 @@ def gained_in_flight(system, start, end):
 
 
 @kernel
-def off(model, data, k, gained):
+def breaks_balance(model, data, k, gained):
     """Return whether a group gains too much energy, or the return to the surfaces changes it too much."""
     system, start, end, crowd = model.system, data.state, data.work.trial, data.crowd
     size, work = 0.0, 0.0
@@ -50,7 +50,7 @@ def off(model, data, k, gained):
 
 
 @kernel
-def take_out(system, gained, flight, end):
+def remove_energy(system, gained, flight, end):
     """Remove the energy `gained` by scaling the impulses of all moving bodies; return the energy removed.
 
     One factor scales all of them, so that their directions do not change; if no factor does, return 0.
@@ -86,7 +86,7 @@ def moves(state):
 
 
 @kernel
-def take_over(gained, impacts, friction, bounces, clock):
+def assign_energy(gained, impacts, friction, bounces, clock):
     """Assign an energy error to the entries of a piece, which began with these; return the rest.
 
     No entry rises in the piece. The error has a reason: a body that stops within a piece comes back to the
@@ -105,7 +105,7 @@ def take_over(gained, impacts, friction, bounces, clock):
 
 
 @kernel
-def slow_down(system, gained, end):
+def scale_velocity(system, gained, end):
     """Remove energy from the motion of a body by one factor, so that its points continue to stick and slide.
 
     A body that turns far within a piece gains this energy when it comes back to the surface.

@@ -13,8 +13,10 @@ from carom.impact.layout import AT_END
 from carom.impact.record import Blow, three, write_blow
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_SLIP, MODE_STICK
+from carom.model.arrays import KIND_VERTICES
 from carom.model.event_rows import note_event
 from carom.model.records import IMPACT, OPENS, PERSISTS, SLIPS, STICKS
+from carom.model.workspace import MOTION_POINT, MOTION_ROLL
 from carom.persistent.active_set import begin_point
 from carom.persistent.step_control import rest_speed
 from carom.persistent.thresholds import CROWD_REST, FEW_REST
@@ -33,9 +35,9 @@ def finish(model, data, k, h, fall, residual):
         spot, point = crowd.closed[i], crowd.points[0][i]
         p, u = spot.impulse, spot.before
         w = contact_velocity(point, end)
-        normal = 0.5 * p[0] * (u[0] + w[0]) if spot.turns == 0 else 0.0
+        normal = 0.5 * p[0] * (u[0] + w[0]) if spot.motion == MOTION_POINT else 0.0
         tangential = 0.5 * (p[1] * (u[1] + w[1]) + p[2] * (u[2] + w[2]))
-        if spot.turns == 0 and p[0] > 0.0 and spot.strikes == 1:
+        if spot.motion == MOTION_POINT and p[0] > 0.0 and spot.strikes == 1:
             impacts += normal + tangential
             write_impact(model, data, i, k, normal, tangential)
             note_event(model, data, spot.contact, spot.feature, IMPACT, 0)
@@ -43,7 +45,7 @@ def finish(model, data, k, h, fall, residual):
             pressing += normal
             rubbing += tangential
     # no entry gains energy: if slip or rows turn within the step, the work of friction or of normal forces is
-    # less than these products; the caller assigns the rest (`carom.stepping.crowd.balance.take_over`)
+    # less than these products; the caller assigns the rest (`carom.stepping.crowd.balance.assign_energy`)
     pressing, rubbing = min(0.0, pressing + max(0.0, rubbing)), min(0.0, rubbing)
     impacts = min(0.0, impacts)
     if k > 0 and data.work.step[0].whole == 0:
@@ -56,11 +58,11 @@ def finish(model, data, k, h, fall, residual):
     still = rest_speed(controls, fall * h, residual, k, CROWD_REST)
     come_to_rest(system, still, count, start, end, crowd)
     for i in range(active.count[0]):
-        if active.points[i].touches == 0:
+        if active.points[i].kind == KIND_VERTICES:
             active.carries[active.points[i].feature] = 0
     for i in range(count):
         active.points[i] = crowd.active[i]
-        if active.points[i].touches == 0:
+        if active.points[i].kind == KIND_VERTICES:
             active.carries[active.points[i].feature] = 1
     active.count[0] = count
     for i in range(k):  # in event-driven steps these contacts are checked first
@@ -96,7 +98,7 @@ def list_active(model, data, k, h, tolerance):
         spot, point = crowd.closed[i], crowd.points[1][i]
         p, c = spot.impulse, spot.contact
         contact, x = system.contacts[c], end[point.a].x
-        if spot.turns > 0:
+        if spot.motion != MOTION_POINT:
             take_torque(crowd, spot, point.length / h)
             continue
         spot.place = -1
@@ -136,7 +138,7 @@ def take_torque(crowd, spot, factor):
     if place < 0:
         return
     torque = crowd.active[place].torque
-    if spot.turns == 1:
+    if spot.motion == MOTION_ROLL:
         torque[1], torque[2] = factor * p[1], factor * p[2]
     else:
         torque[0] = factor * p[1]
@@ -152,7 +154,7 @@ def root(parent, b):
 
 
 @kernel
-def way(start, end, size):
+def displacement(start, end, size):
     """Return the displacement of a body plus its rotation times its size [m]."""
     moved, turned = 0.0, 0.0
     for j in range(3):
@@ -184,7 +186,7 @@ def come_to_rest(system, tolerance, count, start, end, crowd):
     for b in range(n):
         g, size = root(parent, b), system.bodies[b].extent
         speed[0, g] = max(speed[0, g], norm(start[b].v) + size * norm(start[b].w))
-        if way(start[b], end[b], size) > RESOLUTION * size:
+        if displacement(start[b], end[b], size) > RESOLUTION * size:
             speed[0, g] = math.inf
         speed[1, g] = max(speed[1, g], norm(end[b].v) + size * norm(end[b].w))
     for b in range(n):

@@ -20,7 +20,7 @@ from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.allowance import COUNT_BLOCKS, left
 from carom.stepping.crowd.free_motion import halfway
 from carom.stepping.crowd.pose import note_drift, pose
-from carom.stepping.crowd.response import answer, write_responses
+from carom.stepping.crowd.response import respond, write_responses
 from carom.stepping.crowd.solve import solve
 from carom.stepping.crowd.spots import gather, gather_sunk, place_all
 from carom.stepping.crowd.surface import onto_surfaces
@@ -60,7 +60,7 @@ def find_impulses(model, data, k, h, fall, patient):
     tolerance = ERROR_SHARE * controls.rest * fall * h
     most = left(controls, work.step[0], COUNT_BLOCKS) if patient else 0.0
     gamma, residual = solve(system, data, k, tolerance, most)
-    answer(system, k, gamma, crowd, work)
+    respond(system, k, gamma, crowd, work)
     gain_all(crowd, work)
     clock.trials += 1
     clock.contact_steps += 1
@@ -111,7 +111,7 @@ def limit_bounces(system, data, k, tolerance, most):
             crowd.c[3 * i] += spot.bound + spot.drift[0]
         spot.after[0], spot.after[1], spot.after[2] = w
     gamma, residual = solve(system, data, k, tolerance, most)
-    answer(system, k, gamma, crowd, work)
+    respond(system, k, gamma, crowd, work)
     gain_all(crowd, work)
     a, b, c = 0.0, 0.0, 0.0  # coefficients of the work a + b s + c s^2
     for i in range(k):
@@ -129,7 +129,7 @@ def limit_bounces(system, data, k, tolerance, most):
     for i in range(3 * k):
         p = crowd.p[i] + s * (full[i] - crowd.p[i])
         problem.vector[ITERATE, i] = p / (gamma * problem.contact[i // 3].scale)
-    answer(system, k, gamma, crowd, work)
+    respond(system, k, gamma, crowd, work)
     gain_all(crowd, work)
     return residual
 

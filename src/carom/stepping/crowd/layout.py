@@ -19,7 +19,7 @@ SPOT = [
     ("contact", "i8"),
     ("feature", "i8"),
     ("point", "f8", 3),  # point of the first body, in its axes
-    ("turns", "i8"),  # as in its POINT
+    ("motion", "i8"),  # as in its POINT
     ("parent", "i8"),  # for rolling and pivoting: the spot whose normal impulse bounds the torque
     ("place", "i8"),  # its place among the active points after the step, -1 if it is not active
     ("active", "i8"),  # its place among the active points before, -1 if it is not active

@@ -10,6 +10,7 @@ from carom.impact.effective_restitution import restitution_at
 from carom.impact.friction_law import PERSISTENT, STRIKES, friction_at
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_STICK
+from carom.model.workspace import MOTION_POINT, MOTION_ROLL
 from carom.stepping.crowd.response import write_responses
 from carom.stepping.thresholds import LEAVING_SPEED
 
@@ -32,12 +33,12 @@ def pose(model, data, k, h, fall):
         for r in range(3):
             crowd.c[3 * i + r], p[3 * i + r] = free[r], 0.0
         row = crowd.problem.contact[i]
-        if spot.turns > 0:
+        if spot.motion != MOTION_POINT:
             row.kind, row.mu = DISC, 1.0
             if spot.active >= 0:
                 torque, s = active.points[spot.active].torque, h / point.length
-                p[3 * i + 1] = s * (torque[1] if spot.turns == 1 else torque[0])
-                p[3 * i + 2] = s * torque[2] if spot.turns == 1 else 0.0
+                p[3 * i + 1] = s * (torque[1] if spot.motion == MOTION_ROLL else torque[0])
+                p[3 * i + 2] = s * torque[2] if spot.motion == MOTION_ROLL else 0.0
             continue
         u = spot.before[0] - spot.drift[0]
         e = restitution_at(system, contact, -u)
@@ -68,7 +69,7 @@ def note_drift(active, k, several, start, crowd):
     for i in range(k):
         spot = crowd.closed[i]
         spot.drift[0], spot.drift[1], spot.drift[2] = 0.0, 0.0, 0.0
-        if not (several and spot.active >= 0 and spot.turns == 0):
+        if not (several and spot.active >= 0 and spot.motion == MOTION_POINT):
             continue
         before = contact_velocity(crowd.points[1][i], start)
         u = contact_velocity(crowd.points[0][i], start)

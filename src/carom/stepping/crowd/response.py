@@ -11,10 +11,11 @@ from carom._compiled.decorators import kernel
 from carom.dynamics.contact_impulse import add_impulse, alone, clear_wrenches, spread
 from carom.dynamics.solve import solve
 from carom.friction import layout as o
-from carom.friction.island import impart
+from carom.friction.island import write_motion
 from carom.friction.layout import CONE
 from carom.friction.solve import inverse_mass_of, scale_link
 from carom.geometry.rotation import unit_vector
+from carom.model.workspace import MOTION_STOP_TURN
 
 
 @kernel
@@ -33,12 +34,12 @@ def write_responses(system, first, k, crowd, work):
             for r in range(6):
                 for a in range(3):
                     problem.other[e].response[r, a] *= s
-        if point.turns >= 3:  # it has no tangents: any positive number does
+        if point.motion >= MOTION_STOP_TURN:  # it has no tangents: any positive number does
             link.local[3] = link.local[5] = link.local[0]
 
 
 @kernel
-def answer(system, k, gamma, crowd, work):
+def respond(system, k, gamma, crowd, work):
     """Write `crowd.p` from the present scaled impulses, and the motion of all bodies that they cause."""
     problem = crowd.problem
     for i in range(3 * k):
@@ -46,7 +47,7 @@ def answer(system, k, gamma, crowd, work):
     if system.joints.shape[0] > 0:
         spread_impulses(system, k, crowd, work)
         return
-    impart(problem, k, problem.vector[o.ITERATE])
+    write_motion(problem, k, problem.vector[o.ITERATE])
     for b in range(work.body.shape[0]):
         for j in range(6):
             work.body[b].motion[j] = gamma * problem.body[b].motion[j]

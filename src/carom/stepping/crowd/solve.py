@@ -23,8 +23,8 @@ from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.sweeps import sweep_until
 
 FIRST, BETWEEN, ALLOWED = 40, 30, 150  # sweeps: at first; after a step; allowed for all
-IDLE = 4  # turns that do not halve the residual until a start from 0, and again until the end
-PATIENT = 4  # factor of the allowed work if the step can afford it
+IDLE_TURNS = 4  # turns that do not halve the residual until a start from 0, and again until the end
+MORE_WORK = 4  # factor of the allowed work if the step can afford it
 # iterations of alternating directions: usual, and most if the step can afford them
 SPLIT, LONG_SPLIT = 100, 1000
 
@@ -40,7 +40,7 @@ def solve(system, data, k, tolerance, left):
     work = crowd.problem
     work.count[o.ITERATIONS] = 0
     gamma = scale_vectors(work, k, crowd.c, crowd.p)
-    most = max(ALLOWED * k, min(left, PATIENT * ALLOWED * k))
+    most = max(ALLOWED * k, min(left, MORE_WORK * ALLOWED * k))
     speed = greatest_speed(crowd, k) / gamma
     r, goal, done = sweep_until(system, crowd, k, max(tolerance / gamma, RESIDUAL * speed), FIRST)
     enough = max(tolerance / gamma, goal, RESIDUAL * speed)
@@ -48,9 +48,10 @@ def solve(system, data, k, tolerance, left):
     spent, least, turn, idle = done * k, r, 0, 0
     p, kept = work.vector[o.ITERATE], work.vector[o.START_BEST]
     copy(k, p, kept)
-    while not least <= enough and spent < most and idle < 2 * IDLE:
+    while not least <= enough and spent < most and idle < 2 * IDLE_TURNS:
         before = least
-        if idle == IDLE and n > 1:  # start from 0: the last impulses may be a poor first guess
+        # start from 0: the last impulses may be a poor first guess
+        if idle == IDLE_TURNS and n > 1:
             for i in range(3 * k):
                 p[i] = 0.0
         spent += newton_step(crowd, k, n, limits.PROXIMAL_TURNS[turn % 3])
@@ -67,7 +68,7 @@ def solve(system, data, k, tolerance, left):
         wrong = not least <= max(limits.WRONG_RESIDUAL * speed, CROWD_REST * tolerance / gamma)
         at_least = LONG_SPLIT if wrong else SPLIT
         allowed = LONG_SPLIT if wrong or spent < left else SPLIT
-        ordered = by_reference(at_hand(crowd, n))
+        ordered = by_reference(of_present_size(crowd, n))
         least, more = alternate(ordered, k, limits.RHO, enough, at_least, allowed)
         done, spent = done + more, spent + more * k
         copy(k, p, kept)
@@ -108,13 +109,13 @@ def newton_step(crowd, k, n, eps):
     """Make one step of Newton's method, if there is room for it; return its products with blocks."""
     if not find_order(n, k, crowd):
         return 0
-    work, updates = by_reference(at_hand(crowd, n)), crowd.graph.count[2]
+    work, updates = by_reference(of_present_size(crowd, n)), crowd.graph.count[2]
     step(work, k, eps)
     return updates + 4 * k
 
 
 @kernel
-def at_hand(crowd, n):
+def of_present_size(crowd, n):
     """Return the problem with arrays cut to the present numbers of bodies and blocks."""
     work, pairs, updates = crowd.problem, crowd.graph.count[3], crowd.graph.count[2]
     return ContactWork(

@@ -20,9 +20,10 @@ from carom.contact.stop import place_stop
 from carom.contact.thresholds import ACTIVE_REACH
 from carom.dynamics.thresholds import EDGE_JUMP
 from carom.geometry.rotation import norm
+from carom.kinematics.anisotropy import turn_plain
 from carom.kinematics.contact_point import contact_velocity, place
-from carom.kinematics.grain import turn_plain
-from carom.model.arrays import STOP
+from carom.model.arrays import KIND_STOP, KIND_VERTICES
+from carom.model.workspace import MOTION_PIVOT, MOTION_ROLL
 
 
 @kernel
@@ -49,7 +50,7 @@ def gather(model, data, h, fall, wide):
     chain(system, active, crowd)
     for c in range(system.contacts.shape[0]):
         contact, first, room = system.contacts[c], crowd.count[0], True
-        if contact.touches == STOP:
+        if contact.kind == KIND_STOP:
             if reaches_stop(model, data, contact, h, wide * fall):
                 room = add_stop(system, c, math.inf, state, crowd)
         else:
@@ -73,7 +74,7 @@ def add_points(model, data, c, reach, state):
     contact = system.contacts[c]
     if apart(system, contact, state, reach):
         return True
-    if contact.touches == 0:
+    if contact.kind == KIND_VERTICES:
         return add_vertices(system, data.active, c, reach, state, crowd)
     find_closed(system, contact, reach, 0.0, state, work)
     return add_touches(system, c, reach, state, crowd, work)
@@ -89,7 +90,7 @@ def gather_sunk(model, data, k, depth):
     crowd.count[0] = k
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
-        if contact.touches == STOP or apart(system, contact, end, 0.0):
+        if contact.kind == KIND_STOP or apart(system, contact, end, 0.0):
             continue
         if least_gap(system, contact, end, data.work) >= -depth * smaller(contact):
             continue
@@ -103,12 +104,12 @@ def add_turning(system, first, crowd):
     """Add rolling and pivoting friction of the spots from `first`; return whether there is room."""
     for i in range(first, crowd.count[0]):
         spot = crowd.closed[i]
-        for turns in range(1, 3):
-            if system.contacts[spot.contact].turning[turns - 1] > 0.0:
+        for motion in (MOTION_ROLL, MOTION_PIVOT):
+            if system.contacts[spot.contact].turning[motion - MOTION_ROLL] > 0.0:
                 k = crowd.count[0]
                 if k == crowd.closed.shape[0]:
                     return False
-                write_turning(i, turns, spot, crowd.closed[k])
+                write_turning(i, motion, spot, crowd.closed[k])
                 crowd.closed[k].gap = spot.gap
                 crowd.count[0] = k + 1
     return True
@@ -127,19 +128,19 @@ def reaches_stop(model, data, contact, h, fall):
 
 @kernel
 def chain(system, active, crowd):
-    """Link the active points of each contact in a chain; `seen` of the contact is 1 + its first point."""
+    """Link the active points of each contact in a chain; `visited` of the contact is 1 + its first point."""
     for c in range(system.contacts.shape[0]):
-        active.contact_states[c].seen = 0
+        active.contact_states[c].visited = 0
     for i in range(active.count[0] - 1, -1, -1):
         contact_state = active.contact_states[active.points[i].contact]
-        crowd.follows[i] = contact_state.seen - 1
-        contact_state.seen = i + 1
+        crowd.follows[i] = contact_state.visited - 1
+        contact_state.visited = i + 1
 
 
 @kernel
 def find_active(active, spot, crowd):
     """Find the active point of a spot."""
-    i = active.contact_states[spot.contact].seen - 1
+    i = active.contact_states[spot.contact].visited - 1
     while i >= 0:
         active_point = active.points[i]
         if active_point.feature == spot.feature:
@@ -155,12 +156,12 @@ def place_all(model, data, first_spot, k, state, points):
     while i < k:
         c = crowd.closed[i].contact
         contact = system.contacts[c]
-        if contact.touches == 0:
+        if contact.kind == KIND_VERTICES:
             place(contact, crowd.closed[i].point, state, points[i])
-            turn_plain(contact, crowd.closed[i].turns, contact.extent, points[i])
+            turn_plain(contact, crowd.closed[i].motion, contact.extent, points[i])
             i += 1
             continue
-        if contact.touches == STOP:
+        if contact.kind == KIND_STOP:
             place_stop(system, contact, state, points[i])
             i += 1
             continue
@@ -170,7 +171,7 @@ def place_all(model, data, first_spot, k, state, points):
             spot = crowd.closed[i]
             t = which_touch(system, contact, spot.feature, spot.point, state, work)
             write_touch(contact, work.touches[t], state, points[i])
-            turn_plain(contact, spot.turns, smaller(contact), points[i])
+            turn_plain(contact, spot.motion, smaller(contact), points[i])
             i += 1
         if not on_half_space(contact):
             share_plane(points, first, i, state)

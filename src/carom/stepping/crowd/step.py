@@ -26,10 +26,17 @@ from carom.geometry.thresholds import RESOLUTION
 from carom.impact.effective_restitution import restitution_at
 from carom.model import records as r
 from carom.model.allowance import COUNT_BLOCKS, left
+from carom.model.workspace import MOTION_POINT
 from carom.persistent.thresholds import SHORTEST_CUT
 from carom.status import LEFT_CURVE, NOT_FINITE
 from carom.stepping import thresholds as limits
-from carom.stepping.crowd.balance import energy_gained, off, slow_down, take_out, take_over
+from carom.stepping.crowd.balance import (
+    assign_energy,
+    breaks_balance,
+    energy_gained,
+    remove_energy,
+    scale_velocity,
+)
 from carom.stepping.crowd.error import note_error
 from carom.stepping.crowd.finish import finish
 from carom.stepping.crowd.free_motion import (
@@ -46,10 +53,12 @@ from carom.stepping.crowd.layout import SPOTS
 from carom.stepping.crowd.solve import greatest_speed
 from carom.stepping.record import finite, grow
 
-CAREFUL = 300  # greatest number of tries with pieces that may be cut
-DEAR = 500.0  # products with blocks per active point that a step must still afford if a piece may be cut
-AGAIN = 16  # greatest number of searches for points: a row of bodies pushes one more each time
-ALONE = 16  # number of pieces of a step of a single body, which are cheap
+CUT_TRIES = 300  # greatest number of tries with pieces that may be cut
+CUT_PRODUCTS = 500.0  # products with blocks per active point that are left where a piece may be cut
+POINT_SEARCHES = (
+    16  # greatest number of searches for points: a row of bodies pushes one more each time
+)
+PIECES_OF_ONE = 16  # number of pieces of a step of a single body, which are cheap
 
 
 @unit
@@ -74,8 +83,8 @@ def step_crowd(model, data, method):
         dt = min(piece(system, now, controls, step.length - step.spent), search.pace)
         while True:
             step.tries += 1
-            affordable = left(controls, step, COUNT_BLOCKS) >= DEAR * data.active.count[0]
-            patient = step.tries <= CAREFUL and affordable
+            affordable = left(controls, step, COUNT_BLOCKS) >= CUT_PRODUCTS * data.active.count[0]
+            patient = step.tries <= CUT_TRIES and affordable
             careful = patient and dt > SHORTEST_CUT * controls.interval
             result.code = move_on(model, data, method, dt, patient, careful)
             if result.code == CONSTRAINTS_LOST and dt > SHORTEST_CUT * controls.interval:
@@ -96,7 +105,7 @@ def step_crowd(model, data, method):
 def piece(system, now, controls, left):
     """Return the length of the next piece: an equal part of the rest, in which no body moves too far."""
     g, step, n = controls.pull, controls.interval, now.shape[0]
-    parts = math.ceil(ALONE * left / step) if n == 1 else 1.0
+    parts = math.ceil(PIECES_OF_ONE * left / step) if n == 1 else 1.0
     for b in range(n):
         body, turn = system.bodies[b], norm(now[b].w) * left
         if not body.ball > 0.0:  # the body has no shape
@@ -149,7 +158,7 @@ def move_on(model, data, method, h, patient, careful):
         applied = driven + work_on_path(search.applied, h, loads, taken)
         rubbed = work_on_path(search.friction, h, rubbing, rubbed)
     gained = energy_gained(model, data, h, loaded) - applied - rubbed
-    if careful and n > 1 and off(model, data, k, gained):
+    if careful and n > 1 and breaks_balance(model, data, k, gained):
         return TOO_LONG
 
     # the energy balance, and the persistent contacts from now on
@@ -160,13 +169,13 @@ def move_on(model, data, method, h, patient, careful):
     if k > 0:
         # compute the gain again, because bodies may have come to rest
         gained = energy_gained(model, data, h, loaded) - applied - rubbed
-        taken = take_out(system, gained - (named if n == 1 else 0.0), crowd.flight, end)
+        taken = remove_energy(system, gained - (named if n == 1 else 0.0), crowd.flight, end)
         if taken > 0.0:
             project_velocity(system, end, False, work)
         gained -= taken
-        left = take_over(gained - named, impacts, friction, bounces, clock)
+        left = assign_energy(gained - named, impacts, friction, bounces, clock)
         if n == 1 and not loaded:
-            slow_down(system, left, end[0])
+            scale_velocity(system, left, end[0])
     clock.loads += applied
     clock.friction += rubbed
     if model.controls.order > 0:
@@ -205,7 +214,7 @@ def collide(model, data, h, fall, patient, careful):
         times += 1
         if sunk <= RESOLUTION:
             return 0, k, residual, driven
-        if times >= AGAIN or (wide == limits.SEARCH_LIMIT and k == before):
+        if times >= POINT_SEARCHES or (wide == limits.SEARCH_LIMIT and k == before):
             if sunk > limits.MISSED_DEPTH and h > limits.MISSED_PIECE * model.controls.interval:
                 return TOO_LONG, k, residual, driven
             room, holds = lift_others(model, data, k, RESOLUTION)
@@ -221,7 +230,8 @@ def misses_bounce(system, k, h, fall, crowd):
     for i in range(k):
         spot = crowd.closed[i]
         contact = system.contacts[spot.contact]
-        if spot.turns == 0 and spot.gap > 0.0 and spot.left > 0.0 and spot.impulse[0] > 0.0:
+        between = spot.gap > 0.0 and spot.left > 0.0
+        if spot.motion == MOTION_POINT and between and spot.impulse[0] > 0.0:
             e = restitution_at(system, contact, spot.gap / h)
             if 2.0 * e * spot.gap / h > (1.0 - e) * fall * h + contact.still:
                 return True

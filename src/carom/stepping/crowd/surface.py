@@ -10,6 +10,7 @@ from carom._compiled.decorators import kernel
 from carom.contact.pair_point import smaller
 from carom.contact.thresholds import PLACE_ERROR
 from carom.dynamics.project import project_position, shift
+from carom.model.workspace import MOTION_POINT
 from carom.stepping.crowd.response import spread_impulses
 from carom.stepping.crowd.spots import place_all
 from carom.stepping.thresholds import IMMOBILITY, RETURN_GAIN
@@ -33,7 +34,8 @@ def onto_surfaces(model, data, k):
         for i in range(k):
             gap = crowd.points[1][i].gap
             size = smaller(system.contacts[crowd.closed[i].contact])
-            moves = crowd.closed[i].turns == 0 and crowd.problem.link[i].local[0] > IMMOBILITY
+            moves = crowd.problem.link[i].local[0] > IMMOBILITY
+            moves = moves and crowd.closed[i].motion == MOTION_POINT
             if moves and gap < -PLACE_ERROR * size:
                 deepest, tiny = max(deepest, -gap), min(tiny, 0.1 * PLACE_ERROR * size)
         if deepest == 0.0:
@@ -58,7 +60,7 @@ def lift(system, k, tolerance, crowd, work):
         change = 0.0
         for place in range(k):
             i = place if turn % 2 == 0 else k - 1 - place
-            if crowd.closed[i].turns == 0 and problem.link[i].local[0] > IMMOBILITY:
+            if crowd.closed[i].motion == MOTION_POINT and problem.link[i].local[0] > IMMOBILITY:
                 gap = crowd.points[1][i].gap
                 change = max(change, lift_one(problem, i, gap, lam))
         if change <= tolerance:

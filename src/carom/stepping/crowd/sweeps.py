@@ -11,6 +11,7 @@ from carom.friction.layout import BEST, ITERATE
 from carom.friction.newton import copy
 from carom.friction.operators import sweep
 from carom.friction.residual import residual
+from carom.model.workspace import MOTION_POINT, MOTION_ROLL
 from carom.stepping.crowd.mixing import extrapolate, forget, note_end, note_start
 
 UNCHECKED_SWEEPS = 10  # sweeps between two checks of the residual
@@ -52,7 +53,8 @@ def bound_torques(system, crowd, k):
     row, q = crowd.problem.contact, crowd.problem.vector[ITERATE]
     for i in range(k):
         spot = crowd.closed[i]
-        if spot.turns > 0:
-            d, parent = system.contacts[spot.contact].turning[spot.turns - 1], spot.parent
+        if spot.motion != MOTION_POINT:
+            d = system.contacts[spot.contact].turning[spot.motion - MOTION_ROLL]
+            parent = spot.parent
             most = d / crowd.points[0][i].length * row[parent].scale * q[3 * parent]
             row[i].h1 = max(0.0, most) / row[i].scale

@@ -16,7 +16,17 @@ import numpy as np
 
 from carom._compiled.decorators import kernel
 from carom._compiled.record_arrays import table
-from carom.model.arrays import BUSHING, FOREST, JOINT, LOAD, SPRING, STOP, Relations, Solver, System
+from carom.model.arrays import (
+    BUSHING,
+    FOREST,
+    JOINT,
+    KIND_STOP,
+    LOAD,
+    SPRING,
+    Relations,
+    Solver,
+    System,
+)
 from carom.model.relations import no_relations
 from carom.model.solvers import no_joints
 
@@ -45,7 +55,7 @@ def joined_bodies(system: System) -> Joined:
     relations, ends = system.relations, ("parent", "child")
     return Joined(
         body,
-        np.flatnonzero(system.contacts["touches"] == STOP),
+        np.flatnonzero(system.contacts["kind"] == KIND_STOP),
         _moved(system.joints, place, ends),
         relations._replace(
             coordinates=_moved(relations.coordinates, place, ends),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.more_forces import begin_turns, forget_turns
+from carom.model.arrays import KIND_VERTICES
 from carom.persistent.active_set import regroup
 from carom.stepping.islands.parts import give_up_body
 
@@ -64,5 +65,5 @@ def forget_single(system, active, now, clocks, work, start):
 def mark_vertices(active, carries):
     """Write `carries` for the vertices that are active."""
     for i in range(active.count[0]):
-        if active.points[i].touches == 0:
+        if active.points[i].kind == KIND_VERTICES:
             active.carries[active.points[i].feature] = carries

@@ -122,7 +122,7 @@ def sensitivities(
             f"{checks.shown(with_respect_to)}; its numbers are varied by carom.ensemble"
         )
     if np.any(system.contacts.last_friction_piece > system.contacts.friction_piece) or np.any(
-        system.contacts.grain_of
+        system.contacts.axis_of
     ):
         raise ValueError(
             "solution must be of contacts whose friction is a number, got a law, whose impacts have no closed "

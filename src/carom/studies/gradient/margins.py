@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom.impact import layout as o
+from carom.model.arrays import KIND_VERTICES
 from carom.studies.gradient.blow import AT_REST, Blow
 from carom.studies.gradient.body import Moving, cross, fly, path
 from carom.studies.gradient.result import Margin
@@ -22,7 +23,7 @@ ROUGHLY = 1e-8  # accuracy of near misses, which are only warnings
 def half_space_rows(system, b: int):
     """Return the contacts of vertices of a body with half-spaces."""
     contacts = system.contacts
-    return contacts[(contacts.body == b) & (contacts.touches == 0)]
+    return contacts[(contacts.body == b) & (contacts.kind == KIND_VERTICES)]
 
 
 def vertex_gaps(system, row, body: Moving) -> np.ndarray:
@@ -57,7 +58,7 @@ def of_impact(system, row, place, tied, bodies, done: Strike, hit: Blow, u, W, k
             cores = system.vertices[other.first : other.last]
             gaps = vertex_gaps(system, other, body)
             rates = other.axes[0] @ body.v + np.cross(body.w, cores @ body.R.T) @ other.axes[0]
-            own = other.number == row.number and row.touches == 0
+            own = other.number == row.number and row.kind == KIND_VERTICES
             skip = np.zeros(len(cores), dtype=bool)
             if own:
                 skip = np.any(np.all(cores[:, None] == tied[None], axis=2), axis=1)

@@ -48,7 +48,7 @@ def energy(solution, *, panel: str | None = None, ax=None, figsize=None, style="
     """
     figure.is_bodies(solution)
     t, ledger = solution.t, solution.ledger
-    only, look = figure.only(panel, ("energy", "error"), ax), figure.Look(ax, figsize, style)
+    only, look = figure.only(panel, ("energy", "error"), ax), figure.Canvas(ax, figsize, style)
     layout = {"nrows": 2, "sharex": True, "height_ratios": (2.2, 1)}
     with figure.drawing(look, 2, (looks.COLUMN, 3.2), only=only, **layout) as axes:
         above, below = axes

@@ -76,7 +76,7 @@ def e_mu(
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
-    with figure.drawing(figure.Look(ax, figsize, style), 1, (looks.COLUMN, 3.0)) as axes:
+    with figure.drawing(figure.Canvas(ax, figsize, style), 1, (looks.COLUMN, 3.0)) as axes:
         palette = ListedColormap([colour for _, _, colour in OUTCOMES])
         axes.pcolormesh(
             mu, e, number, cmap=palette, vmin=-0.5, vmax=len(OUTCOMES) - 0.5, shading="nearest",

@@ -8,7 +8,7 @@ from carom import checks
 from carom.studies.ensembles.result import Ensemble
 from carom.studies.ensembles.table import columns, stems
 from carom.visual.plots import style as looks
-from carom.visual.plots.figure import Look, drawing
+from carom.visual.plots.figure import Canvas, drawing
 
 
 def ensemble(
@@ -67,7 +67,7 @@ def ensemble(
     if not (isinstance(value, str) and value in ("status", "message")):
         values = np.where(found.outcomes["status"] >= 0, values, np.nan)
     names = _axes(found, over, table)
-    with drawing(Look(ax, figsize, style)) as ax:
+    with drawing(Canvas(ax, figsize, style)) as ax:
         ax.set_xlabel(names[0])
         ax.set_ylabel(label if len(names) == 1 else names[1])
         shown = None

@@ -46,7 +46,7 @@ def constraint_errors(solution, *, ax=None, figsize=None, style="carom"):
     if not whole and not np.any(position) and not np.any(velocity):
         raise ValueError(f"the system must have constraints, got {solution!r}")
     units = solution.constraint_rows.unit if whole else np.array([""])
-    with figure.drawing(figure.Look(ax, figsize, style), 1, (looks.COLUMN, 2.0)) as axes:
+    with figure.drawing(figure.Canvas(ax, figsize, style), 1, (looks.COLUMN, 2.0)) as axes:
         for unit, dashes in zip(sorted(set(units.tolist()), key=ORDER.index), ("-", "--", ":")):
             for of, error, colour, end in (
                 ("position", position, looks.BLUE, ""),

@@ -14,12 +14,12 @@ from carom import checks
 from carom.visual.plots import style
 
 LEAST, MOST = 0.5, 50.0  # sizes of a figure [in]
-ALONE = (style.COLUMN, 2.3)  # size of a figure of one panel [in]
+ONE_PANEL = (style.COLUMN, 2.3)  # size of a figure of one panel [in]
 #: of lines that are told apart, in their order
 COLOURS = (style.BLUE, style.RED, style.GREEN, style.ORANGE, style.PURPLE, style.SKY, style.BLACK)
 
 
-class Look(NamedTuple):
+class Canvas(NamedTuple):
     """The arguments that all plots have: where they draw, and how large and in which style."""
 
     ax: Any
@@ -57,7 +57,7 @@ def only(panel, panels: tuple[str, ...], ax) -> int | None:
 
 @contextmanager
 def drawing(
-    look: Look | Any,
+    look: Canvas | Any,
     count: int = 1,
     size=(style.COLUMN, 2.3),
     compressed=False,
@@ -76,11 +76,11 @@ def drawing(
         Number of the only axes that are seen: what is drawn into the others is thrown away.
     """
     plt = pyplot()
-    look = look if isinstance(look, Look) else Look(look)
+    look = look if isinstance(look, Canvas) else Canvas(look)
     if only is not None:
         from matplotlib.figure import Figure
 
-        with drawing(look, 1, ALONE) as seen:
+        with drawing(look, 1, ONE_PANEL) as seen:
             parts = np.ravel(Figure().subplots(**layout or {"nrows": count}))
             last, parts[only] = parts[-1], seen
             yield parts

@@ -51,7 +51,7 @@ def overview(solution, *, figsize=None, style="carom") -> dict:
     figure.pyplot()
     with looks.style(style):
         size = (looks.PAGE, sum(heights))
-        new = figure.Look(None, figsize, style).new(size, layout="constrained")
+        new = figure.Canvas(None, figsize, style).new(size, layout="constrained")
         axes = new.subplot_mosaic(rows, height_ratios=heights)
         if whole:
             trajectory(solution, ax=axes["motion"], style=style)

@@ -56,7 +56,7 @@ def impacts(
     struck = [c for c in chosen if np.any(table.contact == c)]
     if not struck:
         raise ValueError(f"contacts must have an impact to draw, got {contacts!r}, which have none")
-    only, look = figure.only(panel, PANELS, ax), figure.Look(ax, figsize, style)
+    only, look = figure.only(panel, PANELS, ax), figure.Canvas(ax, figsize, style)
     layout = {"nrows": 2, "ncols": 2, "sharex": True}
     with figure.drawing(look, 4, (looks.PAGE, 4.0), only=only, **layout) as axes:
         many = len(struck) > 8

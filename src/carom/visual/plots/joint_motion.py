@@ -65,7 +65,7 @@ def joints(
         raise ValueError(f"the scene must have a joint, got {solution!r}")
     chosen = [every[k] for k in figure.named("joints", joints, [joint.name for joint in every])]
     used: set[str] = set()
-    only, look = figure.only(panel, PANELS, ax), figure.Look(ax, figsize, style)
+    only, look = figure.only(panel, PANELS, ax), figure.Canvas(ax, figsize, style)
     layout = {"nrows": 2, "ncols": 2, "sharex": True}
     with figure.drawing(look, 4, (looks.PAGE, 3.6), only=only, **layout) as axes:
         lines = figure.colours()

@@ -64,7 +64,7 @@ def impact_inside(
     time, short = figure.readable(history.duration, "s")
     length, unit = figure.readable(history.width, "m")
     only = figure.only(panel, ("position", "velocity", "force"), ax)
-    look = figure.Look(ax, figsize, style)
+    look = figure.Canvas(ax, figsize, style)
     with figure.drawing(look, 3, (looks.COLUMN, 4.2), only=only) as axes:
         gap, speed, force = axes
         gap.plot(time * t, length * x, color=looks.BLUE)

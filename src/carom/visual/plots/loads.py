@@ -55,7 +55,7 @@ def forces(solution, forces=None, *, ax=None, figsize=None, style="carom"):
     units = [unit for unit in ("N", "N m") if any(one[1] == unit for one in curves)]
     if not curves:
         raise ValueError(f"there must be a force that acts to draw, got {solution!r}")
-    look = figure.Look(ax, figsize, style)
+    look = figure.Canvas(ax, figsize, style)
     with figure.drawing(look, len(units), (looks.COLUMN, 0.6 + 1.7 * len(units))) as axes:
         axes = np.atleast_1d(axes)
         for one, unit in zip(axes, units):

@@ -81,7 +81,7 @@ def trajectory(
         region = 0.5 * float(np.hypot(wide, high)) + size
         parts = parts_of(scene, region, 48, x.reshape(-1, 3).mean(axis=0))
     inches = np.clip(2.8 * high / max(wide, 1e-300), 1.0, 3.4) + 0.6  # nearly as the axes are to be
-    with figure.drawing(figure.Look(ax, figsize, style), 1, (looks.COLUMN, inches)) as drawn:
+    with figure.drawing(figure.Canvas(ax, figsize, style), 1, (looks.COLUMN, inches)) as drawn:
         many = len(chosen) > 12
         for body, (colour, line) in zip(chosen, figure.colours()):
             colours[body.index] = colour = body.color or colour

@@ -66,7 +66,7 @@ def phase(
         checks.integer("number", number, least=0)
         axis, degrees = checks.choice("axis", axis, "xyz"), checks.flag("degrees", degrees)
         q, v, words = _of_scene(solution, of, axis, number, degrees)
-    with figure.drawing(figure.Look(ax, figsize, style), 1, (looks.COLUMN, 2.6)) as axes:
+    with figure.drawing(figure.Canvas(ax, figsize, style), 1, (looks.COLUMN, 2.6)) as axes:
         axes.plot(q, v, color=looks.BLUE, lw=0.9)
         axes.plot(q[:1], v[:1], "s", color=looks.BLUE, ms=4)
         axes.plot(q[-1:], v[-1:], "o", color=looks.BLUE, ms=4)

@@ -47,7 +47,7 @@ def work_precision(series: Mapping, *, error: str = "error", ax=None, figsize=No
     figure.pyplot()
     from matplotlib.ticker import LogFormatterSciNotation, LogLocator
 
-    with figure.drawing(figure.Look(ax, figsize, style), 1, (looks.COLUMN, 2.6)) as axes:
+    with figure.drawing(figure.Canvas(ax, figsize, style), 1, (looks.COLUMN, 2.6)) as axes:
         for k, (name, (times, errors)) in enumerate(checked.items()):
             colour, mark = figure.COLOURS[k % 7], _MARKS[k % 8]
             axes.plot(times, errors, marker=mark, color=colour, lw=1.0, label=str(name))

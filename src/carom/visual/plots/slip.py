@@ -77,7 +77,7 @@ def hodograph(
     path = np.vstack(
         [record.relative_velocity_before[1:], path, record.relative_velocity_after[1:]]
     )
-    only, look = figure.only(panel, ("slip", "friction"), ax), figure.Look(ax, figsize, style)
+    only, look = figure.only(panel, ("slip", "friction"), ax), figure.Canvas(ax, figsize, style)
     size = (looks.PAGE, 3.3)
     with figure.drawing(look, 2, size, compressed=True, only=only, ncols=2) as axes:
         _slip(axes[0], path, W, mu, flow)

@@ -58,7 +58,7 @@ def contacts(solution, *, contacts=None, most: int = 40, ax=None, figsize=None, 
     if not chosen:
         raise ValueError(f"there must be a contact that touches to draw, got {solution!r}")
     with figure.drawing(
-        figure.Look(ax, figsize, style), 1, (looks.PAGE, 0.75 + 0.22 * min(len(chosen), 40))
+        figure.Canvas(ax, figsize, style), 1, (looks.PAGE, 0.75 + 0.22 * min(len(chosen), 40))
     ) as axes:
         for mode, colour, width in MODES:
             for row, c in enumerate(chosen):

@@ -26,7 +26,7 @@ def arrays_of(value) -> list[np.ndarray]:
     return found
 
 
-class Mould:
+class Template:
     """Contents of the arrays in nested named tuples, from which tuples with arrays of their own are made.
 
     The new arrays are parts of one array of bytes, in which those of zeros come last and are not copied. Arrays
@@ -41,7 +41,7 @@ class Mould:
         order = sorted(range(len(zero)), key=zero.__getitem__)
         self.recipe = parts, [arrays[k] for k in order], [content[k] for k in order]
 
-    def cast(self) -> Any:
+    def make(self) -> Any:
         """Return the tuples with new arrays."""
         recipe = self.recipe
         if len(recipe) == 3:  # worked out when it is needed first
@@ -51,7 +51,7 @@ class Mould:
         memory = np.frombuffer(block, np.uint8)
         memory[: len(content)] = content
         arrays = [np.ndarray.__new__(k, n, t, memory, at, by) for k, n, t, at, by in places]
-        return _cast(arrays, *plan)
+        return _made(arrays, *plan)
 
 
 def _recipe(parts: tuple, arrays: list[np.ndarray], contents: list[bytes]) -> tuple:
@@ -77,10 +77,10 @@ def _plan(part: tuple, number: dict[int, int]) -> tuple:
     return getattr(part, "_make", tuple), found, arrays, plans
 
 
-def _cast(made: list[np.ndarray], make: Callable, parts: list, arrays: list, plans: list):
+def _made(made: list[np.ndarray], make: Callable, parts: list, arrays: list, plans: list):
     found = parts.copy()
     for i, k in arrays:
         found[i] = made[k]
     for i, plan in plans:
-        found[i] = _cast(made, *plan)
+        found[i] = _made(made, *plan)
     return make(found)
