@@ -50,8 +50,11 @@ def reach(z, rate, a):
 
 @inlined
 def cubic_clears(z0, rate0, z1, rate1, h, tiny):
-    """Return whether the cubic with these ends and rates stays above -tiny: its control points do."""
-    return min(min(z0, z0 + h * rate0 / 3.0), min(z1, z1 - h * rate1 / 3.0)) >= -tiny
+    """Return whether the cubic with these ends and rates stays above -tiny: its control points do.
+
+    What is deeper at the start, and not deeper later, has touched before: it comes out.
+    """
+    return min(z0 + h * rate0 / 3.0, min(z1, z1 - h * rate1 / 3.0)) >= min(-tiny, z0)
 
 
 @inlined
