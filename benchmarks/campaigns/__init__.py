@@ -5,13 +5,13 @@ them by the thousand; the tests run a few of each.
 """
 
 from campaigns import (
-    grains,
     bearings,
     belts,
     cams,
     crowds,
     forced,
     frictions,
+    grains,
     grounds,
     laws,
     loose_rails,

@@ -17,7 +17,7 @@ from carom.model.workspace import (
     MOTION_ROLL,
     MOTION_STOP_SLIDE,
     MOTION_STOP_TURN,
-)
+)  # fmt: skip
 
 
 @kernel

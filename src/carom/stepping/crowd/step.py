@@ -36,7 +36,7 @@ from carom.stepping.crowd.balance import (
     energy_gained,
     remove_energy,
     scale_velocity,
-)
+)  # fmt: skip
 from carom.stepping.crowd.error import note_error
 from carom.stepping.crowd.finish import finish
 from carom.stepping.crowd.free_motion import (
@@ -55,9 +55,7 @@ from carom.stepping.record import finite, grow
 
 CUT_TRIES = 300  # greatest number of tries with pieces that may be cut
 CUT_PRODUCTS = 500.0  # products with blocks per active point that are left where a piece may be cut
-POINT_SEARCHES = (
-    16  # greatest number of searches for points: a row of bodies pushes one more each time
-)
+POINT_SEARCHES = 16  # at most, for points: a row of bodies pushes one more each time
 PIECES_OF_ONE = 16  # number of pieces of a step of a single body, which are cheap
 
 

@@ -26,7 +26,7 @@ from carom.model.arrays import (
     Relations,
     Solver,
     System,
-)
+)  # fmt: skip
 from carom.model.relations import no_relations
 from carom.model.solvers import no_joints
 
