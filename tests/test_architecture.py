@@ -44,6 +44,8 @@ HUNDREDS = {
 MOST_LINES = 63400
 #: hundreds of lines beyond these bounds that a capability has brought, by room
 CAPABILITIES = {
+    "code of the user's functions on disk": {"_compiled": 6},
+    "limits of ball joints": {"kinematics": 2, "scene": 1},
     "seams of bodies that move, kinks of forces, errors of time-stepping steps": {
         "model": 1, "contact": 1, "stepping": 1,
     },

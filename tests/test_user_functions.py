@@ -24,11 +24,13 @@ def angle(t):
 def test_a_compiled_function_is_compiled_once_for_all_runs(monkeypatch):
     made = []
 
-    def counted(signature):
-        made.append(signature)
-        return numba.cfunc(signature)
+    code_of = user_functions.code_of
 
-    monkeypatch.setattr(user_functions, "cfunc", counted)
+    def counted(function, signature):
+        made.append(signature)
+        return code_of(function, signature)
+
+    monkeypatch.setattr(user_functions, "code_of", counted)
     compiled = numba.njit(angle)
     scene = driven(compiled)
     ends = [carom.simulate(scene, 1.0, step=0.01).position[-1] for _ in range(2)]

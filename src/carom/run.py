@@ -356,7 +356,7 @@ def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:
                     f"got a gap of {gap:g} m"
                 )
             side = "lower" if stop.side > 0.0 else "upper"
-            unit = "rad" if stop.joint.definition.coordinates[stop.coordinate] == "turn" else "m"
+            unit = "rad" if stop.turns else "m"
             place = round(stop.end + gap / system.contacts.side[first + stop.index], 9)
             raise ValueError(
                 f"stop {stop.name!r} of {stop.joint.name!r} must not be exceeded at the start, where the "

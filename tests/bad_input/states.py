@@ -181,7 +181,9 @@ def stated():
     placed = dict(anchor=three, axis=(0, 0, 1.0))
     found |= {
         "joints.Revolute": lambda: (joints.Revolute, placed),
-        "joints.Spherical": lambda: (joints.Spherical, dict(anchor=three)),
+        "joints.Spherical": lambda: (
+            joints.Spherical, dict(anchor=three, axis=three, start=(1.0, 0.0, 0.0, 0.0))
+        ),
         "joints.Fixed": lambda: (joints.Fixed, dict(anchor=three)),
         "joints.Prismatic": lambda: (joints.Prismatic, placed),
         "joints.Cylindrical": lambda: (joints.Cylindrical, placed),

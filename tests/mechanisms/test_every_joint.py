@@ -17,7 +17,7 @@ ARGUMENTS = {
     "curve": carom.curves.Curve(lambda u: (u, 0.3 * math.sin(u), 1.2 - 0.2 * math.cos(u)), -4, 4),
 }  # fmt: skip
 #: of rails that can be left, which lose energy where they strike
-LOOSE = {"side", "restitution", "friction", "impact_law"}
+LOOSE = {"start", "side", "restitution", "friction", "impact_law"}
 
 
 def joined(kind):

@@ -4,6 +4,7 @@ import random
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import carom
@@ -108,3 +109,27 @@ def test_damaged_files(tmp_path):
         except ValueError:
             refused += 1
     assert 0 < refused < 150  # both happen
+
+
+WRIST = """
+<mujoco><compiler angle="radian"/><option timestep="1e-4" gravity="0 0 0"/><worldbody>
+<body name="base" euler=".3 .2 .1"><freejoint/><geom type="box" size=".3 .2 .1" contype="0" conaffinity="0"/>
+<body name="hand" pos="0 0 .3" euler="0 .4 .2"><joint name="wrist" type="ball" range="0 1.2"/>
+<geom type="box" size=".1 .05 .2" pos="0 0 .2" contype="0" conaffinity="0"/></body></body>
+</worldbody></mujoco>
+"""
+
+
+def test_the_range_of_a_ball_joint_is_that_of_its_rotation():
+    """It is the angle of the four numbers of `qpos`."""
+    q = [0, 0, 1, 1, 0, 0, 0, np.cos(0.4), *(np.sin(0.4) * np.array([0.6, 0.0, 0.8]))]
+    v = [0.1, 0, 0, 0.5, 0.2, 0, 1.5, 2.0, 1.0]
+    model = carom.load_model(WRIST, qpos=q, qvel=v, limit_restitution=0.5)
+    assert "wrist" not in str(model.report)
+    solution = carom.simulate(model.scene, 1.0, step=0.005)
+    place = model.qpos(solution)[:, 7:11]
+    angle = 2.0 * np.arctan2(np.linalg.norm(place[:, 1:], axis=1), np.abs(place[:, 0]))
+    assert angle[0] == pytest.approx(0.8, abs=1e-12)
+    assert len(solution.impacts) >= 1
+    assert angle.max() <= 1.2 + 1e-9
+    assert angle.max() > 1.15

@@ -19,8 +19,7 @@ _RULES = (
     "units.py",
     "link_only.py",
     "cache_key.py",
-    "composed.py",
-    "user_functions.py",
+    "call_address.py",
     "by_reference.py",
     "simd.py",
 )  # files with the rules of compiling

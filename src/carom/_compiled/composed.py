@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -11,9 +12,8 @@ MOST_KEPT = 100  # functions for which `once` keeps what was made
 
 def is_compiled(function) -> bool:
     """Return whether Numba has compiled a function."""
-    from numba.core.dispatcher import Dispatcher
-
-    return isinstance(function, Dispatcher)
+    numba = sys.modules.get("numba.core.dispatcher")  # without it nothing is compiled
+    return numba is not None and isinstance(function, numba.Dispatcher)
 
 
 def joined(function, *parts) -> Any:
@@ -25,6 +25,11 @@ def joined(function, *parts) -> Any:
     return njit(function)
 
 
+def plainly(function) -> Any:
+    """Return a function as plain Python: a call of it, and of what it calls, compiles nothing."""
+    return _plain(function) if is_compiled(function) else function
+
+
 def once(make: Callable) -> Callable:
     """Decorate a function that makes something of a user's function: of a compiled one it is made once."""
     kept = functools.lru_cache(maxsize=MOST_KEPT)(make)
@@ -34,3 +39,13 @@ def once(make: Callable) -> Callable:
         return (kept if is_compiled(function) else make)(function, *shapes)
 
     return made
+
+
+@once
+def _plain(function):
+    try:
+        from carom._compiled.snapshot import Snapshot
+
+        return Snapshot(function.py_func, plain=True).function
+    except Exception:  # `NotKept`, or another Numba
+        return function.py_func

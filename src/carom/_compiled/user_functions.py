@@ -22,12 +22,20 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import carray, cfunc  # pyright: ignore[reportPrivateImportUsage]
 from numba.core import types
-from numba.extending import intrinsic, overload
 
+from carom._compiled.call_address import FORM
 from carom._compiled.composed import is_compiled, once
-from carom._compiled.decorators import COMPILES, OPTIONS
+from carom._compiled.decorators import COMPILES
 
-_FORM = ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p)
+if COMPILES:
+    from carom._compiled.kept_code import code_of
+else:  # nothing of this Numba is known but what all versions have
+
+    def code_of(function, signature):
+        """Compile in this process."""
+        return cfunc(signature)(function)
+
+
 MOST_PLACES = 100  # arrays that are kept
 MOST_FAULTS = 100  # that are noted: more than a trial step has stages
 HUGE = 1e30  # of a state, in any unit: what overflows there, or is NaN, is a motion that diverges
@@ -101,7 +109,7 @@ class Functions:
                 name = f"{self._plainly[made.address][-1]} or {name}"
             self._plainly[made.address] = function, inside, outside, name
             return made.address
-        made = _FORM(self._plain(function, inside, outside, name))
+        made = FORM(self._plain(function, inside, outside, name))
         self._kept.append(made)
         return ctypes.cast(made, ctypes.c_void_p).value
 
@@ -120,7 +128,7 @@ class Functions:
 
         if not COMPILES:
             return self.address(answer, inside, outside, name)
-        made: Any = cfunc(_SIGNATURE)(function)
+        made = code_of(function, _SIGNATURE)
         self._kept.append(made)
         self._plainly[made.address] = answer, inside, outside, name
         return made.address
@@ -134,7 +142,7 @@ class Functions:
         """Write into arrays other addresses of compiled functions: Python calls those, and notes faults."""
         others = {}
         for at, one in self._plainly.items():
-            made = _FORM(self._plain(*one))
+            made = FORM(self._plain(*one))
             self._kept.append(made)
             others[at] = ctypes.cast(made, ctypes.c_void_p).value
         for column in columns:
@@ -187,6 +195,20 @@ class Arrays(dict):
         return self[address]
 
 
+def from_python(function, inside: tuple[int, ...], outside: tuple[int, ...]) -> Callable:
+    """Return ``function(t, x)`` for calls from Python; of a function compiled by Numba the code for runs."""
+    if not is_compiled(function):
+        return function
+    made = _compiled(function, inside, outside)
+
+    def call(t, x):
+        read, out = np.array(x, dtype=float).reshape(inside), np.empty(outside)
+        FORM(made.address)(t, read.ctypes.data, out.ctypes.data)
+        return out
+
+    return call
+
+
 @once
 def _compiled(function, inside, outside):
     """Compile the wrapper of a function that Numba has compiled."""
@@ -198,38 +220,4 @@ def _compiled(function, inside, outside):
         except Exception:  # Numba would print each
             out[...] = math.nan
 
-    return cfunc(_SIGNATURE)(call)
-
-
-def call_function(address, t, x, out):
-    """Call the function at `address` from a kernel: out = f(t, x), both arrays contiguous."""
-    _FORM(int(address))(t, x.ctypes.data, out.ctypes.data)
-
-
-_options: Any = OPTIONS
-
-
-@overload(call_function, **_options)
-def _call_function(address, t, x, out):
-    call: Any = _call
-    return lambda address, t, x, out: call(address, t, x, out)
-
-
-@intrinsic
-def _call(typing, address, t, x, out):
-    """Call a C function with the data of two arrays."""
-    signature = types.none(types.intp, types.float64, x, out)
-
-    def generate(context, builder, signature, values):
-        from llvmlite import ir
-
-        number, numbers = ir.DoubleType(), ir.DoubleType().as_pointer()
-        form = ir.FunctionType(ir.VoidType(), [number, numbers, numbers])
-        data = []
-        for kind, value in zip(signature.args[2:], values[2:]):
-            array = context.make_array(kind)(context, builder, value)
-            data.append(builder.bitcast(array.data, numbers))
-        builder.call(builder.inttoptr(values[0], form.as_pointer()), [values[1], *data])
-        return context.get_dummy_value()
-
-    return signature, generate
+    return code_of(call, _SIGNATURE)

@@ -15,12 +15,12 @@ from carom.contact.pair_point import tangents
 from carom.geometry.rotation import cross
 from carom.geometry.thresholds import RESOLUTION
 from carom.kinematics.contact_point import contact_velocity
-from carom.kinematics.coordinate import along, drift, value
+from carom.kinematics.coordinate import along, drift, slides, value
 from carom.kinematics.curve import can_be_left, find_foot, is_on_curve, rail_drift
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.model.actions import NOTHING, PERSIST, STRIKE
-from carom.model.arrays import KIND_STOP, REVOLUTE
-from carom.model.workspace import MOTION_POINT, MOTION_STOP_SLIDE, MOTION_STOP_TURN
+from carom.model.arrays import KIND_STOP
+from carom.model.workspace import MOTION_POINT
 
 
 @unit
@@ -40,11 +40,11 @@ def place_stop(system, contact, state, point):
     if c.child >= 0:
         r = child_arm(c, state)
         point.arm_a[0], point.arm_a[1], point.arm_a[2] = r
-        if c.kind != REVOLUTE:
+        if slides(c):
             r = parent_arm(c, state)
             point.arm_b[0], point.arm_b[1], point.arm_b[2] = r
     point.gap = contact.side * value(system, c, state) - contact.offset
-    point.motion = MOTION_STOP_TURN if c.kind == REVOLUTE else MOTION_STOP_SLIDE
+    point.motion = MOTION_STOP_SLIDE if slides(c) else MOTION_STOP_TURN
     point.length = abs(contact.side)
     point.moves = 0
 

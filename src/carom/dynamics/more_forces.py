@@ -7,13 +7,13 @@ of the user's         wrenches = f(t, states),            U if a potential is gi
 
 from __future__ import annotations
 
+from carom._compiled.call_address import call_function
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom._compiled.user_functions import call_function
 from carom.dynamics.curve import curve, find_piece
 from carom.dynamics.thresholds import RAIL_TRAVEL, ROTATION
 from carom.geometry.rotation import conjugate, multiply
-from carom.kinematics.coordinate import push, rate, value
+from carom.kinematics.coordinate import push, rate, speed_of_turn, value
 from carom.kinematics.curve import (
     can_be_left,
     is_beyond,
@@ -21,7 +21,8 @@ from carom.kinematics.curve import (
     is_upright,
     speed_beside,
 )
-from carom.model.arrays import PRISMATIC, REVOLUTE
+from carom.model.arrays import PRISMATIC, REVOLUTE, TWIST
+from carom.model.arrays import ROTATION as OF_BALL
 from carom.model.parts_of_system import has_relations, has_turns
 
 
@@ -135,7 +136,7 @@ def note_turns(system, state, h) -> bool:
     left = False
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
-        if c.kind == REVOLUTE:  # what nothing depends on may turn far in a step
+        if c.kind == REVOLUTE or c.kind == TWIST:  # what nothing depends on may turn far in a step
             c.reference += h * rate(system, c, state)
         c.reference = value(system, c, state)
         if is_on_curve(c):
@@ -168,7 +169,10 @@ def turns_round(system, start, end, h) -> bool:
         c = system.relations.coordinates[i]
         if c.kind == PRISMATIC:
             continue
-        turn = h * max(abs(rate(system, c, start)), abs(rate(system, c, end)))
+        if c.kind >= OF_BALL:  # the angles of a ball joint may turn back within a step
+            turn = h * max(speed_of_turn(c, start), speed_of_turn(c, end))
+        else:
+            turn = h * max(abs(rate(system, c, start)), abs(rate(system, c, end)))
         if is_on_curve(c):
             one = system.relations.curves[c.number]
             if can_be_left(one):

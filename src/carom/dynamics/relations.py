@@ -7,8 +7,8 @@ A relation is one holonomic row, rheonomic if f changes. With the row J_k of coo
 
 from __future__ import annotations
 
+from carom._compiled.call_address import call_function
 from carom._compiled.decorators import kernel
-from carom._compiled.user_functions import call_function
 from carom.dynamics.curve import curve
 from carom.kinematics.coordinate import add_rows, drift, push, rate, value
 from carom.kinematics.rows import mass_row

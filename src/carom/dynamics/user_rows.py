@@ -13,8 +13,8 @@ from __future__ import annotations
 
 import math
 
+from carom._compiled.call_address import call_function
 from carom._compiled.decorators import kernel
-from carom._compiled.user_functions import call_function
 from carom.dynamics.thresholds import DISPLACEMENT
 from carom.geometry.rotation import conjugate, multiply, turn
 from carom.kinematics.rows import mass_row

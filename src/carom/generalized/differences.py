@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom._compiled.call_address import call_function
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
-from carom._compiled.user_functions import call_function
 from carom.generalized import layout as o
 from carom.generalized.linear import copy_row, dot
 

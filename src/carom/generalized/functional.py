@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from carom import checks
-from carom._compiled.composed import is_compiled, joined, once
+from carom._compiled.composed import is_compiled, joined, once, plainly
 
 
 @once
@@ -34,7 +34,7 @@ def of_state(function: Callable) -> Any:
 def answer(name: str, function: Callable, shape: tuple, *arguments) -> np.ndarray:
     """Return the result of a function at the start; raise an error for a shape other than `shape`."""
     given = [np.copy(a) if np.ndim(a) else a for a in arguments]
-    return checks.finite_array(name, checks.call(name, function, *given), shape)
+    return checks.finite_array(name, checks.call(name, plainly(function), *given), shape)
 
 
 class FunctionalModel:
@@ -73,7 +73,7 @@ class FunctionalModel:
         if gradient is not None:
             answer("gap_gradient(q)", gradient, (n,), q)
         if tangent is not None:
-            rows = checks.call("tangent(q)", tangent, q.copy())
+            rows = checks.call("tangent(q)", plainly(tangent), q.copy())
             rows = checks.real_array("tangent(q)", rows, f"({n},) or (2, {n})")
             if rows.shape not in ((n,), (1, n), (2, n)):
                 raise ValueError(
@@ -87,7 +87,7 @@ class FunctionalModel:
     def metric_at(self, q) -> np.ndarray:
         """Return M (n, n) at numbers."""
         metric: Any = self.given["metric"][0]
-        return np.array(metric(q.copy()), dtype=float)
+        return np.array(plainly(metric)(q.copy()), dtype=float)
 
     def addresses(self, functions) -> tuple[list[int], list[tuple[int, int, int]]]:
         """Return no address for the four functions, and those of the parts of which they are made."""

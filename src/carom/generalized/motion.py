@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 
+from carom._compiled.call_address import call_function
 from carom._compiled.decorators import entry, kernel
-from carom._compiled.user_functions import call_function
 from carom.dynamics.curve import value_at
 from carom.friction import ldl, lu
 from carom.generalized import layout as o

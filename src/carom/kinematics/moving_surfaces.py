@@ -6,9 +6,9 @@ and points from them, have w_0 - rate axis x x_0 and rate axis, with the rates o
 
 from __future__ import annotations
 
+from carom._compiled.call_address import call_function
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom._compiled.user_functions import call_function
 from carom.geometry.rotation import cross
 
 

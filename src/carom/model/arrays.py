@@ -34,6 +34,9 @@ POINT_ON_CURVE, CURVE_ON_POINT = KIND[joints.PointOnCurve], KIND[joints.CurveOnP
 ON_CURVE = (POINT_ON_CURVE, CURVE_ON_POINT)
 RELATION, USER_ROWS, STIFF, INERTIA = range(len(KIND), len(KIND) + 4)
 OWN_ROWS = min(ON_CURVE)  # the first of these kinds
+#: kinds of coordinates that only stops limit: the angles of a ball joint
+ROTATION, SWING, TWIST = range(len(KIND) + 4, len(KIND) + 7)
+OF_BALL = {"rotation": ROTATION, "swing": SWING, "twist": TWIST}
 
 
 def _kinds(chosen) -> tuple[int, ...]:
@@ -90,7 +93,8 @@ JOINT = [
 ]
 
 #: a coordinate of a joint: an angle about (kind REVOLUTE), or a displacement along (PRISMATIC), the first axis
-#: of the parent's frame, or arc length along a curve (ON_CURVE); either side may be the ground
+#: of the parent's frame, arc length along a curve (ON_CURVE), or an angle of a ball joint (OF_BALL); either
+#: side may be the ground
 COORDINATE = JOINT
 
 #: the curve of a coordinate with its pieces, and workspace: the foot, which is the point of the curve nearest

@@ -40,7 +40,9 @@ class Compiled(NamedTuple):
     surfaces: Surfaces  # data from which rows of contacts are made
     later: Defaults | None  # pairs of bodies that get rows when they come near each other
     laws: dict[int, Law]  # of actuators that are functions, by the index of the force
-    numbers: dict[tuple[int, int], int]  # of coordinates, by the index of the joint and their own
+    numbers: dict[
+        tuple[int, int | str], int
+    ]  # of coordinates, by the index of the joint and their own
 
 
 def compile_scene(

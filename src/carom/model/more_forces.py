@@ -143,7 +143,7 @@ def _push(force, coordinates, functions):
         made.stiffness, made.damping, made.rest = d.stiffness, d.damping, d.rest
     elif callable(d.force):
         name = f"the force {force.name!r}"
-        made.address = functions.address(_of_coordinate(d.force), (2,), (1,), name)
+        made.address = functions.address(of_coordinate(d.force), (2,), (1,), name)
     else:
         made.force = d.force
     return made
@@ -155,7 +155,7 @@ def _actuator(force, coordinates, functions, laws, implicit: bool):
     if d.law:
         laws[force.index] = law = Law(d)
         name = f"the force {force.name!r}"
-        made.address = functions.address(_of_coordinate(law), (2,), (1,), name)
+        made.address = functions.address(of_coordinate(law), (2,), (1,), name)
     elif not (implicit and is_damped_spring(d)):
         made.stiffness, made.damping = d.spring
     return made
@@ -174,7 +174,7 @@ def _friction(d, coordinates, pieces):
 
 
 @once
-def _of_coordinate(function):
+def of_coordinate(function):
     """Return a function of (t, x), x = (q, q'), from a function of t, q and q'."""
     if not is_compiled(function):
         return lambda t, x: function(float(t), float(x[0]), float(x[1]))

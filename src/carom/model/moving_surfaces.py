@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from carom import checks
-from carom._compiled.composed import is_compiled, joined, once
+from carom._compiled.composed import is_compiled, joined, once, plainly
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
 from carom.model.arrays import MOVING, MovingSurfaces
@@ -96,7 +96,7 @@ def moving_surfaces(scene: Scene, functions: Functions) -> MovingSurfaces:
             )
             row["velocity_address"] = functions.address(_of_time(given, shape), (1,), shape, what)
             if isinstance(part, HalfSpace):
-                start = checks.finite_array(what, given(0.0), shape, "m/s")[0]
+                start = checks.finite_array(what, plainly(given)(0.0), shape, "m/s")[0]
                 check_in_plane(start, None, part.normal)
         elif velocity is not None:
             row["velocity"] = velocity

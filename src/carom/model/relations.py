@@ -26,7 +26,7 @@ class Coordinates:
     def __init__(self, placement: Placement):
         self.placement = placement
         self.rows: list[np.recarray] = []
-        self.numbers: dict[tuple[int, int], int] = {}
+        self.numbers: dict[tuple[int, int | str], int] = {}
         self.curves = Curves()
         self.counted, self.used = 0, False
 
@@ -36,7 +36,7 @@ class Coordinates:
             self.number(joints[j], k)
         self.counted, self.used = len(self.rows), False
 
-    def number(self, joint: Joint, coordinate: int) -> int:
+    def number(self, joint: Joint, coordinate: int | str) -> int:
         """Return the index of a coordinate in the table; a new one is added."""
         self.used = True
         key = joint.index, coordinate
@@ -60,16 +60,19 @@ class Coordinates:
         if d.guide == "curve":
             self.curves.add(joint, self.placement, row)
             return made
-        turns = coordinate_kind(joint, coordinate) == "turn"
         first, second = (self.placement.side(joint, k) for k in range(2))
-        frame = d.coordinate_frame(coordinate)
+        if isinstance(coordinate, str):
+            row.kind, frames = arrays.OF_BALL[coordinate], d.frames_of_limits()
+        else:
+            turns = coordinate_kind(joint, coordinate) == "turn"
+            row.kind = arrays.REVOLUTE if turns else arrays.PRISMATIC
+            frames = (d.coordinate_frame(coordinate),) * 2
         if d.turn == "cross" and coordinate == 1:  # measured from the child
             first, second = second, first
         anchor = joint.anchor()
-        row.kind = arrays.REVOLUTE if turns else arrays.PRISMATIC
         row.parent, row.child = first.body.index, second.body.index
         row.parent_anchor[:], row.child_anchor[:] = first.point(anchor), second.point(anchor)
-        row.parent_frame[:], row.child_frame[:] = first.axes(frame), second.axes(frame)
+        row.parent_frame[:], row.child_frame[:] = first.axes(frames[0]), second.axes(frames[1])
         return made
 
 

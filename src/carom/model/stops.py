@@ -9,7 +9,6 @@ from carom.model.arrays import CONTACT, KIND_STOP
 from carom.model.more_forces import RESTITUTION, Pieces
 from carom.model.relations import Elements
 from carom.model.thresholds import DIRECTION
-from carom.scene.constraints import coordinate_kind
 from carom.scene.friction import bound_of
 from carom.scene.materials import IMPACT_LAWS
 
@@ -18,15 +17,15 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, curves
     """Return the contacts, then the stops; the numbers of stops follow those of contacts."""
     if not scene.stops:
         return contacts
+    _check_twists(scene)
     rows, first = table(CONTACT, len(scene.stops)), int(contacts.number.max(initial=-1)) + 1
     for row, stop in zip(rows, scene.stops):
         number = elements.coordinates.number(stop.joint, stop.coordinate)
         c = elements.coordinates.rows[number][0]
-        turns = coordinate_kind(stop.joint, stop.coordinate) == "turn"
         row.number, row.solid, row.kind = first + stop.index, number, KIND_STOP
         row.body, row.other = (c.child, c.parent) if c.child >= 0 else (c.parent, -1)
         size = elements.sizes[stop.joint.child.index]
-        row.side = stop.side * (size if turns else 1.0)
+        row.side = stop.side * (size if stop.turns else 1.0)
         row.offset = row.side * stop.end
         row.law = IMPACT_LAWS.index(stop.impact_law)
         for name, value in zip(
@@ -45,6 +44,17 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, curves
     rows.width = 1e-5 * rows.extent if options.layer_width is None else options.layer_width
     rows.penetration = options.penetration
     return np.concatenate([contacts, rows]).view(Columns)
+
+
+def _check_twists(scene) -> None:
+    """Refuse a limit of a twist without one of the swing: where the swing is pi, a twist has no value."""
+    swings = [stop.joint for stop in scene.stops if stop.coordinate == "swing"]
+    for stop in scene.stops:
+        if stop.coordinate == "twist" and stop.joint not in swings:
+            raise ValueError(
+                f"stop {stop.name!r} of the twist of {stop.joint.name!r} must come with a stop of its "
+                '"swing", got none: where the swing is pi, a twist has no value'
+            )
 
 
 def _write_rail(row, joint, curves: Pieces) -> None:

@@ -181,7 +181,12 @@ def _along(d, states, t, value):
     elif isinstance(d, Actuator):
         value = d.force_at(d.control if value is None else value, q, rate)
     elif value is None and callable(d.force):
-        called = [d.force(*one) for one in zip(*(np.atleast_1d(a).tolist() for a in (t, q, rate)))]
+        from carom._compiled.user_functions import from_python
+        from carom.model.more_forces import of_coordinate
+
+        force = from_python(of_coordinate(d.force), (2,), (1,))
+        given = zip(*(np.atleast_1d(a).tolist() for a in (t, q, rate)))
+        called = [force(time, np.array(both)) for time, *both in given]
         value = np.reshape(np.array(called, dtype=float), np.shape(t))
     elif value is None:
         value = d.force
@@ -198,7 +203,10 @@ def _of_user(d: UserForce, states, t) -> np.ndarray:
     names = "position", "orientation", "velocity", "angular_velocity"
     read = np.concatenate([getattr(states, name)[..., index, :] for name in names], axis=-1)
     times, many = np.atleast_1d(t).tolist(), np.reshape(read, (-1, *read.shape[-2:]))
-    out = [d.function(time, one.copy()) for time, one in zip(times, many)]
+    from carom._compiled.user_functions import from_python
+
+    function = from_python(d.function, (len(index), 13), (len(index), 6))
+    out = [function(time, one.copy()) for time, one in zip(times, many)]
     wrench = np.reshape(np.array(out, dtype=float), (*read.shape[:-1], 6))
     power = np.sum(wrench * read[..., 7:], axis=-1)
     none = np.full((*power.shape, 1), math.nan)

@@ -171,7 +171,7 @@ def _foot(joint: Sides, p: Placed, c: Placed) -> tuple[np.ndarray, ...]:
     return s, d.curve.tangent(s), velocity, place - d.curve.point(s)
 
 
-def direction(joint: Sides, states, k: int) -> Vector:
+def direction(joint: Sides, states, k: int | str) -> Vector:
     """Return the axis along, or about, which coordinate k changes; it turns with the parent, or the child."""
     d, second = joint.definition, isinstance(joint.definition, j.Universal) and k == 1
     if isinstance(d, ON_CURVE):
@@ -181,10 +181,56 @@ def direction(joint: Sides, states, k: int) -> Vector:
         if isinstance(d, j.PointOnCurve):
             return rotate(p.turn, tangent)
         return rotate(c.turn, -tangent)
+    if isinstance(k, str):
+        return _along_ball(joint, states, k)
     axis = joint.axes[k]
     if isinstance(d, j.Universal):
         axis = _numbers(d.axis_child if second else d.axis_parent)
     return rotate(placed(joint.child if second else joint.parent, states).turn, axis)
+
+
+def _axes_of_ball(joint: Sides, states) -> list[list[Vector]]:
+    """Return the axes of parent and child that agree where the angles of a ball joint are 0."""
+    d: Any = joint.definition
+    turns = (placed(side, states).turn for side in (joint.parent, joint.child))
+    return [
+        [rotate(turn, _numbers(axis)) for axis in frame.T]
+        for turn, frame in zip(turns, d.frames_of_limits())
+    ]
+
+
+def _along_ball(joint: Sides, states, which: str) -> Vector:
+    """Return the direction in which an angle of a ball joint grows (`carom.kinematics.ball`)."""
+    p, c = _axes_of_ball(joint, states)
+    if which == "twist":
+        total, size = add(p[0], c[0]), 1.0 + dot(p[0], c[0])
+    else:
+        total = cross(p[0], c[0])
+        if which == "rotation":
+            total = add(add(total, cross(p[1], c[1])), cross(p[2], c[2]))
+        size = np.sqrt(dot(total, total))
+    return total[0] / size, total[1] / size, total[2] / size
+
+
+def limited_angle(joint: Joint, which: str, states) -> Any:
+    """Return an angle of a ball joint (T,), or at one time: a twist then from -pi to pi."""
+    sides = sides_of(joint)
+    p, c = _axes_of_ball(sides, states)
+    if which == "twist":
+        q = np.arctan2(dot(p[2], c[1]) - dot(p[1], c[2]), dot(p[1], c[1]) + dot(p[2], c[2]))
+        if np.ndim(q) == 0:
+            return float(q)
+        spins = (placed(side, states).spin for side in (sides.child, sides.parent))
+        rate = dot(_along_ball(sides, states, which), subtract(*spins))
+        return unwrapped(q, rate, states.t, 2.0 * math.pi)
+    x, cosine = cross(p[0], c[0]), dot(p[0], c[0])
+    if which == "rotation":
+        x = add(add(x, cross(p[1], c[1])), cross(p[2], c[2]))
+        x, cosine = (
+            tuple(0.5 * one for one in x),
+            0.5 * (cosine + dot(p[1], c[1]) + dot(p[2], c[2]) - 1.0),
+        )
+    return np.arctan2(np.sqrt(dot(x, x)), cosine)[()]
 
 
 def in_degrees(joint: Joint, q: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -199,11 +199,14 @@ class _Mechanism:
                 arm = impacts.point[i] - state.position[b]
                 rest[b] += sign * np.append(self.push[i], jc.cross(arm, self.push[i]))
 
-    def take_along(self, joint, k: int, amount: float, state: _State, rest: np.ndarray) -> None:
+    def take_along(
+        self, joint, k: int | str, amount: float, state: _State, rest: np.ndarray
+    ) -> None:
         """Take an impulse along a coordinate from the child, and the opposite one from the parent."""
         sides = self.joints[joint.index]
         axis = amount * np.array(jc.direction(sides, state, k))
-        self.take(joint, axis, state, rest, coordinate_kind(joint, k) == "turn")
+        turns = isinstance(k, str) or coordinate_kind(joint, k) == "turn"
+        self.take(joint, axis, state, rest, turns)
 
     def take(self, joint, axis: np.ndarray, state: _State, rest: np.ndarray, turns: bool = False):
         """Take an impulse at the anchor, or about an axis, from the child, the opposite one from the parent."""

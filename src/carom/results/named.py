@@ -470,7 +470,7 @@ class ContactView(View):
     def _turns(self) -> bool:
         """Whether it is the stop of an angle, whose force is a torque."""
         stop = self._part
-        return isinstance(stop, Stop) and coordinate_kind(stop.joint, stop.coordinate) == "turn"
+        return isinstance(stop, Stop) and stop.turns
 
     @cached_property
     def _sums(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -513,7 +513,10 @@ class ContactView(View):
         if isinstance(part, RailContact):
             return np.reshape(jc.gaps_of_rail(part.joint, source), np.shape(source.t))[()]
         if isinstance(part, Stop):
-            q = source.joint_coordinates(part.joint)[0][..., part.coordinate][()]
+            if isinstance(part.coordinate, str):
+                q = jc.limited_angle(part.joint, part.coordinate, source)
+            else:
+                q = source.joint_coordinates(part.joint)[0][..., part.coordinate][()]
             return part.side * (q - part.end)
         x, Q = (np.reshape(a, (-1, *a.shape[-2:])) for a in (source.position, source.orientation))
         gaps = [

@@ -141,10 +141,12 @@ def contact_names(scene, pairs) -> ContactNames:
     own = [contact.name for contact in scene.contacts]
     name = own + [f"{b}-{o}" for b, o in zip(body[len(own) :], other[len(own) :])]
     joints = [stop.joint for stop in scene.stops]
-    turns = [coordinate_kind(stop.joint, stop.coordinate) == "turn" for stop in scene.stops]
     return ContactNames(
         np.array([*name, *(stop.name for stop in scene.stops)], dtype=str),
         np.array([*body, *(joint.child.name for joint in joints)], dtype=str),
         np.array([*other, *(joint.parent.name for joint in joints)], dtype=str),
-        np.array(["m/s"] * len(name) + ["rad/s" if turn else "m/s" for turn in turns], dtype=str),
+        np.array(
+            ["m/s"] * len(name) + ["rad/s" if stop.turns else "m/s" for stop in scene.stops],
+            dtype=str,
+        ),
     )

@@ -12,7 +12,6 @@ import numpy as np
 from carom.geometry.frames import length
 from carom.scene.all_pairs import meeting
 from carom.scene.bodies import HalfSpace
-from carom.scene.constraints import coordinate_kind
 from carom.scene.forces import Force, Torque
 
 if TYPE_CHECKING:
@@ -97,7 +96,7 @@ def _of_stops(scene: Scene) -> list[str]:
         stop
         for stop in scene.stops
         if stop.joint.kind != "Screw"  # which is made for many turns
-        and coordinate_kind(stop.joint, stop.coordinate) == "turn"
+        and stop.turns
         and abs(stop.end) > 2.0 * math.pi
         and stop.end == round(stop.end)
         and stop.name not in scene._in_radians

@@ -457,7 +457,7 @@ class Scene(Shown, TouchingPairs):
         upper: float | None = None,
         restitution: float | Restitution = 0.0,
         impact_law: str = "newton",
-        coordinate: int = 0,
+        coordinate: int | str = 0,
         name: str | None = None,
         replace: bool = False,
     ) -> Stop:
@@ -482,7 +482,9 @@ class Scene(Shown, TouchingPairs):
             ``"newton"`` (default), ``"poisson"`` or ``"stronge"``. A stop has no friction, so the laws differ
             only in multiple impacts.
         coordinate
-            Index of the coordinate of the joint. Default 0.
+            Index of the coordinate of the joint. Default 0. Of a ball joint (`carom.joints.Spherical`) one of
+            ``"rotation"``, ``"swing"`` (a cone) and ``"twist"``. Rotation and swing have upper limits, from 0
+            to pi. The twist has no value where the swing is pi, so it needs a limit of the swing.
         name
             Name in the scene. Default ``"stop1"``, ``"stop2"``, ...
         """

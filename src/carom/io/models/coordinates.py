@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+import math
+from typing import Any, cast
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from carom.io.models.report import need_mujoco
 from carom.results.robot import Coordinate
 from carom.scene import constraints, forces
 from carom.scene.bodies import GROUND
+from carom.scene.joints import Joint
 
 RELAXED = 1e-9  # angle, or distance by the extent of the model, within which a mount starts relaxed
 #: rate [1/s] at which a damper ends the motion of the whole model along its joint, above which the joint is
@@ -118,8 +120,8 @@ def _armature(build: Build, j: int, c: Coordinate, represent: bool) -> None:
     build.scene.add_force(rotor, name=build.names.new(f"{name}:armature", "force"))
 
 
-def add_mounts(build: Build, links: list[Link]) -> None:
-    """Add springs and dampers of ball and free joints, and report what else such joints have."""
+def add_mounts(build: Build, links: list[Link], restitution: float, impact_law: str) -> None:
+    """Add springs, dampers and limits of ball and free joints, and report what else such joints have."""
     kinds = need_mujoco().mjtJoint
     for link in links:
         j = int(build.model.body_jntadr[link.body])
@@ -128,6 +130,8 @@ def add_mounts(build: Build, links: list[Link]) -> None:
     for j, joint in build.balls.items():
         link = next(one for one in links if one.body == build.model.jnt_bodyid[j])
         _mount(build, j, link, joint.parent, joint.child, moves=False)
+        if build.model.jnt_limited[j]:
+            _limit(build, j, joint, restitution, impact_law)
 
 
 def _mount(build: Build, j: int, link: Link, parent, child, moves: bool) -> None:
@@ -156,5 +160,26 @@ def _mount(build: Build, j: int, link: Link, parent, child, moves: bool) -> None
         build.report.add(what, "armature of a joint with several freedoms", "left out")
     if np.any(model.dof_frictionloss[dofs]):
         build.report.add(what, "dry friction of a joint with several freedoms", "left out")
-    if model.jnt_limited[j]:
-        build.report.add(what, f"limit {model.jnt_range[j][1]:g} rad of a ball joint", "left out")
+
+
+def _limit(build: Build, j: int, joint: Joint, restitution: float, impact_law: str) -> None:
+    """Add the limit of a ball joint, the greatest angle of its rotation; one of pi or more limits nothing."""
+    name, what = name_of(build.model, "joint", j), called(build.model, "joint", j)
+    end, definition = float(np.max(build.model.jnt_range[j])), cast(Any, joint.definition)
+    angle = float(np.linalg.norm(quaternion.log(definition.start)))
+    if angle > end > 0.0:
+        past = f"starts beyond its upper limit, by {angle - end:.3g}"
+        build.report.add(what, past, "the limit is moved to the start")
+        end = angle
+    if not end > 0.0:
+        build.report.add(what, f"limit {end:g} rad of a ball joint", "left out")
+    elif end < math.pi:
+        name = build.names.new(f"{name}:upper", "stop")
+        build.scene.add_stop(
+            joint,
+            upper=end,
+            coordinate="rotation",
+            restitution=restitution,
+            impact_law=impact_law,
+            name=name,
+        )

@@ -61,11 +61,21 @@ def _one(build: Build, j: int) -> Group:
     anchor, axis = build.data.xanchor[j], build.data.xaxis[j]
     kinds = need_mujoco().mjtJoint
     if build.model.jnt_type[j] == kinds.mjJNT_BALL:
-        return Group(joints.Spherical(anchor), [(j, 0, 1.0)])
+        return Group(joints.Spherical(anchor, start=_turned(build, j)), [(j, 0, 1.0)])
     if build.model.jnt_type[j] == kinds.mjJNT_HINGE:
         return Group(joints.Revolute(anchor, axis), [(j, 0, 1.0)])
     anchor = build.moving(int(build.model.jnt_bodyid[j])).position
     return Group(joints.Prismatic(axis, anchor), [(j, 0, 1.0)])
+
+
+def _turned(build: Build, j: int) -> np.ndarray:
+    """Return the rotation of a ball joint at the start, from its `qpos`, in world axes.
+
+    No joint that turns may follow it in its body.
+    """
+    first, axes = int(build.model.jnt_qposadr[j]), build.data.xquat[build.model.jnt_bodyid[j]]
+    q = quaternion.normalize(build.data.qpos[first : first + 4])
+    return quaternion.multiply(quaternion.multiply(axes, q), quaternion.conjugate(axes))
 
 
 def _two(build: Build, numbers: list[int]) -> Group | None:

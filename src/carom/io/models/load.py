@@ -173,7 +173,7 @@ def load_model(
             join(build, link)
     _add_gravcomp(build)
     add_coordinate_parts(build, limit_restitution, impact_law, armature)
-    add_mounts(build, jointed)
+    add_mounts(build, jointed, limit_restitution, impact_law)
     motors = add_actuators(build, add_tendons(build, limit_restitution, impact_law))
     add_equalities(build)
     if contacts:

@@ -35,6 +35,8 @@ class JointDefinition:
     coordinates : tuple of {"turn", "slide"}
         Coordinates of the joint: angles [rad] about ("turn") and displacements [m] along ("slide") the axes of
         `coordinate_frame`.
+    limits : tuple of str
+        Angles [rad] beside the coordinates that stops can limit (`Spherical`).
     rows : int
         Number of constraint rows; by default those of `guide` and `turn`.
     nonholonomic : int
@@ -46,6 +48,7 @@ class JointDefinition:
     guide: ClassVar[str]
     turn: ClassVar[str]
     coordinates: ClassVar[tuple[str, ...]] = ()
+    limits: ClassVar[tuple[str, ...]] = ()
     rows: ClassVar[int]
     nonholonomic: ClassVar[int] = 0
     in_trees: ClassVar[bool] = True

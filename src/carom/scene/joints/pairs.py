@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 from carom import arguments, fields
-from carom.fields import Vector, VectorOrNone
+from carom.fields import Value, Vector, VectorOrNone
+from carom.geometry import quaternion
+from carom.geometry.attitude import attitude
+from carom.geometry.frames import triad
 from carom.scene.joints.definition import JointDefinition
 
 
@@ -24,11 +30,38 @@ class Revolute(JointDefinition):
 @arguments.known
 @dataclass(frozen=True, eq=False)
 class Spherical(JointDefinition):
-    """A ball joint: the bodies have the point `anchor` (3,) in common and rotate freely about it."""
+    """A ball joint: the bodies have the point `anchor` (3,) in common and rotate freely about it.
+
+    Stops (`Scene.add_stop`) limit three angles of it: the ``"rotation"`` of the child about any axis, from 0 to
+    pi; the ``"swing"`` between the axis of the joint in the parent and in the child, from 0 to pi; and the
+    ``"twist"`` about it, which remains after the shortest turn of the one axis to the other.
+
+    Parameters
+    ----------
+    anchor : (3,)
+    axis : (3,), optional
+        Axis of swing and twist, fixed in the parent. Default z.
+    start : orientation, optional
+        Rotation of the child at the start from where its three angles are 0, in the axes of `anchor` and
+        `axis`: a quaternion (w, x, y, z), a matrix (3, 3) or a Rotation of SciPy. Default: they are 0 at the
+        start.
+    """
 
     guide, turn = "point", "ball"
+    limits = ("rotation", "swing", "twist")
 
     anchor: Vector = fields.vector()
+    axis: Vector = fields.direction((0.0, 0.0, 1.0))
+    start: Value[np.ndarray, Any] = Value(attitude, (1.0, 0.0, 0.0, 0.0))
+
+    def frame(self, flipped: bool = False) -> np.ndarray:
+        """Return axes for the rows, which need none of the joint."""
+        return np.eye(3)
+
+    def frames_of_limits(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the axes (3, 3) of parent and child as columns, which agree where the angles are 0."""
+        own = triad(self.axis)
+        return own, quaternion.rotate(self.start, own.T).T
 
 
 @arguments.known

@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.results.joint_impulses import world_impulses
-from carom.scene.constraints import coordinate_kind
 
 LISTED = 1000  # impacts in the list: the strongest
 OPENED = 200  # impacts whose inside is kept: the strongest
@@ -87,4 +86,4 @@ def _strongest(impacts) -> np.ndarray:
 
 
 def _turns(stop) -> bool:
-    return coordinate_kind(stop.joint, stop.coordinate) == "turn"
+    return stop.turns
