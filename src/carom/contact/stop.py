@@ -20,7 +20,7 @@ from carom.kinematics.curve import can_be_left, find_foot, is_on_curve, rail_dri
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.model.actions import NOTHING, PERSIST, STRIKE
 from carom.model.arrays import KIND_STOP
-from carom.model.workspace import MOTION_POINT
+from carom.model.workspace import MOTION_POINT, MOTION_STOP_SLIDE, MOTION_STOP_TURN
 
 
 @unit

@@ -20,6 +20,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.geometry.rotation import cross
+from carom.geometry.vectors import dot
 from carom.kinematics.joints import axis
 from carom.model.arrays import SWING, TWIST
 
@@ -28,12 +29,6 @@ from carom.model.arrays import SWING, TWIST
 def axes_of(c, state, k):
     """Return axis k of the parent and of the child."""
     return axis(state, c.parent, c.parent_frame, k), axis(state, c.child, c.child_frame, k)
-
-
-@kernel
-def dot(a, b):
-    """Return a . b."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @kernel
