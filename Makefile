@@ -17,19 +17,21 @@ $(VENV)/installed-%: pyproject.toml
 paper: $(VENV)/installed-paper ## reproduce the paper: figures and table under out/paper
 	$(BIN)/carom paper --out out/paper
 
-# one process compiles everything before the tests: several would compile the same kernels
+# one process compiles everything before the tests: several would compile the same kernels. Beside it is done what
+# needs no compiled code. A file of tests is run by one process, which keeps its scenes
+TESTS := $(BIN)/python -m pytest -n auto --dist loadfile
 test: $(VENV)/installed-test ## style, types, tests but for the slow ones, a tenth of them nudged, a part without the JIT
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/carom warmup --workers 1 & $(BIN)/basedpyright; types=$$?; wait; exit $$types
-	$(BIN)/python -m pytest -n auto -m "not slow"
-	CAROM_TEST_NUDGE=1 CAROM_TEST_TENTH=today $(BIN)/python -m pytest -n auto -m "not slow"
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto -m plain $(call marked,plain)
+	$(BIN)/carom warmup --workers 1 & { $(BIN)/basedpyright && \
+		NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -m plain $(call marked,plain); }; beside=$$?; wait; exit $$beside
+	$(TESTS) -m "not slow"
+	CAROM_TEST_NUDGE=1 CAROM_TEST_TENTH=today $(TESTS) -m "not slow"
 
 test-all: test ## the slow tests too, all nudged, and a part of all for another processor
 	$(BIN)/python -m pytest -n auto -m slow $(call marked,slow|few)
-	for units in 1 -1 3; do CAROM_TEST_NUDGE=$$units $(BIN)/python -m pytest -n auto -m "not slow" || exit 1; done
-	NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= $(BIN)/python -m pytest -n auto --dist loadfile -m processors $(call marked,processors)
+	for units in 1 -1 3; do CAROM_TEST_NUDGE=$$units $(TESTS) -m "not slow" || exit 1; done
+	NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= $(TESTS) -m processors $(call marked,processors)
 
 lint: $(VENV)/installed-test
 	$(BIN)/ruff check --fix .

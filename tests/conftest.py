@@ -47,6 +47,12 @@ def pytest_collection_modifyitems(config, items):
         for k, item in enumerate(cases):
             if k not in chosen:
                 item.add_marker(pytest.mark.slow)
-    left_out = [item for item in items if not nudge.is_chosen(item)]
-    items[:] = [item for item in items if nudge.is_chosen(item)]
-    config.hook.pytest_deselected(items=left_out)
+    left_out = {item for item in items if not nudge.is_chosen(item.path, item.name)}
+    left_out |= {item for item in items if nudge.units() and item.get_closest_marker("bits")}
+    items[:] = [item for item in items if item not in left_out]
+    config.hook.pytest_deselected(items=list(left_out))
+
+
+def pytest_ignore_collect(collection_path):
+    """Import no file of another tenth."""
+    return None if nudge.is_chosen(collection_path) else True

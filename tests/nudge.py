@@ -4,19 +4,22 @@
 that many units in the last place, where a scene becomes arrays: behind the checks of arguments, and before
 anything is computed from them. A test that this fails hangs on round-off, and so on the processor, the C
 library, and the versions of NumPy and BLAS. Tests of bits, of what a part keeps, and of other processes
-are marked ``bits`` and left out. ``CAROM_TEST_TENTH=0`` to ``9``, or ``today``, runs a tenth of the tests.
+are marked ``bits`` and left out. ``CAROM_TEST_TENTH=0`` to ``9``, or ``today``, runs a tenth of the files,
+whose tests share their scenes; others are not imported.
 """
 
 from __future__ import annotations
 
 import os
 from datetime import date
+from pathlib import Path
 from zlib import crc32
 
 import numpy as np
 
 UNITS = "CAROM_TEST_NUDGE"
 TENTH = "CAROM_TEST_TENTH"
+ROOT = Path(__file__).parent
 
 
 def units() -> int:
@@ -61,8 +64,15 @@ def choose_tenth() -> None:
         os.environ[TENTH] = str(date.today().toordinal() % 10)
 
 
-def is_chosen(item) -> bool:
-    """Return whether a test is run: tests of bits not in the lane, and of a tenth only its own."""
+def is_chosen(path: Path, name: str = "") -> bool:
+    """Return whether a folder, a file or a test is in the tenth that is run.
+
+    Files in folders are taken whole. Those beside the folders walk over examples and pages, and are taken test
+    by test.
+    """
     tenth = os.environ.get(TENTH)
-    outside = tenth is not None and crc32(item.nodeid.encode()) % 10 != int(tenth)
-    return not outside and not (units() and item.get_closest_marker("bits"))
+    beside = path.parent == ROOT
+    if tenth is None or not path.name.startswith("test_") or (beside and not name):
+        return True
+    key = path.relative_to(ROOT).as_posix() + (name if beside else "")
+    return crc32(key.encode()) % 10 == int(tenth)

@@ -355,7 +355,7 @@ def writes(node: ast.AST) -> bool:
 def test_all_files_are_written_whole():
     """By `io.files.disk`: a full disk leaves the old file."""
     found = {
-        name: [node.lineno for node in ast.walk(ast.parse(path.read_text("utf-8"))) if writes(node)]
+        name: [node.lineno for node in ast.walk(tree(path)) if writes(node)]
         for name, path in modules().items()
     }
     assert not {

@@ -21,12 +21,13 @@ def rates_of(a, b, x, v, w=((0, 0, 0), (0, 0, 0)), q=ORIGIN.q):
     return Touching(a, b, first, second).points()[2]
 
 
+@pytest.mark.parametrize("pairs", [8, pytest.param(25, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("mode", MODES)
-def test_closed_form_is_the_rate_of_the_points(mode):
+def test_closed_form_is_the_rate_of_the_points(mode, pairs):
     # A Richardson extrapolation of central differences, of order 6; points whose part changes within the
     # difference, or that are arbitrary ones of a line, have none.
     rng, checked, left_out = np.random.default_rng(7), 0, 0
-    for _ in range(25):
+    for _ in range(pairs):
         a, b, pair = case(mode, rng)
         for rate in pair.rates():
             lines = any(part >> 30 == EDGE for part in rate.parts)

@@ -135,7 +135,7 @@ def blocks_on_an_incline(friction, angle=0.4):
 @pytest.mark.plain
 def test_blocks_stick_on_an_incline():
     """mu just above tan: exactly."""
-    s = carom.simulate(blocks_on_an_incline(1.001 * np.tan(0.4)), 0.1, step=0.01)
+    s = carom.simulate(blocks_on_an_incline(1.001 * np.tan(0.4)), 0.04, step=0.01)
     np.testing.assert_array_equal(s.position, np.broadcast_to(s.position[0], s.position.shape))
     assert np.all(s.velocity == 0.0)
 

@@ -48,9 +48,12 @@ def python(*arguments):
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
-def test_killed_at_any_operation(tmp_path):
+@pytest.mark.parametrize("stride", [12, pytest.param(5, marks=pytest.mark.slow)])
+def test_killed_at_any_operation(stride, tmp_path):
     # some 850 operations: half of them make the store
-    told = python(str(TESTS / "ensembles" / "kills.py"), str(tmp_path), "5", "172", "5").split()
+    told = python(
+        str(TESTS / "ensembles" / "kills.py"), str(tmp_path), "5", "172", str(stride)
+    ).split()
     assert len(told) == 2, told
     assert int(told[0]) >= 4
 

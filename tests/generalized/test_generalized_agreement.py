@@ -54,6 +54,7 @@ def test_double_pendulum_moves_as_its_bodies(pendulum):
     assert np.max(np.abs(here.ledger.residual)) < 3e-8  # energy: order 4 too
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("case", WALL["cases"])
 @pytest.mark.parametrize("law", ["newton", "poisson", "stronge"])
 def test_tip_strikes_a_wall(case, law):

@@ -11,9 +11,18 @@ from carom import GeneralizedSystem
 START = dict(position=[-1.3, 0.5], velocity=[0.0, 0.0])
 
 
+@numba.extending.register_jitable
+def filled(shape, values):
+    """Return an array of these numbers. (`np.array` of lists takes Numba seconds to compile.)"""
+    out = np.empty(shape)
+    for k, value in enumerate(values):
+        out.flat[k] = value
+    return out
+
+
 def metric(q):
     c = 0.5 * np.cos(q[0] - q[1])
-    return np.array([[4 / 3, c], [c, 1 / 3]])
+    return filled((2, 2), (4 / 3, c, c, 1 / 3))
 
 
 def potential(q):
@@ -25,7 +34,7 @@ def gap(q):
 
 
 def tangent(q):
-    return np.array([np.sin(q[0]), np.sin(q[1])])
+    return np.sin(q)
 
 
 def metric_derivative(q):

@@ -11,7 +11,7 @@ TRUE = {"restitution": 0.35, "friction": 0.22}
 LEAST_SQUARES = squared_error(POSITION_NOISE, ROTATION_NOISE)
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_restitution_and_friction_of_one_impact(seed):
     recordings = tosses(8, 11, seed, **TRUE)
     begin = {"restitution": (0.5, 0.1), "friction": (0.3, 0.05)}

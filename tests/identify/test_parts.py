@@ -44,6 +44,7 @@ def test_least_point_of_a_surface_without_a_minimum_is_on_the_edge():
     np.testing.assert_allclose(minimum(c), [0, -1], rtol=0, atol=1e-6)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("scale", [0.03, 1.0, 20.0])
 def test_spread_of_the_mean_is_found_whatever_the_first_reach(scale):
     # recording k wants x = a_k: the minimum of the mean is the mean of the a_k, with the standard

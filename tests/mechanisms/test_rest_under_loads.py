@@ -59,10 +59,10 @@ def test_a_chain_lies_on_many_boxes(how):
             box = scene.add_body(carom.Box(0.1, 0.1, 0.1), mass=0.5, position=place)
             scene.add_contact(box, "floor", friction=0.5, restitution=0.0)
             scene.add_contact(link, box, friction=0.5, restitution=0.0)
-    s = carom.simulate(scene, 0.3, **how)
-    assert (s.stats["whole_steps"] > 50) == ("step" in how)
+    s = carom.simulate(scene, 0.1, **how)
+    assert (s.stats["whole_steps"] > 15) == ("step" in how)
     np.testing.assert_array_equal(s.position, np.broadcast_to(s.position[0], s.position.shape))
-    assert np.abs(s.ledger.loads).max() < 1e-14  # round-off of 3 N m times 1e-16 rad in 200 steps
+    assert np.abs(s.ledger.loads).max() < 1e-14  # round-off of 3 N m times 1e-16 rad in 20 steps
 
 
 @pytest.mark.parametrize("seed", [8, 22, 45])

@@ -392,10 +392,11 @@ def test_the_state_is_read_only_and_stays():
             kept[0][name]
 
 
-def test_random_throws():
+@pytest.mark.parametrize("throws", [25, pytest.param(60, marks=pytest.mark.slow)])
+def test_random_throws(throws):
     """Heights, apices and distances of random throws, at random steps: to the round-off of their times."""
     rng = np.random.default_rng(11)
-    for _ in range(60):
+    for _ in range(throws):
         up, z, x = rng.uniform(0.5, 5.0), rng.uniform(-0.5, 0.5), rng.uniform(0.1, 1.0)
         v, step = rng.uniform(0.5, 2.0), 10.0 ** rng.uniform(-2.5, -0.5)
         scene = carom.Scene()

@@ -14,6 +14,7 @@ from campaigns.case import run
 TOLERANCE = carom.Options().energy_tolerance
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("first", range(40, 80, 8))
 def test_what_ends_in_success_has_its_energy_or_says_so(first):
     # Worked out from the ledger at saved times, and so never above what the loop has seen after each step. That

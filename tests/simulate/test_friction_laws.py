@@ -268,10 +268,11 @@ def by_impulse(W, u, law, e):
     return after
 
 
+@pytest.mark.parametrize("seeds", [range(8, 12), pytest.param(range(12), marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", LAWS)
-def test_impacts_by_the_slip(name):
+def test_impacts_by_the_slip(name, seeds):
     law, slips, sticks = LAWS[name], 0, 0
-    for seed in range(12):
+    for seed in seeds:
         found = carom.simulate(thrown(law, seed), 0.25, rtol=1e-8, atol=1e-8)
         for one in found.impacts:
             after = by_impulse(one.inverse_mass, one.relative_velocity_before, law, 0.5)
@@ -281,7 +282,7 @@ def test_impacts_by_the_slip(name):
             slips, sticks = slips + (after[1] != 0.0), sticks + (after[1] == 0.0)
             assert one.energy_change < 0.0
             assert one.friction_loss >= 0.0
-    assert slips >= 10
+    assert slips >= 0.8 * len(seeds)
     assert sticks >= 1
 
 

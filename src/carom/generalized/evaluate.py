@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -104,7 +104,9 @@ class Evaluation:
 
         rho, rows, normals = surfaces(q)
         kappa = np.linalg.lstsq(rows @ normals, rho)[0]
-        found = root(misses, np.append(q - normals @ kappa, kappa), tol=1e-14)
+        # what `root` returns is not worked out from its code: that takes a seventh of the check of types
+        search = cast("Any", root)
+        found = search(misses, np.append(q - normals @ kappa, kappa), tol=1e-14)
         if not np.max(np.abs(found.fun)) <= NEAR * max(1.0, np.max(np.abs(q))):
             raise ValueError(
                 f"position must be nearer to the contact, got {q!r}: the return map did not converge"

@@ -107,9 +107,10 @@ def random_impact(rng):
     return G / mass @ G.T, u
 
 
-def test_random_impacts_never_gain():
+@pytest.mark.parametrize("impacts", [250, pytest.param(1000, marks=pytest.mark.slow)])
+def test_random_impacts_never_gain(impacts):
     returned = 0
-    for seed in range(1000):
+    for seed in range(impacts):
         rng = np.random.default_rng([46, seed])
         W, u = random_impact(rng)
         k = len(u)
@@ -133,7 +134,7 @@ def test_random_impacts_never_gain():
             assert hit.velocity_after[p[:, 0] > 1e-6 * p.max(), 0] == pytest.approx(
                 plain.velocity_after[p[:, 0] > 1e-6 * p.max(), 0], abs=1e-6
             )
-    assert returned > 200
+    assert returned > 0.2 * impacts
 
 
 def test_groups_return_slip_each_by_itself():

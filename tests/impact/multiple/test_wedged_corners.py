@@ -42,11 +42,12 @@ def corner(rng):
     return rows(normals, arms), np.r_[1, 1, 1, 1 / inertia] / 10 ** rng.uniform(-1, 1), v
 
 
+@pytest.mark.parametrize("corners", [75, pytest.param(300, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("multiple", MODES)
-def test_corners_with_any_friction(multiple):
+def test_corners_with_any_friction(multiple, corners):
     """No gain, impulses in their cones and of the size of the momentum, no approach; none is refused."""
     wedged = 0
-    for seed in range(300):
+    for seed in range(corners):
         rng = np.random.default_rng([46, seed])
         G, inverse, v = corner(rng)
         k, energy = len(G) // 3, 0.5 * v @ (v / inverse)
