@@ -214,10 +214,15 @@ def _compiled(function, inside, outside):
     """Compile the wrapper of a function that Numba has compiled."""
 
     def call(t, read, write):
-        out = carray(write, outside)
-        try:
-            out[...] = function(t, carray(read, inside))
+        out, at = carray(write, outside).reshape(-1), 0
+        try:  # an assignment of arrays brings the words of its error for unequal shapes: 2 s to compile
+            found = np.asarray(function(t, carray(read, inside)))
+            if found.size != out.size:
+                raise ValueError
+            for value in found.flat:
+                out[at] = value
+                at += 1
         except Exception:  # Numba would print each
-            out[...] = math.nan
+            out[:] = math.nan
 
     return code_of(call, _SIGNATURE)
