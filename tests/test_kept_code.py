@@ -45,7 +45,8 @@ def made(
     tools.shift, tools.other = shift, []
     tools.inner = njit(eval(f"lambda t: {inner} * t"))
     exec(SOURCE.format(deep=deep, body=body), space)
-    space["deep"] = njit(**(options or {}))(space["deep"])
+    compiler: Any = njit
+    space["deep"] = compiler(**(options or {}))(space["deep"])
     return space["function"]
 
 

@@ -31,7 +31,7 @@ if COMPILES:
     from carom._compiled.kept_code import code_of
 else:  # nothing of this Numba is known but what all versions have
 
-    def code_of(function, signature):
+    def code_of(function, signature) -> Any:
         """Compile in this process."""
         return cfunc(signature)(function)
 
@@ -128,7 +128,7 @@ class Functions:
 
         if not COMPILES:
             return self.address(answer, inside, outside, name)
-        made = code_of(function, _SIGNATURE)
+        made: Any = code_of(function, _SIGNATURE)
         self._kept.append(made)
         self._plainly[made.address] = answer, inside, outside, name
         return made.address
