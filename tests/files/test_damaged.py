@@ -182,7 +182,10 @@ def test_made_up_scenes():
         else:
             assert len(scene.bodies) == count
     assert len(told) > 150
-    assert all(re.match(r"the text|(shapes|parts)(\[\d+\])?|gravity|contacts", one) for one in told)
+    assert all(
+        re.match(r"the text|(shapes|parts)(\[\d+\])?|gravity|contacts|robot|look", one)
+        for one in told
+    )
 
 
 @pytest.mark.plain
