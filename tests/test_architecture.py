@@ -54,6 +54,7 @@ CAPABILITIES = {
         "dynamics": 1, "model": 1, "geometry": 1, "hints": 3,
     },
     "kinds of contacts and motions of points by name": {"kinematics": 1, "stepping": 1},
+    "pairs that hardly move": {"contact": 1},
     "a material for each part of a compound": {"io": 1, "scene": 1},
     "tableaus of Runge-Kutta methods, each once; turns in the records": {"model": 1},
     "restitution with speed, tangential restitution": {"scene": 3, "impact": 1, "results": 1, "model": 1},

@@ -206,6 +206,9 @@ def passage_pair(model, data, c) -> tuple[int, float]:
     follows = alike and smooth  # the cubic between both ends describes the gap
     if follows and cubic_clears(gap, rate0, least, rate, h, tiny):
         return CLEAR, first
+    # other points may be nearest at the end (faces that are parallel): none comes so far
+    if smooth and min(gap, least) > limits.CUBIC_FACTOR * h * speed_past(contact, data):
+        return CLEAR, first
     bends = sag > tiny or follows or not short
     if little and max(abs(gap), abs(least)) <= tiny:
         if max(abs(rate0), abs(rate)) <= slow(contact, end):  # it slides or rolls along, unforced
@@ -271,3 +274,19 @@ def way_past(contact, data):
         v, y = state[contact.body].v, centre_of_other(contact, state)
         most = max(most, (v[0] - y[3]) ** 2 + (v[1] - y[4]) ** 2 + (v[2] - y[5]) ** 2)
     return data.work.search[0].dt * math.sqrt(most)
+
+
+@kernel
+def speed_past(contact, data):
+    """Return a bound of the relative velocities of points of both at the ends of the trial step."""
+    most, b = 0.0, contact.other
+    for state in (data.state, data.work.trial):
+        one = state[contact.body]
+        v, w, u = one.v, contact.extent * norm(one.w), (0.0, 0.0, 0.0)
+        if b >= 0:
+            other = state[b]
+            u, w = (other.v[0], other.v[1], other.v[2]), w + contact.other_extent * norm(other.w)
+        most = max(
+            most, math.sqrt((v[0] - u[0]) ** 2 + (v[1] - u[1]) ** 2 + (v[2] - u[2]) ** 2) + w
+        )
+    return most

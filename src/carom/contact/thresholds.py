@@ -16,3 +16,4 @@ RIM_DISTANCE = 1.5  #: square of the radius: squared displacement of the lowest 
 RIM_STEP = 0.03
 #: distance from curved ground: part of it that a body certainly has where another foot may be nearer
 CAUTION = 0.2
+CUBIC_FACTOR = 1.5  #: greatest speed at the ends of a cubic, in the same direction: bounds that between them
