@@ -234,7 +234,7 @@ def test_the_room_of_arrays_changes_nothing():
 
 
 def test_what_hardly_moves_costs_few_steps():
-    # A row of 15 boxes that touch, or nearly: 542 to 5 855 trial steps in seven runs that differ by round-off.
+    # A row of 15 boxes that touch, or nearly: 533 to 5 340 trial steps in seven runs that differ by round-off.
     # While pairs of which another corner is the nearest at the end were unsure, it took 199 143.
     one = crowds.case(950041)
     with warnings.catch_warnings():

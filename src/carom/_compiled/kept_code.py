@@ -39,13 +39,8 @@ from carom._compiled.target import NAME, Dispatcher
 
 _MOST_FILES = 500  # of 20 to 60 kB; those that were not used for the longest time are removed
 _CHECK = 32  # bytes of a hash before the code
-_OF_MACHINE = (
-    "NUM_THREADS",
-    "CACHE",
-    "DEBUG",
-    "DUMP",
-    "THREADING",
-)  # settings that do not change code
+#: settings that do not change code
+_OF_MACHINE = "NUM_THREADS", "CACHE", "DEBUG", "DUMP", "THREADING"
 
 
 class Code:

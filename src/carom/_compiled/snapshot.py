@@ -28,7 +28,7 @@ _KNOWN = {"builtins", "math", "cmath", "operator", "_operator", "numpy", "numba"
 _CONSTANTS = int, float, bool, complex, str, bytes, types.NoneType, types.EllipsisType
 _MOST_BYTES = (
     10**6
-)  # of an array: Numba copies it into the code; of a larger one it takes the address
+)  # of an array that Numba copies into the code; of a larger one it takes the address
 
 
 class NotKept(Exception):

@@ -16,4 +16,5 @@ RIM_DISTANCE = 1.5  #: square of the radius: squared displacement of the lowest 
 RIM_STEP = 0.03
 #: distance from curved ground: part of it that a body certainly has where another foot may be nearer
 CAUTION = 0.2
-CUBIC_FACTOR = 1.5  #: greatest speed at the ends of a cubic, in the same direction: bounds that between them
+CUBIC_SHARE = 8.0 / 27.0  #: step times speed at the ends of a cubic: by which it leaves its chord at most
+CHORD_ANGLE = 2.23  #: distance of two quaternions: bound of their angle, up to a half turn: pi/sqrt(2)

@@ -45,9 +45,8 @@ class Instant:
         from carom.results.dry_friction import with_forces
 
         run, values = self.run, self.solved[1]
-        return self.solve(run.compiled, with_forces(run.scene, self.one_time, values, self.touch))[
-            1
-        ]
+        forced = with_forces(run.scene, self.one_time, values, self.touch)
+        return self.solve(run.compiled, forced)[1]
 
     def solve(self, compiled, touch) -> tuple[np.ndarray, np.ndarray]:
         """Return reactions on children (1, E, 6) and accelerations under forces at active points."""
