@@ -26,7 +26,7 @@ import llvmlite.binding as llvm
 import numba
 import numpy as np
 from numba import cfunc  # pyright: ignore[reportPrivateImportUsage]
-from numba.core import compiler, config, typed_passes
+from numba.core import config, typed_passes
 from numba.core.caching import FunctionCache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler_lock import global_compiler_lock
@@ -34,6 +34,7 @@ from numba.core.compiler_machinery import register_pass
 from numba.core.target_extension import target_override
 
 from carom._compiled import snapshot as snapshots
+from carom._compiled.link_only import PartCompiler
 from carom._compiled.snapshot import NotKept, Snapshot
 from carom._compiled.target import NAME, Dispatcher
 
@@ -120,17 +121,10 @@ class _Lowering(typed_passes.NativeLowering):
         return super().run_pass(state)
 
 
-class _Compiler(compiler.CompilerBase):
-    """Numba's own pipeline with another last pass."""
+class _Compiler(PartCompiler):
+    """Numba's own pipeline with the pass of this file."""
 
-    def define_pipelines(self):
-        """Return the passes."""
-        manager = compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
-        manager.passes[:] = [
-            (_Lowering if step is typed_passes.NativeLowering else step, what)
-            for step, what in manager.passes
-        ]
-        return [manager]
+    lowering = _Lowering
 
 
 def _surroundings() -> str:

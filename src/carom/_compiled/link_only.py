@@ -62,11 +62,13 @@ class PartLowering(typed_passes.NativeLowering):
 class PartCompiler(compiler.CompilerBase):
     """Numba's own pipeline with another last pass."""
 
+    lowering = PartLowering
+
     def define_pipelines(self):
         """Return the passes."""
         manager = compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
         manager.passes[:] = [
-            (PartLowering if step is typed_passes.NativeLowering else step, what)
+            (self.lowering if step is typed_passes.NativeLowering else step, what)
             for step, what in manager.passes
         ]
         return [manager]
