@@ -30,11 +30,12 @@ class Browser:
         self.process = subprocess.Popen(
             command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
-        self.said, self.presses, self._number = [], [], 0
+        self.said, self.loaded, self._number = [], [], 0
         port = int(self._until(lambda: self._port(folder)))
         with urllib.request.urlopen(f"http://127.0.0.1:{port}/json/list") as answer:
             page = next(one for one in json.load(answer) if one["type"] == "page")
-        self.socket = connect(page["webSocketDebuggerUrl"], max_size=None)
+        # Without pings: their thread draws from `random`, which a property test in this process would see.
+        self.socket = connect(page["webSocketDebuggerUrl"], max_size=None, ping_interval=None)
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
 
@@ -59,12 +60,12 @@ class Browser:
         elif kind == "Log.entryAdded" and about["entry"]["level"] in ("error", "warning"):
             self.said.append(about["entry"]["text"])
         elif kind == "Network.requestWillBeSent":
-            self.presses.append(about["request"]["url"])
+            self.loaded.append(about["request"]["url"])
 
     def open(self, url: str) -> None:
         """Go to an address."""
         self.said.clear()
-        self.presses.clear()
+        self.loaded.clear()
         self.call("Page.navigate", url=url)
 
     def run(self, script: str):

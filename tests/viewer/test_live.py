@@ -163,7 +163,7 @@ def test_page_of_the_server(live, browser, thrown):
         assert time.monotonic() < end, (client.camera.position - before, moved)
         browser.run("1")
         time.sleep(0.05)
-    assert all(url.startswith((live.url, "data:", "blob:")) for url in browser.presses)
+    assert all(url.startswith((live.url, "data:", "blob:")) for url in browser.loaded)
     browser.open("about:blank")
 
 

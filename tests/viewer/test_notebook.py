@@ -175,4 +175,4 @@ def test_a_static_page_shows_the_run(thrown, browser, tmp_path):
 
     browser._until(lambda: blue() > 300)
     assert not browser.said
-    assert not [url for url in browser.presses if url.startswith("http")]
+    assert not [url for url in browser.loaded if url.startswith("http")]

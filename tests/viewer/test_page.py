@@ -66,7 +66,7 @@ def test_slider_moves_bodies_as_they_moved(opened, thrown):
     assert drawn(opened)
     assert "0.2500 / 0.2500 s" in opened.run("clock.textContent")
     assert opened.said == []
-    assert [url for url in opened.presses if not url.startswith(("data:", "blob:"))] == [
+    assert [url for url in opened.loaded if not url.startswith(("data:", "blob:"))] == [
         opened.run("location.href")
     ]
 
