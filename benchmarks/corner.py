@@ -63,6 +63,7 @@ class Case:
     """One impact, with workspace, called in a compiled loop."""
 
     def __init__(self, problem, mu=0.0, e=0.5, law=STRONGE, kappa=None, repeat=200, **settings):
+        from carom.impact.multiple.api import stated_laws
         from carom.impact.multiple.layout import (
             CornerContacts,
             MultipleSettings,
@@ -73,10 +74,11 @@ class Case:
         W, u = problem
         k = len(u) // 3
         ones = np.ones(k)
+        kappa = ones if kappa is None else np.array(kappa, float)
         self.contacts = CornerContacts(
             k, 0, np.ascontiguousarray(W), np.ascontiguousarray(u), mu * ones, e * ones,
-            np.full(k, law), ones if kappa is None else np.array(kappa, float),
-            np.zeros(k, dtype=np.int64), 0 * ones,
+            np.arange(k), kappa, np.zeros(k, dtype=np.int64),
+            stated_laws(mu * ones, e * ones, [law] * k, 0 * ones, kappa),
         )  # fmt: skip
         self.settings, self.repeat, self.given = MultipleSettings, repeat, settings
         self.workspace, self.out = new_multiple_workspace(k), new_multiple_result(k)

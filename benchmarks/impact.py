@@ -9,8 +9,8 @@ from carom._compiled.decorators import entry
 from carom._compiled.record_arrays import table
 from carom.bench.problems import corner_impact
 from carom.bench.problems.corner_impact import IMPACTS_TIMED
-from carom.impact.laws import NEWTON, STRONGE
 from carom.impact.layer import traverse
+from carom.law.impact_laws import NEWTON, STRONGE
 from carom.model.workspace import HIT
 from common import ROUNDS, die_scene, report, seconds, spread
 

@@ -19,6 +19,7 @@ ROOMS = (
     "geometry",
     "collision",
     "model",
+    "law",
     "kinematics",
     "contact",
     "friction",

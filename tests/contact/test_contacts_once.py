@@ -69,9 +69,9 @@ def test_options_of_rows_count(option):
 
 def test_a_run_does_not_write_to_what_is_kept():
     first = compiled({})
-    first.system.contacts["friction"], first.system.vertices[:] = 7.0, 7.0
+    first.system.laws.table["friction"], first.system.vertices[:] = 7.0, 7.0
     second = compiled({})
-    assert second.system.contacts.friction[0] == 0.2
+    assert second.system.laws.table.friction[0] == 0.2
     assert np.max(second.system.vertices) < 1.0
 
 

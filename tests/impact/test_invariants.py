@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from carom.impact.api import resolve_impact
-from carom.impact.laws import GAINING, NUMBERS
 from carom.impact.slip_directions import critical_friction, invariant_directions
+from carom.law.impact_laws import GAINING, NUMBERS
 
 laws = st.sampled_from(LAWS)
 few = settings(max_examples=40, deadline=None)

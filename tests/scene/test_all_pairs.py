@@ -57,7 +57,8 @@ def test_two_hundred_spheres():
         np.testing.assert_array_equal(first, 1000 + body)
         np.testing.assert_array_equal(last, 1001 + body)
     np.testing.assert_array_equal(contacts.number, np.arange(20900))
-    assert np.all(contacts.friction == 0.3)
+    laws = compile_scene(scene, Options()).system.laws
+    assert np.all(laws.table.friction[contacts.law] == 0.3)
 
 
 def test_a_row_for_each_two_pieces_and_the_vertices_of_both():

@@ -33,12 +33,17 @@ def on_floor(shape, law, gravity=(0, 0, -G), restitution=0.0, turn=(1, 0, 0, 0),
 
 
 def pull(law, axis, u):
-    """Return the tangential force (2,) for a unit normal force in slip u: -D^2 u/|D u| in axes of the grain."""
+    """Return the tangential force (2,) for a unit normal force in slip u: -D^2 u/|D u| in axes of the grain.
+
+    If `along` is a law L, D is L(s)/L(0) times that at rest, with the slip s = |D u|/L(0).
+    """
     axis = np.asarray(axis)[:2] / np.linalg.norm(np.asarray(axis)[:2])
     E = np.array([axis, [-axis[1], axis[0]]])
-    D = np.array([law.along, law.across])
+    D = np.array([law.along if isinstance(law.along, float) else law.along.bound, law.across])
     w = D * (E @ u)
-    return -E.T @ (D * w) / np.linalg.norm(w)
+    size = np.linalg.norm(w)
+    shrunk = 1.0 if isinstance(law.along, float) else float(law.along(size / D[0])) / D[0]
+    return -shrunk * E.T @ (D * w) / size
 
 
 @pytest.mark.few(3)
@@ -65,6 +70,71 @@ def test_it_slips_where_the_force_leaves_the_ellipse(share):
     scene = on_floor(carom.Box(0.2, 0.3, 0.02), law, (*force, -G), position=(0, 0, 0.01))
     speed = np.linalg.norm(carom.simulate(scene, 1.0, step=0.01).velocity[-1])
     assert speed == 0.0 if share < 1.0 else speed > 1e-3
+
+
+BY_SLIP = {
+    "kinetic": Friction(static=0.4, kinetic=0.25),
+    "stribeck": Friction(static=0.4, kinetic=0.1, speed=0.3),
+    "table": Friction.table([0.0, 0.5, 2.0], [0.3, 0.5, 0.2]),
+    "function": Friction.fit(lambda v: 0.3 + 0.2 / (1 + v)),
+}
+
+
+@pytest.mark.parametrize("name", BY_SLIP)
+@pytest.mark.parametrize("ratio", [0.25, 3.0])
+def test_slip_and_direction_in_one_law(name, ratio):
+    # u' = g_t + g pull(u), integrated by itself to 1e-12; the run to 1e-10, with a constant of error of 10.
+    along = BY_SLIP[name]
+    law = Friction(axis=(np.cos(0.7), np.sin(0.7), 0), along=along, across=ratio * along.bound)
+    slope, start = np.array([1.0, -0.4]), np.array([1.5, 0.8])
+    scene = on_floor(
+        carom.Box(0.2, 0.3, 0.02), law, (*slope, -G), position=(0, 0, 0.01), velocity=(*start, 0)
+    )
+    end = 0.25
+    found = carom.simulate(scene, end, rtol=1e-10, atol=1e-10)
+    own = solve_ivp(
+        lambda t, x: [*x[2:], *(slope + G * pull(law, law.axis, x[2:]))],
+        (0, end), [0, 0, *start], rtol=1e-12, atol=1e-13, max_step=0.01,
+    )  # fmt: skip
+    assert np.linalg.norm(own.y[2:, -1]) > 0.1  # it still slips
+    assert found.position[-1, 0, :2] == pytest.approx(own.y[:2, -1], abs=1e-9)
+    assert found.velocity[-1, 0, :2] == pytest.approx(own.y[2:, -1], abs=1e-9)
+
+
+@pytest.mark.parametrize("name", BY_SLIP)
+def test_an_impact_follows_slip_and_direction(name):
+    # dP_t/dp = pull(u_t), u = u_0 + W P, over the normal impulse that the run has found.
+    law = Friction(axis=(1, 0.5, 0), along=BY_SLIP[name], across=0.15, of="world")
+    scene = on_floor(
+        carom.Sphere(0.1), law, restitution=0.6, position=(0, 0, 0.101), velocity=(2.0, -1.0, -1.0),
+        angular_velocity=(3.0, 5.0, 1.0),
+    )  # fmt: skip
+    found = carom.simulate(scene, 0.1)
+    one = found.impacts[0]
+    W, u, tangents = one.inverse_mass, one.relative_velocity_before, (1.0, 0.0)
+
+    def rates(p, P):
+        return pull(law, tangents, (u + W @ [p, *P])[1:])
+
+    own = solve_ivp(rates, (0, one.impulse[0]), [0, 0], rtol=1e-12, atol=1e-13)
+    assert np.linalg.norm((u + W @ [one.impulse[0], *own.y[:, -1]])[1:]) > 0.1
+    assert one.impulse[1:] == pytest.approx(own.y[:, -1], abs=1e-9)
+
+
+def test_a_law_without_slip_is_two_numbers():
+    # A law whose static and kinetic coefficients agree, and a ratio of 1: as without law, and without axis.
+    def end(friction):
+        scene = on_floor(
+            carom.Box(0.2, 0.3, 0.02), friction, (0.5, 0.2, -G), position=(0, 0, 0.01),
+            velocity=(1.0, 0.5, 0), angular_velocity=(0, 0, 2.0),
+        )  # fmt: skip
+        return carom.simulate(scene, 0.2, rtol=1e-10, atol=1e-10).position[-1, 0]
+
+    flat, law = Friction(static=0.3, kinetic=0.3), Friction(static=0.3, kinetic=0.2, speed=1.0)
+    axis = (1.0, 0.4, 0.0)
+    both = Friction(axis=axis, along=flat, across=0.1), Friction(axis=axis, along=0.3, across=0.1)
+    assert end(both[0]) == pytest.approx(end(both[1]), abs=1e-9)
+    assert end(Friction(axis=axis, along=law, across=0.3)) == pytest.approx(end(law), abs=1e-9)
 
 
 TRIANGLE = [(np.cos(a), np.sin(a)) for a in 2 * np.pi * np.arange(3) / 3]

@@ -10,8 +10,9 @@ from __future__ import annotations
 from carom._compiled.call_address import call_function
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.dynamics.curve import curve, find_piece
+from carom.dynamics.curve import curve
 from carom.dynamics.thresholds import RAIL_TRAVEL, ROTATION
+from carom.geometry.pieces import find_piece
 from carom.geometry.rotation import conjugate, multiply
 from carom.kinematics.coordinate import push, rate, speed_of_turn, value
 from carom.kinematics.curve import (

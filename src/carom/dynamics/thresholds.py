@@ -27,5 +27,4 @@ SINGULAR_GROWTH = 3.0  #: angle before: if rows still depend on each other
 LAST_PIVOT = 1e-29  #: diagonal: smaller pivots are round-off of 31 digits
 NORMAL_ERROR = 1e-6  #: 1, or size of the body: normals and heights of one plane differ by less, after turns
 EDGE_JUMP = 1e-3  #: 1: normals of edges, or of two points of a pair, that differ by less are one (`TILT`)
-KINK_ERROR = 1e-8  #: speed of slip: a kink of its law is located to this part: its effect is the square
 DISPLACEMENT = 1e-5  #: size of a body: for differences of the user's functions

@@ -12,7 +12,7 @@ from carom.dynamics.methods import make_method
 from carom.generalized import layout as o
 from carom.generalized.motion import look
 from carom.generalized.step import move_freely
-from carom.impact.multiple.layout import slip_laws
+from carom.model.laws import laws_of
 from carom.options import Options
 from carom.status import Status
 
@@ -28,15 +28,15 @@ class Evaluation:
     """Compiled functions of a system and workspace to call them with."""
 
     def __init__(self, system: GeneralizedSystem, drop: float = 1e-8):
-        model, (friction, slip) = system._model, slip_laws([c.friction for c in system.contacts])
+        model, laws = system._model, laws_of(system.contacts)
         self.n, self.functions = model.n, Functions()
         addresses, parts = (
             np.array(one, dtype=np.int64) for one in model.addresses(self.functions)
         )
-        sizes = model.n, model.holonomic, model.rows, len(friction)
-        self.system = o.Coordinates(addresses, parts.reshape(-1, 3), *sizes, friction, slip, drop)
+        sizes = model.n, model.holonomic, model.rows, len(laws.table)
+        self.system = o.Coordinates(addresses, parts.reshape(-1, 3), *sizes, laws, drop)
         self.work = o.new_work(self.system, STAGES)
-        self.none_active = table(o.CONTACT, len(friction))
+        self.none_active = table(o.CONTACT, len(laws.table))
 
     def compute(self, x, t: float) -> int:
         """Compute all quantities at a state (q, v) without active contacts, into `work`; return a status."""

@@ -17,6 +17,7 @@ from carom.contact.continuous_detection import cubic_clears
 from carom.generalized.linear import dot
 from carom.generalized.motion import acceleration, find_contacts, persists, slip_of
 from carom.generalized.step import take
+from carom.law.friction import bound_of_stick
 from carom.model import actions as a
 from carom.status import NOT_FINITE
 from carom.stepping.event_search import begin_search, next_trial, update_bracket
@@ -45,7 +46,7 @@ def find_margins(motion, t):
         if active[c].mode != a.MODE_OPEN:
             most = max(most, abs(active[c].force[0]))
     for c in range(system.contacts):
-        contact, force, mu = active[c], active[c].force, system.friction[c]
+        contact, force, mu = active[c], active[c].force, bound_of_stick(system.laws, c)
         for kind in range(a.NO_EVENT):
             margin[kind, c], nothing[kind, c] = math.inf, 0.0
         if contact.mode == a.MODE_OPEN:

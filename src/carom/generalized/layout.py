@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.impact.multiple.layout import SlipLaws
 from carom.model.actions import NO_EVENT
+from carom.model.laws import Laws
 from carom.model.method import Method
 from carom.model.workspace import SEARCH
 from carom.stepping.grid import Grid
@@ -32,7 +32,7 @@ EVENT = 100
 
 
 class Coordinates(NamedTuple):
-    """A system: its functions, sizes, and friction of its contacts."""
+    """A system: its functions, sizes, and the laws of its contacts, by their number."""
 
     address: np.ndarray  # (4,) int64; 0 for a function that the system lacks, or that has parts
     # (P, 3) int64 addresses of a function and of its derivative, 0 for none, and the number of results
@@ -41,8 +41,7 @@ class Coordinates(NamedTuple):
     holonomic: int  # constraints phi
     rows: int  # of all constraints
     contacts: int
-    friction: np.ndarray  # (C,) of a law, that which bounds stick
-    slip: SlipLaws
+    laws: Laws
     drop: float  # a row is left out if its pivot is below this part of its diagonal
 
 

@@ -33,6 +33,7 @@ from carom.generalized.linear import copy_row, dot
 from carom.generalized.motion import evaluate, find_metric, kinetic_energy
 from carom.generalized.step import take
 from carom.geometry.thresholds import SUM_ERROR
+from carom.law.friction import bound_of_stick
 from carom.model import actions as a
 from carom.model.records import PAUSE
 from carom.status import STEP_TOO_SMALL, SUCCESS
@@ -123,7 +124,7 @@ def turns(motion):
     """
     active, work, n = motion.active, motion.work, motion.system.n
     for c in range(motion.system.contacts):
-        if active[c].mode != a.MODE_SLIP or not motion.system.friction[c] > 0.0:
+        if active[c].mode != a.MODE_SLIP or not bound_of_stick(motion.system.laws, c) > 0.0:
             continue
         e1, e2 = active[c].heading[0], active[c].heading[1]
         for s in range(1, motion.method.b.size + 1):

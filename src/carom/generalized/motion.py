@@ -11,11 +11,11 @@ import math
 
 from carom._compiled.call_address import call_function
 from carom._compiled.decorators import entry, kernel
-from carom.dynamics.curve import value_at
 from carom.friction import ldl, lu
 from carom.generalized import layout as o
 from carom.generalized.differences import evaluate_parts
 from carom.generalized.linear import add_row, copy_row, dot
+from carom.law.friction import bound_of_stick, depends_on_slip, in_slip
 from carom.model import actions as a
 from carom.status import NOT_FINITE, SINGULAR_METRIC
 
@@ -114,10 +114,9 @@ def slip_of(system, heading, c, x, work):
 @kernel
 def friction_of(system, c, speed):
     """Return mu of contact c that slips at a speed along its direction."""
-    first, last, exponent = system.slip.first[c], system.slip.last[c], system.slip.exponent[c]
-    if last > first:
-        return value_at(system.slip.pieces, (first, last, exponent), max(0.0, speed))
-    return system.friction[c]
+    if depends_on_slip(system.laws, c):
+        return in_slip(system.laws, c, max(0.0, speed))
+    return bound_of_stick(system.laws, c)
 
 
 @kernel
@@ -149,7 +148,11 @@ def gather(system, active, what, x, work):
                 0.0 if what == RATE else -work.gap[c] if what == POSITION else -work.G_rate[c, r]
             )
             m = add_row_to(work.G[c, r], target, m, work)
-        if what == ACCELERATION and contact.mode == a.MODE_SLIP and system.friction[c] > 0.0:
+        if (
+            what == ACCELERATION
+            and contact.mode == a.MODE_SLIP
+            and bound_of_stick(system.laws, c) > 0.0
+        ):
             u1, u2, e1, e2 = slip_of(system, contact.heading, c, x, work)
             mu = friction_of(system, c, u1 * e1 + u2 * e2)
             add_row(-mu * e1, work.G[c, 1], work.D[first], n)

@@ -8,10 +8,11 @@ import numpy as np
 
 from carom.generalized.solution import CoordinateImpact
 from carom.impact import layout as o
-from carom.impact.laws import GAINING, NUMBERS
 from carom.impact.resolve import resolve
 from carom.impact.tangential import return_slip
 from carom.impact.thresholds import GROUP_SEED, NO_RESTITUTION
+from carom.law.impact_laws import GAINING
+from carom.model.laws import SLIP
 from carom.scene.restitution import Restitution
 from carom.status import Status
 
@@ -34,10 +35,9 @@ class Strike:
         contacts = run.user.contacts
         self.run, self.seen = run, run.made.work
         self.restitution = [one.restitution for one in contacts]
-        self.friction, self.slips = run.made.system.friction, run.made.system.slip
-        self.by_law = self.slips.last > self.slips.first
-        self.tangential = np.array([one.tangential_restitution for one in contacts])
-        self.law = np.array([NUMBERS[one.impact_law] for one in contacts], dtype=np.int64)
+        self.laws = run.made.system.laws
+        self.friction = self.laws.table.friction
+        self.by_law = self.laws.table.last[:, SLIP] > self.laws.table.first[:, SLIP]
         self.events: list[tuple[float, str, int]] = []
         self.light = 0.0  # kinetic energy that the loads give in a step: less is round-off
         self.records: list[CoordinateImpact] = []
@@ -119,7 +119,7 @@ class Strike:
         for i in np.flatnonzero(np.any(p != 0.0, axis=1)):
             own, parts = slice(3 * i, 3 * i + 3), works[:, i].tolist()
             change = parts[0] + parts[1] - parts[2]
-            if self.law[closed[i]] in GAINING and mu[i] > 0.0:
+            if self.laws.table.impact_law[closed[i]] in GAINING and mu[i] > 0.0:
                 run.clock[0].given += max(change, 0.0)
             self.note("impact", closed[i])
             self.records.append(CoordinateImpact(
@@ -134,31 +134,25 @@ class Strike:
 
         Of several contacts, or with a law of friction, it is a multiple impact (mathematics page, part 2).
         """
-        law, e_t = self.law[closed], self.tangential[closed]
+        table = self.laws.table[closed]
         if len(closed) == 1 and not self.by_law[closed[0]]:
             out = np.zeros((o.SIZE, 1))
             out[o.STILL] = self.still[closed]
-            code = resolve(W, u[0].copy(), mu[0], e[0], law[0], out[:, 0])
-            if code == o.OK and e_t[0] != 0.0:
-                return_slip(W, u[0].copy(), mu[0], e_t[0], out[:, 0])
+            code = resolve(W, u[0].copy(), mu[0], e[0], table.impact_law[0], out[:, 0])
+            if code == o.OK and (e_t := table.tangential_restitution[0]) != 0.0:
+                return_slip(W, u[0].copy(), mu[0], e_t, out[:, 0])
             after, p = (out[at : at + 3].T for at in (o.VELOCITY, o.IMPULSE))
             works, phases = out[[o.WORK_C, o.WORK_R, o.FRICTION_LOSS]], out[o.PHASES].astype(int)
             return code, after, p, works, phases & o.WEDGED
         from carom.impact.multiple import api
-        from carom.impact.multiple.layout import (
-            SlipLaws,
-            multiple_settings,
-            new_multiple_workspace,
-        )
+        from carom.impact.multiple.layout import multiple_settings, new_multiple_workspace
 
         if self.room is None:
             self.room = new_multiple_workspace(len(self.blows))
         settings = multiple_settings(self.run.options, 1.0)
-        first, last, exponent, pieces = self.slips
-        slips = SlipLaws(first[closed], last[closed], exponent[closed], pieces)
-        code, found = api.solve(
-            W, u, (mu, slips), e, law, np.ones(len(u)), e_t, settings, self.room
-        )
+        table["restitution"] = e
+        laws = self.laws._replace(table=table)
+        code, found = api.solve(W, u, laws, settings, self.room)
         after, p = found.velocity.reshape(-1, 3), found.impulse.reshape(-1, 3)
         works = np.array([found.compression, found.restitution, found.friction])
         return code, after, p, works, found.wedged

@@ -10,6 +10,7 @@ import numpy as np
 from carom import arguments, checks
 from carom.friction.checks import semidefinite
 from carom.scene.shown import Shown, hodograph_of
+from carom.scene.speed_law import SpeedLaw
 
 
 @dataclass(frozen=True)
@@ -71,8 +72,8 @@ class Impact(Shown):
 def resolve_impact(
     inverse_mass,
     velocity,
-    friction: float,
-    restitution: float,
+    friction,
+    restitution,
     law: str = "newton",
     *,
     tangential_restitution: float = 0.0,
@@ -87,10 +88,11 @@ def resolve_impact(
         tangent. `carom.contact_inverse_mass` computes it for a body of a scene.
     velocity : array_like, shape (..., 3) or (..., 2)
         Relative velocity before the impact [m/s]; the normal component is first, and negative (approach).
-    friction : float or array_like
-        Coulomb coefficient mu, at least 0.
-    restitution : float or array_like
-        Coefficient e in [0, 1]. For 0 the impact ends with compression, with every law.
+    friction : float or carom.Friction, or array_like of them
+        Coulomb coefficient mu, at least 0, or a law of the slip, which is followed along the impact.
+    restitution : float or carom.Restitution, or array_like of them
+        Coefficient e in [0, 1], or a law of the speed of approach. For 0 the impact ends with compression, with
+        every law.
     law : {"newton", "poisson", "stronge"}, or array of them
         Definition of e, also by the name `impact_law`: the ratio of normal velocities (kinematic, default), of
         normal impulses (kinetic), or the square root of the ratio of works of the normal force (energetic). The
@@ -167,18 +169,19 @@ def resolve_impact(
 
 
 def _are_several(inverse_mass, velocity, *numbers) -> bool:
-    """Return whether arguments have more axes than those of one impact, or are of a plane one."""
+    """Return whether arguments have more axes than those of one impact, are of a plane one, or laws."""
     cores = ((inverse_mass, 2), (velocity, 1), *((one, 0) for one in numbers))
     try:
         more = any(np.ndim(value) > axes for value, axes in cores)
-        return more or np.shape(inverse_mass) == (2, 2)
+        by_law = any(isinstance(value, SpeedLaw) for value, _ in cores)
+        return more or by_law or np.shape(inverse_mass) == (2, 2)
     except Exception:  # whatever is no array is refused by its name, as a part of one impact
         return False
 
 
 def checked_impact(inverse_mass, velocity, friction, restitution, law):
     """Return the arguments of an impact in the form of the kernels; raise ValueError if they are invalid."""
-    from carom.impact.laws import NUMBERS
+    from carom.law.impact_laws import NUMBERS
 
     W = checked_inverse_mass(inverse_mass)
     u = checks.finite_array("velocity", velocity, (3,), "m/s")

@@ -19,13 +19,13 @@ from typing import NamedTuple
 from carom._compiled.decorators import entry, kernel
 from carom.friction.rays import outgoing, stick_ratio
 from carom.geometry.thresholds import ROUND_OFF
-from carom.impact import laws
 from carom.impact import layout as o
 from carom.impact.phase import NO_LAW, Friction, Span, ratio, replay, shoot
 from carom.impact.phase import write as write_knot
 from carom.impact.resolve import resolve, write
 from carom.impact.spline import Contact, force
 from carom.impact.thresholds import NO_RESTITUTION
+from carom.law import impact_laws
 
 _DOUBLINGS = 8  # of the steps, if a phase was not solved
 
@@ -64,7 +64,7 @@ def traverse(hit, law, layer, history):
     code = o.SPLINE_FAILED
     for _ in range(_DOUBLINGS):
         n = max(1, steps // 2)
-        if law == laws.NEWTON and phases & (o.PHASE_JAM | o.WEDGED) == 0:
+        if law == impact_laws.NEWTON and phases & (o.PHASE_JAM | o.WEDGED) == 0:
             given = Passage(m, mu, before, e, law, depth, n, True, wedged)
             code = _pass(given, history, out)
         if code != o.OK:  # also so near a jam that law A fails with this number of steps
@@ -120,7 +120,7 @@ def _pass(given, history, out):
     if e >= NO_RESTITUTION and not (given.wedged and out[o.IMPULSE] <= out[o.P_C]):
         first, before = row, state
         accel *= e * e
-        goal = laws.goal(given.law, e, v0, C[0], work_c)
+        goal = impact_laws.goal(given.law, e, v0, C[0], work_c)
         contact = Contact(given.m, given.mu, accel)
         span = _restitution(given, accel, goal, before, not fixed, out)
         ok, end, fixed, total, row = shoot(contact, span, friction, history, row)
@@ -159,7 +159,7 @@ def _compression(given, accel, out):
     if given.timed:
         split = min((out[o.SLIP_END_UN] + v0) / accel, v0 / accel) if ends else -1.0
         return Span(start, given.steps, v0 / accel, split, NO_LAW, 0.0)
-    law = NO_LAW if given.wedged else laws.NEWTON
+    law = NO_LAW if given.wedged else impact_laws.NEWTON
     return Span(start, given.steps, p_c, slip_end_p if ends else -1.0, law, 0.0)
 
 

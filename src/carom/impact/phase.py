@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 from carom._compiled.decorators import kernel
 from carom.friction.rays import solve_tangential
-from carom.impact import laws
 from carom.impact.spline import Step, force, quadratures, slip_ratio, solve_slip
 from carom.impact.thresholds import SHORTEST_PART
+from carom.law import impact_laws
 
 # Columns of `history`, one row for each knot: time, s, velocity, tangential displacement, force after the knot.
 COLUMNS = 10
@@ -189,8 +189,8 @@ def shoot(contact, span, friction, history, row):
         _, state, at_rest, total, _ = result
         t1, t2 = ratio(contact, Friction(at_rest, friction.t1, friction.t2), state)
         _, k = force(contact, t1, t2)
-        left = laws.remaining(law, span.goal, state[2], total[3], total[0])
-        change = left / laws.rate(law, state[2], k)
+        left = impact_laws.remaining(law, span.goal, state[2], total[3], total[0])
+        change = left / impact_laws.rate(law, state[2], k)
         if abs(change) <= 4e-16 * length or (abs(change) <= 1e-12 * length and abs(change) >= last):
             return result
         if not abs(change) < 0.5 * length:

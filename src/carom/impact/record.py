@@ -6,11 +6,12 @@ import math
 from typing import NamedTuple
 
 from carom._compiled.decorators import kernel
-from carom.impact import laws, layout
+from carom.impact import layout
 from carom.impact.thresholds import NO_RESTITUTION
 from carom.impact.workspace import U
 from carom.kinematics.anisotropy import lengths_of_tangents
 from carom.kinematics.contact_point import power_of_surface
+from carom.law import impact_laws
 from carom.model.parts_of_system import has_relation_rows
 
 _NOT_LAW_A = layout.PHASE_JAM | layout.WEDGED
@@ -131,7 +132,7 @@ def layer_time(contact, hit, out):
     constant in each phase, N_c = |A_c|/(b l) and N_r = A_r/(b l). A wedged pair has no restitution.
     """
     depth = -contact.width * math.log1p(-contact.penetration)
-    if contact.law == laws.NEWTON and (int(out[layout.PHASES]) & _NOT_LAW_A) == 0:
+    if hit.impact_law == impact_laws.NEWTON and (int(out[layout.PHASES]) & _NOT_LAW_A) == 0:
         e = hit.restitution
         return 2.0 * depth / -hit.u[0] * (1.0 + (1.0 / e if e >= NO_RESTITUTION else 0.0))
     compression, p_c = out[layout.WORK_C], out[layout.P_C]

@@ -14,12 +14,12 @@ from typing import NamedTuple
 from carom._compiled.decorators import entry, inlined, kernel
 from carom.friction.rays import outgoing, solve_tangential, stick_ratio
 from carom.geometry.thresholds import REMAINDER, ROUND_OFF, SUM_ERROR
-from carom.impact import laws
 from carom.impact import layout as o
 from carom.impact.slip_step import expand, moved, normal_rate, write_end
 from carom.impact.taylor import reach
 from carom.impact.thresholds import IMPACT_ERROR, LONGEST_IMPULSE, SERIES_ACCURACY
 from carom.impact.wedge import below_round_off, moves_nothing, power_of_two, pushed
+from carom.law import impact_laws
 
 _SLIP_STEPS = 2000
 
@@ -58,7 +58,7 @@ class Line(NamedTuple):
     growth: float  # d|u_t|/dp
 
 
-COMPRESSION = Phase(laws.NEWTON, 0.0, False, 0.0)
+COMPRESSION = Phase(impact_laws.NEWTON, 0.0, False, 0.0)
 CURVE = Line(BENT, 0.0, 0.0, 0.0)
 
 
@@ -171,7 +171,7 @@ def _follow(contact, u, e, law):
             s = (s[0], s[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
             if not e > 0.0:
                 return o.OK, steps, phases, s, before, slip_end
-            goal = laws.goal(law, e, -u[0], before[0], before[4])
+            goal = impact_laws.goal(law, e, -u[0], before[0], before[4])
             phase = Phase(law, goal, True, before[3] - before[4])
     return o.TOO_MANY_STEPS, steps, phases, s, before, slip_end
 
@@ -234,11 +234,11 @@ def _along_curve(contact, phase, s):
     h = reach(t[0], t[1], SERIES_ACCURACY * math.sqrt(size * r))
     # With hardly any friction the series reaches far: step little beyond the end expected from here.
     unit = size / m[0]
-    left = laws.remaining(law, goal, s[2], s[3], s[7])
-    end = min(laws.straight(law, left, s[2], k), LONGEST_IMPULSE * unit) if k > 0.0 else 0.0
+    left = impact_laws.remaining(law, goal, s[2], s[3], s[7])
+    end = min(impact_laws.straight(law, left, s[2], k), LONGEST_IMPULSE * unit) if k > 0.0 else 0.0
     h = min(h, 4.0 * max(end, unit) / r)
     new = moved(m, mu, s, t, h)
-    if laws.remaining(law, goal, new[2], new[3], new[7]) <= 0.0:
+    if impact_laws.remaining(law, goal, new[2], new[3], new[7]) <= 0.0:
         return write_end(contact, phase, s, new, t, h), AT_GOAL, marks
     if phase.restitution and below_round_off(m, new[3], new[4], new[5], phase.taken):
         return new, AT_WEDGE, marks | o.WEDGED
@@ -252,19 +252,19 @@ def along_line(contact, phase, line, s):
     m, mu, law, t1, t2, growth = contact.m, contact.mu, phase.law, line.t1, line.t2, line.growth
     k = m[0] + m[1] * t1 + m[2] * t2
     f1, f2 = m[1] + m[3] * t1 + m[4] * t2, m[2] + m[4] * t1 + m[5] * t2
-    left = laws.remaining(law, phase.goal, s[2], s[3], s[7])
-    length = laws.straight(law, left, s[2], k) if left > 0.0 else 0.0
+    left = impact_laws.remaining(law, phase.goal, s[2], s[3], s[7])
+    length = impact_laws.straight(law, left, s[2], k) if left > 0.0 else 0.0
 
     # If the pair is wedged the velocity stays. Only a law of impulses then gives the impulse that remains.
     caught, marks, ended = moves_nothing(m, t1, t2, k, growth), 0, AT_GOAL
-    if phase.restitution and law not in laws.BY_IMPULSE and not (caught or growth < 0.0):
+    if phase.restitution and law not in impact_laws.BY_IMPULSE and not (caught or growth < 0.0):
         p, p1, p2 = s[3] + length, s[4] + length * t1, s[5] + length * t2
         caught = below_round_off(m, p, p1, p2, phase.taken)
     if caught:
         if pushed(s[2], contact.size, contact.still):
             return s, WITHOUT_END, marks
         k, f1, f2, growth = max(0.0, k), 0.0, 0.0, 0.0
-        length = left if law in laws.BY_IMPULSE else 0.0
+        length = left if law in impact_laws.BY_IMPULSE else 0.0
         marks, ended = o.WEDGED if phase.restitution else 0, AT_WEDGE
     elif k <= 0.0 and line.mode == STRAIGHT:
         marks = o.PHASE_JAM

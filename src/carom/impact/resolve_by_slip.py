@@ -16,10 +16,8 @@ from typing import NamedTuple
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.dynamics.curve import value_at
 from carom.friction.rays import outgoing, stick_ratio
 from carom.geometry.thresholds import ROUND_OFF
-from carom.impact import laws
 from carom.impact import layout as o
 from carom.impact.resolve import (
     AT_GOAL,
@@ -43,6 +41,8 @@ from carom.impact.resolve import (
 from carom.impact.slip_step import normal_rate
 from carom.impact.thresholds import LONGEST_IMPULSE, RAY_LENGTH, SLIP_ERROR
 from carom.impact.wedge import below_round_off
+from carom.law import impact_laws
+from carom.law.friction import in_slip
 from carom.model.tableaus import DORMAND_PRINCE
 
 MOST_SLIP_STEPS = 50_000
@@ -56,8 +56,8 @@ class SlipFriction(NamedTuple):
     """A law of friction."""
 
     bound: float  # of stick
-    law: tuple  # first piece, that after the last, exponent
-    pieces: object
+    law: int  # its number
+    laws: object  # of `carom.model.laws`
 
 
 class Slip(NamedTuple):
@@ -104,7 +104,7 @@ def resolve_by_slip(W, u, friction, e, law, out) -> int:
             marks = 0
             if (
                 line.mode == STRAIGHT
-                and laws.remaining(phase.law, phase.goal, new[2], new[3], new[7]) > 0.0
+                and impact_laws.remaining(phase.law, phase.goal, new[2], new[3], new[7]) > 0.0
             ):
                 s, line = new, CURVE
             else:
@@ -124,7 +124,7 @@ def resolve_by_slip(W, u, friction, e, law, out) -> int:
                 before = (s[3], s[4], s[5], s[6], s[7])
                 s = (s[0], s[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
                 ends = not e > 0.0
-                goal = laws.goal(law, e, -start[0], before[0], before[4])
+                goal = impact_laws.goal(law, e, -start[0], before[0], before[4])
                 phase = Phase(law, goal, True, before[3] - before[4])
     return finish(out, units, start, (o.OK, steps, phases, s, before, slip_end))
 
@@ -132,7 +132,7 @@ def resolve_by_slip(W, u, friction, e, law, out) -> int:
 @kernel
 def _mu(slip, r):
     """Return mu at a slip r, in scaled units."""
-    return value_at(slip.friction.pieces, slip.friction.law, r * slip.speed)
+    return in_slip(slip.friction.laws, slip.friction.law, r * slip.speed)
 
 
 @kernel
@@ -170,15 +170,17 @@ def _along_curve(slip, phase, s, h):
     mu = _mu(slip, r)
     r, k = normal_rate(m, mu, s)
     marks, unit_p = o.PHASE_JAM if k <= 0.0 else 0, size / m[0]
-    left = laws.remaining(law, goal, s[2], s[3], s[7])
-    end = min(laws.straight(law, left, s[2], k), LONGEST_IMPULSE * unit_p) if k > 0.0 else 0.0
+    left = impact_laws.remaining(law, goal, s[2], s[3], s[7])
+    end = (
+        min(impact_laws.straight(law, left, s[2], k), LONGEST_IMPULSE * unit_p) if k > 0.0 else 0.0
+    )
     h = min(h, 4.0 * max(end, unit_p) / r)
     new, error = _step(slip, s, h)
     share = error / (SLIP_ERROR * math.sqrt(size * r))
     wider = min(4.0, max(0.2, 0.9 * share**-0.2)) if share > 0.0 else 4.0
     if not share <= 1.0:
         return s, WITHIN, marks, h * (wider if share < math.inf else 0.2)
-    if laws.remaining(law, goal, new[2], new[3], new[7]) <= 0.0:
+    if impact_laws.remaining(law, goal, new[2], new[3], new[7]) <= 0.0:
         return _land(slip, phase, s, new, h), AT_GOAL, marks, h
     if phase.restitution and below_round_off(m, new[3], new[4], new[5], phase.taken):
         return new, AT_WEDGE, marks | o.WEDGED, h
@@ -237,13 +239,13 @@ def _land(slip, phase, start, end, h):
     """Return the state at the goal of the phase, between `start` and `end`, h later (Illinois method)."""
     law, goal = phase.law, phase.goal
     low, high, s = 0.0, h, end
-    above = laws.remaining(law, goal, start[2], start[3], start[7])
-    below = laws.remaining(law, goal, end[2], end[3], end[7])
+    above = impact_laws.remaining(law, goal, start[2], start[3], start[7])
+    below = impact_laws.remaining(law, goal, end[2], end[3], end[7])
     first, side = above, 0
     for _ in range(100):
         z = high - below * (high - low) / (below - above)
         s, _ = _step(slip, start, z)
-        left = laws.remaining(law, goal, s[2], s[3], s[7])
+        left = impact_laws.remaining(law, goal, s[2], s[3], s[7])
         if not abs(left) > 4e-16 * first or not low < z < high:
             break
         if left > 0.0:

@@ -9,26 +9,37 @@ from typing import Any
 import numpy as np
 
 from carom import checks
-from carom._compiled.decorators import entry
+from carom._compiled.decorators import by_reference, entry
 from carom.friction.thresholds import FILE_DIGITS
 from carom.impact import layout as o
 from carom.impact.api import Impact, phase_names
-from carom.impact.laws import NUMBERS
 from carom.impact.resolve import resolve
+from carom.impact.resolve_by_slip import SlipFriction, resolve_by_slip
 from carom.impact.tangential import return_slip
+from carom.law.impact_laws import NUMBERS
+from carom.model.laws import Laws, LawTable
+from carom.scene.friction import bound_of, isotropic
+from carom.scene.restitution import Restitution
+from carom.scene.speed_law import SpeedLaw
 
 FEW_IMPACTS = 2000  # take ten times as long as a thread to begin
 
 
 @entry
-def resolve_many(W, u, numbers, law, out):
+def resolve_many(W, u, numbers, kinds, laws, out):
     """Solve each impact, with mu, e and e_t in `numbers`.
 
-    Return the number of the first that failed and its code, or (-1, OK).
+    `kinds` has the law of impact, and the number of the law of friction among `laws`, below 0 for none. Return
+    the number of the first that failed and its code, or (-1, OK).
     """
     for i in range(u.shape[0]):
         mu, e, e_t = numbers[i]
-        code = resolve(W[i], u[i], mu, e, law[i], out[i])
+        law, by_slip = kinds[i]
+        if by_slip < 0:
+            code = resolve(W[i], u[i], mu, e, law, out[i])
+        else:
+            slip = by_reference(SlipFriction(mu, by_slip, laws))
+            code = resolve_by_slip(W[i], u[i], slip, e, law, out[i])
         if code != o.OK:
             return i, code
         if e_t != 0.0:
@@ -43,8 +54,8 @@ def resolve_several(inverse_mass, velocity, friction, restitution, law, tangenti
     u = checks.vectors("velocity", velocity, k)
     name = "velocity[..., 0] (normal velocity, approach is negative)"
     _all(name, u[..., 0], "below 0", u[..., 0] < 0)
-    mu = _numbers("friction", friction, "at least 0", lambda a: a >= 0)
-    e = _numbers("restitution", restitution, "from 0 to 1", lambda a: (a >= 0) & (a <= 1))
+    mu, by_slip, laws = _frictions(friction)
+    e = _restitutions(restitution, -u[..., 0])
     e_t = _numbers("tangential_restitution", tangential, "from -1 to 1", lambda a: abs(a) <= 1)
     names = np.asarray(law, dtype=object)
     number = np.array(
@@ -63,12 +74,14 @@ def resolve_several(inverse_mass, velocity, friction, restitution, law, tangenti
     full[:, :k, :k] = np.broadcast_to(W, (*shape, k, k)).reshape(n, k, k)
     speed[:, :k] = np.broadcast_to(u, (*shape, k)).reshape(n, k)
     numbers = np.stack([np.broadcast_to(a, shape).flatten() for a in (mu, e, e_t)], axis=1)
-    number = np.broadcast_to(number.reshape(names.shape), shape).flatten()
+    kinds = (number.reshape(names.shape), by_slip)
+    kinds = np.stack([np.broadcast_to(a, shape).flatten() for a in kinds], axis=1)
     out = np.zeros((n, o.SIZE))
 
     def solve(first: int) -> None:
         part = slice(first, first + size)
-        failed, code = resolve_many(full[part], speed[part], numbers[part], number[part], out[part])
+        given = full[part], speed[part], numbers[part], kinds[part]
+        failed, code = resolve_many(*given, laws, out[part])
         if failed >= 0:
             at = tuple(map(int, np.unravel_index(first + failed, shape)))
             raise ValueError(f"the impact at index {at} could not be solved: {o.MESSAGES[code]}")
@@ -130,6 +143,48 @@ def _checked_inverse_masses(given) -> np.ndarray:
         "inverse_mass", W, "positive semidefinite", values[..., 0] >= -FILE_DIGITS * values[..., -1]
     )
     return W
+
+
+def _frictions(given) -> tuple[np.ndarray, np.ndarray, Laws]:
+    """Return the coefficients that bound stick, the numbers of laws of the slip (-1 for none), and these."""
+    table, known = LawTable(), {}
+    if not _any_law(given):
+        mu = _numbers("friction", given, "at least 0", lambda a: a >= 0)
+        return mu, np.full(mu.shape, -1), table.arrays()
+    stated = _objects(given)
+    mu, number = np.zeros(stated.shape), np.full(stated.shape, -1)
+    for at, one in np.ndenumerate(stated):
+        one = isotropic("friction", one)
+        if isinstance(one, SpeedLaw) and one not in known:
+            known[one] = table.add(one)
+        mu[at], number[at] = bound_of(one), known.get(one, -1)
+    return mu, number, table.arrays()
+
+
+def _restitutions(given, approach: np.ndarray) -> np.ndarray:
+    """Return e: numbers, or what laws say at speeds of approach."""
+    if not _any_law(given):
+        return _numbers("restitution", given, "from 0 to 1", lambda a: (a >= 0) & (a <= 1))
+    stated = _objects(given)
+    shape = np.broadcast_shapes(stated.shape, approach.shape)
+    e, stated = np.zeros(shape), np.broadcast_to(stated, shape)
+    for at, speed in np.ndenumerate(np.broadcast_to(approach, shape)):
+        one = stated[at]
+        if isinstance(one, Restitution):
+            e[at] = one(speed)
+        else:
+            e[at] = checks.number("restitution", one, least=0.0, most=1.0)
+    return e
+
+
+def _any_law(given) -> bool:
+    if isinstance(given, np.ndarray) and given.dtype != object:
+        return False
+    return any(isinstance(one, SpeedLaw) for one in _objects(given).flat)
+
+
+def _objects(given) -> np.ndarray:
+    return np.array(given, dtype=object)
 
 
 def _numbers(name: str, given, allowed: str, inside) -> np.ndarray:

@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.impact import laws
 from carom.impact.taylor import integral, series, value
+from carom.law import impact_laws
 
 
 @kernel
@@ -47,15 +47,15 @@ def write_end(contact, phase, start, end, t, h):
     """
     m, mu, law, goal = contact.m, contact.mu, phase.law, phase.goal
     low, high = 0.0, h
-    left = laws.remaining(law, goal, start[2], start[3], start[7])
+    left = impact_laws.remaining(law, goal, start[2], start[3], start[7])
     first = left
-    z = h * left / (left - laws.remaining(law, goal, end[2], end[3], end[7]))
+    z = h * left / (left - impact_laws.remaining(law, goal, end[2], end[3], end[7]))
     s = end
     for _ in range(60):
         s = moved(m, mu, start, t, z)
         r, k = normal_rate(m, mu, s)
-        left = laws.remaining(law, goal, s[2], s[3], s[7])
-        slope = r * laws.rate(law, s[2], k)
+        left = impact_laws.remaining(law, goal, s[2], s[3], s[7])
+        slope = r * impact_laws.rate(law, s[2], k)
         if left > 0.0:
             low = z
         else:

@@ -14,9 +14,8 @@ from carom.dynamics.forces import potential_energy
 from carom.dynamics.project import project_velocity
 from carom.dynamics.several_points import inverse_masses, velocities
 from carom.impact import layout
+from carom.impact.collapse import count_blow, effective_restitution
 from carom.impact.driven import blocked, driven_work
-from carom.impact.effective_restitution import count_blow, effective_restitution
-from carom.impact.friction_law import PERSISTENT, STRIKES, depends_on_slip, law_of
 from carom.impact.layer import traverse
 from carom.impact.mean_point import as_one
 from carom.impact.record import note_drive, write_impact
@@ -30,9 +29,11 @@ from carom.impact.work_mode import restore_work
 from carom.impact.workspace import U
 from carom.kinematics.contact_point import contact_velocity
 from carom.kinematics.moving_surfaces import set_surfaces
+from carom.law.friction import bound_of_stick, depends_on_slip
 from carom.model.arrays import KIND_VERTICES
 from carom.model.controls import LOCATE, WORK
 from carom.model.event_rows import begin_event, end_event
+from carom.model.laws import PERSISTENT, STRIKES
 from carom.model.method import THREE_FIELD
 from carom.model.records import FULL_MULTIPLE, GROW, IMPACT, JAMS
 from carom.status import BLOCKED, IMPACT_FAILED, RETURN_MAP_FAILED, TOO_MANY_POINTS
@@ -104,11 +105,11 @@ def strike(model, data, method, c):
         begin_event(system, c, group.closed[0].feature, state, clock, records)
         first = clock.struck
         if single:
-            hit.friction, held = contact.friction, STRIKES
+            law = contact.law[STRIKES]
             if approach == 0.0:
-                hit.friction, held = contact.friction_held, PERSISTENT
+                law = contact.law[PERSISTENT]
                 hit.u[0] = -SEED * math.sqrt(hit.u[1] ** 2 + hit.u[2] ** 2)
-            strike_one(model, data, method, c, held)
+            strike_one(model, data, method, c, law)
         else:
             strike_several(model, data, c, k)
         if hit.code != 0:
@@ -135,32 +136,29 @@ def forget_jams(active, k, group):
 
 
 @kernel
-def strike_one(model, data, method, c, held):
-    """Solve the impact of the one point in work.struck, with W, u and friction in work.hit.
-
-    `held` says whether its law is that of impacts or of persistent contact.
-    """
+def strike_one(model, data, method, c, law):
+    """Solve the impact of the one point in work.struck, with W and u in work.hit, by the law of this number."""
     system, controls = model.system, model.controls
     active, state, work, clock = data.active, data.state, data.work, data.clocks[0]
-    contact, hit, point = system.contacts[c], work.hit[0], work.struck[0]
+    contact, hit, point, laws = system.contacts[c], work.hit[0], work.struck[0], system.laws
     hit.out[layout.STILL] = slow(contact, state)
+    hit.friction, hit.impact_law = bound_of_stick(laws, law), laws.table[law].impact_law
     if blocked(system, point, hit.W[0, 0]):
         hit.code = BLOCKED
         return
     count_blow(system, controls, contact, active.contact_states[c], -hit.u[0], clock.now)
     hit.restitution = effective_restitution(system, contact, active.contact_states[c], -hit.u[0])
-    if depends_on_slip(contact, held):
-        slip = SlipFriction(hit.friction, law_of(contact, held), system.curves)
-        code = resolve_by_slip(
-            hit.W, hit.u, by_reference(slip), hit.restitution, contact.law, hit.out
-        )
+    if depends_on_slip(laws, law):
+        slip = by_reference(SlipFriction(hit.friction, law, laws))
+        code = resolve_by_slip(hit.W, hit.u, slip, hit.restitution, hit.impact_law, hit.out)
     else:
         code = collide(method, controls, contact, hit, work.history)
     if code != layout.OK:
         hit.code = IMPACT_FAILED
         return
-    if contact.tangential_restitution != 0.0:
-        return_slip(hit.W, hit.u, hit.friction, contact.tangential_restitution, hit.out)
+    e_t = laws.table[law].tangential_restitution
+    if e_t != 0.0:
+        return_slip(hit.W, hit.u, hit.friction, e_t, hit.out)
     write_impact(contact, state, point, hit, clock, data.records)
     impulse = hit.out[layout.IMPULSE : layout.IMPULSE + 3]
     note_drive(system, point, state, impulse, clock)
@@ -173,11 +171,11 @@ def collide(method, controls, contact, hit, history):
     """Solve the impact in work.hit by the method of the run: to round-off, or as in the paper."""
     if method.kind == THREE_FIELD:
         return by_layer(controls, contact, hit, history)
-    return resolve(hit.W, hit.u, hit.friction, hit.restitution, contact.law, hit.out)
+    return resolve(hit.W, hit.u, hit.friction, hit.restitution, hit.impact_law, hit.out)
 
 
 @unit
 def by_layer(controls, contact, hit, history) -> int:
     """Pass the boundary layer by cubic splines."""
     layer = (contact.width, contact.penetration, controls.layer_steps)
-    return traverse(hit, contact.law, layer, history)
+    return traverse(hit, hit.impact_law, layer, history)

@@ -9,17 +9,18 @@ from carom._compiled.units import unit
 from carom.contact.gap import slow, speed_of
 from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.geometry.thresholds import SUM_ERROR
+from carom.impact.collapse import count_blow, effective_restitution
 from carom.impact.driven import blocked
-from carom.impact.effective_restitution import count_blow, effective_restitution
-from carom.impact.friction_law import PERSISTENT, STRIKES, friction_at, law_of
 from carom.impact.hertz import stiffness
 from carom.impact.layout import OK
-from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSettings, SlipLaws
+from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSettings
 from carom.impact.multiple.resolve import resolve_multiple
 from carom.impact.record import note_drive, write_share
 from carom.impact.thresholds import GROUP_SEED
 from carom.impact.workspace import U
+from carom.law.friction import bound_of_stick
 from carom.model.allowance import COUNT_FACTORS, left
+from carom.model.laws import PERSISTENT, STRIKES
 from carom.status import BLOCKED, IMPACT_FAILED
 
 #: exponents of the normal force: if all points are on round bodies, and otherwise
@@ -27,18 +28,12 @@ HERTZ, LINEAR = 1.5, 1.0
 
 
 @unit
-def resolve_group(k, pieces, group, multiple) -> int:
-    """Solve the impact of k points, `pieces` of whose laws of friction are given; return its code."""
-    slip = by_reference(
-        SlipLaws(
-            multiple.friction_piece[0], multiple.friction_piece[1], multiple.friction_exponent, pieces
-        )
-    )  # fmt: skip
+def resolve_group(k, laws, group, multiple) -> int:
+    """Solve the impact of k points; return its code."""
     contacts = by_reference(
         CornerContacts(
             k=k, others=0, W=group.W, u=group.v[U], friction=group.mu, restitution=multiple.e,
-            law=multiple.law, stiffness=multiple.kappa, pair=multiple.pair, tangential=multiple.tangential,
-            slip=slip,
+            law=multiple.law, stiffness=multiple.kappa, pair=multiple.pair, laws=laws,
         )
     )  # fmt: skip
     given, exponent = multiple.settings, exponent_of(k, multiple)
@@ -82,20 +77,26 @@ def stiffen(k, multiple):
 
 
 @kernel
-def pair_of(i, contacts, closed, all_by_pairs):
+def pair_of(i, system, closed, all_by_pairs):
     """Return the number of the pair of point `i`; 0 if all points strike together.
 
     A body and all half-spaces that it touches are one pair.
     """
-    own = contacts[closed[i].contact]
-    if not (all_by_pairs or own.multiple == SEQUENTIAL):
+    own = system.contacts[closed[i].contact]
+    if not (all_by_pairs or by_pair(system, own)):
         return 0
     for j in range(i):
-        one = contacts[closed[j].contact]
-        alike = all_by_pairs or one.multiple == SEQUENTIAL
+        one = system.contacts[closed[j].contact]
+        alike = all_by_pairs or by_pair(system, one)
         if alike and one.body == own.body and one.other == own.other:
             return 1 + j
     return 1 + i
+
+
+@kernel
+def by_pair(system, contact):
+    """Return whether the pair of a contact has impacts of its own, one after another."""
+    return system.laws.table[contact.law[STRIKES]].multiple == SEQUENTIAL
 
 
 @kernel
@@ -117,25 +118,22 @@ def strike_several(model, data, c, k):
             hit.code = BLOCKED
             return
         j, contact_state = group.closed[i].active, active.contact_states[group.closed[i].contact]
-        held = STRIKES
+        law = contact.law[STRIKES]
         multiple.e[i] = effective_restitution(system, contact, contact_state, -u[3 * i])
         if j >= 0 and active.points[j].jams == 1:
             u[3 * i] -= GROUP_SEED * math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2)
-            held = PERSISTENT
-        group.mu[i] = friction_at(system, contact, held, 0.0)
-        first, last, multiple.friction_exponent[i] = law_of(contact, held)
-        multiple.friction_piece[0, i], multiple.friction_piece[1, i] = first, last
-        multiple.law[i], multiple.kappa[i] = contact.law, contact.stiffness
+            law = contact.law[PERSISTENT]
+        group.mu[i] = bound_of_stick(system.laws, law)
+        multiple.law[i], multiple.kappa[i] = law, system.laws.table[law].stiffness
         multiple.hertz[i] = 0.0
         if contact.ball_like == 1:
             multiple.hertz[i] = stiffness(system, contact, group.points[0][i], state)
-        multiple.tangential[i] = contact.tangential_restitution
         all_by_pairs = multiple.settings.multiple == SEQUENTIAL
-        multiple.pair[i] = pair_of(i, system.contacts, group.closed, all_by_pairs)
+        multiple.pair[i] = pair_of(i, system, group.closed, all_by_pairs)
     passage = multiple.workspace.work.clock[0]
     if model.controls.retry == 1:  # the group can take a time-stepping step instead
         passage.left = int(max(0.0, left(model.controls, step, COUNT_FACTORS)) / k**3)
-    code = resolve_group(k, system.curves, group, multiple)
+    code = resolve_group(k, system.laws, group, multiple)
     step.counts[COUNT_FACTORS] += k**3 * multiple.result.summary[0].steps
     step.since += k * multiple.result.summary[0].steps
     if code != OK or passage.left < 0:

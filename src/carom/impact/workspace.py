@@ -18,6 +18,7 @@ from carom.impact.multiple.layout import (
     new_multiple_workspace,
 )
 from carom.model.arrays import KIND_PAIR, STATE, System
+from carom.model.laws import PERSISTENT, law_of
 from carom.model.workspace import POINT
 
 #: greatest number of points that are solved together
@@ -97,13 +98,10 @@ class MultipleImpact(NamedTuple):
     settings: MultipleSettings
     result: MultipleResult
     e: np.ndarray  # (K,)
-    law: np.ndarray  # (K,)
+    law: np.ndarray  # (K,) of `carom.model.laws`
     kappa: np.ndarray  # (K,)
     pair: np.ndarray  # (K,) of `CornerContacts`
     hertz: np.ndarray  # (K,) of a ball or an ellipsoid its stiffness by Hertz's law, else 0
-    tangential: np.ndarray  # (K,) e_t
-    friction_piece: np.ndarray  # (2, K) range of the pieces of a law, empty for a number
-    friction_exponent: np.ndarray  # (K,)
 
 
 def capacity(system: System, more: bool) -> int:
@@ -115,7 +113,7 @@ def capacity(system: System, more: bool) -> int:
     if found.any():
         points = np.where(found, MOST_POINTS, vertices)
         return max(1, min(MOST_TOGETHER, int(points.sum()) + more_rows))
-    rows = 1 + (contacts["turning"] > 0.0).sum(axis=1)
+    rows = 1 + (law_of(system, contacts, PERSISTENT)["turning"] > 0.0).sum(axis=1)
     count = np.bincount(system.bodies["component"][contacts["body"]], rows * vertices)
     return max(1, min(MOST_TOGETHER, int(count.max(initial=0.0)) + more_rows))
 
@@ -156,5 +154,4 @@ def new_multiple(k: int, settings: MultipleSettings) -> MultipleImpact:
     return MultipleImpact(
         workspace=new_multiple_workspace(k), settings=settings, result=new_multiple_result(k),
         e=np.zeros(k), law=law, kappa=np.zeros(k), pair=pair, hertz=np.zeros(k),
-        tangential=np.zeros(k), friction_piece=np.zeros((2, k), dtype=np.int64), friction_exponent=np.zeros(k),
     )  # fmt: skip

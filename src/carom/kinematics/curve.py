@@ -16,6 +16,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
+from carom.geometry.pieces import find_piece
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.geometry.thresholds import RESOLUTION, SMALLEST
 from carom.kinematics.joints import anchor_speed, child_arm, parent_arm
@@ -24,19 +25,6 @@ from carom.kinematics.wrench import add_force
 from carom.model.arrays import CURVE_ON_POINT, POINT_ON_CURVE
 
 MOST_CORRECTIONS = 30  # of a foot
-
-
-@kernel
-def find_piece(pieces, first, last, t):
-    """Return the piece that contains t; outside all pieces, the first or the last."""
-    low, high = first, last - 1
-    while low < high:
-        middle = (low + high + 1) // 2
-        if pieces[middle].start <= t:
-            low = middle
-        else:
-            high = middle - 1
-    return low
 
 
 @kernel

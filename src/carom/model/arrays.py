@@ -16,6 +16,7 @@ import numpy as np
 
 from carom.collision.layout import Hulls
 from carom.collision.level_layout import Levels
+from carom.model.laws import Laws
 from carom.scene import joints
 
 #: kinds of joints in kernels; those on curves come last
@@ -181,10 +182,7 @@ STIFF_SPRING = [
 #: dry friction along a coordinate of a joint: |force| <= bound
 FRICTION = [
     ("coordinate", "i8"),
-    ("bound", "f8"),
-    ("piece", "i8"),  # of its law in slip, as those of a contact
-    ("last_piece", "i8"),
-    ("exponent", "f8"),
+    ("law", "i8"),  # by number: its friction is a force [N] or a moment [N m]
     ("next", "i8"),  # 1 or -1: slips in this direction; 0 sticks
     ("mode", "i8"),  # the same at the start of the step
     ("grip", "f8"),  # margin before a joint breaks away (`carom.persistent.margins`)
@@ -211,15 +209,6 @@ USER_FORCE = [
     ("energy_address", "i8"),  # of their potential, 0 if they have none
     ("first", "i8"),  # range of its bodies in `Relations.named`
     ("last", "i8"),
-]
-
-#: a piece of a polynomial in (t - start)
-PIECE = [
-    ("start", "f8"),
-    ("end", "f8"),
-    ("c", "f8", 6),  # constant term first
-    # of a law: nearest places at or below its start, and at or above its end, where a derivative jumps
-    ("kinks", "f8", 2),
 ]
 
 SPRING = [
@@ -279,8 +268,7 @@ CONTACT = [
     ("last_level", "i8"),
     ("first_mine", "i8"),
     ("last_mine", "i8"),
-    ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
-    ("multiple", "i8"),  # 1: its pair has impacts of its own, one after another
+    ("law", "i8", 2),  # in impacts and in persistent contact, by number (`carom.model.laws`)
     ("ball_like", "i8"),  # 1 if one of the two is a ball or an ellipsoid
     # of a half-space: rows n, t1, t2; of curved ground: rows that are turned to those of a point
     ("axes", "f8", (3, 3)),
@@ -289,28 +277,11 @@ CONTACT = [
     # for an angle
     ("side", "f8"),
     ("radius", "f8"),  # sum of both radii for two solids
-    ("friction", "f8"),  # mu, or what bounds stick by a law
-    ("friction_held", "f8"),
-    # of impacts and of persistent contact: range of `System.curves`, mu over s^exponent of the slip s; empty if
-    # mu is a number
-    ("friction_piece", "i8", 2),
-    ("last_friction_piece", "i8", 2),
-    ("friction_exponent", "f8", 2),
-    # of anisotropic friction, with the geometric mean as mu: an axis fixed to the body (`axis_of` BODY_AXES),
-    # to the other body or to the world, 0 for none; and mu across it over that along it
+    # of anisotropic friction: to what its axis is fixed (`BODY_AXES`, ...), 0 for none, the axis there, and mu
+    # across it over that along it, of which the law has the geometric mean
     ("axis_of", "i8"),
     ("friction_axis", "f8", 3),
     ("across", "f8"),
-    ("turning", "f8", 2),  # rolling and pivoting friction [m]
-    ("restitution", "f8"),  # e; NaN if it is a law of the speed of approach, which has the pieces
-    (
-        "restitution_piece",
-        "i8",
-    ),  # range of `System.curves`, e over v^exponent; empty if e is a number
-    ("last_restitution_piece", "i8"),
-    ("restitution_exponent", "f8"),
-    ("tangential_restitution", "f8"),
-    ("stiffness", "f8"),  # of its boundary layer, relative to the others
     ("extent", "f8"),  # largest distance of the shape from the mass centre
     ("other_extent", "f8"),
     ("core", "f8"),  # largest distance of a core point, without the ball that enlarges it
@@ -448,7 +419,7 @@ class System(NamedTuple):
     loads: np.recarray  # LOAD
     bushings: np.recarray  # BUSHING
     contacts: np.recarray  # (C,) CONTACT
-    curves: np.recarray  # PIECE, of restitutions and frictions that are laws
+    laws: Laws
     vertices: np.ndarray  # (V, 3) of all contacts, body axes
     solids: np.recarray  # SOLID of `carom.collision`, of bodies that may touch each other
     hulls: Hulls

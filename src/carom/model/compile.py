@@ -14,8 +14,10 @@ from carom.geometry.frames import triad
 from carom.model import graph, solvers
 from carom.model.arrays import BODY, BUSHING, JOINT, KIND, LOAD, SCREW, SPRING, STATE, System
 from carom.model.contacts import Surfaces, compile_contacts, more_contacts
-from carom.model.more_forces import MoreForces, Pieces
+from carom.model.laws import LawTable
+from carom.model.more_forces import MoreForces
 from carom.model.moving_surfaces import moving_surfaces
+from carom.model.pieces import Pieces
 from carom.model.placement import Placement
 from carom.model.relations import Coordinates, Elements
 from carom.model.stops import with_stops
@@ -58,12 +60,12 @@ def compile_scene(
     placement, functions = Placement(start, to_principal), Functions()
     coordinates = Coordinates(placement)
     coordinates.count(scene.joints)
-    pieces, curves = Pieces(), Pieces()
+    pieces, table_of_laws = Pieces(), LawTable()
     sizes = start_sizes(scene)
     elements = Elements(scene, coordinates, functions, pieces, sizes)
     if implicit:
         elements.add_springs(scene, placement)
-    more = MoreForces(scene, coordinates, functions, (pieces, curves), implicit)
+    more = MoreForces(scene, coordinates, functions, pieces, table_of_laws, implicit)
     joints, flipped, solver = _joints(scene, moments, placement, elements, options, loops)
     springs, loads = _springs(scene, placement, more, implicit), _loads(scene, placement)
     bushings = _bushings(scene, placement)
@@ -71,13 +73,13 @@ def compile_scene(
     bodies["axes"] = to_principal
     # stops have the numbers after those of all pairs, so no pair may be added later
     may_come = apart and bool(bodies["ballistic"].any()) and not scene.stops
-    touching = compile_contacts(scene, to_principal, options, curves, may_come)
+    touching = compile_contacts(scene, to_principal, options, table_of_laws, may_come)
     add_functions(scene, touching, functions)
-    contacts = with_stops(scene, touching.rows, elements, options, curves)
+    contacts = with_stops(scene, touching.rows, elements, options, table_of_laws)
     relations = elements.arrays(solver, more)
     system = System(
         bodies=bodies, gravity=np.array(scene.gravity), joints=joints, relations=relations, springs=springs,
-        loads=loads, bushings=bushings, contacts=contacts, curves=curves.rows,
+        loads=loads, bushings=bushings, contacts=contacts, laws=table_of_laws.arrays(),
         vertices=touching.vertices, solids=touching.solids, hulls=touching.hulls,
         levels=touching.levels, solver=solver,
         moving=moving_surfaces(scene, functions),
@@ -112,7 +114,8 @@ def with_pairs(compiled: Compiled, scene: Scene, options: Options, found: np.nda
     rows = more_contacts(scene, options, pairs, compiled.surfaces, len(compiled.pairs.body))
     contacts = np.concatenate([system.contacts, rows]).view(Columns)
     return compiled._replace(
-        system=system._replace(contacts=contacts), pairs=joined_tables(compiled.pairs, pairs)
+        system=system._replace(contacts=contacts, laws=compiled.surfaces.laws.grown(system.laws)),
+        pairs=joined_tables(compiled.pairs, pairs),
     )
 
 

@@ -16,14 +16,13 @@ from carom.geometry.frames import contact_axes, length, upright
 from carom.model.arrays import BODY_AXES, CONTACT, KIND_PAIR, KIND_VERTICES, OTHER_AXES, WORLD_AXES
 from carom.model.contact_rows import Rows, contact_rows, first_pairs
 from carom.model.cores import Cores, new_cores, singly, swollen_alike
+from carom.model.laws import LawTable
 from carom.model.level_surfaces import find_levels, note_own, with_level_rows
-from carom.model.more_forces import RESTITUTION, Pieces
 from carom.model.moving_surfaces import write_fields
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, meeting
-from carom.scene.contacts import IMPACT_LAWS
-from carom.scene.friction import FIXED_TO, anisotropy_of, bound_of
-from carom.scene.materials import MULTIPLE, ContactLaw, Material
+from carom.scene.friction import FIXED_TO, anisotropy_of
+from carom.scene.materials import ContactLaw, Material
 from carom.scene.scene import Scene
 from carom.scene.shapes import Shape
 from carom.scene.speed_law import SpeedLaw
@@ -37,7 +36,8 @@ class Surfaces(NamedTuple):
     single: Cores  # piece by piece, against each other
     shared: int  # first vertex of `single`, after those of contacts with half-spaces
     place: np.ndarray  # (N,) first solid of each body
-    curves: Pieces  # of coefficients that are laws
+    laws: LawTable
+    first_law: int  # number of the first law of the pairs, which has two
     turns: np.ndarray  # (N + S, 4) from principal to body axes; of static bodies from world axes
     levels: Levels
 
@@ -56,7 +56,7 @@ class Contacts(NamedTuple):
 
 
 def compile_contacts(
-    scene: Scene, to_principal, options: Options, curves: Pieces, apart: bool = False
+    scene: Scene, to_principal, options: Options, laws: LawTable, apart: bool = False
 ) -> Contacts:
     """Return the contacts of a scene.
 
@@ -65,16 +65,19 @@ def compile_contacts(
     vertices of equal radius, and one for each curved piece. If bodies move `apart`, more rows may follow later.
     """
     known, later = first_pairs(scene, apart)
-    numbers = _numbers(known.laws, curves)
+    first_law = len(laws.rows)
+    for one in known.laws:
+        laws.add_pair(one)
     many = later is not None or len(known.body) > FEW_CONTACTS
     own = scene.statics or any(plane.moves for plane in scene.half_spaces)
     own = own or any(law.of_materials for law in known.laws)
     if many or own or not scene.gravity.any():  # without gravity, speeds count too
-        return _contacts(scene, known, later, curves, to_principal, options)
+        return _contacts(scene, known, later, (laws, first_law), to_principal, options)
     # contacts of scenes that differ in their motion, as in many throws, are copies of each other
     of_pairs = known.body, known.other, known.plane, known.law, to_principal, scene.gravity
     key = (
-        *(one.tobytes() for one in of_pairs), numbers.tobytes(), options.layer_width, options.penetration,
+        *(one.tobytes() for one in of_pairs), first_law, options.layer_width, options.penetration,
+        *(anisotropy_of(one.friction) for one in known.laws),
         *((plane.point.tobytes(), plane.normal.tobytes()) for plane in scene.half_spaces),
         *(body.shape for body in scene.bodies),
     )  # fmt: skip
@@ -83,7 +86,7 @@ def compile_contacts(
         return template.make()._replace(pairs=known)
     if len(_KNOWN) >= MOST_KNOWN:
         _KNOWN.clear()
-    made = _contacts(scene, known, None, curves, to_principal, options)
+    made = _contacts(scene, known, None, (laws, first_law), to_principal, options)
     _KNOWN[key] = Template(made._replace(pairs=None))
     return made
 
@@ -94,8 +97,8 @@ FEW_CONTACTS = 64  # pairs of a scene whose contacts are kept
 MOST_KNOWN = 64  # such scenes
 
 
-def _contacts(scene: Scene, known: PairTable, later, curves, to_principal, options: Options):
-    """Return the contacts of the pairs `known`."""
+def _contacts(scene: Scene, known: PairTable, later, laws, to_principal, options: Options):
+    """Return the contacts of the pairs `known`; `laws` are all laws, and the number of the first of these."""
     pairs, to_principal = _with_statics(scene, known), _and_of_statics(scene, to_principal)
     meets = pairs.other >= 0
     grounded = new_cores(_shapes(scene, pairs.body[~meets]), swollen_alike, to_principal)
@@ -113,7 +116,7 @@ def _contacts(scene: Scene, known: PairTable, later, curves, to_principal, optio
     vertices = np.concatenate([*own, single.vertices])
     levels, regions = find_levels(scene, pairs, place, every, to_principal)
     surfaces = Surfaces(
-        grounded, single, len(vertices) - len(single.vertices), place, curves, to_principal, levels
+        grounded, single, len(vertices) - len(single.vertices), place, *laws, to_principal, levels
     )
     rows = with_level_rows(_rows(scene, options, pairs, which, surfaces), levels, regions)
     return Contacts(rows, vertices, solids, hulls, levels, known, surfaces, later)
@@ -268,23 +271,16 @@ def _write_solids(rows: np.recarray, which: Rows, place: np.ndarray) -> None:
     rows["other_solid"] = between * (place[rows["other"]] + which.other["piece"])
 
 
-#: columns of rows that say by which law their pair strikes, in the order of `_numbers`
-OF_LAW = (
-    "friction", "friction_held", "stiffness", "law", "multiple", *RESTITUTION, "tangential_restitution",
-)  # fmt: skip
-
-
 def _write_laws(rows: np.recarray, scene: Scene, pairs: PairTable, which: Rows, surfaces: Surfaces):
-    """Write the law of each contact to its rows."""
-    laws, of_row = _laws_by_part(scene, pairs, which)
-    law = _numbers(laws, surfaces.curves)[of_row]
-    for k, name in enumerate(OF_LAW):
-        rows[name] = law[:, k]
-    rows["turning"], by_slip = law[:, -13:-11], law[:, -11:-5].reshape(-1, 2, 3)
-    for k, name in enumerate(("friction_piece", "last_friction_piece", "friction_exponent")):
-        rows[name] = by_slip[:, :, k]
-    if law[:, -5].any():
-        _write_anisotropy(rows, law[:, -5:], surfaces.turns)
+    """Write the numbers of the laws of each contact to its rows, and the axes of anisotropic friction."""
+    laws, number, of_row = _laws_by_part(scene, pairs, which, surfaces)
+    rows["law"] = number[of_row][:, None] + np.arange(2)
+    anisotropies = [anisotropy_of(one.friction) for one in laws]
+    if any(anisotropies):
+        axes = [
+            (1 + FIXED_TO.index(a.of), *a.axis, a.ratio) if a else (0.0,) * 5 for a in anisotropies
+        ]
+        _write_anisotropy(rows, np.array(axes)[of_row], surfaces.turns)
 
 
 def _write_anisotropy(rows: np.recarray, anisotropies: np.ndarray, turns: np.ndarray) -> None:
@@ -297,26 +293,6 @@ def _write_anisotropy(rows: np.recarray, anisotropies: np.ndarray, turns: np.nda
     rows["axis_of"], rows["across"] = of, anisotropies[:, 4]
 
 
-def _numbers(laws: list[ContactLaw], curves: Pieces) -> np.ndarray:
-    """Return the numbers (L, 23) of laws; coefficients that depend on speeds are added to `curves`."""
-    numbers = [
-        (
-            bound_of(one.friction), bound_of(one.friction_held), one.stiffness,
-            IMPACT_LAWS.index(one.impact_law),
-            MULTIPLE.index(one.multiple), *curves.add_restitution(one.restitution),
-            one.tangential_restitution, one.rolling_friction, one.pivoting_friction,
-            *curves.add_law(one.friction), *curves.add_law(one.friction_held), *_anisotropy_numbers(one),
-        )
-        for one in laws
-    ]  # fmt: skip
-    return np.array(numbers, dtype=float).reshape(-1, len(OF_LAW) + 13)
-
-
-def _anisotropy_numbers(law: ContactLaw) -> tuple[float, ...]:
-    found = anisotropy_of(law.friction)
-    return (0.0,) * 5 if found is None else (1 + FIXED_TO.index(found.of), *found.axis, found.ratio)
-
-
 class Surface(NamedTuple):
     """The surface of a piece of a body."""
 
@@ -324,16 +300,17 @@ class Surface(NamedTuple):
     material: Material | None
 
 
-def _laws_by_part(scene: Scene, pairs: PairTable, which: Rows) -> tuple[list, np.ndarray]:
-    """Return the different laws, and that of each row by number: pieces may have materials of their own."""
+def _laws_by_part(scene: Scene, pairs: PairTable, which: Rows, surfaces: Surfaces):
+    """Return the different laws, their first numbers, and that of each row: pieces may have own materials."""
     laws, of_row = list(pairs.laws), pairs.law[which.number]
+    number = [surfaces.first_law + 2 * k for k in range(len(laws))]
     parts = (*scene.bodies, *scene.statics)
     by_part = np.array([bool(law.of_materials) for law in laws], dtype=bool)
     known: dict[tuple, int] = {}
     for row in np.flatnonzero(by_part[of_row]).tolist() if by_part.any() else ():
-        number = which.number[row]
-        plane, other = pairs.plane[number], pairs.other[number]
-        one = _surface(parts[pairs.body[number]], which.core["piece"][row])
+        contact = which.number[row]
+        plane, other = pairs.plane[contact], pairs.other[contact]
+        one = _surface(parts[pairs.body[contact]], which.core["piece"][row])
         if other >= 0:
             two = _surface(parts[other], which.other["piece"][row])
         else:
@@ -341,18 +318,18 @@ def _laws_by_part(scene: Scene, pairs: PairTable, which: Rows) -> tuple[list, np
         key = (int(of_row[row]), one.material, two.material)
         if key not in known:
             known[key] = len(laws)
-            laws.append(
-                _checked(scene._pairs.law_of_parts(laws[key[0]], one, two), laws[key[0]], one)
-            )
+            whole = laws[key[0]]
+            laws.append(_checked(scene._pairs.law_of_parts(whole, one, two), whole, one))
+            number.append(surfaces.laws.add_once(key, laws[-1]))
         of_row[row] = known[key]
-    return laws, of_row
+    return laws, np.array(number, dtype=np.int64), of_row
 
 
 def _checked(law: ContactLaw, whole: ContactLaw, surface: Surface) -> ContactLaw:
     """Return the law of two parts; refuse coefficients of parts that are different laws of the speed."""
     for name in ("restitution", "friction", "friction_held"):
         e = getattr(law, name), getattr(whole, name)
-        if e[0] != e[1] and any(isinstance(one, SpeedLaw) and not anisotropy_of(one) for one in e):
+        if e[0] != e[1] and any(isinstance(one, SpeedLaw) and one.by_speed for one in e):
             raise ValueError(
                 f"{name} must be a number for each part of {surface.name!r}, or one law for all, "
                 f"got {e[0]:g} and {e[1]:g}"

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import math
-
-import numpy as np
-
 from carom._compiled.composed import is_compiled, joined, once
-from carom._compiled.record_arrays import Columns, table
+from carom._compiled.record_arrays import table
 from carom._compiled.user_functions import Functions
-from carom.model.arrays import FRICTION, PIECE, PUSH, USER_FORCE
-from carom.model.thresholds import LAW_KINK
-from carom.scene.friction import anisotropy_of, bound_of
+from carom.model.arrays import FRICTION, PUSH, USER_FORCE
+from carom.model.laws import LawTable
+from carom.model.pieces import Pieces
+from carom.scene.friction import bound_of
 from carom.scene.more_forces import (
     Actuator,
     CurveSpring,
@@ -21,71 +18,6 @@ from carom.scene.more_forces import (
     Law,
     UserForce,
 )
-from carom.scene.speed_law import SpeedLaw, curve_of
-
-DEGREE = 5
-#: columns of a contact that say what its restitution is
-RESTITUTION = (
-    "restitution", "restitution_piece", "last_restitution_piece", "restitution_exponent",
-)  # fmt: skip
-
-
-def note_kinks(pieces: np.ndarray) -> None:
-    """Write to the pieces of a law the places where a derivative jumps, the ends of a table among them.
-
-    Beyond its pieces a law is constant. Jumps are those of the coefficients of both sides, by the least width.
-    """
-    width, c = pieces["end"] - pieces["start"], pieces["c"]
-    after = np.vstack([c, np.zeros(DEGREE + 1)])
-    before = np.zeros_like(after)
-    for k in range(1, DEGREE + 1):
-        for j in range(k, DEGREE + 1):
-            before[1:, k] += math.comb(j, k) * c[:, j] * width ** (j - k)
-    least = np.minimum(np.append(width, np.inf), np.insert(width, 0, np.inf))
-    k = np.arange(1, DEGREE - 1)  # quintics have jumps above: two derivatives at each end are given
-    jumps = np.max(np.abs(after - before)[:, k] * least[:, None] ** k, axis=1)
-    places = np.append(pieces["start"], pieces["end"][-1])
-    kinks = jumps > LAW_KINK * np.max(np.abs(c[:, 0]))
-    pieces["kinks"][:, 0] = np.maximum.accumulate(np.where(kinks, places, -np.inf))[:-1]
-    pieces["kinks"][:, 1] = np.minimum.accumulate(np.where(kinks, places, np.inf)[::-1])[::-1][1:]
-
-
-class Pieces:
-    """Pieces of all polynomials of a scene."""
-
-    def __init__(self):
-        self.rows = table(PIECE, 0)
-        self.known: dict[tuple, tuple[int, int, float]] = {}  # laws of a speed
-
-    def add(self, curve) -> tuple[int, int]:
-        """Add a `scipy.interpolate.PPoly`; return the range of its pieces."""
-        c, x = np.asarray(curve.c, dtype=float), np.asarray(curve.x, dtype=float)
-        if c.ndim != 2 or len(c) > DEGREE + 1:
-            raise ValueError(
-                f"a polynomial in pieces must have one value and degree {DEGREE} at most, got coefficients of "
-                f"shape {c.shape}"
-            )
-        pieces = table(PIECE, len(x) - 1)
-        pieces.start, pieces.end = x[:-1], x[1:]
-        pieces.c[:, : len(c)] = c[::-1].T
-        first = len(self.rows)
-        self.rows = np.concatenate([self.rows, pieces]).view(Columns)
-        return first, len(self.rows)
-
-    def add_law(self, law: float | SpeedLaw, length: float = 1.0) -> tuple[int, int, float]:
-        """Return pieces and exponent of a row whose speeds are `length` times those of a law."""
-        if not isinstance(law, SpeedLaw) or anisotropy_of(law) is not None:
-            return 0, 0, 0.0
-        if (law, length) not in self.known:
-            curve = curve_of(law).scaled(length)
-            first, last = self.add(curve)
-            note_kinks(self.rows[first:last])
-            self.known[law, length] = first, last, curve.exponent
-        return self.known[law, length]
-
-    def add_restitution(self, e: float | SpeedLaw, length: float = 1.0) -> tuple[float, ...]:
-        """Return the values of `RESTITUTION` of such a row."""
-        return np.nan if isinstance(e, SpeedLaw) else e, *self.add_law(e, length)
 
 
 class MoreForces:
@@ -96,24 +28,24 @@ class MoreForces:
         scene,
         coordinates,
         functions: Functions,
-        pieces: tuple[Pieces, Pieces],
+        pieces: Pieces,
+        friction_laws: LawTable,
         implicit: bool,
     ):
         self.pushes, self.forces, self.frictions, self.named = [], [], [], []
-        of_forces, of_frictions = pieces
         self.width = 0
         self.laws: dict[int, Law] = {}  # of actuators, by the index of the force
         self.curves: dict[int, tuple[int, int]] = {}  # by the index of the force
         for force in scene.forces:
             d = force.definition
             if isinstance(d, CurveSpring):
-                self.curves[force.index] = of_forces.add(d.tension)
+                self.curves[force.index] = pieces.add(d.tension)
             elif isinstance(d, Actuator):
                 self.pushes.append(_actuator(force, coordinates, functions, self.laws, implicit))
             elif isinstance(d, JointForce) or (isinstance(d, JointSpring) and not implicit):
                 self.pushes.append(_push(force, coordinates, functions))
             elif isinstance(d, JointFriction) and bound_of(d.bound) > 0.0:
-                self.frictions.append(_friction(d, coordinates, of_frictions))
+                self.frictions.append(_friction(d, coordinates, friction_laws))
             elif isinstance(d, UserForce):
                 self.forces.append(self._of_user(force, functions))
 
@@ -166,10 +98,12 @@ def is_damped_spring(d) -> bool:
     return not d.law and min(d.spring) >= 0.0 and max(d.spring) > 0.0
 
 
-def _friction(d, coordinates, pieces):
+def _friction(d, coordinates, friction_laws: LawTable):
     made = table(FRICTION, 1)
-    made.coordinate, made.bound = coordinates.number(d.joint, d.coordinate), bound_of(d.bound)
-    made.piece, made.last_piece, made.exponent = pieces.add_law(d.bound)
+    made.coordinate, made.law = (
+        coordinates.number(d.joint, d.coordinate),
+        friction_laws.add(d.bound),
+    )
     return made
 
 

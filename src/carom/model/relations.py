@@ -12,7 +12,8 @@ from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
 from carom.model import arrays
 from carom.model.curves import Curves
-from carom.model.more_forces import MoreForces, Pieces, is_damped_spring
+from carom.model.more_forces import MoreForces, is_damped_spring
+from carom.model.pieces import PIECE, Pieces
 from carom.model.placement import Placement
 from carom.scene.constraints import Coupling, Rows, coordinate_kind, counted
 from carom.scene.forces import Spring
@@ -236,7 +237,7 @@ class Elements:
 def no_relations() -> arrays.Relations:
     """Return the tables of a scene without coordinates."""
     a, none = arrays, np.zeros(0)
-    kinds = a.COORDINATE, a.RELATION_ROW, a.TERM, a.USER_ROW, a.PIECE, a.PUSH, a.USER_FORCE
+    kinds = a.COORDINATE, a.RELATION_ROW, a.TERM, a.USER_ROW, PIECE, a.PUSH, a.USER_FORCE
     kinds += a.STIFF_SPRING, a.FRICTION, a.ROTOR, a.CURVE, a.CURVE_PIECE
     named = np.zeros(0, dtype=np.int64)
     return a.Relations._make([0, 0, *(table(kind, 0) for kind in kinds), named, none, none])

@@ -6,14 +6,13 @@ import numpy as np
 
 from carom._compiled.record_arrays import Columns, table
 from carom.model.arrays import CONTACT, KIND_STOP
-from carom.model.more_forces import RESTITUTION, Pieces
+from carom.model.laws import LawTable
 from carom.model.relations import Elements
 from carom.model.thresholds import DIRECTION
-from carom.scene.friction import bound_of
 from carom.scene.materials import IMPACT_LAWS
 
 
-def with_stops(scene, contacts: np.recarray, elements: Elements, options, curves: Pieces):
+def with_stops(scene, contacts: np.recarray, elements: Elements, options, laws: LawTable):
     """Return the contacts, then the stops; the numbers of stops follow those of contacts."""
     if not scene.stops:
         return contacts
@@ -27,15 +26,14 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, curves
         size = elements.sizes[stop.joint.child.index]
         row.side = stop.side * (size if stop.turns else 1.0)
         row.offset = row.side * stop.end
-        row.law = IMPACT_LAWS.index(stop.impact_law)
-        for name, value in zip(
-            RESTITUTION, curves.add_restitution(stop.restitution, abs(row.side))
-        ):
-            row[name] = value
+        friction = stop.joint.definition.friction if stop.joint.can_be_left else 0.0
+        law = IMPACT_LAWS.index(stop.impact_law)
+        row.law[:] = laws.add(friction, stop.restitution, impact_law=law, length=abs(row.side))
         row.extent = row.other_extent = size
-        row.first, row.last, row.stiffness = 0, 1, 1.0
+        row.first, row.last = 0, 1
         if stop.joint.can_be_left:
-            _write_rail(row, stop.joint, curves)
+            curve = stop.joint.definition.curve
+            row.extent = row.other_extent = max(size, np.ptp(curve.ends[:, 0], axis=0).max())
     rows.still = 1e-14 * np.sqrt(np.linalg.norm(scene.gravity) * rows.extent)
     for row, stop in zip(rows, scene.stops):
         if stop.joint.can_be_left:  # its direction is that of the table of the curve
@@ -55,13 +53,3 @@ def _check_twists(scene) -> None:
                 f"stop {stop.name!r} of the twist of {stop.joint.name!r} must come with a stop of its "
                 '"swing", got none: where the swing is pi, a twist has no value'
             )
-
-
-def _write_rail(row, joint, curves: Pieces) -> None:
-    """Write the size and the friction of a rail that can be left, in impacts and in persistent contact."""
-    d = joint.definition
-    row.extent = row.other_extent = max(row.extent, np.ptp(d.curve.ends[:, 0], axis=0).max())
-    row.friction = row.friction_held = bound_of(d.friction)
-    names = "friction_piece", "last_friction_piece", "friction_exponent"
-    for name, value in zip(names, curves.add_law(d.friction)):
-        row[name][:] = value

@@ -244,6 +244,7 @@ HIT = [
     ("point", "f8", 3),
     ("out", "f8", 32),
     ("restitution", "f8"),
+    ("impact_law", "i8"),
     ("closed", "i8"),
     ("code", "i8"),
 ]

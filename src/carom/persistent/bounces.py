@@ -27,9 +27,12 @@ from carom.dynamics.elements import driven_power
 from carom.dynamics.several_points import on_drive
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER, SUM_ERROR
-from carom.impact.effective_restitution import restitution_at
 from carom.impact.workspace import RETURN, C, U
 from carom.kinematics.contact_point import power_of_surface
+from carom.law.restitution import depends_on_approach, restitution_at
+from carom.law.turning import arm_of_torque
+from carom.model.laws import STRIKES
+from carom.model.workspace import MOTION_PIVOT, MOTION_ROLL
 from carom.persistent.margins import time_to_stop
 from carom.persistent.return_to_surfaces import factor_given, give, greatest_speed, solve_rows
 from carom.persistent.settle import add_product, greatest
@@ -38,12 +41,12 @@ from carom.persistent.thresholds import MOST_BOUNCES, PLASTIC_SPEED, REST_SHARE
 
 
 @kernel
-def horizon_of(contact, controls, g, horizon):
+def horizon_of(system, contact, controls, g, horizon):
     """Return the time within which bounces must end to be left out: `horizon`, or by the tolerance."""
     if controls.order == 0:
         return horizon
     tolerance = controls.atol + controls.rtol * smaller(contact)
-    if contact.restitution == 0.0:
+    if system.laws.table[contact.law[STRIKES]].restitution == 0.0:
         tolerance *= PLASTIC_SPEED
     return math.sqrt(8.0 * tolerance / g) if g > 0.0 else 0.0
 
@@ -59,12 +62,13 @@ def bounces_end(system, contact, rate, g, still, horizon):
 @kernel
 def time_of_bounces(system, contact, rate, g):
     """Return the time 2 u/(g (1 - e)) that bounces take; with a law of restitution, the sum of their times."""
-    time, e = 0.0, restitution_at(system, contact, rate)
-    if contact.last_restitution_piece > contact.restitution_piece:
+    time, laws, law = 0.0, system.laws, contact.law[STRIKES]
+    e = restitution_at(laws, law, rate)
+    if depends_on_approach(laws, law):
         for _ in range(MOST_BOUNCES):
             time += 2.0 * rate / g
             rate *= e
-            e = restitution_at(system, contact, rate)
+            e = restitution_at(laws, law, rate)
     return time + 2.0 * rate / (g * (1.0 - e)) if e < 1.0 else math.inf
 
 
@@ -92,8 +96,9 @@ def name_work(normal, tangential, clock, step):
 @kernel
 def time_without_torque(system, contact, rate, g, state):
     """Return the time of bounces that are left out, in which rolling and pivoting friction do not act."""
-    turning = max(contact.turning[0], contact.turning[1]) > 0.0
-    bounces = turning and rate > slow(contact, state)
+    rolls = arm_of_torque(system.laws, contact, MOTION_ROLL) > 0.0
+    pivots = arm_of_torque(system.laws, contact, MOTION_PIVOT) > 0.0
+    bounces = (rolls or pivots) and rate > slow(contact, state)
     return time_of_bounces(system, contact, rate, g) if bounces else 0.0
 
 
@@ -116,7 +121,7 @@ def end_bounces(model, data, k, label, horizon):
     still = min(still, REST_SHARE * speed)
     for i in range(k):
         contact = system.contacts[group.closed[i].contact]
-        end = horizon_of(contact, controls, -group.v[C][3 * i], horizon)
+        end = horizon_of(system, contact, controls, -group.v[C][3 * i], horizon)
         if not time_to_stop(i, group) > end:  # friction ends with the slip
             group.heading[i, 0], group.heading[i, 1] = 0.0, 0.0
     find_pull(k, 1, SUM_ERROR * speed, group)

@@ -13,6 +13,7 @@ The function of an event is positive before it and negative after it, and is eva
 from __future__ import annotations
 
 from carom._compiled.decorators import inlined, kernel
+from carom.law.piecewise import any_depends_on_speed
 from carom.model.actions import (
     EVENT_BREAK,
     EVENT_CONE,
@@ -70,7 +71,7 @@ def find_contact_event(system, active, work):
             return EVENT_BREAK, i
         if frictions[i].kink[1] < 0.0:
             return EVENT_KINK_OF_JOINT, i
-    for i in range(active.count[0] if system.curves.shape[0] > 0 else 0):
+    for i in range(active.count[0] if any_depends_on_speed(system.laws) else 0):
         if active.points[i].kink[1] < 0.0:
             return EVENT_KINK, i
     if least_left(system, active) < 0.0:

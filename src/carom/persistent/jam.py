@@ -15,7 +15,8 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction.layout import SLIDING
-from carom.impact.friction_law import PERSISTENT, depends_on_slip
+from carom.law.friction import bound_of_stick, depends_on_slip
+from carom.model.laws import PERSISTENT
 from carom.model.workspace import MOTION_POINT
 from carom.persistent.thresholds import JAM_MARGIN
 
@@ -24,8 +25,9 @@ from carom.persistent.thresholds import JAM_MARGIN
 def jam_margin(system, active_point):
     """Return k of a point that slips along its heading, above that at which it counts as jammed."""
     d, W, contact = active_point.heading, active_point.W, system.contacts[active_point.contact]
-    mu, force = contact.friction_held, active_point.force
-    if depends_on_slip(contact, PERSISTENT) and force[0] > 0.0:  # as it acts
+    laws, law, force = system.laws, contact.law[PERSISTENT], active_point.force
+    mu = bound_of_stick(laws, law)
+    if depends_on_slip(laws, law) and force[0] > 0.0:  # as it acts
         mu = math.sqrt(force[1] ** 2 + force[2] ** 2) / force[0]
     speed = math.sqrt(d[0] * d[0] + d[1] * d[1])
     along = mu * (W[0, 1] * d[0] + W[0, 2] * d[1]) / speed if speed > 0.0 else 0.0

@@ -16,6 +16,7 @@ from carom.geometry.thresholds import ROUND_OFF
 from carom.impact.workspace import P
 from carom.kinematics.coordinate import along, drift, motion_along, push, speeds_of
 from carom.kinematics.joints import child_arm, parent_arm
+from carom.law.friction import bound_of_stick
 from carom.model.arrays import REVOLUTE
 from carom.model.workspace import MOTION_JOINT, MOTION_PIVOT, MOTION_POINT
 from carom.persistent.thresholds import MOTOR_COMPLIANCE
@@ -43,7 +44,7 @@ def _add_frictions(system, state, k, group, work) -> int:
         closed_point.listed, closed_point.weight = 1, 1.0
         place_coordinate(system, c, state, point)
         closed_point.spring = MOTOR_COMPLIANCE * response_alone(system, c, state, work)
-        group.mu[k] = relations.frictions[i].bound
+        group.mu[k] = bound_of_stick(system.laws, relations.frictions[i].law)
         k += 1
     return k
 

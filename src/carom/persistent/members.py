@@ -38,6 +38,7 @@ from carom.friction.strategy import budget
 from carom.geometry.rotation import multiply, normalize
 from carom.geometry.thresholds import ROUND_OFF
 from carom.impact.workspace import C, P, U
+from carom.law.piecewise import any_depends_on_speed
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.coulomb_stage import solve_stage
 from carom.persistent.rolling_friction import bound_turning
@@ -124,7 +125,7 @@ def implicit_stage(model, data, label, s, hg, closes):
     group, work, (count, loaded) = data.group, data.work, bodies_of(model, data, label)
     k, change, power, rubbed = -1, 0.0, 0.0, 0.0
     iterations = group.equations.iterations
-    iterations[0], laws, turned = 0, model.system.curves.shape[0] > 0, False
+    iterations[0], laws, turned = 0, any_depends_on_speed(model.system.laws), False
     if laws:
         first_modes(data, label)
         first_modes_of_joints(model.system)

@@ -37,6 +37,7 @@ from carom.geometry.rotation import cross, rotate_back
 from carom.geometry.thresholds import RESOLUTION, ROUND_OFF
 from carom.kinematics.anisotropy import lengths_of_tangents, turn_plain
 from carom.kinematics.contact_point import copy_point
+from carom.law.turning import arm_of_torque
 from carom.model.arrays import KIND_PAIR
 from carom.model.workspace import MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
 from carom.persistent.active_set import is_first
@@ -222,16 +223,16 @@ def add_turning(system, active, k, group):
     total = k
     for i in range(k):
         closed_point = group.closed[i]
-        turning = system.contacts[closed_point.contact].turning
+        contact = system.contacts[closed_point.contact]
         if active.points[closed_point.active].bounces > 0.0:
             continue
         for motion in (MOTION_ROLL, MOTION_PIVOT):
-            if turning[motion - MOTION_ROLL] > 0.0 and total < group.closed.shape[0]:
+            turns = arm_of_torque(system.laws, contact, motion) > 0.0
+            if turns and total < group.closed.shape[0]:
                 more, point = group.closed[total], group.points[0][total]
                 write_turning(i, motion, closed_point, more)
                 more.listed = closed_point.listed
                 copy_point(group.points[0][i], point)
-                contact = system.contacts[closed_point.contact]
                 turn_plain(contact, motion, smaller(contact), point)
                 total += 1
     return total

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.impact.workspace import C, P
+from carom.law.turning import arm_of_torque
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT, MOTION_ROLL
 
 
@@ -24,7 +25,7 @@ def bound_turning(system, k, group):
         if closed_point.motion == MOTION_POINT or closed_point.motion == MOTION_JOINT:
             continue
         q, W = 3 * i, group.W
-        d = system.contacts[closed_point.contact].turning[closed_point.motion - MOTION_ROLL]
+        d = arm_of_torque(system.laws, system.contacts[closed_point.contact], closed_point.motion)
         bound = d / group.points[0][i].length * max(0.0, group.v[P][3 * closed_point.parent])
         W[q, q] = 0.5 * (W[q + 1, q + 1] + W[q + 2, q + 2])
         change = max(change, abs(group.v[C][q] + W[q, q] * bound))

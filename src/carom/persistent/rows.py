@@ -24,8 +24,11 @@ from carom.impact.workspace import C, P, U
 from carom.kinematics.contact_point import power_of_surface
 from carom.kinematics.flight import free_rates
 from carom.kinematics.moving_surfaces import set_surfaces
+from carom.law.friction import bound_of_stick
+from carom.law.piecewise import any_depends_on_speed
 from carom.model.actions import MODE_SLIP
 from carom.model.arrays import KIND_VERTICES
+from carom.model.laws import PERSISTENT
 from carom.model.workspace import MOTION_JOINT, MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
 from carom.persistent.joint_rows import (
     drift_of_coordinate,
@@ -77,7 +80,7 @@ def write_rows(model, data, label, s) -> int:
     k = find_points(system, data, label)
     inverse_masses(system, k, points, state, work, group.W)
     write_motion(system, k, state, work.stages[s], group, work)
-    if system.curves.shape[0] > 0:
+    if any_depends_on_speed(system.laws):
         follow_laws(system, data.active, k, group)
     return k
 
@@ -93,10 +96,11 @@ def write_motion(system, k, state, rates, group, work):
         if closed_point.motion == MOTION_JOINT:
             c = drift_of_coordinate(system, closed_point.active, state, work)
             group.v[C][3 * i + 1] += c
-            group.mu[i] = system.relations.frictions[closed_point.active].bound
+            law = system.relations.frictions[closed_point.active].law
+            group.mu[i] = bound_of_stick(system.laws, law)
             continue
         contact = system.contacts[closed_point.contact]
-        group.mu[i] = contact.friction_held
+        group.mu[i] = bound_of_stick(system.laws, contact.law[PERSISTENT])
         if closed_point.motion != MOTION_POINT:
             group.mu[i] = bound_per_force(system, points[i], closed_point)
         elif contact.kind != KIND_VERTICES:

@@ -145,7 +145,7 @@ def decide_active(model, data, k, rows, horizon):
             contact, u = system.contacts[group.closed[i].contact], group.v[U][3 * i]
             a = group.v[ACCELERATIONS][3 * i]
             if group.closed[i].stays == 0:
-                end = horizon_of(contact, model.controls, -a, horizon)
+                end = horizon_of(system, contact, model.controls, -a, horizon)
                 if bounces_end(system, contact, u, -a, slow(contact, state), end):
                     group.closed[i].stays, more = 1, True
                     group.closed[i].bounces = time_without_torque(system, contact, u, -a, state)

@@ -10,11 +10,12 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.dynamics.curve import margin_before_kink, value_at
 from carom.geometry.thresholds import REMAINDER
-from carom.impact.friction_law import PERSISTENT, depends_on_slip, in_slip, law_of
 from carom.impact.workspace import ACCELERATIONS, P, U
+from carom.law.friction import bound_of_stick, depends_on_slip, in_slip, margin_of_slip
+from carom.law.piecewise import any_depends_on_speed
 from carom.model.actions import MODE_SLIP, MODE_STICK
+from carom.model.laws import PERSISTENT
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.joint_rows import radius_of
 from carom.persistent.settle import dot
@@ -24,13 +25,18 @@ TURNS_BACK = 8  # iterations of a stage in which slip that turns back may still 
 
 
 @kernel
-def has_law(system, closed_point):
-    """Return whether the friction of a point or a joint is a law."""
+def law_of(system, closed_point):
+    """Return the number of the law of a point or a joint in persistent contact."""
     if closed_point.motion == MOTION_JOINT:
-        one = system.relations.frictions[closed_point.active]
-        return one.last_piece > one.piece
-    contact = system.contacts[closed_point.contact]
-    return closed_point.motion == MOTION_POINT and depends_on_slip(contact, PERSISTENT)
+        return system.relations.frictions[closed_point.active].law
+    return system.contacts[closed_point.contact].law[PERSISTENT]
+
+
+@kernel
+def has_law(system, closed_point):
+    """Return whether the friction of a point or a joint depends on its slip."""
+    slides = closed_point.motion == MOTION_JOINT or closed_point.motion == MOTION_POINT
+    return slides and depends_on_slip(system.laws, law_of(system, closed_point))
 
 
 @kernel
@@ -39,22 +45,19 @@ def set_friction(system, i, slips, group):
     closed_point, u = group.closed[i], group.v[U]
     if not has_law(system, closed_point):
         return
-    speed = math.hypot(u[3 * i + 1], u[3 * i + 2])
-    if closed_point.motion == MOTION_JOINT:
-        one = system.relations.frictions[closed_point.active]
-        law = (one.piece, one.last_piece, one.exponent)
-        group.mu[i] = value_at(system.curves, law, abs(u[3 * i + 1])) if slips else one.bound
-        return
-    contact = system.contacts[closed_point.contact]
-    group.mu[i] = (
-        in_slip(system.curves, contact, PERSISTENT, speed) if slips else contact.friction_held
-    )
+    laws, law = system.laws, law_of(system, closed_point)
+    if not slips:
+        group.mu[i] = bound_of_stick(laws, law)
+    elif closed_point.motion == MOTION_JOINT:
+        group.mu[i] = in_slip(laws, law, abs(u[3 * i + 1]))
+    else:
+        group.mu[i] = in_slip(laws, law, math.hypot(u[3 * i + 1], u[3 * i + 2]))
 
 
 @kernel
 def follow_laws(system, active, k, group):
     """Write the friction of entries that have a law, by modes; that of a corner without one, by velocity."""
-    if system.curves.shape[0] == 0:  # there are no laws
+    if not any_depends_on_speed(system.laws):
         return
     u, fastest = group.v[U], 0.0
     for row in range(3 * k):
@@ -83,7 +86,7 @@ def first_modes_of_joints(system):
     """Take the modes of the start of the step."""
     for i in range(system.relations.frictions.shape[0]):
         one = system.relations.frictions[i]
-        if one.last_piece > one.piece:
+        if depends_on_slip(system.laws, one.law):
             one.next = one.mode
 
 
@@ -111,23 +114,22 @@ def note_kink(system, active, closed_point, slip):
     """Write the margins before the next kink of a law, of a point or a joint, at start and end of a step."""
     if closed_point.motion == MOTION_JOINT:
         one = system.relations.frictions[closed_point.active]
-        law = (one.piece, one.last_piece, one.exponent)
         before, kink, slips = one.began, one.kink, one.mode != 0
     else:
         active_point = active.points[closed_point.active]
-        law = law_of(system.contacts[closed_point.contact], PERSISTENT)
         before, kink, slips = active_point.began, active_point.kink, active_point.mode == MODE_SLIP
     kink[0], kink[1] = 1.0, 1.0
     if slips:
-        kink[0] = margin_before_kink(system.curves, law, before, slip, before)
-        kink[1] = margin_before_kink(system.curves, law, before, slip, slip)
+        law = law_of(system, closed_point)
+        kink[0] = margin_of_slip(system.laws, law, before, slip, before)
+        kink[1] = margin_of_slip(system.laws, law, before, slip, slip)
 
 
 @kernel
 def share_before_kink(model, active):
     """Return the share of a trial step before the first kink of a law that it passes, by the secant."""
     share = 1.0
-    for i in range(active.count[0] if model.system.curves.shape[0] > 0 else 0):
+    for i in range(active.count[0] if any_depends_on_speed(model.system.laws) else 0):
         kink = active.points[i].kink
         share = min(share, kink[0] / (kink[0] - kink[1]) if kink[1] < 0.0 else 1.0)
     frictions = model.system.relations.frictions

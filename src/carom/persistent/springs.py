@@ -29,6 +29,7 @@ from carom.friction.layout import SLIDING
 from carom.geometry.thresholds import LAST_DIGIT, REMAINDER, ROUND_OFF
 from carom.impact.thresholds import GROUP_ERROR, LOADED_PART
 from carom.impact.workspace import ACCELERATIONS, C, P
+from carom.law.turning import arm_of_torque
 from carom.model.allowance import COUNT_FACTORS
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT, MOTION_ROLL
 from carom.persistent import thresholds as limits
@@ -42,8 +43,8 @@ FACTORED = 1  # place of the work of factors in `Equations.iterations`: a point 
 @kernel
 def bound_per_force(system, point, closed_point):
     """Return the greatest impulse in the rows of rolling or pivoting for a unit normal one: d over a length."""
-    turning = system.contacts[closed_point.contact].turning
-    return turning[closed_point.motion - MOTION_ROLL] / point.length
+    contact = system.contacts[closed_point.contact]
+    return arm_of_torque(system.laws, contact, closed_point.motion) / point.length
 
 
 @unit

@@ -11,6 +11,7 @@ from carom._compiled.record_arrays import Columns, copied
 from carom.geometry import quaternion
 from carom.impact.layout import AT_END, WEDGED
 from carom.model import records as r
+from carom.model.laws import law_of
 from carom.results import stiff_forces
 from carom.results.accuracy import sentences
 from carom.results.beyond_bounds import beyond_bounds
@@ -35,11 +36,9 @@ from carom.scene.more_forces import JointFriction
 from carom.scene.restitution import Restitution
 from carom.status import Status
 
-#: attributes of contacts that tables show (an ensemble changes them from run to run)
-OF_CONTACTS = (
-    "number", "other", "first", "law", "restitution", "friction", "penetration", "width", "kind", "side",
-    "axis_of",
-)  # fmt: skip
+#: attributes of contacts, and of their laws, that tables show (an ensemble changes them from run to run)
+OF_CONTACTS = "number", "other", "first", "penetration", "width", "kind", "side", "axis_of"
+OF_LAWS = "impact_law", "restitution", "friction"
 
 
 class Written(NamedTuple):
@@ -49,14 +48,14 @@ class Written(NamedTuple):
     series: np.recarray  # (T,) SERIES
     impact: np.recarray  # (K,) IMPACTS, in the order of time
     event: np.recarray  # (E,) EVENT, in the order of time
-    contacts: dict[str, np.ndarray]  # (C,) columns of CONTACT
+    contacts: dict[str, np.ndarray]  # (C,) columns of CONTACT, and of LAW
     forces: tuple[AppliedForce, ...]  # of the scene during the run; more may be added later
 
 
 def assemble(run, status: Status) -> dict:
     """Return the fields of a `Solution`."""
     rec, clock = r.written(run.records, run.clock), r.as_numbers(run.clock)
-    state, series, contacts = rec.state, rec.series, run.compiled.system.contacts
+    state, series = rec.state, rec.series
     impact, event, (most, events) = _in_time(rec.impact), _in_time(rec.event), busiest(rec.event)
     return {
         "t": np.array(series["t"]),
@@ -89,9 +88,16 @@ def assemble(run, status: Status) -> dict:
         "_touch": copied(rec.touch),
         "_written": Written(
             np.array(state["Q"]), copied(series), impact, event,
-            {name: np.array(contacts[name]) for name in OF_CONTACTS}, run.scene.forces,
+            _columns(run.compiled.system), run.scene.forces,
         ),
     }  # fmt: skip
+
+
+def _columns(system) -> dict[str, np.ndarray]:
+    """Return copies of the columns of contacts and of their laws in impacts."""
+    of_contacts = {name: np.array(system.contacts[name]) for name in OF_CONTACTS}
+    laws = law_of(system, system.contacts)
+    return of_contacts | {name: np.array(laws[name]) for name in OF_LAWS}
 
 
 def _in_time(rows: np.recarray) -> np.recarray:
@@ -149,7 +155,7 @@ def impact_table(solution) -> ImpactTable:
         relative_velocity_before=rows.before / arm[:, None],
         relative_velocity_after=rows.after / arm[:, None],
         penetration=contacts["penetration"][c] * contacts["width"][c] / arm,
-        law=np.array(IMPACT_LAWS)[contacts["law"][c]],
+        law=np.array(IMPACT_LAWS)[contacts["impact_law"][c]],
         inverse_mass=rows.W / arm[:, None, None] ** 2,
         impulse=rows.impulse * arm[:, None],
         restitution=np.where(_differs(contacts["restitution"], first)[place], np.nan, e),

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.impact import laws
 from carom.impact.layout import AT_END, PHASE_JAM, PLASTIC
+from carom.law import impact_laws
 from carom.model import records as r
+from carom.model.laws import law_of
 from carom.results.names import arms, contact_name, restitution_of
 from carom.scene.restitution import Restitution
 from carom.status import Remark
@@ -21,7 +22,7 @@ def remarks(rows, events, run) -> tuple[str, ...]:
     """Return a sentence for each kind: how many impacts (`rows`) or `events` of a run, and the first."""
     marks, jams = int(np.bitwise_or.reduce(rows["phases"])), events["kind"] == r.JAMS
     said = _gains(rows, run)
-    if len(run.compiled.system.curves):
+    if len(run.compiled.system.laws.pieces):
         said += _of_laws(rows, run)
     if marks & AT_END:
         said += _without_slip(rows, run)
@@ -55,8 +56,9 @@ def _place(row, run) -> str:
 
 def _of_laws(rows, run) -> list[str]:
     """Return sentences about impacts that are faster than their law is stated for, or elastic by it."""
-    contacts, said = run.compiled.system.contacts, []
-    of_law = np.isnan(contacts["restitution"])
+    system, said = run.compiled.system, []
+    contacts = system.contacts
+    of_law = np.isnan(law_of(system, contacts)["restitution"])
     for number in np.unique(contacts["number"][of_law]).tolist():
         law = restitution_of(run.scene, run.pairs, number)
         assert isinstance(law, Restitution)
@@ -80,8 +82,9 @@ def _of_laws(rows, run) -> list[str]:
 
 def _without_slip(rows, run) -> list[str]:
     """Return a sentence about impacts in time-stepping steps, which have no tangential restitution."""
-    contacts = run.compiled.system.contacts
-    rough = contacts[contacts["tangential_restitution"] != 0.0]["number"]
+    system = run.compiled.system
+    laws = law_of(system, system.contacts)
+    rough = system.contacts["number"][laws["tangential_restitution"] != 0.0]
     found = rows[(rows["phases"] & AT_END != 0) & (rows["together"] > 1)]
     found = found[np.isin(found["contact"], rough)]
     if not len(found):
@@ -101,13 +104,14 @@ def _gains(rows, run) -> list[str]:
     gains = rows["energy_change"] > 0.0
     if not gains.any():
         return []
-    watch, contacts = run.watch[0], run.compiled.system.contacts
+    watch, system = run.watch[0], run.compiled.system
     single = gains & (rows["together"] == 1)
     if not rows["energy_change"][single].sum() > watch.tolerance * watch.exchanged:
         return []
-    able = contacts[np.isin(contacts["law"], laws.GAINING) & (contacts["friction"] > 0.0)]["number"]
+    laws = law_of(system, system.contacts)
+    able = np.isin(laws["impact_law"], impact_laws.GAINING) & (laws["friction"] > 0.0)
     own = rows[single]
-    own = own[np.isin(own["contact"], able)]
+    own = own[np.isin(own["contact"], system.contacts["number"][able])]
     u, gain = own["before"][:, :, None], own["energy_change"]
     part = 2.0 * gain / (u.transpose(0, 2, 1) @ np.linalg.pinv(own["W"]) @ u)[:, 0, 0]
     own, gain, part = (column[part > watch.tolerance] for column in (own, gain, part))

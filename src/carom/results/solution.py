@@ -10,6 +10,7 @@ import numpy as np
 
 from carom import arguments, checks
 from carom.geometry import quaternion
+from carom.model.laws import SLIP, law_of
 from carom.results.dense_output import curves, flights
 from carom.results.drawn import Drawn
 from carom.results.endings import message
@@ -490,9 +491,11 @@ class Solution(Portable, Drawn, Source):
                 f"impact {k} is part of a multiple impact ({record.together} closed points) and has no "
                 "boundary layer of its own; choose an impact with impacts.together == 1"
             )
-        contacts = self._run.compiled.system.contacts
+        system = self._run.compiled.system
+        contacts = system.contacts
         row = contacts[int(np.searchsorted(contacts.number, record.contact))]
-        if row.last_friction_piece[0] > row.friction_piece[0]:
+        law = law_of(system, row)
+        if law.last[SLIP] > law.first[SLIP]:
             raise ValueError(
                 f"k must be an impact whose friction is a number, got {k}, of a law: the layer of the paper "
                 "has none"
@@ -509,7 +512,7 @@ class Solution(Portable, Drawn, Source):
         return impact_layer(
             record.inverse_mass, record.relative_velocity_before, record.friction,
             record.restitution, penetration=float(row.penetration), width=float(row.width),
-            law=record.law, tangential_restitution=float(row.tangential_restitution),
+            law=record.law, tangential_restitution=float(law.tangential_restitution),
             steps=self._run.options.layer_steps if steps is None else steps,
         )  # fmt: skip
 

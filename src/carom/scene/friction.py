@@ -48,6 +48,13 @@ def _axis(name: str, value) -> tuple[float, ...]:
     return tuple(checks.unit_vector(name, value).tolist())  # a law is hashed
 
 
+def _along(name: str, value) -> float | FrictionLaw:
+    """Return a coefficient above 0, or a law of the slip, which is that of slip along an axis."""
+    if callable(value) or isinstance(value, FrictionLaw):
+        return isotropic(name, value)
+    return checks.number(name, value, above=0.0)
+
+
 @arguments.known
 @dataclass(frozen=True, repr=False)
 class Friction(FrictionLaw):
@@ -62,6 +69,10 @@ class Friction(FrictionLaw):
     *By the direction*, ``Friction(axis=..., along=..., across=...)``, for skates, wheels and grooves: the
     tangential force is within the ellipse ``(F_1 / along)^2 + (F_2 / across)^2 <= N^2``, with F_1 along the
     axis, and in slip it is that force of the ellipse which takes the most power.
+
+    *By both*: `along` is a law of the slip. Then `across` is the coefficient that bounds stick across the axis,
+    and the ellipse shrinks with the slip s to the ``along(s) / along(0)``-th part, where slip s_2 across the
+    axis counts like slip ``s_2 across / along(0)`` along it: ``s^2 = s_1^2 + (s_2 across / along(0))^2``.
 
     Parameters
     ----------
@@ -78,8 +89,10 @@ class Friction(FrictionLaw):
     axis : (3,) array-like, optional
         Direction of anisotropic friction, not zero. Its projection on the surface counts. Where it is normal to
         the surface within 6 degrees, anisotropy fades out, to the mean ``sqrt(along * across)``.
-    along, across : float, optional
-        Coefficients for slip along the projected axis and across it, above 0, with a ratio up to 1000.
+    along : float or Friction, optional
+        Coefficient for slip along the projected axis, above 0, or its law of the slip.
+    across : float, optional
+        Coefficient across the axis, from 1/1000 to 1000 times `along`; if that is a law, than its static one.
     of : {"body", "other", "world"}
         What the axis is fixed to, whose axes it is given in: the first body of the pair (default), the other
         one, or the world. In a `Material`, "body" is the one with this material. A half-space has world axes.
@@ -115,7 +128,7 @@ exponent=1.0), impact_law='newton')
     speed: NumberOrNone = number(None, above=0, unit="m/s")
     exponent: Number = number(1.0, least=EXPONENTS[0], most=EXPONENTS[1])
     axis: Value[Any, Any] = Value(_axis, None)
-    along: Value[Any, Any] = number(None, above=0)
+    along: Value[Any, Any] = Value(_along, None)
     across: Value[Any, Any] = number(None, above=0)
     of: Word = word(FIXED_TO, "body")
     _kind = "Friction"
@@ -135,10 +148,11 @@ exponent=1.0), impact_law='newton')
                 "Friction(axis=..., along=..., across=...)"
             )
         if by_way:
-            if not 1.0 / MOST_ANISOTROPIC <= self.across / self.along <= MOST_ANISOTROPIC:
+            along = bound_of(self.along)
+            if not along / MOST_ANISOTROPIC <= self.across <= MOST_ANISOTROPIC * along:
                 raise ValueError(
                     f"across must be from 1/{MOST_ANISOTROPIC:g} to {MOST_ANISOTROPIC:g} times along, "
-                    f"{self.along:g}, got {self.across:g}"
+                    f"{along:g}, got {self.across:g}"
                 )
         elif self.static < self.kinetic:
             raise ValueError(
@@ -207,17 +221,28 @@ exponent=1.0), impact_law='newton')
     @property
     def bound(self) -> float:
         """The static coefficient; of anisotropic friction the geometric mean of both."""
-        return self.static if self.axis is None else math.sqrt(self.along * self.across)
+        return self.static if self.axis is None else math.sqrt(bound_of(self.along) * self.across)
+
+    @property
+    def by_speed(self) -> bool:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """Whether there is more than an axis and two numbers."""
+        return self.axis is None or isinstance(self.along, FrictionLaw)
 
     @property
     def curve(self) -> Curve:
         """One constant piece, or the exponential in z = (s / speed)^exponent by quintics in s^exponent.
 
         A quintic has value and two derivatives of the exponential at both ends. Its error falls with it, so the
-        pieces grow as exp(z/6). Anisotropic friction has its mean.
+        pieces grow as exp(z/6). Anisotropic friction has its mean, r^1/2 along(r^1/2 s) with
+        r = across / along, where s is the slip in the stretched tangents: s_1 r^-1/2, s_2 r^1/2
+        (`carom.kinematics.anisotropy`).
         """
-        if self.axis is not None:
+        if self.axis is not None and not isinstance(self.along, FrictionLaw):
             return Curve(1.0, np.array([[self.bound]]), np.array([0.0, 1.0]))
+        if self.axis is not None:
+            stretch = math.sqrt(self.across / self.along.bound)
+            mean = self.along.curve.scaled(1.0 / stretch)
+            return mean._replace(c=stretch * mean.c)
         fall = self.static - self.kinetic
         if self.speed is None or fall == 0.0:
             return Curve(1.0, np.array([[self.kinetic]]), np.array([0.0, 1.0]))
@@ -302,7 +327,7 @@ def anisotropy_of(mu: Any) -> Anisotropy | None:
     """Return axis and ratio of anisotropic friction; None if it is not anisotropic."""
     if not isinstance(mu, Friction) or mu.axis is None:
         return None
-    return Anisotropy(mu.axis, mu.of, mu.across / mu.along)
+    return Anisotropy(mu.axis, mu.of, mu.across / bound_of(mu.along))
 
 
 def check_anisotropy(friction: Any, held: Any) -> None:
@@ -333,7 +358,7 @@ def combined_anisotropy(
         )
     flip = anisotropy_of(first) is None
     law, mu = (second, first) if flip else (first, second)
-    if rule is None or isinstance(mu, FrictionLaw):
+    if rule is None or isinstance(mu, FrictionLaw) or law.by_speed:
         return None
     along, across = rule(law.along, mu), rule(law.across, mu)
     if along == across:

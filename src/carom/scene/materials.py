@@ -192,7 +192,7 @@ def _combined(name: str, first, second, rules: Mapping) -> Any:
         value = getattr(material, name)
         values.append(material.friction if value is None else value)
     rule, anisotropies = RULES.get(rules.get(name, "")), [anisotropy_of(value) for value in values]
-    law = any(isinstance(v, SpeedLaw) and g is None for v, g in zip(values, anisotropies))
+    law = any(isinstance(v, SpeedLaw) and v.by_speed for v in values)
     if any(anisotropies):
         found = combined_anisotropy(name, values[0], values[1], rule)
         if found is not None:

@@ -43,6 +43,9 @@ class SpeedLaw(ABC):
     _kind: ClassVar[str]
     _most: ClassVar[float] = np.inf  # greatest value
 
+    #: whether it is more than numbers: friction may depend on the direction alone
+    by_speed: ClassVar[Any] = True
+
     @property
     @abstractmethod
     def curve(self) -> Curve:

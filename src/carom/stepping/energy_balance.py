@@ -22,8 +22,9 @@ from carom._compiled.decorators import inlined, kernel
 from carom._compiled.record_arrays import table
 from carom.dynamics.energy import energies
 from carom.geometry.rotation import norm
-from carom.impact import laws
+from carom.law import impact_laws
 from carom.model.actions import EVENT_JAM
+from carom.model.laws import STRIKES
 from carom.persistent.thresholds import CUT_SHARE
 from carom.stepping import thresholds as limits
 
@@ -211,7 +212,9 @@ def may_give(system, number):
     if low == system.contacts.shape[0]:
         return False
     contact = system.contacts[low]
-    return contact.number == number and contact.law in laws.GAINING and contact.friction > 0.0
+    law = system.laws.table[contact.law[STRIKES]]
+    gains = law.impact_law in impact_laws.GAINING and law.friction > 0.0
+    return contact.number == number and gains
 
 
 @inlined

@@ -18,9 +18,9 @@ from carom.contact.continuous_detection_pair import lowest_pair, passage_pair
 from carom.contact.gap import gap_and_rate, lowest, plane_in_body, round_off
 from carom.contact.pair_point import smaller
 from carom.contact.stop import passage_stop, stop_gap
-from carom.dynamics.thresholds import KINK_ERROR
 from carom.geometry.thresholds import ROUND_OFF
-from carom.impact.friction_law import PERSISTENT, depends_on_slip
+from carom.law.friction import depends_on_slip
+from carom.law.thresholds import KINK_ERROR
 from carom.model.actions import (
     EVENT_BREAK,
     EVENT_CONE,
@@ -31,6 +31,7 @@ from carom.model.actions import (
     EVENT_STOP,
 )
 from carom.model.arrays import KIND_STOP, KIND_VERTICES
+from carom.model.laws import PERSISTENT
 from carom.persistent.events import contact_event_value, find_contact_event
 from carom.persistent.stops import least_left
 from carom.persistent.thresholds import BREAK_AWAY, EVENT_ERROR, EVENT_MARGIN
@@ -95,8 +96,8 @@ def event_value(model, data):
         search.tolerance = KINK_ERROR
         return kink_of(system, active, search)[1], 0.0
     active_point = active.points[search.contact]
-    law = depends_on_slip(system.contacts[active_point.contact], PERSISTENT)
-    if law and search.kind == EVENT_CONE:
+    law = system.contacts[active_point.contact].law[PERSISTENT]
+    if depends_on_slip(system.laws, law) and search.kind == EVENT_CONE:
         search.tolerance = BREAK_AWAY
     elif active_point.shares == 1 and search.kind != EVENT_JAM:
         search.tolerance = EVENT_ERROR

@@ -24,11 +24,13 @@ from carom.dynamics.more_forces import note_turns
 from carom.geometry.rotation import norm
 from carom.impact.strike import strike
 from carom.kinematics.contact_point import contact_velocity
+from carom.law.restitution import depends_on_approach
 from carom.model import records as r
 from carom.model.actions import EVENT_GAP, EVENT_STOP, NOTHING, PERSIST, PUSHED_IN, STRIKE
 from carom.model.allowance import overdone, smooth_count
 from carom.model.arrays import KIND_PAIR, KIND_STOP, KIND_VERTICES
 from carom.model.controls import LOCATE
+from carom.model.laws import STRIKES
 from carom.model.workspace import FREE
 from carom.persistent.bounces import horizon_of, time_of_bounces
 from carom.persistent.margins import switch_due
@@ -313,7 +315,8 @@ def may_end(contact, system, controls, state, horizon, work):
         return True
     work.body[contact.body].status = FREE
     _, most = greatest_acceleration(system, contact, state, work)
-    horizon = horizon_of(contact, controls, most, horizon)
-    if contact.last_restitution_piece > contact.restitution_piece:
+    horizon = horizon_of(system, contact, controls, most, horizon)
+    law = contact.law[STRIKES]
+    if depends_on_approach(system.laws, law):
         return time_of_bounces(system, contact, rate, most) < horizon
-    return 2.0 * rate < most * (1.0 - contact.restitution) * horizon
+    return 2.0 * rate < most * (1.0 - system.laws.table[law].restitution) * horizon

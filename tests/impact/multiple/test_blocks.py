@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 
 from carom.impact.api import resolve_impact
-from carom.impact.multiple.api import resolve_impacts
+from carom.impact.multiple.api import resolve_impacts, stated_laws
 from carom.impact.multiple.layout import (
     CornerContacts,
     MultipleSettings,
     new_multiple_result,
     new_multiple_workspace,
-    slip_laws,
 )
 from references.painleve import impact_without_collision
 
@@ -62,9 +61,8 @@ SLIPS = np.array([0.0, 1.0, 0.0])
 def jam(e, law, mu=1.6):
     settings, workspace, out = MultipleSettings(), new_multiple_workspace(1), new_multiple_result(1)
     one = np.ones(1)
-    laws, pair = np.array([law]), np.zeros(1, dtype=np.int64)
-    friction, slip = slip_laws(mu * one)
-    contacts = CornerContacts(1, 0, ROD, SLIPS, friction, e * one, laws, one, pair, 0 * one, slip)
+    laws, zero = stated_laws([mu], [e], [law], [0.0], [1.0]), np.zeros(1, dtype=np.int64)
+    contacts = CornerContacts(1, 0, ROD, SLIPS, mu * one, e * one, zero, one, zero, laws)
     return impact_without_collision(contacts, settings, workspace, out), out
 
 

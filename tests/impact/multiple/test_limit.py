@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from carom.impact.laws import NUMBERS
+from carom.impact.multiple.api import stated_laws
 from carom.impact.multiple.layout import (
     MULTIPLE,
     CornerContacts,
     MultipleSettings,
     new_multiple_result,
     new_multiple_workspace,
-    slip_laws,
 )
 from carom.impact.multiple.resolve import resolve_multiple
+from carom.law.impact_laws import NUMBERS
 
 
 def strike(k, left=None):
@@ -22,10 +22,9 @@ def strike(k, left=None):
     W, u = G @ G.T / k, G @ v
     u[::3] = -np.abs(u[::3])
     each = np.ones(k)
-    numbers = np.full(k, NUMBERS["newton"])
-    mu, slip = slip_laws(0.4 * each)
+    laws = stated_laws(0.4 * each, 0.5 * each, [NUMBERS["newton"]] * k, 0 * each, each)
     contacts = CornerContacts(
-        k, 0, W, u, mu, 0.5 * each, numbers, each, np.zeros(k, dtype=np.int64), 0 * each, slip
+        k, 0, W, u, 0.4 * each, 0.5 * each, np.arange(k), each, np.zeros(k, dtype=np.int64), laws
     )
     settings = MultipleSettings(multiple=MULTIPLE["simultaneous"], rtol=1e-8, exponent=1.0)
     out, workspace = new_multiple_result(k), new_multiple_workspace(k)

@@ -8,7 +8,7 @@ import numpy as np
 
 NAME, TITLE = "corner_impact", "Impact of a cube on a corner, mu = 0.2"
 IMPACTS_TIMED = 2000
-LAW = 0  # of `carom.impact.laws`: Newton
+LAW = 0  # of `carom.law.impact_laws`: Newton
 
 
 def impacts(count: int = IMPACTS_TIMED, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
@@ -31,10 +31,11 @@ def ours(mu: float = 0.2, e: float = 0.5, law: int = LAW) -> Callable[[], None]:
     """Return a function that resolves all impacts once."""
     from carom.impact.layout import OK, SIZE
     from carom.impact.several import resolve_many
+    from carom.model.laws import LawTable
 
     W, u = impacts()
     n = len(u)
-    same = np.tile([mu, e, 0.0], (n, 1)), np.full(n, law, dtype=np.int64)
+    same = np.tile([mu, e, 0.0], (n, 1)), np.tile([law, -1], (n, 1)), LawTable().arrays()
     out = np.zeros((n, SIZE))
 
     def run() -> None:

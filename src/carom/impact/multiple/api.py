@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom import arguments, checks
 from carom.friction.checks import checked_inverse_masses, codes, per_contact
 from carom.scene.friction import FrictionLaw, isotropic
+from carom.scene.restitution import Restitution
+
+if TYPE_CHECKING:
+    from carom.model.laws import Laws
 
 
 @dataclass(frozen=True)
@@ -90,9 +95,9 @@ def resolve_impacts(
     friction : float, carom.Friction, or a sequence of k of them
         Coulomb's coefficient mu, at least 0, or a law of the slip, followed along the impact. One contact
         problem at once (a plastic event, ``"newton"``) has mu at the slip after the impact.
-    restitution : float or array_like, shape (k,)
-        Coefficient of restitution e in [0, 1]. If all e are 0, the impact is one plastic event. Otherwise an e
-        below 0.01 is replaced by 0.01.
+    restitution : float, carom.Restitution, or a sequence of k of them
+        Coefficient of restitution e in [0, 1], or a law of the speed of approach. If all e are 0, the impact is
+        one plastic event. Otherwise an e below 0.01 is replaced by 0.01.
     law : {"newton", "poisson", "stronge"} or a sequence of k of them
         Definition of e: the ratio of normal velocities of each striking contact (default) or of impulses, or
         the square root of the ratio of works of the normal force. With more than one contact, no contact
@@ -137,7 +142,6 @@ def resolve_impacts(
     result as one contact. A face with m contact points gives the same result for any m if its stiffness is
     divided among them.
     """
-    from carom.impact.laws import NUMBERS
     from carom.impact.layout import AT_ONCE, OK
     from carom.impact.multiple.layout import (
         CAPPED,
@@ -146,8 +150,8 @@ def resolve_impacts(
         NO_RESULT,
         NOT_RESOLVED,
         MultipleSettings,
-        slip_laws,
     )
+    from carom.law.impact_laws import NUMBERS
 
     u = checks.finite_array("velocity", velocity, (None, 3), "m/s")
     k = len(u)
@@ -155,7 +159,7 @@ def resolve_impacts(
         raise ValueError(f"velocity must have at least one contact, got {checks.shown(velocity)}")
     W = checked_inverse_masses(inverse_mass, k)
     mu = _frictions(friction, k)
-    e = per_contact("restitution", restitution, k, least=0.0, most=1.0)
+    e = _restitutions(restitution, np.maximum(-u[:, 0], 0.0))
     e_t = per_contact("tangential_restitution", tangential_restitution, k, least=-1.0, most=1.0)
     kappa = per_contact("stiffness", 1.0 if stiffness is None else stiffness, k, above=0.0)
     numbers = codes("law", law, k, NUMBERS)
@@ -164,7 +168,8 @@ def resolve_impacts(
         rtol=checks.number("rtol", rtol, least=1e-12, most=1e-2),
         exponent=checks.number("exponent", exponent, least=1.0, most=4.0),
     )
-    code, out = solve(W, np.ascontiguousarray(u), slip_laws(mu), e, numbers, kappa, e_t, settings)
+    laws = stated_laws(mu, e, numbers, e_t, kappa)
+    code, out = solve(W, np.ascontiguousarray(u), laws, settings)
     summary = out.summary[0]
     if code == OK and summary["marks"] & NO_RESULT:
         code = NOT_RESOLVED
@@ -197,11 +202,30 @@ def _frictions(given, k: int):
     return [isotropic(f"friction[{i}]", one) for i, one in enumerate(laws)]
 
 
-def solve(W, u, friction, e, law, kappa, tangential, settings, workspace=None):
-    """Solve a multiple impact of contacts (k,) with velocities (k, 3); return the code and the result.
+def _restitutions(given, approach: np.ndarray) -> np.ndarray:
+    """Return e (k,): numbers, or what laws say at speeds of approach (k,)."""
+    k = len(approach)
+    laws = [given] * k if isinstance(given, Restitution) else given
+    if not (isinstance(laws, (list, tuple)) and any(isinstance(one, Restitution) for one in laws)):
+        return per_contact("restitution", given, k, least=0.0, most=1.0)
+    if len(laws) != k:
+        raise ValueError(f"restitution must be one value or {k} of them, got {checks.shown(given)}")
+    e = [one(v) if isinstance(one, Restitution) else one for one, v in zip(laws, approach)]
+    return per_contact("restitution", [float(one) for one in e], k, least=0.0, most=1.0)
 
-    `friction` is as `slip_laws` returns it.
-    """
+
+def stated_laws(friction, restitution, law, tangential, stiffness) -> Laws:
+    """Return the laws of k contacts, in their order, from their columns."""
+    from carom.model.laws import LawTable
+
+    laws = LawTable()
+    for mu, e, number, e_t, kappa in zip(friction, restitution, law, tangential, stiffness):
+        laws.add(mu, e, impact_law=number, tangential_restitution=e_t, stiffness=kappa)
+    return laws.arrays()
+
+
+def solve(W, u, laws, settings, workspace=None):
+    """Solve a multiple impact of contacts (k,) with velocities (k, 3) and laws (k,); return code and result."""
     from carom.impact.multiple.layout import (
         SEQUENTIAL,
         CornerContacts,
@@ -210,11 +234,12 @@ def solve(W, u, friction, e, law, kappa, tangential, settings, workspace=None):
     )
     from carom.impact.multiple.resolve import resolve_multiple
 
-    k, (mu, slip) = len(u), friction
+    k, table = len(u), laws.table
     room, out = workspace or new_multiple_workspace(k), new_multiple_result(k)
     pair = np.arange(k) if settings.multiple == SEQUENTIAL else np.zeros(k, dtype=np.int64)
     contacts = CornerContacts(
-        k=k, others=0, W=W, u=u.reshape(-1), friction=mu, restitution=e, law=law, stiffness=kappa, pair=pair,
-        tangential=tangential, slip=slip,
+        k=k, others=0, W=W, u=u.reshape(-1), friction=table.friction.copy(),
+        restitution=table.restitution.copy(), law=np.arange(k), stiffness=table.stiffness.copy(), pair=pair,
+        laws=laws,
     )  # fmt: skip
     return resolve_multiple(contacts, settings, room, out), out

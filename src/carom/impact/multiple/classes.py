@@ -18,6 +18,8 @@ import math
 from carom._compiled.decorators import kernel
 from carom.impact.multiple import layout as o
 from carom.impact.thresholds import GROUP_ERROR, IMPACT_ERROR
+from carom.law.alike import strike_alike
+from carom.law.friction import depends_on_slip
 
 
 @kernel
@@ -148,10 +150,9 @@ def nothing_slips(contacts, scale_u):
 def _same_kind(contacts, i, j, tolerance):
     """Return whether contacts i and j have the same velocity, friction, restitutions, laws and stiffness."""
     u, mu, e = contacts.u, contacts.friction, contacts.restitution
-    law, kappa, slip = contacts.law, contacts.stiffness, contacts.slip
-    same = mu[i] == mu[j] and e[i] == e[j] and law[i] == law[j] and kappa[i] == kappa[j]
-    same = same and contacts.tangential[i] == contacts.tangential[j]
-    same = same and slip.first[i] == slip.first[j] and slip.last[i] == slip.last[j]
+    law, kappa = contacts.law, contacts.stiffness
+    same = mu[i] == mu[j] and e[i] == e[j] and kappa[i] == kappa[j]
+    same = same and strike_alike(contacts.laws, law[i], law[j])
     for r in range(3 if mu[i] > 0.0 else 1):
         same = same and abs(u[3 * i + r] - u[3 * j + r]) <= tolerance
     return same
@@ -227,10 +228,9 @@ def find_pressed(contacts, least, index):
             if pressed[j] == 0:
                 row = W[3 * j]
                 side = math.sqrt(row[3 * i + 1] ** 2 + row[3 * i + 2] ** 2)
-                law = (
-                    contacts.slip.last[i] > contacts.slip.first[i]
-                )  # may rise above its static value
-                if not row[3 * i] >= (math.inf if law and side > 0.0 else mu[i]) * side:
+                # a law may rise above what bounds stick
+                rises = depends_on_slip(contacts.laws, contacts.law[i]) and side > 0.0
+                if not row[3 * i] >= (math.inf if rises else mu[i]) * side:
                     pressed[j] = 1
                     stack[height] = j
                     height += 1

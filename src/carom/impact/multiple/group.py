@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from carom._compiled.decorators import by_reference, kernel
 from carom._compiled.units import unit
-from carom.impact import laws
 from carom.impact import layout as one
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.classes import couple, parts_others
@@ -19,6 +18,8 @@ from carom.impact.resolve import resolve
 from carom.impact.resolve_by_slip import SlipFriction, resolve_by_slip
 from carom.impact.tangential import return_slip
 from carom.impact.thresholds import COARSE_TOLERANCE
+from carom.law import impact_laws
+from carom.law.friction import depends_on_slip
 
 
 @kernel
@@ -43,14 +44,14 @@ def strike_group(g, contacts, still, by_newton, settings, workspace):
     passage = by_reference(
         o.Passage(
             settings.rtol, settings.exponent, settings.max_events, settings.max_steps,
-            settings.max_rounds, by_slip, speed, contacts.slip.pieces,
+            settings.max_rounds, by_slip, speed, contacts.laws,
         )
     )  # fmt: skip
     if by_newton:
         at_once(n, work, passage, summary)
     else:
         pass_group(n, work, passage, summary)
-    return_slips(n, work)
+    return_slips(n, work, passage)
     energy, index = speed * speed / mass, work.index
     for i in range(contacts.k):
         for a in range(n):
@@ -107,12 +108,8 @@ def _fill(n, contacts, still, exponent, work):
         i = index[o.FIRST_MEMBER, q]
         c = work.contact[a]
         c.mu, c.restitution, c.law = mu[i], contacts.restitution[i], contacts.law[i]
-        c.tangential = contacts.tangential[i]
+        c.by_slip = 1 if mu[i] > 0.0 and depends_on_slip(contacts.laws, c.law) else 0
         c.e, c.members = c.restitution, index[o.CLASS_SIZE, q]
-        c.friction_piece[0], c.friction_piece[1] = contacts.slip.first[i], contacts.slip.last[i]
-        c.friction_exponent = contacts.slip.exponent[i]
-        if not c.mu > 0.0:
-            c.friction_piece[1] = c.friction_piece[0]
         c.root = (kappa[i] * index[o.CLASS_SIZE, q] * mass / stiff) ** (1.0 / exponent)
         c.grip = mu[i] * (W[3 * a + 1, 3 * a + 1] + W[3 * a + 2, 3 * a + 2])
         for r in range(3):
@@ -145,17 +142,16 @@ def _exactly(contacts, still, work, out):
     single, summary = work.single, out.summary[0]
     single[one.STILL] = still
     several = parts or contacts.others > 0
-    last = contacts.slip.last[i] if mu > 0.0 else contacts.slip.first[i]
-    pieces = (contacts.slip.first[i], last, contacts.slip.exponent[i])
-    slip = by_reference(SlipFriction(mu, pieces, contacts.slip.pieces))
-    code = resolve_single(work, slip, e, law)
+    slip = by_reference(SlipFriction(mu, law, contacts.laws))
+    code = resolve_single(work, slip, e, contacts.laws.table[law].impact_law)
     if several and code == one.OK and single[one.WORK_R] > -single[one.WORK_C]:
-        code = resolve_single(work, slip, 1.0, laws.STRONGE)
+        code = resolve_single(work, slip, 1.0, impact_laws.STRONGE)
         summary.marks |= o.CAPPED
     if code != one.OK:
         return o.NOT_RESOLVED
-    if contacts.tangential[i] != 0.0:
-        return_slip(W, before, mu, contacts.tangential[i], single)
+    e_t = contacts.laws.table[law].tangential_restitution
+    if e_t != 0.0:
+        return_slip(W, before, mu, e_t, single)
     share = 1.0 / index[o.CLASS_SIZE, q]
     for j in range(contacts.k):
         if index[o.CLASS, j] == q:
@@ -186,13 +182,13 @@ def pass_group(k, work, settings, result):
 
     If `left` of the clock is below 0 at the end, the group was stopped, because it took too many steps.
     """
-    energetic(k, work)
+    energetic(k, work, settings)
     start(k, work)
     if all_plastic(k, work):
         at_once(k, work, settings, result)
         return
     into_lanes(k, work)
-    iterates = any_targets(k, work)
+    iterates = any_targets(k, work, settings)
     rtol = max(settings.rtol, COARSE_TOLERANCE) if iterates else settings.rtol
     ended = run(k, work, settings, rtol)
     if iterates and ended == ENDED:
@@ -213,9 +209,9 @@ def at_once(k, work, passage, result):
 
 
 @unit
-def resolve_single(work, slip, e, law) -> int:
+def resolve_single(work, slip, e, impact_law) -> int:
     """Resolve the impact of one contact; return its code."""
     W, u = work.matrix[o.SINGLE], work.vector[o.SINGLE_U]
-    if slip.law[1] > slip.law[0]:
-        return resolve_by_slip(W, u, slip, e, law, work.single)
-    return resolve(W, u, slip.bound, e, law, work.single)
+    if slip.bound > 0.0 and depends_on_slip(slip.laws, slip.law):
+        return resolve_by_slip(W, u, slip, e, impact_law, work.single)
+    return resolve(W, u, slip.bound, e, impact_law, work.single)

@@ -10,13 +10,10 @@ from carom._compiled.record_arrays import table
 from carom._compiled.simd import LANES
 from carom.friction.layout import ContactWork, new_contact_work
 from carom.impact.layout import BAD_INPUT, SIZE
-from carom.scene.friction import bound_of
+from carom.model.laws import Laws
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from carom.options import Options
-    from carom.scene.speed_law import SpeedLaw
 
 SIMULTANEOUS, SEQUENTIAL, BY_NEWTON = 0, 1, 2
 MULTIPLE = {"simultaneous": SIMULTANEOUS, "sequential": SEQUENTIAL, "newton": BY_NEWTON}
@@ -58,26 +55,6 @@ def multiple_settings(options: Options, exponent: float = 0.0) -> MultipleSettin
     )  # fmt: skip
 
 
-class SlipLaws(NamedTuple):
-    """The laws of the slip of contacts."""
-
-    first: np.ndarray  # (K,) first piece
-    last: np.ndarray  # (K,) piece after the last; for a number not above the first
-    exponent: np.ndarray  # (K,)
-    pieces: np.recarray  # PIECE of all laws
-
-
-def slip_laws(friction: Sequence[float | SpeedLaw] | np.ndarray) -> tuple[np.ndarray, SlipLaws]:
-    """Return the coefficients (K,) that bound stick, and the laws of contacts."""
-    from carom.model.more_forces import Pieces
-
-    curves = Pieces()
-    rows = np.array([curves.add_law(one) for one in friction]).reshape(-1, 3)
-    first, last = rows[:, :2].astype(np.int64).T.copy()
-    laws = SlipLaws(first, last, rows[:, 2].copy(), curves.rows)
-    return np.array([bound_of(one) for one in friction], dtype=float), laws
-
-
 class CornerContacts(NamedTuple):
     """The contacts of an impact: the first `k` of each array; (n, t1, t2) of each are rows of W and u."""
 
@@ -88,25 +65,24 @@ class CornerContacts(NamedTuple):
     u: np.ndarray
     friction: np.ndarray  # (K,) of a law, that which bounds stick
     restitution: np.ndarray  # (K,)
-    law: np.ndarray  # (K,) of `carom.impact.laws`
+    law: np.ndarray  # (K,) by number
     stiffness: np.ndarray  # (K,), only ratios matter
     # (K,) contacts with equal numbers strike together, others in an impact of their own
     pair: np.ndarray
-    tangential: np.ndarray  # (K,) e_t
-    slip: SlipLaws
+    laws: Laws
 
 
 class Passage(NamedTuple):
-    """Settings of the passage of a group, and the laws of friction of its contacts."""
+    """Settings of the passage of a group, and the laws of its contacts."""
 
     rtol: float
     exponent: float  # p of the normal law
     max_events: int
     max_steps: int
     max_rounds: int
-    by_slip: bool  # whether any friction is a law
+    by_slip: bool  # whether any friction depends on the slip
     speed: float  # unit of speeds [m/s]
-    pieces: np.recarray
+    laws: Laws
 
 
 #: one contact, or a class of contacts that move alike, in scaled variables
@@ -115,10 +91,8 @@ CONTACT = [
     ("restitution", "f8"),  # e as given
     ("e", "f8"),  # energetic coefficient in use
     ("root", "f8"),  # kappa^(1/p)
-    ("law", "i8"),
-    ("tangential", "f8"),  # e_t
-    ("friction_piece", "i8", 2),  # range of the pieces of a law of the slip, empty for a number
-    ("friction_exponent", "f8"),
+    ("law", "i8"),  # by number
+    ("by_slip", "i8"),  # 1 if its friction depends on the slip
     ("approach", "f8"),  # speed of approach before, at least 0
     ("members", "i8"),
     # memory of the normal law
@@ -187,8 +161,8 @@ class BlowWork(NamedTuple):
 
     member: np.ndarray  # (K,) places of these contacts among all contacts
     W: np.ndarray  # (3K, 3K)
-    given: np.ndarray  # (6, 3K) rows below
-    law: np.ndarray  # (4, K) laws and pairs; first and last pieces of laws of the slip
+    given: np.ndarray  # (4, 3K) rows below
+    law: np.ndarray  # (2, K) laws and pairs
     result: MultipleResult
 
 
@@ -199,9 +173,8 @@ class MultipleWorkspace(NamedTuple):
     blow: BlowWork
 
 
-#: rows of `given`: velocity before, friction, restitution, stiffness, tangential restitution, exponent of the
-#: law of friction
-BLOW_U, BLOW_FRICTION, BLOW_RESTITUTION, BLOW_STIFFNESS, BLOW_TANGENTIAL, BLOW_EXPONENT = range(6)
+#: rows of `given`: velocity before, friction, restitution, stiffness
+BLOW_U, BLOW_FRICTION, BLOW_RESTITUTION, BLOW_STIFFNESS = range(4)
 
 
 #: rows of `index`: class of a contact, first member of a class, its size, its group, members of a group, a
@@ -284,7 +257,7 @@ def new_multiple_workspace(capacity: int) -> MultipleWorkspace:
     )  # fmt: skip
     work.clock["left"] = UNLIMITED
     blow = BlowWork(
-        member=np.zeros(k, dtype=np.int64), W=np.zeros((n, n)), given=np.zeros((6, n)),
-        law=np.zeros((4, k), dtype=np.int64), result=new_multiple_result(k),
+        member=np.zeros(k, dtype=np.int64), W=np.zeros((n, n)), given=np.zeros((4, n)),
+        law=np.zeros((2, k), dtype=np.int64), result=new_multiple_result(k),
     )  # fmt: skip
     return MultipleWorkspace(work, blow)

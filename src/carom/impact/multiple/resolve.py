@@ -12,13 +12,12 @@ import math
 
 from carom._compiled.decorators import by_reference, entry, kernel
 from carom.geometry.thresholds import LAST_DIGIT
-from carom.impact import laws
 from carom.impact import thresholds as limits
 from carom.impact.layout import BAD_INPUT, OK, PLASTIC
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.classes import find_groups, find_pressed, reduce
 from carom.impact.multiple.group import strike_group
-from carom.impact.multiple.layout import CornerContacts, SlipLaws
+from carom.impact.multiple.layout import CornerContacts
 from carom.impact.multiple.moreau import sound
 
 
@@ -34,9 +33,6 @@ def resolve_multiple(contacts, settings, workspace, out):
         return BAD_INPUT
     _clear(contacts, out)
     blow, count = workspace.blow, 0
-    slip = by_reference(
-        SlipLaws(blow.law[2], blow.law[3], blow.given[o.BLOW_EXPONENT], contacts.slip.pieces)
-    )
     together = settings.multiple == o.BY_NEWTON or strikes_at_once(contacts)
     while True:
         ends = together or count >= settings.max_events * contacts.k
@@ -51,7 +47,7 @@ def resolve_multiple(contacts, settings, workspace, out):
                 k=m, others=contacts.k - m, W=blow.W, u=blow.given[o.BLOW_U],
                 friction=blow.given[o.BLOW_FRICTION], restitution=blow.given[o.BLOW_RESTITUTION],
                 law=blow.law[0], stiffness=blow.given[o.BLOW_STIFFNESS], pair=blow.law[1],
-                tangential=blow.given[o.BLOW_TANGENTIAL], slip=slip,
+                laws=contacts.laws,
             )
         )  # fmt: skip
         _together(part, scale, settings, workspace)
@@ -78,7 +74,7 @@ def _together(contacts, scale, settings, workspace):
         CornerContacts(
             k=k, others=contacts.others, W=clean, u=contacts.u, friction=work.vector[o.ACTING_MU],
             restitution=contacts.restitution, law=contacts.law, stiffness=contacts.stiffness,
-            pair=contacts.pair, tangential=contacts.tangential, slip=contacts.slip,
+            pair=contacts.pair, laws=contacts.laws,
         )
     )  # fmt: skip
     result.classes = reduce(contacts, acting, scale, index)
@@ -114,8 +110,9 @@ def _check(contacts):
             total += row[b]
     for i in range(k):
         mu, e, kappa = contacts.friction[i], contacts.restitution[i], contacts.stiffness[i]
-        total += mu + e + kappa + contacts.tangential[i]
-        sound = mu >= 0.0 and 0.0 <= e <= 1.0 and kappa > 0.0 and 0 <= contacts.law[i] < laws.COUNT
+        total += mu + e + kappa
+        known = 0 <= contacts.law[i] < contacts.laws.table.shape[0]
+        sound = known and mu >= 0.0 and 0.0 <= e <= 1.0 and kappa > 0.0
         if not (sound and W[3 * i, 3 * i] >= 0.0):
             return math.nan
     return scale if math.isfinite(total) else math.nan
@@ -171,10 +168,7 @@ def choose(contacts, every, least, blow, out):
         blow.given[o.BLOW_FRICTION, a] = contacts.friction[i]
         blow.given[o.BLOW_RESTITUTION, a] = contacts.restitution[i]
         blow.given[o.BLOW_STIFFNESS, a] = contacts.stiffness[i]
-        blow.given[o.BLOW_TANGENTIAL, a] = contacts.tangential[i]
-        blow.given[o.BLOW_EXPONENT, a] = contacts.slip.exponent[i]
         blow.law[0, a], blow.law[1, a] = contacts.law[i], pair[i]
-        blow.law[2, a], blow.law[3, a] = contacts.slip.first[i], contacts.slip.last[i]
         for r in range(3):
             blow.given[o.BLOW_U, 3 * a + r] = u[3 * i + r]
             row, whole = blow.W[3 * a + r], contacts.W[3 * i + r]

@@ -11,54 +11,63 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.impact import laws
 from carom.impact import thresholds as limits
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.layer import resume, start
 from carom.impact.multiple.steps import ENDED, pass_layer
+from carom.law import impact_laws
 
 _PATIENCE = 4  # rounds without gain until it begins again, damped; after twice as many it ends
 
 
 @kernel
-def energetic(k, work):
+def impact_law(c, passage):
+    """Return the number of the law of impact of a contact, of `carom.law.impact_laws`."""
+    return passage.laws.table[c.law].impact_law
+
+
+@kernel
+def energetic(k, work, passage):
     """Set e_*: (A_r/-A_c)^1/2 for laws of work, and e as the first guess for other laws."""
     for i in range(k):
         c = work.contact[i]
         e = c.restitution
-        if c.law in laws.BY_WORK:
-            e = math.sqrt(laws.goal(c.law, e, 0.0, 0.0, -1.0))
+        law = impact_law(c, passage)
+        if law in impact_laws.BY_WORK:
+            e = math.sqrt(impact_laws.goal(law, e, 0.0, 0.0, -1.0))
         c.e = min(1.0, max(limits.LEAST_RESTITUTION, e))
 
 
 @kernel
-def has_target(c):
+def has_target(c, passage):
     """Return whether the contact has a target to reach."""
-    if c.law in laws.BY_WORK or not c.restitution > 0.0:
+    law = impact_law(c, passage)
+    if law in impact_laws.BY_WORK or not c.restitution > 0.0:
         return False
-    return c.law in laws.BY_IMPULSE or c.approach > 0.0
+    return law in impact_laws.BY_IMPULSE or c.approach > 0.0
 
 
 @kernel
-def any_targets(k, work):
+def any_targets(k, work, passage):
     """Return whether any contact has a target to reach."""
     for i in range(k):
-        if has_target(work.contact[i]):
+        if has_target(work.contact[i], passage):
             return True
     return False
 
 
 @kernel
-def misses(k, work, out):
+def misses(k, work, passage, out):
     """Write ln(target/reached) of each contact; return the greatest magnitude, and whether an e_* is capped."""
     worst, capped = 0.0, False
     for i in range(k):
         out[i] = 0.0
         c = work.contact[i]
-        if not has_target(c) or c.wedged == 1:  # no e_* separates a wedged contact
+        if not has_target(c, passage) or c.wedged == 1:  # no e_* separates a wedged contact
             continue
-        target = laws.goal(c.law, c.restitution, c.approach, c.loading, 0.0)
-        reached = work.vector[o.NOW_U, 3 * i] if c.law in laws.BY_SPEED else c.unloading
+        law = impact_law(c, passage)
+        target = impact_laws.goal(law, c.restitution, c.approach, c.loading, 0.0)
+        reached = work.vector[o.NOW_U, 3 * i] if law in impact_laws.BY_SPEED else c.unloading
         if not target > 0.0:
             continue
         miss = limits.LARGEST_CORRECTION
@@ -75,19 +84,19 @@ def misses(k, work, out):
 
 
 @kernel
-def begin(k, work, gain):
+def begin(k, work, passage, gain):
     """Begin at the e_* in use; the inverse Jacobian is -gain for equal misses, and more for differences.
 
     Contacts without a target, such as an edge at rest, respond to the others and make their u_n+ more equal.
     """
     m = 0
     for i in range(k):
-        m += 1 if has_target(work.contact[i]) else 0
+        m += 1 if has_target(work.contact[i], passage) else 0
     differing = limits.FIRST_DIFFERENCE if m < k else 1.0
     for i in range(k):
         work.vector[o.OUT_X, i], work.vector[o.OUT_LAST, i] = math.log(work.contact[i].e), 0.0
         for j in range(k):
-            mean = (1.0 - differing) / m if has_target(work.contact[j]) else 0.0
+            mean = (1.0 - differing) / m if has_target(work.contact[j], passage) else 0.0
             work.matrix[o.INVERSE, i, j] = -gain * (mean + (differing if i == j else 0.0))
 
 
@@ -189,12 +198,12 @@ def iterate_restitution(k, work, settings, result):
     """
     v = work.vector
     tolerance = max(3.0 * settings.rtol, 1e-10)
-    begin(k, work, 1.0)
+    begin(k, work, settings, 1.0)
     ended = ENDED
-    worst, capped = misses(k, work, v[o.OUT_F])
+    worst, capped = misses(k, work, settings, v[o.OUT_F])
     if not worst > tolerance:  # the first passage was coarse
         ended = run(k, work, settings, settings.rtol)
-        worst, capped = misses(k, work, v[o.OUT_F])
+        worst, capped = misses(k, work, settings, v[o.OUT_F])
     keep_best(k, work)
     best, stale, rounds = worst, 0, 0
     while worst > tolerance and rounds < settings.max_rounds and ended == ENDED:
@@ -202,11 +211,11 @@ def iterate_restitution(k, work, settings, result):
         rtol = max(settings.rtol, min(limits.COARSE_TOLERANCE, 0.01 * worst))
         ended = run(k, work, settings, rtol)
         rounds += 1
-        worst, capped = misses(k, work, v[o.OUT_NEW])
+        worst, capped = misses(k, work, settings, v[o.OUT_NEW])
         if not worst > tolerance and rtol > settings.rtol:
             rtol = settings.rtol
             ended = run(k, work, settings, rtol)
-            worst, capped = misses(k, work, v[o.OUT_NEW])
+            worst, capped = misses(k, work, settings, v[o.OUT_NEW])
         learn(k, work)
         stale += 1
         if worst < best:
@@ -215,7 +224,7 @@ def iterate_restitution(k, work, settings, result):
             keep_best(k, work)
         if stale == _PATIENCE:
             back_to_best(k, work)
-            begin(k, work, 0.5)
+            begin(k, work, settings, 0.5)
         elif stale > 2 * _PATIENCE:
             break
     result.rounds += rounds
@@ -225,7 +234,7 @@ def iterate_restitution(k, work, settings, result):
         if best < limits.NEAREST_RESULT:
             back_to_best(k, work)
         else:
-            energetic(k, work)
+            energetic(k, work, settings)
         return run(k, work, settings, settings.rtol)
     if capped:
         result.marks |= o.CAPPED

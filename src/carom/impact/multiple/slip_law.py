@@ -11,27 +11,26 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
-from carom.dynamics.curve import value_at
 from carom.friction.dense import add_product
 from carom.impact.multiple import layout as o
 from carom.impact.multiple import normal_law as law
 from carom.impact.multiple.friction import gather_discs, push, slip_of, solve_discs
 from carom.impact.thresholds import IMPACT_ERROR, INSTANT, LEAST_SLOPE, PULL
+from carom.law import friction
 
 MOST_TURNS = 30  # of the iteration of mu, and of that for the place of break-away
 
 
 @inlined
 def by_law(c):
-    """Return whether the friction of contact `c` is a law."""
-    return c.friction_piece[1] > c.friction_piece[0]
+    """Return whether the friction of contact `c` depends on its slip."""
+    return c.by_slip == 1
 
 
 @kernel
 def in_slip(c, passage, slip):
     """Return mu of a contact with a law at a slip."""
-    law = (c.friction_piece[0], c.friction_piece[1], c.friction_exponent)
-    return value_at(passage.pieces, law, slip * passage.speed)
+    return friction.in_slip(passage.laws, c.law, slip * passage.speed)
 
 
 @kernel

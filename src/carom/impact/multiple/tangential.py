@@ -26,9 +26,9 @@ from carom.impact.thresholds import GROUP_ERROR, VELOCITY_LEFT
 
 
 @unit
-def return_slips(k, work):
+def return_slips(k, work, passage):
     """Add to the impulses of a group of `k` contacts that of tangential restitution."""
-    n, m = _gather(k, work)
+    n, m = _gather(k, work, passage.laws)
     if m == 0:
         return
     W, Y, hold = work.matrix[o.MASS], work.matrix[o.INVERSE], work.matrix[o.HOLDING]
@@ -61,7 +61,7 @@ def return_slips(k, work):
 
 
 @kernel
-def _gather(k, work):
+def _gather(k, work, laws):
     """List the contacts with an impulse, and those that stick with the change of slip; return their numbers."""
     P, u, wish = work.vector[o.NOW_P], work.vector[o.U0], work.vector[o.STICK_T]
     n, m, most, size = 0, 0, 0.0, 0.0
@@ -76,8 +76,9 @@ def _gather(k, work):
             n += 1
             if c.sticks & o.HAS_STUCK != 0 and c.mu > 0.0:
                 work.index[o.STUCK, m] = i
+                e_t = laws.table[c.law].tangential_restitution
                 for r in range(2):
-                    wish[2 * m + r] = -c.tangential * u[3 * i + 1 + r]
+                    wish[2 * m + r] = -e_t * u[3 * i + 1 + r]
                     size = max(size, abs(wish[2 * m + r]))
                 m += 1
     return n, m if size > 0.0 else 0

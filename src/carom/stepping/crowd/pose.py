@@ -6,10 +6,11 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction.layout import CONE, DISC
-from carom.impact.effective_restitution import restitution_at
-from carom.impact.friction_law import PERSISTENT, STRIKES, friction_at
 from carom.kinematics.contact_point import contact_velocity
+from carom.law.friction import friction_at
+from carom.law.restitution import restitution_at
 from carom.model.actions import MODE_STICK
+from carom.model.laws import PERSISTENT, STRIKES
 from carom.model.workspace import MOTION_POINT, MOTION_ROLL
 from carom.stepping.crowd.response import write_responses
 from carom.stepping.thresholds import LEAVING_SPEED
@@ -41,8 +42,9 @@ def pose(model, data, k, h, fall):
                 p[3 * i + 2] = s * torque[2] if spot.motion == MOTION_ROLL else 0.0
             continue
         u = spot.before[0] - spot.drift[0]
-        e = restitution_at(system, contact, -u)
-        set_bound(spot, (u, e, restitution_at(system, contact, -e * u)), contact, h, fall)
+        law = contact.law[STRIKES]
+        e = restitution_at(system.laws, law, -u)
+        set_bound(spot, (u, e, restitution_at(system.laws, law, -e * u)), contact, h, fall)
         crowd.c[3 * i] -= spot.bound
         crowd.c[3 * i + 1] += spot.drift[1]
         crowd.c[3 * i + 2] += spot.drift[2]
@@ -50,10 +52,10 @@ def pose(model, data, k, h, fall):
             crowd.c[3 * i + 1] += e * spot.before[1]
             crowd.c[3 * i + 2] += e * spot.before[2]
         slip = math.hypot(spot.before[1], spot.before[2])  # the law at the start of the step
-        row.kind, row.mu = CONE, friction_at(system, contact, STRIKES, slip)
+        row.kind, row.mu = CONE, friction_at(system.laws, law, slip)
         if spot.active >= 0:
             holds = active.points[spot.active].mode == MODE_STICK
-            row.mu = friction_at(system, contact, PERSISTENT, 0.0 if holds else slip)
+            row.mu = friction_at(system.laws, contact.law[PERSISTENT], 0.0 if holds else slip)
             for r in range(3):
                 p[3 * i + r] = h * active.points[spot.active].force[r]
 

@@ -22,6 +22,7 @@ from carom.dynamics.thresholds import EDGE_JUMP
 from carom.geometry.rotation import norm
 from carom.kinematics.anisotropy import turn_plain
 from carom.kinematics.contact_point import contact_velocity, place
+from carom.law.turning import arm_of_torque
 from carom.model.arrays import KIND_STOP, KIND_VERTICES
 from carom.model.workspace import MOTION_PIVOT, MOTION_ROLL
 
@@ -105,7 +106,7 @@ def add_turning(system, first, crowd):
     for i in range(first, crowd.count[0]):
         spot = crowd.closed[i]
         for motion in (MOTION_ROLL, MOTION_PIVOT):
-            if system.contacts[spot.contact].turning[motion - MOTION_ROLL] > 0.0:
+            if arm_of_torque(system.laws, system.contacts[spot.contact], motion) > 0.0:
                 k = crowd.count[0]
                 if k == crowd.closed.shape[0]:
                     return False

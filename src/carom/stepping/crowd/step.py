@@ -23,9 +23,10 @@ from carom.dynamics.more_forces import note_turns
 from carom.dynamics.project import project_velocity
 from carom.geometry.rotation import norm
 from carom.geometry.thresholds import RESOLUTION
-from carom.impact.effective_restitution import restitution_at
+from carom.law.restitution import restitution_at
 from carom.model import records as r
 from carom.model.allowance import COUNT_BLOCKS, left
+from carom.model.laws import STRIKES
 from carom.model.workspace import MOTION_POINT
 from carom.persistent.thresholds import SHORTEST_CUT
 from carom.status import LEFT_CURVE, NOT_FINITE
@@ -230,7 +231,7 @@ def misses_bounce(system, k, h, fall, crowd):
         contact = system.contacts[spot.contact]
         between = spot.gap > 0.0 and spot.left > 0.0
         if spot.motion == MOTION_POINT and between and spot.impulse[0] > 0.0:
-            e = restitution_at(system, contact, spot.gap / h)
+            e = restitution_at(system.laws, contact.law[STRIKES], spot.gap / h)
             if 2.0 * e * spot.gap / h > (1.0 - e) * fall * h + contact.still:
                 return True
     return False

@@ -11,7 +11,8 @@ from carom.friction.layout import BEST, ITERATE
 from carom.friction.newton import copy
 from carom.friction.operators import sweep
 from carom.friction.residual import residual
-from carom.model.workspace import MOTION_POINT, MOTION_ROLL
+from carom.law.turning import arm_of_torque
+from carom.model.workspace import MOTION_POINT
 from carom.stepping.crowd.mixing import extrapolate, forget, note_end, note_start
 
 UNCHECKED_SWEEPS = 10  # sweeps between two checks of the residual
@@ -54,7 +55,7 @@ def bound_torques(system, crowd, k):
     for i in range(k):
         spot = crowd.closed[i]
         if spot.motion != MOTION_POINT:
-            d = system.contacts[spot.contact].turning[spot.motion - MOTION_ROLL]
+            d = arm_of_torque(system.laws, system.contacts[spot.contact], spot.motion)
             parent = spot.parent
             most = d / crowd.points[0][i].length * row[parent].scale * q[3 * parent]
             row[i].h1 = max(0.0, most) / row[i].scale

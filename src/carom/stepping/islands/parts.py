@@ -93,7 +93,7 @@ def part_system(system, islands, i, solver):
         bodies=islands.bodies[first[0, i] : first[0, i + 1]], gravity=system.gravity,
         joints=own.joints, relations=own.relations, springs=own.springs, loads=own.loads, bushings=own.bushings,
         contacts=islands.contacts[first[1, i] : first[1, i + 1]], vertices=system.vertices,
-        curves=system.curves, solids=system.solids, hulls=system.hulls, levels=system.levels,
+        laws=system.laws, solids=system.solids, hulls=system.hulls, levels=system.levels,
         moving=system.moving, solver=solver,
     )  # fmt: skip
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from carom.model.compile import attitudes
 from carom.model.kept import Snapshot
+from carom.model.laws import PERSISTENT, STRIKES
 from carom.run import Run
 from carom.scene.scene import Scene
 from carom.stepping.settings import Settings
@@ -80,16 +81,23 @@ class Again:
                 value = attitudes(units(value), run.to_principal[k])
             yield run.now[STATES[target.field]][k], value
             return
-        contacts = run.compiled.system.contacts
-        rows = slice(*np.searchsorted(contacts["number"], (k, k + 1)))
-        if target.field in TURNING:
-            yield contacts["turning"][rows, TURNING.index(target.field)], value
-        else:
-            yield contacts[target.field][rows], value
         law = self.scene.contacts[k]
         follows = target.field == "friction" and f"{target.part}.friction_held" not in values
-        if follows and law.friction_held == law.friction:
-            yield contacts["friction_held"][rows], value
+        follows = follows and law.friction_held == law.friction
+        name = "friction" if target.field == "friction_held" else target.field
+        for which in (STRIKES, PERSISTENT):
+            if name != "friction" or follows or (target.field == "friction") == (which == STRIKES):
+                for column in self.of_laws(k, which, name):
+                    yield column, value
+
+    def of_laws(self, k: int, which: int, name: str) -> Iterator[np.ndarray]:
+        """Yield the places (1,) of a column of the laws of contact k, in impacts or in persistent contact."""
+        system = self.run.compiled.system
+        rows = slice(*np.searchsorted(system.contacts["number"], (k, k + 1)))
+        table = system.laws.table
+        column = table["turning"][:, TURNING.index(name)] if name in TURNING else table[name]
+        for law in np.unique(system.contacts["law"][rows, which]).tolist():
+            yield column[law : law + 1]
 
 
 def _row(values: dict[str, np.ndarray], k: int) -> dict[str, np.ndarray]:

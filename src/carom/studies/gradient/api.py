@@ -6,6 +6,7 @@ import numpy as np
 
 from carom import arguments, checks
 from carom.dynamics.methods import METHODS
+from carom.model.laws import SLIP, law_of
 from carom.model.method import THREE_FIELD
 from carom.results.solution import Solution
 from carom.studies.gradient.parameters import make_parameters
@@ -115,15 +116,14 @@ def sensitivities(
     system = run.compiled.system
     number = 1 + int(max(system.contacts.number, default=-1))
     parameters = make_parameters(scene, with_respect_to, number, run.compiled.to_principal)
-    of_law = np.isnan(system.contacts.restitution)
+    laws = law_of(system, system.contacts)
+    of_law = np.isnan(laws.restitution)
     if np.any(parameters.restitution[system.contacts.number[of_law]]):
         raise ValueError(
             "with_respect_to must not have the restitution of a contact whose restitution is a law, got "
             f"{checks.shown(with_respect_to)}; its numbers are varied by carom.ensemble"
         )
-    if np.any(system.contacts.last_friction_piece > system.contacts.friction_piece) or np.any(
-        system.contacts.axis_of
-    ):
+    if np.any(laws.last[:, SLIP] > laws.first[:, SLIP]) or np.any(system.contacts.axis_of):
         raise ValueError(
             "solution must be of contacts whose friction is a number, got a law, whose impacts have no closed "
             "form; its numbers are varied by carom.ensemble"

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.impact import layout as o
-from carom.impact.laws import BY_SPEED
+from carom.law.impact_laws import BY_SPEED
 
 UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 INPUTS = 11  # six numbers of W, three of u, mu, e

@@ -15,9 +15,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom._compiled.record_arrays import Columns
 from carom.dynamics.project import project_start
 from carom.geometry import quaternion
 from carom.io.files.checkpoint import Checkpoint, capture, restore
+from carom.model.laws import law_of
 from carom.results.solution import Solution
 from carom.run import Run
 from carom.status import Status
@@ -55,14 +57,25 @@ def differentiate(solution: Solution, parameters: Parameters) -> Sensitivities:
         raise ValueError(
             "with_respect_to must not have the inertia of a body if derivatives are found by differences"
         )
-    contacts = run.compiled.system.contacts
+    system = run.compiled.system
+    laws = law_of(system, system.contacts)
     for name in ("friction", "restitution"):
-        touched = np.any(getattr(parameters, name)[contacts.number] != 0.0, axis=1)
-        if np.any(touched & (contacts[name] == 0.0)):
+        touched = np.any(getattr(parameters, name)[system.contacts.number] != 0.0, axis=1)
+        if np.any(touched & (laws[name] == 0.0)):
             raise ValueError(
                 f"{name} must be above 0 to differentiate by it: differences need values on both sides"
             )
     return Pieces(solution, parameters).result()
+
+
+def with_own_laws(run: Run) -> None:
+    """Give each contact of a run two laws of its own, after all others, so that one can change alone."""
+    compiled = run.compiled
+    system, laws = compiled.system, compiled.system.laws
+    first, number = len(laws.table), system.contacts.law
+    table = np.concatenate([laws.table, laws.table[number.ravel()]]).view(Columns)
+    number[...] = first + np.arange(number.size).reshape(-1, 2)
+    run.compiled = compiled._replace(system=system._replace(laws=laws._replace(table=table)))
 
 
 class Pieces:
@@ -79,13 +92,15 @@ class Pieces:
         if run.found is not None:  # so that contacts have the same numbers as in the run
             for again in (self.base, self.near):
                 again.add_pairs(run.found)
+        for again in (self.base, self.near):
+            with_own_laws(again)
         system = self.near.compiled.system
+        table, number = system.laws.table, np.repeat(system.contacts.number, 2)
         self.numbers = [
             (system.bodies.mass, parameters.mass),
             (system.gravity, parameters.gravity),
-            (system.contacts.restitution, parameters.restitution[system.contacts.number]),
-            (system.contacts.friction, parameters.friction[system.contacts.number]),
-            (system.contacts.friction_held, parameters.friction[system.contacts.number]),
+            (table.restitution[-len(number) :], parameters.restitution[number]),
+            (table.friction[-len(number) :], parameters.friction[number]),
         ]
         self.given = [array.copy() for array, _ in self.numbers]
         self.fresh = [

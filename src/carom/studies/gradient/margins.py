@@ -9,6 +9,7 @@ import numpy as np
 
 from carom.impact import layout as o
 from carom.model.arrays import KIND_VERTICES
+from carom.model.laws import law_of
 from carom.studies.gradient.blow import AT_REST, Blow
 from carom.studies.gradient.body import Moving, cross, fly, path
 from carom.studies.gradient.result import Margin
@@ -49,7 +50,7 @@ def of_impact(system, row, place, tied, bodies, done: Strike, hit: Blow, u, W, k
         Margin(t, k, "speed of approach: at 0 the body grazes or misses", float(-u[0]), "m/s",
                float(-u[0]) / speed, -done.before[0])
     ]  # fmt: skip
-    found += _course(done, hit, u, W, k, t, speed, float(row.friction), d_mu)
+    found += _course(done, hit, u, W, k, t, speed, float(law_of(system, row).friction), d_mu)
     for b, body in enumerate(bodies):
         number = int(row.body) if b == 0 else int(row.other)
         pose = done.poses[6 * b : 6 * b + 6]

@@ -8,6 +8,7 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.model.arrays import KIND_PAIR, KIND_VERTICES
+from carom.model.laws import law_of
 from carom.results.names import restitution_of
 from carom.results.solution import Solution
 from carom.scene.restitution import Restitution
@@ -152,9 +153,10 @@ class Walk:
         which = [int(row.body)] + ([int(row.other)] if row.other >= 0 else [])
         bodies = [self.bodies[b] for b in which]
         W, u = inverse_mass(place, bodies), relative_velocity(place, bodies)
+        stated = law_of(self.system, row)
         law = restitution_of(self.scene, self.solution.pairs, int(row.number))
-        e = float(law(-u[0])) if isinstance(law, Restitution) else float(row.restitution)
-        hit = blow(W, u, float(row.friction), e, int(row.law))
+        e = float(law(-u[0])) if isinstance(law, Restitution) else float(stated.restitution)
+        hit = blow(W, u, float(stated.friction), e, int(stated.impact_law))
         if hit is not None and isinstance(law, Restitution):  # de/du_n = -e'(v)
             hit.d[:, BY_NORMAL] -= hit.d[:, BY_RESTITUTION] * law.slope(-u[0])
         if hit is None or not _same(hit.impulse, step.row.impulse):
