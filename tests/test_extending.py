@@ -12,7 +12,7 @@ import carom
 LIBRARY = Path(carom.__file__).parent
 PAGE = Path(__file__).parents[1] / "docs" / "development" / "extending.md"
 
-#: without the JIT, so that nothing is compiled: a method, a joint, a shape and a law in one scene each
+#: without the JIT, so that nothing is compiled: a method, a joint, a shape and two laws
 RUN = """
 import numpy as np, carom
 
@@ -31,6 +31,18 @@ s = carom.simulate(scene, 0.02, step=0.01)
 before, after = s.impacts[0].relative_velocity_before[0], s.impacts[0].relative_velocity_after[0]
 assert abs(after + 0.5 * before) < 1e-12  # a quarter of the energy
 assert s.impacts[0].law == "fraction"
+
+from carom.scene.viscous import ViscousFriction
+law = ViscousFriction(static=0.1, speed=5.0, most=0.5)
+scene = carom.Scene()
+block = scene.add_body(carom.Box(0.2, 0.2, 0.02), mass=1.0, position=(0, 0, 0.01), velocity=(1.0, 0, 0))
+ground = scene.add_half_space((0, 0, 0), (0, 0, 1))
+scene.add_contact(block, ground, restitution=0, friction=law)
+s = carom.simulate(scene, 0.1, step=0.05, method="rk8")
+v = (1.0 + 0.5) * np.exp(-9.81 / 5.0 * 0.1) - 0.5  # v' = -g (static + v / speed)
+assert abs(s.velocity[-1, 0, 0] - v) < 1e-9
+s.save("slide.nc")
+assert carom.Solution.load("slide.nc").scene.contacts[0].friction == law
 """
 
 
@@ -55,9 +67,13 @@ def test_what_the_page_adds_runs(tmp_path):
     shutil.copytree(
         LIBRARY, tmp_path / "src" / "carom", ignore=shutil.ignore_patterns("__pycache__")
     )
-    assert add(PAGE.read_text(), tmp_path) == 8
+    assert add(PAGE.read_text(), tmp_path) == 10
     ours = {"PYTHONPATH": str(tmp_path / "src"), "NUMBA_DISABLE_JIT": "1"}
     done = subprocess.run(
-        [sys.executable, "-c", RUN], env={**os.environ, **ours}, capture_output=True, text=True
+        [sys.executable, "-c", RUN],
+        env={**os.environ, **ours},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 0, done.stderr

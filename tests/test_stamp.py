@@ -59,7 +59,7 @@ def test_the_whole_loop_is_reached():
     names = list(cache_key._reached(contact_step.compiled.py_func, set()))
     for name in (
         "persistent.members.implicit_member",
-        "dynamics.several_points.velocities",
+        "dynamics.delassus.velocities",
         "friction.solve.solve_cones",
     ):
         assert f"carom.{name}" in names

@@ -173,7 +173,7 @@ def test_each_unit_has_one_type_for_all_scenes_and_methods():
 
 STOPPED = """
 import carom, numpy as np
-from carom.persistent.several_points import activate_contact
+from carom.persistent.activation import activate_contact
 
 scene = carom.Scene()
 ground = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))

@@ -37,5 +37,6 @@ FAMILIES = {
     "belts": belts.case,
     "rails": rails.case, "loose rails": loose_rails.case, "surfaces": surfaces.case, "grounds": grounds.case,
     "terrains": terrains.case, "cams": cams.case,
-    "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "rough": rough.case,
+    "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "grains by slip": grains.by_slip,
+    "rough": rough.case,
 }  # fmt: skip

@@ -13,7 +13,11 @@ FAMILIES = (throws, slides, strikes, slides, rests, piles, throws, crowds)
 
 def case(seed: int) -> Case:
     """Return case number `seed`: families in turn, a law for each contact or for all pairs."""
-    rng = np.random.default_rng([46, seed])
+    return with_laws(seed, np.random.default_rng([46, seed]), friction)
+
+
+def with_laws(seed: int, rng, friction) -> Case:
+    """Return case number `seed` of the families in turn, with laws drawn for each contact or for all pairs."""
     made = FAMILIES[seed % len(FAMILIES)].case(seed)
     scene, default = made.scene, made.scene.contact_default
     law = friction(rng)

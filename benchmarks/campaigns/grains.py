@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 import carom
-from campaigns import crowds, piles, rests, slides, strikes, throws
+from campaigns import frictions
 from campaigns.case import Case
 from carom.geometry import quaternion
+from carom.scene.friction import FrictionLaw
 
-FAMILIES = (throws, slides, strikes, slides, rests, piles, throws, crowds)
 #: how far a force may be beyond its ellipse, as a part of the greatest; sine below which anisotropy fades out;
 #: number of forces, and of impulses, that are looked at
 EXCESS, FADES, LOOKS = 1e-6, 0.1, 300
@@ -17,21 +19,22 @@ EXCESS, FADES, LOOKS = 1e-6, 0.1, 300
 
 def case(seed: int) -> Case:
     """Return case number `seed`: families in turn, a law for each contact or for all pairs."""
-    rng = np.random.default_rng([47, seed])
-    made = FAMILIES[seed % len(FAMILIES)].case(seed)
-    scene, default = made.scene, made.scene.contact_default
-    law = friction(rng)
-    for contact in scene.contacts:
-        one = law if len(scene.contacts) == 1 else friction(rng)
-        scene.replace(contact.name, friction=one, friction_held=one)
-    if default is not None:
-        scene.set_contact_default(
-            restitution=default.restitution, friction=law, impact_law=default.impact_law,
-            multiple=default.multiple,
-        )  # fmt: skip
-    made.label["law of friction"] = repr(law)
+    made = frictions.with_laws(seed, np.random.default_rng([47, seed]), friction)
     made.off = off
     return made
+
+
+def by_slip(seed: int) -> Case:
+    """Return case number `seed` of laws of the direction and of the slip in one."""
+    made = frictions.with_laws(seed, np.random.default_rng([48, seed]), friction_by_slip)
+    made.off = off
+    return made
+
+
+def friction_by_slip(rng) -> carom.Friction:
+    """Return a law of the slip along an axis, with a ratio from 1/30 to 30."""
+    law, along = friction(rng), frictions.friction(rng)
+    return replace(law, along=along, across=along.bound * law.across / law.along)
 
 
 def friction(rng) -> carom.Friction:
@@ -68,7 +71,11 @@ def beyond(s: carom.Solution, contact: int, normal, orientation, force) -> float
     law = law_of(s, contact)
     if abs(axis_of(s, contact, law, orientation) @ normal) > np.sqrt(1.0 - FADES**2):
         return 0.0
-    return float(np.hypot(force[1] / law.along, force[2] / law.across) - force[0])
+    along, across = law.along, law.across
+    if isinstance(along, FrictionLaw):  # the greatest ellipse
+        most = max(along.bound, np.max(along(np.append(0.0, np.geomspace(1e-6, 1e3, 500)))))
+        along, across = most, across * most / along.bound
+    return float(np.hypot(force[1] / along, force[2] / across) - force[0])
 
 
 def law_of(s: carom.Solution, contact: int) -> carom.Friction:

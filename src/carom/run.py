@@ -208,7 +208,7 @@ class Run(Running):
         self.call(record.save_now, self.model, self.data)
 
     def grow(self, what: int) -> None:
-        """Lengthen arrays that are full; `what` says which."""
+        """Lengthen arrays that are full; `what` is their number."""
         if what == r.FULL_EVENTS:
             self.records = r.longer(self.records, self.clock)
         elif what == r.FULL_PAIRS:

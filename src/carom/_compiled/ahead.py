@@ -28,9 +28,9 @@ from carom._compiled.file_lock import FileLock
 FIRST = (
     "carom.stepping.event_step:advance",
     "carom.impact.strike:strike",
-    "carom.persistent.several_points:activate_contact",
+    "carom.persistent.activation:activate_contact",
     "carom.persistent.contact_step:contact_step",
-    "carom.impact.strike_several:resolve_group",
+    "carom.impact.strike_together:resolve_group",
     "carom.dynamics.explicit:whole_step",
     "carom.dynamics.acceleration:acceleration",
     "carom.impact.multiple.steps:pass_layer",

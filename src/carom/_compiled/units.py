@@ -192,7 +192,7 @@ def asked_before() -> set[tuple[str, tuple]]:
 def compile_asked(wanted: Iterable[tuple[str, tuple]]) -> None:
     """Compile units for types of arguments; those of an earlier version, which no code calls now, are left."""
     for name, kinds in wanted:
-        with contextlib.suppress(TypingError):
+        with contextlib.suppress(TypingError, KeyError):  # KeyError: of a column that has gone
             address(name, kinds)
 
 

@@ -162,7 +162,7 @@ def gather(system, active, what, x, work):
 
 @kernel
 def react(system, m, out, work):
-    """Add to `out` (n,) the reactions that give it what `rhs` says; these become the multipliers.
+    """Add to `out` (n,) the reactions that give it `rhs`; these become the multipliers.
 
     With Z = M^-1 D^T and K = R Z they are the solution of K lam = rhs - R out.
     """

@@ -12,7 +12,7 @@ from carom.impact.resolve import resolve
 from carom.impact.tangential import return_slip
 from carom.impact.thresholds import GROUP_SEED, NO_RESTITUTION
 from carom.law.impact_laws import GAINING
-from carom.model.laws import SLIP
+from carom.model.laws import with_slip
 from carom.scene.restitution import Restitution
 from carom.status import Status
 
@@ -37,7 +37,7 @@ class Strike:
         self.restitution = [one.restitution for one in contacts]
         self.laws = run.made.system.laws
         self.friction = self.laws.table.friction
-        self.by_law = self.laws.table.last[:, SLIP] > self.laws.table.first[:, SLIP]
+        self.by_law = with_slip(self.laws.table).view(np.ndarray)
         self.events: list[tuple[float, str, int]] = []
         self.light = 0.0  # kinetic energy that the loads give in a step: less is round-off
         self.records: list[CoordinateImpact] = []

@@ -141,10 +141,10 @@ def resolve_impact(
     from carom.impact.tangential import return_slip
 
     given = inverse_mass, velocity, friction, restitution, law
-    if _are_several(*given, tangential_restitution):
-        from carom.impact.several import resolve_several
+    if _are_many(*given, tangential_restitution):
+        from carom.impact.many import resolve_many
 
-        return resolve_several(*given, tangential_restitution)
+        return resolve_many(*given, tangential_restitution)
     W, u, mu, e, number = checked_impact(inverse_mass, velocity, friction, restitution, law)
     e_t = checked_tangential(tangential_restitution)
     out = np.zeros(o.SIZE)
@@ -168,7 +168,7 @@ def resolve_impact(
     )
 
 
-def _are_several(inverse_mass, velocity, *numbers) -> bool:
+def _are_many(inverse_mass, velocity, *numbers) -> bool:
     """Return whether arguments have more axes than those of one impact, are of a plane one, or laws."""
     cores = ((inverse_mass, 2), (velocity, 1), *((one, 0) for one in numbers))
     try:

@@ -41,7 +41,7 @@ class Passage(NamedTuple):
     depth: float  # b l
     steps: int  # of a phase
     timed: bool  # law A: steps in time; else in the normal impulse
-    wedged: bool  # the impact solver then says where the phases end, and no law does
+    wedged: bool  # the phases then end where the impact solver has ended them, and by no law
 
 
 @entry

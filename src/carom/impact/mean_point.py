@@ -12,7 +12,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
-from carom.dynamics.several_points import inverse_masses
+from carom.dynamics.delassus import inverse_masses
 from carom.geometry.thresholds import ROUND_OFF
 from carom.impact.workspace import U
 from carom.kinematics.contact_point import contact_velocity, copy_point, place

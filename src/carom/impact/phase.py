@@ -104,7 +104,7 @@ def run(contact, span, friction, history, row):
 
 @kernel
 def _advance(contact, friction, state, d, to_rest, shortest):
-    """Take a step of at most `d`; `to_rest` says that slip is known to end with it.
+    """Take a step of at most `d`; with `to_rest` slip is known to end with it.
 
     Return 1 if it was solved, its length, whether slip has ended with it, the new state and the integrals.
     """

@@ -70,7 +70,7 @@ def slip_ratio(mu, x, y):
 def solve_slip(contact, start, d, to_rest):
     """Return 1 if the step of length `d` in slip from u_t = `start` was solved, and the step (paper, Eq. (9)).
 
-    `to_rest` says that slip is known to end with the step: then the first guess of U is 0.
+    with `to_rest` slip is known to end with the step: then the first guess of U is 0.
     """
     m, (x0, y0) = contact.m, start
     t1, t2 = slip_ratio(contact.mu, x0, y0)

@@ -10,9 +10,9 @@ from carom.contact.closed_points import concerns, gather_closed
 from carom.contact.gap import round_off, slow, strike_point
 from carom.contact.groups import label_groups
 from carom.dynamics.contact_impulse import add_velocity, spread
+from carom.dynamics.delassus import inverse_masses, velocities
 from carom.dynamics.forces import potential_energy
 from carom.dynamics.project import project_velocity
-from carom.dynamics.several_points import inverse_masses, velocities
 from carom.impact import layout
 from carom.impact.collapse import count_blow, effective_restitution
 from carom.impact.driven import blocked, driven_work
@@ -22,7 +22,7 @@ from carom.impact.record import note_drive, write_impact
 from carom.impact.resolve import resolve
 from carom.impact.resolve_by_slip import SlipFriction, resolve_by_slip
 from carom.impact.return_map import return_map
-from carom.impact.strike_several import strike_several
+from carom.impact.strike_together import strike_together
 from carom.impact.tangential import return_slip
 from carom.impact.thresholds import SEED
 from carom.impact.work_mode import restore_work
@@ -111,7 +111,7 @@ def strike(model, data, method, c):
                 hit.u[0] = -SEED * math.sqrt(hit.u[1] ** 2 + hit.u[2] ** 2)
             strike_one(model, data, method, c, law)
         else:
-            strike_several(model, data, c, k)
+            strike_together(model, data, c, k)
         if hit.code != 0:
             return
         project_velocity(system, state, False, work)

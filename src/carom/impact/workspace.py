@@ -105,7 +105,7 @@ class MultipleImpact(NamedTuple):
 
 
 def capacity(system: System, more: bool) -> int:
-    """Return the greatest number of closed points in one group; `more` says that contacts may be added."""
+    """Return the greatest number of closed points in one group; with `more` contacts may be added."""
     if more:
         return MOST_TOGETHER
     contacts, more_rows = system.contacts, len(system.relations.frictions)
@@ -119,7 +119,7 @@ def capacity(system: System, more: bool) -> int:
 
 
 def new_group(system: System, more: bool = False) -> Group:
-    """Return the workspace for the largest group of `system`; `more` says that contacts may be added."""
+    """Return the workspace for the largest group of `system`; with `more` contacts may be added."""
     n, k = system.bodies.size, capacity(system, more)
     return Group(
         closed=table(CLOSED_POINT, k), count=np.zeros(1, dtype=np.int64),

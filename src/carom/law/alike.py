@@ -1,4 +1,4 @@
-"""Whether two laws say the same in an impact."""
+"""Whether two laws are the same in an impact."""
 
 from __future__ import annotations
 

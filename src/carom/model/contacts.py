@@ -83,11 +83,13 @@ def compile_contacts(
     )  # fmt: skip
     template = _KNOWN.get(key)
     if template is not None:
-        return template.make()._replace(pairs=known)
+        made = template.make()
+        return made._replace(pairs=known, surfaces=made.surfaces._replace(laws=laws))
     if len(_KNOWN) >= MOST_KNOWN:
         _KNOWN.clear()
     made = _contacts(scene, known, None, (laws, first_law), to_principal, options)
-    _KNOWN[key] = Template(made._replace(pairs=None))
+    bare = made._replace(pairs=None, surfaces=made.surfaces._replace(laws=None))
+    _KNOWN[key] = Template(bare)
     return made
 
 

@@ -45,6 +45,11 @@ def law_of(system, contacts: np.recarray, which: int = STRIKES) -> np.recarray:
     return system.laws.table[contacts["law"][..., which]]
 
 
+def with_slip(laws: np.recarray) -> np.ndarray:
+    """Return whether the friction of laws depends on the slip."""
+    return laws["last"][..., SLIP] > laws["first"][..., SLIP]
+
+
 class LawTable:
     """The laws of a scene, which are added one by one."""
 

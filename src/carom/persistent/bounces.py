@@ -23,8 +23,8 @@ from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.contact.pair_point import smaller
+from carom.dynamics.delassus import on_drive
 from carom.dynamics.elements import driven_power
-from carom.dynamics.several_points import on_drive
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER, SUM_ERROR
 from carom.impact.workspace import RETURN, C, U

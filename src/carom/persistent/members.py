@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import by_reference, kernel
+from carom.dynamics.delassus import velocities
 from carom.dynamics.explicit import (
     add_stages,
     combine_body,
@@ -23,7 +24,6 @@ from carom.dynamics.explicit import (
     note_velocity,
     stages_within,
 )
-from carom.dynamics.several_points import velocities
 from carom.friction.layout import (
     BUDGET,
     CONE,

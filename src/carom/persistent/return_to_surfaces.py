@@ -15,9 +15,9 @@ from carom._compiled.decorators import kernel
 from carom.contact.closed_points import place_closed, round_off_of_both
 from carom.contact.gap import round_off
 from carom.dynamics.contact_impulse import gain
+from carom.dynamics.delassus import spread_all, velocities
 from carom.dynamics.passed_edges import has_passed
 from carom.dynamics.project import project_position, shift
-from carom.dynamics.several_points import spread_all, velocities
 from carom.friction import lu
 from carom.friction.layout import SLIDING
 from carom.geometry.thresholds import SUM_ERROR

@@ -16,8 +16,8 @@ from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.contact.place import drift_of
 from carom.dynamics.acceleration import accelerate, acceleration
+from carom.dynamics.delassus import accelerations, inverse_masses, spread_all, velocities
 from carom.dynamics.elements import driven_power
-from carom.dynamics.several_points import accelerations, inverse_masses, spread_all, velocities
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER
 from carom.impact.workspace import C, P, U

@@ -51,7 +51,7 @@ def bound_per_force(system, point, closed_point):
 def solve_springs(k, group) -> bool:
     """Write the forces of given modes, and accelerations of all points; return whether they exist.
 
-    C has the accelerations without forces; `kind` says which points slide along `heading`, `presses` which
+    C has the accelerations without forces; By `kind` points slide along `heading`, by `presses` they
     press at first.
     """
     push, rounds = greatest(3 * k, group.v[C]), 0

@@ -10,7 +10,7 @@ import numpy as np
 
 from carom import arguments, checks
 from carom.geometry import quaternion
-from carom.model.laws import SLIP, law_of
+from carom.model.laws import law_of, with_slip
 from carom.results.dense_output import curves, flights
 from carom.results.drawn import Drawn
 from carom.results.endings import message
@@ -495,7 +495,7 @@ class Solution(Portable, Drawn, Source):
         contacts = system.contacts
         row = contacts[int(np.searchsorted(contacts.number, record.contact))]
         law = law_of(system, row)
-        if law.last[SLIP] > law.first[SLIP]:
+        if with_slip(law):
             raise ValueError(
                 f"k must be an impact whose friction is a number, got {k}, of a law: the layer of the paper "
                 "has none"

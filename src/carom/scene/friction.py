@@ -298,7 +298,6 @@ class FittedFriction(FittedLaw, FrictionLaw):
 
 
 _BY_SLIP, _BY_WAY = ("static", "kinetic", "speed"), ("axis", "along", "across")
-FRICTION_LAWS = (Friction, TableFriction, FittedFriction)
 checked_friction = partial(
     number_or_law, law=FrictionLaw, of=Friction.fit, example="carom.Friction(static=0.4, kinetic=0.3)",
     least=0,

@@ -230,9 +230,6 @@ class FittedRestitution(FittedLaw, Restitution):
         return float(speeds[below[0] - 1]) if len(below) and below[0] > 0 else 0.0
 
 
-LAWS = (PowerRestitution, ViscoelasticRestitution, TableRestitution, FittedRestitution)
-
-
 def restitution(default: Any = REQUIRED) -> Value[Any, Any]:
     """Return a field for a coefficient of restitution: a number from 0 to 1, a function, or a law."""
     check = partial(

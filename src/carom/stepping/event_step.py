@@ -32,10 +32,10 @@ from carom.model.arrays import KIND_PAIR, KIND_STOP, KIND_VERTICES
 from carom.model.controls import LOCATE
 from carom.model.laws import STRIKES
 from carom.model.workspace import FREE
+from carom.persistent.activation import activate_contact
 from carom.persistent.bounces import horizon_of, time_of_bounces
 from carom.persistent.margins import switch_due
 from carom.persistent.modes import jam_point, turn_modes
-from carom.persistent.several_points import activate_contact
 from carom.persistent.step_control import goes_wild, next_pace, unsolved
 from carom.persistent.thresholds import CUT_RESIDUAL, STOP_RESIDUAL
 from carom.status import LEFT_CURVE, NO_CONVERGENCE, NOT_FINITE

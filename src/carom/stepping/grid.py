@@ -15,7 +15,7 @@ from carom._compiled.decorators import inlined
 from carom.geometry.frames import length
 from carom.geometry.thresholds import ROUND_OFF
 from carom.model.arrays import System
-from carom.stepping.thresholds import FALL_OF_ONE, FALL_OF_SEVERAL, LONGEST_PART, STEPS_BY_SPEED
+from carom.stepping.thresholds import FALL_OF_MANY, FALL_OF_ONE, LONGEST_PART, STEPS_BY_SPEED
 
 if TYPE_CHECKING:
     from carom.stepping.settings import Settings
@@ -141,7 +141,7 @@ def longest_step(
     size = float((extent if more else extent[system.contacts["body"]]).min())
     several, g = len(system.bodies) > 1, length(system.gravity)
     if g > 0.0:
-        part = FALL_OF_SEVERAL if several else FALL_OF_ONE
+        part = FALL_OF_MANY if several else FALL_OF_ONE
         return min(longest, part * math.sqrt(2.0 * size / g))
     speed = float(
         np.max(np.linalg.norm(start.v, axis=-1) + extent * np.linalg.norm(start.w, axis=-1))

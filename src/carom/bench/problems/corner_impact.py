@@ -30,7 +30,7 @@ def impacts(count: int = IMPACTS_TIMED, seed: int = 1) -> tuple[np.ndarray, np.n
 def ours(mu: float = 0.2, e: float = 0.5, law: int = LAW) -> Callable[[], None]:
     """Return a function that resolves all impacts once."""
     from carom.impact.layout import OK, SIZE
-    from carom.impact.several import resolve_many
+    from carom.impact.many import resolve_each
     from carom.model.laws import LawTable
 
     W, u = impacts()
@@ -39,7 +39,7 @@ def ours(mu: float = 0.2, e: float = 0.5, law: int = LAW) -> Callable[[], None]:
     out = np.zeros((n, SIZE))
 
     def run() -> None:
-        assert resolve_many(W, u, *same, out) == (-1, OK)
+        assert resolve_each(W, u, *same, out) == (-1, OK)
 
     return run
 

@@ -203,7 +203,7 @@ def _frictions(given, k: int):
 
 
 def _restitutions(given, approach: np.ndarray) -> np.ndarray:
-    """Return e (k,): numbers, or what laws say at speeds of approach (k,)."""
+    """Return e (k,): numbers, or the values of laws at speeds of approach (k,)."""
     k = len(approach)
     laws = [given] * k if isinstance(given, Restitution) else given
     if not (isinstance(laws, (list, tuple)) and any(isinstance(one, Restitution) for one in laws)):

@@ -26,7 +26,7 @@ from carom.law.friction import depends_on_slip
 def strike_group(g, contacts, still, by_newton, settings, workspace):
     """Resolve the classes of group `g`; write impulses and works of their contacts.
 
-    `by_newton` says that they are one contact problem, without the passage of the layer.
+    With `by_newton` they are one contact problem, without the passage of the layer.
     """
     work, out = workspace.work, workspace.blow.result
     summary = out.summary[0]

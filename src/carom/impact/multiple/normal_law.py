@@ -162,7 +162,7 @@ def find_changes(k, work, degree, end, when):
 def _gauge_and_slope(c, i, over, series, degree, x):
     """Return the gauge of contact `i` at x minus round-off, and its derivative.
 
-    `over` says that a contact in unloading opens, and does not load again.
+    With `over` a contact in unloading opens, and does not load again.
     """
     if c.mode == LOAD:
         s, slope = value_and_slope(series[o.S_U], i, degree, x)

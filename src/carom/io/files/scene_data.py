@@ -37,12 +37,11 @@ from carom.scene.constraints import CONSTRAINTS, Constraint, Gear
 from carom.scene.contacts import Contact
 from carom.scene.curves import CURVES
 from carom.scene.forces import FORCES, AppliedForce
-from carom.scene.friction import FRICTION_LAWS
 from carom.scene.joints import JOINTS, Joint
+from carom.scene.laws import LAWS
 from carom.scene.look import Look
 from carom.scene.materials import ContactLaw, Material
 from carom.scene.pieces import Piece
-from carom.scene.restitution import LAWS
 from carom.scene.shapes import SHAPES
 from carom.scene.stops import Stop
 from carom.scene.surfaces import SURFACES
@@ -62,7 +61,6 @@ TYPES: dict[str, type[Any]] = {
         *CONSTRAINTS,
         *CURVES,
         *LAWS,
-        *FRICTION_LAWS,
         Gear,
         ContactLaw,
         Material,

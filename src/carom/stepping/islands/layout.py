@@ -99,7 +99,7 @@ class Islands(NamedTuple):
 def has_events(system: System, more: bool = False) -> bool:
     """Return whether steps may have events, from contacts or dry friction, which may follow too fast.
 
-    `more` says that contacts may be added.
+    with `more` contacts may be added.
     """
     return more or system.contacts.size > 0 or system.relations.frictions.size > 0
 

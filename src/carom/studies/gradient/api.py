@@ -6,7 +6,7 @@ import numpy as np
 
 from carom import arguments, checks
 from carom.dynamics.methods import METHODS
-from carom.model.laws import SLIP, law_of
+from carom.model.laws import law_of, with_slip
 from carom.model.method import THREE_FIELD
 from carom.results.solution import Solution
 from carom.studies.gradient.parameters import make_parameters
@@ -123,7 +123,7 @@ def sensitivities(
             "with_respect_to must not have the restitution of a contact whose restitution is a law, got "
             f"{checks.shown(with_respect_to)}; its numbers are varied by carom.ensemble"
         )
-    if np.any(laws.last[:, SLIP] > laws.first[:, SLIP]) or np.any(system.contacts.axis_of):
+    if np.any(with_slip(laws)) or np.any(system.contacts.axis_of):
         raise ValueError(
             "solution must be of contacts whose friction is a number, got a law, whose impacts have no closed "
             "form; its numbers are varied by carom.ensemble"

@@ -26,7 +26,7 @@ FEW_IMPACTS = 2000  # take ten times as long as a thread to begin
 
 
 @entry
-def resolve_many(W, u, numbers, kinds, laws, out):
+def resolve_each(W, u, numbers, kinds, laws, out):
     """Solve each impact, with mu, e and e_t in `numbers`.
 
     `kinds` has the law of impact, and the number of the law of friction among `laws`, below 0 for none. Return
@@ -47,7 +47,7 @@ def resolve_many(W, u, numbers, kinds, laws, out):
     return -1, o.OK
 
 
-def resolve_several(inverse_mass, velocity, friction, restitution, law, tangential) -> Impact:
+def resolve_many(inverse_mass, velocity, friction, restitution, law, tangential) -> Impact:
     """Solve impacts whose arguments are arrays that go together; see `resolve_impact`."""
     W = _checked_inverse_masses(inverse_mass)
     k = W.shape[-1]
@@ -81,7 +81,7 @@ def resolve_several(inverse_mass, velocity, friction, restitution, law, tangenti
     def solve(first: int) -> None:
         part = slice(first, first + size)
         given = full[part], speed[part], numbers[part], kinds[part]
-        failed, code = resolve_many(*given, laws, out[part])
+        failed, code = resolve_each(*given, laws, out[part])
         if failed >= 0:
             at = tuple(map(int, np.unravel_index(first + failed, shape)))
             raise ValueError(f"the impact at index {at} could not be solved: {o.MESSAGES[code]}")
@@ -162,7 +162,7 @@ def _frictions(given) -> tuple[np.ndarray, np.ndarray, Laws]:
 
 
 def _restitutions(given, approach: np.ndarray) -> np.ndarray:
-    """Return e: numbers, or what laws say at speeds of approach."""
+    """Return e: numbers, or the values of laws at speeds of approach."""
     if not _any_law(given):
         return _numbers("restitution", given, "from 0 to 1", lambda a: (a >= 0) & (a <= 1))
     stated = _objects(given)

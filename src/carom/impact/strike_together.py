@@ -100,7 +100,7 @@ def by_pair(system, contact):
 
 
 @kernel
-def strike_several(model, data, c, k):
+def strike_together(model, data, c, k):
     """Solve the impact of all k closed points; apply their impulses, and write a record for each impulse.
 
     `group` has their W and velocities. A point that jams starts with a small speed of approach (§3.6).

@@ -15,8 +15,8 @@ from carom.contact.depth import least_gap
 from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.contact.pair_point import smaller
+from carom.dynamics.delassus import inverse_masses
 from carom.dynamics.energy import energies
-from carom.dynamics.several_points import inverse_masses
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import RESOLUTION
 from carom.impact.thresholds import VELOCITY_LEFT
@@ -68,13 +68,13 @@ def activate_contact(model, data, c, horizon):
         hit.code = TOO_MANY_POINTS
     elif k > 0:
         data.group.equations.iterations[FACTORED] = 0
-        activate_several(model, data, k, label, horizon)
+        activate_group(model, data, k, label, horizon)
         count_factors(data.group, work.step[0])
     regroup(system, active, work)
 
 
 @kernel
-def activate_several(model, data, k, label, horizon):
+def activate_group(model, data, k, label, horizon):
     """Judge all k closed points of a group; activate the new ones, deactivate those that open."""
     system = model.system
     active, state, group, work = data.active, data.state, data.group, data.work
