@@ -34,13 +34,9 @@ TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, SERIES))
 class PiecewiseCurve:
     """A curve in a plane or in space as polynomials of degree 5 in the arc length s, between knots.
 
-    Attributes
-    ----------
-    knots : (n + 1,)
-        Arc lengths s at the ends of the n pieces. At a corner is a piece of length 0.
-    coefficients : (6, n, d)
-        Coefficients of the pieces in s - knot, the constant first. There may be one at the last knot too.
-    closed : bool
+    The `knots` (n + 1,) are arc lengths at the ends of its n pieces; at a corner is a piece of length 0. The
+    `coefficients` (6, n, d) of the pieces are those in s - knot, the constant first; some may follow that are
+    those at the last knot.
     """
 
     def __init__(self, knots: np.ndarray, coefficients: np.ndarray, closed: bool = False):
