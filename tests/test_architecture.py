@@ -53,7 +53,7 @@ CAPABILITIES = {
         "results": 25, "visual": 14, "studies": 9, "scene": 9, "io": 7, "control": 3, "impact": 2,
         "dynamics": 1, "model": 1, "geometry": 1, "hints": 3,
     },
-    "laws by number": {"model": 1},
+    "laws by number, slip and direction in one law": {"model": 1, "scene": 1},
     "kinds of contacts and motions of points by name": {"kinematics": 1, "stepping": 1},
     "pairs that hardly move": {"contact": 1},
     "a material for each part of a compound": {"io": 1, "scene": 1},

@@ -291,10 +291,10 @@ def unit_quaternion(name: str, value) -> np.ndarray:
     return quaternion / length
 
 
-def instance(name: str, value, kinds: tuple[type, ...], hint: str = "") -> None:
-    """Refuse, by a `TypeError`, a `value` that is of none of `kinds`."""
+def instance(name: str, value, kinds: tuple[type, ...], hint: str = "") -> Any:
+    """Return `value`; refuse, by a `TypeError`, one that is of none of `kinds`."""
     if isinstance(value, kinds):
-        return
+        return value
     allowed = " or ".join(kind.__name__ for kind in kinds)
     if isinstance(value, type) and issubclass(value, kinds):
         hint = f"; this is the class, make an object with {value.__name__}(...)"

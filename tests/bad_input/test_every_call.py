@@ -9,6 +9,7 @@ import pytest
 
 import carom
 from bad_input import walk
+from carom.scene.values import MethodsOfScene
 
 pytest.importorskip("matplotlib")
 pytest.importorskip("mujoco")
@@ -127,7 +128,9 @@ def public():
         listed = getattr(module, "__all__", None) or [
             k
             for k, v in vars(module).items()
-            if inspect.isclass(v) and v.__module__ == module.__name__
+            if inspect.isclass(v)
+            and v.__module__ == module.__name__
+            and not issubclass(v, MethodsOfScene)  # whose methods are those of `Scene`
         ]
         for own in listed:
             if own not in carom.__all__:

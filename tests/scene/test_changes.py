@@ -128,6 +128,8 @@ def test_a_part_that_is_replaced_keeps_its_place_and_what_refers_to_it():
     assert scene.replace("hinge", definition=slider).definition is slider
     motor = constraints.Driver(scene["hinge"], rate=2.0)
     assert scene.replace("motor", definition=motor).definition.rate == 2.0
+    by_name = forces.JointSpring("hinge", stiffness=4.0)
+    assert scene.replace("spring", definition=by_name).definition.joint is scene["hinge"]
 
 
 @pytest.mark.parametrize(
@@ -142,6 +144,8 @@ def test_a_part_that_is_replaced_keeps_its_place_and_what_refers_to_it():
         (lambda s: s.replace("die", shape=None), "body must have a shape for contact"),
         (lambda s: s.replace("hinge", definition=joints.Fixed()), "must have coordinates"),
         (lambda s: s.replace("spring", definition=forces.Force((0, 0, 1))), "must be a JointSpring"),
+        (lambda s: s.replace("spring", definition=3), "must be a JointSpring, got 3"),
+        (lambda s: s.replace("spring", definition=forces.JointSpring("hing", 1.0)), "you mean 'hinge'"),
         (lambda s: s.add_body(carom.Sphere(1), mass=1, name="die"), "replace=True puts the new part"),
         (lambda s: s.add_contact("die", "floor"), "replace=True with its name"),
         (lambda s: s.add_static(carom.Sphere(1), name="die", replace=True), "'die', a body"),

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from carom.scene import Box, Capsule, Convex, Scene, Sphere
+from carom.scene import Box, Capsule, Convex, Friction, Scene, Sphere
 from carom.scene.contacts import initial_gap
 
 HALF_TURN = (math.cos(math.pi / 8), math.sin(math.pi / 8), 0, 0)  # 45 degrees about x
@@ -35,6 +35,8 @@ def test_defaults_and_values():
     contact = place(Sphere(1), 2, restitution=1, friction=3, impact_law="stronge", name="c")[1]
     assert (contact.restitution, contact.friction, contact.impact_law) == (1.0, 3.0, "stronge")
     assert contact.name == "c"
+    ice = Friction(axis=(1, 0, 0), along=0.1, across=0.3)
+    assert repr(ice) in repr(place(Sphere(1), 2, friction=ice)[1])
 
 
 @pytest.mark.parametrize(

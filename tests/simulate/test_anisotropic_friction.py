@@ -483,12 +483,12 @@ def test_ensembles_and_files_have_it(tmp_path):
         alone = carom.simulate(scene, 0.2, step=0.01)
         assert np.array_equal(many.position[k], alone.position[-1])
     both = Friction(axis=(1, 0, 0), along=Friction.table([0.0, 1.0], [0.3, 0.1]), across=0.5)
-    for law in (law, both):
-        scene.replace("block-floor", friction=law, friction_held=law)
+    for stated in (law, both):
+        scene.replace("block-floor", friction=stated, friction_held=stated)
         alone = carom.simulate(scene, 0.2, step=0.01)
         alone.save(tmp_path / "run.nc")
         again = carom.Solution.load(tmp_path / "run.nc")
-        assert again.scene["block-floor"].friction == law
+        assert again.scene["block-floor"].friction == stated
         assert np.array_equal(again.position, alone.position)
 
 

@@ -1,53 +1,41 @@
-"""Bodies, half-spaces, and the ground."""
+"""Bodies that move, and the ground."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from collections.abc import Sequence
+from dataclasses import KW_ONLY, dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import checks, fields
+from carom import arguments, checks, fields
 from carom.fields import Number, Value, Vector, keep
 from carom.geometry.attitude import attitude
-from carom.scene.colors import hex_color
 from carom.scene.look import Look, checked_look
 from carom.scene.materials import Material
-from carom.scene.moving_surfaces import (
-    SurfaceSpin,
-    SurfaceVelocity,
-    check_in_plane,
-    motion_in_words,
-    surface_spin,
-    surface_velocity,
-)
 from carom.scene.shapes import SHAPES, Shape
-from carom.scene.surfaces import SURFACES, SurfaceDefinition
-from carom.scene.values import in_scene
+from carom.scene.shapes.mesh import shape_given
+from carom.scene.solids import FIXED as FIXED
+from carom.scene.solids import HalfSpace as HalfSpace
+from carom.scene.solids import Solid, whole_material
+from carom.scene.solids import StaticBody as StaticBody
+from carom.scene.values import MethodsOfScene, in_scene
+
+if TYPE_CHECKING:
+    from carom.geometry.attitude import Orientation
 
 SLACK = 1e-12  # relative to the largest entry or moment: rounding, not physics
 GREATEST = 1e300  # [kg m^2]: sums are finite
 
-MaterialOrNone = Value[Material | None, Material | None]
-Color = Value[str | None, str | ArrayLike | None]
-
-
-def _material(name: str, value) -> Material:
-    checks.instance(name, value, (Material,))
-    return value
-
 
 @in_scene
 @dataclass(frozen=True, eq=False, repr=False)
-class Body:
+class Body(Solid):
     """A rigid body with its initial state. `Scene.add_body` makes it; arrays are read-only.
 
     Attributes
     ----------
-    index : int
-        Its index in `Scene.bodies`.
-    name : str
     shape : Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh, Profile, Compound or None
     mass : float
         [kg]
@@ -59,16 +47,10 @@ class Body:
         Initial orientation: unit quaternion (w, x, y, z), body to world.
     velocity, angular_velocity : (3,)
         Initial velocity of the mass centre [m/s] and angular velocity [rad/s], in world axes.
-    material : Material or None
-        Material of its surface.
-    color : str or None
-        Colour ``#rrggbb`` in pages, pictures and films; None: a colour of the palette.
     look : tuple of Look or None
         What is seen of it; None: its shape.
     """
 
-    index: int
-    name: str
     shape: Shape | None
     mass: Number = Value(checks.mass)
     inertia: Vector = Value(lambda _, value: inertia_matrix(value))
@@ -76,8 +58,7 @@ class Body:
     orientation: Value[np.ndarray, Any] = Value(attitude)
     velocity: Vector = fields.vector()
     angular_velocity: Vector = fields.vector()
-    material: MaterialOrNone = Value(_material, None)
-    color: Color = Value(hex_color, None)
+    _: KW_ONLY
     look: Value[tuple[Look, ...] | None, Any] = Value(checked_look, None)
 
     def __post_init__(self):
@@ -87,122 +68,6 @@ class Body:
 
     def __repr__(self) -> str:
         return f"Body({self.name!r}, {self.shape!r}, mass={self.mass:g})"
-
-
-@in_scene
-@dataclass(frozen=True, eq=False, repr=False)
-class HalfSpace:
-    """A fixed solid half-space behind a plane, such as a floor. `Scene.add_half_space` makes it.
-
-    Attributes
-    ----------
-    index : int
-        Its index in `Scene.half_spaces`.
-    name : str
-    point : (3,)
-        A point of its surface, which is a plane [m].
-    normal : (3,)
-        Unit normal of the surface, out of the half-space into free space.
-    material : Material or None
-        Material of its surface.
-    color : str or None
-        Colour ``#rrggbb`` in pages, pictures and films; None: grey.
-    surface_velocity : (3,), callable or None
-        Velocity with which its surface moves in itself [m/s]; see `Scene.add_static`.
-    surface_spin : tuple or None
-        Axis, rate [rad/s] and point, or None for that of the part, about which its surface turns in itself.
-    """
-
-    index: int
-    name: str
-    point: Vector = fields.vector()
-    normal: Vector = fields.direction()
-    material: MaterialOrNone = Value(_material, None)
-    color: Color = Value(hex_color, None)
-    surface_velocity: SurfaceVelocity = surface_velocity()
-    surface_spin: SurfaceSpin = surface_spin()
-
-    def __post_init__(self):
-        check_in_plane(self.surface_velocity, self.surface_spin, self.normal)
-
-    def __repr__(self) -> str:
-        at = f"point={self.point}, normal={self.normal}"
-        return f"HalfSpace({self.name!r}, {at}{motion_in_words(self)})"
-
-    @property
-    def moves(self) -> bool:
-        """Whether its surface moves in itself."""
-        return self.surface_velocity is not None or self.surface_spin is not None
-
-
-@in_scene
-@dataclass(frozen=True, eq=False, repr=False)
-class StaticBody:
-    """A solid that never moves: a wall, a peg, a ramp, a mesh, a bowl.
-
-    `Scene.add_static` makes it, and `Scene.add_surface`.
-
-    Attributes
-    ----------
-    index : int
-        Its index in `Scene.statics`.
-    name : str
-    shape : Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh, Profile, Compound or a surface
-        A surface is one of `carom.surfaces`.
-    position : (3,)
-        Position of the origin of the shape, in the world [m].
-    orientation : (4,)
-        Unit quaternion (w, x, y, z), shape to world.
-    material : Material or None
-        Material of its surface.
-    color : str or None
-        Colour ``#rrggbb`` in pages, pictures and films; None: grey.
-    surface_velocity : (3,), callable or None
-        Velocity with which its surface moves in itself [m/s]; see `Scene.add_static`.
-    surface_spin : tuple or None
-        Axis, rate [rad/s] and point, or None for that of the part, about which its surface turns in itself.
-    """
-
-    index: int
-    name: str
-    shape: Shape | SurfaceDefinition
-    position: Vector = fields.vector()
-    orientation: Value[np.ndarray, Any] = Value(attitude)
-    material: MaterialOrNone = Value(_material, None)
-    color: Color = Value(hex_color, None)
-    surface_velocity: SurfaceVelocity = surface_velocity()
-    surface_spin: SurfaceSpin = surface_spin()
-
-    def __post_init__(self):
-        checks.instance("shape", self.shape, (*SHAPES, *SURFACES))
-        _ = self.shape.pieces  # refused by a shape that has nothing to touch with
-        keep(self, material=whole_material(self.shape, self.material))
-
-    def __repr__(self) -> str:
-        at = f"{self.shape!r}, position={self.position}"
-        return f"StaticBody({self.name!r}, {at}{motion_in_words(self)})"
-
-    @property
-    def moves(self) -> bool:
-        """Whether its surface moves in itself."""
-        return self.surface_velocity is not None or self.surface_spin is not None
-
-
-def whole_material(shape: Shape | SurfaceDefinition, material: Material | None) -> Material | None:
-    """Return the material of a body: the given one, or that of its first part if all parts have their own."""
-    if material is not None or not shape.has_materials:
-        return material
-    bare = [k for k, piece in enumerate(shape.pieces) if piece.material is None]
-    if bare:
-        raise ValueError(
-            "material must be given for a body of which some parts have none of their own, got None for "
-            f"{shape!r} with {len(bare)} such pieces of {len(shape.pieces)}"
-        )
-    return shape.pieces[0].material
-
-
-#: classes that a body may touch besides other bodies
-FIXED = (HalfSpace, StaticBody)
 
 
 class Ground:
@@ -299,3 +164,93 @@ def inertia_matrix(value) -> np.ndarray:
     raise ValueError(
         f"inertia must have no principal moment above the sum of the other two, {moments}"
     )
+
+
+class SceneBodies(MethodsOfScene):
+    """The methods of `Scene` for bodies."""
+
+    @arguments.known
+    def add_body(
+        self,
+        shape: Shape | None = None,
+        *,
+        mass: float | None = None,
+        density: float | None = None,
+        inertia: ArrayLike | None = None,
+        position: ArrayLike = (0.0, 0.0, 0.0),
+        orientation: Orientation = (1.0, 0.0, 0.0, 0.0),
+        velocity: ArrayLike = (0.0, 0.0, 0.0),
+        angular_velocity: ArrayLike = (0.0, 0.0, 0.0),
+        material: Material | None = None,
+        color: str | ArrayLike | None = None,
+        look: Shape | Look | Sequence[Shape | Look] | None = None,
+        name: str | None = None,
+        replace: bool = False,
+    ) -> Body:
+        """Add a rigid body.
+
+        Parameters
+        ----------
+        shape
+            `Sphere`, `Box`, `Capsule`, `Cylinder`, `Disc`, `Ellipsoid`, `Convex`, `Mesh`,
+            `Profile` or `Compound`; or an object of trimesh, as a `Mesh`. A body without a shape cannot touch
+            anything.
+        mass, density
+            Exactly one of the two, above 0: the mass [kg], or the density of the shape [kg/m^3].
+        inertia : (3,) or (3, 3)
+            Inertia about the mass centre [kg m^2]: principal moments along the body axes, or the symmetric
+            matrix in body axes. Default: the inertia of the solid shape. A body without a shape needs it.
+        position : (3,)
+            Initial position of the mass centre, in the world [m].
+        orientation : (4,), (3, 3) or scipy.spatial.transform.Rotation
+            Initial orientation, body to world: a unit quaternion (w, x, y, z) with the scalar first, a rotation
+            matrix, or a SciPy Rotation. `carom.euler` and `carom.axis_angle` compute quaternions from angles in
+            degrees. A small error of normalisation (below 1e-3), as in (0.7071, 0, 0, 0.7071), is corrected.
+        velocity : (3,)
+            Initial velocity of the mass centre, in world axes [m/s].
+        angular_velocity : (3,)
+            Initial angular velocity, in world axes [rad/s].
+        material
+            Material of its surface, see `set_contact_default`.
+        color : str or (3,)
+            Colour in pages, pictures and films: a colour name of matplotlib (``"tab:red"``, ``"gold"``),
+            ``"#rrggbb"``, or red, green and blue from 0 to 1. Default: a colour of the palette.
+        look : Look, shape, or sequence of them
+            What pages, pictures, films and exports show in place of the shape. It touches nothing. Default: the
+            shape. An empty sequence: nothing is seen.
+        name
+            Name in the scene. A cube with "die" in its name is drawn with pips. Default ``"body1"``,
+            ``"body2"``, ...
+        replace : bool
+            True: a body that has this name is replaced, and what refers to it then refers to the new one.
+            Default False: a name that is taken is refused.
+
+        Raises
+        ------
+        ValueError
+            If an argument is outside its range, no rigid body can have the inertia, or another part has the
+            name.
+
+        Examples
+        --------
+        >>> scene = carom.Scene()
+        >>> die = scene.add_body(carom.Box(0.02, 0.02, 0.02), mass=0.016, position=(0, 0, 0.3), name="die")
+        >>> print(die.inertia[0].round(12))  # m a^2 / 6
+        [1.066667e-06 0.000000e+00 0.000000e+00]
+        >>> scene.add_body(carom.Sphere(0.1), mass=-1.0)
+        Traceback (most recent call last):
+            ...
+        ValueError: mass must be finite and above 0 [kg], got -1.0
+        """
+        shape = shape_given(shape)
+        mass, inertia = mass_and_inertia(shape, mass, density, inertia)
+        return self._parts.make(
+            Body, "body", name, replace, shape=shape, mass=mass, inertia=inertia, position=position,
+            orientation=orientation, velocity=velocity, angular_velocity=angular_velocity,
+            material=material, color=color, look=look,
+        )  # fmt: skip
+
+    @property
+    def bodies(self) -> tuple[Body, ...]:
+        """Bodies, in the order in which they were added."""
+        return self._parts.parts(Body)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields
-from typing import Any
+from typing import Any, NamedTuple
 
 from carom import arguments, checks
 from carom.fields import keep
@@ -21,17 +21,27 @@ from carom.scene.joints import JOINTS, Joint
 from carom.scene.shapes.mesh import shape_given
 from carom.scene.stops import Stop
 
-#: kinds of parts with what a message calls them; a part refers only to those of kinds before its own
-KINDS: dict[type[Any], str] = {
-    Body: "body", HalfSpace: "half-space", StaticBody: "static body", Joint: "joint",
-    AppliedForce: "force", Constraint: "constraint", Stop: "stop", Contact: "contact",
-}  # fmt: skip
+
+class Kind(NamedTuple):
+    """A kind of part."""
+
+    called: str  #: in messages
+    example: str  #: a value that such a part has
+    links: tuple[str, ...] = ()  #: its fields that are other parts, beside those of its definition
+
+
+#: a part refers only to those of kinds before its own
+KINDS: dict[type[Any], Kind] = {
+    Body: Kind("body", "mass"),
+    HalfSpace: Kind("half-space", "point"),
+    StaticBody: Kind("static body", "position"),
+    Joint: Kind("joint", "definition", ("parent", "child")),
+    AppliedForce: Kind("force", "definition", ("parent", "child")),
+    Constraint: Kind("constraint", "definition"),
+    Stop: Kind("stop", "restitution", ("joint",)),
+    Contact: Kind("contact", "friction", ("body", "other")),
+}
 _RANKS = {kind: k for k, kind in enumerate(KINDS)}
-#: fields of parts that are other parts, beside those of definitions
-LINKS: dict[type[Any], tuple[str, ...]] = {
-    Joint: ("parent", "child"), AppliedForce: ("parent", "child"), Stop: ("joint",),
-    Contact: ("body", "other"),
-}  # fmt: skip
 LEAVES = (AppliedForce, Constraint, Stop, Contact)  # to which no part refers
 REFERRING = (*FORCES, *CONSTRAINTS)  # definitions that may contain parts
 #: fields of parts and definitions that say which part it is, or to which it refers
@@ -56,7 +66,7 @@ def of_origin(part, first) -> Any:
 def parts_in(value) -> Iterator[Any]:
     """Yield the parts to which a part or a definition refers, and the ground."""
     own = vars(value)
-    for name in LINKS.get(type(value), ()):
+    for name in KINDS[type(value)].links if type(value) in KINDS else ():
         yield own[name]
     if isinstance(value, REFERRING):
         for field in fields(value):
@@ -133,7 +143,8 @@ def renewed(part, values: dict[str, Any]) -> Any:
     inside = [] if definition is None else [f.name for f in fields(definition)]
     if "shape" in values:
         values["shape"] = shape_given(values["shape"])
-    allowed = [name for name in (*(f.name for f in fields(part)), *inside) if name not in _FIXED]
+    own = sorted(fields(part), key=lambda field: bool(field.kw_only))  # as the method has them
+    allowed = [name for name in (*(f.name for f in own), *inside) if name not in _FIXED]
     if isinstance(part, Body):
         allowed.insert(2, "density")
     arguments.check_known(f"replace({part.name!r})", allowed, values)
@@ -183,4 +194,4 @@ def _of_body(body: Body, values: dict[str, Any]) -> dict[str, Any]:
 
 def list_of(parts: Iterable) -> str:
     """Return parts by kind and name, for a message."""
-    return ", ".join(f"{KINDS[type(one)]} {one.name!r}" for one in parts)
+    return ", ".join(f"{KINDS[type(one)].called} {one.name!r}" for one in parts)

@@ -5,15 +5,16 @@ Pass a definition to `Scene.add_constraint`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+import copy
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 from carom import arguments, checks, fields
 from carom.fields import Function, FunctionOrNone, Integer, NumberOrNone, Value, keep
 from carom.scene.bodies import Body
 from carom.scene.joints import Joint, JointDefinition
-from carom.scene.values import in_scene
+from carom.scene.values import MethodsOfScene, PartOfScene, in_scene
 
 
 def joint_or_name(name: str, joint) -> Any:
@@ -216,19 +217,14 @@ CONSTRAINTS = (Coupling, Driver, Rows)
 
 @in_scene
 @dataclass(frozen=True, eq=False, repr=False)
-class Constraint:
+class Constraint(PartOfScene):
     """A constraint of a scene. `Scene.add_constraint` makes it.
 
     Attributes
     ----------
-    index : int
-        Its index in `Scene.constraints`.
-    name : str
     definition : Coupling, Gear, Driver or Rows (of `carom.constraints`)
     """
 
-    index: int
-    name: str
     definition: ConstraintDefinition
 
     @property
@@ -253,6 +249,76 @@ class Constraint:
         return (
             f"Constraint({self.name!r}, {self.kind}, {', '.join(repr(p.name) for p in self.parts)})"
         )
+
+
+def with_parts(definition: Any, member: Callable) -> Any:
+    """Return a definition whose joints and bodies are parts of a scene; one that has them already as it is.
+
+    Parameters
+    ----------
+    definition : a force or a constraint
+    member : `carom.scene.registry.Registry.member` of the scene
+
+    Raises
+    ------
+    ValueError
+        If the scene has no part with such a name (with the nearest one), or if a part is of another scene.
+    """
+    if isinstance(definition, Coupling):
+        terms = tuple(
+            (member("each joint of the definition", joint, (Joint,)), k, factor)
+            for joint, k, factor in definition.terms
+        )
+        if len({term[:2] for term in terms}) != len(terms):
+            raise ValueError(
+                f"each joint of the definition must be given once, got {[t[0].name for t in terms]}"
+            )
+        for joint, k, _ in terms:
+            acts_along(joint, k, "each joint of the definition")
+        if terms == definition.terms:
+            return definition
+        made = copy.copy(definition)
+        keep(made, terms=terms)
+        return made
+    own = {}
+    if hasattr(definition, "joint"):
+        own["joint"] = member("joint of the definition", definition.joint, (Joint,))
+    elif hasattr(definition, "bodies"):
+        own["bodies"] = tuple(
+            member("each body of the definition", body, (Body,)) for body in definition.bodies
+        )
+    known = all(getattr(definition, name) == part for name, part in own.items())
+    return definition if known else replace(definition, **own)
+
+
+class SceneConstraints(MethodsOfScene):
+    """The methods of `Scene` for constraints beyond joints."""
+
+    @arguments.known
+    def add_constraint(
+        self, definition: ConstraintDefinition, *, name: str | None = None, replace: bool = False
+    ) -> Constraint:
+        """Add a constraint beyond joints: a gear, a motor, or user-defined rows.
+
+        Parameters
+        ----------
+        definition
+            A constraint of `carom.constraints`. Its joints and bodies, given as objects or by name, must belong
+            to this scene.
+        name
+            Name in the scene. Default ``"constraint1"``, ``"constraint2"``, ...
+        replace : bool
+            True: a constraint that has this name is replaced, and what refers to it then refers to the new one.
+            Default False: a name that is taken is refused.
+        """
+        checks.instance("definition", definition, CONSTRAINTS)
+        definition = with_parts(definition, self._parts.member)
+        return self._parts.make(Constraint, "constraint", name, replace, definition=definition)
+
+    @property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """Constraints beyond joints, in the order in which they were added."""
+        return self._parts.parts(Constraint)
 
 
 __getattr__ = arguments.members_of("carom.constraints", ["Coupling", "Driver", "Gear", "Rows"])

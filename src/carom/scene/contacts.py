@@ -13,7 +13,7 @@ from carom.scene.materials import IMPACT_LAWS, ContactLaw
 from carom.scene.profile_pairs import check_profiles
 from carom.scene.surfaces import SurfaceDefinition
 from carom.scene.user_surface import Surface, check_at, evaluator
-from carom.scene.values import in_scene
+from carom.scene.values import PartOfScene, in_scene
 
 __all__ = ["IMPACT_LAWS", "Contact", "check_gap", "check_overlap", "initial_gap"]
 
@@ -35,21 +35,16 @@ def check_curvature(body: Body, other: HalfSpace | StaticBody | Body) -> None:
 
 @in_scene
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Contact(ContactLaw):
+class Contact(PartOfScene, ContactLaw):
     """A pair that may touch. `Scene.add_contact` makes it; it also has the attributes of its `ContactLaw`.
 
     Attributes
     ----------
-    index : int
-        Its index in `Scene.contacts`.
-    name : str
     body : Body
     other : HalfSpace, StaticBody or Body
         The partner of `body`. The normal of the contact points from `other` to `body`.
     """
 
-    index: int
-    name: str
     body: Body
     other: HalfSpace | StaticBody | Body
 
@@ -69,7 +64,7 @@ class Contact(ContactLaw):
         return self.other if isinstance(self.other, HalfSpace) else None
 
     def __repr__(self) -> str:
-        plain = ContactLaw(friction_held=self.friction)
+        plain = ContactLaw(friction=self.friction, friction_held=self.friction)
         law = {name: getattr(self, name) for name in vars(plain)}
         shown = {"restitution": "", "friction": "", "impact_law": ""}
         values = ", ".join(

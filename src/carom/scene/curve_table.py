@@ -1,7 +1,8 @@
-"""Tables of curves: pieces of degree 5 in the arc length s, made from the points of a function.
+"""Curves as pieces of degree 5 in the arc length s: their points, and tables of them from those of a function.
 
-They agree with the curve in position, direction and curvature at their ends, so that the table is C2. There are
-as many as keep it within `ACCURACY` of the size of the curve, and s within `EVEN` of its arc length.
+The pieces of a table agree with the curve of a function in position, direction and curvature at their ends, so
+that the table is C2. There are as many as keep it within `ACCURACY` of the size of the curve, and s within
+`EVEN` of its arc length.
 """
 
 from __future__ import annotations
@@ -15,8 +16,6 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from carom import checks
-from carom.fields import keep
-from carom.scene.curves import Curve
 
 ACCURACY = 1e-12  # error of a table, relative to the size of its curve
 EVEN = 1e-11  # largest difference of |dx/ds| from 1
@@ -30,6 +29,48 @@ JUMP = np.array([1e-8, 1e-7, 1e-5])
 ROUND_OFF = 1e-15  # of coordinates
 NODES = chebyshev.chebpts2(SERIES + 1)
 TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, SERIES))
+
+
+class PiecewiseCurve:
+    """A curve in a plane or in space as polynomials of degree 5 in the arc length s, between knots.
+
+    The `knots` (n + 1,) are arc lengths at the ends of its n pieces; at a corner is a piece of length 0. The
+    `coefficients` (6, n, d) of the pieces are those in s - knot, the constant first; some may follow that are
+    those at the last knot.
+    """
+
+    def __init__(self, knots: np.ndarray, coefficients: np.ndarray, closed: bool = False):
+        self.knots, self.coefficients, self.closed = knots, coefficients, closed
+
+    @property
+    def length(self) -> float:
+        """Arc length from the start to the end [m]."""
+        return float(self.knots[-1])
+
+    def _at(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return position, first and second derivative (..., d) at arc lengths (...)."""
+        s = s % self.length if self.closed else s
+        k = np.clip(np.searchsorted(self.knots, s, side="right") - 1, 0, len(self.knots) - 2)
+        return self._on(k, s - self.knots[k])
+
+    def _on(self, k: Any, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return position, first and second derivative (..., d) at distances t from the starts of pieces k."""
+        t, c = t[..., None], self.coefficients[:, k]
+        value, slope, bend = c[5], np.zeros_like(c[5]), np.zeros_like(c[5])
+        for power in range(4, -1, -1):
+            bend = bend * t + 2.0 * slope
+            slope, value = slope * t + value, value * t + c[power]
+        return value, slope, bend
+
+
+def between(knots: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """Return the coefficients (6, n, d) of pieces with these ends (n + 1, 3, d)."""
+    h = np.diff(knots)[:, None]
+    (p, v, a), (q, w, b) = np.moveaxis(ends[:-1], 1, 0), np.moveaxis(ends[1:], 1, 0)
+    d, e, f = q - p - h * v - 0.5 * h * h * a, h * (w - v - h * a), h * h * (b - a)
+    third, fourth = 10.0 * d - 4.0 * e + 0.5 * f, -15.0 * d + 7.0 * e - f
+    fifth = 6.0 * d - 3.0 * e + 0.5 * f
+    return np.stack([p, v, 0.5 * a, third / h**3, fourth / h**4, fifth / h**5])
 
 
 def points_of(function: Callable, u: np.ndarray) -> np.ndarray:
@@ -125,16 +166,15 @@ class _Panel(NamedTuple):
         count = 1
         while True:
             s = np.linspace(0.0, self.length, count + 1)
-            made = object.__new__(Curve)
-            keep(made, knots=s, ends=self.ends(s), closed=False)
-            between = (s[:-1, None] + self.length / count * np.array([0.25, 0.5, 0.75])).ravel()
-            place, slope, _ = made._at(between)
-            exact = self.ends(between)[:, 0]
+            ends = self.ends(s)
+            tried = (s[:-1, None] + self.length / count * np.array([0.25, 0.5, 0.75])).ravel()
+            place, slope, _ = PiecewiseCurve(s, between(s, ends))._at(tried)
+            exact = self.ends(tried)[:, 0]
             round_off = ROUND_OFF * np.max(np.abs(exact))
             off = np.max(np.abs(place - exact)) / max(ACCURACY * size, round_off)
             uneven = np.max(np.abs(np.linalg.norm(slope, axis=1) - 1.0)) / EVEN
             if max(off, uneven) <= 1.0 or count >= MOST_PIECES:
-                return s, made.ends
+                return s, ends
             # errors are of the orders 6 and 5
             growth = 1.1 * max(off ** (1 / 6), uneven ** (1 / 5))
             count = min(max(count + 1, math.ceil(count * growth)), 8 * count, MOST_PIECES)

@@ -1,6 +1,7 @@
 """Curves in space for joints: `Spline` through points, and `Curve` of a function.
 
-Every curve becomes a table by arc length (`carom.scene.curve_table`). Kernels know only this form.
+Every curve becomes a table by arc length (`carom.scene.curve_table`). Kernels know only this form, which the
+outline of a `Profile` has too (`carom.scene.outline`).
 """
 
 from __future__ import annotations
@@ -16,13 +17,14 @@ from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.fields import keep
+from carom.scene.curve_table import ACCURACY, PiecewiseCurve, between, points_of, table_of
 
 FAR = 100.0  # weight of a direction across the motion, in squares of the distance of two knots
 
 
 @arguments.known
 @dataclass(frozen=True, init=False, eq=False, repr=False)
-class Curve:
+class Curve(PiecewiseCurve):
     """A curve of a function of one parameter, from its start to its end.
 
     Parameters
@@ -74,8 +76,6 @@ class Curve:
         end: float = 1.0,
         closed: bool = False,
     ):
-        from carom.scene.curve_table import points_of, table_of
-
         function = checks.function("function", function)
         start = checks.number("start", start)
         end = checks.number("end", end, above=start)
@@ -87,20 +87,17 @@ class Curve:
         pieces = f"{len(self.knots) - 1} pieces{', closed' * self.closed}"
         return f"{type(self).__name__}(length={self.length:g} m, {pieces})"
 
-    @property
-    def length(self) -> float:
-        """Arc length from the start to the end [m]."""
-        return float(self.knots[-1])
+    @classmethod
+    def _of(cls, knots: np.ndarray, ends: np.ndarray, closed: bool) -> Curve:
+        """Return the curve with these ends of its pieces."""
+        made = object.__new__(cls)
+        keep(made, knots=knots, ends=ends, closed=closed)
+        return made
 
     @cached_property
-    def coefficients(self) -> np.ndarray:
+    def coefficients(self) -> np.ndarray:  # pyright: ignore[reportIncompatibleVariableOverride]
         """Coefficients (6, n, 3) of the pieces in s - knot, the constant first."""
-        h = np.diff(self.knots)[:, None]
-        (p, v, a), (q, w, b) = np.moveaxis(self.ends[:-1], 1, 0), np.moveaxis(self.ends[1:], 1, 0)
-        d, e, f = q - p - h * v - 0.5 * h * h * a, h * (w - v - h * a), h * h * (b - a)
-        third, fourth = 10.0 * d - 4.0 * e + 0.5 * f, -15.0 * d + 7.0 * e - f
-        fifth = 6.0 * d - 3.0 * e + 0.5 * f
-        return np.stack([p, v, 0.5 * a, third / h**3, fourth / h**4, fifth / h**5])
+        return between(self.knots, self.ends)
 
     @cached_property
     def normals(self) -> np.ndarray:
@@ -145,17 +142,6 @@ class Curve:
         point = checks.finite_array("point", point, (3,), "m")
         s = float(self.feet(point[None], np.zeros((1, 3)))[0])
         return s if self.closed else min(max(s, 0.0), self.length)
-
-    def _at(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return position, first and second derivative at arc lengths."""
-        s = s % self.length if self.closed else s
-        k = np.clip(np.searchsorted(self.knots, s, side="right") - 1, 0, len(self.knots) - 2)
-        t, c = (s - self.knots[k])[..., None], self.coefficients[:, k]
-        value, slope, bend = c[5], np.zeros_like(c[5]), np.zeros_like(c[5])
-        for power in range(4, -1, -1):
-            bend = bend * t + 2.0 * slope
-            slope, value = slope * t + value, value * t + c[power]
-        return value, slope, bend
 
     def feet(self, points: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """Return the arc lengths (K,) of points (K, 3) near the curve, with velocities (K, 3) along it.
@@ -213,8 +199,6 @@ class Spline(Curve):
 
     def __init__(self, points: ArrayLike, closed: bool = False):
         from scipy.interpolate import CubicSpline
-
-        from carom.scene.curve_table import ACCURACY, table_of
 
         points = checks.finite_array("points", points, (None, 3), "m")
         closed, least = checks.flag("closed", closed), 3 if closed else 2

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from carom import arguments, checks, fields
 from carom.fields import REQUIRED, Flag, Number, Value, Vector, VectorOrNone, keep
 from carom.scene.bodies import GROUND, Body, Ground
+from carom.scene.constraints import with_parts
 from carom.scene.more_forces import (
     Actuator,
     AlongJoint,
@@ -25,7 +26,7 @@ from carom.scene.more_forces import (
     JointSpring,
     UserForce,
 )
-from carom.scene.values import apart, in_scene
+from carom.scene.values import MethodsOfScene, PartOfScene, apart, in_scene
 
 
 @arguments.known
@@ -156,21 +157,16 @@ FORCES = get_args(ForceDefinition)
 
 @in_scene
 @dataclass(frozen=True, eq=False, repr=False)
-class AppliedForce:
+class AppliedForce(PartOfScene):
     """A force of a scene, from `parent` on `child`. `Scene.add_force` makes it.
 
     Attributes
     ----------
-    index : int
-        Its index in `Scene.forces`.
-    name : str
     definition : Spring, Torque, Force, ... (one of `carom.forces`)
     parent : Body or carom.GROUND
     child : Body
     """
 
-    index: int
-    name: str
     definition: ForceDefinition
     parent: Body | Ground
     child: Body
@@ -202,6 +198,67 @@ def force_on(definition) -> tuple | None:
 def sides(first) -> tuple[Body | Ground, Body]:
     """Return parent and child of a force on a joint or on a body."""
     return (GROUND, first) if isinstance(first, Body) else (first.parent, first.child)
+
+
+class SceneForces(MethodsOfScene):
+    """The methods of `Scene` for forces."""
+
+    @arguments.known
+    def add_force(
+        self,
+        definition: ForceDefinition,
+        parent: Body | Ground | str = GROUND,
+        child: Body | str | None = None,
+        *,
+        name: str | None = None,
+        replace: bool = False,
+    ) -> AppliedForce:
+        """Add a force on `child`, or between `parent` and `child`.
+
+        There are three forms: ``add_force(definition, child)``, where the ground is the parent;
+        ``add_force(definition, parent, child)``; and ``add_force(definition)`` for a definition that contains
+        its joint or its bodies (`JointSpring`, `JointForce`, `UserForce`).
+
+        Parameters
+        ----------
+        definition
+            A force of `carom.forces`.
+        parent
+            A body or its name, or `carom.GROUND`. If only one body is given, it is the child.
+        child
+            Another body, or its name.
+        name
+            Name in the scene. Default ``"force1"``, ``"force2"``, ...
+        replace : bool
+            True: a force that has this name is replaced, and what refers to it then refers to the new one.
+            Default False: a name that is taken is refused.
+        """
+        checks.instance("definition", definition, FORCES)
+        definition = with_parts(definition, self._parts.member)
+        named = force_on(definition)
+        if named is not None:
+            if child is not None or parent is not GROUND:
+                raise ValueError(
+                    f"parent and child must be left out with {type(definition).__name__}, which names "
+                    f"its own, got {checks.shown(parent)} and {checks.shown(child)}"
+                )
+            parent, child = sides(named[0])
+        if child is None and isinstance(parent, (Body, str)):
+            parent, child = GROUND, parent
+        if child is None:
+            raise TypeError(
+                "child must be given: add_force(definition, body) for a force on a body, "
+                "add_force(definition, parent, child) for one between two"
+            )
+        parent, child = self._parts.pair(parent, child)
+        return self._parts.make(
+            AppliedForce, "force", name, replace, definition=definition, parent=parent, child=child
+        )
+
+    @property
+    def forces(self) -> tuple[AppliedForce, ...]:
+        """Forces, in the order in which they were added."""
+        return self._parts.parts(AppliedForce)
 
 
 __getattr__ = arguments.members_of("carom.forces", [one.__name__ for one in FORCES])

@@ -32,7 +32,8 @@ def _of_time(name: str, value, shape: tuple[int, ...]):
     return value
 
 
-def _velocity(name: str, value) -> Velocity:
+def velocity_of_surface(name: str, value) -> Velocity:
+    """Return a velocity (3,) [m/s], or a function of time."""
     if callable(value):
         return _of_time(name, value, (3,))
     return checks.finite_array(
@@ -43,7 +44,8 @@ def _velocity(name: str, value) -> Velocity:
     )
 
 
-def _spin(name: str, value) -> Spin:
+def spin_of_surface(name: str, value) -> Spin:
+    """Return axis, rate [rad/s] or a function of time, and point."""
     given = value if isinstance(value, (tuple, list)) else ()
     if len(given) not in (2, 3):
         raise ValueError(
@@ -64,16 +66,6 @@ def _spin(name: str, value) -> Spin:
 
 SurfaceVelocity = Value[Velocity | None, ArrayLike | Callable | None]
 SurfaceSpin = Value[Spin | None, GivenSpin | None]
-
-
-def surface_velocity() -> SurfaceVelocity:
-    """Return a field for the velocity of a surface, a vector [m/s] or a function of time."""
-    return Value(_velocity, None)
-
-
-def surface_spin() -> SurfaceSpin:
-    """Return a field for the spin of a surface: axis, rate [rad/s] or a function of time, point."""
-    return Value(_spin, None)
 
 
 def is_timed(part: Any) -> bool:

@@ -15,7 +15,7 @@ from carom.fields import keep
 from carom.geometry import quaternion
 from carom.geometry.cells import Cells, cells_of
 from carom.scene.materials import Material
-from carom.scene.outline import peaks
+from carom.scene.outline import Outline
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
 #: of the corners of a box
@@ -106,7 +106,7 @@ class Piece:
             rim = self.half[0] / across if across > 0 else 0.0
             core = np.array([rim * d[0], rim * d[1], np.copysign(self.half[2], d[2])])
         elif self.kind == "profile":
-            found = peaks(self.outline, d[:2])
+            found = Outline(self.outline).peaks(d[:2])
             found = found if len(found) else self.outline[:1, 1:3]
             core = np.array([*found[np.argmax(found @ d[:2])], np.copysign(self.half[2], d[2])])
         else:

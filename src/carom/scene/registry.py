@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, TypeVar
 
 from carom import checks
 from carom.scene.bodies import Body, Ground
-from carom.scene.changes import KINDS, LEAVES, exchanged, followed, of_origin, origin, parts_in
+from carom.scene.changes import KINDS, LEAVES, exchanged, of_origin, origin, parts_in
 from carom.scene.contacts import Contact
+
+T = TypeVar("T")
 
 
 class Derived(dict):
@@ -68,8 +70,8 @@ class Registry:
                 return index, name
             if type(old) is not kind:
                 raise ValueError(
-                    f"name must be that of a {KINDS[kind]} to replace it, got {name!r}, a {KINDS[type(old)]}; "
-                    f"take that away: scene.remove({name!r})"
+                    f"name must be that of a {KINDS[kind].called} to replace it, got {name!r}, a "
+                    f"{KINDS[type(old)].called}; take that away: scene.remove({name!r})"
                 )
             return old.index, name
         return index, self._numbered(default, index + 1) if name is None else self._free(name)
@@ -89,7 +91,14 @@ class Registry:
             )
         return name
 
-    def add(self, part):
+    def make(
+        self, kind: type[T], default: str, name: str | None, replace: bool, **values: Any
+    ) -> T:
+        """Make a part of a `kind`, which checks its values, and store it under the name that `new` returns."""
+        values["index"], values["name"] = self.new(kind, name, default, replace)
+        return self.add(kind(**values))
+
+    def add(self, part) -> Any:
         """Store `part` under its name, and return it; a part that has the name gives it its place."""
         if part.name in self._parts:
             old = self._parts[part.name]
@@ -113,13 +122,6 @@ class Registry:
         self.changes()
         self._parts = {part.name: part for part in parts}
         self._kinds = {kind: [part for part in parts if type(part) is kind] for kind in KINDS}
-
-    def linked(self, definition) -> Any:
-        """Return a definition that refers to the parts as they are; refuse those of other scenes."""
-        own = {
-            id(part): self.member("definition", part, tuple(KINDS)) for part in parts_in(definition)
-        }
-        return followed(definition, own)
 
     def parts(self, kind: type) -> tuple:
         """Return all parts of a `kind`, in the order added."""

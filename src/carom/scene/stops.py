@@ -6,13 +6,14 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from carom import checks, fields
+from carom import arguments, checks, fields
 from carom.fields import NumberOrNone, Value, Word, keep
 from carom.scene.constraints import acts_along, coordinate_kind
 from carom.scene.joints import Joint
 from carom.scene.materials import IMPACT_LAWS
+from carom.scene.restitution import Restitution
 from carom.scene.restitution import restitution as number_or_law
-from carom.scene.values import in_scene
+from carom.scene.values import MethodsOfScene, PartOfScene, in_scene
 
 
 def _index_or_word(name: str, value) -> int | str:
@@ -32,14 +33,11 @@ def _check_coordinate(joint: Joint, coordinate: int | str) -> None:
 
 @in_scene
 @dataclass(frozen=True, eq=False, repr=False)
-class Stop:
+class Stop(PartOfScene):
     """A limit of a joint coordinate: a unilateral constraint. `Scene.add_stop` makes it.
 
     Attributes
     ----------
-    index : int
-        Its index in `Scene.stops`.
-    name : str
     joint : Joint
     coordinate : int or str
         Index of the coordinate of the joint, or the word for an angle of a ball joint.
@@ -50,8 +48,6 @@ class Stop:
     impact_law : str
     """
 
-    index: int
-    name: str
     joint: Joint
     coordinate: Value[Any, Any] = Value(_index_or_word)
     lower: NumberOrNone = fields.number(None)
@@ -102,3 +98,60 @@ class RailContact(Stop):
 
     def __repr__(self) -> str:
         return f"RailContact({self.name!r}, restitution={self.restitution:g})"
+
+
+class SceneStops(MethodsOfScene):
+    """The methods of `Scene` for stops."""
+
+    @arguments.known
+    def add_stop(
+        self,
+        joint: Joint | str,
+        *,
+        lower: float | None = None,
+        upper: float | None = None,
+        restitution: float | Restitution = 0.0,
+        impact_law: str = "newton",
+        coordinate: int | str = 0,
+        name: str | None = None,
+        replace: bool = False,
+    ) -> Stop:
+        """Add a stop: a limit of a joint coordinate, with impacts and restitution.
+
+        A stop is a unilateral constraint on a coordinate of the joint. Its impacts pass the same boundary layer
+        as those of contacts, and their impulses act on the whole mechanism. In `Solution.impacts` the `contact`
+        of a stop is the number of contacts of bodies plus the index of the stop. Its impulse has only a normal
+        component; for an angle, impulses are in [N m s] and speeds in [rad/s].
+
+        Parameters
+        ----------
+        joint
+            A joint of the scene that has coordinates, or its name.
+        lower, upper
+            Exactly one of the two: the lower or the upper limit of the coordinate [rad or m]. The coordinate is
+            0 at the start. For two limits add two stops.
+        restitution
+            Coefficient of restitution, from 0 (default) to 1, or its law: a function of the speed of the
+            coordinate [rad/s or m/s].
+        impact_law
+            ``"newton"`` (default), ``"poisson"`` or ``"stronge"``. A stop has no friction, so the laws differ
+            only in multiple impacts.
+        coordinate
+            Index of the coordinate of the joint. Default 0. Of a ball joint (`carom.joints.Spherical`) one of
+            ``"rotation"``, ``"swing"`` (a cone) and ``"twist"``. Rotation and swing have upper limits, from 0
+            to pi. The twist has no value where the swing is pi, so it needs a limit of the swing.
+        name
+            Name in the scene. Default ``"stop1"``, ``"stop2"``, ...
+        """
+        joint = self._parts.member("joint", joint, (Joint,))
+        return self._parts.make(
+            Stop, "stop", name, replace, joint=joint, coordinate=coordinate, lower=lower, upper=upper,
+            restitution=restitution, impact_law=impact_law,
+        )  # fmt: skip
+
+    @property
+    def stops(self) -> tuple[Stop, ...]:
+        """Stops of joints, in the order in which they were added, then contacts of rails that can be left."""
+        added = self._parts.parts(Stop)
+        rails = (joint for joint in self._parts.parts(Joint) if joint.can_be_left)
+        return (*added, *(RailContact(k, joint) for k, joint in enumerate(rails, len(added))))

@@ -12,17 +12,16 @@ from carom.scene.contacts import Contact, check_gap
 from carom.scene.friction import FrictionLaw
 from carom.scene.materials import ContactLaw, Rule
 from carom.scene.pairs import Pairs
-from carom.scene.registry import Registry
 from carom.scene.restitution import Restitution
+from carom.scene.values import MethodsOfScene
 
 One = Body | HalfSpace | StaticBody | str
 Some = One | Sequence[One]
 
 
-class TouchingPairs:
+class SceneContacts(MethodsOfScene):
     """The methods of `Scene` for contacts."""
 
-    _parts: Registry
     _pairs: Pairs
 
     @arguments.known
@@ -106,16 +105,11 @@ class TouchingPairs:
         self._pairs.check_new(body, other, old)
         index, name = self._parts.new(Contact, name, "contact", replace)
         given = {
-            "restitution": restitution,
-            "friction": friction,
-            "friction_held": friction_held,
-            "impact_law": impact_law,
-            "stiffness": stiffness,
-            "rolling_friction": rolling_friction,
-            "pivoting_friction": pivoting_friction,
-            "tangential_restitution": tangential_restitution,
+            "restitution": restitution, "friction": friction, "friction_held": friction_held,
+            "impact_law": impact_law, "stiffness": stiffness, "rolling_friction": rolling_friction,
+            "pivoting_friction": pivoting_friction, "tangential_restitution": tangential_restitution,
             "multiple": multiple,
-        }
+        }  # fmt: skip
         law = self._pairs.law(body, other, given)
         contact = Contact(index=index, name=name, body=body, other=other, **vars(law))
         check_gap(contact)

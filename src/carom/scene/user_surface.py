@@ -244,12 +244,11 @@ def address_of(surface: Surface) -> tuple[Functions, Any]:
 
 def evaluator(surface: Surface) -> Callable[[np.ndarray], np.ndarray]:
     """Return a function of a point (3,), with value, gradient and Hessian in one array."""
-    if surface.gradient is not None:
-        three = joined(surface)
-        return lambda x: three(0.0, x)
-    code = written(surface)
+    code, is_written = code_of(surface)
 
     def numbers(x):
+        if not is_written:
+            return code(0.0, x)
         out = np.empty(RESULTS)
         code(0.0, x.tolist(), out)
         return out

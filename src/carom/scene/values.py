@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TypeVar
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeVar
 
 from carom import arguments, checks
+
+if TYPE_CHECKING:
+    from carom.scene.registry import Registry
 
 T = TypeVar("T")
 
@@ -14,6 +18,28 @@ in_scene = arguments.attributes(
     "parts are read-only: scene.replace(name, ...) puts a part with other values in their place, and "
     "carom.ensemble(scene, duration, vary=...) varies them from run to run"
 )
+
+
+class MethodsOfScene:
+    """Base class of the methods of `Scene` for one kind of part, which stand beside that kind."""
+
+    if TYPE_CHECKING:
+        _parts: Registry
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PartOfScene:
+    """A part of a scene, which a method of `Scene` makes.
+
+    Attributes
+    ----------
+    index : int
+        Its index among the parts of its kind, as in `Scene.bodies` or `Scene.joints`.
+    name : str
+    """
+
+    index: int
+    name: str
 
 
 def shown(vector) -> str:

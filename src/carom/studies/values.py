@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from carom import checks
-from carom.fields import Value, keep
+from carom.fields import REQUIRED, Value, keep
 from carom.geometry.thresholds import ROUND_OFF, UNIT_ERROR
 from carom.scene.bodies import Body
 from carom.scene.contacts import Contact, check_overlap, far, place
@@ -69,11 +69,11 @@ class Found(NamedTuple):
 
 
 def vars_of(kind: type) -> dict[str, Value]:
-    """Return the fields of a class that check their values."""
+    """Return the fields of a class that check their values, first those that must be given."""
     found = {}
     for base in reversed(kind.__mro__):
         found |= {name: one for name, one in vars(base).items() if isinstance(one, Value)}
-    return found
+    return dict(sorted(found.items(), key=lambda one: one[1].default is not REQUIRED))
 
 
 def fields_of(part) -> Iterator[Found]:

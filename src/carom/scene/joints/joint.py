@@ -12,19 +12,16 @@ from carom.geometry.attitude import attitude
 from carom.scene.bodies import Body, Ground
 from carom.scene.joints.definition import JointDefinition
 from carom.scene.joints.rolling import KnifeEdge, RollingDisc, RollingSphere
-from carom.scene.values import in_scene
+from carom.scene.values import PartOfScene, in_scene
 
 
 @in_scene
 @dataclass(frozen=True, eq=False, repr=False)
-class Joint:
+class Joint(PartOfScene):
     """A joint of a scene, between `parent` and `child`. `Scene.add_joint` makes it.
 
     Attributes
     ----------
-    index : int
-        Its index in `Scene.joints`.
-    name : str
     definition : Revolute, Spherical, ... (one of `carom.joints`)
     parent : Body or carom.GROUND
     child : Body
@@ -33,8 +30,6 @@ class Joint:
         None if the definition is in the world at the start.
     """
 
-    index: int
-    name: str
     definition: JointDefinition
     parent: Body | Ground
     child: Body

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, TypeAlias
 import numpy as np
 
 from carom import arguments, checks, fields
-from carom.fields import Value, VectorOrNone, Word, keep
+from carom.fields import Value, VectorOrNone, Word
 from carom.scene.curves import Curve
 from carom.scene.friction import friction as friction_or_law
 from carom.scene.joints.definition import JointDefinition
@@ -24,8 +24,7 @@ LEAST_SINE, PLANE = 0.02, 1e-9
 
 def _curve(name: str, value) -> Curve:
     hint = "; carom.curves.Spline(points) or carom.curves.Curve(function) makes one"
-    checks.instance(name, value, (Curve,), hint)
-    return value
+    return checks.instance(name, value, (Curve,), hint)
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,11 +116,7 @@ class PointOnCurve(OnCurve):
     @cached_property
     def shadow(self) -> Curve:
         """The curve in space, seen along the free side."""
-        made = object.__new__(Curve)
-        keep(
-            made, knots=self.curve.knots, ends=self._seen(self.curve.ends), closed=self.curve.closed
-        )
-        return made
+        return Curve._of(self.curve.knots, self._seen(self.curve.ends), self.curve.closed)
 
     def _seen(self, vectors: np.ndarray) -> np.ndarray:
         return vectors - (vectors @ self.side)[..., None] * self.side

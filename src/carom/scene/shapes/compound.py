@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,11 +16,6 @@ from carom.geometry import quaternion
 from carom.geometry.attitude import attitude
 from carom.scene.materials import Material
 from carom.scene.pieces import IDENTITY, Piece, Shape
-
-
-def _material(name: str, value) -> Material:
-    checks.instance(name, value, (Material,))
-    return value
 
 
 @arguments.known
@@ -56,7 +52,9 @@ class Part:
     shape: Shape
     position: Vector = fields.vector(unit="m")
     orientation: Value[np.ndarray, Any] = Value(attitude, IDENTITY)
-    material: Value[Material | None, Material | None] = Value(_material, None)
+    material: Value[Material | None, Material | None] = Value(
+        partial(checks.instance, kinds=(Material,)), None
+    )
 
     def __post_init__(self):
         checks.instance("shape", self.shape, (Shape,), "; a shape is needed")

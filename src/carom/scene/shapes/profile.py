@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.fields import keep
-from carom.scene import outline
-from carom.scene.curves import Curve, Spline
+from carom.scene.outline import Outline, around, through
 from carom.scene.pieces import Piece, Shape
 
 SAMPLED = 1.05  # the greatest curvature by that of the samples of a piece
@@ -102,16 +101,13 @@ class Profile(Shape):
                     "corners must be left out where outline is a function, got "
                     f"{checks.shown(corners)}; give points for a curve with corners"
                 )
-            rows = _of_function(outline)
+            curve = around(outline)
         else:
-            rows = _of_points(outline, corners)
-        self._keep(rows, thickness)
-
-    def _keep(self, rows: np.ndarray, thickness: float) -> None:
-        area, middle, second = outline.moments(rows)
+            curve = through(outline, corners)
+        area, middle, second = curve.moments()
+        rows, half = curve.rows, 0.5 * thickness
         rows[:, 1:3] -= middle
-        half = 0.5 * thickness
-        far = np.max(np.linalg.norm(outline.peaks(rows, np.zeros(2), 1.0), axis=1), initial=0.0)
+        far = np.max(np.linalg.norm(curve.peaks(np.zeros(2), 1.0), axis=1), initial=0.0)
         far = max(far, np.max(np.linalg.norm(rows[:, 1:3], axis=1)))
         spread = np.diag([0.0, 0.0, half**2 / 3.0])
         spread[:2, :2] = second
@@ -123,113 +119,27 @@ class Profile(Shape):
         of = f"<{count} corners>" if count else f"<length {self.length:g} m>"
         return f"Profile({of}, thickness={self.thickness!r})"
 
+    @cached_property
+    def _curve(self) -> Outline:
+        return Outline(self.rows)
+
     @property
     def length(self) -> float:
         """Length of the curve [m]."""
-        return float(self.rows[-1, 0])
+        return self._curve.length
 
     def points(self, count: int = 128) -> np.ndarray:
         """Return points (K, 2) of the curve in body axes [m], counter-clockwise: about `count`, and corners."""
-        return outline.polygon(self.rows, checks.integer("count", count, least=3))
+        return self._curve.polygon(checks.integer("count", count, least=3))
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """One piece: the prism, which is not convex."""
         half = np.array([np.max(np.abs(self.rows[:, k])) for k in (1, 2)] + [0.5 * self.thickness])
-        of_curve: dict[str, Any] = {"outline": self.rows, "hollows": outline.hollows(self.rows)}
-        bend = outline.bends(self.rows)[1]
+        of_curve: dict[str, Any] = {"outline": self.rows, "hollows": self._curve.hollows()}
+        bend = self._curve.bends()[1]
         most = SAMPLED * max(0.0, -float(np.min(bend[np.isfinite(bend)], initial=0.0)))
         return (Piece("profile", half, extent=self.size, bend=most, **of_curve),)
 
     def _inertia(self, mass: float) -> np.ndarray:
         return mass * (np.trace(self._spread) * np.eye(3) - self._spread)
-
-
-def _of_function(function: Callable) -> np.ndarray:
-    """Return the rows of the curve of a function of the angle."""
-
-    def place(angle: float) -> tuple[float, float, float]:
-        value = checks.call("outline", function, angle)
-        try:
-            numbers = np.array(value, dtype=float).ravel()
-        except (OverflowError, TypeError, ValueError):
-            numbers = np.zeros(0)
-        if len(numbers) not in (1, 2) or not np.all(np.isfinite(numbers)):
-            raise ValueError(
-                "outline must return the distance from the axis, or a point (2,), "
-                f"got {checks.shown(value)} at the angle {angle:.6g}"
-            )
-        if len(numbers) == 2:
-            return numbers[0], numbers[1], 0.0
-        if not numbers[0] > 0.0:
-            raise ValueError(
-                f"outline must return a distance above 0, got {numbers[0]:g} at the angle {angle:.6g}"
-            )
-        return numbers[0] * math.cos(angle), numbers[0] * math.sin(angle), 0.0
-
-    angles = np.linspace(0.0, 2.0 * math.pi, 64, endpoint=False)
-    right = _area(np.array([place(a)[:2] for a in angles.tolist()])) < 0.0
-    whole = 2.0 * math.pi
-    curve = Curve(lambda u: place(whole - u if right else u), 0.0, whole, closed=True)
-    rows = outline.joined([outline.of_curve(curve)], [curve.length], corners=False)
-    outline.check_simple(outline.polygon(rows, 500))
-    return rows
-
-
-def _area(points: np.ndarray) -> float:
-    """Return the area of a closed polygon (K, 2), negative if it runs clockwise."""
-    x, y = (points - points.mean(axis=0)).T
-    return 0.5 * float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
-
-
-def _of_points(given, corners) -> np.ndarray:
-    """Return the rows of the curve through points, with corners at some of them."""
-    points = checks.finite_array("outline", given, (None, 2), "m")
-    n = len(points)
-    if n < 3:
-        raise ValueError(f"outline must have at least 3 points, got {n}")
-    sharp = _corners(corners, n)
-    if _area(points) < 0.0:
-        points, sharp = points[::-1], sorted(n - 1 - k for k in sharp)
-    steps = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
-    size = np.max(np.ptp(points, axis=0))
-    if not np.min(steps) > 1e-9 * size:
-        k = int(np.argmin(steps))
-        raise ValueError(
-            f"outline must have points that differ from the next ones, got {points[k]} twice; "
-            "the first point is not repeated at the end"
-        )
-    solid = np.column_stack([points, np.zeros(n)])
-    if not sharp:
-        curve = Spline(solid, closed=True)
-        rows = outline.joined([outline.of_curve(curve)], [curve.length], corners=False)
-    else:
-        parts, lengths = [], []
-        for a, b in zip(sharp, [*sharp[1:], sharp[0] + n]):
-            through = np.arange(a, b + 1) % n
-            if b == a + 1:
-                parts.append(outline.straight(points[a], points[b % n]))
-                lengths.append(float(steps[a]))
-            else:
-                curve = Spline(solid[through])
-                parts.append(outline.of_curve(curve))
-                lengths.append(curve.length)
-        rows = outline.joined(parts, lengths, corners=True)
-    drawn = outline.polygon(rows, 500)
-    outline.check_simple(drawn)
-    if not _area(drawn) > 1e-9 * size**2:
-        raise ValueError("outline must enclose an area, got points on a line")
-    return rows
-
-
-def _corners(given, n: int) -> list[int]:
-    """Return the numbers of corners, in order."""
-    if isinstance(given, str) and given == "all":
-        return list(range(n))
-    numbers = isinstance(given, Sequence) and not isinstance(given, (str, bytes))
-    if type(given) is np.ndarray:
-        numbers = given.ndim == 1
-    if not numbers:
-        raise ValueError(f"corners must be 'all' or numbers of points, got {checks.shown(given)}")
-    found = [checks.integer("corners", k, least=0, most=n - 1) for k in given]
-    return sorted(set(found))
