@@ -16,7 +16,7 @@ HEAPS = pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
 
 
 #: less of what takes long
-LESS = {"heap": {"count": 20}, "arch": {"halvings": 2}}
+LESS = {"heap": {"count": 20}, "arch": {"halvings": 4}}
 
 
 @pytest.mark.parametrize(

@@ -40,8 +40,8 @@ def test_random_trees(seed):
     assert outcome.residual < 1e-7
 
 
-@pytest.mark.parametrize(("duration", "how"), [(0.03, {}), (0.1, {"step": 5e-3})])
-def test_a_chain_lies_on_many_boxes(duration, how):
+@pytest.mark.parametrize("how", [{}, {"step": 5e-3}])
+def test_a_chain_lies_on_many_boxes(how):
     """48 contact points with a given step take time-stepping steps: loads do work on the path, which is none.
 
     Light links with great torques would turn far in a step without contacts: 2e-8 J had no other reason.
@@ -59,7 +59,7 @@ def test_a_chain_lies_on_many_boxes(duration, how):
             box = scene.add_body(carom.Box(0.1, 0.1, 0.1), mass=0.5, position=place)
             scene.add_contact(box, "floor", friction=0.5, restitution=0.0)
             scene.add_contact(link, box, friction=0.5, restitution=0.0)
-    s = carom.simulate(scene, duration, **how)
+    s = carom.simulate(scene, 0.1, **how)
     assert (s.stats["whole_steps"] > 15) == ("step" in how)
     np.testing.assert_array_equal(s.position, np.broadcast_to(s.position[0], s.position.shape))
     assert np.abs(s.ledger.loads).max() < 1e-14  # round-off of 3 N m times 1e-16 rad in 20 steps
