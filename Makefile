@@ -18,15 +18,17 @@ paper: $(VENV)/installed-paper ## reproduce the paper: figures and table under o
 	$(BIN)/carom paper --out out/paper
 
 # one process compiles everything before the tests: several would compile the same kernels. Beside it is done what
-# needs no compiled code. A file of tests is run by one process, which keeps its scenes
+# needs no compiled code. A file of tests is run by one process, which keeps its scenes. Each day another tenth of
+# the files is run with bodies that are nudged, and only so (tests/nudge.py)
+TENTH := $(shell echo $$(( $$(date +%s) / 86400 % 10 )))
 TESTS := $(BIN)/python -m pytest -n auto --dist loadfile
-test: $(VENV)/installed-test ## style, types, tests but for the slow ones, a tenth of them nudged, a part without the JIT
+test: $(VENV)/installed-test ## style, types, tests but for the slow ones, today's tenth nudged, a part without the JIT
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/carom warmup --workers 1 & { $(BIN)/basedpyright && \
 		NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -m plain $(call marked,plain); }; beside=$$?; wait; exit $$beside
-	$(TESTS) -m "not slow"
-	CAROM_TEST_NUDGE=1 CAROM_TEST_TENTH=today $(TESTS) -m "not slow"
+	CAROM_TEST_ALL_BUT=$(TENTH) $(TESTS) -m "not slow"
+	CAROM_TEST_NUDGE=1 CAROM_TEST_TENTH=$(TENTH) $(TESTS) -m "not slow"
 
 test-all: test ## the slow tests too, all nudged, and a part of all for another processor
 	$(BIN)/python -m pytest -n auto -m slow $(call marked,slow|few)

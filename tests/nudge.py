@@ -4,14 +4,14 @@
 that many units in the last place, where a scene becomes arrays: behind the checks of arguments, and before
 anything is computed from them. A test that this fails hangs on round-off, and so on the processor, the C
 library, and the versions of NumPy and BLAS. Tests of bits, of what a part keeps, and of other processes
-are marked ``bits`` and left out. ``CAROM_TEST_TENTH=0`` to ``9``, or ``today``, runs a tenth of the files,
-whose tests share their scenes; others are not imported.
+are marked ``bits`` and left out. ``CAROM_TEST_TENTH=0`` to ``9`` runs a tenth of the files, whose tests share
+their scenes; others are not imported. ``CAROM_TEST_ALL_BUT=0`` to ``9`` runs what is left: all others, and of
+that tenth what is marked ``bits``. So two lanes run each test once.
 """
 
 from __future__ import annotations
 
 import os
-from datetime import date
 from pathlib import Path
 from zlib import crc32
 
@@ -19,6 +19,7 @@ import numpy as np
 
 UNITS = "CAROM_TEST_NUDGE"
 TENTH = "CAROM_TEST_TENTH"
+ALL_BUT = "CAROM_TEST_ALL_BUT"
 ROOT = Path(__file__).parent
 
 
@@ -58,21 +59,16 @@ def begin() -> None:
     compiling._start, compiling._bodies = start, bodies
 
 
-def choose_tenth() -> None:
-    """Replace the word ``today`` by its digit, once for all processes of a run: days end at midnight."""
-    if os.environ.get(TENTH) == "today":
-        os.environ[TENTH] = str(date.today().toordinal() % 10)
-
-
-def is_chosen(path: Path, name: str = "") -> bool:
-    """Return whether a folder, a file or a test is in the tenth that is run.
+def is_chosen(path: Path, name: str = "", bits: bool = False) -> bool:
+    """Return whether a folder, a file or a test is run.
 
     Files in folders are taken whole. Those beside the folders walk over examples and pages, and are taken test
-    by test.
+    by test. Without a name the answer is whether the file has tests that may be run.
     """
-    tenth = os.environ.get(TENTH)
-    beside = path.parent == ROOT
-    if tenth is None or not path.name.startswith("test_") or (beside and not name):
+    if not path.name.startswith("test_"):
         return True
-    key = path.relative_to(ROOT).as_posix() + (name if beside else "")
-    return crc32(key.encode()) % 10 == int(tenth)
+    beside, tenth, all_but = path.parent == ROOT, os.environ.get(TENTH), os.environ.get(ALL_BUT)
+    part = crc32((path.relative_to(ROOT).as_posix() + (name if beside else "")).encode()) % 10
+    if tenth is not None:
+        return part == int(tenth) or (beside and not name)
+    return all_but is None or part != int(all_but) or bits or not name

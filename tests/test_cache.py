@@ -30,27 +30,22 @@ def result(process):
     return out.rsplit(maxsplit=1)
 
 
-def test_two_processes_at_once(tmp_path):
-    """Both compile, or one finds what the other has written; a third only loads."""
+def test_two_processes_at_once_and_a_broken_file(tmp_path):
+    """Both compile, or one finds what the other has written; a third loads; a fourth finds files cut short.
+
+    Files are so after a crash while they were written: the index names them.
+    """
     both = [start(tmp_path) for _ in range(2)]
     values = {result(process)[0] for process in both}
     assert len(values) == 1
     value, hits = result(start(tmp_path))
     assert value in values
     assert int(hits) == 1
-
-
-def test_a_broken_cache_file_is_compiled_again(tmp_path):
-    """As after a crash while it was written: the index names a file that is cut short."""
-    value, _ = result(start(tmp_path))
     data = list(tmp_path.rglob("*.nbc"))
     assert data
     for file in data:
         file.write_bytes(file.read_bytes()[:100])
-    again = start(tmp_path)
-    out, err = again.communicate(timeout=120)
-    assert again.returncode == 0, err
-    assert out.rsplit(maxsplit=1)[0] == value
+    assert result(start(tmp_path)) == [value, "0"]
 
 
 def test_no_place_that_can_be_written(tmp_path):
@@ -96,7 +91,8 @@ def test_a_full_disk_costs_a_recompile(full, tmp_path):
     value, hits = result(start(tmp_path))
     assert numbers.startswith(value)
     assert int(hits) == 0
-    assert result(start(tmp_path)) == [value, "1"]
+    if full:  # something was written
+        assert result(start(tmp_path)) == [value, "1"]
 
 
 def test_a_folder_that_is_gone_costs_a_recompile(tmp_path):

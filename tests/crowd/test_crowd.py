@@ -132,7 +132,6 @@ def blocks_on_an_incline(friction, angle=0.4):
     return scene
 
 
-@pytest.mark.plain
 def test_blocks_stick_on_an_incline():
     """mu just above tan: exactly."""
     s = carom.simulate(blocks_on_an_incline(1.001 * np.tan(0.4)), 0.04, step=0.01)

@@ -9,12 +9,11 @@ import carom
 from ensembles.ensemble_scenes import die
 from ensembles.test_ensemble import THROWN, same
 
-distributed = pytest.importorskip("distributed")
-
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")  # of the cluster, whose worker is killed
 def test_a_killed_worker_loses_nothing():
+    distributed = pytest.importorskip("distributed")  # 1 s, and no other test needs it
     given = {"step": 2e-3, "vary": THROWN, "runs": 60}
     alone = carom.ensemble(die(), 0.6, **given)
     killed = []

@@ -48,12 +48,11 @@ def python(*arguments):
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
-@pytest.mark.parametrize("stride", [12, pytest.param(5, marks=pytest.mark.slow)])
-def test_killed_at_any_operation(stride, tmp_path):
+@pytest.mark.parametrize("step", [172, pytest.param(12, marks=pytest.mark.slow)])
+def test_killed_at_any_operation(step, tmp_path):
     # some 850 operations: half of them make the store
-    told = python(
-        str(TESTS / "ensembles" / "kills.py"), str(tmp_path), "5", "172", str(stride)
-    ).split()
+    kills = str(TESTS / "ensembles" / "kills.py")
+    told = python(kills, str(tmp_path), "5", str(step), "200").split()
     assert len(told) == 2, told
     assert int(told[0]) >= 4
 
@@ -101,17 +100,14 @@ def test_damaged_inputs_are_refused(tmp_path):
 
 
 def test_a_signal_at_any_time(tmp_path):
-    """Killed by the clock, again and again, until it is done."""
+    """Killed by the clock, wherever it is; another process ends it."""
     code = "import sys; from ensembles.test_killed import throw; print(1, flush=True); throw(sys.argv[1])"
-    for delay in (0.02, 0.2):
-        command = [sys.executable, "-c", code, str(tmp_path / "e.zarr")]
-        child = subprocess.Popen(command, env=ENVIRONMENT, stdout=subprocess.PIPE)
+    command = [sys.executable, "-c", code, str(tmp_path / "e.zarr")]
+    with subprocess.Popen(command, env=ENVIRONMENT, stdout=subprocess.PIPE) as child:
         assert child.stdout is not None
         child.stdout.readline()
         try:
-            child.wait(delay)
+            child.wait(0.2)
         except subprocess.TimeoutExpired:
             child.send_signal(signal.SIGKILL)
-        child.wait()
-        child.stdout.close()
     assert same(throw(tmp_path / "e.zarr"), throw())

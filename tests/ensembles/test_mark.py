@@ -66,7 +66,6 @@ def test_the_mark_of_a_scene_changes_with_what_acts_along_joints():
     assert mark(pendulum(force=times(2.0))) == mark(pendulum(force=times(2.0)))
 
 
-@pytest.mark.plain
 def test_the_mark_is_the_same_in_another_process():
     code = (
         "from ensembles.test_mark import *; print(mark(pendulum(friction=0.1, force=times(2.0))))"

@@ -164,7 +164,6 @@ def places(data, place=()):
         yield from places(data[key], (*place, key))
 
 
-@pytest.mark.plain
 def test_made_up_scenes():
     """One value in a scene is another one: it is refused by a ValueError, or it is a scene still."""
     from carom.io.files.scene_parts import scene_from_text, scene_to_text

@@ -36,7 +36,6 @@ def least_slip(W, c, mu):
     return np.array([-(c[0] + W[0, 1:] @ p_t) / W[0, 0], *p_t])
 
 
-@pytest.mark.plain
 @settings(max_examples=150, deadline=None)
 @given(seed=st.integers(0, 10**6), mu=st.sampled_from([0.05, 0.3, 1.0, 3.0, 10.0]))
 def test_against_a_scan(seed, mu):

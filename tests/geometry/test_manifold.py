@@ -53,7 +53,6 @@ def test_exp_and_log_are_inverse(q, xi, other):
     same_point(TWO.exp(q, TWO.log(q, other)), other, atol=1e-14)
 
 
-@pytest.mark.plain
 @moderate
 @given(points(), arcs(), st.floats(-3, 3), st.floats(-3, 3))
 def test_arcs_are_one_parameter_subgroups(q, xi, s, t):

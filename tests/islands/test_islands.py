@@ -91,7 +91,6 @@ def test_a_light_body_that_is_thrown_out_of_its_ball(step):
     np.testing.assert_allclose(s.total_energy, s.total_energy[0], rtol=1e-12)
 
 
-@pytest.mark.plain
 def test_many_near_each_other():
     """More pairs than there is room for at first: a swarm that flies in step, where all balls overlap."""
     scene = carom.Scene(gravity=(0, 0, -G))

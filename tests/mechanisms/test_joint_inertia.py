@@ -156,7 +156,6 @@ def test_contact_at_several_points_is_of_order_2(loops):
     assert errors[0] / errors[2] > 11.0  # 16 of order 2, 4 of order 1
 
 
-@pytest.mark.plain
 def test_momentum_of_what_floats_is_kept():
     """Forces along the angles of a universal joint turn both bodies, and all together nothing."""
     scene = carom.Scene(gravity=(0, 0, 0))

@@ -52,7 +52,6 @@ def sleeve(definition, spin, speed):
 
 
 @BOTH
-@pytest.mark.plain
 def test_cylindrical_joint_falls_freely_and_turns_uniformly(looped):
     """The line takes all but the force along it and the torque about it: z = v t - g t^2/2, q = w t."""
     scene = sleeve(joints.Cylindrical((0, 0, 0.1), UP), spin=9.0, speed=2.0)

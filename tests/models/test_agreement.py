@@ -32,7 +32,7 @@ def test_there_are_models_enough():
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2))])
 def test_masses_weights_and_places(name, seed):
     m = compiled(DATA / name)
     q, v = random_state(m, seed)
