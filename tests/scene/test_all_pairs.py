@@ -120,16 +120,18 @@ def test_the_law_of_each_pair(rule):
     laws = [own, *(scene.contact_law(*pair) for pair in pairs[1:])]
     kept = [(pair, law) for pair, law in zip(pairs, laws) if law is not None]
     assert len(kept) == 1 + 28 + 21 - 4
-    contacts, _, _ = compiled(scene)
-    assert len(contacts) == len(kept)
-    for row, ((body, other), law) in zip(contacts, kept):
+    system = compile_scene(scene, Options()).system
+    assert len(system.contacts) == len(kept)
+    for row, ((body, other), law) in zip(system.contacts, kept):
         assert (row.body, row.other) == (body.index, -1 if other in planes else other.index)
         if other in planes:
             assert row.offset == -2 - other.index
-        assert (row.restitution, row.friction) == (law.restitution, law.friction)
-        assert (row.friction_held, row.stiffness) == (law.friction_held, law.stiffness)
-        assert tuple(row.turning) == (law.rolling_friction, law.pivoting_friction)
-        assert row.law == 2
+        strikes, persistent = system.laws.table[row.law]
+        assert (strikes.friction, persistent.friction) == (law.friction, law.friction_held)
+        for one in (strikes, persistent):
+            assert (one.restitution, one.stiffness) == (law.restitution, law.stiffness)
+            assert tuple(one.turning) == (law.rolling_friction, law.pivoting_friction)
+            assert one.impact_law == 2
 
 
 def test_a_pair_without_a_law_is_named_wherever_it_is():

@@ -151,7 +151,7 @@ def _frictions(given) -> tuple[np.ndarray, np.ndarray, Laws]:
     if not _any_law(given):
         mu = _numbers("friction", given, "at least 0", lambda a: a >= 0)
         return mu, np.full(mu.shape, -1), table.arrays()
-    stated = _objects(given)
+    stated = np.array(given, dtype=object)
     mu, number = np.zeros(stated.shape), np.full(stated.shape, -1)
     for at, one in np.ndenumerate(stated):
         one = isotropic("friction", one)
@@ -165,7 +165,7 @@ def _restitutions(given, approach: np.ndarray) -> np.ndarray:
     """Return e: numbers, or the values of laws at speeds of approach."""
     if not _any_law(given):
         return _numbers("restitution", given, "from 0 to 1", lambda a: (a >= 0) & (a <= 1))
-    stated = _objects(given)
+    stated = np.array(given, dtype=object)
     shape = np.broadcast_shapes(stated.shape, approach.shape)
     e, stated = np.zeros(shape), np.broadcast_to(stated, shape)
     for at, speed in np.ndenumerate(np.broadcast_to(approach, shape)):
@@ -180,11 +180,7 @@ def _restitutions(given, approach: np.ndarray) -> np.ndarray:
 def _any_law(given) -> bool:
     if isinstance(given, np.ndarray) and given.dtype != object:
         return False
-    return any(isinstance(one, SpeedLaw) for one in _objects(given).flat)
-
-
-def _objects(given) -> np.ndarray:
-    return np.array(given, dtype=object)
+    return any(isinstance(one, SpeedLaw) for one in np.array(given, dtype=object).flat)
 
 
 def _numbers(name: str, given, allowed: str, inside) -> np.ndarray:
