@@ -160,7 +160,9 @@ def check_end(model, data, label, s, h, given) -> bool:
         note_left(model, data, k)
     tolerance = rest_of(model, data, k, h)
     lasts, found = solve_end(model, data, label, k, s, h)
-    located, exact = greatest_push(k, group), locates(model, data)
+    exact, eager = locates(model, data), work.search[0].eager == 1
+    adapts = eager and given and model.controls.order > 0
+    located = push if adapts else greatest_push(k, group)
     for i in range(active.count[0]):
         if work.body[active.points[i].body].label == label:
             clear(active.points[i])  # it has a force only if it is among the points found
@@ -193,9 +195,10 @@ def check_end(model, data, label, s, h, given) -> bool:
         if not lasts and group.kind[i] == CONE and active_point.next == MODE_SLIP:
             active_point.next = MODE_STICK
         if slips and active_point.next == MODE_STICK:
-            if not ((located > 0.0 or law or exact) and work.search[0].eager == 1):
-                if work.search[0].active == 0:
-                    return False
+            smooth = group.mu[i] == 0.0
+            if not (eager or smooth) and work.search[0].active == 0:
+                return False
+            if smooth or not eager:
                 active_point.next = MODE_SLIP
         still = max(1e-6 * (h * push), 10.0 * slow(system.contacts[closed_point.contact], end))
         end_mode(active_point, i, still, at_rest, group)

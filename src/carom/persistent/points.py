@@ -38,9 +38,10 @@ from carom.geometry.thresholds import RESOLUTION, ROUND_OFF
 from carom.kinematics.anisotropy import lengths_of_tangents, turn_plain
 from carom.kinematics.contact_point import copy_point
 from carom.model.arrays import KIND_PAIR
-from carom.model.workspace import MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
+from carom.model.workspace import MOTION_JOINT, MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
 from carom.persistent.active_set import is_first
 from carom.persistent.joint_rows import add_frictions
+from carom.persistent.thresholds import LEAST_STICK, STICK_COMPLIANCE
 
 
 @kernel
@@ -240,13 +241,14 @@ def add_turning(system, active, k, group):
 @kernel
 def weigh(system, k, group):
     """Write weight and compliance of the spring of each point: corners of the hull of its patch have one."""
-    points = group.points[0]
+    points, softness = group.points[0], softness_of_stick(system, k, group)
     for i in range(k):
         group.closed[i].weight, group.closed[i].patch, group.closed[i].presses = -1.0, -1, 0
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.motion != MOTION_POINT:
-            closed_point.weight = 1.0
+            turns = closed_point.motion != MOTION_JOINT
+            closed_point.weight, closed_point.stick = 1.0, softness if turns else 1.0
             continue
         if closed_point.weight < 0.0:
             weigh_patch(system, i, k, group)
@@ -254,6 +256,26 @@ def weigh(system, k, group):
         if points[i].b >= 0:
             s += 1.0 / system.bodies[points[i].b].mass
         closed_point.spring = s / closed_point.weight if closed_point.weight > 0.0 else 0.0
+        closed_point.stick = softness * closed_point.spring
+
+
+@kernel
+def softness_of_stick(system, k, group):
+    """Return the compliance of stick relative to that of pressing: less where masses are far apart.
+
+    What holds a heavy body by friction on a light one is found by corrections as many times its share.
+    """
+    points, least, most = group.points[0], math.inf, 0.0
+    for i in range(k):
+        if group.closed[i].motion == MOTION_POINT:
+            m = system.bodies[points[i].a].mass
+            least, most = min(least, m), max(most, m)
+            if points[i].b >= 0:
+                m = system.bodies[points[i].b].mass
+                least, most = min(least, m), max(most, m)
+    if not most > 0.0:
+        return STICK_COMPLIANCE
+    return min(STICK_COMPLIANCE, max(LEAST_STICK, STICK_COMPLIANCE * 10.0 * least / most))
 
 
 @kernel
