@@ -102,19 +102,6 @@ def test_errors_for_kinks():
         assert abs(one @ other) < 1e-13
 
 
-def test_errors_for_kinks_of_stiff_steps():
-    """Two errors that vanish for cubics, orthonormal; one sees .4 of the error of a kink or jump anywhere."""
-    A, b = t.KENNEDY_CARPENTER.A, t.KENNEDY_CARPENTER.b
-    nodes, places = A.sum(axis=1), np.linspace(0.0, 1.0, 1001)[1:-1, None]
-    rows = t.OF_STIFF_KINKS
-    np.testing.assert_allclose(rows @ nodes[:, None] ** np.arange(4), 0, rtol=0, atol=1e-13)
-    np.testing.assert_allclose(rows @ rows.T, np.eye(2), rtol=0, atol=1e-13)
-    for power in 0, 1:  # of the time after the place: a jump of the acceleration, or a kink
-        after = np.where(nodes > places, np.abs(nodes - places) ** power, 0.0)
-        error = after @ b - (1.0 - places[:, 0]) ** (power + 1) / (power + 1)
-        assert np.all(np.max(np.abs(after @ rows.T), axis=1) > 0.4 * np.abs(error))
-
-
 def test_numbers_are_those_of_scipy():
     np.testing.assert_array_equal(t.HAIRER.A, DOP853.A[:12, :12])
     np.testing.assert_array_equal(t.HAIRER.b, DOP853.B)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.model.tableaus import CLOSING, KENNEDY_CARPENTER, OF_STIFF_KINKS
+from carom.model.tableaus import CLOSING, KENNEDY_CARPENTER
 from carom.options import Options
 
 #: kinds: explicit Runge-Kutta; symplectic, in parts; implicit for stiff springs; the paper's three fields
@@ -32,9 +32,7 @@ class Method(NamedTuple):
     most: int  # iterations
     # a diagonally implicit method of six stages, the first explicit, the last at the end of the step
     stiff: np.ndarray = KENNEDY_CARPENTER.A  # (6, 6)
-    stiff_E: np.ndarray = np.vstack(
-        [KENNEDY_CARPENTER.E, OF_STIFF_KINKS]
-    )  # (3, 6) of its error estimates
+    stiff_E: np.ndarray = KENNEDY_CARPENTER.E  # (1, 6) weights of its error estimate
     closing: np.ndarray = CLOSING.A  # (2, 2) the same of one stage: implicit Euler
     closing_E: np.ndarray = CLOSING.E  # (1, 2)
 

@@ -136,21 +136,6 @@ KENNEDY_CARPENTER = tableau(
     4,
     (3,),
 )  # fmt: skip
-#: two more weights of errors of the same method, as long as 1. They vanish for accelerations that are cubics in
-#: time, as the error of a smooth step does, but not for a kink or jump in the step: the greater of them is at
-#: least .4 of its error, wherever it is. That of Kennedy and Carpenter is a tenth of it in the median
-OF_STIFF_KINKS = np.array(
-    [
-        [
-            -0.07599925342492916, -0.5320156391084455, 0.5140131474524336, -0.23064969197840837,
-            0.5752878228848103, -0.25063638582546083,
-        ],
-        [
-            0.0, -0.6018073509496966, 0.12681717455074867, 0.7029119039982675, -0.33944480429595614,
-            0.1115230766966366,
-        ],
-    ]
-)  # fmt: skip
 #: and its explicit part, which has the same weights: the terms of both may be different functions
 KENNEDY_CARPENTER_EXPLICIT = tableau(
     [

@@ -88,9 +88,6 @@ def step_group(model, data, method, label, h):
         result.applied, result.friction = had + h * weight * applied, rubbed + h * weight * friction
         if end_implicitly(model, data, method.stiff, label, h, False):
             note_errors(model, data, method.stiff_E, label, 0, h)
-            for m in range(members(work, label, group.member)):
-                miss = work.body[group.member[m]].miss
-                miss[0], miss[1], miss[2] = max(miss[0], max(miss[1], miss[2])), 0.0, 0.0
             if order > 0:
                 result.order = min(order, STIFF_ORDER)
             named = result.friction - rubbed + result.applied - had

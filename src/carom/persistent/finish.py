@@ -161,6 +161,7 @@ def check_end(model, data, label, s, h, given) -> bool:
     tolerance = rest_of(model, data, k, h)
     lasts, found = solve_end(model, data, label, k, s, h)
     exact, eager = locates(model, data), work.search[0].eager == 1
+    # what is shared by several points has a kink where one opens or slips, which ends a step with tolerances
     adapts = eager and given and model.controls.order > 0
     located = push if adapts else greatest_push(k, group)
     for i in range(active.count[0]):
@@ -194,8 +195,8 @@ def check_end(model, data, label, s, h, given) -> bool:
             continue
         if not lasts and group.kind[i] == CONE and active_point.next == MODE_SLIP:
             active_point.next = MODE_STICK
+        smooth = adapts and group.mu[i] == 0.0
         if slips and active_point.next == MODE_STICK:
-            smooth = group.mu[i] == 0.0
             if not (eager or smooth) and work.search[0].active == 0:
                 return False
             if smooth or not eager:
@@ -208,7 +209,7 @@ def check_end(model, data, label, s, h, given) -> bool:
                 active_point.grip = grip_by_law(i, push, group)
             elif exact and located == 0.0:
                 set_grip(active_point, i, push, group)
-        if not given:
+        if smooth or not given:
             active_point.grip = 1.0
         active_point.jams = jams_among(i, found, group)
     add_forces_of_corners(active, k, group)

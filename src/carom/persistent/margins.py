@@ -88,7 +88,7 @@ def set_margins(active_point, i, push, group):
         active_point.lift = -a[q] / push
     else:
         active_point.lift = max(p[q] * W[q, q] / push, EVENT_MARGIN)
-    if active_point.mode == MODE_STICK and group.mu[i] > 0.0:
+    if active_point.mode == MODE_STICK:
         set_grip(active_point, i, push, group)
 
 

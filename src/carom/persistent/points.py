@@ -41,7 +41,7 @@ from carom.model.arrays import KIND_PAIR
 from carom.model.workspace import MOTION_JOINT, MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
 from carom.persistent.active_set import is_first
 from carom.persistent.joint_rows import add_frictions
-from carom.persistent.thresholds import LEAST_STICK, STICK_COMPLIANCE
+from carom.persistent.thresholds import LEAST_STICK, STICK_COMPLIANCE, STICK_OF_MASSES
 
 
 @kernel
@@ -275,7 +275,7 @@ def softness_of_stick(system, k, group):
                 least, most = min(least, m), max(most, m)
     if not most > 0.0:
         return STICK_COMPLIANCE
-    return min(STICK_COMPLIANCE, max(LEAST_STICK, STICK_COMPLIANCE * 10.0 * least / most))
+    return min(STICK_COMPLIANCE, max(LEAST_STICK, STICK_OF_MASSES * least / most))
 
 
 @kernel

@@ -31,7 +31,10 @@ REST_SHARE = 1e-4  #: speed: what may be taken for round-off of rest
 FREEDOM_ERROR = 1e-6  #: 1: of a trace, which counts freedoms: with masses far apart it is no whole number
 PROXIMAL_SPRING = 1e-5  #: compliance of a spring: proximal term of the forces of springs of contacts
 STICK_COMPLIANCE = 1e4  #: compliance of pressing: what others hold already needs no friction
-LEAST_STICK = 100.0  #: compliance of pressing: the same where masses are far apart
+#: compliance of pressing times ratio of masses: where one is more than ten times another it is less, because
+#: what friction of a light body has to hold of a heavy one takes corrections as many times their own size
+STICK_OF_MASSES = 1e5
+LEAST_STICK = 100.0  #: compliance of pressing: the least of both
 SPRING_ERROR = 1e-6  #: displacements of springs: their error
 MOTION_LOSS = 1e-6  #: kinetic energy: allowed loss in a step of several bodies
 FALL_LOSS = 1e-2  #: energy that a fall of a whole step gains: added to it, but at most `SIZE_LOSS`
