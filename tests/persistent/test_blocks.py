@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import carom
+from carom.geometry import quaternion
 
 G = 9.81
 ANGLE = np.arctan(0.5)
@@ -139,13 +140,13 @@ def pushed(seed):
     weight = G * mass * (1 + ratio)
     force = (weight * mu * rng.uniform(1.1, 3), rng.uniform(-0.1, 0.1) * weight, 0)
     q = carom.euler("z", turn)
-    at, ahead, force = (
-        carom.geometry.quaternion.rotate(q, np.array(v)) for v in (behind, ahead, force)
-    )
+    at, ahead, force = (quaternion.rotate(q, np.array(v)) for v in (behind, ahead, force))
     up = np.array([0, 0, low / 2])
-    box = carom.Box(*first, low)
+    box = carom.Box(first[0], first[1], low)
     body = scene.add_body(box, mass=mass, position=at + up, orientation=q)
-    scene.add_body(carom.Box(*second, low), mass=mass * ratio, position=ahead + up, orientation=q)
+    scene.add_body(
+        carom.Box(second[0], second[1], low), mass=mass * ratio, position=ahead + up, orientation=q
+    )
     scene.add_force(carom.forces.Force(force, at + up), carom.GROUND, body)
     scene.set_contact_default(restitution=0, friction=mu)
     return scene
