@@ -76,6 +76,7 @@ CAPABILITIES = {
     "ties of features, discs in one plane, kinks of forces and laws": {
         "collision": 1, "dynamics": 1, "persistent": 2,
     },
+    "events of several points with tolerances, the softness of what friction holds": {"persistent": 1},
     "what bodies look like": {"scene": 1, "io": 2, "visual": 1},
     "laws as functions, results of one kind by name, ensembles of robots, hints for arguments": {
         "scene": 3, "results": 3, "studies": 3, "hints": 1, "cli": 1,

@@ -40,6 +40,7 @@ CLOSED_POINT = [
     ("patch", "i8"),  # the first point of its patch
     ("weight", "f8"),  # stiffness of its spring, as a part of that of its patch
     ("spring", "f8"),  # compliance of its spring [1/kg]
+    ("stick", "f8"),  # compliance of its stick before loads are known [1/kg]
     ("hold", "f8"),  # compliance of its stick [1/kg]
     # as in its POINT; MOTION_JOINT for all friction in joints, with `active` as its number
     ("motion", "i8"),

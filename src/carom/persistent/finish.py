@@ -138,6 +138,15 @@ def turns_back(i, h, group):
     return abs(group.v[U][3 * i + 1]) > braked(i, h, group)
 
 
+@kernel
+def any_friction(k, group):
+    """Return whether any of k entries has friction."""
+    for i in range(k):
+        if group.mu[i] > 0.0:
+            return True
+    return False
+
+
 @unit
 def check_end(model, data, label, s, h, given) -> bool:
     """Write forces, margins and modes at the end of a step, in `work.stage`; return whether given modes lasted.
@@ -160,7 +169,11 @@ def check_end(model, data, label, s, h, given) -> bool:
         note_left(model, data, k)
     tolerance = rest_of(model, data, k, h)
     lasts, found = solve_end(model, data, label, k, s, h)
-    located, exact = greatest_push(k, group), locates(model, data)
+    exact, eager = locates(model, data), work.search[0].eager == 1
+    # what is shared by several points has a kink where one opens or slips, which ends a step with tolerances
+    # (without friction its forces are continuous there)
+    adapts = eager and given and model.controls.order > 0 and any_friction(k, group)
+    located = push if adapts else greatest_push(k, group)
     for i in range(active.count[0]):
         if work.body[active.points[i].body].label == label:
             clear(active.points[i])  # it has a force only if it is among the points found
@@ -192,10 +205,11 @@ def check_end(model, data, label, s, h, given) -> bool:
             continue
         if not lasts and group.kind[i] == CONE and active_point.next == MODE_SLIP:
             active_point.next = MODE_STICK
+        smooth = adapts and group.mu[i] == 0.0
         if slips and active_point.next == MODE_STICK:
-            if not ((located > 0.0 or law or exact) and work.search[0].eager == 1):
-                if work.search[0].active == 0:
-                    return False
+            if not (eager or smooth) and work.search[0].active == 0:
+                return False
+            if smooth or not eager:
                 active_point.next = MODE_SLIP
         still = max(1e-6 * (h * push), 10.0 * slow(system.contacts[closed_point.contact], end))
         end_mode(active_point, i, still, at_rest, group)
@@ -205,7 +219,7 @@ def check_end(model, data, label, s, h, given) -> bool:
                 active_point.grip = grip_by_law(i, push, group)
             elif exact and located == 0.0:
                 set_grip(active_point, i, push, group)
-        if not given:
+        if smooth or not given:
             active_point.grip = 1.0
         active_point.jams = jams_among(i, found, group)
     add_forces_of_corners(active, k, group)

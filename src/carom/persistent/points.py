@@ -39,9 +39,15 @@ from carom.kinematics.anisotropy import lengths_of_tangents, turn_plain
 from carom.kinematics.contact_point import copy_point
 from carom.law.turning import arm_of_torque
 from carom.model.arrays import KIND_PAIR
-from carom.model.workspace import MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
+from carom.model.workspace import MOTION_JOINT, MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
 from carom.persistent.active_set import is_first
 from carom.persistent.joint_rows import add_frictions
+from carom.persistent.thresholds import (
+    LEAST_STICK,
+    STICK_COMPLIANCE,
+    STICK_OF_BODIES,
+    STICK_OF_MASSES,
+)
 
 
 @kernel
@@ -241,13 +247,14 @@ def add_turning(system, active, k, group):
 @kernel
 def weigh(system, k, group):
     """Write weight and compliance of the spring of each point: corners of the hull of its patch have one."""
-    points = group.points[0]
+    points, softness = group.points[0], softness_of_stick(system, k, group)
     for i in range(k):
         group.closed[i].weight, group.closed[i].patch, group.closed[i].presses = -1.0, -1, 0
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.motion != MOTION_POINT:
-            closed_point.weight = 1.0
+            turns = closed_point.motion != MOTION_JOINT
+            closed_point.weight, closed_point.stick = 1.0, softness if turns else 1.0
             continue
         if closed_point.weight < 0.0:
             weigh_patch(system, i, k, group)
@@ -255,6 +262,39 @@ def weigh(system, k, group):
         if points[i].b >= 0:
             s += 1.0 / system.bodies[points[i].b].mass
         closed_point.spring = s / closed_point.weight if closed_point.weight > 0.0 else 0.0
+        closed_point.stick = softness * closed_point.spring
+
+
+@kernel
+def softness_of_stick(system, k, group):
+    """Return the compliance of stick relative to that of pressing: less for many bodies, or masses far apart.
+
+    What holds a heavy body by friction on a light one, or n bodies in a row, whose softest motion is n^2 times
+    as soft as that of one, is found by corrections as many times their own size.
+    """
+    points, least, most, count = group.points[0], math.inf, 0.0, 0
+    for i in range(k):
+        if count * count < STICK_OF_BODIES / LEAST_STICK and is_first_of_body(i, points):
+            count += 1
+        if group.closed[i].motion == MOTION_POINT:
+            m = system.bodies[points[i].a].mass
+            least, most = min(least, m), max(most, m)
+            if points[i].b >= 0:
+                m = system.bodies[points[i].b].mass
+                least, most = min(least, m), max(most, m)
+    if not most > 0.0:
+        return STICK_COMPLIANCE
+    softest = min(STICK_COMPLIANCE, STICK_OF_BODIES / (count * count))
+    return max(LEAST_STICK, min(softest, STICK_OF_MASSES * least / most))
+
+
+@kernel
+def is_first_of_body(i, points):
+    """Return whether no point before point i is of its first body."""
+    for j in range(i):
+        if points[j].a == points[i].a:
+            return False
+    return True
 
 
 @kernel

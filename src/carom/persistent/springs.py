@@ -143,19 +143,18 @@ def list_given(k, group):
 
 @kernel
 def compliance_of(group, row):
-    """Return the compliance of a row: that of its point, or of its torque."""
-    if group.closed[row // 3].motion != MOTION_POINT:
-        return group.W[row, row]
-    if group.closed[row // 3].motion == MOTION_POINT and row % 3 > 0:
-        return group.closed[row // 3].hold
-    return group.closed[row // 3].spring
+    """Return the compliance of a row: that of its point, or of its torque, which is as soft as stick."""
+    closed_point = group.closed[row // 3]
+    if closed_point.motion != MOTION_POINT:
+        return closed_point.stick * group.W[row, row]
+    return closed_point.hold if row % 3 > 0 else closed_point.spring
 
 
 @kernel
 def soften(k, group):
     """Let all stick hold alike."""
     for i in range(k):
-        group.closed[i].hold = limits.STICK_COMPLIANCE * group.closed[i].spring
+        group.closed[i].hold = group.closed[i].stick
 
 
 @kernel
@@ -167,13 +166,13 @@ def grip(k, group):
             count += 1
             bound = group.mu[i] * group.v[P][3 * i]
             if bound > most:
-                most, base = bound, closed[i].spring
+                most, base = bound, closed[i].stick
     if count < 2:
         return False
     for i in range(k):
         if closed[i].motion == MOTION_POINT and closed[i].rows == 3 and closed[i].presses == 1:
             bound = group.mu[i] * group.v[P][3 * i]
-            hold = limits.STICK_COMPLIANCE * base * most / max(bound, LOADED_PART * most)
+            hold = base * most / max(bound, LOADED_PART * most)
             changed = changed or abs(hold - closed[i].hold) > REMAINDER * hold
             closed[i].hold = hold
     return changed
@@ -236,13 +235,26 @@ def first_forces(k, n, turn, push, group):
         return -1
     for i in range(n):
         add_force(k, group, rows[i], x[i])
-    changed = load(k, n, push, group)
-    if changed > 0 and turn < 2 * k:
-        return changed
-    changed += unload(k, turn < k, group)
+    # one that in turn would press alone and be pulled with its stick stays free if it does not move
+    changed = load(k, n, push, group) if turn < 2 * k else 0
+    if changed == 0:
+        changed = unload(k, turn < k, group)
     if changed == 0:
         note_accelerations(k, group)
+        if turn >= 2 * k and sinks(k, push, group):
+            return -1
     return changed
+
+
+@kernel
+def sinks(k, push, group):
+    """Return whether a point whose spring is free accelerates into its surface."""
+    for i in range(k):
+        one = group.closed[i]
+        if one.motion == MOTION_POINT and one.presses == 0 and one.weight > 0.0:
+            if group.v[ACCELERATIONS][3 * i] < -limits.NO_MARGIN * push:
+                return True
+    return False
 
 
 @kernel
@@ -262,7 +274,8 @@ def load(k, n, push, group):
     most, force, count = 0.0, 0.0, 0
     for i in range(n):
         r[i] = compliance_of(group, rows[i]) * p[rows[i]]
-        most, force = max(most, abs(r[i])), max(force, abs(p[rows[i]]))
+        if rows[i] % 3 == 0:  # stick is far softer
+            most, force = max(most, abs(r[i])), max(force, abs(p[rows[i]]))
     settle(n, 0.0, limits.SPRING_ERROR * most, 0.0, 0.0, equations)
     for i in range(k):
         row = 3 * i
@@ -273,6 +286,8 @@ def load(k, n, push, group):
                 a -= soft * equations.x[j]
             if a < -max(ROUND_OFF * push, LAST_DIGIT * force * group.W[row, row]):
                 closed[i].presses, count = 1, count + 1
+                # its force is small at first: with the stick of others it would be torn open again
+                closed[i].hold = closed[i].stick / LOADED_PART
     return count
 
 

@@ -21,6 +21,8 @@ JAM_MARGIN = 1e-6
 EVENT_MARGIN = 1e-5  #: 1: least margin before an event
 BREAK_AWAY = 1e-12  #: acceleration: by friction that is a law: less is round-off of stick
 EVENT_ERROR = 1e-6  #: acceleration: an event is located to this part
+#: acceleration times the length of a step: speed by an event of several points whose time is known no better
+JUMP_ERROR = 1e-9
 NO_MARGIN = 1e-7  #: acceleration: less counts as zero: those of two bodies have errors of 1e-9
 MOTOR_COMPLIANCE = 1e-13  #: effect of a force without joints: with less, joints and motors leave no freedom
 MULTIPLE = 1e4  #: correction: greatest multiple: 1e6 kg on 1 kg take 140
@@ -28,7 +30,14 @@ REMOVED = 1e-3  #: error: a correction that removes less leaves that of rows tha
 REST_SHARE = 1e-4  #: speed: what may be taken for round-off of rest
 FREEDOM_ERROR = 1e-6  #: 1: of a trace, which counts freedoms: with masses far apart it is no whole number
 PROXIMAL_SPRING = 1e-5  #: compliance of a spring: proximal term of the forces of springs of contacts
-STICK_COMPLIANCE = 100.0  #: compliance of pressing: what others hold already needs no friction
+STICK_COMPLIANCE = 1e4  #: compliance of pressing: what others hold already needs no friction
+#: compliance of pressing times ratio of masses: where one is more than ten times another it is less, because
+#: what friction of a light body has to hold of a heavy one takes corrections as many times their own size
+STICK_OF_MASSES = 1e5
+#: compliance of pressing times the square of the number of bodies: where they hold each other in a row the
+#: softest motion of n bodies is n^2 times as soft, and found by corrections as many times their own size
+STICK_OF_BODIES = 4e4
+LEAST_STICK = 100.0  #: compliance of pressing: the least of these
 SPRING_ERROR = 1e-6  #: displacements of springs: their error
 MOTION_LOSS = 1e-6  #: kinetic energy: allowed loss in a step of several bodies
 FALL_LOSS = 1e-2  #: energy that a fall of a whole step gains: added to it, but at most `SIZE_LOSS`

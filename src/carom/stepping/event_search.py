@@ -34,7 +34,7 @@ from carom.model.arrays import KIND_STOP, KIND_VERTICES
 from carom.model.laws import PERSISTENT
 from carom.persistent.events import contact_event_value, find_contact_event
 from carom.persistent.stops import least_left
-from carom.persistent.thresholds import BREAK_AWAY, EVENT_ERROR, EVENT_MARGIN
+from carom.persistent.thresholds import BREAK_AWAY, EVENT_ERROR, EVENT_MARGIN, JUMP_ERROR
 
 NEWTON_STEPS = 6  # steps to the root of a cubic from a near start
 
@@ -134,6 +134,8 @@ def update_bracket(search, t, f, rate):
             search.tolerance = 1e-13 * abs(f)
     if abs(f) <= search.tolerance or search.high - search.low <= 1e-15 * search.width:
         return 1
+    if only_sign(search) and f < 0.0 and -f * (t - search.low) <= JUMP_ERROR * search.width:
+        return 1  # where it jumps, as what is shared does, its time is known to what that changes
     if f < 0.0:
         search.high, search.f_high = t, f
         if search.side == 1:
@@ -147,6 +149,12 @@ def update_bracket(search, t, f, rate):
     else:
         return -1
     return 0
+
+
+@kernel
+def only_sign(search):
+    """Return whether only the sign of the event function is known before the event."""
+    return search.tolerance == EVENT_ERROR and search.f_low <= EVENT_MARGIN
 
 
 @kernel
@@ -190,7 +198,7 @@ def next_trial(search):
             t = search.t - search.f / search.rate
     else:
         low, high = search.low, search.high
-        if search.tolerance == EVENT_ERROR and search.f_low <= EVENT_MARGIN:  # only the sign
+        if only_sign(search):
             return 0.5 * (low + high)
         t = (low * search.f_high - high * search.f_low) / (search.f_high - search.f_low)
     if not (search.low < t < search.high):
