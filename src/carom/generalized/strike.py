@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom._compiled.record_arrays import Columns
 from carom.generalized.solution import CoordinateImpact
 from carom.impact import layout as o
 from carom.impact.resolve import resolve
@@ -134,7 +135,7 @@ class Strike:
 
         Of several contacts, or with a law of friction, it is a multiple impact (mathematics page, part 2).
         """
-        table = self.laws.table[closed]
+        table = self.laws.table[closed].view(Columns)
         if len(closed) == 1 and not self.by_law[closed[0]]:
             out = np.zeros((o.SIZE, 1))
             out[o.STILL] = self.still[closed]

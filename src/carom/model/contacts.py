@@ -118,7 +118,14 @@ def _contacts(scene: Scene, known: PairTable, later, laws, to_principal, options
     vertices = np.concatenate([*own, single.vertices])
     levels, regions = find_levels(scene, pairs, place, every, to_principal)
     surfaces = Surfaces(
-        grounded, single, len(vertices) - len(single.vertices), place, *laws, to_principal, levels
+        grounded,
+        single,
+        len(vertices) - len(single.vertices),
+        place,
+        laws[0],
+        laws[1],
+        to_principal,
+        levels,
     )
     rows = with_level_rows(_rows(scene, options, pairs, which, surfaces), levels, regions)
     return Contacts(rows, vertices, solids, hulls, levels, known, surfaces, later)

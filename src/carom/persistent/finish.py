@@ -140,9 +140,9 @@ def turns_back(i, h, group):
 
 @kernel
 def any_friction(k, group):
-    """Return whether any of k entries has friction."""
+    """Return whether any of k points has friction."""
     for i in range(k):
-        if group.mu[i] > 0.0:
+        if group.mu[i] > 0.0 and group.closed[i].motion == MOTION_POINT:
             return True
     return False
 
@@ -172,8 +172,8 @@ def check_end(model, data, label, s, h, given) -> bool:
     exact, eager = locates(model, data), work.search[0].eager == 1
     # what is shared by several points has a kink where one opens or slips, which ends a step with tolerances
     # (without friction its forces are continuous there)
-    adapts = eager and given and model.controls.order > 0 and any_friction(k, group)
-    located = push if adapts else greatest_push(k, group)
+    adapts = eager and given and model.controls.order > 0
+    located = push if adapts and any_friction(k, group) else greatest_push(k, group)
     for i in range(active.count[0]):
         if work.body[active.points[i].body].label == label:
             clear(active.points[i])  # it has a force only if it is among the points found
@@ -207,9 +207,10 @@ def check_end(model, data, label, s, h, given) -> bool:
             active_point.next = MODE_STICK
         smooth = adapts and group.mu[i] == 0.0
         if slips and active_point.next == MODE_STICK:
-            if not (eager or smooth) and work.search[0].active == 0:
+            waits = eager and not smooth and (located > 0.0 or law or exact)
+            if not (waits or smooth) and work.search[0].active == 0:
                 return False
-            if smooth or not eager:
+            if not waits:
                 active_point.next = MODE_SLIP
         still = max(1e-6 * (h * push), 10.0 * slow(system.contacts[closed_point.contact], end))
         end_mode(active_point, i, still, at_rest, group)

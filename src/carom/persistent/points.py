@@ -269,12 +269,12 @@ def weigh(system, k, group):
 def softness_of_stick(system, k, group):
     """Return the compliance of stick relative to that of pressing: less for many bodies, or masses far apart.
 
-    What holds a heavy body by friction on a light one, or n bodies in a row, whose softest motion is n^2 times
-    as soft as that of one, is found by corrections as many times their own size.
+    What holds a heavy body by friction on a light one, or n bodies in a row, which bend n^3 times as easily as
+    one turns, is found by corrections as many times their own size.
     """
     points, least, most, count = group.points[0], math.inf, 0.0, 0
     for i in range(k):
-        if count * count < STICK_OF_BODIES / LEAST_STICK and is_first_of_body(i, points):
+        if count**3 < STICK_OF_BODIES / LEAST_STICK and is_first_of_body(i, points):
             count += 1
         if group.closed[i].motion == MOTION_POINT:
             m = system.bodies[points[i].a].mass
@@ -284,7 +284,7 @@ def softness_of_stick(system, k, group):
                 least, most = min(least, m), max(most, m)
     if not most > 0.0:
         return STICK_COMPLIANCE
-    softest = min(STICK_COMPLIANCE, STICK_OF_BODIES / (count * count))
+    softest = min(STICK_COMPLIANCE, STICK_OF_BODIES / count**3)
     return max(LEAST_STICK, min(softest, STICK_OF_MASSES * least / most))
 
 

@@ -34,9 +34,9 @@ STICK_COMPLIANCE = 1e4  #: compliance of pressing: what others hold already need
 #: compliance of pressing times ratio of masses: where one is more than ten times another it is less, because
 #: what friction of a light body has to hold of a heavy one takes corrections as many times their own size
 STICK_OF_MASSES = 1e5
-#: compliance of pressing times the square of the number of bodies: where they hold each other in a row the
-#: softest motion of n bodies is n^2 times as soft, and found by corrections as many times their own size
-STICK_OF_BODIES = 4e4
+#: compliance of pressing times the cube of the number of bodies: where they hold each other in a row it bends
+#: n^3 times as easily as one turns, which is found by corrections as many times their own size
+STICK_OF_BODIES = 8e4
 LEAST_STICK = 100.0  #: compliance of pressing: the least of these
 SPRING_ERROR = 1e-6  #: displacements of springs: their error
 MOTION_LOSS = 1e-6  #: kinetic energy: allowed loss in a step of several bodies

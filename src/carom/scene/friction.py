@@ -304,7 +304,7 @@ checked_friction = partial(
 )  # fmt: skip
 
 
-def isotropic(name: str, value) -> float | SpeedLaw:
+def isotropic(name: str, value) -> Any:
     """Return a coefficient that does not depend on the direction."""
     found = checked_friction(name, value)
     if anisotropy_of(found) is not None:
