@@ -202,7 +202,7 @@ def test_damaged_files_are_not_loaded(counted, tmp_path):
         assert kept_code._load(file.name) is None
     forget()
     assert value(simple) == first == 2.9
-    assert len(file.read_bytes()) == len(whole)
+    assert kept_code._load(file.name) is not None  # names in it may have another digit
     assert counted == {"compiled": 2, "loaded": 0}
 
 
