@@ -18,13 +18,13 @@ from carom.impact.multiple.layout import multiple_settings
 from carom.impact.workspace import new_group, new_multiple, no_multiple
 from carom.kinematics.thresholds import END_MARGIN
 from carom.model import records as r
-from carom.model.answers import check_answers
 from carom.model.arrays import KIND_VERTICES, ON_CURVE
 from carom.model.compile import compiled_once, uses_functions, with_pairs
 from carom.model.controls import LOCATE, PROJECT, WORK, Controls
 from carom.model.data import Data, Model
 from carom.model.kept import Snapshot
 from carom.model.method import IMPLICIT, THREE_FIELD
+from carom.model.user_results import check_results
 from carom.options import Options
 from carom.results.accuracy import inaccurate
 from carom.results.costs import costs
@@ -77,7 +77,7 @@ class Run(Running):
             self.compiled = self.compiled._replace(functions=Functions())
         else:
             self.make(scene, settings)
-            check_answers(scene)
+            check_results(scene)
             self.check(scene)
             if not uses_functions(self.compiled):
                 shared = together(), self.crowd, self.multiple, self.method

@@ -121,16 +121,16 @@ class Functions:
         It is compiled without a wrapper for arrays, for code that the library itself has written.
         """
 
-        def answer(t, x):
+        def called(t, x):
             out = np.empty(outside)
             function(t, x, out)
             return out
 
         if not COMPILES:
-            return self.address(answer, inside, outside, name)
+            return self.address(called, inside, outside, name)
         made: Any = code_of(function, _SIGNATURE)
         self._kept.append(made)
-        self._plainly[made.address] = answer, inside, outside, name
+        self._plainly[made.address] = called, inside, outside, name
         return made.address
 
     @property

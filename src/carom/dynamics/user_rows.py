@@ -42,14 +42,14 @@ def read_poses(system, j, state, t, ahead):
 def write_speeds(system, j, state, t, ahead, out):
     """Write a v - b (rows,) with the rows of the poses after a time `ahead`, and the present velocities."""
     user = read_poses(system, j, state, t, ahead)
-    answer, width = system.relations.write, 6 * (user.last - user.first) + 1
-    call_function(user.address, t + ahead, system.relations.read, answer)
+    result, width = system.relations.write, 6 * (user.last - user.first) + 1
+    call_function(user.address, t + ahead, system.relations.read, result)
     for r in range(system.joints[j].rows):
-        total = -answer[(r + 1) * width - 1]
+        total = -result[(r + 1) * width - 1]
         for s in range(user.first, user.last):
             body, at = state[system.solver.sides[s].body], r * width + 6 * (s - user.first)
             for k in range(3):
-                total += answer[at + k] * body.v[k] + answer[at + 3 + k] * body.w[k]
+                total += result[at + k] * body.v[k] + result[at + 3 + k] * body.w[k]
         out[r] = total
 
 
@@ -57,13 +57,13 @@ def write_speeds(system, j, state, t, ahead, out):
 def user_rows(system, j, state, t, work):
     """Write A and A M^-1 of the user's rows."""
     user = read_poses(system, j, state, t, 0.0)
-    answer, width = system.relations.write, 6 * (user.last - user.first) + 1
-    call_function(user.address, t, system.relations.read, answer)
+    result, width = system.relations.write, 6 * (user.last - user.first) + 1
+    call_function(user.address, t, system.relations.read, result)
     for r in range(system.joints[j].rows):
         for s in range(user.first, user.last):
             side, i = system.solver.sides[s], r * width + 6 * (s - user.first)
             for k in range(6):
-                side.A[r, k] = answer[i + k]
+                side.A[r, k] = result[i + k]
             mass_row(system, side, r, work)
 
 
@@ -71,10 +71,10 @@ def user_rows(system, j, state, t, work):
 def user_speeds(system, j, state, t, out):
     """Write b (rows,), the speeds that the rows prescribe."""
     user = read_poses(system, j, state, t, 0.0)
-    answer, width = system.relations.write, 6 * (user.last - user.first) + 1
-    call_function(user.address, t, system.relations.read, answer)
+    result, width = system.relations.write, 6 * (user.last - user.first) + 1
+    call_function(user.address, t, system.relations.read, result)
     for r in range(system.joints[j].rows):
-        out[r] = answer[(r + 1) * width - 1]
+        out[r] = result[(r + 1) * width - 1]
 
 
 @kernel
@@ -84,10 +84,10 @@ def user_error(system, j, state, t, out):
     for r in range(6):
         out[r] = 0.0
     if user.position_address != 0:
-        answer = system.relations.write
-        call_function(user.position_address, t, system.relations.read, answer)
+        result = system.relations.write
+        call_function(user.position_address, t, system.relations.read, result)
         for r in range(system.joints[j].rows):
-            out[r] = answer[r]
+            out[r] = result[r]
 
 
 @kernel
@@ -115,11 +115,11 @@ def user_bias(system, j, state, t, out, workspace):
 def push_user_rows(system, j, state, t, multiplier, work):
     """Add A^T multiplier to the wrenches."""
     user = read_poses(system, j, state, t, 0.0)
-    answer, width = system.relations.write, 6 * (user.last - user.first) + 1
-    call_function(user.address, t, system.relations.read, answer)
+    result, width = system.relations.write, 6 * (user.last - user.first) + 1
+    call_function(user.address, t, system.relations.read, result)
     for r in range(system.joints[j].rows):
         for s in range(user.first, user.last):
             wrench = work.body[system.solver.sides[s].body].wrench
             at = r * width + 6 * (s - user.first)
             for k in range(6):
-                wrench[k] += multiplier[r] * answer[at + k]
+                wrench[k] += multiplier[r] * result[at + k]

@@ -31,7 +31,7 @@ def of_state(function: Callable) -> Any:
     return joined(force, function)
 
 
-def answer(name: str, function: Callable, shape: tuple, *arguments) -> np.ndarray:
+def result_of(name: str, function: Callable, shape: tuple, *arguments) -> np.ndarray:
     """Return the result of a function at the start; raise an error for a shape other than `shape`."""
     given = [np.copy(a) if np.ndim(a) else a for a in arguments]
     return checks.finite_array(name, checks.call(name, plainly(function), *given), shape)
@@ -51,8 +51,8 @@ class FunctionalModel:
                     f"{name} must be left out without {of}, got {checks.shown(given[name])}"
                 )
         n, phi, rows = self.n, given["constraint"], given["rows"]
-        h = 0 if phi is None else answer("constraint(q)", phi, (None,), q).size
-        k = 0 if rows is None else len(answer("rows(q)", rows, (None, n), q))
+        h = 0 if phi is None else result_of("constraint(q)", phi, (None,), q).size
+        k = 0 if rows is None else len(result_of("rows(q)", rows, (None, n), q))
         self.holonomic, self.rows = h, h + k
         shapes = {
             "metric": (n, n), "potential": (), "constraint": (h,), "rows": (k, n), "force": (n,),
@@ -61,7 +61,7 @@ class FunctionalModel:
         for name, function in given.items():
             arguments = ("t, q, v", 0.0, q, v) if name == "force" else ("q", q)
             if function is not None:
-                answer(f"{name}({arguments[0]})", function, shapes[name], *arguments[1:])
+                result_of(f"{name}({arguments[0]})", function, shapes[name], *arguments[1:])
         self.given = {name: (given[name], shape) for name, shape in shapes.items()}
 
     def add_contact(self, gap, gradient, tangent) -> None:
@@ -69,9 +69,9 @@ class FunctionalModel:
         n, q, shape = self.n, self.start, (0, self.n)
         for what, one in (("gap", gap), ("gap_gradient", gradient), ("tangent", tangent)):
             checks.function(what, one, optional=what != "gap")
-        answer("gap(q)", gap, (), q)
+        result_of("gap(q)", gap, (), q)
         if gradient is not None:
-            answer("gap_gradient(q)", gradient, (n,), q)
+            result_of("gap_gradient(q)", gradient, (n,), q)
         if tangent is not None:
             rows = checks.call("tangent(q)", plainly(tangent), q.copy())
             rows = checks.real_array("tangent(q)", rows, f"({n},) or (2, {n})")

@@ -103,7 +103,7 @@ def compiled_once(scene: Scene, options: Options, *ways: bool) -> Compiled:
 
 
 def uses_functions(compiled: Compiled) -> bool:
-    """Return whether a scene has functions or curves of the user, which may answer otherwise the next time."""
+    """Return whether a scene has functions or curves of the user, whose results may be others the next time."""
     return bool(compiled.functions._kept) or len(compiled.system.relations.pieces) > 0
 
 

@@ -39,7 +39,7 @@ def _with_rate(motion) -> Any:
 
 @once
 def _of_time(motion, shape: tuple[int, ...]):
-    """Return a function of (t, x) that answers with a motion and its rate, an array of this shape."""
+    """Return a function of (t, x) whose result is a motion and its rate, an array of this shape."""
     if not is_compiled(motion):
         return lambda t, x: motion(float(t))
 

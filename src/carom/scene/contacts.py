@@ -128,7 +128,7 @@ def overlap(body: Body, other: HalfSpace | StaticBody | Body) -> tuple[float, np
         assert other.shape is not None
         places = np.linalg.norm(body.position) + np.linalg.norm(other.position)
         length = body.shape.size + other.shape.size + float(places)
-        if gap != gap and isinstance(other.shape, Surface):  # say why its function does not answer
+        if gap != gap and isinstance(other.shape, Surface):  # with the error of its function
             own = quaternion.rotate_back(other.orientation, body.position - other.position)
             check_at(other.shape, evaluator(other.shape), own)
     return (0.0 if gap >= -TOUCH * length else -gap), normal

@@ -93,14 +93,14 @@ def write_rows(system, point, crowd, link, first, work):
                 other[e].response[j, r] = work.body[other[e].body].motion[j]
     moved = first
     for e in range(first, last):
-        if answers(other[e]):
+        if responds(other[e]):
             other[moved] = other[e]
             moved += 1
     return moved
 
 
 @kernel
-def answers(other):
+def responds(other):
     """Return whether a body moves: the response of a body without connection to the point is zero."""
     for j in range(6):
         for r in range(3):

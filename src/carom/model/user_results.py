@@ -10,7 +10,7 @@ from carom.scene.constraints import Driver, Rows
 from carom.scene.more_forces import JointForce, UserForce
 
 
-def check_answers(scene) -> None:
+def check_results(scene) -> None:
     """Raise an error if a function of a force or constraint has a wrong shape, no numbers, or NaN at the start.
 
     Compiled functions are called as plain Python. The run reports the errors that a function itself raises.
@@ -47,16 +47,16 @@ def _states(bodies, with_rates: bool) -> np.ndarray:
 def _check(name: str, function, given: tuple, shape: tuple[int, ...], finite: bool = True) -> None:
     """Raise an error if the result is no number or has not `shape`; axes of length 1 do not count."""
     try:
-        answer = plainly(function)(*given)
+        result = plainly(function)(*given)
     except Exception:
         return
     wanted = ", ".join(map(str, shape)) + ("," if len(shape) == 1 else "")
-    array = checks.real_array(f"the answer of {name}", answer, f"({wanted})")
+    array = checks.real_array(f"the result of {name}", result, f"({wanted})")
     if [n for n in array.shape if n != 1] != [n for n in shape if n != 1]:
         raise ValueError(
-            f"the answer of {name} must have shape ({wanted}), got shape {array.shape}"
+            f"the result of {name} must have shape ({wanted}), got shape {array.shape}"
         )
     if finite and not np.all(np.isfinite(array)):
         raise ValueError(
-            f"the answer of {name} must be finite, got {checks.shown(answer)} at the start"
+            f"the result of {name} must be finite, got {checks.shown(result)} at the start"
         )
