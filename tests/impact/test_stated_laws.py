@@ -65,5 +65,7 @@ def test_bad_laws():
     grain = carom.Friction(axis=(1, 0, 0), along=0.1, across=0.2)
     with pytest.raises(ValueError, match="friction must not depend on the direction here"):
         carom.resolve_impact(W, U, grain, 0.5)
+    with pytest.raises(ValueError, match="first axes that go together"):
+        carom.resolve_impact(W, [U, U, U], SLIP, [carom.Restitution.power(0.6), 0.5])
     with pytest.raises(ValueError, match="restitution must be"):
         carom.resolve_impact(W, U, SLIP, SLIP)

@@ -166,7 +166,10 @@ def _restitutions(given, approach: np.ndarray) -> np.ndarray:
     if not _any_law(given):
         return _numbers("restitution", given, "from 0 to 1", lambda a: (a >= 0) & (a <= 1))
     stated = np.array(given, dtype=object)
-    shape = np.broadcast_shapes(stated.shape, approach.shape)
+    try:
+        shape = np.broadcast_shapes(stated.shape, approach.shape)
+    except ValueError:
+        return np.zeros(stated.shape)  # `resolve_many` refuses it, with all shapes
     e, stated = np.zeros(shape), np.broadcast_to(stated, shape)
     for at, speed in np.ndenumerate(np.broadcast_to(approach, shape)):
         one = stated[at]

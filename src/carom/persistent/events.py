@@ -7,7 +7,7 @@ The function of an event is positive before it and negative after it, and is eva
     EVENT_JAM        k                                while slipping (`carom.persistent.jam`)
     EVENT_BREAK      the margin before slip           of a joint
     EVENT_STOP       the least part of a slip that is left, with given steps  (`carom.persistent.stops`)
-    EVENT_KINK       the margin before a kink of the law (`carom.dynamics.curve`)
+    EVENT_KINK       the margin before a kink of the law (`carom.law.piecewise`)
 """
 
 from __future__ import annotations

@@ -51,8 +51,8 @@ def bound_per_force(system, point, closed_point):
 def solve_springs(k, group) -> bool:
     """Write the forces of given modes, and accelerations of all points; return whether they exist.
 
-    C has the accelerations without forces; By `kind` points slide along `heading`, by `presses` they
-    press at first.
+    C has the accelerations without forces. `kind` is SLIDING for points that slide along `heading`, and
+    `presses` is 1 for those that press at first.
     """
     push, rounds = greatest(3 * k, group.v[C]), 0
     soften(k, group)
