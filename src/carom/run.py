@@ -7,7 +7,7 @@ import numpy as np
 from carom._compiled.template import Template, arrays_of
 from carom._compiled.units import Entries
 from carom._compiled.user_functions import Functions
-from carom.contact.stop import write_stop_gaps
+from carom.contact.kinds.stop import write_stop_gaps
 from carom.dynamics.adapt import complete, time_of_bounces
 from carom.dynamics.methods import EXPLICIT, METHODS, make_method
 from carom.dynamics.project import project_start
@@ -18,7 +18,7 @@ from carom.impact.multiple.layout import multiple_settings
 from carom.impact.workspace import new_group, new_multiple, no_multiple
 from carom.kinematics.thresholds import END_MARGIN
 from carom.model import records as r
-from carom.model.arrays import KIND_VERTICES, ON_CURVE
+from carom.model.arrays import ON_CURVE
 from carom.model.compile import compiled_once, uses_functions, with_pairs
 from carom.model.controls import LOCATE, PROJECT, WORK, Controls
 from carom.model.data import Data, Model
@@ -323,7 +323,7 @@ class Run(Running):
         self.clock[:] = (islands if islands.apart else start).clock
         step["spent"], step["paused"], search["pending"], active.carries[:] = 0.0, 0, 0, 0
         points = active.points[: active.count[0]]
-        active.carries[points["feature"][points["kind"] == KIND_VERTICES]] = 1
+        active.carries[points["feature"][points["fixed"] == 1]] = 1
 
     def solution(self, status: Status) -> Solution:
         """Return the solution; after a failure it ends with the last state, saved or not."""

@@ -7,7 +7,8 @@ import numpy as np
 from carom import Options, Scene
 from carom._compiled.decorators import entry
 from carom._compiled.record_arrays import table
-from carom.contact.pair_point import drift, find_touches, write_touch
+from carom.contact.kinds.found_points import write_touch
+from carom.contact.operations import drift, find_touches
 from carom.geometry import quaternion
 from carom.model.compile import compile_scene
 from carom.model.records import new_work
@@ -23,7 +24,7 @@ def points_and_rates(system, state, reach, work, points, rates):
     for i in range(count):
         touch = work.touches[i]
         write_touch(contact, touch, state, points[i])
-        d = drift(system, contact, touch.feature, points[i], state)
+        d = drift(system, contact, touch.feature, points[i], state, work)
         rates[i, 0], rates[i, 1], rates[i, 2] = d[0], d[1], d[2]
     return count
 

@@ -7,6 +7,7 @@ import pytest
 
 from carom.geometry import quaternion
 from carom.model.compile import compile_scene
+from carom.model.contact_kinds import has_vertices, is_found
 from carom.options import Options
 from carom.scene import Box, Capsule, Compound, Cylinder, Material, Scene, Sphere, joints
 
@@ -43,11 +44,11 @@ def test_two_hundred_spheres():
     scene.set_contact_default(friction=0.3)
     contacts, vertices, _ = compiled(scene)
     assert (len(contacts), vertices.shape) == (1000 + 19900, (1200, 3))
-    flat = chosen(contacts, contacts.kind == 0)
+    flat = chosen(contacts, has_vertices(contacts))
     np.testing.assert_array_equal(flat.body, np.repeat(np.arange(200), 5))
     np.testing.assert_array_equal(flat.first, np.arange(1000))
     np.testing.assert_array_equal(flat.last, np.arange(1, 1001))
-    pair = chosen(contacts, contacts.kind == 1)
+    pair = chosen(contacts, is_found(contacts))
     order = np.array(list(combinations(range(200), 2)))
     np.testing.assert_array_equal(np.stack([pair.body, pair.other], axis=1), order)
     for first, last, body in (
@@ -92,10 +93,10 @@ def test_each_contact_with_a_half_space_has_vertices_of_its_own():
     scene = in_a_row([L_SHAPE, BOLT, Capsule(0.1, 0.5)])
     scene.set_contact_default()
     contacts, _, _ = compiled(scene)
-    flat, pair = chosen(contacts, contacts.kind == 0), chosen(contacts, contacts.other >= 0)
+    flat, pair = chosen(contacts, has_vertices(contacts)), chosen(contacts, contacts.other >= 0)
     np.testing.assert_array_equal(flat.last - flat.first, [16, 16, 8, 8, 2, 2])
     np.testing.assert_array_equal(flat.first, np.cumsum([0, 16, 16, 8, 8, 2]))
-    curved = chosen(contacts, (contacts.kind == 1) & (contacts.other < 0))
+    curved = chosen(contacts, is_found(contacts) & (contacts.other < 0))
     np.testing.assert_array_equal(curved.body, [1, 1])  # the shaft of the bolt
     np.testing.assert_array_equal(curved.last, curved.first)
     assert np.min(pair.first) >= 52

@@ -3,8 +3,8 @@
 Bits 60-61 are the kind: 1 a vertex of A, 2 a vertex of B, 3 an edge of A and one of B, 0 smooth or undecided.
 Then follow 15 bits for each of the vertices a1, a2 of A and b1, b2 of B.
 
-How a point moves (`carom.contact.drift`) depends on the part of each core on which it lies. Bits 30-31 of the
-number of a part are its kind:
+How a point moves (`carom.contact.kinds.drift`) depends on the part of each core on which it lies. Bits 30-31 of
+the number of a part are its kind:
 
     SUPPORT   the point of the core that is farthest along the normal: a vertex, a point of a curved surface
               or of a rim

@@ -12,11 +12,11 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
+from carom.contact.operations import is_fixed
 from carom.dynamics.delassus import inverse_masses
 from carom.geometry.thresholds import ROUND_OFF
 from carom.impact.workspace import U
 from carom.kinematics.contact_point import contact_velocity, copy_point, place
-from carom.model.arrays import KIND_VERTICES
 
 
 @kernel
@@ -28,9 +28,9 @@ def as_one(system, k, state, group, work):
     hit, point, closed = work.hit[0], work.struck[0], group.closed
     contact, core = system.contacts[closed[0].contact], hit.point
     for i in range(1, k):
-        if contact.kind != KIND_VERTICES or closed[i].contact != closed[0].contact:
+        if not is_fixed(contact) or closed[i].contact != closed[0].contact:
             return False
-    if contact.kind != KIND_VERTICES:
+    if not is_fixed(contact):
         copy_point(group.points[0][0], point)
     else:
         for r in range(3):

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.contact.gap import strike_point
+from carom.contact.operations import strike_point
 from carom.dynamics.contact_impulse import alone, spread
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.project import project_position, shift
@@ -31,7 +31,7 @@ def return_map(system, contact, state, work, tie, tolerance):
     kappa, rho = 0.0, -math.inf
     for iteration in range(100):
         if not (abs(rho) > tolerance and iteration > 0):
-            rho, _ = strike_point(contact, system.vertices, state, tie, core)
+            rho, _ = strike_point(system, contact, state, tie, core)
             for b in range(state.shape[0]):
                 copy_state(state[b], origin[b])
             kappa = 0.0

@@ -7,8 +7,9 @@ import math
 from carom._compiled.decorators import by_reference, inlined, kernel
 from carom._compiled.units import unit
 from carom.contact.closed_points import concerns, gather_closed
-from carom.contact.gap import round_off, slow, strike_point
+from carom.contact.gap import round_off, slow
 from carom.contact.groups import label_groups
+from carom.contact.operations import strike_point
 from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.dynamics.delassus import inverse_masses, velocities
 from carom.dynamics.forces import potential_energy
@@ -30,7 +31,6 @@ from carom.impact.workspace import U
 from carom.kinematics.contact_point import contact_velocity
 from carom.kinematics.moving_surfaces import set_surfaces
 from carom.law.friction import bound_of_stick, depends_on_slip
-from carom.model.arrays import KIND_VERTICES
 from carom.model.controls import LOCATE, WORK
 from carom.model.event_rows import begin_event, end_event
 from carom.model.laws import PERSISTENT, STRIKES
@@ -47,18 +47,16 @@ def onto_surface(system, controls, c, state, work):
     and velocities are projected on the joints again at the new position.
     """
     contact, point = system.contacts[c], work.hit[0].point
-    if contact.kind != KIND_VERTICES:
-        return 0  # found within the tolerance of a located gap
     tie = controls.tie * contact.extent
     tolerance = max(controls.gap * contact.extent, round_off(contact, state))
-    rho, _ = strike_point(contact, system.vertices, state, tie, point)
+    rho, _ = strike_point(system, contact, state, tie, point)
     if rho >= -(tie if controls.location == LOCATE else tolerance):
         return 0
     before = potential_energy(system, state, work.result[0].time)
     if return_map(system, contact, state, work, tie, tolerance) < 0:
         return RETURN_MAP_FAILED
     project_velocity(system, state, False, work)
-    strike_point(contact, system.vertices, state, tie, point)
+    strike_point(system, contact, state, tie, point)
     if controls.location == WORK:
         drop = before - potential_energy(system, state, work.result[0].time)
         restore_work(system, contact, state, drop, work)

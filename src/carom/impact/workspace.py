@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.collision.layout import MOST_POINTS
 from carom.friction.layout import ContactWork, new_contact_work
 from carom.impact.multiple.layout import (
     MultipleResult,
@@ -17,7 +16,8 @@ from carom.impact.multiple.layout import (
     new_multiple_result,
     new_multiple_workspace,
 )
-from carom.model.arrays import KIND_PAIR, STATE, System
+from carom.model.arrays import STATE, System
+from carom.model.contact_kinds import is_found, most_points
 from carom.model.laws import PERSISTENT, law_of
 from carom.model.workspace import POINT
 
@@ -110,12 +110,11 @@ def capacity(system: System, more: bool) -> int:
     if more:
         return MOST_TOGETHER
     contacts, more_rows = system.contacts, len(system.relations.frictions)
-    vertices, found = contacts["last"] - contacts["first"], contacts["kind"] == KIND_PAIR
-    if found.any():
-        points = np.where(found, MOST_POINTS, vertices)
+    points = most_points(contacts)
+    if is_found(contacts).any():
         return max(1, min(MOST_TOGETHER, int(points.sum()) + more_rows))
     rows = 1 + (law_of(system, contacts, PERSISTENT)["turning"] > 0.0).sum(axis=1)
-    count = np.bincount(system.bodies["component"][contacts["body"]], rows * vertices)
+    count = np.bincount(system.bodies["component"][contacts["body"]], rows * points)
     return max(1, min(MOST_TOGETHER, int(count.max(initial=0.0)) + more_rows))
 
 

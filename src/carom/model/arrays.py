@@ -253,15 +253,15 @@ CONTACT = [
     ("other", "i8"),  # -1 for a half-space or a static body
     ("static", "i8"),  # 1 if the other solid is static: its pose is one in the world
     ("centre", "f8", 3),  # of the static solid
-    ("kind", "i8"),  # `KIND_VERTICES`, ...
+    ("kind", "i8"),  # of `carom.model.contact_kinds`
     ("part", "i8"),  # 1 if a body has several pieces
     ("first", "i8"),  # range of the vertices of the body
     ("last", "i8"),
     ("other_first", "i8"),  # of the other body
     ("other_last", "i8"),
-    ("solid", "i8"),  # the two solids of `KIND_PAIR`; coordinate of a stop
+    ("solid", "i8"),  # the two solids, if points are found from them; coordinate of a stop
     ("other_solid", "i8"),
-    # 1 + the number of the level surface that the row stands for (`carom.contact.level`), 0 for other rows
+    # 1 + the number of the level surface that the row stands for (`contact.kinds.level_surfaces`), 0 for others
     ("surface", "i8"),
     # range of its faces; of the other solid, range of its surfaces in `Levels.own`; the same of the first solid
     ("first_level", "i8"),
@@ -332,10 +332,6 @@ SIDE = [
     ("A", "f8", (6, 6)),
     ("Y", "f8", (6, 6)),  # A M^-1
 ]
-
-#: `kind` of a contact: vertices of a body on a half-space; points of two solids, which `carom.collision` finds;
-#: a stop in a joint
-KIND_VERTICES, KIND_PAIR, KIND_STOP = range(3)
 
 #: `axis_of`: to what the axis of anisotropic friction is fixed
 BODY_AXES, OTHER_AXES, WORLD_AXES = 1, 2, 3

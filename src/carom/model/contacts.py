@@ -13,7 +13,8 @@ from carom.collision.layout import SOLID, Hulls, no_hulls, solid_table
 from carom.collision.level_layout import Levels
 from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes, length, upright
-from carom.model.arrays import BODY_AXES, CONTACT, KIND_PAIR, KIND_VERTICES, OTHER_AXES, WORLD_AXES
+from carom.model.arrays import BODY_AXES, CONTACT, OTHER_AXES, WORLD_AXES
+from carom.model.contact_kinds import write_kinds
 from carom.model.contact_rows import Rows, contact_rows, first_pairs
 from carom.model.cores import Cores, new_cores, singly, swollen_alike
 from carom.model.laws import LawTable
@@ -36,6 +37,7 @@ class Surfaces(NamedTuple):
     single: Cores  # piece by piece, against each other
     shared: int  # first vertex of `single`, after those of contacts with half-spaces
     place: np.ndarray  # (N,) first solid of each body
+    solids: np.recarray  # SOLID
     laws: LawTable
     first_law: int  # number of the first law of the pairs, which has two
     turns: np.ndarray  # (N + S, 4) from principal to body axes; of static bodies from world axes
@@ -122,6 +124,7 @@ def _contacts(scene: Scene, known: PairTable, later, laws, to_principal, options
         single,
         len(vertices) - len(single.vertices),
         place,
+        solids,
         laws[0],
         laws[1],
         to_principal,
@@ -179,6 +182,7 @@ def _rows(scene, options: Options, pairs: PairTable, which: Rows, surfaces: Surf
     _write_solids(rows, which, surfaces.place)
     _write_laws(rows, scene, pairs, which, surfaces)
     _write_statics(rows, scene)
+    write_kinds(rows, surfaces.solids)
     note_own(rows, surfaces.levels)
     extent = rows["extent"]
     rows["still"] = 1e-14 * _speed(scene, extent)
@@ -228,9 +232,8 @@ def _write_half_spaces(rows: np.recarray, scene: Scene, plane: np.ndarray) -> No
 
 
 def _write_shapes(rows: np.recarray, which: Rows) -> None:
-    """Write form and size of both sides, and which kernels find their contact points."""
+    """Write form and size of both sides."""
     core, other = which.core, which.other
-    rows["kind"] = np.where((rows["other"] >= 0) | (core["curved"] == 1), KIND_PAIR, KIND_VERTICES)
     rows["ball_like"] = np.maximum(core["ball_like"], other["ball_like"])
     rows["part"] = np.maximum(core["several"], other["several"])
     rows["extent"], rows["other_extent"] = core["extent"], other["extent"]
@@ -243,7 +246,8 @@ def _write_ranges(rows: np.recarray, which: Rows, shared: int) -> None:
     Each row with a half-space has its own vertices. Points of two bodies are found anew in each state, so all
     contacts of a piece share its vertices, which begin at `shared`.
     """
-    core, other, flat = which.core, which.other, rows["kind"] == KIND_VERTICES
+    core, other = which.core, which.other
+    flat = (rows["other"] < 0) & (core["curved"] == 0)
     count = flat * (core["last"] - core["first"])
     last = count.cumsum()
     rows["first"], rows["last"] = flat * (last - count), flat * last

@@ -6,8 +6,8 @@ touches another one, with a crack of at most the same tolerance. So a step or a 
 of a solid is an obstacle. Solids whose edges are rounded have none: there is a groove between them.
 
 A body has one row for each surface, as for a half-space whose points count only above the faces
-(`carom.contact.level`). Where the laws of contact differ, each part of a surface with one law has its own row.
-The rows of the solids themselves then have only contacts at the rims, and at other faces.
+(`carom.contact.kinds.level_surfaces`). Where the laws of contact differ, each part of a surface with one law
+has its own row. The rows of the solids themselves then have only contacts at the rims, and at other faces.
 
 Faces of one moving body are level in its own axes. Its solids keep their points, each with its law; only what
 the surface hides is left out, and points on one surface belong together.
@@ -34,7 +34,8 @@ from carom.collision.level_layout import (
 from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes
 from carom.geometry.thresholds import RESOLUTION
-from carom.model.arrays import CONTACT, KIND_PAIR
+from carom.model.arrays import CONTACT
+from carom.model.contact_kinds import LEVEL
 from carom.model.graph import Sets
 from carom.scene.all_pairs import PairTable
 from carom.scene.friction import anisotropy_of
@@ -406,7 +407,7 @@ def _surface_rows(rows: np.recarray, surface: np.record, region: Region) -> np.r
     out[:] = rows
     for name in ("first", "last", "other_first", "other_last", "other_solid", "static"):
         out[name] = 0
-    out["other"], out["kind"] = -1, KIND_PAIR
+    out["other"], out["kind"] = -1, LEVEL
     out["axes"], out["offset"] = contact_axes(surface.normal), surface.offset
     out["surface"], out["first_level"] = region.surface + 1, region.first
     out["last_level"] = region.last

@@ -9,7 +9,8 @@ import numpy as np
 from carom._compiled.record_arrays import Columns, table
 from carom.collision.layout import new_pair_work, new_points
 from carom.model import workspace
-from carom.model.arrays import KIND_PAIR, STATE, System
+from carom.model.arrays import STATE, System
+from carom.model.contact_kinds import is_found
 from carom.model.tableaus import KENNEDY_CARPENTER
 
 #: kinds of events, by code
@@ -145,7 +146,7 @@ def new_clock() -> np.recarray:
 def new_active_set(system: System) -> workspace.ActiveSet:
     """Return an empty active set: all contacts are to be checked first."""
     contacts = system.contacts
-    grounded = int(np.count_nonzero((contacts["kind"] == KIND_PAIR) & (contacts["other"] < 0)))
+    grounded = int(np.count_nonzero(is_found(contacts) & (contacts["other"] < 0)))
     between = max(len(system.bodies), len(system.solids))  # bodies, or pieces of them
     points = len(system.vertices) + 24 * between + 8 * grounded + len(contacts)
     active = workspace.ActiveSet(

@@ -29,7 +29,8 @@ ACTIVE_POINT = [
     ("feature", "i8"),  # stays the same as long as the same parts touch: number of the vertex
     ("body", "i8"),  # of the contact
     ("other", "i8"),
-    ("kind", "i8"),  # of its contact
+    ("fixed", "i8"),  # 1 if it stays where it is on the body: a vertex
+    ("found", "i8"),  # 1 if it is found anew in each state
     ("mode", "i8"),  # 0 open, 1 slipping, 2 sticking
     ("next", "i8"),  # mode after the trial step
     ("comes_to_rest", "i8"),  # 1 if that step puts the body to rest

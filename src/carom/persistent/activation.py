@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.contact.closed_points import apart, concerns, gather_closed
-from carom.contact.depth import least_gap
+from carom.contact.closed_points import concerns, gather_closed
 from carom.contact.gap import slow
 from carom.contact.groups import members
-from carom.contact.pair_point import smaller
+from carom.contact.kinds.partner import smaller
+from carom.contact.operations import apart, least_gap
 from carom.dynamics.delassus import inverse_masses
 from carom.dynamics.energy import energies
 from carom.friction.layout import CONE, SLIDING
@@ -23,7 +23,6 @@ from carom.impact.thresholds import VELOCITY_LEFT
 from carom.impact.workspace import ACCELERATIONS, C, P, U
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_OPEN, MODE_STICK, PUSHED_IN
-from carom.model.arrays import KIND_STOP
 from carom.model.event_rows import begin_event, end_event
 from carom.model.records import PERSISTS
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT
@@ -264,9 +263,8 @@ def correct_mode(system, data, closed_point, mode, first):
 def lay_down(model, data, k, label):
     """Bring the points that press back to the surfaces if they are not on them; name the energy of that.
 
-    A rim that is nearly flat strikes as a flat one (`carom.contact.rim`), with points above the surface, and
-    so may be the points of a crowd. A contact that this pushes inside is judged next, whether it approaches or
-    not.
+    A rim that is nearly flat strikes as a flat one (`contact.kinds.rim`), with points above the surface, and so
+    may be points of a crowd. A contact that this pushes inside is judged next, whether it approaches or not.
     """
     system, state, group, clock, off = model.system, data.state, data.group, data.clocks[0], False
     for i in range(k):
@@ -291,9 +289,9 @@ def lay_down(model, data, k, label):
 
 @kernel
 def inside(system, c, state, work):
-    """Return whether the bodies of a contact, which is no stop, penetrate each other."""
+    """Return whether the bodies of a contact penetrate each other, or a stop is passed."""
     contact = system.contacts[c]
-    if contact.kind == KIND_STOP or apart(system, contact, state, 0.0):
+    if apart(system, contact, state, 0.0):
         return False
     return least_gap(system, contact, state, work) < -RESOLUTION * smaller(contact)
 

@@ -6,17 +6,16 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.contact.closed_points import apart, closed_within
 from carom.contact.gap import slow
 from carom.contact.groups import label_groups
-from carom.contact.level import is_of_moving, related
-from carom.contact.pair_point import find_touches, own_point, smaller, touch_rate
-from carom.contact.place_of_other import on_half_space
-from carom.contact.rim import place_of, same_point
+from carom.contact.kinds.found_points import own_point, touch_rate
+from carom.contact.kinds.level_surfaces import is_of_moving, related
+from carom.contact.kinds.partner import closed_within, has_one_normal, smaller
+from carom.contact.kinds.rim import place_of, same_point
+from carom.contact.operations import apart, find_touches, is_fixed, is_found, place
+from carom.contact.point_lists import mark
 from carom.contact.thresholds import REACH
-from carom.kinematics.contact_point import place
 from carom.model.actions import MODE_OPEN, MODE_STICK
-from carom.model.arrays import KIND_PAIR, KIND_VERTICES
 from carom.model.event_rows import begin_event, end_event
 from carom.model.parts_of_system import has_solids
 from carom.model.records import OPENS, SLIPS, STICKS
@@ -28,7 +27,8 @@ def begin_point(active_point, contact, c, feature, mode):
     """Write a new active point of contact c, marked as one of several, without a force."""
     active_point.contact, active_point.feature = c, feature
     active_point.body, active_point.other = contact.body, contact.other
-    active_point.kind = contact.kind
+    active_point.fixed = 1 if is_fixed(contact) else 0
+    active_point.found = 1 if is_found(contact) else 0
     active_point.mode, active_point.next, active_point.rest, active_point.shares = mode, mode, 0, 1
     active_point.due, active_point.bounces, active_point.left = 0, 0.0, 1.0
     active_point.heading[0], active_point.heading[1] = 0.0, 0.0
@@ -58,8 +58,7 @@ def activate(system, data, closed_point):
     active_point.shares = 0
     for k in range(3):
         active_point.point[k] = closed_point.point[k]
-    if contact.kind == KIND_VERTICES:
-        active.carries[closed_point.feature] = 1
+    mark(active, active_point, 1)
     active.contact_states[closed_point.contact].leaving = 0
     return i
 
@@ -67,10 +66,10 @@ def activate(system, data, closed_point):
 @kernel
 def set_anchor(system, active_point, state, work):
     """Store the present position of a vertex, at which it stays while it sticks."""
-    if active_point.kind != KIND_VERTICES:
+    if active_point.fixed == 0:
         return
     point, x = work.placed[0], state[active_point.body].x
-    place(system.contacts[active_point.contact], active_point.point, state, point)
+    place(system, system.contacts[active_point.contact], active_point, state, point, work)
     for k in range(3):
         active_point.anchor[k] = x[k] + point.arm_a[k]
 
@@ -78,8 +77,7 @@ def set_anchor(system, active_point, state, work):
 @kernel
 def deactivate(active, i):
     """Remove point i from the active set; the others keep their order."""
-    if active.points[i].kind == KIND_VERTICES:
-        active.carries[active.points[i].feature] = 0
+    mark(active, active.points[i], 0)
     active.contact_states[active.points[i].contact].leaving = 1
     last = active.count[0] - 1
     for j in range(i, last):
@@ -148,7 +146,7 @@ def refresh_pairs(system, controls, data) -> bool:
     changed, i = False, 0
     while i < active.count[0]:
         active_point = active.points[i]
-        if active_point.kind != KIND_PAIR or active_point.rest == 1:
+        if active_point.found == 0 or active_point.rest == 1:
             i += 1
             continue
         c, contact = active_point.contact, system.contacts[active_point.contact]
@@ -212,7 +210,7 @@ def replace_points(system, controls, data, c, mode, rides):
     near, still = closed_within(controls, contact, state), 10.0 * slow(contact, state)
     if apart(system, contact, state, near):
         return
-    plane = on_half_space(contact)
+    plane = has_one_normal(contact)
     if not plane:
         still = max(still, CUT_RESIDUAL * controls.step * controls.pull)
     for t in range(find_touches(system, contact, state, REACH * smaller(contact), work)):

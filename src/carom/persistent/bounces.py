@@ -22,7 +22,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.contact.groups import members
-from carom.contact.pair_point import smaller
+from carom.contact.kinds.partner import smaller
 from carom.dynamics.delassus import on_drive
 from carom.dynamics.elements import driven_power
 from carom.friction.layout import CONE, SLIDING

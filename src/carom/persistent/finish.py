@@ -8,10 +8,10 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.closed_points import place_closed
 from carom.contact.gap import slow
+from carom.contact.passed_edges import has_passed, note_passed
 from carom.dynamics.adapt import allowed_error
 from carom.dynamics.delassus import on_drive, velocities
 from carom.dynamics.explicit import copy_state, note_velocity
-from carom.dynamics.passed_edges import has_passed, note_passed
 from carom.dynamics.project import project_position, project_velocity
 from carom.dynamics.thresholds import ERROR_SHARE
 from carom.friction.layout import CONE, SLIDING

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.contact.closed_points import write_closed
-from carom.contact.pair_point import tangents
+from carom.contact.point_axes import tangents
+from carom.contact.point_lists import write_closed
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.solve import free_body
 from carom.geometry.thresholds import ROUND_OFF

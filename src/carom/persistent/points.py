@@ -17,20 +17,19 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.contact.closed_points import add_touch, write_closed, write_turning
-from carom.contact.continuous_detection_pair import nearest_touch
-from carom.contact.level import is_of_moving, related
-from carom.contact.pair_point import (
+from carom.contact.kinds.found_points import nearest_touch, which_touch
+from carom.contact.kinds.level_surfaces import is_beside, is_of_moving, related
+from carom.contact.kinds.partner import smaller
+from carom.contact.kinds.rim import place_of, same_point
+from carom.contact.operations import (
+    add_touch,
     find_touches,
+    forms_faces,
     list_touches,
-    smaller,
+    place,
     touch_of_active,
-    which_touch,
 )
-from carom.contact.place import place_any
-from carom.contact.place_of_other import on_curved_ground
-from carom.contact.rim import place_of, same_point
-from carom.contact.stop import is_active
+from carom.contact.point_lists import is_active, write_closed, write_turning
 from carom.contact.thresholds import ACTIVE_REACH, PLACE_ERROR, REACH
 from carom.dynamics.thresholds import NORMAL_ERROR
 from carom.geometry.rotation import cross, rotate_back
@@ -38,7 +37,6 @@ from carom.geometry.thresholds import RESOLUTION, ROUND_OFF
 from carom.kinematics.anisotropy import lengths_of_tangents, turn_plain
 from carom.kinematics.contact_point import copy_point
 from carom.law.turning import arm_of_torque
-from carom.model.arrays import KIND_PAIR
 from carom.model.workspace import MOTION_JOINT, MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
 from carom.persistent.active_set import is_first
 from carom.persistent.joint_rows import add_frictions
@@ -58,7 +56,7 @@ def find_points(system, data, label):
         active_point = active.points[i]
         if work.body[active_point.body].label != label:
             continue
-        if active_point.kind != KIND_PAIR:
+        if active_point.found == 0:
             k = add_known(system, data, i, k)
         elif is_first(active, i):
             k = add_pair(system, data, i, k)
@@ -70,31 +68,32 @@ def find_points(system, data, label):
 
 @kernel
 def add_known(system, data, i, k):
-    """Add a vertex on a half-space, or a stop; return the new count."""
+    """Add a point whose place is known; return the new count."""
     group, work, one = data.group, data.work, data.active.points[i]
     if k == group.closed.shape[0]:
         return k
     closed_point = group.closed[k]
     write_closed(one.contact, one.feature, one.point, closed_point)
     closed_point.active, closed_point.listed = i, 1
-    place_any(system, one, work.stage, group.points[0][k], work)
+    contact = system.contacts[one.contact]
+    place(system, contact, one, work.stage, group.points[0][k], work)
     return k + 1
 
 
 @unit
 def add_pair(system, data, i, k) -> int:
-    """Add the points of two solids: of a face all its corners, else those of the active features.
+    """Add the found points of a contact: of a face all its corners, else those of the active features.
 
-    On curved ground no two points belong together. Return the new count.
+    If no points belong together, those of the active features are found one by one. Return the new count.
     """
     active, state, work = data.active, data.work.stage, data.work
     c = active.points[i].contact
     contact = system.contacts[c]
-    if on_curved_ground(system, contact):
+    if not forms_faces(contact):
         for j in range(i, active.count[0]):
             if active.points[j].contact == c:
                 one = active.points[j]
-                t = touch_of_active(system, contact, one.feature, one.point, state, work)
+                t = touch_of_active(system, contact, one, state, work)
                 k = add_found(system, data, c, work.touches[t], j, k)
                 data.group.closed[k - 1].listed = 1
         return k
@@ -109,10 +108,8 @@ def add_pair(system, data, i, k) -> int:
                 k = add_nearest(system, data, j, k)
         return k
     k = add_face(system, data, c, i, k)
-    for d in range(system.contacts.shape[0] if contact.surface > 0 else 0):
-        other = system.contacts[d]  # another part of the level surface, with a friction of its own
-        beside = d != c and other.body == contact.body and other.surface == contact.surface
-        if beside and not is_active(active, d):
+    for d in range(system.contacts.shape[0]):
+        if d != c and is_beside(contact, system.contacts[d]) and not is_active(active, d):
             k = add_face(system, data, d, i, k)
     for d in range(system.contacts.shape[0] if is_of_moving(contact) else 0):
         if d != c and not is_active(active, d) and related(system, c, d):
@@ -128,7 +125,7 @@ def has_left(system, data, c):
         return False
     for j in range(active.count[0]):
         d = active.points[j].contact
-        if d != c and active.points[j].kind == KIND_PAIR and related(system, c, d):
+        if d != c and active.points[j].found == 1 and related(system, c, d):
             other = system.contacts[d]
             if find_touches(system, other, state, REACH * smaller(other), work) > 0:
                 return True
@@ -198,7 +195,7 @@ def add_nearest(system, data, j, k):
     one, state, group, work = data.active.points[j], data.work.stage, data.group, data.work
     c = one.contact
     contact = system.contacts[c]
-    t = which_touch(system, contact, one.feature, one.point, state, work)
+    t = which_touch(system, contact, one, state, work)
     touch = work.touches[t]
     for i in range(k):
         if group.closed[i].contact == c and group.closed[i].feature == touch.feature:

@@ -12,11 +12,12 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.contact.closed_points import place_closed, round_off_of_both
+from carom.contact.closed_points import place_closed
 from carom.contact.gap import round_off
+from carom.contact.operations import rounding
+from carom.contact.passed_edges import has_passed
 from carom.dynamics.contact_impulse import gain
 from carom.dynamics.delassus import spread_all, velocities
-from carom.dynamics.passed_edges import has_passed
 from carom.dynamics.project import project_position, shift
 from carom.friction import lu
 from carom.friction.layout import SLIDING
@@ -24,7 +25,6 @@ from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.workspace import RETURN, P
 from carom.kinematics.contact_point import in_axes
 from carom.model.actions import MODE_STICK
-from carom.model.arrays import KIND_PAIR, KIND_VERTICES
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.joint_rows import is_driven
 from carom.persistent.settle import greatest, settle
@@ -51,7 +51,7 @@ def mark_rows(system, active, k, group):
             some = True
             friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
             contact = system.contacts[active_point.contact]
-            core = contact.radius == 0.0 and contact.kind == KIND_VERTICES
+            core = contact.radius == 0.0 and active_point.fixed == 1
             inside = friction < (1.0 - 1e-9) * group.mu[i] * p[q]
             sticks = active_point.mode == MODE_STICK and inside
             # where it sticks to a surface that moves, its velocity alone is returned
@@ -173,9 +173,7 @@ def errors(system, data, k, state):
             continue
         active_point = data.active.points[closed_point.active]
         contact = system.contacts[closed_point.contact]
-        tiny = round_off(contact, state)
-        if contact.kind == KIND_PAIR:
-            tiny = 4.0 * round_off_of_both(contact, state)
+        tiny = rounding(contact, state)
         x[3 * i] = point.gap
         small = small and abs(point.gap) <= tiny
         if group.closed[i].rows == 3:

@@ -14,7 +14,7 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.gap import slow
 from carom.contact.groups import members
-from carom.contact.place import drift_of
+from carom.contact.operations import drift, is_fixed
 from carom.dynamics.acceleration import accelerate, acceleration
 from carom.dynamics.delassus import accelerations, inverse_masses, spread_all, velocities
 from carom.dynamics.elements import driven_power
@@ -27,7 +27,6 @@ from carom.kinematics.moving_surfaces import set_surfaces
 from carom.law.friction import bound_of_stick
 from carom.law.piecewise import any_depends_on_speed
 from carom.model.actions import MODE_SLIP
-from carom.model.arrays import KIND_VERTICES
 from carom.model.laws import PERSISTENT
 from carom.model.workspace import MOTION_JOINT, MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
 from carom.persistent.joint_rows import (
@@ -103,8 +102,8 @@ def write_motion(system, k, state, rates, group, work):
         group.mu[i] = bound_of_stick(system.laws, contact.law[PERSISTENT])
         if closed_point.motion != MOTION_POINT:
             group.mu[i] = bound_per_force(system, points[i], closed_point)
-        elif contact.kind != KIND_VERTICES:
-            d = drift_of(system, contact, closed_point.feature, points[i], state, work)
+        elif not is_fixed(contact):
+            d = drift(system, contact, closed_point.feature, points[i], state, work)
             for r in range(3):
                 group.v[C][3 * i + r] += d[r]
 

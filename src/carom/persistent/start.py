@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
+from carom.contact.passed_edges import note_normal
 from carom.dynamics.explicit import copy_state, note_velocity
-from carom.dynamics.passed_edges import note_normal
 from carom.friction.layout import SLIDING
 from carom.impact.workspace import C, P, U
 from carom.model.actions import MODE_SLIP, MODE_STICK

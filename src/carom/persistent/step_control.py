@@ -14,7 +14,6 @@ from carom.dynamics.energy import kinetic_of
 from carom.dynamics.thresholds import RTOL
 from carom.geometry.rotation import norm
 from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
-from carom.model.arrays import KIND_VERTICES
 from carom.persistent import thresholds as limits
 from carom.persistent.rows import bodies_of
 
@@ -85,7 +84,7 @@ def lost_in_stop(model, data, label, named):
     for i in range(active.count[0]):
         active_point = active.points[i]
         if data.work.body[active_point.body].label == label:
-            jumps = active_point.shares == 1 and active_point.kind != KIND_VERTICES
+            jumps = active_point.shares == 1 and active_point.fixed == 0
             if jumps or active_point.next == MODE_OPEN:
                 return 0.0
             stops = stops or (active_point.mode == MODE_SLIP and active_point.next == MODE_STICK)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.model.arrays import KIND_STOP
+from carom.model.contact_kinds import is_of_joint
 from carom.scene.constraints import (
     Constraint,
     ConstraintDefinition,
@@ -126,7 +126,7 @@ def restitution_of(scene, pairs, number: int) -> float | Restitution:
 
 def arms(contacts) -> np.ndarray:
     """Return the lever arms (C,) that convert forces and gaps of stops of angles; 1 for all others."""
-    return np.where(contacts["kind"] == KIND_STOP, np.abs(contacts["side"]), 1.0)
+    return np.where(is_of_joint(contacts), np.abs(contacts["side"]), 1.0)
 
 
 def contact_names(scene, pairs) -> ContactNames:

@@ -9,15 +9,10 @@ the step, so an event is as accurate as the method.
 
 from __future__ import annotations
 
-import math
-
 from carom._compiled.decorators import inlined, kernel
-from carom.contact.closed_points import round_off_of_both
-from carom.contact.continuous_detection import BELOW, CLEAR, FLAT_RIM, UNSURE, passage
-from carom.contact.continuous_detection_pair import lowest_pair, passage_pair
-from carom.contact.gap import gap_and_rate, lowest, plane_in_body, round_off
-from carom.contact.pair_point import smaller
-from carom.contact.stop import passage_stop, stop_gap
+from carom.contact.continuous_detection import BELOW, CLEAR, FLAT_RIM, UNSURE, cubic_root
+from carom.contact.operations import event_gap, located_within
+from carom.contact.passage import passage
 from carom.geometry.thresholds import ROUND_OFF
 from carom.law.friction import depends_on_slip
 from carom.law.thresholds import KINK_ERROR
@@ -30,13 +25,10 @@ from carom.model.actions import (
     EVENT_KINK_OF_JOINT,
     EVENT_STOP,
 )
-from carom.model.arrays import KIND_STOP, KIND_VERTICES
 from carom.model.laws import PERSISTENT
 from carom.persistent.events import contact_event_value, find_contact_event
 from carom.persistent.stops import least_left
 from carom.persistent.thresholds import BREAK_AWAY, EVENT_ERROR, EVENT_MARGIN, JUMP_ERROR
-
-NEWTON_STEPS = 6  # steps to the root of a cubic from a near start
 
 
 @inlined
@@ -51,13 +43,7 @@ def detect_event(model, data):
     narrowed = search.active == 1 and search.dt < (1.0 - ROUND_OFF) * search.width
     known = search.contact if narrowed and search.kind == EVENT_GAP else -1
     for c in range(active.contact_states.shape[0]):
-        contact = system.contacts[c]
-        if contact.kind == KIND_VERTICES:
-            verdict, first = passage(model, data, c)
-        elif contact.kind == KIND_STOP:
-            verdict, first = passage_stop(model, data, c)
-        else:
-            verdict, first = passage_pair(model, data, c)
+        verdict, first = passage(model, data, c)
         if verdict in (UNSURE, FLAT_RIM):
             return verdict, EVENT_GAP, c, 0.0
         if verdict == BELOW and (found == CLEAR or which == known):
@@ -79,13 +65,8 @@ def event_value(model, data):
     search, state = work.search[0], work.trial
     if search.kind == EVENT_GAP:
         contact = system.contacts[search.contact]
-        search.tolerance = max(model.controls.gap * smaller(contact), round_off(contact, state))
-        if contact.kind == KIND_VERTICES:
-            return lowest(contact, system.vertices, state)
-        if contact.kind == KIND_STOP:
-            return stop_gap(system, contact, state, work)
-        search.tolerance = 4.0 * max(search.tolerance, round_off_of_both(contact, state))
-        return lowest_pair(system, data, search.contact, state)
+        search.tolerance = located_within(model.controls, contact, state)
+        return event_gap(system, data, search.contact, state)
     if search.kind == EVENT_BREAK:
         search.tolerance = BREAK_AWAY
         return system.relations.frictions[search.contact].grip, 0.0
@@ -155,36 +136,6 @@ def update_bracket(search, t, f, rate):
 def only_sign(search):
     """Return whether only the sign of the event function is known before the event."""
     return search.tolerance == EVENT_ERROR and search.f_low <= EVENT_MARGIN
-
-
-@kernel
-def cubic_root(a, f, r, b, f_last, r_last):
-    """Return a root of the cubic with values f and rates r at a and b, by Newton's method from b."""
-    h = b - a
-    if r == 0.0 or h == 0.0:  # no earlier value
-        return math.inf
-    slope = (f_last - f) / h
-    c = (3.0 * slope - 2.0 * r - r_last) / h
-    d = (r + r_last - 2.0 * slope) / (h * h)
-    x = h
-    for _ in range(NEWTON_STEPS):
-        value, rate = f + x * (r + x * (c + x * d)), r + x * (2.0 * c + x * 3.0 * d)
-        if not rate < 0.0:
-            return math.inf
-        x -= value / rate
-    return a + x
-
-
-@kernel
-def first_through(contact, vertices, active, start, search, end):
-    """Return a guess of the time when the first vertex passes a half-space, by the cubic of each one inside."""
-    before, after, first = plane_in_body(contact, start), plane_in_body(contact, end), math.inf
-    for i in range(contact.first, contact.last):
-        z, rate = gap_and_rate(after, vertices[i])
-        if z < -search.tolerance and active.carries[i] == 0:
-            z0, rate0 = gap_and_rate(before, vertices[i])
-            first = min(first, cubic_root(0.0, z0, rate0, search.dt, z, rate))
-    return first
 
 
 @kernel

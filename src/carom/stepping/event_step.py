@@ -10,14 +10,9 @@ import math
 
 from carom._compiled.decorators import inlined
 from carom._compiled.units import unit
-from carom.contact.closed_points import apart, closed_within
-from carom.contact.continuous_detection import greatest_acceleration
-from carom.contact.gap import gap_and_rate, plane_in_body, slow
-from carom.contact.pair_point import find_touches, smaller, touch_rate
-from carom.contact.parting import beside_face
-from carom.contact.rim import place_of
-from carom.contact.stop import check_stop
-from carom.contact.thresholds import REACH
+from carom.contact.gap import slow
+from carom.contact.kinds.half_space import greatest_acceleration
+from carom.contact.operations import due, is_fixed
 from carom.dynamics.energy import kinetic_energy
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.more_forces import note_turns
@@ -28,7 +23,6 @@ from carom.law.restitution import depends_on_approach
 from carom.model import records as r
 from carom.model.actions import EVENT_GAP, EVENT_STOP, NOTHING, PERSIST, PUSHED_IN, STRIKE
 from carom.model.allowance import overdone, smooth_count
-from carom.model.arrays import KIND_PAIR, KIND_STOP, KIND_VERTICES
 from carom.model.controls import LOCATE
 from carom.model.laws import STRIKES
 from carom.model.workspace import FREE
@@ -242,53 +236,15 @@ def left_ball(system, now, dt, work):
     return False
 
 
-@unit
-def check_pair(system, controls, active, c, now, work) -> int:
-    """Return whether a closed point of two bodies is to be struck or made persistent."""
-    contact, action = system.contacts[c], NOTHING
-    near, still = closed_within(controls, contact, now), slow(contact, now)
-    if apart(system, contact, now, near) or beside_face(system, contact, now, near):
-        return NOTHING
-    for i in range(find_touches(system, contact, now, REACH * smaller(contact), work)):
-        touch = work.touches[i]
-        if touch.gap <= near:
-            rate = touch_rate(contact, touch, now)
-            if rate < -still:
-                return STRIKE
-            if rate <= still and place_of(system, active, c, touch, now) < 0:
-                action = PERSIST
-    return action
-
-
-@inlined
-def look_at_vertices(system, controls, active, contact, now):
-    """Return whether a closed vertex on a half-space is to be struck or made persistent."""
-    near, still = controls.tie * contact.extent, slow(contact, now)
-    plane = plane_in_body(contact, now)
-    action = NOTHING
-    for i in range(contact.first, contact.last):
-        z, rate = gap_and_rate(plane, system.vertices[i])
-        if z <= near and rate < -still:
-            return STRIKE
-        if z <= near and rate <= still and active.carries[i] == 0:
-            action = PERSIST
-    return action
-
-
 @inlined
 def find_due_contact(model, data):
     """Find a closed point that is not active, at the start or after an event, and the action that it needs."""
-    system, controls, active, now = model.system, model.controls, data.active, data.state
+    active = data.active
     for c in range(active.contact_states.shape[0]):
-        contact_state, contact = active.contact_states[c], system.contacts[c]
+        contact_state = active.contact_states[c]
         if contact_state.near == 0:
             continue
-        if contact.kind == KIND_PAIR:
-            action = check_pair(system, controls, active, c, now, data.work)
-        elif contact.kind == KIND_STOP:
-            action = check_stop(model, data, c)
-        else:
-            action = look_at_vertices(system, controls, active, contact, now)
+        action = due(model, data, c)
         if action == NOTHING and contact_state.near == PUSHED_IN:
             action = PERSIST
         contact_state.near = 0
@@ -307,7 +263,7 @@ def may_end(contact, system, controls, state, horizon, work):
 
     This is a first check with a bound of the acceleration, before forces are computed.
     """
-    if contact.kind != KIND_VERTICES:
+    if not is_fixed(contact):
         return True
     point = work.struck[0]
     rate = contact_velocity(point, state)[0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, inlined, kernel
-from carom.contact.place import place_any
+from carom.contact.operations import place
 from carom.dynamics.explicit import copy_state
 from carom.geometry.rotation import cross
 from carom.kinematics.anisotropy import lengths_of_tangents
@@ -82,7 +82,7 @@ def save_contacts(model, data, k):
     for i in range(active.count[0]):
         active_point, point, touch = active.points[i], work.placed[0], records.touch[clock.touched]
         contact = system.contacts[active_point.contact]
-        place_any(system, active_point, now, point, work)
+        place(system, contact, active_point, now, point, work)
         E, arm, other, f = point.axes, point.arm_a, point.arm_b, active_point.force
         touch.saved, touch.contact, touch.feature = k, contact.number, active_point.feature
         touch.mode, touch.body = active_point.mode, system.bodies[active_point.body].number

@@ -7,12 +7,11 @@ import math
 from carom._compiled.decorators import by_reference, entry, inlined, kernel
 from carom._compiled.units import unit
 from carom.contact.depth import watch_depth
-from carom.contact.parting_of_profile import has_profile
+from carom.contact.operations import lost_gap
 from carom.dynamics.known_end import forget_end
 from carom.dynamics.local_scale import local_controls, note_scale
 from carom.model import records as r
 from carom.model.allowance import begin_count, end_count
-from carom.model.arrays import KIND_PAIR
 from carom.model.controls import LOCATE
 from carom.model.data import Data, Model
 from carom.persistent.active_set import regroup
@@ -144,9 +143,8 @@ def without_gap(system, watch):
     """
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
-        if contact.number == watch.deep_contact and contact.kind == KIND_PAIR:
-            if has_profile(system, contact):
-                return OUT_OF_PLANE
+        if contact.number == watch.deep_contact and lost_gap(contact) != NOT_FINITE:
+            return lost_gap(contact)
     return NOT_FINITE
 
 

@@ -6,7 +6,7 @@ import math
 
 from carom._compiled.decorators import inlined
 from carom.contact.continuous_detection import CLEAR, FLAT_RIM, UNSURE
-from carom.contact.parting_of_profile import has_profile
+from carom.contact.operations import first_inside, lost_gap
 from carom.dynamics.adapt import allowed_step, crawls, plan_next, shorter, step_error
 from carom.dynamics.explicit import CONSTRAINTS_LOST, rubs
 from carom.dynamics.more_forces import turns_round
@@ -23,14 +23,13 @@ from carom.model.actions import (
     STRIKE,
 )
 from carom.model.allowance import COUNT_SEARCHES, COUNT_TRIALS, mark_count, overdone
-from carom.model.arrays import KIND_PAIR, KIND_VERTICES
 from carom.model.controls import LOCATE
 from carom.persistent.contact_step import contact_step
 from carom.persistent.events import note_first_stops
 from carom.persistent.margins import note_due
 from carom.persistent.slip_law import share_before_kink
 from carom.persistent.step_control import too_long
-from carom.status import NOT_FINITE, OUT_OF_PLANE, STEP_TOO_SMALL, UNSTABLE
+from carom.status import NOT_FINITE, STEP_TOO_SMALL, UNSTABLE
 from carom.status import STEP_CUT_TO_NOTHING as STEP_CUT
 from carom.status import TOO_MANY_IMPACTS as TOO_MANY
 from carom.stepping.energy_balance import IN_A_ROW, off_balance
@@ -38,7 +37,6 @@ from carom.stepping.event_search import (
     begin_search,
     detect_event,
     event_value,
-    first_through,
     kink_of,
     next_trial,
     update_bracket,
@@ -202,9 +200,7 @@ def is_root(model, data):
     state = update_bracket(search, search.dt, f, rate)
     if state < 0:
         if search.kind == EVENT_GAP and finite(work.trial):
-            contact = system.contacts[search.contact]
-            if contact.kind == KIND_PAIR and has_profile(system, contact):
-                return OUT_OF_PLANE
+            return lost_gap(system.contacts[search.contact])
         return NOT_FINITE
     if state == 0 and search.kind == EVENT_SEPARATE and f > 0.0:
         # as a force falls to zero its cone does, so slip may come first: beyond the opening nothing shows it
@@ -287,9 +283,8 @@ def bracket(model, data):
         search.f_low = kink_of(system, data.active, search)[0]
     update_bracket(search, search.dt, f, rate)
     dt = next_trial(search)
-    if search.kind == EVENT_GAP and system.contacts[search.contact].kind == KIND_VERTICES:
-        contact = system.contacts[search.contact]
-        guess = first_through(contact, system.vertices, data.active, data.state, search, work.trial)
+    if search.kind == EVENT_GAP:
+        guess = first_inside(system, data, search.contact)
         dt = guess if search.low < guess < search.high else dt
     search.dt = dt
     return ONCE_MORE

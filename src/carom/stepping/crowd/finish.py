@@ -6,6 +6,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
+from carom.contact.point_lists import mark
 from carom.dynamics.explicit import copy_state
 from carom.geometry.rotation import norm
 from carom.geometry.thresholds import RESOLUTION
@@ -13,7 +14,6 @@ from carom.impact.layout import AT_END
 from carom.impact.record import Blow, three, write_blow
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_SLIP, MODE_STICK
-from carom.model.arrays import KIND_VERTICES
 from carom.model.event_rows import note_event
 from carom.model.records import IMPACT, OPENS, PERSISTS, SLIPS, STICKS
 from carom.model.workspace import MOTION_POINT, MOTION_ROLL
@@ -58,12 +58,10 @@ def finish(model, data, k, h, fall, residual):
     still = rest_speed(controls, fall * h, residual, k, CROWD_REST)
     come_to_rest(system, still, count, start, end, crowd)
     for i in range(active.count[0]):
-        if active.points[i].kind == KIND_VERTICES:
-            active.carries[active.points[i].feature] = 0
+        mark(active, active.points[i], 0)
     for i in range(count):
         active.points[i] = crowd.active[i]
-        if active.points[i].kind == KIND_VERTICES:
-            active.carries[active.points[i].feature] = 1
+        mark(active, active.points[i], 1)
     active.count[0] = count
     for i in range(k):  # in event-driven steps these contacts are checked first
         active.contact_states[crowd.closed[i].contact].near = 1

@@ -2,40 +2,24 @@
 
 from __future__ import annotations
 
-import math
-
 from carom._compiled.decorators import kernel
-from carom.contact.closed_points import (
-    add_stop,
-    add_touches,
-    add_vertices,
+from carom.contact.kinds.found_points import which_touch, write_touch
+from carom.contact.kinds.partner import has_one_normal, smaller
+from carom.contact.operations import (
+    add_points,
     apart,
-    find_closed,
-    write_turning,
+    closing_speed,
+    is_found,
+    least_gap,
+    list_touches,
+    place,
 )
-from carom.contact.depth import least_gap
-from carom.contact.pair_point import list_touches, smaller, which_touch, write_touch
-from carom.contact.place_of_other import on_half_space
-from carom.contact.stop import place_stop
+from carom.contact.point_lists import write_turning
 from carom.contact.thresholds import ACTIVE_REACH
 from carom.dynamics.thresholds import EDGE_JUMP
-from carom.geometry.rotation import norm
 from carom.kinematics.anisotropy import turn_plain
-from carom.kinematics.contact_point import contact_velocity, place
 from carom.law.turning import arm_of_torque
-from carom.model.arrays import KIND_STOP, KIND_VERTICES
-from carom.model.workspace import MOTION_PIVOT, MOTION_ROLL
-
-
-@kernel
-def closing_speed(contact, state):
-    """Return a bound of the speed at which the two bodies approach each other [m/s]."""
-    a, b = state[contact.body], contact.other
-    s, v0, v1, v2 = contact.extent * norm(a.w), a.v[0], a.v[1], a.v[2]
-    if b >= 0:
-        s += contact.other_extent * norm(state[b].w)
-        v0, v1, v2 = v0 - state[b].v[0], v1 - state[b].v[1], v2 - state[b].v[2]
-    return s + math.sqrt(v0 * v0 + v1 * v1 + v2 * v2)
+from carom.model.workspace import MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
 
 
 @kernel
@@ -47,38 +31,32 @@ def gather(model, data, h, fall, wide):
     If a point was missed, the distances are multiplied by `wide`.
     """
     system, active, state, crowd = model.system, data.active, data.state, data.crowd
+    work = data.work
     quicker, flight, crowd.count[0] = wide * (3.0 if state.shape[0] == 1 else 1.0), crowd.flight, 0
     chain(system, active, crowd)
     for c in range(system.contacts.shape[0]):
-        contact, first, room = system.contacts[c], crowd.count[0], True
-        if contact.kind == KIND_STOP:
-            if reaches_stop(model, data, contact, h, wide * fall):
-                room = add_stop(system, c, math.inf, state, crowd)
-        else:
-            speed = max(closing_speed(contact, state), closing_speed(contact, flight))
-            if wide > 1.0:  # also with the velocities from the impulses found before
-                speed = max(speed, closing_speed(contact, data.work.trial))
-            reach = h * (quicker * speed + 2.0 * wide * fall * h)
-            room = add_points(model, data, c, reach, state)
+        contact, first = system.contacts[c], crowd.count[0]
+        speed = closing_speed(system, contact, state, work)
+        speed = max(speed, closing_speed(system, contact, flight, work))
+        if wide > 1.0:  # also with the velocities from the impulses found before
+            speed = max(speed, closing_speed(system, contact, work.trial, work))
+        reach = h * (quicker * speed + 2.0 * wide * fall * h)
+        if not add_spots(model, data, c, reach, state):
+            return -1
         for i in range(first, crowd.count[0]):
             crowd.closed[i].gap = crowd.points[0][i].gap
             find_active(active, crowd.closed[i], crowd)
-        if not (room and add_turning(system, first, crowd)):
+        if not add_turning(system, first, crowd):
             return -1
     return crowd.count[0]
 
 
 @kernel
-def add_points(model, data, c, reach, state):
+def add_spots(model, data, c, reach, state):
     """Add the points of a contact that are within reach; return whether there is room."""
-    system, crowd, work = model.system, data.crowd, data.work
-    contact = system.contacts[c]
-    if apart(system, contact, state, reach):
+    if apart(model.system, model.system.contacts[c], state, reach):
         return True
-    if contact.kind == KIND_VERTICES:
-        return add_vertices(system, data.active, c, reach, state, crowd)
-    find_closed(system, contact, reach, 0.0, state, work)
-    return add_touches(system, c, reach, state, crowd, work)
+    return add_points(model, data, c, state, (reach, 0.0), data.crowd)
 
 
 @kernel
@@ -91,11 +69,11 @@ def gather_sunk(model, data, k, depth):
     crowd.count[0] = k
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
-        if contact.kind == KIND_STOP or apart(system, contact, end, 0.0):
+        if apart(system, contact, end, 0.0):
             continue
         if least_gap(system, contact, end, data.work) >= -depth * smaller(contact):
             continue
-        if not add_points(model, data, c, 0.0, end):
+        if not add_spots(model, data, c, 0.0, end):
             return -1
     return crowd.count[0]
 
@@ -114,17 +92,6 @@ def add_turning(system, first, crowd):
                 crowd.closed[k].gap = spot.gap
                 crowd.count[0] = k + 1
     return True
-
-
-@kernel
-def reaches_stop(model, data, contact, h, fall):
-    """Return whether a stop may be reached within a time h."""
-    system, state, flight, point = model.system, data.state, data.crowd.flight, data.work.placed[0]
-    place_stop(system, contact, flight, point)
-    after, rate = point.gap, abs(contact_velocity(point, flight)[0])
-    place_stop(system, contact, state, point)
-    rate = max(rate, abs(contact_velocity(point, state)[0]))
-    return min(point.gap, after) <= h * (rate + 2.0 * fall * h)
 
 
 @kernel
@@ -155,26 +122,21 @@ def place_all(model, data, first_spot, k, state, points):
     """Write the points from `first_spot` to k in a state."""
     system, crowd, work, i = model.system, data.crowd, data.work, first_spot
     while i < k:
-        c = crowd.closed[i].contact
+        c, first = crowd.closed[i].contact, i
         contact = system.contacts[c]
-        if contact.kind == KIND_VERTICES:
-            place(contact, crowd.closed[i].point, state, points[i])
-            turn_plain(contact, crowd.closed[i].motion, contact.extent, points[i])
-            i += 1
-            continue
-        if contact.kind == KIND_STOP:
-            place_stop(system, contact, state, points[i])
-            i += 1
-            continue
-        first = i
-        list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+        if is_found(contact):
+            list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
         while i < k and crowd.closed[i].contact == c:
             spot = crowd.closed[i]
-            t = which_touch(system, contact, spot.feature, spot.point, state, work)
-            write_touch(contact, work.touches[t], state, points[i])
-            turn_plain(contact, spot.motion, smaller(contact), points[i])
+            if is_found(contact):
+                t = which_touch(system, contact, spot, state, work)
+                write_touch(contact, work.touches[t], state, points[i])
+            else:
+                place(system, contact, spot, state, points[i], work)
+            if spot.motion != MOTION_POINT:
+                turn_plain(contact, spot.motion, smaller(contact), points[i])
             i += 1
-        if not on_half_space(contact):
+        if is_found(contact) and not has_one_normal(contact):
             share_plane(points, first, i, state)
 
 

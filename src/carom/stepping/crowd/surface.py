@@ -7,7 +7,7 @@ that joints hold along its normal is left where it is.
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.contact.pair_point import smaller
+from carom.contact.kinds.partner import smaller
 from carom.contact.thresholds import PLACE_ERROR
 from carom.dynamics.project import project_position, shift
 from carom.model.workspace import MOTION_POINT

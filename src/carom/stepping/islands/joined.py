@@ -20,13 +20,13 @@ from carom.model.arrays import (
     BUSHING,
     FOREST,
     JOINT,
-    KIND_STOP,
     LOAD,
     SPRING,
     Relations,
     Solver,
     System,
 )  # fmt: skip
+from carom.model.contact_kinds import is_of_joint
 from carom.model.relations import no_relations
 from carom.model.solvers import no_joints
 
@@ -55,7 +55,7 @@ def joined_bodies(system: System) -> Joined:
     relations, ends = system.relations, ("parent", "child")
     return Joined(
         body,
-        np.flatnonzero(system.contacts["kind"] == KIND_STOP),
+        np.flatnonzero(is_of_joint(system.contacts)),
         _moved(system.joints, place, ends),
         relations._replace(
             coordinates=_moved(relations.coordinates, place, ends),

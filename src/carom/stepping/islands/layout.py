@@ -9,7 +9,8 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom.collision.sweep import SweepWork, new_sweep_work
-from carom.model.arrays import BODY, CONTACT, KIND_STOP, STATE, System
+from carom.model.arrays import BODY, CONTACT, STATE, System
+from carom.model.contact_kinds import is_of_joint
 from carom.model.records import CLOCK
 from carom.model.workspace import ACTIVE_POINT, BODY_WORK, CONTACT_STATE, ActiveSet
 from carom.scene.all_pairs import Defaults
@@ -142,7 +143,7 @@ def new_islands(system: System, active: ActiveSet, later: Defaults | None = None
         return no_islands(system, active)
     contacts = system.contacts
     rows = np.arange(contacts.size)
-    planes = rows[(contacts.other < 0) & (contacts.kind != KIND_STOP)]
+    planes = rows[(contacts.other < 0) & ~is_of_joint(contacts)]
     planes = planes[np.argsort(contacts.body[planes], kind="stable")]
     room = 8 * n + 64 if later is not None else min(rows.size, 8 * n + 64)
     grounded = contacts.body[planes], planes
@@ -164,7 +165,7 @@ def with_partners(islands: Islands, system: System, later: Defaults) -> Islands:
 def _partners(system: System, later: Defaults | None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return pairs i < j and their contacts, sorted; contact -1 for pairs of `later` that never touch."""
     n, contacts = system.bodies.size, system.contacts
-    rows = np.flatnonzero((contacts["other"] >= 0) & (contacts["kind"] != KIND_STOP))
+    rows = np.flatnonzero((contacts["other"] >= 0) & ~is_of_joint(contacts))
     body, other = contacts["body"][rows], contacts["other"][rows]
     keys = np.minimum(body, other) * n + np.maximum(body, other)
     if later is not None:

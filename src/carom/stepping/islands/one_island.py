@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
+from carom.contact.point_lists import mark
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.more_forces import begin_turns, forget_turns
-from carom.model.arrays import KIND_VERTICES
 from carom.persistent.active_set import regroup
 from carom.stepping.islands.parts import give_up_body
 
@@ -65,5 +65,4 @@ def forget_single(system, active, now, clocks, work, start):
 def mark_vertices(active, carries):
     """Write `carries` for the vertices that are active."""
     for i in range(active.count[0]):
-        if active.points[i].kind == KIND_VERTICES:
-            active.carries[active.points[i].feature] = carries
+        mark(active, active.points[i], carries)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
+from carom.contact.point_lists import mark
 from carom.dynamics.explicit import copy_state, mark_active
 from carom.kinematics.flight import free_flight
 from carom.model.allowance import COUNT_FACTORS, keep_count, left
-from carom.model.arrays import KIND_VERTICES, Solver, System
+from carom.model.arrays import Solver, System
 from carom.model.workspace import ActiveSet, Work
 from carom.persistent.active_set import regroup
 from carom.stepping.islands.joined import end_joined, enter_joined
@@ -270,12 +271,9 @@ def forget_step(active, clocks, work, islands):
     plan = islands.plan[0]
     for k in range(2):
         for i in range(plan.kept if k == 1 else islands.carried[0]):
-            feature = islands.points[k, i].feature
-            if islands.points[k, i].kind == KIND_VERTICES:
-                active.carries[feature] = 0
+            mark(active, islands.points[k, i], 0)
     for i in range(active.count[0]):
-        if active.points[i].kind == KIND_VERTICES:
-            active.carries[active.points[i].feature] = 1
+        mark(active, active.points[i], 1)
     clocks[0] = islands.clock[0]
     work.step[0].spent, work.step[0].paused = 0.0, 0
     plan.planned, plan.entered = 0, 0

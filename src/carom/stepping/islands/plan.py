@@ -10,9 +10,7 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.collision.sweep import sweep
-from carom.contact.gap import along_normal
-from carom.contact.parting_on_surface import room_over_surface
-from carom.contact.place_of_other import on_curved_ground
+from carom.contact.operations import room
 from carom.geometry.rotation import norm
 from carom.model import records as r
 from carom.model.workspace import FREE, RESTS
@@ -162,16 +160,9 @@ def first_contact(islands, i, j):
 @kernel
 def near_plane(system, c, now, work):
     """Return whether a body may reach a half-space or a static body in the step."""
-    contact, x = system.contacts[c], now[system.contacts[c].body].x
-    if on_curved_ground(system, contact):
-        room = room_over_surface(system, contact, now, False)
-        return room <= BALL_SLACK * contact.extent + work.body[contact.body].room
-    if contact.static == 1:
-        y, reach = contact.centre, (1.0 + BALL_SLACK) * (contact.extent + contact.other_extent)
-        reach += work.body[contact.body].room
-        return (x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2 <= reach * reach
-    reach = contact.extent * (1.0 + BALL_SLACK) + contact.radius + work.body[contact.body].room
-    return along_normal(contact, x) - contact.offset <= reach
+    contact = system.contacts[c]
+    slack = BALL_SLACK * (contact.extent + contact.other_extent)
+    return room(system, contact, now, False) <= slack + work.body[contact.body].room
 
 
 @kernel

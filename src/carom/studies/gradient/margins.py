@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom.impact import layout as o
-from carom.model.arrays import KIND_VERTICES
+from carom.model.contact_kinds import has_vertices
 from carom.model.laws import law_of
 from carom.studies.gradient.blow import AT_REST, Blow
 from carom.studies.gradient.body import Moving, cross, fly, path
@@ -24,7 +24,7 @@ ROUGHLY = 1e-8  # accuracy of near misses, which are only warnings
 def half_space_rows(system, b: int):
     """Return the contacts of vertices of a body with half-spaces."""
     contacts = system.contacts
-    return contacts[(contacts.body == b) & (contacts.kind == KIND_VERTICES)]
+    return contacts[(contacts.body == b) & has_vertices(contacts)]
 
 
 def vertex_gaps(system, row, body: Moving) -> np.ndarray:
@@ -59,7 +59,7 @@ def of_impact(system, row, place, tied, bodies, done: Strike, hit: Blow, u, W, k
             cores = system.vertices[other.first : other.last]
             gaps = vertex_gaps(system, other, body)
             rates = other.axes[0] @ body.v + np.cross(body.w, cores @ body.R.T) @ other.axes[0]
-            own = other.number == row.number and row.kind == KIND_VERTICES
+            own = other.number == row.number and has_vertices(row)
             skip = np.zeros(len(cores), dtype=bool)
             if own:
                 skip = np.any(np.all(cores[:, None] == tied[None], axis=2), axis=1)

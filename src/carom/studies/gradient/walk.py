@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from carom.geometry import quaternion
-from carom.model.arrays import KIND_PAIR, KIND_VERTICES
+from carom.model.contact_kinds import has_vertices, is_found
 from carom.model.laws import law_of
 from carom.results.names import restitution_of
 from carom.results.solution import Solution
@@ -196,13 +196,13 @@ class Walk:
         candidates = []
         for row in rows:
             body = self.bodies[int(row.body)]
-            if row.kind == KIND_VERTICES:
+            if has_vertices(row):
                 gaps = near.vertex_gaps(self.system, row, body)
                 closed = np.flatnonzero(gaps <= max(gaps.min(), 0.0) + self.tie * row.extent)
                 if gaps.min() <= self.tie * row.extent:
                     tied = self.system.vertices[row.first + closed]
                     candidates.append((row, vertex_place(row, tied.mean(axis=0), body), tied))
-            elif row.kind == KIND_PAIR:
+            elif is_found(row):
                 pair = [body] + ([self.bodies[int(row.other)]] if row.other >= 0 else [])
                 place = found_place(self.system, row, pair)
                 point = None if place is None else pair[0].x + place.arms[0]

@@ -28,7 +28,6 @@ from carom.contact.thresholds import BACK_SIDE, DEPTH
 from carom.geometry.rotation import rotate_back
 from carom.geometry.thresholds import ROUND_OFF
 from carom.geometry.vectors import dot, minus
-from carom.model.arrays import KIND_PAIR
 
 
 @unit
@@ -283,6 +282,34 @@ def rides_on(system, active, c, touch):
         return False
     for j in range(active.count[0]):
         d = active.points[j].contact
-        if d != c and active.points[j].kind == KIND_PAIR and related(system, c, d):
+        if d != c and active.points[j].found == 1 and related(system, c, d):
+            return True
+    return False
+
+
+@kernel
+def keep_counting(system, contact, state, work):
+    """Leave out the found points that a level surface hides; return how many are left."""
+    if contact.first_level < contact.last_level or contact.first_mine < contact.last_mine:
+        return keep_real_touches(system, contact, state, work)
+    return work.pair.state[0].total
+
+
+@kernel
+def is_beside(contact, other):
+    """Return whether two rows of one body are parts of one level surface, with a law of friction each."""
+    same = contact.surface == other.surface and contact.body == other.body
+    return contact.surface > 0 and same
+
+
+@kernel
+def touches_already(system, active, c):
+    """Return whether a row has active points, or its body has some on the same level surface."""
+    contact = system.contacts[c]
+    for j in range(active.count[0]):
+        d = active.points[j].contact
+        if d == c:
+            return True
+        if contact.first_level < contact.last_level and share_surface(system, c, d):
             return True
     return False

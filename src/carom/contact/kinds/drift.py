@@ -41,7 +41,7 @@ from carom.collision.features import EDGE, FACE, FIXED, NOBODY, OF_A, OF_B, firs
 from carom.collision.layout import CYLINDER, ELLIPSOID, Hulls
 from carom.collision.support import change_of_support
 from carom.collision.thresholds import LEAST_SINE
-from carom.contact.place_of_other import pose_of
+from carom.contact.kinds.partner import pose_of
 from carom.geometry.rotation import rotate, rotate_back
 from carom.geometry.thresholds import RESOLUTION
 from carom.geometry.vectors import cross, dot, plus

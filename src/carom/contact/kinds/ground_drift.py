@@ -2,7 +2,7 @@
 
 With c the nearest point of the core, q its foot on the surface B, c - q = d n, and S the shape operator at the
 foot, the normal turns beside that of the body B by m = n' - w_B x n = S (q' - v_B(q)). The core point moves by
-c' = v_c - H (n' - w_A x n) + e tau (`carom.contact.drift`), the foot by q' = c' - d' n - d n'. So
+c' = v_c - H (n' - w_A x n) + e tau (`carom.contact.kinds.drift`), the foot by q' = c' - d' n - d n'. So
 
     (I + S (d + H)) m = S (v_c - v_B(c) - H (w_B - w_A) x n + e tau),
 
@@ -12,12 +12,11 @@ both sides in the tangent plane. A point between the ends of an edge e keeps n.e
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom._compiled.units import unit
 from carom.collision.features import EDGE
 from carom.collision.implicit import shape_operator, turn_of_normal
 from carom.collision.layout import ELLIPSOID
-from carom.contact.drift import bend_of, cores_at, edge_of, rates_of_rows
-from carom.contact.place_of_other import pose_of
+from carom.contact.kinds.drift import bend_of, cores_at, edge_of, rates_of_rows
+from carom.contact.kinds.partner import pose_of
 from carom.geometry.rotation import rotate, rotate_back
 from carom.geometry.vectors import cross, dot, minus, plus
 
@@ -55,8 +54,8 @@ def _turn_of_normal(at, a, n, d, v):
     return plus((x * e[0], x * e[1], x * e[2]), y, f)
 
 
-@unit
-def drift_on_surface(system, contact, point, state) -> tuple[float, float, float]:
+@kernel
+def drift_on_surface(system, contact, point, state):
     """Return (d/dt G) v, in contact axes, of a point on a surface that `pair_point.write_touch` wrote."""
     a, b = cores_at(system, contact, contact.other_solid, point, state)
     at = _shape_at(system, contact, point, state)

@@ -12,7 +12,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.collision.layout import CYLINDER
-from carom.contact.place_of_other import on_half_space
+from carom.contact.kinds.partner import on_half_space
 from carom.contact.thresholds import FLAT_RIM, RIM_DISTANCE
 from carom.geometry.rotation import norm, rotate, rotate_back
 

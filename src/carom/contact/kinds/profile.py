@@ -23,23 +23,40 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.collision.features import NOBODY
 from carom.collision.layout import CYLINDER, PROFILE, SEGMENT
 from carom.contact.continuous_detection import reach
-from carom.contact.drift import motions_of
-from carom.contact.pair_point import list_touches, touch_rate
-from carom.contact.parting import bound_in_frame
-from carom.contact.place_of_other import on_half_space
+from carom.contact.kinds.drift import motions_of
+from carom.contact.kinds.found_points import list_on_solid, nearest_touch, touch_rate
+from carom.contact.kinds.parting import bound_in_frame, plane_of, time_beside
+from carom.contact.kinds.profile_drift import drift_of_profile
 from carom.geometry.vectors import cross, dot, minus, plus
+from carom.status import OUT_OF_PLANE
+
+
+@unit
+def time_apart(system, contact, state, bounds, h, work) -> tuple[float, float]:
+    """Return how long, up to |h|, both stay apart: by a plane beside the hull of the profile, or by its curve.
+
+    And the bound of the acceleration of their points. h < 0: in the past.
+    """
+    time = time_beside(system, contact, plane_of(nearest_touch(work)), state, bounds, h)
+    if time < abs(h):
+        time = max(time, time_off_profile(system, contact, state, bounds, h, work))
+    return time, bounds[1]
+
+
+@unit
+def drift(system, contact, feature, point, state, work) -> tuple[float, float, float]:
+    """Return (d/dt G) v of a point of a profile and another solid."""
+    return drift_of_profile(system, contact, contact.other_solid, point, state)
 
 
 @kernel
-def has_profile(system, contact):
-    """Return whether one of two solids is a profile."""
-    if on_half_space(contact):
-        return False
-    a, b = system.solids[contact.solid], system.solids[contact.other_solid]
-    return a.kind == PROFILE or b.kind == PROFILE
+def lost_gap(contact):
+    """Return the status of a contact without a gap: the profile and its partner have no sections."""
+    return OUT_OF_PLANE
 
 
 @kernel
@@ -77,7 +94,7 @@ def time_off_profile(system, contact, state, bounds, h, work):
     way = (speed + 0.5 * a * abs(h)) * abs(h)
     curved = bend * way <= 0.125
     bent = a + 2.0 * bend * most * most if bend > 0.0 else a
-    list_touches(system, contact, state, way, work)
+    list_on_solid(system, contact, contact.other_solid, state, way, work)
     time = abs(h)
     for i in range(work.pair.state[0].total):
         touch = work.touches[i]

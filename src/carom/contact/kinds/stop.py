@@ -7,20 +7,27 @@ contains angles and torques (`carom.results.assemble`).
 
 from __future__ import annotations
 
+import math
+
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.units import unit
+from carom.contact import gap as gaps
 from carom.contact.continuous_detection import BELOW, CLEAR, UNSURE, cubic_clears
 from carom.contact.gap import round_off, slow
-from carom.contact.pair_point import tangents
+from carom.contact.point_axes import tangents
+from carom.contact.point_lists import is_active, write_closed
 from carom.geometry.rotation import cross
 from carom.geometry.thresholds import RESOLUTION
 from carom.kinematics.contact_point import contact_velocity
-from carom.kinematics.coordinate import along, drift, slides, value
+from carom.kinematics.coordinate import along, slides, value
+from carom.kinematics.coordinate import drift as rate_of_slope
 from carom.kinematics.curve import can_be_left, find_foot, is_on_curve, rail_drift
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.model.actions import NOTHING, PERSIST, STRIKE
-from carom.model.arrays import KIND_STOP
+from carom.model.contact_kinds import STOP
 from carom.model.workspace import MOTION_POINT, MOTION_STOP_SLIDE, MOTION_STOP_TURN
+
+located_within, rounding = gaps.located_within, round_off
 
 
 @unit
@@ -75,26 +82,61 @@ def stop_gap(system, contact, state, work) -> tuple[float, float]:
 
 
 @unit
-def stop_drift(system, contact, state, work) -> tuple[float, float, float]:
+def drift(system, contact, feature, point, state, work) -> tuple[float, float, float]:
     """Return (d/dt G) v of a stop."""
     c = system.relations.coordinates[contact.solid]
     if is_rail(system, c):
         find_foot(system, c, state)
         return rail_drift(c, system.relations.curves[c.number], state)
-    return contact.side * drift(system, c, state, work.joint[0].target), 0.0, 0.0
+    return contact.side * rate_of_slope(system, c, state, work.joint[0].target), 0.0, 0.0
 
 
 @kernel
-def is_active(active, c):
-    """Return whether a contact has active points."""
-    for i in range(active.count[0]):
-        if active.points[i].contact == c:
-            return True
-    return False
+def place(system, contact, known, state, point, work):
+    """Write the point, axes and gap of a stop."""
+    place_stop(system, contact, state, point)
 
 
 @kernel
-def check_stop(model, data, c):
+def room(system, contact, state, pieces):
+    """Return no bound: the gap itself is as easily found."""
+    return -math.inf
+
+
+@kernel
+def least_gap(system, contact, state, work):
+    """Return the gap of a stop."""
+    return stop_gap(system, contact, state, work)[0]
+
+
+@kernel
+def event_gap(system, data, c, state):
+    """Return the gap of a stop, and its rate."""
+    return stop_gap(system, system.contacts[c], state, data.work)
+
+
+@kernel
+def closing_speed(system, contact, state, work):
+    """Return the speed of a stop, which is nearly constant within a step."""
+    return abs(stop_gap(system, contact, state, work)[1])
+
+
+@kernel
+def add_points(model, data, c, state, within, spots):
+    """Add a stop within a distance, or active, to a list; return whether there is room."""
+    k, (near, _) = spots.count[0], within
+    if k == spots.closed.shape[0]:
+        return False
+    point = spots.points[0][k]
+    place_stop(model.system, model.system.contacts[c], state, point)
+    if not point.gap > near or is_active(data.active, c):
+        write_closed(c, 0, point.core, spots.closed[k])
+        spots.count[0] = k + 1
+    return True
+
+
+@kernel
+def due(model, data, c):
     """Return the action that a closed stop asks for."""
     contact = model.system.contacts[c]
     z, rate = stop_gap(model.system, contact, data.state, data.work)
@@ -107,7 +149,7 @@ def check_stop(model, data, c):
 
 
 @kernel
-def passage_stop(model, data, c):
+def passage(model, data, c):
     """Return CLEAR, BELOW or UNSURE, and a time before any contact, from the cubic to the trial state."""
     contact, work, h = model.system.contacts[c], data.work, data.work.search[0].dt
     if is_active(data.active, c):
@@ -144,5 +186,5 @@ def safe_time(z0, rate0, z1, rate1, h, tiny):
 def write_stop_gaps(system, state, work, out):
     """Write gap and rate of each stop, (C, 2)."""
     for c in range(system.contacts.shape[0]):
-        if system.contacts[c].kind == KIND_STOP:
+        if system.contacts[c].kind == STOP:
             out[c, 0], out[c, 1] = stop_gap(system, system.contacts[c], state, work)

@@ -24,17 +24,18 @@ from carom.collision.implicit import (
     plane_at,
     planes,
 )
-from carom.collision.layout import ELLIPSOID, Pair, Placed
+from carom.collision.layout import ELLIPSOID, Pair
 from carom.collision.on_surface import corner, corners, lowest_of_ellipsoid, support_of_ellipsoid
 from carom.collision.support import change_of_support
-from carom.contact.place_of_other import centre_of_piece, pose_of
+from carom.contact.kinds.found_points import placed
+from carom.contact.kinds.partner import centre_of_piece, pose_of
 from carom.contact.thresholds import CAUTION
 from carom.geometry.rotation import norm, rotate_back
 from carom.geometry.vectors import cross, dot, minus, plus
 
 
 @unit
-def room_over_surface(system, contact, state, pieces) -> float:
+def room(system, contact, state, pieces) -> float:
     """Return a lower bound of the gap of a body, or of the piece of it that touches, over a surface."""
     solid = system.solids[contact.other_solid]
     x, q = pose_of(solid, contact.other, state)
@@ -141,12 +142,9 @@ def time_over_surface(system, contact, state, bounds, h, work) -> tuple[float, f
     """
     solid, other = system.solids[contact.solid], system.solids[contact.other_solid]
     surface, hulls, s = system.hulls.surfaces[other.surface], system.hulls, work.pair.state[0]
-    pose, body, r = work.solid_pose, state[contact.body], contact.radius
-    pose[0, 0], pose[0, 1], pose[0, 2] = pose_of(solid, contact.body, state)[0]
-    pose[0, 3], pose[0, 4], pose[0, 5], pose[0, 6] = pose_of(solid, contact.body, state)[1]
-    pose[1, 0], pose[1, 1], pose[1, 2] = pose_of(other, contact.other, state)[0]
-    pose[1, 3], pose[1, 4], pose[1, 5], pose[1, 6] = pose_of(other, contact.other, state)[1]
-    enter(s, Placed(solid, pose[0, :3], pose[0, 3:]), Placed(other, pose[1, :3], pose[1, 3:]))
+    body, r = state[contact.body], contact.radius
+    a, b = placed(system, contact, contact.other_solid, state, work)
+    enter(s, a, b)
     spin, bend = norm(body.w), _greatest_radius(solid)
     speed = norm(body.v) + contact.extent * spin + bounds[1] * abs(h)
     turning = bounds[1] + bend * spin * spin

@@ -28,12 +28,7 @@ from carom.collision.farthest import VERTICES, farthest
 from carom.collision.features import NOBODY, OF_A
 from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, PROFILE, SEGMENT
 from carom.collision.profile import farthest_of_curve
-from carom.contact.place_of_other import (
-    centre_of_other,
-    on_curved_ground,
-    on_half_space,
-    pose_of,
-)
+from carom.contact.kinds.partner import centre_of_other, on_half_space, pose_of
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.kinematics.flight import core_extent
 
@@ -152,7 +147,7 @@ def bound_in_frame(system, contact, side, bounds, state, h):
 
 
 @kernel
-def time_apart(system, contact, plane, state, bounds, h):
+def time_beside(system, contact, plane, state, bounds, h):
     """Return how long, up to h, two solids stay apart beside a plane; h < 0: in the past.
 
     `plane` is its normal and the owner of this. It rests, or moves with its owner, whichever lasts longer.
@@ -205,23 +200,13 @@ def widest_face(system, contact, state):
 
 
 @kernel
-def beside_face(system, contact, state, near):
-    """Return whether a face of a box shows that the gap of two solids is above `near`."""
-    if on_half_space(contact) or contact.surface > 0 or on_curved_ground(system, contact):
-        return False
-    return widest_face(system, contact, state)[2] > near
-
-
-@kernel
-def stays_beside_face(system, data, contact, smooth, tiny, bounds):
+def cores_stay_beside_face(system, data, contact, smooth, tiny, bounds):
     """Return whether faces of boxes show that two solids stay apart in the trial step.
 
     If the motion is `smooth` and the face the same, the cubic with the gap and rate of both ends decides, to
     `tiny`: its control points are F(h/3), of the start and back from the end, with a = 0. Else the plane must
     separate them at both ends, for the bounds to hold on the way from there.
     """
-    if on_half_space(contact) or contact.surface > 0 or on_curved_ground(system, contact):
-        return False
     start, end, h = data.state, data.work.trial, data.work.search[0].dt
     plane, face, room = widest_face(system, contact, start)
     other, last, left = widest_face(system, contact, end)
@@ -236,5 +221,5 @@ def stays_beside_face(system, data, contact, smooth, tiny, bounds):
                 return True
     if not min(room, left) > 0.0:
         return False
-    time = time_apart(system, contact, plane, start, bounds, h)
-    return time >= h or time + time_apart(system, contact, other, end, bounds, -h) >= h
+    time = time_beside(system, contact, plane, start, bounds, h)
+    return time >= h or time + time_beside(system, contact, other, end, bounds, -h) >= h

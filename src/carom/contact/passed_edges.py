@@ -9,11 +9,10 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.collision.features import NOBODY, OF_A
-from carom.collision.layout import BOX, HULL
+from carom.contact.operations import are_sharp
 from carom.dynamics.thresholds import EDGE_JUMP, NORMAL_ERROR
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
-from carom.model.arrays import KIND_PAIR
 from carom.model.workspace import MOTION_POINT
 
 
@@ -34,21 +33,11 @@ def note_passed(system, active, k, group, start, end):
             continue
         active_point = active.points[closed_point.active]
         contact, least = system.contacts[active_point.contact], NORMAL_ERROR
-        jumps = active_point.kind == KIND_PAIR and active_point.owner != NOBODY
+        jumps = active_point.found == 1 and active_point.owner != NOBODY
         if jumps and point.owner == NOBODY:
             jumps, least = are_sharp(system, contact), EDGE_JUMP
         jumps = jumps and jump_of_normal(active_point, point, start, end) > least
         active_point.passes = 1 if jumps and contact_velocity(point, end)[0] > 0.0 else 0
-
-
-@kernel
-def are_sharp(system, contact):
-    """Return whether two solids are polyhedra whose edges are not rounded."""
-    if contact.surface > 0:
-        return False
-    a, b = system.solids[contact.solid], system.solids[contact.other_solid]
-    flat = (a.kind == BOX or a.kind == HULL) and (b.kind == BOX or b.kind == HULL)
-    return flat and a.radius == 0.0 and b.radius == 0.0
 
 
 @kernel

@@ -27,8 +27,8 @@ from carom._compiled.decorators import kernel
 from carom.collision.features import NOBODY, OF_A, OF_B, OF_FIXED
 from carom.collision.layout import CYLINDER, PROFILE, Hulls
 from carom.collision.profile import curve_at, place_of_part
-from carom.contact.drift import motions_of, rates_of_rows
-from carom.contact.place_of_other import pose_of
+from carom.contact.kinds.drift import motions_of, rates_of_rows
+from carom.contact.kinds.partner import pose_of
 from carom.geometry.rotation import rotate, rotate_back
 from carom.geometry.thresholds import RESOLUTION, SMALLEST
 from carom.geometry.vectors import cross, dot, minus, plus

@@ -1,0 +1,35 @@
+"""A kernel that calls one of several functions, by a number that its arguments have."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from carom._compiled.decorators import kernel
+
+
+def by_number(number: str, default: Callable, functions: Sequence[Callable | None]) -> Any:
+    """Return the kernel with the parameters of `default` that calls ``functions[number]`` with its arguments.
+
+    Parameters
+    ----------
+    number : str
+        Python expression of the parameters.
+    default : callable
+        Called for numbers without a function, for which `functions` has None. It is compiled as a kernel.
+    functions : sequence
+        Kernels or units.
+    """
+    names = ", ".join(inspect.signature(default).parameters)
+    known: dict[str, Any] = {"otherwise": kernel(default)}
+    lines = [f"def {default.__name__}({names}):"]
+    for k, function in enumerate(functions):
+        if function is not None:
+            known[f"of_{k}"] = function
+            lines += [f"    if {number} == {k}:", f"        return of_{k}({names})"]
+    lines.append(f"    return otherwise({names})")
+    exec("\n".join(lines), known)
+    made = known[default.__name__]
+    made.__module__, made.__doc__ = default.__module__, default.__doc__
+    return kernel(made)

@@ -1,0 +1,14 @@
+"""Two convex solids, moving or static: the common forms of all operations are theirs."""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.collision.layout import BOX, HULL
+
+
+@kernel
+def are_sharp(system, contact):
+    """Return whether two solids are polyhedra whose edges are not rounded."""
+    a, b = system.solids[contact.solid], system.solids[contact.other_solid]
+    flat = (a.kind == BOX or a.kind == HULL) and (b.kind == BOX or b.kind == HULL)
+    return flat and a.radius == 0.0 and b.radius == 0.0
