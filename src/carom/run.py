@@ -7,7 +7,7 @@ import numpy as np
 from carom._compiled.template import Template, arrays_of
 from carom._compiled.units import Entries
 from carom._compiled.user_functions import Functions
-from carom.contact.kinds.stop import write_stop_gaps
+from carom.contact.depth import write_least_gaps
 from carom.dynamics.adapt import complete, time_of_bounces
 from carom.dynamics.methods import EXPLICIT, METHODS, make_method
 from carom.dynamics.project import project_start
@@ -344,10 +344,9 @@ def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:
     if not scene.stops:
         return
     system = compiled.system
-    gaps = np.zeros((len(system.contacts), 2))
-    write_stop_gaps(system, start, work, gaps)
-    first = len(system.contacts) - len(scene.stops)
-    for stop, gap in zip(scene.stops, gaps[first:, 0]):
+    gaps, first = np.zeros(len(scene.stops)), len(system.contacts) - len(scene.stops)
+    write_least_gaps(system, start, first, work, gaps)
+    for stop, gap in zip(scene.stops, gaps):
         extent = system.contacts.extent[first + stop.index]
         if not gap >= -options.constraint_tolerance * extent:
             if stop.joint.can_be_left:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import entry, kernel
 from carom.contact.kinds.partner import round_off_of_both, smaller
 from carom.contact.operations import apart, bulge, least_gap
 
@@ -33,3 +33,10 @@ def deepest(system, state, work):
         if depth > most:
             most, number = depth, contact.number
     return most, number
+
+
+@entry
+def write_least_gaps(system, state, first, work, out):
+    """Write the least gaps of the contacts from `first` on, (C - first,)."""
+    for c in range(first, system.contacts.shape[0]):
+        out[c - first] = least_gap(system, system.contacts[c], state, work)

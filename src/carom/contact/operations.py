@@ -25,10 +25,8 @@ from carom.contact.kinds.found_points import (
 )
 from carom.contact.kinds.level_surfaces import keep_counting
 from carom.contact.kinds.parting import (
-    cores_stay_beside_face,
     plane_of,
     time_beside,
-    widest_face,
 )
 from carom.contact.kinds.partner import (
     balls,
@@ -43,8 +41,8 @@ from carom.contact.point_lists import write_closed
 from carom.contact.thresholds import ACTIVE_REACH, REACH
 from carom.geometry.rotation import norm
 from carom.geometry.vectors import dot, minus
-from carom.model import contact_kinds as kinds
 from carom.model.actions import NOTHING, PERSIST, STRIKE
+from carom.model.contact_kinds import FOUND
 from carom.status import NOT_FINITE
 
 # how far
@@ -69,7 +67,7 @@ def apart(system, contact, state, near):
 @by_kind("contact")
 def beside_face(system, contact, state, near):
     """Return whether a face of a box shows that the gap is above `near`."""
-    return widest_face(system, contact, state)[2] > near
+    return False
 
 
 @by_kind("contact")
@@ -166,16 +164,16 @@ def add_touch(contact, c, touch, state, k, group):
     write_touch(contact, touch, state, group.points[0][k])
 
 
-@kernel
+@by_kind("contact")
 def is_fixed(contact):
-    """Return whether the points stay where they are on the body: vertices."""
-    return contact.kind == kinds.VERTICES
+    """Return whether the points stay where they are on the body."""
+    return False
 
 
 @kernel
 def is_found(contact):
     """Return whether the points are found anew in each state."""
-    return contact.kind in kinds.FOUND
+    return contact.kind in FOUND
 
 
 @by_kind("contact")
@@ -350,7 +348,7 @@ def stays_far(system, data, contact):
 @by_kind("contact")
 def stays_beside_face(system, data, contact, smooth, tiny, bounds):
     """Return whether faces of boxes show that both stay apart in the trial step."""
-    return cores_stay_beside_face(system, data, contact, smooth, tiny, bounds)
+    return False
 
 
 @by_kind("contact")

@@ -10,7 +10,7 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.collision.features import NOBODY, OF_A
 from carom.contact.operations import are_sharp
-from carom.dynamics.thresholds import EDGE_JUMP, NORMAL_ERROR
+from carom.contact.thresholds import EDGE_JUMP, NORMAL_ERROR
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.workspace import MOTION_POINT

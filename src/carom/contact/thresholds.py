@@ -18,3 +18,5 @@ RIM_STEP = 0.03
 CAUTION = 0.2
 CUBIC_SHARE = 8.0 / 27.0  #: step times speed at the ends of a cubic: by which it leaves its chord at most
 CHORD_ANGLE = 2.23  #: distance of two quaternions: bound of their angle, up to a half turn: pi/sqrt(2)
+NORMAL_ERROR = 1e-6  #: 1, or size of the body: normals and heights of one plane differ by less, after turns
+EDGE_JUMP = 1e-3  #: 1: normals of edges, or of two points of a pair, that differ by less are one (`TILT`)

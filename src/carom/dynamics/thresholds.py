@@ -25,6 +25,4 @@ SINGULARITY = 1e-5  #: diagonal of a row: square of its angle to the rows before
 SINGULAR_TURN = 1e-2  #: rad: bodies turn by this angle to leave a singular position
 SINGULAR_GROWTH = 3.0  #: angle before: if rows still depend on each other
 LAST_PIVOT = 1e-29  #: diagonal: smaller pivots are round-off of 31 digits
-NORMAL_ERROR = 1e-6  #: 1, or size of the body: normals and heights of one plane differ by less, after turns
-EDGE_JUMP = 1e-3  #: 1: normals of edges, or of two points of a pair, that differ by less are one (`TILT`)
 DISPLACEMENT = 1e-5  #: size of a body: for differences of the user's functions

@@ -35,7 +35,7 @@ from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes
 from carom.geometry.thresholds import RESOLUTION
 from carom.model.arrays import CONTACT
-from carom.model.contact_kinds import LEVEL
+from carom.model.contact_kinds import ON_LEVEL
 from carom.model.graph import Sets
 from carom.scene.all_pairs import PairTable
 from carom.scene.friction import anisotropy_of
@@ -407,7 +407,7 @@ def _surface_rows(rows: np.recarray, surface: np.record, region: Region) -> np.r
     out[:] = rows
     for name in ("first", "last", "other_first", "other_last", "other_solid", "static"):
         out[name] = 0
-    out["other"], out["kind"] = -1, LEVEL
+    out["other"], out["kind"] = -1, ON_LEVEL
     out["axes"], out["offset"] = contact_axes(surface.normal), surface.offset
     out["surface"], out["first_level"] = region.surface + 1, region.first
     out["last_level"] = region.last

@@ -6,7 +6,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import Columns, table
 from carom.model.arrays import CONTACT
-from carom.model.contact_kinds import STOP
+from carom.model.contact_kinds import OF_JOINT
 from carom.model.laws import LawTable
 from carom.model.relations import Elements
 from carom.model.thresholds import DIRECTION
@@ -22,7 +22,7 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, laws: 
     for row, stop in zip(rows, scene.stops):
         number = elements.coordinates.number(stop.joint, stop.coordinate)
         c = elements.coordinates.rows[number][0]
-        row.number, row.solid, row.kind = first + stop.index, number, STOP
+        row.number, row.solid, row.kind = first + stop.index, number, OF_JOINT
         row.body, row.other = (c.child, c.parent) if c.child >= 0 else (c.parent, -1)
         size = elements.sizes[stop.joint.child.index]
         row.side = stop.side * (size if stop.turns else 1.0)

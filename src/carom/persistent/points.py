@@ -30,8 +30,7 @@ from carom.contact.operations import (
     touch_of_active,
 )
 from carom.contact.point_lists import is_active, write_closed, write_turning
-from carom.contact.thresholds import ACTIVE_REACH, PLACE_ERROR, REACH
-from carom.dynamics.thresholds import NORMAL_ERROR
+from carom.contact.thresholds import ACTIVE_REACH, NORMAL_ERROR, PLACE_ERROR, REACH
 from carom.geometry.rotation import cross, rotate_back
 from carom.geometry.thresholds import RESOLUTION, ROUND_OFF
 from carom.kinematics.anisotropy import lengths_of_tangents, turn_plain

@@ -1,9 +1,12 @@
-"""Two convex solids, moving or static: the common forms of all operations are theirs."""
+"""Two convex solids, moving or static: the common form of most operations is theirs."""
 
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.collision.layout import BOX, HULL
+from carom.contact.kinds import parting
+
+beside_face, stays_beside_face = parting.beside_face, parting.stays_beside_face
 
 
 @kernel

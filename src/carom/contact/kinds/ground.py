@@ -63,18 +63,6 @@ def time_apart(system, contact, state, bounds, h, work):
     return min(time, reach(gap, rate, most)), most
 
 
-@kernel
-def beside_face(system, contact, state, near):
-    """Return False: no face of a box separates it from ground that is not convex."""
-    return False
-
-
-@kernel
-def stays_beside_face(system, data, contact, smooth, tiny, bounds):
-    """Return False, as `beside_face`."""
-    return False
-
-
 @unit
 def touch_of_active(system, contact, known, state, work) -> int:
     """Write the point with the feature of a known one; return its place, 0."""

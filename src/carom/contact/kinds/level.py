@@ -19,12 +19,7 @@ from carom.contact.kinds.profile_drift import drift_of_profile
 from carom.contact.thresholds import ACTIVE_REACH
 
 room, stays_far, list_touches = plane.room, plane.stays_far, plane.list_touches
-way_past, beside_face, stays_beside_face = (
-    plane.way_past,
-    plane.beside_face,
-    plane.stays_beside_face,
-)
-curvatures = plane.curvatures
+way_past, curvatures = plane.way_past, plane.curvatures
 
 
 @unit

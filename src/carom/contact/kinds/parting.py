@@ -200,7 +200,13 @@ def widest_face(system, contact, state):
 
 
 @kernel
-def cores_stay_beside_face(system, data, contact, smooth, tiny, bounds):
+def beside_face(system, contact, state, near):
+    """Return whether a face of a box shows that the gap of two solids is above `near`."""
+    return widest_face(system, contact, state)[2] > near
+
+
+@kernel
+def stays_beside_face(system, data, contact, smooth, tiny, bounds):
     """Return whether faces of boxes show that two solids stay apart in the trial step.
 
     If the motion is `smooth` and the face the same, the cubic with the gap and rate of both ends decides, to

@@ -47,18 +47,6 @@ def way_past(contact, data):
 
 
 @kernel
-def beside_face(system, contact, state, near):
-    """Return False: its lowest points are found at once."""
-    return False
-
-
-@kernel
-def stays_beside_face(system, data, contact, smooth, tiny, bounds):
-    """Return False: the half-space is a face itself."""
-    return False
-
-
-@kernel
 def curvatures(system, contact, point, state):
     """Return those of the solid: t t, t s, s s."""
     return curvature(system, contact.solid, contact.body, state, place_and_axes(point, state))

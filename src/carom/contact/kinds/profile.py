@@ -27,12 +27,15 @@ from carom._compiled.units import unit
 from carom.collision.features import NOBODY
 from carom.collision.layout import CYLINDER, PROFILE, SEGMENT
 from carom.contact.continuous_detection import reach
+from carom.contact.kinds import parting
 from carom.contact.kinds.drift import motions_of
 from carom.contact.kinds.found_points import list_on_solid, nearest_touch, touch_rate
 from carom.contact.kinds.parting import bound_in_frame, plane_of, time_beside
 from carom.contact.kinds.profile_drift import drift_of_profile
 from carom.geometry.vectors import cross, dot, minus, plus
 from carom.status import OUT_OF_PLANE
+
+beside_face, stays_beside_face = parting.beside_face, parting.stays_beside_face
 
 
 @unit

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import entry, kernel
+from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact import gap as gaps
 from carom.contact.continuous_detection import BELOW, CLEAR, UNSURE, cubic_clears
@@ -24,7 +24,6 @@ from carom.kinematics.coordinate import drift as rate_of_slope
 from carom.kinematics.curve import can_be_left, find_foot, is_on_curve, rail_drift
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.model.actions import NOTHING, PERSIST, STRIKE
-from carom.model.contact_kinds import STOP
 from carom.model.workspace import MOTION_POINT, MOTION_STOP_SLIDE, MOTION_STOP_TURN
 
 located_within, rounding = gaps.located_within, round_off
@@ -180,11 +179,3 @@ def safe_time(z0, rate0, z1, rate1, h, tiny):
             return s * h
         s *= 0.5
     return 0.0
-
-
-@entry
-def write_stop_gaps(system, state, work, out):
-    """Write gap and rate of each stop, (C, 2)."""
-    for c in range(system.contacts.shape[0]):
-        if system.contacts[c].kind == STOP:
-            out[c, 0], out[c, 1] = stop_gap(system, system.contacts[c], state, work)

@@ -66,6 +66,12 @@ def lowest(contact, vertices, state):
 
 
 @kernel
+def is_fixed(contact):
+    """Return True."""
+    return True
+
+
+@kernel
 def least_gap(system, contact, state, work):
     """Return the least gap of all vertices."""
     return lowest(contact, system.vertices, state)[0]

@@ -15,8 +15,7 @@ from carom.contact.operations import (
     place,
 )
 from carom.contact.point_lists import write_turning
-from carom.contact.thresholds import ACTIVE_REACH
-from carom.dynamics.thresholds import EDGE_JUMP
+from carom.contact.thresholds import ACTIVE_REACH, EDGE_JUMP
 from carom.kinematics.anisotropy import turn_plain
 from carom.law.turning import arm_of_torque
 from carom.model.workspace import MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
