@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.dynamics.elements import acceleration_bias, driven_power
+from carom.dynamics.element_operations import acceleration_bias, driven_power
+from carom.dynamics.elements.stiff import add_stiff
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.solve import solve
-from carom.dynamics.stiff import add_stiff
 from carom.model.parts_of_system import has_joints
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
+from carom.dynamics.elements.stiff import stiff_energy
 from carom.dynamics.forces import potential_energy
 from carom.dynamics.rotors import rotor_energy
-from carom.dynamics.stiff import stiff_energy
 from carom.geometry.rotation import norm, rotate, rotate_back
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from carom._compiled.decorators import entry, kernel
 from carom.dynamics.bushing import attitude
 from carom.dynamics.contact_impulse import clear_wrenches
+from carom.dynamics.elements.stiff import line_of
 from carom.dynamics.solve import solve
-from carom.dynamics.stiff import line_of
 from carom.geometry.rotation import rotate, unit_vector
 from carom.kinematics.coordinate import push, rate, value
 from carom.kinematics.wrench import add_force, point

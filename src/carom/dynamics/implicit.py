@@ -18,7 +18,8 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.dynamics.acceleration import bias_joints
-from carom.dynamics.elements import driven_power
+from carom.dynamics.element_operations import driven_power
+from carom.dynamics.elements.stiff import along_row, stretch
 from carom.dynamics.explicit import (
     any_held,
     bound_accelerations,
@@ -30,7 +31,6 @@ from carom.dynamics.explicit import (
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.project import project_position, project_velocity, shift
 from carom.dynamics.solve import solve
-from carom.dynamics.stiff import along_row, stretch
 from carom.geometry.thresholds import RESOLUTION
 from carom.model.arrays import STIFF
 from carom.status import CONSTRAINTS_LOST

@@ -9,7 +9,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.dynamics.acceleration import bias_joints
-from carom.dynamics.elements import driven_power
+from carom.dynamics.element_operations import driven_power
 from carom.dynamics.energy import spin_momentum
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.project import project_velocity

@@ -21,7 +21,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.dynamics.double_double import add, add_product, inverse_root, multiply, subtract_product
-from carom.dynamics.elements import build_rows, row_target
+from carom.dynamics.element_operations import build_rows, row_target
 from carom.dynamics.loops import eliminate, forget_pose, gather
 from carom.dynamics.thresholds import LAST_PIVOT
 from carom.geometry.rotation import rotate, rotate_back

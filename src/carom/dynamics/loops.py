@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom.dynamics.elements import build_rows, row_target
+from carom.dynamics.element_operations import build_rows, row_target
 from carom.friction import ldl
 from carom.kinematics.rows import times_inverse_mass
 from carom.model.arrays import LOOPS

@@ -12,7 +12,7 @@ import math
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.units import unit
 from carom.dynamics.contact_impulse import clear_wrenches, gain
-from carom.dynamics.elements import position_error, velocity_error
+from carom.dynamics.element_operations import position_error, velocity_error
 from carom.dynamics.rotors import keep_rates
 from carom.dynamics.solve import solve, solve_near
 from carom.geometry.rotation import turn

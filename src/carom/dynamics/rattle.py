@@ -27,13 +27,13 @@ from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.discrete_rotation import turn_by_momentum
-from carom.dynamics.elements import driven_power
+from carom.dynamics.element_operations import driven_power, has_own_rows, write_reaction
 from carom.dynamics.explicit import any_held, bound_changes, constrained, copy_state, fly
 from carom.dynamics.kick import add_momentum, first_kick, second_kick
 from carom.dynamics.loops import dropped_rows, solve_factored
 from carom.dynamics.move_error import error_of_move
-from carom.dynamics.solve import joint_wrench, solve, solve_near
-from carom.model.arrays import LOOPS, OWN_ROWS
+from carom.dynamics.solve import solve, solve_near
+from carom.model.arrays import LOOPS
 from carom.model.parts_of_system import has_joints
 from carom.status import NO_CONVERGENCE
 
@@ -144,8 +144,10 @@ def _solve_factored(system, state, work):
 def keep_multipliers(system, state, work):
     """Store the multipliers of elements that are not joints: prescribed motions do work."""
     for j in range(system.joints.shape[0]):
-        if system.joints[j].kind >= OWN_ROWS:
-            joint_wrench(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
+        if has_own_rows(system, j):
+            write_reaction(
+                system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction
+            )
 
 
 @inlined

@@ -7,25 +7,26 @@ import numpy as np
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.units import unit
 from carom.dynamics.contact_impulse import clear_wrenches
-from carom.dynamics.elements import (
+from carom.dynamics.element_operations import (
     acceleration_bias,
     build_rows,
-    force_on_curve,
     position_error,
     prescribed_speeds,
+    report_wrench,
     row_target,
     velocity_error,
+    write_reaction,
 )
+from carom.dynamics.elements.relation import prescribed
+from carom.dynamics.elements.stiff import add_stiff
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.light_bodies import factor_geometry, geometric_motion
 from carom.dynamics.loops import add_reactions, factor, free_motion, substitute, subtract_rows
-from carom.dynamics.relations import prescribed
-from carom.dynamics.solve import joint_wrench, solve
-from carom.dynamics.stiff import add_stiff
+from carom.dynamics.solve import solve
 from carom.dynamics.tree import joint_wrenches
 from carom.kinematics.coordinate import rate, value
 from carom.kinematics.curve import is_on_curve, seek_feet, seek_foot
-from carom.model.arrays import FOREST, LOOPS, ON_CURVE, RELATION
+from carom.model.arrays import FOREST, LOOPS, RELATION
 from carom.model.parts_of_system import has_turns
 
 
@@ -70,7 +71,7 @@ def least_norm(system, augment, state, work):
                 work.joint[j].multiplier[k] += system.solver.rows[j].rhs[k]
     for j in range(system.joints.shape[0]):
         record = work.joint[j]
-        joint_wrench(system.joints[j], state, record.multiplier, record.reaction)
+        write_reaction(system.joints[j], state, record.multiplier, record.reaction)
 
 
 @kernel
@@ -173,8 +174,7 @@ def reactions(system, augment, saved, rows, work, out):
         solve(system, state, True, work)
         share(system, augment, state, work)
         for j in range(system.joints.shape[0]):
-            if system.joints[j].kind in ON_CURVE:
-                force_on_curve(system, system.joints[j], state, work.joint[j].reaction)
+            report_wrench(system, j, state, work.joint[j].reaction)
             for i in range(6):
                 out[k, j, i] = work.joint[j].reaction[i]
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
+from carom.dynamics.element_operations import write_reaction
 from carom.dynamics.light_bodies import factor_light, solve_light
 from carom.dynamics.loops import factor, solve_factored
 from carom.dynamics.tree import solve_tree
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.pose import keep_poses, same_pose
-from carom.kinematics.rows import direction
-from carom.model.arrays import FOREST, NO_JOINTS, OWN_ROWS
+from carom.model.arrays import FOREST, NO_JOINTS
 
 
 @unit
@@ -55,24 +55,7 @@ def solve_spread(system, state, biased, near, work):
 def joint_wrenches(system, state, work):
     """Write the wrench of each joint by the multipliers of the last solve."""
     for j in range(system.joints.shape[0]):
-        joint_wrench(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
-
-
-@kernel
-def joint_wrench(joint, state, multiplier, reaction):
-    """Write the wrench on the child at its anchor: sum of multiplier times direction.
-
-    For an element that is not a joint, write the multipliers themselves.
-    """
-    for k in range(6):
-        reaction[k] = multiplier[k] if joint.kind >= OWN_ROWS and k < joint.rows else 0.0
-    if joint.kind >= OWN_ROWS:
-        return
-    for r in range(joint.rows):
-        d = direction(joint, r, state)
-        for k in range(3):
-            reaction[k] += multiplier[r] * d[3 + k]
-            reaction[3 + k] += multiplier[r] * d[k]
+        write_reaction(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
 
 
 @inlined

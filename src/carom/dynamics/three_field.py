@@ -35,10 +35,10 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.dynamics.elements import (
+from carom.dynamics.element_operations import (
+    add_wrenches,
     position_error,
     prescribed_speeds,
-    push_other,
     row_target,
     velocity_error,
 )
@@ -57,10 +57,7 @@ from carom.dynamics.loops import add_reactions, factor, substitute, subtract_row
 from carom.dynamics.project import project_position, project_velocity
 from carom.dynamics.solve import free_body
 from carom.geometry.rotation import rotate, rotate_back, turn
-from carom.kinematics.joints import child_arm, parent_arm
-from carom.kinematics.rows import direction
-from carom.kinematics.wrench import add_force
-from carom.model.arrays import LOOPS, OWN_ROWS
+from carom.model.arrays import LOOPS
 from carom.model.workspace import RESTS
 from carom.status import NO_CONVERGENCE
 
@@ -186,29 +183,7 @@ def momenta(system, start, h, work):
             speed = max(speed, max(abs(wrench[k]) / body.mass, spin))
         bound[0] = speed
     for j in range(system.joints.shape[0]):
-        add_row_impulses(system, j, work.middle, work.joint[j].multiplier, work)
-
-
-@kernel
-def add_row_impulses(system, j, state, multiplier, work):
-    """Add A^T multiplier of an element to the wrenches, rows taken at `state`."""
-    joint = system.joints[j]
-    c, p = joint.child, joint.parent
-    if joint.kind >= OWN_ROWS:
-        push_other(system, j, state, multiplier, work)
-        return
-    cx, cy, cz = child_arm(joint, state)
-    px, py, pz = parent_arm(joint, state)
-    for r in range(joint.rows):
-        d = direction(joint, r, state)
-        s = multiplier[r]
-        fx, fy, fz = s * d[3], s * d[4], s * d[5]
-        add_force(work, c, (cx, cy, cz), (fx, fy, fz))
-        add_force(work, p, (px, py, pz), (-fx, -fy, -fz))
-        for k in range(3):
-            work.body[c].wrench[3 + k] += s * d[k]
-            if p >= 0:
-                work.body[p].wrench[3 + k] -= s * d[k]
+        add_wrenches(system, j, work.middle, work.joint[j].multiplier, work)
 
 
 @kernel

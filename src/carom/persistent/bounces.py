@@ -24,7 +24,7 @@ from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.contact.kinds.partner import smaller
 from carom.dynamics.delassus import on_drive
-from carom.dynamics.elements import driven_power
+from carom.dynamics.element_operations import driven_power
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER, SUM_ERROR
 from carom.impact.workspace import RETURN, C, U

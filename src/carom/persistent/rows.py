@@ -17,7 +17,7 @@ from carom.contact.groups import members
 from carom.contact.operations import drift, is_fixed
 from carom.dynamics.acceleration import accelerate, acceleration
 from carom.dynamics.delassus import accelerations, inverse_masses, spread_all, velocities
-from carom.dynamics.elements import driven_power
+from carom.dynamics.element_operations import driven_power
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER
 from carom.impact.workspace import C, P, U

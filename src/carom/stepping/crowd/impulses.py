@@ -6,7 +6,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.dynamics.contact_impulse import gain
-from carom.dynamics.elements import driven_power
+from carom.dynamics.element_operations import driven_power
 from carom.dynamics.energy import spin_momentum
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.project import project_velocity, shift

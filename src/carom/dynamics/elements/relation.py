@@ -9,7 +9,9 @@ from __future__ import annotations
 
 from carom._compiled.call_address import call_function
 from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.dynamics.curve import curve
+from carom.dynamics.elements.own_rows import clear
 from carom.kinematics.coordinate import add_rows, drift, push, rate, value
 from carom.kinematics.rows import mass_row
 
@@ -27,10 +29,15 @@ def prescribed(relations, relation, t):
 
 
 @kernel
-def relation_rows(system, j, state, work):
+def of_joint(system, j):
+    """Return the relation of an element."""
+    return system.relations.relations[system.joints[j].number]
+
+
+@unit
+def write_rows(system, j, state, work):
     """Write A and A M^-1 of a relation."""
-    number, solver = system.joints[j].number, system.solver
-    relation = system.relations.relations[number]
+    relation, solver = of_joint(system, j), system.solver
     for s in range(solver.rows[j].first, solver.rows[j].last):
         for k in range(6):
             solver.sides[s].A[0, k] = 0.0
@@ -43,41 +50,54 @@ def relation_rows(system, j, state, work):
         mass_row(system, solver.sides[s], 0, work)
 
 
-@kernel
-def relation_error(system, relation, state, t):
-    """Return the error of the coordinates, sum c_k q_k - f."""
-    total = -prescribed(system.relations, relation, t)[0]
+@unit
+def position_error(system, j, state, work):
+    """Write the error of the coordinates, sum c_k q_k - f, to the bias."""
+    relation = of_joint(system, j)
+    total = -prescribed(system.relations, relation, work.result[0].time)[0]
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]
         total += term.factor * value(system, system.relations.coordinates[term.coordinate], state)
-    return total
+    clear(work.joint[j].bias)
+    work.joint[j].bias[0] = total
 
 
-@kernel
-def relation_speed(system, relation, state, t):
-    """Return the error of the rates, sum c_k q_k' - f'."""
-    total = -prescribed(system.relations, relation, t)[1]
+@unit
+def velocity_error(system, j, state, work):
+    """Write the error of the rates, sum c_k q_k' - f', to the bias."""
+    relation = of_joint(system, j)
+    total = -prescribed(system.relations, relation, work.result[0].time)[1]
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]
         total += term.factor * rate(system, system.relations.coordinates[term.coordinate], state)
-    return total
+    clear(work.joint[j].bias)
+    work.joint[j].bias[0] = total
 
 
-@kernel
-def relation_bias(system, relation, state, t, out):
-    """Return the required value of the row times the accelerations; `out` is workspace (6,)."""
-    total = prescribed(system.relations, relation, t)[2]
+@unit
+def acceleration_bias(system, j, state, work):
+    """Write the required value of the row times the accelerations."""
+    relation = of_joint(system, j)
+    total = prescribed(system.relations, relation, work.result[0].time)[2]
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]
         c = system.relations.coordinates[term.coordinate]
-        total -= term.factor * drift(system, c, state, out)
-    return total
+        total -= term.factor * drift(system, c, state, work.joint[j].target)
+    work.joint[j].bias[0] = total
 
 
-@kernel
-def push_relation(system, relation, state, force, work):
+@unit
+def prescribed_speeds(system, j, state, work, out):
+    """Write f' as the first of six numbers."""
+    clear(out)
+    out[0] = prescribed(system.relations, of_joint(system, j), work.result[0].time)[1]
+
+
+@unit
+def add_wrenches(system, j, state, multiplier, work):
     """Add the wrenches of a multiplier of the row."""
+    relation = of_joint(system, j)
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]
         c = system.relations.coordinates[term.coordinate]
-        push(system, c, state, force * term.factor, work)
+        push(system, c, state, multiplier[0] * term.factor, work)

@@ -59,8 +59,8 @@ def along_row(system, one, state, work):
     return total
 
 
-@kernel
-def stiff_rows(system, j, state, work):
+@unit
+def write_rows(system, j, state, work):
     """Write A and A M^-1 of a spring."""
     solver, one = system.solver, system.relations.stiff[system.joints[j].number]
     first, last = solver.rows[j].first, solver.rows[j].last
@@ -82,6 +82,12 @@ def stiff_rows(system, j, state, work):
                 A[0, 3], A[0, 4], A[0, 5] = s * tx, s * ty, s * tz
     for s in range(first, last):
         mass_row(system, solver.sides[s], 0, work)
+
+
+@unit
+def acceleration_bias(system, j, state, work):
+    """Write 0: outside of the implicit step the row has no part."""
+    work.joint[j].bias[0] = 0.0
 
 
 @unit(where=has_relation_rows, otherwise=0.0)

@@ -15,6 +15,8 @@ import math
 
 from carom._compiled.call_address import call_function
 from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
+from carom.dynamics.elements.own_rows import clear
 from carom.dynamics.thresholds import DISPLACEMENT
 from carom.geometry.rotation import conjugate, multiply, turn
 from carom.kinematics.rows import mass_row
@@ -53,9 +55,10 @@ def write_speeds(system, j, state, t, ahead, out):
         out[r] = total
 
 
-@kernel
-def user_rows(system, j, state, t, work):
+@unit
+def write_rows(system, j, state, work):
     """Write A and A M^-1 of the user's rows."""
+    t = work.result[0].time
     user = read_poses(system, j, state, t, 0.0)
     result, width = system.relations.write, 6 * (user.last - user.first) + 1
     call_function(user.address, t, system.relations.read, result)
@@ -67,22 +70,12 @@ def user_rows(system, j, state, t, work):
             mass_row(system, side, r, work)
 
 
-@kernel
-def user_speeds(system, j, state, t, out):
-    """Write b (rows,), the speeds that the rows prescribe."""
+@unit
+def position_error(system, j, state, work):
+    """Write phi (rows,) to the bias, 0 for rows that restrict velocities only."""
+    t, out = work.result[0].time, work.joint[j].bias
     user = read_poses(system, j, state, t, 0.0)
-    result, width = system.relations.write, 6 * (user.last - user.first) + 1
-    call_function(user.address, t, system.relations.read, result)
-    for r in range(system.joints[j].rows):
-        out[r] = result[(r + 1) * width - 1]
-
-
-@kernel
-def user_error(system, j, state, t, out):
-    """Write phi (rows,), 0 for rows that restrict velocities only."""
-    user = read_poses(system, j, state, t, 0.0)
-    for r in range(6):
-        out[r] = 0.0
+    clear(out)
     if user.position_address != 0:
         result = system.relations.write
         call_function(user.position_address, t, system.relations.read, result)
@@ -90,9 +83,17 @@ def user_error(system, j, state, t, out):
             out[r] = result[r]
 
 
-@kernel
-def user_bias(system, j, state, t, out, workspace):
+@unit
+def velocity_error(system, j, state, work):
+    """Write a v - b to the bias."""
+    clear(work.joint[j].bias)
+    write_speeds(system, j, state, work.result[0].time, 0.0, work.joint[j].bias)
+
+
+@unit
+def acceleration_bias(system, j, state, work):
     """Write the required values of the rows times the accelerations."""
+    t, out, workspace = work.result[0].time, work.joint[j].bias, work.joint[j].target
     user = system.relations.user[system.joints[j].number]
     g = system.gravity
     fall, ahead = math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]), math.inf
@@ -111,9 +112,22 @@ def user_bias(system, j, state, t, out, workspace):
         out[r] = -0.5 * (out[r] - workspace[r]) / ahead
 
 
-@kernel
-def push_user_rows(system, j, state, t, multiplier, work):
+@unit
+def prescribed_speeds(system, j, state, work, out):
+    """Write b (rows,), the speeds that the rows prescribe."""
+    t = work.result[0].time
+    clear(out)
+    user = read_poses(system, j, state, t, 0.0)
+    result, width = system.relations.write, 6 * (user.last - user.first) + 1
+    call_function(user.address, t, system.relations.read, result)
+    for r in range(system.joints[j].rows):
+        out[r] = result[(r + 1) * width - 1]
+
+
+@unit
+def add_wrenches(system, j, state, multiplier, work):
     """Add A^T multiplier to the wrenches."""
+    t = work.result[0].time
     user = read_poses(system, j, state, t, 0.0)
     result, width = system.relations.write, 6 * (user.last - user.first) + 1
     call_function(user.address, t, system.relations.read, result)
@@ -123,3 +137,9 @@ def push_user_rows(system, j, state, t, multiplier, work):
             at = r * width + 6 * (s - user.first)
             for k in range(6):
                 wrench[k] += multiplier[r] * result[at + k]
+
+
+@kernel
+def restricts_velocities_only(system, joint):
+    """Return whether the rows have no function of the position."""
+    return system.relations.user[joint.number].position_address == 0
