@@ -53,7 +53,7 @@ CAPABILITIES = {
         "results": 25, "visual": 14, "studies": 9, "scene": 9, "io": 7, "control": 3, "impact": 2,
         "dynamics": 1, "model": 1, "geometry": 1, "hints": 3,
     },
-    "operations of a contact by its kind": {"contact": 7},
+    "operations of a contact by its kind, of an element by its kind": {"contact": 7, "model": 1},
     "laws by number, slip and direction in one law": {"model": 1, "scene": 1},
     "kinds of contacts and motions of points by name": {"kinematics": 1, "stepping": 1},
     "pairs that hardly move": {"contact": 1},
@@ -264,6 +264,29 @@ def test_only_kinds_of_contacts_know_what_a_contact_is():
                 asked.append(name)
     assert len(asked) > 20
     assert {name for name in asked if not name.startswith(ASK)} == {"contact.kinds"}
+
+
+#: kinds in the table of joints with rows of their own
+OWN_KINDS = {"RELATION", "USER_ROWS", "STIFF", "INERTIA", "OWN_ROWS"}
+
+
+def test_only_elements_know_which_rows_are_their_own():
+    # The constrained solve asks by the operations of an element: a new kind of row is one file of `elements`.
+    found = [
+        name
+        for name, path in modules().items()
+        for node in ast.walk(tree(path))
+        if isinstance(node, ast.ImportFrom)
+        and node.module == "carom.model.arrays"
+        and OWN_KINDS & {one.name for one in node.names}
+    ]
+    ask = ("dynamics.elements", "dynamics.element_operations", "model.")
+    assert len(found) > 1
+    # turns that files of earlier versions lack, and names of reports
+    assert {name for name in found if not name.startswith(ask)} <= {
+        "dynamics.reactions",
+        "results.dry_friction",
+    }
 
 
 def test_large_records_are_made_by_name():

@@ -18,7 +18,7 @@ from carom.dynamics.thresholds import RANK
 from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes
 from carom.geometry.thresholds import ROUND_OFF
-from carom.model.arrays import INERTIA
+from carom.model.relations import is_inertia
 from carom.options import Options
 from carom.scene.bodies import FIXED, Body
 from carom.scene.scene import Scene
@@ -109,8 +109,8 @@ def contact_inverse_mass(
     if len(system.joints):
         A, owner = dense_rows(system, start, new_work(system, 1), rotors=True)
         inertia = np.ones(len(system.joints))
-        inertia[system.joints.kind == INERTIA] = system.relations.rotors.inertia
-        soft = np.where(system.joints.kind == INERTIA, 1.0 / np.sqrt(inertia), 0.0)[owner]
+        inertia[is_inertia(system.joints)] = system.relations.rotors.inertia
+        soft = np.where(is_inertia(system.joints), 1.0 / np.sqrt(inertia), 0.0)[owner]
         rows = np.hstack([(A * scale).reshape(len(A), -1), np.diag(soft)])
         rows /= np.linalg.norm(rows, axis=1, keepdims=True)
         _, size, basis = np.linalg.svd(rows, full_matrices=False)

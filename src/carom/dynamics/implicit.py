@@ -32,7 +32,6 @@ from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.project import project_position, project_velocity, shift
 from carom.dynamics.solve import solve
 from carom.geometry.thresholds import RESOLUTION
-from carom.model.arrays import STIFF
 from carom.status import CONSTRAINTS_LOST
 
 GAMMA = 1.0 - math.sqrt(0.5)
@@ -117,10 +116,9 @@ def accelerate(system, state, h, s, work):
 def bias_springs(system, state, h, s, work):
     """Add the springs as rows of the solver."""
     g = GAMMA * h
-    for j in range(system.joints.shape[0]):
-        if system.joints[j].kind != STIFF:
-            continue
-        one, row = system.relations.stiff[system.joints[j].number], system.solver.rows[j]
+    for i in range(system.relations.stiff.shape[0]):
+        one = system.relations.stiff[i]
+        j, row = one.element, system.solver.rows[one.element]
         length, speed = stretch(system, one, state)
         d = g * one.damping + g * g * one.stiffness
         start, more = speed, 0.0
@@ -135,14 +133,13 @@ def bias_springs(system, state, h, s, work):
 @kernel
 def release_springs(system, state, h, s, work):
     """Remove the springs from the rows again, and store the accelerations of the stage along them."""
-    for j in range(system.joints.shape[0]):
-        if system.joints[j].kind == STIFF:
-            one, row = system.relations.stiff[system.joints[j].number], system.solver.rows[j]
-            gain = along_row(system, one, state, work)
-            if s == 1:  # sum of the rates of the dampers in both stages, minus the first rate
-                one.speed += GAMMA * h * (gain - one.gain)
-            one.gain = gain
-            row.ignored, row.compliance[0] = 1, 0.0
+    for i in range(system.relations.stiff.shape[0]):
+        one = system.relations.stiff[i]
+        row, gain = system.solver.rows[one.element], along_row(system, one, state, work)
+        if s == 1:  # sum of the rates of the dampers in both stages, minus the first rate
+            one.speed += GAMMA * h * (gain - one.gain)
+        one.gain = gain
+        row.ignored, row.compliance[0] = 1, 0.0
 
 
 @kernel
@@ -153,10 +150,9 @@ def damper_work(system, start, h, end):
     (For a stiff damper, the power at the stages could be wrong by any factor.)
     """
     total = 0.0
-    for j in range(system.joints.shape[0]):
-        if system.joints[j].kind == STIFF:
-            one = system.relations.stiff[system.joints[j].number]
-            _, first = stretch(system, one, start)
-            _, last = stretch(system, one, end)
-            total -= 0.25 * h * one.damping * (one.speed + first) * (first + last)
+    for i in range(system.relations.stiff.shape[0]):
+        one = system.relations.stiff[i]
+        _, first = stretch(system, one, start)
+        _, last = stretch(system, one, end)
+        total -= 0.25 * h * one.damping * (one.speed + first) * (first + last)
     return total

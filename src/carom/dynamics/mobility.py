@@ -8,7 +8,7 @@ import numpy as np
 
 from carom.dynamics.thresholds import PARTICIPATION, RANK
 from carom.geometry import quaternion
-from carom.model.arrays import INERTIA, RELATION
+from carom.model.relations import is_inertia, is_joint
 from carom.options import Options
 from carom.scene.remarks import remarks
 
@@ -117,7 +117,7 @@ def dense_rows(system, start, work, rotors: bool = False) -> tuple[np.ndarray, n
 
     write_rows(system, start, work)
     count = system.joints.rows.copy()
-    count[(system.joints.kind == INERTIA) & (not rotors)] = 0
+    count[is_inertia(system.joints) & (not rotors)] = 0
     first = np.cumsum(count) - count
     A = np.zeros((int(count.sum()), len(system.bodies), 6))
     for side in system.solver.sides:
@@ -141,9 +141,9 @@ def _dependent(A, owner, system) -> tuple[int, np.ndarray]:
     Only elements in loops can. A joint is in no loop if no other element acts on one of its bodies; it is
     removed, and then further joints may be in no loop.
     """
-    kept = system.joints.kind != INERTIA
+    kept = ~is_inertia(system.joints)
     parent, child = system.joints.parent, system.joints.child
-    joint = system.joints.kind < RELATION
+    joint = is_joint(system.joints)
     while True:
         degree = np.zeros(len(system.bodies) + 1, dtype=np.int64)
         sides = system.solver.sides[kept[system.solver.sides.element]]

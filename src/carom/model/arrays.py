@@ -165,6 +165,7 @@ PUSH = [
 
 #: a spring and damper, a row in the implicit step: along a coordinate, or between two points
 STIFF_SPRING = [
+    ("element", "i8"),  # its place in the table of joints
     ("coordinate", "i8"),  # -1: between two points
     ("parent", "i8"),
     ("child", "i8"),

@@ -191,14 +191,14 @@ class Elements:
         inertias = (float(rotor.inertia[0]) for rotor in self.rotors)
         first_side = solver.rows.first[-len(self.kinds) :] if self.kinds else []
         rows = self.coordinates.table()
-        for first, kind, bodies, number in zip(
-            first_side, self.kinds, self.touching, self.numbers, strict=True
-        ):
+        own = zip(first_side, self.kinds, self.touching, self.numbers, strict=True)
+        for j, (first, kind, bodies, number) in enumerate(own, len(solver.rows) - len(self.kinds)):
             if kind == arrays.USER_ROWS:
                 self.user[number].first, self.user[number].last = first, first + len(bodies)
                 continue
             if kind == arrays.STIFF:
                 made = self.stiff[number]
+                made.element = j
                 for name, b in (("child_side", made.child[0]), ("parent_side", made.parent[0])):
                     made[name] = first + bodies.index(b) if b >= 0 else -1
                 solver.rows.ignored[solver.rows.first == first] = 1
@@ -259,3 +259,13 @@ def of_time(function):
         return out
 
     return joined(call, function)
+
+
+def is_inertia(joints: np.recarray) -> np.ndarray:
+    """Return which elements are inertias along coordinates, which are no constraints."""
+    return joints.kind == arrays.INERTIA
+
+
+def is_joint(joints: np.recarray) -> np.ndarray:
+    """Return which elements are joints of the scene."""
+    return joints.kind < arrays.RELATION

@@ -21,8 +21,9 @@ from carom.dynamics.reactions import write_rows
 from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes, pair_axes, turned_axes, upright
 from carom.model import records as r
-from carom.model.arrays import INERTIA, STATE
+from carom.model.arrays import STATE
 from carom.model.compile import compile_scene
+from carom.model.relations import is_inertia
 from carom.results import joint_coordinates as jc
 from carom.results.dense_output import curves
 from carom.results.event_tables import JointImpulse, JointImpulseTable
@@ -249,7 +250,7 @@ class _Mechanism:
         """Return the rows of all elements in some components."""
         joints, sides = self.system.joints, self.system.solver.sides
         element, body = np.asarray(sides["element"]), np.asarray(sides["body"])
-        chosen = (joints.kind[element] != INERTIA) & np.isin(self.label[body], moved)
+        chosen = ~is_inertia(joints)[element] & np.isin(self.label[body], moved)
         own, bodies = np.unique(element[chosen]), np.flatnonzero(np.isin(self.label, moved))
         count = joints.rows[own]
         first = np.zeros(len(joints), dtype=np.int64)

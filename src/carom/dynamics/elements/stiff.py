@@ -15,7 +15,6 @@ from carom.geometry.rotation import cross
 from carom.kinematics.coordinate import add_rows, motion_along, push, rate, value
 from carom.kinematics.rows import mass_row
 from carom.kinematics.wrench import add_force, point, point_velocity
-from carom.model.arrays import STIFF
 from carom.model.parts_of_system import has_relation_rows
 
 
@@ -94,10 +93,8 @@ def acceleration_bias(system, j, state, work):
 def add_stiff(system, state, work) -> float:
     """Add the present wrenches of these springs; return the power of their dampers."""
     power = 0.0
-    for j in range(system.joints.shape[0]):
-        if system.joints[j].kind != STIFF:
-            continue
-        one = system.relations.stiff[system.joints[j].number]
+    for i in range(system.relations.stiff.shape[0]):
+        one = system.relations.stiff[i]
         s, speed = stretch(system, one, state)
         f = -(one.stiffness * s + one.damping * speed)
         power -= one.damping * speed * speed
@@ -114,9 +111,8 @@ def add_stiff(system, state, work) -> float:
 def stiff_energy(system, state) -> float:
     """Return the potential energy of these springs [J]."""
     total = 0.0
-    for j in range(system.joints.shape[0]):
-        if system.joints[j].kind == STIFF:
-            one = system.relations.stiff[system.joints[j].number]
-            s, _ = stretch(system, one, state)
-            total += 0.5 * one.stiffness * s * s
+    for i in range(system.relations.stiff.shape[0]):
+        one = system.relations.stiff[i]
+        s, _ = stretch(system, one, state)
+        total += 0.5 * one.stiffness * s * s
     return total
