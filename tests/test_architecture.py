@@ -268,6 +268,8 @@ def test_only_kinds_of_contacts_know_what_a_contact_is():
 
 #: kinds in the table of joints with rows of their own
 OWN_KINDS = {"RELATION", "USER_ROWS", "STIFF", "INERTIA", "OWN_ROWS"}
+#: kinds of coordinates
+OF_COORDINATES = {"REVOLUTE", "PRISMATIC", "ROTATION", "SWING", "TWIST", "OF_BALL"}
 
 
 def test_only_elements_know_which_rows_are_their_own():
@@ -287,6 +289,21 @@ def test_only_elements_know_which_rows_are_their_own():
         "dynamics.reactions",
         "results.dry_friction",
     }
+
+
+def test_only_coordinates_know_what_they_measure():
+    found = [
+        name
+        for name, path in modules().items()
+        for node in ast.walk(tree(path))
+        if isinstance(node, ast.ImportFrom)
+        and node.module == "carom.model.arrays"
+        and OF_COORDINATES & {one.name for one in node.names}
+    ]
+    ask = ("kinematics.coordinates", "model.")
+    assert len(found) > 1
+    # elimination in trees begins with the most frequent joint
+    assert {name for name in found if not name.startswith(ask)} <= {"dynamics.tree"}
 
 
 def test_large_records_are_made_by_name():

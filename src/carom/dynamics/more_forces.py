@@ -11,19 +11,11 @@ from carom._compiled.call_address import call_function
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.dynamics.curve import curve
-from carom.dynamics.thresholds import RAIL_TRAVEL, ROTATION
 from carom.geometry.pieces import find_piece
 from carom.geometry.rotation import conjugate, multiply
-from carom.kinematics.coordinate import push, rate, speed_of_turn, value
-from carom.kinematics.curve import (
-    can_be_left,
-    is_beyond,
-    is_on_curve,
-    is_upright,
-    speed_beside,
-)
-from carom.model.arrays import PRISMATIC, REVOLUTE, TWIST
-from carom.model.arrays import ROTATION as OF_BALL
+from carom.kinematics.coordinate import counts_turns, push, rate, turn_within, value
+from carom.kinematics.curve import is_beyond, is_on_curve
+from carom.kinematics.thresholds import TURN_OF_STEP
 from carom.model.parts_of_system import has_relations, has_turns
 
 
@@ -137,7 +129,7 @@ def note_turns(system, state, h) -> bool:
     left = False
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
-        if c.kind == REVOLUTE or c.kind == TWIST:  # what nothing depends on may turn far in a step
+        if counts_turns(c):  # what nothing depends on may turn far in a step
             c.reference += h * rate(system, c, state)
         c.reference = value(system, c, state)
         if is_on_curve(c):
@@ -161,28 +153,9 @@ def forget_turns(system):
 
 @unit(where=has_relations, otherwise=False)
 def turns_round(system, start, end, h) -> bool:
-    """Return whether an angle may turn so far in a step that its whole turns are not known.
-
-    That of a point on a curve is how far its direction may turn, so that its foot is found; above a rail that
-    can be left, the point may reach it (its gap is that at the end).
-    """
+    """Return whether an angle may turn so far in a step that its whole turns are not known, or a foot."""
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
-        if c.kind == PRISMATIC:
-            continue
-        if c.kind >= OF_BALL:  # the angles of a ball joint may turn back within a step
-            turn = h * max(speed_of_turn(c, start), speed_of_turn(c, end))
-        else:
-            turn = h * max(abs(rate(system, c, start)), abs(rate(system, c, end)))
-        if is_on_curve(c):
-            one = system.relations.curves[c.number]
-            if can_be_left(one):
-                travel = h * max(speed_beside(c, start), speed_beside(c, end))
-                far = travel < one.gap[1] and not is_upright(
-                    system.relations.curve_pieces[one.first]
-                )
-                turn = 0.0 if far else ROTATION / RAIL_TRAVEL * travel
-            turn *= one.sharpest
-        if not turn <= ROTATION:
+        if not turn_within(system, c, start, end, h) <= TURN_OF_STEP:
             return True
     return False

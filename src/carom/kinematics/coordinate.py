@@ -2,11 +2,11 @@
 
     q' = t_a . (w_c - w_p) + t_l . (velocity of the child's anchor minus that of the parent at this point)
 
-A displacement may be along a curve (`carom.kinematics.curve`), with its tangent as the axis.
+What is stated here is that of angles; displacements, arc lengths along curves and the angles of a ball joint,
+which stops limit, have their forms in the files of `carom.kinematics.coordinates`, by the same names.
 An angle is known up to whole turns; the result is the value nearest to `reference`, the value at the start of
 the trial step, which is short enough for this (`carom.dynamics.more_forces.turns_round`). Either side may be
-the ground (the second angle of a universal joint is measured from the child). The angles of a ball joint, which
-stops limit, are in `carom.kinematics.ball`.
+the ground (the second angle of a universal joint is measured from the child).
 """
 
 from __future__ import annotations
@@ -15,68 +15,32 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.geometry.rotation import cross
-from carom.kinematics.ball import along_ball, drift_of_ball, value_of_ball
-from carom.kinematics.curve import find_foot, is_on_curve, relative_bias
-from carom.kinematics.joints import (
-    acceleration_bias,
-    anchor_gap,
-    anchor_speed,
-    axis,
-    child_arm,
-    parent_arm,
-)
+from carom.kinematics.coordinates import by_coordinate
+from carom.kinematics.coordinates.turns import angular_velocity, with_turns
+from carom.kinematics.joints import anchor_speed, axis, child_arm, parent_arm
 from carom.kinematics.wrench import add_force
-from carom.model.arrays import PRISMATIC, ROTATION, TWIST
-
-TURN = 2.0 * math.pi
 
 
-@kernel
-def angular_velocity(state, b):
-    """Return the angular velocity of body b (-1: the ground)."""
-    if b < 0:
-        return 0.0, 0.0, 0.0
-    w = state[b].w
-    return w[0], w[1], w[2]
-
-
-@kernel
+@by_coordinate
 def slides(c):
     """Return whether a coordinate is a displacement, not an angle."""
-    return c.kind == PRISMATIC or is_on_curve(c)
+    return False
 
 
-@kernel
+@by_coordinate
 def along(system, c, state):
-    """Return the axis along, or about, which a coordinate grows; that of a curve is its tangent at the foot."""
-    if is_on_curve(c):
-        find_foot(system, c, state)
-        a = system.relations.curves[c.number].along
-        return a[0], a[1], a[2]
-    if c.kind >= ROTATION:
-        return along_ball(c, state)
+    """Return the axis along, or about, which a coordinate grows."""
     return axis(state, c.parent, c.parent_frame, 0)
 
 
-@kernel
+@by_coordinate
 def value(system, c, state):
     """Return the coordinate: an angle [rad] or a displacement [m], 0 if the frames of both sides agree."""
-    ax, ay, az = along(system, c, state)
-    if is_on_curve(c):
-        return system.relations.curves[c.number].s
-    if c.kind == PRISMATIC:
-        dx, dy, dz = anchor_gap(c, state)
-        return ax * dx + ay * dy + az * dz
-    if c.kind >= ROTATION:
-        angle = value_of_ball(c, state)
-        if c.kind != TWIST:
-            return angle
-    else:
-        bx, by, bz = axis(state, c.child, c.child_frame, 1)
-        px, py, pz = axis(state, c.parent, c.parent_frame, 1)
-        qx, qy, qz = axis(state, c.parent, c.parent_frame, 2)
-        angle = math.atan2(qx * bx + qy * by + qz * bz, px * bx + py * by + pz * bz)
-    return angle + TURN * math.floor((c.reference - angle) / TURN + 0.5)
+    bx, by, bz = axis(state, c.child, c.child_frame, 1)
+    px, py, pz = axis(state, c.parent, c.parent_frame, 1)
+    qx, qy, qz = axis(state, c.parent, c.parent_frame, 2)
+    angle = math.atan2(qx * bx + qy * by + qz * bz, px * bx + py * by + pz * bz)
+    return with_turns(c, angle)
 
 
 @kernel
@@ -92,30 +56,26 @@ def rate(system, c, state):
     return ax * ux + ay * uy + az * uz
 
 
-@kernel
-def speed_of_turn(c, state):
-    """Return the speed at which the child turns relative to the parent."""
-    w, v = angular_velocity(state, c.child), angular_velocity(state, c.parent)
-    x, y, z = w[0] - v[0], w[1] - v[1], w[2] - v[2]
-    return math.sqrt(x * x + y * y + z * z)
-
-
-@kernel
+@by_coordinate
 def drift(system, c, state, out):
     """Return q'' for bodies without acceleration; `out` is workspace (6,)."""
     ax, ay, az = along(system, c, state)
-    if is_on_curve(c):
-        lx, ly, lz = relative_bias(c, state)
-        return -(ax * lx + ay * ly + az * lz)
-    if c.kind == PRISMATIC:
-        acceleration_bias(c, state, out)
-        return -(ax * out[3] + ay * out[4] + az * out[5])
     wx, wy, wz = angular_velocity(state, c.child)
     px, py, pz = angular_velocity(state, c.parent)
-    if c.kind >= ROTATION:
-        return drift_of_ball(c, state, (wx, wy, wz), (px, py, pz))
     tx, ty, tz = cross(px, py, pz, ax, ay, az)
     return tx * (wx - px) + ty * (wy - py) + tz * (wz - pz)
+
+
+@by_coordinate
+def counts_turns(c):
+    """Return whether the value has whole turns, which a run counts."""
+    return True
+
+
+@by_coordinate
+def turn_within(system, c, start, end, h):
+    """Return a bound of the angle of a step of length h, for which whole turns and feet must be known."""
+    return h * max(abs(rate(system, c, start)), abs(rate(system, c, end)))
 
 
 @kernel

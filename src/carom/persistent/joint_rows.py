@@ -14,10 +14,9 @@ from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.solve import free_body
 from carom.geometry.thresholds import ROUND_OFF
 from carom.impact.workspace import P
-from carom.kinematics.coordinate import along, drift, motion_along, push, speeds_of
+from carom.kinematics.coordinate import along, drift, motion_along, push, slides, speeds_of
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.law.friction import bound_of_stick
-from carom.model.arrays import REVOLUTE
 from carom.model.workspace import MOTION_JOINT, MOTION_PIVOT, MOTION_POINT
 from carom.persistent.thresholds import MOTOR_COMPLIANCE
 
@@ -58,14 +57,14 @@ def place_coordinate(system, c, state, point):
     tangents(s * nx, s * ny, s * nz, point.axes)
     for k in range(3):
         point.core[k], point.arm_a[k], point.arm_b[k] = 0.0, 0.0, 0.0
-    if c.kind != REVOLUTE:
+    if slides(c):
         r = child_arm(c, state) if c.child >= 0 else parent_arm(c, state)
         point.arm_a[0], point.arm_a[1], point.arm_a[2] = r
         if c.child >= 0:
             r = parent_arm(c, state)
             point.arm_b[0], point.arm_b[1], point.arm_b[2] = r
     point.gap, point.length, point.moves = 0.0, 1.0, 0
-    point.motion = MOTION_PIVOT if c.kind == REVOLUTE else MOTION_JOINT
+    point.motion = MOTION_JOINT if slides(c) else MOTION_PIVOT
 
 
 @kernel

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from carom._compiled.record_arrays import Columns, table
-from carom.kinematics.coordinate import TURN
+from carom.kinematics.coordinates.turns import TURN
 from carom.model.arrays import RELATION
 from carom.model.compile import compile_scene
 from carom.model.records import TOUCH

@@ -21,6 +21,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.geometry.rotation import cross
 from carom.geometry.vectors import dot
+from carom.kinematics.coordinates.turns import angular_velocity, speed_of_turn, with_turns
 from carom.kinematics.joints import axis
 from carom.model.arrays import SWING, TWIST
 
@@ -47,7 +48,7 @@ def sine_and_cosine(c, state):
 
 
 @kernel
-def value_of_ball(c, state):
+def angle_of(c, state):
     """Return the angle; a twist from -pi to pi."""
     if c.kind == TWIST:
         p1, c1 = axes_of(c, state, 1)
@@ -58,7 +59,7 @@ def value_of_ball(c, state):
 
 
 @kernel
-def along_ball(c, state):
+def along(system, c, state):
     """Return the direction g in which the angle grows: its rate is g . w. That of a twist is longer than 1."""
     p, q = axes_of(c, state, 0)
     if c.kind == TWIST:
@@ -73,8 +74,28 @@ def along_ball(c, state):
 
 
 @kernel
-def drift_of_ball(c, state, w, v):
-    """Return g' . (w - v) for the angular velocities w of the child and v of the parent."""
+def value(system, c, state):
+    """Return the angle; that of a twist with its whole turns."""
+    angle = angle_of(c, state)
+    return with_turns(c, angle) if c.kind == TWIST else angle
+
+
+@kernel
+def counts_turns(c):
+    """Return whether it is a twist."""
+    return c.kind == TWIST
+
+
+@kernel
+def turn_within(system, c, start, end, h):
+    """Return the angle of the whole rotation: those of a ball joint may turn back within a step."""
+    return h * max(speed_of_turn(c, start), speed_of_turn(c, end))
+
+
+@kernel
+def drift(system, c, state, out):
+    """Return g' . (w - v), with the angular velocities w of the child and v of the parent."""
+    w, v = angular_velocity(state, c.child), angular_velocity(state, c.parent)
     p, q = axes_of(c, state, 0)
     u = (w[0] - v[0], w[1] - v[1], w[2] - v[2])
     dp, dq = cross(v[0], v[1], v[2], p[0], p[1], p[2]), cross(w[0], w[1], w[2], q[0], q[1], q[2])

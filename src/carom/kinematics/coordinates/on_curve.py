@@ -1,0 +1,72 @@
+"""Arc length along a curve, with its tangent at the foot as the axis (`carom.kinematics.curve`)."""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.kinematics.curve import (
+    can_be_left,
+    find_foot,
+    is_upright,
+    relative_bias,
+    speed_beside,
+)
+from carom.kinematics.joints import anchor_speed
+from carom.kinematics.thresholds import RAIL_TRAVEL, TURN_OF_STEP
+
+
+@kernel
+def slides(c):
+    """Return True."""
+    return True
+
+
+@kernel
+def along(system, c, state):
+    """Return the tangent at the foot."""
+    find_foot(system, c, state)
+    a = system.relations.curves[c.number].along
+    return a[0], a[1], a[2]
+
+
+@kernel
+def value(system, c, state):
+    """Return the coordinate of the foot [m]."""
+    find_foot(system, c, state)
+    return system.relations.curves[c.number].s
+
+
+@kernel
+def drift(system, c, state, out):
+    """Return q'' for bodies without acceleration."""
+    ax, ay, az = along(system, c, state)
+    lx, ly, lz = relative_bias(c, state)
+    return -(ax * lx + ay * ly + az * lz)
+
+
+@kernel
+def counts_turns(c):
+    """Return False."""
+    return False
+
+
+@kernel
+def speed_along(system, c, state):
+    """Return the speed of the foot."""
+    ax, ay, az = along(system, c, state)
+    ux, uy, uz = anchor_speed(c, state)
+    return ax * ux + ay * uy + az * uz
+
+
+@kernel
+def turn_within(system, c, start, end, h):
+    """Return how far the direction of the curve may turn in a step, so that the foot is found.
+
+    Above a rail that can be left, the point may reach it (its gap is that at the end).
+    """
+    turn = h * max(abs(speed_along(system, c, start)), abs(speed_along(system, c, end)))
+    one = system.relations.curves[c.number]
+    if can_be_left(one):
+        travel = h * max(speed_beside(c, start), speed_beside(c, end))
+        far = travel < one.gap[1] and not is_upright(system.relations.curve_pieces[one.first])
+        turn = 0.0 if far else TURN_OF_STEP / RAIL_TRAVEL * travel
+    return turn * one.sharpest
