@@ -269,7 +269,7 @@ def test_only_kinds_of_contacts_know_what_a_contact_is():
 #: kinds in the table of joints with rows of their own
 OWN_KINDS = {"RELATION", "USER_ROWS", "STIFF", "INERTIA", "OWN_ROWS"}
 #: kinds of coordinates
-OF_COORDINATES = {"REVOLUTE", "PRISMATIC", "ROTATION", "SWING", "TWIST", "OF_BALL"}
+OF_COORDINATES = {"REVOLUTE", "PRISMATIC", "SWING", "TWIST", "OF_LIMIT", "LIMITED"}
 
 
 def test_only_elements_know_which_rows_are_their_own():

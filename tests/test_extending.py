@@ -12,7 +12,7 @@ import carom
 LIBRARY = Path(carom.__file__).parent
 PAGE = Path(__file__).parents[1] / "docs" / "development" / "extending.md"
 
-#: without the JIT, so that nothing is compiled: a method, a joint, a shape and two laws
+#: without the JIT, so that nothing is compiled: a method, a joint, a shape, a ground, a limit and two laws
 RUN = """
 import numpy as np, carom
 
@@ -31,6 +31,25 @@ s = carom.simulate(scene, 0.02, step=0.01)
 before, after = s.impacts[0].relative_velocity_before[0], s.impacts[0].relative_velocity_after[0]
 assert abs(after + 0.5 * before) < 1e-12  # a quarter of the energy
 assert s.impacts[0].law == "fraction"
+
+scene = carom.Scene(gravity=(0, 0, 0))
+tank = scene.add_surface(carom.surfaces.InsideTank(0.3, 1.0))
+ball = scene.add_body(carom.Sphere(0.1), mass=1.0, velocity=(0, 0, 1.0))
+scene.add_contact(ball, tank, restitution=0.5)
+s = carom.simulate(scene, 1.0, step=0.1)
+assert abs(s.impacts.time[0] - 0.7) < 1e-9  # at the end of the axis
+assert abs(s.velocity[-1, 0, 2] + 0.5) < 1e-9
+
+scene = carom.Scene()
+ball = scene.add_body(carom.Sphere(0.05), mass=1.0, position=(0.3, 0, -0.4))
+thread = scene.add_joint(carom.joints.Thread((0, 0, 0), (0.3, 0, -0.4)), carom.GROUND, ball)
+scene.add_stop(thread, coordinate="distance", upper=1.0, restitution=0.5)
+s = carom.simulate(scene, 1.0, step=0.02)
+z = np.sqrt(1.0 - 0.3**2)  # its depth where the thread gets taut
+assert abs(s.impacts.time[0] - np.sqrt(2 * (z - 0.4) / 9.81)) < 1e-9
+u = z * np.sqrt(2 * 9.81 * (z - 0.4))  # speed along the thread
+assert abs(s.impacts.impulse[0, 0] - 1.5 * u) < 1e-9
+assert np.linalg.norm(s.position[:, 0], axis=1).max() < 1.0 + 1e-9
 
 from carom.scene.viscous import ViscousFriction
 law = ViscousFriction(static=0.1, speed=5.0, most=0.5)
@@ -66,7 +85,7 @@ def add(text: str, root: Path) -> int:
 def test_what_the_page_adds_runs(tmp_path):
     ours = shutil.ignore_patterns("*.nb[ic]", "*.asked", "functions")  # all but bytecode
     shutil.copytree(LIBRARY, tmp_path / "src" / "carom", ignore=ours)
-    assert add(PAGE.read_text(), tmp_path) == 10
+    assert add(PAGE.read_text(), tmp_path) == 18
     ours = {"PYTHONPATH": str(tmp_path / "src"), "NUMBA_DISABLE_JIT": "1"}
     done = subprocess.run(
         [sys.executable, "-c", RUN],
@@ -76,3 +95,19 @@ def test_what_the_page_adds_runs(tmp_path):
         text=True,
     )
     assert done.returncode == 0, done.stderr
+
+
+def test_what_is_added_touches_few_rooms():
+    text, rooms = PAGE.read_text(), {}
+    for section in re.split(r"^## ", text, flags=re.MULTILINE)[1:]:
+        names = re.findall(r"^(?:# |\+\+\+ )src/carom/(\w+)/", section, re.MULTILINE)
+        rooms[section.splitlines()[0]] = set(names)
+    assert rooms == {
+        "A method": {"dynamics"},
+        "A joint": {"scene"},
+        "A shape": {"scene"},
+        "A ground": {"collision", "scene"},
+        "A coordinate that stops limit": {"kinematics", "model", "scene"},
+        "A law of impact": {"law", "scene"},
+        "A law of friction": {"scene"},
+    }

@@ -3,25 +3,17 @@
 Free space is where phi > 0. For the closed forms phi is the distance from the surface, as far as the points
 from which two places are nearest (the centre of a sphere, an axis). Hessians are (xx, yy, zz, xy, xz, yz).
 
-A surface may have `planes` beside its curved part: free space is beyond all of them. The ends of a can are two;
-four that touch a cone hold a ball which sits in it, touching it along a ring.
+A surface may have `planes` beside its curved part: free space is beyond all of them. What differs between the
+kinds is in the files of `carom.collision.grounds`.
 """
 
 from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
-from carom.collision.height_field import height_field_at
-from carom.collision.layout import (
-    FUNCTION,
-    HEIGHT_FIELD,
-    INSIDE_CONE,
-    INSIDE_CYLINDER,
-    INSIDE_SPHERE,
-)
+from carom._compiled.decorators import entry, kernel
+from carom.collision.grounds import by_ground
 from carom.collision.thresholds import FOOT_ERROR, FOOT_STEP
-from carom.collision.user_surface import user_surface_at
 from carom.geometry.thresholds import ROUND_OFF
 from carom.geometry.vectors import cross, dot, plus
 
@@ -29,81 +21,34 @@ MOST_STEPS_TO_FOOT = 40  # of Newton's method for a nearest point
 SHORTEST = 12  # halvings of one of its steps
 
 
-@kernel
-def _across(x, y):
-    """Return the distance from the z axis and the direction away from it, (1, 0) on the axis."""
-    r = math.sqrt(x * x + y * y)
-    return (r, x / r, y / r) if r > 0.0 else (0.0, 1.0, 0.0)
-
-
-@kernel
+@by_ground
 def field_at(surface, hulls, p):
     """Return phi, its gradient (3) and its Hessian (6) at a point p, all in axes of the surface."""
-    x, y, z = p
-    size, kind = surface["size"], surface.kind
-    if kind == INSIDE_SPHERE:
-        r = math.sqrt(x * x + y * y + z * z)
-        u, v, w = (x / r, y / r, z / r) if r > 0.0 else (0.0, 0.0, -1.0)
-        f = -1.0 / r if r > 0.0 else -math.inf
-        H = (
-            f * (1.0 - u * u),
-            f * (1.0 - v * v),
-            f * (1.0 - w * w),
-            -f * u * v,
-            -f * u * w,
-            -f * v * w,
-        )
-        return size[0] - r, (-u, -v, -w), H
-    if kind == HEIGHT_FIELD:
-        return height_field_at(surface, hulls.numbers, p)
-    if kind == FUNCTION:
-        return user_surface_at(surface, hulls.numbers, p)
-    r, c, s = _across(x, y)
-    if kind == INSIDE_CYLINDER:
-        f = -1.0 / r if r > 0.0 else -math.inf
-        return size[0] - r, (-c, -s, 0.0), (f * s * s, f * c * c, 0.0, -f * c * s, 0.0, 0.0)
-    if kind == INSIDE_CONE:
-        a, b = size[0], size[1]
-        f = -b / r if r > 0.0 else -math.inf
-        H = (f * s * s, f * c * c, 0.0, -f * c * s, 0.0, 0.0)
-        return a * z - b * r, (-b * c, -b * s, a), H
-    # a torus: (u, w) is the direction away from the circle in the half-plane of the point
-    d = r - size[0]
-    D = math.sqrt(d * d + z * z)
-    u, w = (d / D, z / D) if D > 0.0 else (0.0, -1.0)
-    f = -1.0 / D if D > 0.0 else -math.inf
-    along = -u / r if r > 0.0 else 0.0  # curvature along the ring
-    a, b, m = f * w * w, f * u * u, -f * u * w
-    H = (a * c * c + along * s * s, a * s * s + along * c * c, b, (a - along) * c * s, m * c, m * s)
-    return size[1] - D, (-u * c, -u * s, -w), H
+    return math.nan, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-@kernel
+@by_ground
 def planes(surface):
     """Return the number of planes beside the curved part."""
-    if surface.kind == INSIDE_CYLINDER and surface["size"][1] > 0.0:
-        return 2
-    return 4 if surface.kind == INSIDE_CONE else 0
+    return 0
 
 
-@kernel
+@by_ground
 def plane_at(surface, k, p):
     """Return the height of a point over plane k, and its normal."""
-    if surface.kind == INSIDE_CYLINDER:
-        f = 2.0 * k - 1.0
-        return surface["size"][1] - f * p[2], (0.0, 0.0, -f)
-    a, b = surface["size"][0], surface["size"][1]
-    c, s = (1.0 - k if k % 2 == 0 else 0.0), (2.0 - k if k % 2 == 1 else 0.0)
-    return a * p[2] - b * (c * p[0] + s * p[1]), (-b * c, -b * s, a)
+    return math.inf, (0.0, 0.0, 1.0)
 
 
-@kernel
+@by_ground
 def plane_counts(surface, k, p):
-    """Return whether plane k says more than the nearest point: of a cone, away from the latter."""
-    if surface.kind != INSIDE_CONE:
-        return True
-    nearest = math.floor(math.atan2(p[1], p[0]) * (2.0 / math.pi) + 0.5) % 4
-    return k != nearest
+    """Return whether plane k says more than the nearest point of the curved part."""
+    return True
+
+
+@by_ground
+def is_hollow(surface):
+    """Return whether a surface is nowhere convex: all its free space is."""
+    return False
 
 
 @kernel
@@ -148,11 +93,9 @@ def solve_symmetric(a, b, c, u, v):
     return k * (b * u - c * v), k * (a * v - c * u), good
 
 
-@kernel
-def _onto(surface, hulls, p):
-    """Return a point of the surface near p: beneath it on a height field, else along gradients."""
-    if surface.kind == HEIGHT_FIELD:
-        return p[0], p[1], p[2] - field_at(surface, hulls, p)[0]
+@by_ground
+def onto(surface, hulls, p):
+    """Return a point of the surface near p: along gradients."""
     size = math.sqrt(dot(p, p))
     for _ in range(MOST_STEPS_TO_FOOT):
         value, g, _ = field_at(surface, hulls, p)
@@ -177,7 +120,7 @@ def foot_of(surface, hulls, p):
     phi, g, _ = field_at(surface, hulls, p)
     if surface["size"][3] == 1.0:
         return phi, g
-    q, size = _onto(surface, hulls, p), math.sqrt(dot(p, p))
+    q, size = onto(surface, hulls, p), math.sqrt(dot(p, p))
     r, n, d = plus(p, -1.0, q), g, 0.0
     blur = ROUND_OFF * size * math.sqrt(dot(r, r))
     for _ in range(MOST_STEPS_TO_FOOT):
@@ -189,7 +132,7 @@ def foot_of(surface, hulls, p):
         last = not abs(x) + abs(y) > FOOT_STEP * (size + abs(d))
         nearer, part = False, 1.0
         for _ in range(SHORTEST):
-            there = _onto(surface, hulls, plus(plus(q, part * x, e), part * y, f))
+            there = onto(surface, hulls, plus(plus(q, part * x, e), part * y, f))
             offset = plus(p, -1.0, there)
             if last or dot(offset, offset) < square + blur:
                 q, r, nearer = there, offset, True
@@ -242,3 +185,10 @@ def curvature_at(surface, hulls, p, d, n):
         k, surface["size"][0]
     )  # what it moves towards may be more hollow than what is beneath it
     return k / (1.0 - k * d) if k * d < 1.0 else math.inf
+
+
+@entry
+def values_at(surface, hulls, points, out):
+    """Write phi at points (K, 3), in axes of the surface, for pictures."""
+    for k in range(points.shape[0]):
+        out[k] = field_at(surface, hulls, (points[k, 0], points[k, 1], points[k, 2]))[0]

@@ -20,8 +20,7 @@ POINT, SEGMENT, BOX, HULL, CYLINDER, ELLIPSOID = range(6)
 #: kinds that are not convex: a surface given by a function, and a prism over a plane curve
 CURVED_GROUND, PROFILE = 6, 7
 KINDS = ("point", "segment", "box", "hull", "cylinder", "ellipsoid", "implicit", "profile")
-#: kinds of implicit surfaces
-INSIDE_SPHERE, INSIDE_CYLINDER, INSIDE_CONE, INSIDE_TORUS, HEIGHT_FIELD, FUNCTION = range(6)
+#: kinds of implicit surfaces: files of `carom.collision.grounds`; a new one comes last
 SURFACE_KINDS = (
     "inside_sphere", "inside_cylinder", "inside_cone", "inside_torus", "height_field", "function",
 )  # fmt: skip
@@ -213,7 +212,7 @@ def solid_table(shapes, turns=None) -> tuple[np.recarray, Hulls]:
             end = Count(*(a + len(part) for a, part in zip(end, hulls[-1])))
         if piece.kind == "implicit":
             row.surface, row.bend = surfaces, piece.surface.bend
-            hulls.append(_surface(piece.surface, numbers))
+            hulls.append(implicit_surface(piece.surface, numbers))
             surfaces, numbers = surfaces + 1, numbers + len(hulls[-1].numbers)
         row.last, row.last_face = end.vertices, end.faces
         if piece.kind == "profile":
@@ -265,7 +264,7 @@ def _hull(piece, before: Count) -> Hulls:
     return Hulls(piece.vertices, faces, corners, np.concatenate(starts), every, *curved)
 
 
-def _surface(surface, before: int) -> Hulls:
+def implicit_surface(surface, before: int) -> Hulls:
     """Return the tables of an implicit surface; `before` numbers come before its own."""
     rows = table(IMPLICIT_SURFACE, 1)
     row, given = rows[0], surface.lengths

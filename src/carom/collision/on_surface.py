@@ -28,13 +28,14 @@ from carom.collision.implicit import (
     beside,
     field_at,
     foot_of,
+    is_hollow,
     plane_at,
     plane_counts,
     planes,
     shape_operator,
     turn_of_normal,
 )
-from carom.collision.layout import BOX, ELLIPSOID, HULL, INSIDE_CONE, SEGMENT, Pair
+from carom.collision.layout import BOX, ELLIPSOID, HULL, SEGMENT, Pair
 from carom.collision.support import change_of_support
 from carom.geometry.thresholds import LAST_DIGIT
 from carom.geometry.vectors import dot, plus
@@ -60,12 +61,6 @@ def corner(solid, hulls, i):
     if solid.kind == SEGMENT or solid.kind == BOX or solid.kind == HULL:
         return vertex(solid, hulls, i)
     return 0.0, 0.0, 0.0
-
-
-@kernel
-def is_hollow(surface):
-    """Return whether a surface is nowhere convex: all its free space is."""
-    return surface.kind <= INSIDE_CONE
 
 
 @kernel

@@ -35,9 +35,10 @@ POINT_ON_CURVE, CURVE_ON_POINT = KIND[joints.PointOnCurve], KIND[joints.CurveOnP
 ON_CURVE = (POINT_ON_CURVE, CURVE_ON_POINT)
 RELATION, USER_ROWS, STIFF, INERTIA = range(len(KIND), len(KIND) + 4)
 OWN_ROWS = min(ON_CURVE)  # the first of these kinds
-#: kinds of coordinates that only stops limit: the angles of a ball joint
-ROTATION, SWING, TWIST = range(len(KIND) + 4, len(KIND) + 7)
-OF_BALL = {"rotation": ROTATION, "swing": SWING, "twist": TWIST}
+#: coordinates that only stops limit: the word for each, and its file in `carom.kinematics.coordinates`
+LIMITED = {"rotation": "ball", "swing": "ball", "twist": "ball"}
+OF_LIMIT = {word: number for number, word in enumerate(LIMITED, len(KIND) + 4)}
+SWING, TWIST = OF_LIMIT["swing"], OF_LIMIT["twist"]
 
 
 def _kinds(chosen) -> tuple[int, ...]:
@@ -94,7 +95,7 @@ JOINT = [
 ]
 
 #: a coordinate of a joint: an angle about (kind REVOLUTE), or a displacement along (PRISMATIC), the first axis
-#: of the parent's frame, arc length along a curve (ON_CURVE), or an angle of a ball joint (OF_BALL); either
+#: of the parent's frame, arc length along a curve (ON_CURVE), or one that stops limit (OF_LIMIT); either
 #: side may be the ground
 COORDINATE = JOINT
 

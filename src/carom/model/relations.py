@@ -63,16 +63,19 @@ class Coordinates:
             return made
         first, second = (self.placement.side(joint, k) for k in range(2))
         if isinstance(coordinate, str):
-            row.kind, frames = arrays.OF_BALL[coordinate], d.frames_of_limits()
+            row.kind, frames = arrays.OF_LIMIT[coordinate], d.frames_of_limits()
         else:
             turns = coordinate_kind(joint, coordinate) == "turn"
             row.kind = arrays.REVOLUTE if turns else arrays.PRISMATIC
             frames = (d.coordinate_frame(coordinate),) * 2
         if d.turn == "cross" and coordinate == 1:  # measured from the child
             first, second = second, first
-        anchor = joint.anchor()
+        anchors = d.anchors(joint.anchor(), joint.child.position)
         row.parent, row.child = first.body.index, second.body.index
-        row.parent_anchor[:], row.child_anchor[:] = first.point(anchor), second.point(anchor)
+        row.parent_anchor[:], row.child_anchor[:] = (
+            first.point(anchors[0]),
+            second.point(anchors[1]),
+        )
         row.parent_frame[:], row.child_frame[:] = first.axes(frames[0]), second.axes(frames[1])
         return made
 

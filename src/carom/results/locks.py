@@ -33,7 +33,7 @@ def locked(run, status: Status) -> str:
     if status not in OF_ROWS or not elements:
         return ""
     compiled = compile_scene(run.scene, Options(), loops=True)
-    if sum(compiled.system.joints.rows) > MOST_ROWS:
+    if not 0 < sum(compiled.system.joints.rows) <= MOST_ROWS:
         return ""
     size, _, owner = decomposed(compiled.system, compiled.start, 0.0)
     rank = int(np.sum(size > RANK * size[0]))

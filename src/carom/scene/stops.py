@@ -70,7 +70,8 @@ class Stop(PartOfScene):
     def turns(self) -> bool:
         """Whether it limits an angle."""
         k = self.coordinate
-        return isinstance(k, str) or coordinate_kind(self.joint, k) == "turn"
+        d = self.joint.definition
+        return (d.limits[k] if isinstance(k, str) else coordinate_kind(self.joint, k)) == "turn"
 
     @property
     def side(self) -> float:

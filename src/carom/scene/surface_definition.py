@@ -50,6 +50,14 @@ class SurfaceDefinition(ABC):
     def write(self, row) -> None:  # noqa: B027
         """Write to the row that kernels read what a kind has beside lengths and numbers: nothing."""
 
+    def profile(self, far: float, n: int) -> Any:
+        """Return the outline of a surface of revolution about z for pictures; None if it is none.
+
+        It is a list of (r, z) [m], up to the distance `far` where the surface has no end, the number of sides of
+        a circle, which is `n`, and True if the outline is closed.
+        """
+        return None
+
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """One piece: the solid beyond the surface."""

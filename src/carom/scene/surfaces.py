@@ -11,12 +11,15 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from carom import arguments, checks
 from carom.fields import Number, NumberOrNone, Value, length, number
-from carom.scene.height_field import HeightField
+from carom.scene.height_field import HeightField as HeightField
 from carom.scene.pieces import Piece
 from carom.scene.surface_definition import SurfaceDefinition
-from carom.scene.user_surface import Surface
+from carom.scene.user_surface import Surface as Surface
+from carom.scene.values import subclasses_in
 
 _optional_length: Any = partial(Value, checks.length, None)
 
@@ -44,6 +47,13 @@ class InsideSphere(SurfaceDefinition):
     def lengths(self) -> tuple[float, ...]:
         """Its radius."""
         return (self.radius,)
+
+    def profile(self, far: float, n: int) -> Any:
+        """Return its outline: half a circle."""
+        angle = np.linspace(-0.5 * np.pi, 0.5 * np.pi, n // 2 + 1)
+        circle = self.radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        circle[[0, -1], 0] = 0.0
+        return circle, n
 
     @property
     def bend(self) -> float:
@@ -78,6 +88,12 @@ class InsideCylinder(SurfaceDefinition):
         """Its radius, and half its length, 0 for none."""
         return self.radius, 0.5 * (self.length or 0.0)
 
+    def profile(self, far: float, n: int) -> Any:
+        """Return its outline: a line, and its ends."""
+        r, half = self.radius, 0.5 * self.length if self.length else far
+        wall = [(r, -half), (r, half)]
+        return ([(0.0, -half), *wall, (0.0, half)] if self.length else wall), n
+
     @property
     def bend(self) -> float:
         """Greatest curvature with the centre in free space [1/m]."""
@@ -107,6 +123,11 @@ class InsideCone(SurfaceDefinition):
     def lengths(self) -> tuple[float, ...]:
         """Sine and cosine of its half-angle."""
         return math.sin(self.half_angle), math.cos(self.half_angle)
+
+    def profile(self, far: float, n: int) -> Any:
+        """Return its outline: a line from the apex."""
+        sine, cosine = self.lengths
+        return [(0.0, 0.0), (far * sine, far * cosine)], n
 
     @property
     def bend(self) -> float:
@@ -153,19 +174,22 @@ class InsideTorus(SurfaceDefinition):
         """Radius of the ring and of the tube."""
         return self.radius, self.tube_radius
 
+    def profile(self, far: float, n: int) -> Any:
+        """Return its outline: a circle, closed."""
+        angle = 4.0 * np.pi / n * np.arange(n // 2)
+        circle = self.tube_radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        return circle + (self.radius, 0.0), 2 * n, True
+
     @property
     def bend(self) -> float:
         """Greatest curvature with the centre in free space [1/m]."""
         return 1.0 / self.tube_radius
 
 
-SURFACES = (InsideSphere, InsideCylinder, InsideCone, InsideTorus, HeightField, Surface)
-
-__all__ = [
-    "HeightField", "InsideCone", "InsideCylinder", "InsideSphere", "InsideTorus", "Surface",
-]  # fmt: skip
-__getattr__ = arguments.members_of("carom.surfaces", __all__)
+SURFACES = subclasses_in(globals(), SurfaceDefinition)
+_NAMES = sorted(one.__name__ for one in SURFACES)
+__getattr__ = arguments.members_of("carom.surfaces", _NAMES)
 
 
 def __dir__() -> list[str]:
-    return __all__
+    return _NAMES

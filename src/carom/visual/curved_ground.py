@@ -6,14 +6,14 @@ Triangles are drawn from their front only, so that a wall between the eye and th
 from __future__ import annotations
 
 from itertools import permutations
-from typing import Any
 
 import numpy as np
 
+from carom.collision.implicit import values_at
+from carom.collision.layout import implicit_surface
 from carom.io.files.scene_data import MissingFunction
 from carom.scene.height_field import HeightField
 from carom.scene.surface_definition import SurfaceDefinition
-from carom.scene.surfaces import InsideCone, InsideCylinder, InsideSphere, InsideTorus
 from carom.scene.user_surface import Surface, evaluator
 from carom.visual.surfaces import turned
 
@@ -44,41 +44,18 @@ def ground(surface: SurfaceDefinition, centre: np.ndarray, radius: float, n: int
             own = np.stack([np.maximum(low, own[0]), np.minimum(high, own[1])])
         evaluate = evaluator(surface)
         return _level(lambda x: np.array([evaluate(one)[0] for one in x]), own)
-    if not isinstance(surface, InsideCone) and 1.0 / surface.bend > WIDER * radius:
-        return _level(lambda x: _distance(surface, x), np.stack([low, high]))
-    far = float(np.linalg.norm(centre)) + DRAWN * radius
-    vertices, faces = turned(*_profile(surface, far, n))
+    profile = surface.profile(float(np.linalg.norm(centre)) + DRAWN * radius, n)
+    if profile is None or WIDER * radius * surface.bend < 1.0:
+        return _level(lambda x: _values(surface, x), np.stack([low, high]))
+    vertices, faces = turned(*profile)
     return vertices, faces[:, ::-1]
 
 
-def _profile(surface, far: float, n: int) -> Any:
-    """Return the profile of (r, z) of a surface of revolution, n, and whether it is closed."""
-    if isinstance(surface, InsideSphere):
-        angle = np.linspace(-0.5 * np.pi, 0.5 * np.pi, n // 2 + 1)
-        circle = surface.radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        circle[[0, -1], 0] = 0.0
-        return circle, n
-    if isinstance(surface, InsideTorus):
-        angle = 4.0 * np.pi / n * np.arange(n // 2)
-        circle = surface.tube_radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        return circle + (surface.radius, 0.0), 2 * n, True
-    if isinstance(surface, InsideCone):
-        sine, cosine = np.sin(surface.half_angle), np.cos(surface.half_angle)
-        return [(0.0, 0.0), (far * sine, far * cosine)], n
-    assert isinstance(surface, InsideCylinder)
-    r, half = surface.radius, 0.5 * surface.length if surface.length else far
-    wall = [(r, -half), (r, half)]
-    return ([(0.0, -half), *wall, (0.0, half)] if surface.length else wall), n
-
-
-def _distance(surface, x: np.ndarray) -> np.ndarray:
-    """Return the distances of points (K, 3) from a surface of revolution."""
-    if isinstance(surface, InsideSphere):
-        return surface.radius - np.linalg.norm(x, axis=1)
-    across = np.hypot(x[:, 0], x[:, 1])
-    if isinstance(surface, InsideTorus):
-        return surface.tube_radius - np.hypot(across - surface.radius, x[:, 2])
-    return surface.radius - across
+def _values(surface: SurfaceDefinition, points: np.ndarray) -> np.ndarray:
+    """Return phi at points (K, 3)."""
+    tables, out = implicit_surface(surface, 0), np.zeros(len(points))
+    values_at(tables.surfaces[0], tables, points, out)
+    return out
 
 
 def _field(surface: HeightField, centre: np.ndarray, radius: float):

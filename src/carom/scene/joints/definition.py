@@ -35,8 +35,8 @@ class JointDefinition:
     coordinates : tuple of {"turn", "slide"}
         Coordinates of the joint: angles [rad] about ("turn") and displacements [m] along ("slide") the axes of
         `coordinate_frame`.
-    limits : tuple of str
-        Angles [rad] beside the coordinates that stops can limit (`Spherical`).
+    limits : dict of str to {"turn", "slide"}
+        Angles [rad] and lengths [m] beside the coordinates that stops can limit (`Spherical`).
     rows : int
         Number of constraint rows; by default those of `guide` and `turn`.
     nonholonomic : int
@@ -48,7 +48,7 @@ class JointDefinition:
     guide: ClassVar[str]
     turn: ClassVar[str]
     coordinates: ClassVar[tuple[str, ...]] = ()
-    limits: ClassVar[tuple[str, ...]] = ()
+    limits: ClassVar[dict[str, str]] = {}
     rows: ClassVar[int]
     nonholonomic: ClassVar[int] = 0
     in_trees: ClassVar[bool] = True
@@ -66,6 +66,10 @@ class JointDefinition:
             if hasattr(self, name):
                 return triad(getattr(self, name))
         return np.eye(3)
+
+    def frames_of_limits(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the axes (3, 3) of `limits` in the parent and in the child, as columns."""
+        return self.frame(), self.frame()
 
     def anchors(self, anchor: np.ndarray, child: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the anchors (3,) of parent and child in the world; `child` is the child's mass centre (3,)."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -48,7 +48,7 @@ class Spherical(JointDefinition):
     """
 
     guide, turn = "point", "ball"
-    limits = ("rotation", "swing", "twist")
+    limits: ClassVar = {"rotation": "turn", "swing": "turn", "twist": "turn"}
 
     anchor: Vector = fields.vector()
     axis: Vector = fields.direction((0.0, 0.0, 1.0))

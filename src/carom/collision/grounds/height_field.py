@@ -28,9 +28,15 @@ def _basis(u, count):
 
 
 @kernel
-def height_field_at(surface, numbers, p):
-    """Return phi, its gradient, and its Hessian as (xx, yy, zz, xy, xz, yz) at a point in its axes."""
-    n, m = surface.count[0], surface.count[1]
+def onto(surface, hulls, p):
+    """Return the point beneath p."""
+    return p[0], p[1], p[2] - field_at(surface, hulls, p)[0]
+
+
+@kernel
+def field_at(surface, hulls, p):
+    """Return phi, its gradient (3) and its Hessian (6) at a point."""
+    numbers, n, m = hulls.numbers, surface.count[0], surface.count[1]
     dx, dy = surface.spacing[0], surface.spacing[1]
     i, w, w1, w2 = _basis((p[0] - surface.corner[0]) / dx, n)
     j, v, v1, v2 = _basis((p[1] - surface.corner[1]) / dy, m)

@@ -9,9 +9,9 @@ from carom._compiled.decorators import kernel
 
 
 @kernel
-def user_surface_at(surface, numbers, p):
-    """Return phi, its gradient, and its Hessian as (xx, yy, zz, xy, xz, yz) at a point in its axes."""
-    k = surface.first
+def field_at(surface, hulls, p):
+    """Return phi, its gradient (3) and its Hessian (6) at a point."""
+    numbers, k = hulls.numbers, surface.first
     x, out = numbers[k : k + 3], numbers[k + 3 : surface.last]
     x[0], x[1], x[2] = p
     call_function(surface.address, math.inf, x, out)
