@@ -8,7 +8,7 @@ from pathlib import Path
 import carom
 from sources import tree
 
-INNER = {"kernel", "inlined", "unit", "by_kind", "by_element", "by_coordinate"}
+INNER = {"kernel", "inlined", "unit", "by_kind", "by_element", "by_coordinate", "by_ground"}
 COMPILED = {*INNER, "entry"}
 SOURCE = Path(carom.__file__).parent
 FROM = re.compile(r"from ([\w.]+) import")

@@ -53,8 +53,8 @@ class SurfaceDefinition(ABC):
     def profile(self, far: float, n: int) -> Any:
         """Return the outline of a surface of revolution about z for pictures; None if it is none.
 
-        It is a list of (r, z) [m], up to the distance `far` where the surface has no end, the number of sides of
-        a circle, which is `n`, and True if the outline is closed.
+        It is a list of (r, z) [m], up to the distance `far` where the surface has no end, the number of sides
+        of a circle, which is `n`, and True if the outline is closed.
         """
         return None
 
