@@ -14,7 +14,7 @@ from carom.kinematics.wrench import add_force, point, point_velocity
 
 @kernel
 def add_spring(system, spring, state, work):
-    """Add the force of a spring with damper to both ends; return the power of the damper."""
+    """Add the force of a spring with damper to both ends; return its tension, length and rate of length."""
     p, c = spring.parent, spring.child
     ax, ay, az, px, py, pz = point(state, p, spring.parent_anchor)
     bx, by, bz, qx, qy, qz = point(state, c, spring.child_anchor)
@@ -25,11 +25,10 @@ def add_spring(system, spring, state, work):
     ux, uy, uz = point_velocity(state, c, bx, by, bz)
     sx, sy, sz = point_velocity(state, p, ax, ay, az)
     rate = dx * (ux - sx) + dy * (uy - sy) + dz * (uz - sz)
-    drag = spring.damping * rate
-    f = tension(system, spring, length) + drag
+    f = tension(system, spring, length) + spring.damping * rate
     add_force(work, c, (bx, by, bz), (-f * dx, -f * dy, -f * dz))
     add_force(work, p, (ax, ay, az), (f * dx, f * dy, f * dz))
-    return -drag * rate
+    return f, length, rate
 
 
 @kernel
@@ -67,7 +66,8 @@ def applied_wrenches(system, state, gyroscopic, work):
             wrench[3], wrench[4], wrench[5] = rotate(q, (tx, ty, tz))
     power = 0.0
     for i in range(system.springs.shape[0]):
-        power += add_spring(system, system.springs[i], state, work)
+        _, _, rate = add_spring(system, system.springs[i], state, work)
+        power += -(system.springs[i].damping * rate) * rate
     for i in range(system.loads.shape[0]):
         power += add_load(system.loads[i], state, work)
     for i in range(system.bushings.shape[0]):

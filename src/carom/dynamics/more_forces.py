@@ -54,30 +54,43 @@ def read_states(system, force, state):
         i += 13
 
 
+@kernel
+def add_push(system, one, state, work):
+    """Add a force along a coordinate; return it, and the power of its part that has no potential."""
+    c = system.relations.coordinates[one.coordinate]
+    speed, t = rate(system, c, state), work.result[0].time
+    force, free = push_force(system.relations, one, value(system, c, state), speed, t)
+    push(system, c, state, force, work)
+    return force, free * speed
+
+
+@kernel
+def add_user_force(system, one, state, power, work):
+    """Add the wrenches of a function of the user's; return `power` and theirs, unless they have a potential."""
+    relations, at = system.relations, 0
+    read_states(system, one, state)
+    call_function(one.address, work.result[0].time, relations.read, relations.write)
+    for n in range(one.first, one.last):
+        b = relations.named[n]
+        wrench, v, w = work.body[b].wrench, state[b].v, state[b].w
+        for k in range(6):
+            f = relations.write[at + k]
+            wrench[k] += f
+            if one.energy_address == 0:
+                power += f * (v[k] if k < 3 else w[k - 3])
+        at += 6
+    return power
+
+
 @unit(where=has_relations, otherwise=0.0)
 def add_more_forces(system, state, work) -> float:
     """Add the wrenches of these forces; return the power of those without potential."""
-    power, t, relations = 0.0, work.result[0].time, system.relations
+    power, relations = 0.0, system.relations
     for i in range(relations.pushes.shape[0]):
-        one = relations.pushes[i]
-        c = relations.coordinates[one.coordinate]
-        speed = rate(system, c, state)
-        force, free = push_force(relations, one, value(system, c, state), speed, t)
-        push(system, c, state, force, work)
-        power += free * speed
+        _, lost = add_push(system, relations.pushes[i], state, work)
+        power += lost
     for i in range(relations.forces.shape[0]):
-        one, at = relations.forces[i], 0
-        read_states(system, one, state)
-        call_function(one.address, t, relations.read, relations.write)
-        for n in range(one.first, one.last):
-            b = relations.named[n]
-            wrench, v, w = work.body[b].wrench, state[b].v, state[b].w
-            for k in range(6):
-                f = relations.write[at + k]
-                wrench[k] += f
-                if one.energy_address == 0:
-                    power += f * (v[k] if k < 3 else w[k - 3])
-            at += 6
+        power = add_user_force(system, relations.forces[i], state, power, work)
     return power
 
 

@@ -27,6 +27,7 @@ KIND = {
 REVOLUTE, PRISMATIC = KIND[joints.Revolute], KIND[joints.Prismatic]
 DISTANCE, KNIFE_EDGE = KIND[joints.Distance], KIND[joints.KnifeEdge]
 UNIVERSAL, SCREW = KIND[joints.Universal], KIND[joints.Screw]
+SPHERICAL = KIND[joints.Spherical]
 ROLLING_SPHERE, ROLLING_DISC = KIND[joints.RollingSphere], KIND[joints.RollingDisc]
 #: kinds in the table of joints whose rows are numbers of their own: a point of the child on a curve of the
 #: parent, and a curve of the child on a point of the parent; a relation of coordinates of joints; rows of the
@@ -38,6 +39,10 @@ OWN_ROWS = min(ON_CURVE)  # the first of these kinds
 #: kinds of coordinates that only stops limit: the angles of a ball joint
 ROTATION, SWING, TWIST = range(len(KIND) + 4, len(KIND) + 7)
 OF_BALL = {"rotation": ROTATION, "swing": SWING, "twist": TWIST}
+
+
+#: kinds of forces, each a table of its own; dry friction by the coordinate on which it acts
+SPRINGS, LOADS, BUSHINGS, PUSHES, USER_FORCES, FRICTIONS = range(6)
 
 
 def _kinds(chosen) -> tuple[int, ...]:
@@ -406,6 +411,14 @@ class MovingSurfaces(NamedTuple):
     rows: np.recarray  # MOVING
     read: np.ndarray  # (1,) argument of a function that reads time alone
     write: np.ndarray  # (8,) velocity and acceleration, rate of spin and its rate
+
+
+class Place(NamedTuple):
+    """Where kernels find a force: its rows in the table of its kind."""
+
+    kind: int  # SPRINGS, ...
+    first: int
+    last: int
 
 
 class System(NamedTuple):

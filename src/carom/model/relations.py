@@ -37,6 +37,14 @@ class Coordinates:
             self.number(joints[j], k)
         self.counted, self.used = len(self.rows), False
 
+    def report(self, joints, stops) -> None:
+        """Add all coordinates of joints and stops that are not there yet."""
+        for joint in joints:
+            for k in range(len(joint.definition.measured)):
+                self.number(joint, k)
+        for stop in stops:
+            self.number(stop.joint, stop.coordinate)
+
     def number(self, joint: Joint, coordinate: int | str) -> int:
         """Return the index of a coordinate in the table; a new one is added."""
         self.used = True
@@ -64,15 +72,20 @@ class Coordinates:
         first, second = (self.placement.side(joint, k) for k in range(2))
         if isinstance(coordinate, str):
             row.kind, frames = arrays.OF_BALL[coordinate], d.frames_of_limits()
+        elif not d.coordinates:  # nothing acts along these: for reports alone
+            row.kind, row.number, frames = arrays.KIND[type(d)], coordinate, (np.eye(3),) * 2
         else:
             turns = coordinate_kind(joint, coordinate) == "turn"
             row.kind = arrays.REVOLUTE if turns else arrays.PRISMATIC
             frames = (d.coordinate_frame(coordinate),) * 2
         if d.turn == "cross" and coordinate == 1:  # measured from the child
             first, second = second, first
-        anchor = joint.anchor()
+        anchors = d.anchors(joint.anchor(), joint.child.position)
         row.parent, row.child = first.body.index, second.body.index
-        row.parent_anchor[:], row.child_anchor[:] = first.point(anchor), second.point(anchor)
+        row.parent_anchor[:], row.child_anchor[:] = (
+            first.point(anchors[0]),
+            second.point(anchors[1]),
+        )
         row.parent_frame[:], row.child_frame[:] = first.axes(frames[0]), second.axes(frames[1])
         return made
 

@@ -48,7 +48,7 @@ class Spherical(JointDefinition):
     """
 
     guide, turn = "point", "ball"
-    limits = ("rotation", "swing", "twist")
+    measured, limits = ("turn",) * 3, ("rotation", "swing", "twist")
 
     anchor: Vector = fields.vector()
     axis: Vector = fields.direction((0.0, 0.0, 1.0))

@@ -1,0 +1,111 @@
+"""What forces exert and how joints have moved: evaluated by the kernels of a run at saved states.
+
+A run adds all forces up and keeps none of them. A report makes the arrays of the scene once more, without
+contacts and with all coordinates of joints. Nothing of them is shared with the run, which may go on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from carom._compiled.record_arrays import table
+from carom.dynamics import reports as kernels
+from carom.model import records as r
+from carom.model.arrays import FRICTIONS
+from carom.model.compile import compile_for_reports
+from carom.results.exerted import bodies_of, rubs
+from carom.results.set_forces import places, put, stated
+from carom.scene.forces import AppliedForce
+from carom.scene.more_forces import JointInertia
+
+
+class Motion(NamedTuple):
+    """The motion (T, n) of coordinates of a joint; vectors in world axes."""
+
+    value: np.ndarray
+    rate: np.ndarray
+    along: np.ndarray  # (T, n, 3) direction in which it grows
+    arm: np.ndarray  # (T, n, 3) of the child, to where a force along it acts
+    gap: np.ndarray  # of a rail that can be left
+
+
+class Reports:
+    """A scene as kernels read it for reports."""
+
+    def __init__(self, scene):
+        self.scene, self.compiled = scene, compile_for_reports(scene)
+        self.work = r.new_work(self.compiled.system, 1)
+        self.set_forces = places(scene, self.compiled)
+
+    def motion(self, joint, states: r.Records, k: int | str | None = None) -> Motion:
+        """Return the motion of all coordinates of a joint, or of one, at saved states."""
+        own = range(len(joint.definition.measured)) if k is None else (k,)
+        chosen = np.array([self.compiled.numbers[joint.index, one] for one in own], dtype=np.int64)
+        out = np.zeros((len(states.state), len(chosen), kernels.MOTION))
+        if len(chosen):
+            kernels.write_coordinates(self.compiled.system, states, chosen, out)
+        along, arm = (out[..., k : k + 3] for k in (kernels.ALONG, kernels.ARM))
+        of = kernels.COORDINATE, kernels.RATE, kernels.GAP
+        value, rate, gap = (out[..., k] for k in of)
+        return Motion(value, rate, along, arm, gap)
+
+    def exerted(
+        self, forces: Sequence[AppliedForce], states: r.Records, ranges, frictions: dict[int, Any]
+    ) -> np.ndarray:
+        """Return what forces exert on their bodies (T, R, 10) at saved states.
+
+        Parameters
+        ----------
+        forces : forces of the scene, whose rows come one after another
+        states : series, state and turn
+        ranges : ranges of rows in which the forces stay as they are, in which they were set
+        frictions : values (T,) of dry friction by the index of the force
+        """
+        bodies, listed, values, row = [], [], [], 0
+        for force in forces:
+            own = bodies_of(force)
+            place = self._place(force, values, frictions)
+            if place is not None:
+                touched = *own, force.parent
+                listed.append((*place, len(bodies), len(bodies) + len(touched), row, len(own)))
+                bodies += [body.index for body in touched]
+            row += len(own)
+        out = np.full((len(states.state), row, kernels.EXERTED), np.nan)
+        if listed:
+            made = table(kernels.REPORTED, len(listed))
+            for name, column in zip(made.dtype.names, zip(*listed)):
+                made[name] = column
+            stacked = np.stack(values, axis=1) if values else np.zeros((len(out), 0))
+            acting = made, np.array(bodies, dtype=np.int64), stacked
+            for rows in ranges:
+                kernels.write_exerted(self.compiled.system, states, rows, acting, self.work, out)
+        if self.compiled.functions.failed is not None:
+            raise self.compiled.functions.failed
+        return out
+
+    def _place(self, force: AppliedForce, values: list, frictions) -> tuple[int, int, int] | None:
+        """Return the place of a force, None of one whose values need accelerations, which nobody keeps."""
+        d = force.definition
+        if isinstance(d, JointInertia):
+            return None
+        if rubs(force):
+            values.append(frictions[force.index])
+            return FRICTIONS, self.compiled.numbers[d.joint.index, d.coordinate], len(values) - 1
+        return tuple(self.compiled.places[force.index])
+
+    def set(self, given: dict[int, Any]) -> None:
+        """Let forces have values that were set, by index; others those that the scene states."""
+        for index, place in self.set_forces.items():
+            value = given[index] if index in given else stated(self.scene, index)
+            put(self.compiled.system, self.compiled.laws.get(index), place, value)
+
+
+def at_once(rows: np.ndarray, t: float, turns: np.ndarray | None = None) -> r.Records:
+    """Return states (N,) as those of a run with one saved time; `turns` are coordinates that were counted."""
+    turns = np.zeros(0) if turns is None else turns
+    made = r.one_row(len(rows), len(turns))
+    made.state[0], made.series["t"], made.turn["angle"] = rows, t, turns
+    return made
