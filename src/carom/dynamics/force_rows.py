@@ -10,8 +10,7 @@ from carom.dynamics.stiff import line_of
 from carom.geometry.rotation import rotate, unit_vector
 from carom.kinematics.coordinate import push, rate, value
 from carom.kinematics.wrench import add_force, point
-
-SPRINGS, PUSHES, BUSHINGS = range(3)
+from carom.model.arrays import PUSHES, SPRINGS
 
 
 @kernel

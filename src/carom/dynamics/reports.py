@@ -44,35 +44,43 @@ REPORTED = [
     ("row", "i8"),
     ("rows", "i8"),  # bodies with rows
 ]
-#: numbers of a row: force and torque on the body, world axes, at the point where it acts; value along a
-#: coordinate or a line; power; length of a spring, and its rate
-FORCE, TORQUE, VALUE, POWER, LENGTH, STRETCHING, EXERTED = 0, 3, 6, 7, 8, 9, 10
-#: numbers of a coordinate: its value and rate, the direction in which it grows, the arm of the child to where a
-#: force along it acts, both in world axes, and the gap of a rail
-COORDINATE, RATE, ALONG, ARM, GAP, MOTION = 0, 1, 2, 5, 8, 9
+#: what a force exerts on one of its bodies: a row of a report; NaN where a force has none of it
+EXERTED = [
+    ("force", "f8", 3),  # world axes
+    ("torque", "f8", 3),  # about the point where it acts
+    ("value", "f8"),  # along a coordinate or a line
+    ("power", "f8"),
+    ("length", "f8"),  # of a spring, and its rate
+    ("stretching", "f8"),
+]
+#: the motion of a coordinate of a joint
+MOTION = [
+    ("value", "f8"),
+    ("rate", "f8"),
+    ("along", "f8", 3),  # direction in which it grows, world axes
+    ("arm", "f8", 3),  # of the child, to where a force along it acts
+    ("gap", "f8"),  # of a rail that can be left
+]
 
 
 @kernel
 def add_reported(system, one, values, state, work, row):
-    """Add the wrenches of a force, and write its value and length, NaN where it has none."""
-    for k in range(VALUE, EXERTED):
-        row[k] = math.nan
+    """Add the wrenches of a force, and write its value and length."""
     for i in range(one.first, one.last):
         if one.kind == SPRINGS:
-            row[VALUE], row[LENGTH], row[STRETCHING] = add_spring(
-                system, system.springs[i], state, work
-            )
+            one_spring = add_spring(system, system.springs[i], state, work)
+            row.value, row.length, row.stretching = one_spring
         elif one.kind == LOADS:
             add_load(system.loads[i], state, work)
         elif one.kind == BUSHINGS:
             add_bushing(system.bushings[i], state, work)
         elif one.kind == PUSHES:
-            row[VALUE], _ = add_push(system, system.relations.pushes[i], state, work)
+            row.value, _ = add_push(system, system.relations.pushes[i], state, work)
         elif one.kind == USER_FORCES:
             add_user_force(system, system.relations.forces[i], state, 0.0, work)
     if one.kind == FRICTIONS:
-        row[VALUE] = values[one.last]
-        push(system, system.relations.coordinates[one.first], state, row[VALUE], work)
+        row.value = values[one.last]
+        push(system, system.relations.coordinates[one.first], state, row.value, work)
 
 
 @kernel
@@ -98,25 +106,25 @@ def take_wrenches(system, one, bodies, state, work, rows):
     """Write the wrenches on the bodies of a force to its rows, with their power, and clear them."""
     at = acts_at(system, one, state)
     for n in range(one.body, one.end):
-        b, row = bodies[n], rows[min(n - one.body, one.rows - 1)]
-        if n - one.body < one.rows:
-            row[POWER] = 0.0
+        own, b = min(n - one.body, one.rows - 1), bodies[n]
+        row = rows[own]
+        if own == n - one.body:
+            row.power = 0.0
         if b < 0:
             continue
         wrench, v, w = work.body[b].wrench, state[b].v, state[b].w
         for k in range(3):
-            row[POWER] += wrench[k] * v[k] + wrench[3 + k] * w[k]
-        if n - one.body < one.rows:
-            f = wrench[0], wrench[1], wrench[2]
-            turned = cross(at[0], at[1], at[2], f[0], f[1], f[2])
+            row.power += wrench[k] * v[k] + wrench[3 + k] * w[k]
+        if own == n - one.body:
+            turned = cross(at[0], at[1], at[2], wrench[0], wrench[1], wrench[2])
             for k in range(3):
-                row[FORCE + k], row[TORQUE + k] = wrench[k], wrench[3 + k] - turned[k]
+                row.force[k], row.torque[k] = wrench[k], wrench[3 + k] - turned[k]
         clear_wrench(work.body[b])
 
 
 @entry
 def write_exerted(system, saved, rows, acting, work, out):
-    """Write what forces exert on their bodies (T, R, 10) at the saved states `rows[0]` to `rows[1]`.
+    """Write what forces exert on their bodies, (T, R) EXERTED, at the saved states `rows[0]` to `rows[1]`.
 
     Earlier states must have been treated before, because whole turns of angles are counted. `acting` are the
     forces, their bodies, and the values (T, F) of dry friction.
@@ -130,9 +138,6 @@ def write_exerted(system, saved, rows, acting, work, out):
             one = forces[i]
             own = out[k, one.row : one.row + one.rows]
             add_reported(system, one, values[k], state, work, own[0])
-            for n in range(1, one.rows):
-                for m in range(VALUE, EXERTED):
-                    own[n, m] = own[0, m]
             take_wrenches(system, one, bodies, state, work, own)
 
 
@@ -170,37 +175,37 @@ def write_unguided(c, state, out):
         w, v = angular_velocity(state, c.child), angular_velocity(state, c.parent)
         u = (w[0] - v[0], w[1] - v[1], w[2] - v[2])
         length = turned_by(c, state)[c.number]
-    out[COORDINATE], out[RATE] = length, dot(e, u)
-    out[ALONG], out[ALONG + 1], out[ALONG + 2] = e
+    out.value, out.rate = length, dot(e, u)
+    out.along[0], out.along[1], out.along[2] = e
 
 
 @kernel
 def write_guided(system, c, state, out):
     """Write value, rate and direction of a coordinate; of a rail that can be left, those of its foot."""
-    out[ALONG], out[ALONG + 1], out[ALONG + 2] = along(system, c, state)
-    out[COORDINATE], out[RATE] = c.reference, rate(system, c, state)
+    a = out.along
+    a[0], a[1], a[2] = along(system, c, state)
+    out.value, out.rate = c.reference, rate(system, c, state)
     if not is_on_curve(c):
         return
     one = system.relations.curves[c.number]
     if can_be_left(one):  # in flight the foot has a speed of its own
-        out[RATE] /= one.ahead * math.sqrt(dot(one.slope, one.slope))
+        out.rate /= one.ahead * math.sqrt(dot(one.slope, one.slope))
         m, n = one.normal[0], one.normal[1]
-        out[ALONG], out[ALONG + 1], out[ALONG + 2] = cross(m[0], m[1], m[2], n[0], n[1], n[2])
-        out[GAP] = one.gap[1]
+        a[0], a[1], a[2] = cross(m[0], m[1], m[2], n[0], n[1], n[2])
+        out.gap = one.gap[1]
 
 
 @entry
 def write_coordinates(system, saved, chosen, out):
-    """Write the motion (T, n, 9) of the n `chosen` coordinates at all saved states, with whole turns."""
+    """Write the motion, (T, n) MOTION, of the n `chosen` coordinates at all saved states, with whole turns."""
     for k in range(saved.state.shape[0]):
         state = saved.state[k]
         for n in range(chosen.shape[0]):
             c, row = system.relations.coordinates[chosen[n]], out[k, n]
-            row[GAP] = 0.0
             if c.kind == DISTANCE or c.kind == SPHERICAL:
                 write_unguided(c, state, row)
             else:
                 expect_turn(system, saved, k, chosen[n])
                 settle_turn(system, saved, k, chosen[n])
                 write_guided(system, c, state, row)
-            row[ARM], row[ARM + 1], row[ARM + 2] = child_arm(c, state)
+            row.arm[0], row.arm[1], row.arm[2] = child_arm(c, state)

@@ -41,7 +41,7 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
         return solve(run.compiled, touch), {}
     laws: list[Any] = [force.definition for force in dry]
     read = [states._reports.motion(d.joint, saved, d.coordinate) for d in laws]
-    q, rate = (np.hstack([one[k] for one in read]) for k in range(2))
+    q, rate = (np.hstack([one[name] for one in read]) for name in ("value", "rate"))
     turns = np.round(q / TURN)
     sticks = np.abs(rate) <= STILL * np.array([_speed(d, saved.state) for d in laws])
     most = np.array([bound_of(d.bound) for d in laws])

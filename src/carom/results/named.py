@@ -14,7 +14,6 @@ import numpy as np
 
 from carom import arguments, checks
 from carom.geometry import quaternion
-from carom.results.exerted import COLUMNS_EACH
 from carom.results.names import UNITS
 from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.constraints import Constraint, Driver, coordinate_kind
@@ -388,28 +387,27 @@ class ForceView(_Coordinate, View):
         """Power that it gives to the bodies [W], (T,): negative for a damper."""
         return np.sum(self._rows[..., 7], axis=-1)
 
-    def _line(self) -> np.ndarray:
-        """Return length and rate, after the eight numbers of each row."""
+    def _line(self) -> np.recarray:
+        """Return what it exerts (T,), with its length, or that of one time."""
         if not isinstance(self._part.definition, (Spring, CurveSpring)):
             raise AttributeError(f"{self.name!r} has no length: it is no Spring or CurveSpring")
-        found = self._source._report((self._part,))[:, 0, COLUMNS_EACH:].T
-        return found[:, 0] if np.ndim(self._source.t) == 0 else found
+        found = self._source._report((self._part,))[:, 0]
+        return found[0] if np.ndim(self._source.t) == 0 else found
 
     @property
     def length(self):
         """Distance of the ends of a spring [m], (T,)."""
-        return self._line()[0]
+        return self._line().length
 
     @property
     def length_rate(self):
         """Rate of this distance [m/s], (T,)."""
-        return self._line()[1]
+        return self._line().stretching
 
     @property
     def tension(self):
         """Force with which a spring, and its damper, pull the ends together [N], (T,)."""
-        self._line()
-        return self._value
+        return self._line().value
 
 
 @arguments.attributes()

@@ -7,12 +7,18 @@ contacts and with all coordinates of joints. Nothing of them is shared with the 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.dynamics import reports as kernels
+from carom.dynamics.reports import (
+    EXERTED,
+    MOTION,
+    REPORTED,
+    write_coordinates,
+    write_exerted,
+)
 from carom.model import records as r
 from carom.model.arrays import FRICTIONS
 from carom.model.compile import compile_for_reports
@@ -20,16 +26,6 @@ from carom.results.exerted import bodies_of, rubs
 from carom.results.set_forces import places, put, stated
 from carom.scene.forces import AppliedForce
 from carom.scene.more_forces import JointInertia
-
-
-class Motion(NamedTuple):
-    """The motion (T, n) of coordinates of a joint; vectors in world axes."""
-
-    value: np.ndarray
-    rate: np.ndarray
-    along: np.ndarray  # (T, n, 3) direction in which it grows
-    arm: np.ndarray  # (T, n, 3) of the child, to where a force along it acts
-    gap: np.ndarray  # of a rail that can be left
 
 
 class Reports:
@@ -40,22 +36,19 @@ class Reports:
         self.work = r.new_work(self.compiled.system, 1)
         self.set_forces = places(scene, self.compiled)
 
-    def motion(self, joint, states: r.Records, k: int | str | None = None) -> Motion:
-        """Return the motion of all coordinates of a joint, or of one, at saved states."""
+    def motion(self, joint, states: r.Records, k: int | str | None = None) -> np.recarray:
+        """Return the motion, (T, n) MOTION, of all coordinates of a joint, or of one, at saved states."""
         own = range(len(joint.definition.measured)) if k is None else (k,)
         chosen = np.array([self.compiled.numbers[joint.index, one] for one in own], dtype=np.int64)
-        out = np.zeros((len(states.state), len(chosen), kernels.MOTION))
+        out = table(MOTION, len(states.state), len(chosen))
         if len(chosen):
-            kernels.write_coordinates(self.compiled.system, states, chosen, out)
-        along, arm = (out[..., k : k + 3] for k in (kernels.ALONG, kernels.ARM))
-        of = kernels.COORDINATE, kernels.RATE, kernels.GAP
-        value, rate, gap = (out[..., k] for k in of)
-        return Motion(value, rate, along, arm, gap)
+            write_coordinates(self.compiled.system, states, chosen, out)
+        return out
 
     def exerted(
         self, forces: Sequence[AppliedForce], states: r.Records, ranges, frictions: dict[int, Any]
-    ) -> np.ndarray:
-        """Return what forces exert on their bodies (T, R, 10) at saved states.
+    ) -> np.recarray:
+        """Return what forces exert on their bodies, (T, R) EXERTED, at saved states.
 
         Parameters
         ----------
@@ -73,15 +66,16 @@ class Reports:
                 listed.append((*place, len(bodies), len(bodies) + len(touched), row, len(own)))
                 bodies += [body.index for body in touched]
             row += len(own)
-        out = np.full((len(states.state), row, kernels.EXERTED), np.nan)
+        out = table(EXERTED, len(states.state), row)
+        numbers(out)[:] = np.nan
         if listed:
-            made = table(kernels.REPORTED, len(listed))
+            made = table(REPORTED, len(listed))
             for name, column in zip(made.dtype.names, zip(*listed)):
                 made[name] = column
             stacked = np.stack(values, axis=1) if values else np.zeros((len(out), 0))
             acting = made, np.array(bodies, dtype=np.int64), stacked
             for rows in ranges:
-                kernels.write_exerted(self.compiled.system, states, rows, acting, self.work, out)
+                write_exerted(self.compiled.system, states, rows, acting, self.work, out)
         if self.compiled.functions.failed is not None:
             raise self.compiled.functions.failed
         return out
@@ -109,3 +103,8 @@ def at_once(rows: np.ndarray, t: float, turns: np.ndarray | None = None) -> r.Re
     made = r.one_row(len(rows), len(turns))
     made.state[0], made.series["t"], made.turn["angle"] = rows, t, turns
     return made
+
+
+def numbers(rows: np.recarray) -> np.ndarray:
+    """Return the numbers (..., n) of rows whose columns are all of numbers."""
+    return np.reshape(rows.view(np.ndarray).view(float), (*rows.shape, -1))

@@ -228,18 +228,19 @@ class Solution(Portable, Drawn, Source):
 
         return written(self._run.records, self._run.clock)
 
-    def _report(self, forces) -> np.ndarray:
-        """Return what some forces exert (T, R, 10), as `Reports.exerted` does."""
+    def _report(self, forces) -> np.recarray:
+        """Return what some forces exert (T, R), as `Reports.exerted` does."""
         ranges = self._assemble.ranges_of(self._run, self._reports.compiled, len(self.t))
         frictions = self._solved[1] if any(map(rubs, forces)) else {}
         return self._reports.exerted(forces, self._saved, ranges, frictions)
 
     @cached_property
     def _exerted(self) -> np.ndarray:
-        forces = self.scene.forces
-        if not forces:
+        from carom.results.reports import numbers
+
+        if not self.scene.forces:
             return np.zeros((len(self.t), 0, COLUMNS_EACH))
-        return self._report(forces)[..., :COLUMNS_EACH]
+        return numbers(self._report(self.scene.forces))[..., :COLUMNS_EACH]
 
     def _exerted_by(self, force) -> np.ndarray:
         rows = [k for k, row in enumerate(rows_of(self.scene)) if row.force is force]
@@ -348,7 +349,8 @@ class Solution(Portable, Drawn, Source):
             If `joint` is not a joint, or belongs to another scene.
         """
         joint = of_scene(self.scene, joint)
-        read = self._reports.motion(joint, self._saved)[:2]
+        motion = self._reports.motion(joint, self._saved)
+        read = motion.value.copy(), motion.rate.copy()
         return in_degrees(joint, *read) if checks.flag("degrees", degrees) else read
 
     @cached_property

@@ -146,14 +146,16 @@ class SystemState(Source):
         rows["Q"] = attitudes(self.orientation, self._reports.compiled.to_principal)
         return at_once(rows, self.t)
 
-    def _report(self, forces) -> np.ndarray:
-        """Return what some forces exert (1, R, 10), as `Reports.exerted` does."""
+    def _report(self, forces) -> np.recarray:
+        """Return what some forces exert (1, R), as `Reports.exerted` does."""
         self._reports.set(self._at.given)
         frictions = self._solved[1] if any(map(rubs, forces)) else {}
         return self._reports.exerted(forces, self._saved, ((0, 1),), frictions)
 
     def _exerted_by(self, force) -> np.ndarray:
-        return self._report((force,))[0, :, :COLUMNS_EACH]
+        from carom.results.reports import numbers
+
+        return numbers(self._report((force,)))[0, :, :COLUMNS_EACH]
 
     @cached_property
     def _solved(self):
@@ -197,7 +199,8 @@ class SystemState(Source):
             Whether angles are in degrees. Default False: radians.
         """
         joint = of_scene(self._scene, joint)
-        read = tuple(column[0] for column in self._reports.motion(joint, self._saved)[:2])
+        motion = self._reports.motion(joint, self._saved)
+        read = motion.value[0], motion.rate[0]
         return in_degrees(joint, *read) if checks.flag("degrees", degrees) else read
 
     def __repr__(self) -> str:
