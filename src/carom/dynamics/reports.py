@@ -10,26 +10,16 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, kernel
-from carom.dynamics.bushing import add_bushing
+from carom.dynamics.applied import acts_at, add
+from carom.dynamics.applied.push import acts_along
 from carom.dynamics.contact_impulse import clear_wrench, clear_wrenches
-from carom.dynamics.forces import add_load, add_spring
-from carom.dynamics.more_forces import add_push, add_user_force
 from carom.dynamics.reactions import expect_turn, follow_turns, settle_turn
 from carom.geometry.rotation import cross, log
 from carom.kinematics.ball import axes_of
-from carom.kinematics.coordinate import along, angular_velocity, push, rate, slides
+from carom.kinematics.coordinate import along, angular_velocity, push, rate
 from carom.kinematics.curve import can_be_left, dot, is_on_curve
-from carom.kinematics.joints import anchor_gap, anchor_speed, arm, child_arm
-from carom.model.arrays import (
-    BUSHINGS,
-    DISTANCE,
-    FRICTIONS,
-    LOADS,
-    PUSHES,
-    SPHERICAL,
-    SPRINGS,
-    USER_FORCES,
-)
+from carom.kinematics.joints import anchor_gap, anchor_speed
+from carom.model.arrays import DISTANCE, FRICTIONS, SPHERICAL
 
 #: a force in reports: its place, and the range of its bodies in a list, the first of which have a row each
 REPORTED = [
@@ -57,54 +47,28 @@ EXERTED = [
 MOTION = [
     ("value", "f8"),
     ("rate", "f8"),
-    ("along", "f8", 3),  # direction in which it grows, world axes
-    ("arm", "f8", 3),  # of the child, to where a force along it acts
+    ("along", "f8", 3),  # direction in which it grows as the child moves, world axes
+    ("arm", "f8", 3),  # of the child, to where a force along it acts; 0 of a torque
     ("gap", "f8"),  # of a rail that can be left
 ]
 
 
 @kernel
 def add_reported(system, one, values, state, work, row):
-    """Add the wrenches of a force, and write its value and length."""
-    for i in range(one.first, one.last):
-        if one.kind == SPRINGS:
-            one_spring = add_spring(system, system.springs[i], state, work)
-            row.value, row.length, row.stretching = one_spring
-        elif one.kind == LOADS:
-            add_load(system.loads[i], state, work)
-        elif one.kind == BUSHINGS:
-            add_bushing(system.bushings[i], state, work)
-        elif one.kind == PUSHES:
-            row.value, _ = add_push(system, system.relations.pushes[i], state, work)
-        elif one.kind == USER_FORCES:
-            add_user_force(system, system.relations.forces[i], state, 0.0, work)
+    """Add the wrenches of a force, write its value and length, and return the arm to where it acts."""
     if one.kind == FRICTIONS:
+        c = system.relations.coordinates[one.first]
         row.value = values[one.last]
-        push(system, system.relations.coordinates[one.first], state, row.value, work)
+        push(system, c, state, row.value, work)
+        return acts_along(c, state)
+    for i in range(one.first, one.last):
+        _, row.value, row.length, row.stretching = add(one.kind, system, i, state, 0.0, work)
+    return acts_at(one.kind, system, one.first, state)
 
 
 @kernel
-def acts_at(system, one, state):
-    """Return the arm, from the centre of its first body, to the point where a force acts."""
-    i = one.first
-    if one.kind == SPRINGS:
-        return arm(state, system.springs[i].child, system.springs[i].child_anchor)
-    if one.kind == LOADS:
-        return arm(state, system.loads[i].body, system.loads[i].anchor)
-    if one.kind == BUSHINGS:
-        return arm(state, system.bushings[i].child, system.bushings[i].child_anchor)
-    if one.kind == PUSHES or one.kind == FRICTIONS:
-        k = system.relations.pushes[i].coordinate if one.kind == PUSHES else i
-        c = system.relations.coordinates[k]
-        if slides(c):
-            return child_arm(c, state)
-    return 0.0, 0.0, 0.0
-
-
-@kernel
-def take_wrenches(system, one, bodies, state, work, rows):
+def take_wrenches(one, bodies, at, state, work, rows):
     """Write the wrenches on the bodies of a force to its rows, with their power, and clear them."""
-    at = acts_at(system, one, state)
     for n in range(one.body, one.end):
         own, b = min(n - one.body, one.rows - 1), bodies[n]
         row = rows[own]
@@ -137,8 +101,8 @@ def write_exerted(system, saved, rows, acting, work, out):
         for i in range(forces.shape[0]):
             one = forces[i]
             own = out[k, one.row : one.row + one.rows]
-            add_reported(system, one, values[k], state, work, own[0])
-            take_wrenches(system, one, bodies, state, work, own)
+            at = add_reported(system, one, values[k], state, work, own[0])
+            take_wrenches(one, bodies, at, state, work, own)
 
 
 @kernel
@@ -208,4 +172,4 @@ def write_coordinates(system, saved, chosen, out):
                 expect_turn(system, saved, k, chosen[n])
                 settle_turn(system, saved, k, chosen[n])
                 write_guided(system, c, state, row)
-            row.arm[0], row.arm[1], row.arm[2] = child_arm(c, state)
+            row.arm[0], row.arm[1], row.arm[2] = acts_along(c, state)

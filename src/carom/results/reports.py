@@ -43,6 +43,11 @@ class Reports:
         out = table(MOTION, len(states.state), len(chosen))
         if len(chosen):
             write_coordinates(self.compiled.system, states, chosen, out)
+            # some are measured from the child
+            turned = (
+                self.compiled.system.relations.coordinates["child"][chosen] != joint.child.index
+            )
+            out["along"][:, turned] *= -1.0
         return out
 
     def exerted(
