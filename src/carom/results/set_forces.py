@@ -74,17 +74,6 @@ def rows_of_forces(
         yield first, saved
 
 
-def values_of_forces(scene, history: History, saved: int) -> dict[int, np.ndarray]:
-    """Return the values at saved times, (T,) or (T, 3), of the forces that were set, by index."""
-    out: dict[int, np.ndarray] = {}
-    for row, index, value in history:
-        if index not in out:
-            first = np.array(stated(scene, index), dtype=float)
-            out[index] = np.repeat(first[None], saved, axis=0)
-        out[index][row:] = value
-    return out
-
-
 def stated(scene, index: int):
     """Return the value of a force, or the control of an actuator, until it is set."""
     d = scene.forces[index].definition

@@ -67,61 +67,26 @@ def energies(kinds):
     return these
 
 
-def _add_up_to(k: int):
-    """Return the kernel that adds one force of a kind by number, of all kinds up to the one at place k."""
-    number, own = KINDS[k].KIND, KINDS[k].add
-    others = _add_up_to(k - 1) if k > 0 else own
+def by_number(name: str, kinds):
+    """Return the kernel that calls the function of this name of one of some kinds, by its number."""
+    number, own = kinds[-1].KIND, getattr(kinds[-1], name)
+    others = by_number(name, kinds[:-1]) if len(kinds) > 1 else None
+    if others is None:
+
+        @kernel
+        def first(kind, system, i, *more):
+            return own(system, i, *more)
+
+        return first
 
     @kernel
-    def these(kind, system, i, state, power, work):
+    def these(kind, system, i, *more):
         if kind == number:
-            return own(system, i, state, power, work)
-        return others(kind, system, i, state, power, work)
+            return own(system, i, *more)
+        return others(kind, system, i, *more)
 
-    @kernel
-    def first(kind, system, i, state, power, work):
-        return own(system, i, state, power, work)
-
-    return these if k > 0 else first
+    return these
 
 
-def _acts_up_to(k: int):
-    """Return the kernel that calls `acts_at` of a kind by number."""
-    number, own = KINDS[k].KIND, KINDS[k].acts_at
-    others = _acts_up_to(k - 1) if k > 0 else own
-
-    @kernel
-    def these(kind, system, i, state):
-        if kind == number:
-            return own(system, i, state)
-        return others(kind, system, i, state)
-
-    @kernel
-    def first(kind, system, i, state):
-        return own(system, i, state)
-
-    return these if k > 0 else first
-
-
-def _unit_up_to(k: int):
-    """Return the kernel that calls `unit_force` of a kind by number."""
-    number, own = STIFF_KINDS[k].KIND, STIFF_KINDS[k].unit_force
-    others = _unit_up_to(k - 1) if k > 0 else own
-
-    @kernel
-    def these(kind, system, i, n, state, work):
-        if kind == number:
-            return own(system, i, n, state, work)
-        return others(kind, system, i, n, state, work)
-
-    @kernel
-    def first(kind, system, i, n, state, work):
-        return own(system, i, n, state, work)
-
-    return these if k > 0 else first
-
-
-STIFF_KINDS = [kind for kind in KINDS if hasattr(kind, "unit_force")]
-add, acts_at, unit_force = (
-    _add_up_to(len(KINDS) - 1), _acts_up_to(len(KINDS) - 1), _unit_up_to(len(STIFF_KINDS) - 1)
-)  # fmt: skip
+add, acts_at = by_number("add", KINDS), by_number("acts_at", KINDS)
+unit_force = by_number("unit_force", [kind for kind in KINDS if hasattr(kind, "unit_force")])
