@@ -19,15 +19,14 @@ from carom.kinematics.ball import axes_of
 from carom.kinematics.coordinate import along, angular_velocity, push, rate
 from carom.kinematics.curve import can_be_left, dot, is_on_curve
 from carom.kinematics.joints import anchor_gap, anchor_speed
+from carom.law.friction import bound_of_stick, depends_on_slip, in_slip
 from carom.model.arrays import DISTANCE, FRICTIONS, SPHERICAL
 
 #: a force in reports: its place, and the range of its bodies in a list, the first of which have a row each
 REPORTED = [
     ("kind", "i8"),
-    (
-        "first",
-        "i8",
-    ),  # range in the table of its kind; of dry friction, coordinate, and column of its value
+    # range in the table of its kind; of dry friction, its place and the column of its value
+    ("first", "i8"),
     ("last", "i8"),
     ("body", "i8"),  # range of its bodies
     ("end", "i8"),
@@ -54,11 +53,23 @@ MOTION = [
 
 
 @kernel
+def force_of_slip(laws, law, speed):
+    """Return the dry friction of a joint that slips, against its motion."""
+    most = bound_of_stick(laws, law)
+    if depends_on_slip(laws, law):
+        most = in_slip(laws, law, abs(speed))
+    return -most if speed > 0.0 else most
+
+
+@kernel
 def add_reported(system, one, values, state, work, row):
     """Add the wrenches of a force, write its value and length, and return the arm to where it acts."""
     if one.kind == FRICTIONS:
-        c = system.relations.coordinates[one.first]
+        friction = system.relations.frictions[one.first]
+        c = system.relations.coordinates[friction.coordinate]
         row.value = values[one.last]
+        if math.isnan(row.value):
+            row.value = force_of_slip(system.laws, friction.law, rate(system, c, state))
         push(system, c, state, row.value, work)
         return acts_along(c, state)
     for i in range(one.first, one.last):
@@ -91,7 +102,7 @@ def write_exerted(system, saved, rows, acting, work, out):
     """Write what forces exert on their bodies, (T, R) EXERTED, at the saved states `rows[0]` to `rows[1]`.
 
     Earlier states must have been treated before, because whole turns of angles are counted. `acting` are the
-    forces, their bodies, and the values (T, F) of dry friction.
+    forces, their bodies, and the values (T, F) of dry friction, NaN where it slips.
     """
     forces, bodies, values = acting
     clear_wrenches(work)

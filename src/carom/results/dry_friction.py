@@ -18,7 +18,7 @@ from carom.model.compile import compile_scene
 from carom.model.records import TOUCH
 from carom.results.exerted import rubs
 from carom.scene.constraints import Driver, coordinate_kind
-from carom.scene.friction import FrictionLaw, bound_of
+from carom.scene.friction import bound_of
 from carom.scene.more_forces import JointFriction
 
 STILL = 1e-9  # of the speeds of the joint: below it the rate is round-off, and the joint sticks
@@ -45,8 +45,8 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
     turns = np.round(q / TURN)
     sticks = np.abs(rate) <= STILL * np.array([_speed(d, saved.state) for d in laws])
     most = np.array([bound_of(d.bound) for d in laws])
-    bound = np.stack([_in_slip(d.bound, np.abs(rate[:, k])) for k, d in enumerate(laws)], axis=-1)
-    value = np.where(sticks, 0.0, -bound * np.sign(rate))
+    slip = states._reports.exerted(dry, saved, ((0, len(q)),), {}).value
+    bound, value = np.abs(slip), np.where(sticks, 0.0, slip)
     while True:
         values = {force.index: value[:, k] for k, force in enumerate(dry)}
         full = with_forces(states, values, touch)
@@ -71,11 +71,6 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
             return out, {force.index: value[:, k] for k, force in enumerate(dry)}
         value = np.where(sticks & ~beyond, 0.0, np.where(beyond, bound * np.sign(value), value))
         sticks = sticks & ~beyond
-
-
-def _in_slip(bound, speed: np.ndarray) -> np.ndarray:
-    """Return the force (T,) of slip at these speeds."""
-    return bound(speed) if isinstance(bound, FrictionLaw) else np.full(len(speed), bound)
 
 
 def _turned(system, angles: np.ndarray) -> None:

@@ -6,7 +6,7 @@ contacts and with all coordinates of joints. Nothing of them is shared with the 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,12 +20,10 @@ from carom.dynamics.reports import (
     write_exerted,
 )
 from carom.model import records as r
-from carom.model.arrays import FRICTIONS
 from carom.model.compile import compile_for_reports
 from carom.results.exerted import bodies_of, rubs
 from carom.results.set_forces import places, put, stated
 from carom.scene.forces import AppliedForce
-from carom.scene.more_forces import JointInertia
 
 
 class Reports:
@@ -51,49 +49,47 @@ class Reports:
         return out
 
     def exerted(
-        self, forces: Sequence[AppliedForce], states: r.Records, ranges, frictions: dict[int, Any]
+        self, forces: Sequence[AppliedForce], states: r.Records, ranges, frictions: Mapping
     ) -> np.recarray:
         """Return what forces exert on their bodies, (T, R) EXERTED, at saved states.
+
+        Inertias along coordinates have NaN: what they exert follows from accelerations, which nobody keeps.
 
         Parameters
         ----------
         forces : forces of the scene, whose rows come one after another
         states : series, state and turn
         ranges : ranges of rows in which the forces stay as they are, in which they were set
-        frictions : values (T,) of dry friction by the index of the force
+        frictions : values (T,) of dry friction by the index of the force; by default those of slip
         """
-        bodies, listed, values, row = [], [], [], 0
+        slips, row = np.full(len(states.state), np.nan), 0
+        bodies, listed, values, still = [], [], [], []
         for force in forces:
-            own = bodies_of(force)
-            place = self._place(force, values, frictions)
+            own, place = bodies_of(force), self.compiled.places.get(force.index)
+            if place is None and rubs(force):  # its bound is 0
+                still.append(row)
             if place is not None:
+                if rubs(force):
+                    place = place._replace(last=len(values))
+                    values.append(frictions.get(force.index, slips))
                 touched = *own, force.parent
                 listed.append((*place, len(bodies), len(bodies) + len(touched), row, len(own)))
                 bodies += [body.index for body in touched]
             row += len(own)
-        out = table(EXERTED, len(states.state), row)
+        out = table(EXERTED, len(slips), row)
         numbers(out)[:] = np.nan
-        if listed:
-            made = table(REPORTED, len(listed))
-            for name, column in zip(made.dtype.names, zip(*listed)):
-                made[name] = column
-            stacked = np.stack(values, axis=1) if values else np.zeros((len(out), 0))
-            acting = made, np.array(bodies, dtype=np.int64), stacked
-            for rows in ranges:
-                write_exerted(self.compiled.system, states, rows, acting, self.work, out)
+        numbers(out)[:, still] = 0.0
+        made = table(REPORTED, len(listed))
+        for name, column in zip(made.dtype.names, zip(*listed)):
+            made[name] = column
+        stacked = np.stack(values, axis=1) if values else np.zeros((len(slips), 0))
+        acting = made, np.array(bodies, dtype=np.int64), stacked
+        self.compiled.functions.forget()
+        for rows in ranges if listed else ():
+            write_exerted(self.compiled.system, states, rows, acting, self.work, out)
         if self.compiled.functions.failed is not None:
             raise self.compiled.functions.failed
         return out
-
-    def _place(self, force: AppliedForce, values: list, frictions) -> tuple[int, int, int] | None:
-        """Return the place of a force, None of one whose values need accelerations, which nobody keeps."""
-        d = force.definition
-        if isinstance(d, JointInertia):
-            return None
-        if rubs(force):
-            values.append(frictions[force.index])
-            return FRICTIONS, self.compiled.numbers[d.joint.index, d.coordinate], len(values) - 1
-        return tuple(self.compiled.places[force.index])
 
     def set(self, given: dict[int, Any]) -> None:
         """Let forces have values that were set, by index; others those that the scene states."""

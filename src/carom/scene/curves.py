@@ -144,7 +144,7 @@ class Curve(PiecewiseCurve):
         return s if self.closed else min(max(s, 0.0), self.length)
 
     def foot_from(self, point: np.ndarray, s: float, far: bool = False) -> float:
-        """Return the arc length of the foot of a point (3,), from one nearby; it may be `far` from the curve."""
+        """Return the arc length of the foot of a point (3,), from one nearby, or `far` from the curve."""
         longest = np.max(np.diff(self.knots))
         for k in range(20):
             place, slope, bend = self._at(np.array([s]))
