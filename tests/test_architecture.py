@@ -54,6 +54,7 @@ CAPABILITIES = {
         "dynamics": 1, "model": 1, "geometry": 1, "hints": 3,
     },
     "laws by number, slip and direction in one law": {"model": 1, "scene": 1},
+    "reports as kernels, a file for each kind of force": {"dynamics": 5, "model": 1, "results": -5},
     "kinds of contacts and motions of points by name": {"kinematics": 1, "stepping": 1},
     "pairs that hardly move": {"contact": 1},
     "a material for each part of a compound": {"io": 1, "scene": 1},
