@@ -439,3 +439,9 @@ class System(NamedTuple):
     levels: Levels  # faces of solids of one body, or of static ones, in one plane
     moving: MovingSurfaces
     solver: Solver
+
+
+def rows_of_kind(system: System, kind: int) -> np.recarray:
+    """Return the table of a kind of forces."""
+    own, more = system, system.relations
+    return (own.springs, own.loads, own.bushings, more.pushes, more.forces, more.frictions)[kind]

@@ -46,8 +46,9 @@ def sides_of(joint: Joint) -> Sides:
     axes = [d.coordinate_frame(k)[:, 0] for k in range(len(d.coordinates))]
     if isinstance(d, Universal):
         axes = [d.axis_parent, d.axis_child]
-    pairs = zip((joint.parent, joint.child), frames)
-    return Sides(d, *(_side(body, frame, joint.anchor()) for body, frame in pairs), axes)
+    bodies, anchor = (joint.parent, joint.child), joint.anchor()
+    parent, child = (_side(body, frame, anchor) for body, frame in zip(bodies, frames))
+    return Sides(d, parent, child, axes)
 
 
 def _side(body, frame, point: np.ndarray) -> Side:

@@ -80,8 +80,8 @@ class Reports:
         numbers(out)[:] = np.nan
         numbers(out)[:, still] = 0.0
         made = table(REPORTED, len(listed))
-        for name, column in zip(made.dtype.names, zip(*listed)):
-            made[name] = column
+        for field, column in zip(REPORTED, zip(*listed)):
+            made[field[0]] = column
         stacked = np.stack(values, axis=1) if values else np.zeros((len(slips), 0))
         acting = made, np.array(bodies, dtype=np.int64), stacked
         self.compiled.functions.forget()

@@ -140,10 +140,8 @@ class SystemState(Source):
 
         if self._instant is not None:
             return at_once(self._rows, self.t, self._instant.turns[: self._instant.counted])
-        from carom.model.compile import attitudes
-
         rows = self._rows.copy()
-        rows["Q"] = attitudes(self.orientation, self._reports.compiled.to_principal)
+        rows["Q"] = quaternion.multiply(self.orientation, self._reports.compiled.to_principal)
         return at_once(rows, self.t)
 
     def _report(self, forces) -> np.recarray:

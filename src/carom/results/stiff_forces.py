@@ -15,7 +15,7 @@ import numpy as np
 
 from carom.dynamics.force_rows import write_force_rows
 from carom.model import records as r
-from carom.model.arrays import BUSHINGS, PUSHES, SPRINGS
+from carom.model.arrays import rows_of_kind
 from carom.scene.forces import Bushing
 from carom.scene.more_forces import CurveSpring, JointForce
 from carom.status import Advice
@@ -83,14 +83,15 @@ def _sentence(force, part: float, trials: int, end: float, run) -> str:
 def stiff_forces(run) -> list[Force]:
     """Return the linear springs, dampers and gains of the compiled scene, in the order of their rows."""
     system, out = run.compiled.system, []
-    tables = {SPRINGS: system.springs, PUSHES: system.relations.pushes, BUSHINGS: system.bushings}
     for index, (kind, first, last) in sorted(run.compiled.places.items()):
-        for number in range(first, last if kind in tables else first):
-            one = tables[kind][number]
-            k, c = np.array([one.stiffness]), np.array([one.damping])
-            if kind == BUSHINGS:
-                k, c = np.append(k, one.turn_stiffness), np.append(c, one.turn_damping)
-            pairs = enumerate(zip(k.tolist(), c.tolist()))
+        rows = rows_of_kind(system, kind)
+        of = [name for name in ("", "turn_") if f"{name}stiffness" in (rows.dtype.names or ())]
+        for number in range(first, last if of else first):
+            k, c = (
+                np.hstack([rows[name + end][number] for name in of]).tolist()
+                for end in ("stiffness", "damping")
+            )
+            pairs = enumerate(zip(k, c))
             out += [Force(index, (kind, number, axis), *pair) for axis, pair in pairs]
     depends = [callable(getattr(run.scene.forces[f.index].definition, "force", None)) for f in out]
     return [f for f, gains in zip(out, depends) if gains or f.stiffness + f.damping > 0.0]
