@@ -16,7 +16,7 @@ Each step adds all of them; reports (`carom.dynamics.reports`) add one at a time
 
 from __future__ import annotations
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
 from carom.dynamics.applied import bushing, load, push, spring, user_force
 
 #: kinds of every scene, and those that only scenes with relations have, which are a unit of their own
@@ -28,14 +28,14 @@ def added(kinds):
     """Return the kernel that adds all forces of some kinds, and their power to that which is given."""
     if not kinds:
 
-        @kernel
+        @inlined
         def none(system, state, power, work):
             return power
 
         return none
     count, add, others = kinds[-1].count, kinds[-1].add, added(kinds[:-1])
 
-    @kernel
+    @inlined
     def these(system, state, power, work):
         power = others(system, state, power, work)
         for i in range(count(system)):
@@ -50,14 +50,14 @@ def energies(kinds):
     kinds = [kind for kind in kinds if hasattr(kind, "energy")]
     if not kinds:
 
-        @kernel
+        @inlined
         def none(system, state, t, total):
             return total
 
         return none
     count, energy, others = kinds[-1].count, kinds[-1].energy, energies(kinds[:-1])
 
-    @kernel
+    @inlined
     def these(system, state, t, total):
         total = others(system, state, t, total)
         for i in range(count(system)):

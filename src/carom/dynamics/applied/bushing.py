@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
 from carom.geometry.rotation import (
     conjugate,
     cross,
@@ -30,7 +30,7 @@ from carom.model.arrays import BUSHINGS
 KIND = BUSHINGS
 
 
-@kernel
+@inlined
 def count(system):
     """Return how many there are."""
     return system.bushings.shape[0]

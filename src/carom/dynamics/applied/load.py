@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
 from carom.kinematics.joints import arm
 from carom.kinematics.wrench import add_force, point, point_velocity
 from carom.model.arrays import LOADS
@@ -12,7 +12,7 @@ from carom.model.arrays import LOADS
 KIND = LOADS
 
 
-@kernel
+@inlined
 def count(system):
     """Return how many there are."""
     return system.loads.shape[0]

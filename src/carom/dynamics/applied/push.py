@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.call_address import call_function
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
 from carom.kinematics import coordinate
 from carom.kinematics.coordinate import rate, slides, value
 from carom.kinematics.joints import child_arm
@@ -17,7 +17,7 @@ from carom.model.arrays import PUSHES
 KIND = PUSHES
 
 
-@kernel
+@inlined
 def count(system):
     """Return how many there are."""
     return system.relations.pushes.shape[0]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
 from carom.dynamics.curve import curve
 from carom.dynamics.stiff import line_of
 from carom.geometry.pieces import find_piece
@@ -18,7 +18,7 @@ from carom.model.arrays import SPRINGS
 KIND = SPRINGS
 
 
-@kernel
+@inlined
 def count(system):
     """Return how many there are."""
     return system.springs.shape[0]

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 
 from carom._compiled.call_address import call_function
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
 from carom.geometry.rotation import conjugate, multiply
 from carom.model.arrays import USER_FORCES
 
 KIND = USER_FORCES
 
 
-@kernel
+@inlined
 def count(system):
     """Return how many there are."""
     return system.relations.forces.shape[0]
