@@ -5,9 +5,12 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
+from scipy.spatial.transform import Rotation
 
 import carom
-from carom.scene.joints import JOINTS, KnifeEdge
+from carom.geometry.quaternion import matrix
+from carom.scene.joints import JOINTS, Distance, KnifeEdge
 
 #: the child is a ball at (0, 0, 1) that turns with the parent, a plate at the origin, about the origin
 CHILD, AXIS, TURN = np.array([0.0, 0.0, 1.0]), np.array([0.6, 0.0, 0.8]), (0.3, -0.2, 0.4)
@@ -44,6 +47,50 @@ def joined(kind):
     return scene, joint
 
 
+def angle(axis, R):
+    """Return the angle about an axis of matrices that turn about it."""
+    across = np.linalg.svd(axis[None])[2][1]
+    return np.arctan2(R @ across @ np.cross(axis, across), R @ across @ across)
+
+
+def arc_length(point):
+    """Return the arc length of the curve of the tests from its lowest point to the foot of another one."""
+    u = 0.0
+    for _ in range(30):  # (c - y) . c' = 0, by Gauss and Newton
+        c = np.array([u, 0.3 * math.sin(u), 1.2 - 0.2 * math.cos(u)])
+        slope = np.array([1.0, 0.3 * math.cos(u), 0.2 * math.sin(u)])
+        u -= (c - point) @ slope / (slope @ slope)
+    return quad(lambda v: math.hypot(1.0, 0.3 * math.cos(v), 0.2 * math.sin(v)), 0.0, u)[0]
+
+
+def measured(joint, s):
+    """Return the coordinates (T, n) of a joint from the attitudes as matrices, which are 1 at the start."""
+    d, name = joint.definition, joint.kind
+    Rp, Rc = (np.moveaxis(matrix(s.orientation), 1, 0)[k] for k in (0, -1))
+    xp, xc = (s.position[:, k] for k in (0, -1))
+    R, place = np.swapaxes(Rp, -1, -2) @ Rc, np.einsum("tji,tj->ti", Rp, xc - xp)
+    first = next((getattr(d, a) for a in ("axis", "normal", "direction") if hasattr(d, a)), None)
+    x, y, z = np.eye(3)
+    if name == "Universal":
+        one, other = R @ y, np.swapaxes(R, -1, -2) @ x
+        return np.stack([np.arctan2(one @ z, one @ y), np.arctan2(other @ z, other @ x)], axis=1)
+    if name == "Spherical":
+        return Rotation.from_matrix(R).as_rotvec()
+    if name == "Distance":
+        return np.linalg.norm(place, axis=1)[:, None]
+    if name == "PointOnCurve":
+        return np.array([[arc_length(one)] for one in place])
+    if (
+        name == "CurveOnPoint"
+    ):  # the point of the parent, in axes of the child from its place at the start
+        back = np.einsum("tji,tj->ti", Rc, xp + Rp @ CHILD - xc) + CHILD
+        return np.array([[arc_length(one)] for one in back])
+    along = [x, y] if d.guide == "plane" else [first]
+    slides = [(place - CHILD) @ one for one in along] if "slide" in d.coordinates else []
+    turns = [angle(first, R)] if "turn" in d.coordinates else []
+    return np.stack(slides + turns if d.guide == "plane" else turns + slides, axis=1)
+
+
 @pytest.mark.parametrize("kind", JOINTS, ids=lambda kind: kind.__name__)
 def test_what_a_joint_keeps(kind):
     scene, joint = joined(kind)
@@ -67,3 +114,7 @@ def test_what_a_joint_keeps(kind):
         assert q.shape == (len(s.t), len(kind.coordinates))
         slope = (q[2:] - q[:-2]) / 0.01
         np.testing.assert_allclose(slope, rate[1:-1], rtol=0, atol=5e-3)  # h^2 q'''/6
+    if q.size:  # curves are splines of their functions
+        atol = 1e-6 if "Curve" in kind.__name__ else 1e-12
+        np.testing.assert_allclose(q, measured(joint, s), rtol=0, atol=atol)
+        assert np.max(np.abs(q - q[0])) > (1e-3 if kind is not Distance else -1.0)

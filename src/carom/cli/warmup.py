@@ -15,7 +15,7 @@ TOGETHER = (
     ("free", "rest", "layer", "impact", "many contacts"),
     ("stack", "heap"),
     ("loops",),
-    ("tree",),
+    ("tree", "reports"),
 )
 #: folders of the modules with compiled units
 ROOMS = (
@@ -126,10 +126,21 @@ def work() -> list[tuple[str, str, Callable[[], object]]]:
     return [
         *((k, m, simulating(s, 0.05, m)) for k, s in scenes().items() for m in METHODS),
         *((k, "rk4", simulating(s, t, "rk4")) for k, (s, t) in contact_scenes().items()),
+        ("reports", "", read_reports),
         ("layer", "", lambda: carom.impact_layer(W, u, 0.3, 0.5, penetration=0.2, width=1e-6)),
         ("impact", "", lambda: carom.resolve_impact(W, u, 0.3, 0.5)),
         ("many contacts", "", lambda: carom.solve_contacts(W, u, 0.3)),
     ]
+
+
+def read_reports() -> tuple:
+    """Return what forces exert, and the motion and reactions of joints, in a short run."""
+    import carom
+
+    scene = _linked(False)
+    scene.add_force(carom.forces.JointSpring("joint1", 1.0), name="spring")
+    s = carom.simulate(scene, 0.01, step=5e-3)
+    return s["spring"].power, s["joint1"].coordinate, s["joint1"].force
 
 
 def scenes() -> dict:

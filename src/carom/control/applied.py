@@ -16,8 +16,8 @@ UNITS = {Force: "N", Torque: "N m"}
 class Applied:
     """The forces of a run that may be set, and what they have been set to."""
 
-    def __init__(self, run, implicit: bool, history: History | None = None):
-        self.run, self.places = run, places(run.scene, run.compiled, implicit)
+    def __init__(self, run, history: History | None = None):
+        self.run, self.places = run, places(run.scene, run.compiled)
         self.history: History = list(history or ())
         self.commands = commands(run.scene)
         self.ctrl = first_controls(self.commands)

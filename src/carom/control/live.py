@@ -13,13 +13,11 @@ from carom import arguments, checks
 from carom.control.applied import Applied
 from carom.control.commands import Controls
 from carom.control.endless import BLOCK, Endless, Start
-from carom.dynamics.methods import METHODS
 from carom.io.files.checkpoint import capture, state_at_end
 from carom.io.files.kept import KeptRun
 from carom.io.models.model import Model
 from carom.model import records as r
 from carom.model.compile import attitudes
-from carom.model.method import IMPLICIT
 from carom.options import Options
 from carom.results.robot import Robot
 from carom.results.set_forces import History
@@ -128,8 +126,7 @@ class Run:
 
     def _stand(self, run: Endless, history: History | None = None) -> None:
         """Be this run, whose forces were set so."""
-        implicit = METHODS[run.how.method].kind == IMPLICIT
-        self._run, self._applied = run, Applied(run, implicit, history)
+        self._run, self._applied = run, Applied(run, history)
         self._status, self._known = Status.SUCCESS, {}
 
     def _take_on(self, solution: Solution) -> None:

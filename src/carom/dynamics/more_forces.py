@@ -1,123 +1,28 @@
-"""Forces along joint coordinates, by characteristic curves, and by user-defined functions.
-
-along a coordinate    Q = -k (q - rest) - c q' + F,       U = k (q - rest)^2 / 2
-a spring with a curve tension F(length),                  U = integral of F from its first point
-of the user's         wrenches = f(t, states),            U if a potential is given
-"""
+"""Forces that only scenes with coordinates or functions of the user's have; whole turns of coordinates."""
 
 from __future__ import annotations
 
-from carom._compiled.call_address import call_function
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.dynamics.curve import curve
-from carom.geometry.pieces import find_piece
-from carom.geometry.rotation import conjugate, multiply
-from carom.kinematics.coordinate import counts_turns, push, rate, turn_within, value
+from carom.dynamics.applied import OF_RELATIONS, added, energies
+from carom.kinematics.coordinate import counts_turns, rate, turn_within, value
 from carom.kinematics.curve import is_beyond, is_on_curve
 from carom.kinematics.thresholds import TURN_OF_STEP
 from carom.model.parts_of_system import has_relations, has_turns
 
-
-@kernel
-def push_force(relations, one, q, speed, t):
-    """Return the force along a coordinate, and the part of it that has no potential."""
-    free = one.force - one.damping * speed
-    if one.address != 0:
-        relations.read[0], relations.read[1] = q, speed
-        call_function(one.address, t, relations.read, relations.write)
-        free += relations.write[0]
-    return free - one.stiffness * (q - one.rest), free
-
-
-@kernel
-def read_states(system, force, state):
-    """Write x, Q, v, w of the bodies of a user's force, in the axes of the scene."""
-    relations, i = system.relations, 0
-    read = relations.read
-    for n in range(force.first, force.last):
-        b = relations.named[n]
-        Q, a = state[b].Q, system.bodies[b].axes
-        for k in range(3):
-            read[i + k] = state[b].x[k]
-            read[i + 7 + k], read[i + 10 + k] = state[b].v[k], state[b].w[k]
-        q = multiply(Q, conjugate(a))
-        read[i + 3], read[i + 4], read[i + 5], read[i + 6] = q
-        i += 13
+of_relations, energies_of_relations = added(OF_RELATIONS), energies(OF_RELATIONS)
 
 
 @unit(where=has_relations, otherwise=0.0)
 def add_more_forces(system, state, work) -> float:
     """Add the wrenches of these forces; return the power of those without potential."""
-    power, t, relations = 0.0, work.result[0].time, system.relations
-    for i in range(relations.pushes.shape[0]):
-        one = relations.pushes[i]
-        c = relations.coordinates[one.coordinate]
-        speed = rate(system, c, state)
-        force, free = push_force(relations, one, value(system, c, state), speed, t)
-        push(system, c, state, force, work)
-        power += free * speed
-    for i in range(relations.forces.shape[0]):
-        one, at = relations.forces[i], 0
-        read_states(system, one, state)
-        call_function(one.address, t, relations.read, relations.write)
-        for n in range(one.first, one.last):
-            b = relations.named[n]
-            wrench, v, w = work.body[b].wrench, state[b].v, state[b].w
-            for k in range(6):
-                f = relations.write[at + k]
-                wrench[k] += f
-                if one.energy_address == 0:
-                    power += f * (v[k] if k < 3 else w[k - 3])
-            at += 6
-    return power
+    return of_relations(system, state, 0.0, work)
 
 
 @unit(where=has_relations, otherwise=0.0)
 def more_energy(system, state, t) -> float:
     """Return the potential energy of these forces [J]."""
-    total, relations = 0.0, system.relations
-    for i in range(relations.pushes.shape[0]):
-        one = relations.pushes[i]
-        stretch = value(system, relations.coordinates[one.coordinate], state) - one.rest
-        total += 0.5 * one.stiffness * stretch * stretch
-    for i in range(relations.forces.shape[0]):
-        one = relations.forces[i]
-        if one.energy_address != 0:
-            read_states(system, one, state)
-            call_function(one.energy_address, t, relations.read, relations.write)
-            total += relations.write[0]
-    return total
-
-
-@kernel
-def tension(system, spring, length):
-    """Return the tension of a spring, by its curve if it has one."""
-    if spring.last_piece > spring.piece:
-        return curve(system.relations.pieces, spring.piece, spring.last_piece, length)[0]
-    return spring.stiffness * (length - spring.rest_length)
-
-
-@kernel
-def integral(pieces, first, last, t):
-    """Return the integral of a curve from its first point to t."""
-    here, total = find_piece(pieces, first, last, t), 0.0
-    for i in range(first, here + 1):
-        piece = pieces[i]
-        s = (t if i == here else piece.end) - piece.start
-        f = 0.0
-        for k in range(5, -1, -1):
-            f = f * s + piece.c[k] / (k + 1.0)
-        total += f * s
-    return total
-
-
-@kernel
-def spring_energy(system, spring, length):
-    """Return the energy of a spring."""
-    if spring.last_piece > spring.piece:
-        return integral(system.relations.pieces, spring.piece, spring.last_piece, length)
-    return 0.5 * spring.stiffness * (length - spring.rest_length) ** 2
+    return energies_of_relations(system, state, t, 0.0)
 
 
 @unit(where=has_turns, otherwise=False)

@@ -121,23 +121,41 @@ def add_touch(touch, work):
             wrench[3 + k] += touch.other_moment[k]
 
 
+@kernel
+def expect_turn(system, saved, k, i):
+    """Write where coordinate i is expected at saved state k, before its value is known.
+
+    What the run has not counted changes from the state before by the mean of the rates at both times.
+    """
+    c = system.relations.coordinates[i]
+    if i < saved.turn.shape[1]:
+        c.reference = saved.turn[k, i].angle
+    elif k == 0:
+        c.reference = 0.0
+    else:
+        mean = 0.5 * (rate(system, c, saved.state[k - 1]) + rate(system, c, saved.state[k]))
+        c.reference += mean * (saved.series[k].t - saved.series[k - 1].t)
+
+
+@kernel
+def settle_turn(system, saved, k, i):
+    """Write the coordinate i at saved state k: the value nearest to where it is expected."""
+    c = system.relations.coordinates[i]
+    if is_on_curve(c):  # saved states may be far from each other
+        seek_foot(system, c, saved.state[k])
+    else:
+        c.reference = value(system, c, saved.state[k])
+
+
 @unit(where=has_turns)
 def follow_turns(system, saved, k):
     """Write the coordinates at saved state k, with the whole turns that the run has counted.
 
-    In files of earlier versions, which do not have them, the angle of a motor is the prescribed one; others
-    change from those at the state before by the mean of the rates at both times.
+    In files of earlier versions, which do not have them, the angle of a motor is the prescribed one.
     """
     relations = system.relations
     for i in range(relations.coordinates.shape[0]):
-        c = relations.coordinates[i]
-        if i < saved.turn.shape[1]:
-            c.reference = saved.turn[k, i].angle
-        elif k == 0:
-            c.reference = 0.0
-        else:
-            mean = 0.5 * (rate(system, c, saved.state[k - 1]) + rate(system, c, saved.state[k]))
-            c.reference += mean * (saved.series[k].t - saved.series[k - 1].t)
+        expect_turn(system, saved, k, i)
     for j in range(system.joints.shape[0] if saved.turn.shape[1] == 0 else 0):
         if system.joints[j].kind == RELATION:
             relation = relations.relations[system.joints[j].number]
@@ -146,11 +164,7 @@ def follow_turns(system, saved, k):
                 angle = prescribed(relations, relation, saved.series[k].t)[0] / term.factor
                 relations.coordinates[term.coordinate].reference = angle
     for i in range(relations.coordinates.shape[0]):
-        c = relations.coordinates[i]
-        if is_on_curve(c):  # saved states may be far from each other
-            seek_foot(system, c, saved.state[k])
-        else:
-            c.reference = value(system, c, saved.state[k])
+        settle_turn(system, saved, k, i)
 
 
 @entry

@@ -20,7 +20,7 @@ from carom.geometry.pieces import find_piece
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.geometry.thresholds import RESOLUTION, SMALLEST
 from carom.kinematics.joints import anchor_speed, child_arm, parent_arm
-from carom.kinematics.thresholds import END_MARGIN, NEAR_RAIL
+from carom.kinematics.thresholds import END_MARGIN, HEIGHT, NEAR_RAIL
 from carom.kinematics.wrench import add_force
 from carom.model.arrays import CURVE_ON_POINT, POINT_ON_CURVE
 
@@ -241,16 +241,28 @@ def write_upright(c, one, piece, point, state):
         m[k] = run * m[k] - rise * a[k]
 
 
+@kernel
+def height_above(one, piece, t, point):
+    """Return how far a point is from a place on a rail, along its free side."""
+    total = 0.0
+    for k in range(3):
+        x, _, _ = polynomial(piece.c, k, t)
+        total += one.side[k] * (point[k] - x)
+    return total
+
+
 @unit
 def seek_foot(system, c, state):
     """Set the coordinate of a joint to that of its foot on the whole curve, in the lap nearest to the last.
 
     Where the curve crosses itself, the branch is that along the motion, or that nearest to the last coordinate.
+    A rail in space may lie above itself, as a helix does: the branch is the highest one below the point.
     """
     one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
-    point, before = point_of(c, state), c.reference
-    if is_upright(pieces[one.first]):
-        point = across_side(one, point)
+    place, before = point_of(c, state), c.reference
+    point, upright = place, is_upright(pieces[one.first])
+    if upright:
+        point = across_side(one, place)
     u = to_owner(c, state, anchor_speed(c, state))
     speed, least, found = dot(u, u), math.inf, before
     for i in range(one.first, one.last):
@@ -267,6 +279,11 @@ def seek_foot(system, c, state):
             lap -= one.period * math.floor(lap / one.period + 0.5)
         turned = max(0.0, 1.0 - along * along / speed) if speed > SMALLEST else 0.0
         away = distance(one, point) ** 2 + spacing * spacing * turned + (RESOLUTION * lap) ** 2
+        if upright:
+            height = height_above(one, pieces[i], t, place)
+            if height < -2.0 * spacing:
+                continue
+            away += (HEIGHT * height) ** 2
         if away < least:
             least, found = away, pieces[i].start + t
     c.reference = found

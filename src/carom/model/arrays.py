@@ -27,6 +27,7 @@ KIND = {
 REVOLUTE, PRISMATIC = KIND[joints.Revolute], KIND[joints.Prismatic]
 DISTANCE, KNIFE_EDGE = KIND[joints.Distance], KIND[joints.KnifeEdge]
 UNIVERSAL, SCREW = KIND[joints.Universal], KIND[joints.Screw]
+SPHERICAL = KIND[joints.Spherical]
 ROLLING_SPHERE, ROLLING_DISC = KIND[joints.RollingSphere], KIND[joints.RollingDisc]
 #: kinds in the table of joints whose rows are numbers of their own: a point of the child on a curve of the
 #: parent, and a curve of the child on a point of the parent; a relation of coordinates of joints; rows of the
@@ -39,6 +40,10 @@ OWN_ROWS = min(ON_CURVE)  # the first of these kinds
 LIMITED = {"rotation": "ball", "swing": "ball", "twist": "ball"}
 OF_LIMIT = {word: number for number, word in enumerate(LIMITED, len(KIND) + 4)}
 SWING, TWIST = OF_LIMIT["swing"], OF_LIMIT["twist"]
+
+
+#: kinds of forces, each a table of its own; dry friction by the coordinate on which it acts
+SPRINGS, LOADS, BUSHINGS, PUSHES, USER_FORCES, FRICTIONS = range(6)
 
 
 def _kinds(chosen) -> tuple[int, ...]:
@@ -406,6 +411,14 @@ class MovingSurfaces(NamedTuple):
     write: np.ndarray  # (8,) velocity and acceleration, rate of spin and its rate
 
 
+class Place(NamedTuple):
+    """Where kernels find a force: its rows in the table of its kind."""
+
+    kind: int  # SPRINGS, ...
+    first: int
+    last: int
+
+
 class System(NamedTuple):
     """All that the kernels know about a scene. Once compiled, only the workspaces in it change."""
 
@@ -424,3 +437,9 @@ class System(NamedTuple):
     levels: Levels  # faces of solids of one body, or of static ones, in one plane
     moving: MovingSurfaces
     solver: Solver
+
+
+def rows_of_kind(system: System, kind: int) -> np.recarray:
+    """Return the table of a kind of forces."""
+    own, more = system, system.relations
+    return (own.springs, own.loads, own.bushings, more.pushes, more.forces, more.frictions)[kind]

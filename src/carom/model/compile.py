@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -12,8 +13,23 @@ from carom._compiled.user_functions import Functions
 from carom.geometry import quaternion
 from carom.geometry.frames import triad
 from carom.model import graph, solvers
-from carom.model.arrays import BODY, BUSHING, JOINT, KIND, LOAD, SCREW, SPRING, STATE, System
-from carom.model.contacts import Surfaces, compile_contacts, more_contacts
+from carom.model.arrays import (
+    BODY,
+    BUSHING,
+    BUSHINGS,
+    JOINT,
+    KIND,
+    LOAD,
+    LOADS,
+    SCREW,
+    SPRING,
+    SPRINGS,
+    STATE,
+    MovingSurfaces,
+    Place,
+    System,
+)
+from carom.model.contacts import Contacts, Surfaces, compile_contacts, more_contacts
 from carom.model.laws import LawTable
 from carom.model.more_forces import MoreForces
 from carom.model.moving_surfaces import moving_surfaces
@@ -45,6 +61,7 @@ class Compiled(NamedTuple):
     numbers: dict[
         tuple[int, int | str], int
     ]  # of coordinates, by the index of the joint and their own
+    places: dict[int, Place]  # where kernels find the forces, by their index
 
 
 def compile_scene(
@@ -56,39 +73,75 @@ def compile_scene(
     not forces. If bodies move `apart`, in islands, many pairs have no rows until they come near each other
     (`with_pairs`).
     """
-    start, to_principal, moments = _start(scene)
-    placement, functions = Placement(start, to_principal), Functions()
-    coordinates = Coordinates(placement)
-    coordinates.count(scene.joints)
-    pieces, table_of_laws = Pieces(), LawTable()
-    sizes = start_sizes(scene)
-    elements = Elements(scene, coordinates, functions, pieces, sizes)
-    if implicit:
-        elements.add_springs(scene, placement)
-    more = MoreForces(scene, coordinates, functions, pieces, table_of_laws, implicit)
-    joints, flipped, solver = _joints(scene, moments, placement, elements, options, loops)
-    springs, loads = _springs(scene, placement, more, implicit), _loads(scene, placement)
-    bushings = _bushings(scene, placement)
-    bodies = _bodies(scene, moments, joints, elements, springs, loads, bushings, more)
-    bodies["axes"] = to_principal
+    made = _Moved(scene, options, loops, implicit)
     # stops have the numbers after those of all pairs, so no pair may be added later
-    may_come = apart and bool(bodies["ballistic"].any()) and not scene.stops
-    touching = compile_contacts(scene, to_principal, options, table_of_laws, may_come)
-    add_functions(scene, touching, functions)
-    contacts = with_stops(scene, touching.rows, elements, options, table_of_laws)
-    relations = elements.arrays(solver, more)
-    system = System(
-        bodies=bodies, gravity=np.array(scene.gravity), joints=joints, relations=relations, springs=springs,
-        loads=loads, bushings=bushings, contacts=contacts, laws=table_of_laws.arrays(),
-        vertices=touching.vertices, solids=touching.solids, hulls=touching.hulls,
-        levels=touching.levels, solver=solver,
-        moving=moving_surfaces(scene, functions),
-    )  # fmt: skip
-    return Compiled(
-        system=system, start=start, to_principal=to_principal, flipped=flipped, functions=functions,
-        pairs=touching.pairs, surfaces=touching.surfaces, later=touching.later, laws=more.laws,
-        numbers=coordinates.numbers,
-    )  # fmt: skip
+    may_come = apart and bool(made.bodies["ballistic"].any()) and not scene.stops
+    touching = compile_contacts(scene, made.to_principal, options, made.laws, may_come)
+    add_functions(scene, touching, made.functions)
+    contacts = with_stops(scene, touching.rows, made.elements, options, made.laws)
+    return made.compiled(touching, contacts, moving_surfaces(scene, made.functions))
+
+
+def compile_for_reports(scene: Scene) -> Compiled:
+    """Return the arrays of a scene without its contacts, with all forces as forces and all coordinates."""
+    made = _Moved(scene, Options(), False, False)
+    made.coordinates.report(scene.joints, scene.stops)
+    bare, touching = _bare()
+    return made.compiled(touching, touching.rows, bare)
+
+
+@cache
+def _bare() -> tuple[MovingSurfaces, Contacts]:
+    """Return the moving surfaces and the contacts of a scene that has none."""
+    scene = Scene()
+    scene.add_body(mass=1.0, inertia=(1.0, 1.0, 1.0))
+    contacts = compile_contacts(scene, _start(scene)[1], Options(), LawTable())
+    return moving_surfaces(scene, Functions()), contacts
+
+
+class _Moved:
+    """The bodies of a scene, and all that acts on them but contacts, as arrays."""
+
+    def __init__(self, scene: Scene, options: Options, loops: bool, implicit: bool):
+        self.scene, self.functions = scene, Functions()
+        self.start, self.to_principal, moments = _start(scene)
+        self.placement = Placement(self.start, self.to_principal)
+        self.coordinates = Coordinates(self.placement)
+        self.coordinates.count(scene.joints)
+        pieces, self.laws = Pieces(), LawTable()
+        self.elements = Elements(
+            scene, self.coordinates, self.functions, pieces, start_sizes(scene)
+        )
+        if implicit:
+            self.elements.add_springs(scene, self.placement)
+        self.more = MoreForces(scene, self.coordinates, self.functions, pieces, self.laws, implicit)
+        self.joints, self.flipped, self.solver = _joints(
+            scene, moments, self.placement, self.elements, options, loops
+        )
+        self.places = self.more.places
+        self.springs = _springs(scene, self.placement, self.more, implicit)
+        self.loads = _loads(scene, self.placement, self.places)
+        self.bushings = _bushings(scene, self.placement, self.places)
+        acting = self.springs, self.loads, self.bushings, self.more
+        self.bodies = _bodies(scene, moments, self.joints, self.elements, acting)
+        self.bodies["axes"] = self.to_principal
+
+    def compiled(self, touching: Contacts, contacts: np.recarray, moving) -> Compiled:
+        """Return the whole, with contacts and surfaces that move."""
+        relations = self.elements.arrays(self.solver, self.more)
+        system = System(
+            bodies=self.bodies, gravity=np.array(self.scene.gravity), joints=self.joints,
+            relations=relations, springs=self.springs, loads=self.loads, bushings=self.bushings,
+            contacts=contacts, laws=self.laws.arrays(), vertices=touching.vertices,
+            solids=touching.solids, hulls=touching.hulls, levels=touching.levels, solver=self.solver,
+            moving=moving,
+        )  # fmt: skip
+        return Compiled(
+            system=system, start=self.start, to_principal=self.to_principal, flipped=self.flipped,
+            functions=self.functions, pairs=touching.pairs, surfaces=touching.surfaces,
+            later=touching.later, laws=self.more.laws, numbers=self.coordinates.numbers,
+            places=self.places,
+        )  # fmt: skip
 
 
 def compiled_once(scene: Scene, options: Options, *ways: bool) -> Compiled:
@@ -244,8 +297,8 @@ def _springs(scene, frames, more, implicit):
     kinds = CurveSpring if implicit else (Spring, CurveSpring)
     chosen = [f for f in scene.forces if isinstance(f.definition, kinds)]
     springs = table(SPRING, len(chosen))
-    for s, f in zip(springs, chosen):
-        d = f.definition
+    for number, (s, f) in enumerate(zip(springs, chosen)):
+        d, more.places[f.index] = f.definition, Place(SPRINGS, number, number + 1)
         s.parent, s.child = f.parent.index, f.child.index
         s.parent_anchor[:] = frames.point(f.parent, d.anchor_parent)
         s.child_anchor[:] = frames.point(f.child, d.anchor_child)
@@ -257,13 +310,13 @@ def _springs(scene, frames, more, implicit):
     return springs
 
 
-def _loads(scene, frames):
+def _loads(scene, frames, places):
     rows, none = [], np.zeros(3)
     for f in scene.forces:
         d = f.definition
         if not isinstance(d, (Torque, Force)):
             continue
-        frame = f.child.index if d.follow else -1
+        frame, first = f.child.index if d.follow else -1, len(rows)
         vector = frames.axes(f.child, d.vector[:, None])[:, 0] if d.follow else d.vector
         if isinstance(d, Torque):
             rows.append((f.child.index, frame, none, none, vector))
@@ -272,6 +325,7 @@ def _loads(scene, frames):
         else:
             anchor = f.child.position if d.anchor is None else d.anchor
             rows.append((f.child.index, frame, frames.point(f.child, anchor), vector, none))
+        places[f.index] = Place(LOADS, first, len(rows))
     loads = table(LOAD, len(rows))
     for k, (body, frame, anchor, force, torque) in enumerate(rows):
         loads.body[k], loads.frame[k] = body, frame
@@ -279,11 +333,11 @@ def _loads(scene, frames):
     return loads
 
 
-def _bushings(scene, frames):
+def _bushings(scene, frames, places):
     chosen = [f for f in scene.forces if isinstance(f.definition, Bushing)]
     bushings = table(BUSHING, len(chosen))
-    for b, f in zip(bushings, chosen):
-        d = f.definition
+    for number, (b, f) in enumerate(zip(bushings, chosen)):
+        d, places[f.index] = f.definition, Place(BUSHINGS, number, number + 1)
         b.parent, b.child = f.parent.index, f.child.index
         anchor, world = f.child.position if d.anchor is None else d.anchor, triad(d.axis)
         b.parent_anchor[:] = frames.point(f.parent, anchor)
@@ -318,7 +372,8 @@ def _extents(elements: Elements, joints) -> np.ndarray:
     return size
 
 
-def _bodies(scene, moments, joints, elements, springs, loads, bushings, more):
+def _bodies(scene, moments, joints, elements, acting):
+    springs, loads, bushings, more = acting
     bodies, number = table(BODY, len(scene.bodies)), np.arange(len(scene.bodies))
     ball = np.array([0.0 if b.shape is None else b.shape.size for b in scene.bodies])
     isolated = np.ones(len(bodies), dtype=np.int64)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from carom._compiled.composed import is_compiled, joined, once
 from carom._compiled.record_arrays import table
 from carom._compiled.user_functions import Functions
-from carom.model.arrays import FRICTION, PUSH, USER_FORCE
+from carom.model.arrays import FRICTION, FRICTIONS, PUSH, PUSHES, USER_FORCE, USER_FORCES, Place
 from carom.model.laws import LawTable
 from carom.model.pieces import Pieces
 from carom.scene.friction import bound_of
@@ -36,18 +36,25 @@ class MoreForces:
         self.width = 0
         self.laws: dict[int, Law] = {}  # of actuators, by the index of the force
         self.curves: dict[int, tuple[int, int]] = {}  # by the index of the force
+        self.places: dict[int, Place] = {}
         for force in scene.forces:
             d = force.definition
             if isinstance(d, CurveSpring):
                 self.curves[force.index] = pieces.add(d.tension)
             elif isinstance(d, Actuator):
-                self.pushes.append(_actuator(force, coordinates, functions, self.laws, implicit))
+                made = _actuator(force, coordinates, functions, self.laws, implicit)
+                self._add(force, PUSHES, self.pushes, made)
             elif isinstance(d, JointForce) or (isinstance(d, JointSpring) and not implicit):
-                self.pushes.append(_push(force, coordinates, functions))
+                self._add(force, PUSHES, self.pushes, _push(force, coordinates, functions))
             elif isinstance(d, JointFriction) and bound_of(d.bound) > 0.0:
-                self.frictions.append(_friction(d, coordinates, friction_laws))
+                made = _friction(d, coordinates, friction_laws)
+                self._add(force, FRICTIONS, self.frictions, made)
             elif isinstance(d, UserForce):
-                self.forces.append(self._of_user(force, functions))
+                self._add(force, USER_FORCES, self.forces, self._of_user(force, functions))
+
+    def _add(self, force, kind: int, rows: list, made) -> None:
+        self.places[force.index] = Place(kind, len(rows), len(rows) + 1)
+        rows.append(made)
 
     def _of_user(self, force, functions):
         d, name = force.definition, f"the force {force.name!r}"

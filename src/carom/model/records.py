@@ -207,6 +207,12 @@ def new_records(system: System, saves: int, events: int, points: int = 0) -> Rec
     )  # fmt: skip
 
 
+def one_row(bodies: int, counted: int) -> Records:
+    """Return records of one saved time, and of nothing that happened."""
+    saved = table(SERIES, 1), table(STATE, 1, bodies), table(TURN, 1, counted)
+    return Records(*saved, *(table(kind, 0) for kind in (TOUCH, IMPACTS, EVENT, SNAPSHOT)))
+
+
 def longer(records: Records, clock: np.recarray) -> Records:
     """Return the records with room for twice as many impacts, events and active points.
 

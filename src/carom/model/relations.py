@@ -37,6 +37,14 @@ class Coordinates:
             self.number(joints[j], k)
         self.counted, self.used = len(self.rows), False
 
+    def report(self, joints, stops) -> None:
+        """Add all coordinates of joints and stops that are not there yet."""
+        for joint in joints:
+            for k in range(len(joint.definition.measured)):
+                self.number(joint, k)
+        for stop in stops:
+            self.number(stop.joint, stop.coordinate)
+
     def number(self, joint: Joint, coordinate: int | str) -> int:
         """Return the index of a coordinate in the table; a new one is added."""
         self.used = True
@@ -64,6 +72,8 @@ class Coordinates:
         first, second = (self.placement.side(joint, k) for k in range(2))
         if isinstance(coordinate, str):
             row.kind, frames = arrays.OF_LIMIT[coordinate], d.frames_of_limits()
+        elif not d.coordinates:  # nothing acts along these: for reports alone
+            row.kind, row.number, frames = arrays.KIND[type(d)], coordinate, (np.eye(3),) * 2
         else:
             turns = coordinate_kind(joint, coordinate) == "turn"
             row.kind = arrays.REVOLUTE if turns else arrays.PRISMATIC

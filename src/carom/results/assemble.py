@@ -18,7 +18,6 @@ from carom.results.beyond_bounds import beyond_bounds
 from carom.results.costs import busiest
 from carom.results.dry_friction import with_dry_friction, with_forces
 from carom.results.event_tables import ContactTable, EventTable, ImpactTable, contact_table
-from carom.results.exerted import exerted
 from carom.results.impact_remarks import remarks
 from carom.results.locks import locked
 from carom.results.names import (
@@ -32,7 +31,6 @@ from carom.results.names import (
 from carom.results.tipped_profiles import tipped
 from carom.scene.forces import AppliedForce
 from carom.scene.materials import IMPACT_LAWS
-from carom.scene.more_forces import JointFriction
 from carom.scene.restitution import Restitution
 from carom.status import Status
 
@@ -243,15 +241,6 @@ def contact_sums(touch: np.recarray, saved: int, contacts: int) -> tuple[np.ndar
     return mode, force
 
 
-def exerted_in(solution) -> np.ndarray:
-    """Return what forces exert (T, R, 8)."""
-    # of a run whose forces were set in steps
-    given = getattr(solution._run, "values_of_forces", dict)()
-    if any(isinstance(force.definition, JointFriction) for force in solution.scene.forces):
-        given = {**given, **solution._solved[1]}
-    return exerted(solution.scene, solution, solution.t, given)
-
-
 @contextmanager
 def _kept_turns(system):
     """Restore the whole turns of angles at the end; the reports count them along the saved states."""
@@ -266,11 +255,6 @@ def ranges_of(run, compiled, saved: int):
     return run.rows_of_forces(compiled, saved) if hasattr(run, "rows_of_forces") else [(0, saved)]
 
 
-def counted_turns(run) -> np.ndarray:
-    """Return the coordinates (T, C) at saved times whose turns the run has counted."""
-    return r.written(run.records, run.clock).turn["angle"]
-
-
 def accelerations(solution) -> np.ndarray:
     """Return the accelerations (T, N, 6) of all bodies at saved times, linear and angular, world axes.
 
@@ -280,7 +264,7 @@ def accelerations(solution) -> np.ndarray:
 
     run = solution._run
     system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
-    touch = with_forces(solution.scene, solution, solution._solved[1], rec.touch)
+    touch = with_forces(solution, solution._solved[1], rec.touch)
     found = np.zeros((len(rec.state), len(system.bodies), 6))
     out, work = np.zeros((len(found), system.joints.size, 6)), r.new_work(system, run.method.b.size)
     augment = run.options.augmentation

@@ -16,9 +16,9 @@ from carom.kinematics.coordinates.turns import TURN
 from carom.model.arrays import RELATION
 from carom.model.compile import compile_scene
 from carom.model.records import TOUCH
-from carom.results import joint_coordinates as jc
+from carom.results.exerted import rubs
 from carom.scene.constraints import Driver, coordinate_kind
-from carom.scene.friction import FrictionLaw, bound_of
+from carom.scene.friction import bound_of
 from carom.scene.more_forces import JointFriction
 
 STILL = 1e-9  # of the speeds of the joint: below it the rate is round-off, and the joint sticks
@@ -31,25 +31,25 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
     Parameters
     ----------
     run : the run, with its scene, options and compiled scene
-    states : position, orientation, velocity and angular velocity, (T, N, ...)
+    states : the solution, or the state
     touch : active points at these times
     solve : ``solve(compiled, touch)`` returns reactions on the children
     """
-    scene, times = run.scene, len(states.position)
-    dry = dry_frictions(scene)
+    scene, saved = run.scene, states._saved
+    dry = [force for force in scene.forces if rubs(force)]
     if not dry:
         return solve(run.compiled, touch), {}
     laws: list[Any] = [force.definition for force in dry]
-    read = [np.array(states.joint_coordinates(d.joint))[..., d.coordinate] for d in laws]
-    q, rate = np.stack([np.reshape(pair, (2, times)) for pair in read], axis=-1)
+    read = [states._reports.motion(d.joint, saved, d.coordinate) for d in laws]
+    q, rate = (np.hstack([one[name] for one in read]) for name in ("value", "rate"))
     turns = np.round(q / TURN)
-    sticks = np.abs(rate) <= STILL * np.array([_speed(d, states) for d in laws])
+    sticks = np.abs(rate) <= STILL * np.array([_speed(d, saved.state) for d in laws])
     most = np.array([bound_of(d.bound) for d in laws])
-    bound = np.stack([_in_slip(d.bound, np.abs(rate[:, k])) for k, d in enumerate(laws)], axis=-1)
-    value = np.where(sticks, 0.0, -bound * np.sign(rate))
+    slip = states._reports.exerted(dry, saved, ((0, len(q)),), {}).value
+    bound, value = np.abs(slip), np.where(sticks, 0.0, slip)
     while True:
         values = {force.index: value[:, k] for k, force in enumerate(dry)}
-        full = with_forces(scene, states, values, touch)
+        full = with_forces(states, values, touch)
         out = solve(run.compiled, full)
         alike = np.hstack([sticks, np.where(sticks, turns, 0.0)])
         for each in np.unique(alike[np.any(sticks, axis=1)], axis=0):
@@ -73,11 +73,6 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
         sticks = sticks & ~beyond
 
 
-def _in_slip(bound, speed: np.ndarray) -> np.ndarray:
-    """Return the force (T,) of slip at these speeds."""
-    return bound(speed) if isinstance(bound, FrictionLaw) else np.full(len(speed), bound)
-
-
 def _turned(system, angles: np.ndarray) -> None:
     """Let the motors that were added last hold these angles: whole turns are counted from them."""
     own = system.joints["number"][system.joints["kind"] == RELATION]
@@ -90,51 +85,35 @@ def _speed(d: JointFriction, states) -> float:
     The work of the bound over a radian, or over the radius of gyration r, is about that of the speed.
     """
     child, turns = d.joint.child, coordinate_kind(d.joint, d.coordinate) == "turn"
-    moves = states.angular_velocity if turns else states.velocity
+    moves = states["w" if turns else "v"]
     moment = float(np.trace(child.inertia))  # about m r^2
     bound = bound_of(d.bound)
     given = bound / moment if turns else bound * np.sqrt(moment / child.mass) / child.mass
     return max(np.sqrt(given), np.max(np.linalg.norm(moves[:, child.index], axis=-1)))
 
 
-def dry_frictions(scene) -> list:
-    """Return the forces of dry friction in joints."""
-    return [force for force in scene.forces if isinstance(force.definition, JointFriction)]
-
-
-def with_forces(scene, states, values: dict[int, np.ndarray], touch) -> np.recarray:
+def with_forces(states, values: dict[int, np.ndarray], touch) -> np.recarray:
     """Return active points, and the values (T,) of dry frictions as such points, in the order of time."""
-    one = states if len(states.position) > 1 else _Alone(states)
-    laws = [(force.definition, values[force.index]) for force in dry_frictions(scene)]
-    points = [_touches(d, jc.sides_of(d.joint), value, one) for d, value in laws]
+    dry = [force for force in states._scene.forces if rubs(force)]
+    points = [_touches(force.definition, values[force.index], states) for force in dry]
     full = np.concatenate([touch, *points])
     return full[np.argsort(full["saved"], kind="stable")].view(Columns)
 
 
-class _Alone:
-    """The states of one time."""
-
-    def __init__(self, states):
-        for name in ("position", "orientation", "velocity", "angular_velocity"):
-            setattr(self, name, getattr(states, name)[0])
-
-
-def _touches(d: JointFriction, joint: jc.Sides, value: np.ndarray, states) -> np.ndarray:
+def _touches(d: JointFriction, value: np.ndarray, states) -> np.ndarray:
     """Return forces along a coordinate as active points, one for each time."""
-    child, parent = (jc.placed(side, states) for side in (joint.child, joint.parent))
-    axis = np.atleast_2d(np.array(jc.direction(joint, states, d.coordinate)).T) * value[:, None]
-    rows = table(TOUCH, len(value))
-    rows["saved"], rows["body"], rows["other"] = (
-        range(len(value)),
-        joint.child.body,
-        joint.parent.body,
+    child, parent = d.joint.child.index, d.joint.parent.index
+    motion, x = (
+        states._reports.motion(d.joint, states._saved, d.coordinate),
+        states._saved.state["x"],
     )
+    axis, arm = motion.along[:, 0] * value[:, None], motion.arm[:, 0]
+    rows = table(TOUCH, len(value))
+    rows["saved"], rows["body"], rows["other"] = range(len(value)), child, parent
     if coordinate_kind(d.joint, d.coordinate) == "turn":
         rows["moment"], rows["other_moment"] = axis, -axis
         return rows
-    own = jc.child_arm(joint, parent, child)
-    anchor = jc.subtract(jc.add(child.position, own), parent.position)
-    arms = (np.atleast_2d(np.array(arm).T) for arm in (own, anchor))
-    rows["push"] = axis
-    rows["moment"], rows["other_moment"] = (s * np.cross(a, axis) for s, a in zip((1, -1), arms))
+    beside = arm + x[:, child] - (x[:, parent] if parent >= 0 else 0.0)
+    rows["push"], rows["moment"] = axis, np.cross(arm, axis)
+    rows["other_moment"] = -np.cross(beside, axis)
     return rows

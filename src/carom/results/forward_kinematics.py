@@ -7,9 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.geometry import quaternion
-from carom.results.joint_coordinates import Sides, sides_of
 from carom.scene.bodies import Body
-from carom.scene.joints import Joint, Universal
+from carom.scene.joints import Joint, JointDefinition, Universal
 
 UNIT = np.array([1.0, 0.0, 0.0, 0.0])
 
@@ -22,6 +21,45 @@ class Motion(NamedTuple):
     velocity: np.ndarray
     angular_velocity: np.ndarray
     turns: np.ndarray | None
+
+
+class Side(NamedTuple):
+    """A side of a joint: a vector e of its definition is turn e turn* in its body, the anchor at `anchor`."""
+
+    body: int  # -1 for the ground
+    turn: np.ndarray
+    anchor: np.ndarray
+
+
+class Sides(NamedTuple):
+    """A joint of a scene, prepared."""
+
+    definition: JointDefinition
+    parent: Side
+    child: Side
+    axes: list[np.ndarray]  # of its coordinates, in the definition
+
+
+def sides_of(joint: Joint) -> Sides:
+    """Return a prepared joint. It is defined in the world at the start, or in frames of both bodies."""
+    d, frames = joint.definition, (None, None) if joint.frames is None else joint.frames
+    axes = [d.coordinate_frame(k)[:, 0] for k in range(len(d.coordinates))]
+    if isinstance(d, Universal):
+        axes = [d.axis_parent, d.axis_child]
+    bodies, anchor = (joint.parent, joint.child), joint.anchor()
+    parent, child = (_side(body, frame, anchor) for body, frame in zip(bodies, frames))
+    return Sides(d, parent, child, axes)
+
+
+def _side(body, frame, point: np.ndarray) -> Side:
+    if frame is not None:
+        offset, turn = frame
+    elif body.index < 0:
+        offset, turn = np.zeros(3), UNIT
+    else:
+        turn = quaternion.conjugate(body.orientation)
+        offset = -quaternion.rotate(turn, body.position)
+    return Side(body.index, turn, quaternion.rotate(turn, point) + offset)
 
 
 def relative(joint: Joint, states) -> np.ndarray:
@@ -54,12 +92,9 @@ def put_child(joint: Sides, q: np.ndarray, rates: np.ndarray, moved: Motion) -> 
     if joint.parent.body >= 0:
         P = moved.orientation[joint.parent.body]
         w = moved.angular_velocity[joint.parent.body]
-    P = quaternion.multiply(P, np.array(joint.parent.turn))
+    P = quaternion.multiply(P, joint.parent.turn)
     turned, spin, shift, speed = UNIT, w.copy(), np.zeros(3), np.zeros(3)
-    axes = [np.array(axis) for axis in joint.axes]
-    if isinstance(joint.definition, Universal):
-        axes = [np.asarray(joint.definition.axis_parent), np.asarray(joint.definition.axis_child)]
-    for axis, kind, own, rate in zip(axes, joint.definition.coordinates, q, rates):
+    for axis, kind, own, rate in zip(joint.axes, joint.definition.coordinates, q, rates):
         along = quaternion.rotate(quaternion.multiply(P, turned), axis)
         if kind == "turn":
             spin += rate * along
@@ -73,12 +108,12 @@ def put_child(joint: Sides, q: np.ndarray, rates: np.ndarray, moved: Motion) -> 
 
 def _hang(joint: Sides, C, spin, shift, speed, moved: Motion) -> None:
     """Write the motion of a child with this orientation, whose anchor is shifted from that of the parent."""
-    c, p, at, v = joint.child.body, joint.parent.body, np.array(joint.parent.anchor), np.zeros(3)
+    c, p, at, v = joint.child.body, joint.parent.body, joint.parent.anchor, np.zeros(3)
     if p >= 0:
         arm = quaternion.rotate(moved.orientation[p], at)
         at = moved.position[p] + arm
         v = moved.velocity[p] + np.cross(moved.angular_velocity[p], arm)
-    arm = quaternion.rotate(C, np.array(joint.child.anchor))
+    arm = quaternion.rotate(C, joint.child.anchor)
     moved.orientation[c], moved.angular_velocity[c] = C, spin
     moved.position[c] = at + shift - arm
     moved.velocity[c] = v + speed - np.cross(spin, arm)

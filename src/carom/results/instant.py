@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-from typing import Any
-
 import numpy as np
 
 from carom._compiled.record_arrays import copied, table
@@ -23,30 +20,24 @@ class Instant:
         system = run.compiled.system
         self.touch = touches(run)
         self.turns = system.relations.coordinates["reference"].copy()
-        self.numbers = run.compiled.numbers
+        self.numbers, self.counted = run.compiled.numbers, system.relations.counted
         if known.get("given") is not given:  # it is replaced where a force is set
             known["given"], known["loads"] = given, tuple(map(np.array, loads(system)))
         self.loads = known["loads"]
         self.laws = {index: law.rest for index, law in run.compiled.laws.items()}
-        self.one_time: Any = None  # the states, as those of a run of one time
 
-    @cached_property
-    def solved(self) -> tuple[np.ndarray, dict[int, np.ndarray]]:
-        """Reactions of joints on their children, multipliers of constraints (1, E, 6); dry frictions."""
+    def solved(self, state) -> tuple[np.ndarray, dict[int, np.ndarray]]:
+        """Return reactions of joints on their children, multipliers of constraints (1, E, 6); dry frictions."""
         from carom.results.dry_friction import with_dry_friction
 
-        return with_dry_friction(
-            self.run, self.one_time, self.touch, lambda *given: self.solve(*given)[0]
-        )
+        return with_dry_friction(self.run, state, self.touch, lambda *given: self.solve(*given)[0])
 
-    @cached_property
-    def accelerations(self) -> np.ndarray:
-        """Accelerations (N, 6) of all bodies, linear and angular, world axes."""
+    def accelerations(self, state) -> np.ndarray:
+        """Return the accelerations (N, 6) of all bodies, linear and angular, world axes."""
         from carom.results.dry_friction import with_forces
 
-        run, values = self.run, self.solved[1]
-        forced = with_forces(run.scene, self.one_time, values, self.touch)
-        return self.solve(run.compiled, forced)[1]
+        forced = with_forces(state, state._solved[1], self.touch)
+        return self.solve(self.run.compiled, forced)[1]
 
     def solve(self, compiled, touch) -> tuple[np.ndarray, np.ndarray]:
         """Return reactions on children (1, E, 6) and accelerations under forces at active points."""

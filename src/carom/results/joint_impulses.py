@@ -15,20 +15,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom._compiled.record_arrays import table
+from carom._compiled.record_arrays import copied, table
 from carom.dynamics.mobility import mass_matrix
 from carom.dynamics.reactions import write_rows
 from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes, pair_axes, turned_axes, upright
 from carom.model import records as r
-from carom.model.arrays import STATE
-from carom.model.compile import compile_scene
+from carom.model.arrays import CURVE_ON_POINT, STATE
+from carom.model.compile import attitudes, compile_scene
 from carom.model.relations import is_inertia
-from carom.results import joint_coordinates as jc
 from carom.results.dense_output import curves
 from carom.results.event_tables import JointImpulse, JointImpulseTable
+from carom.results.reports import at_once
 from carom.scene.bodies import HalfSpace
-from carom.scene.constraints import coordinate_kind
+from carom.scene.constraints import kind_of
 from carom.scene.more_forces import JointInertia
 from carom.scene.surfaces import SurfaceDefinition
 
@@ -47,9 +47,12 @@ def world_impulses(solution) -> np.ndarray:
     for k in np.flatnonzero(impacts.contact >= len(pairs.body)):
         joint = solution.scene.stops[impacts.contact[k] - len(pairs.body)].joint
         if joint.can_be_left:
-            n = impacts.normal[k]
-            state = _State(*solution.evaluate(impacts.time[k]))
-            along = np.array(jc.direction(jc.sides_of(joint), state, 0))
+            n, reports = impacts.normal[k], solution._reports
+            x, Q, v, w = solution.evaluate(impacts.time[k])
+            here = table(STATE, len(x))
+            here["x"], here["v"], here["w"] = x, v, w
+            here["Q"] = attitudes(Q, reports.compiled.to_principal)
+            along = reports.motion(joint, at_once(here, impacts.time[k])).along[0, 0]
             out[k] = impacts.impulse[k] @ (n, along, np.cross(n, along))
     return out
 
@@ -92,15 +95,6 @@ def of_joints(scene, columns: dict[str, np.ndarray]) -> JointImpulseTable:
     return table._by_name({name: k for k, name in enumerate(names.tolist())}.copy)
 
 
-class _State(NamedTuple):
-    """A state of all bodies, with orientations of the scene's axes."""
-
-    position: np.ndarray
-    orientation: np.ndarray
-    velocity: np.ndarray
-    angular_velocity: np.ndarray
-
-
 class _Rows(NamedTuple):
     """The rows of some components: row k of a side is that of an element and a body."""
 
@@ -121,8 +115,7 @@ class _Mechanism:
         self.solution, self.scene, self.push = solution, solution.scene, world_impulses(solution)
         compiled = compile_scene(solution.scene, run.options, loops=True)  # no joint is flipped
         self.system, self.work = compiled.system, r.new_work(compiled.system, 1)
-        self.functions, self.to_principal = compiled.functions, compiled.to_principal
-        self.joints = [jc.sides_of(joint) for joint in self.scene.joints]
+        self.functions, self.reports = compiled.functions, solution._reports
         self.children = [joint.child.index for joint in self.scene.joints]
         self.rotors = [
             force.definition for force in self.scene.forces
@@ -160,30 +153,28 @@ class _Mechanism:
         change = np.zeros((len(state), 6))  # of the momenta about the mass centres, world axes
         spin = quaternion.rotate(Q, mass[:, 3:] * quaternion.rotate_back(Q, w1 - w0))
         np.add.at(change, b, np.hstack([mass[:, :3] * (v1 - v0), spin]))
-        seen = quaternion.multiply(state["Q"], quaternion.conjugate(self.to_principal))
-        now = _State(np.array(state["x"]), seen, np.array(state["v"]), np.array(state["w"]))
         moved = np.unique(self.label[b[np.any(change[b] != 0.0, axis=1)]])
         moved = moved[np.isin(moved, self.label[self.system.solver.sides["body"]])]  # by joints
         if not len(moved):
             return
         for i in mine:
-            self.add_contact(i, now, change)
+            self.add_contact(i, state, change)
         if self.rotors:
-            before = now._replace(
-                velocity=now.velocity.copy(), angular_velocity=now.angular_velocity.copy()
-            )
-            for one, (speed, turn) in ((before, (v0[::-1], w0[::-1])), (now, (v1, w1))):
-                order = b if one is now else b[::-1]  # of several impacts the first, or the last
-                one.velocity[order], one.angular_velocity[order] = speed, turn
+            before, after = copied(state), copied(state)
+            for one, (speed, turn) in ((before, (v0[::-1], w0[::-1])), (after, (v1, w1))):
+                order = b if one is after else b[::-1]  # of several impacts the first, or the last
+                one["v"][order], one["w"][order] = speed, turn
             for d in self.rotors:
-                sides = self.joints[d.joint.index]
-                rates = [jc.coordinates(sides, one)[1][d.coordinate] for one in (before, now)]
+                rates = [
+                    self.reports.motion(d.joint, at_once(one, t), d.coordinate).rate[0, 0]
+                    for one in (before, after)
+                ]
                 self.take_along(
-                    d.joint, d.coordinate, d.inertia * (rates[0] - rates[1]), now, change
+                    d.joint, d.coordinate, d.inertia * (rates[0] - rates[1]), state, change
                 )
-        yield from self.solved(t, mine[0], moved, state, now, change)
+        yield from self.solved(t, mine[0], moved, state, change)
 
-    def add_contact(self, i: int, state: _State, rest: np.ndarray) -> None:
+    def add_contact(self, i: int, state: np.recarray, rest: np.ndarray) -> None:
         """Take the impulse of impact i from the momenta of its bodies."""
         impacts, pairs = self.solution.impacts, self.solution.pairs
         number = int(impacts.contact[i])
@@ -197,31 +188,37 @@ class _Mechanism:
             return
         for b, sign in ((pairs.body[number], -1.0), (pairs.other[number], 1.0)):
             if b >= 0:
-                arm = impacts.point[i] - state.position[b]
-                rest[b] += sign * np.append(self.push[i], jc.cross(arm, self.push[i]))
+                arm = impacts.point[i] - state["x"][b]
+                rest[b] += sign * np.append(self.push[i], np.cross(arm, self.push[i]))
 
     def take_along(
-        self, joint, k: int | str, amount: float, state: _State, rest: np.ndarray
+        self, joint, k: int | str, amount: float, state: np.recarray, rest: np.ndarray
     ) -> None:
         """Take an impulse along a coordinate from the child, and the opposite one from the parent."""
-        sides = self.joints[joint.index]
-        axis = amount * np.array(jc.direction(sides, state, k))
-        turns = isinstance(k, str) or coordinate_kind(joint, k) == "turn"
-        self.take(joint, axis, state, rest, turns)
+        axis = amount * self.reports.motion(joint, at_once(state, 0.0), k).along[0, 0]
+        self.take(joint, axis, state, rest, kind_of(joint, k) == "turn")
 
-    def take(self, joint, axis: np.ndarray, state: _State, rest: np.ndarray, turns: bool = False):
+    def take(self, joint, axis: np.ndarray, state, rest: np.ndarray, turns: bool = False):
         """Take an impulse at the anchor, or about an axis, from the child, the opposite one from the parent."""
-        sides = self.joints[joint.index]
-        parent, child = (jc.placed(side, state) for side in (sides.parent, sides.child))
-        anchor = np.add(child.position, jc.child_arm(sides, parent, child))
+        anchor = state["x"][joint.child.index] + self.arm(joint.index, state)
         for body, sign in ((joint.child.index, -1.0), (joint.parent.index, 1.0)):
             if body >= 0 and turns:
                 rest[body, 3:] += sign * axis
             elif body >= 0:
-                arm = anchor - state.position[body]
-                rest[body] += sign * np.append(axis, jc.cross(arm, axis))
+                arm = anchor - state["x"][body]
+                rest[body] += sign * np.append(axis, np.cross(arm, axis))
 
-    def solved(self, t: float, impact: int, moved, state, now: _State, rest: np.ndarray):
+    def arm(self, j: int, state: np.recarray) -> np.ndarray:
+        """Return the arm of the child to where a joint acts: its anchor, or that of the parent on its curve."""
+        one = self.system.joints[j]
+        c, p = int(one.child), int(one.parent)
+        if one.kind != CURVE_ON_POINT:
+            return quaternion.rotate(state["Q"][c], one.child_anchor)
+        if p < 0:
+            return one.parent_anchor - state["x"][c]
+        return state["x"][p] + quaternion.rotate(state["Q"][p], one.parent_anchor) - state["x"][c]
+
+    def solved(self, t: float, impact: int, moved, state: np.recarray, rest: np.ndarray):
         """Yield the rows of the joints of some components, from the momenta that they have given."""
         key = tuple(moved.tolist())
         rows = self.known[key] if key in self.known else self.rows_of(moved)
@@ -242,9 +239,9 @@ class _Mechanism:
         share = np.linalg.lstsq((scaled / weight[:, None]).T, (own / half).ravel(), SMALLEST)[0]
         share /= weight
         for j, part, child in rows.joints:
-            wrench, sides = share[part] @ A[part, child], self.joints[j]
-            arm = jc.child_arm(sides, *(jc.placed(one, now) for one in (sides.parent, sides.child)))
-            yield t, impact, j, wrench[:3], wrench[3:] - jc.cross(arm, wrench[:3])
+            wrench = share[part] @ A[part, child]
+            turned = np.cross(self.arm(j, state), wrench[:3])
+            yield t, impact, j, wrench[:3], wrench[3:] - turned
 
     def rows_of(self, moved: np.ndarray) -> _Rows:
         """Return the rows of all elements in some components."""
@@ -258,7 +255,7 @@ class _Mechanism:
         side = np.repeat(np.flatnonzero(chosen), joints.rows[element[chosen]])
         of_side = np.concatenate([np.arange(n) for n in joints.rows[element[chosen]]])
         found = []
-        for j in own[own < len(self.joints)].tolist():
+        for j in own[own < len(self.children)].tolist():
             part = slice(int(first[j]), int(first[j] + joints.rows[j]))
             found.append((j, part, int(np.searchsorted(bodies, self.children[j]))))
         row, place = first[element[side]] + of_side, np.searchsorted(bodies, body[side])

@@ -14,8 +14,6 @@ import numpy as np
 
 from carom import arguments, checks
 from carom.geometry import quaternion
-from carom.results import exerted as ex
-from carom.results import joint_coordinates as jc
 from carom.results.names import UNITS
 from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.constraints import Constraint, Driver, coordinate_kind
@@ -55,6 +53,9 @@ class Source:
     _numbers: Any  # of contacts by name
     _touch: Any  # active points at saved times
     _exerted_by: Callable  # rows of a force
+    _report: Callable  # the same of some forces, with lengths
+    _reports: Any  # the scene for reports, and the states
+    _saved: Any
     _whose = "solution"  # in messages
 
     @overload
@@ -386,26 +387,27 @@ class ForceView(_Coordinate, View):
         """Power that it gives to the bodies [W], (T,): negative for a damper."""
         return np.sum(self._rows[..., 7], axis=-1)
 
-    def _line(self):
+    def _line(self) -> np.recarray:
+        """Return what it exerts (T,), with its length, or that of one time."""
         if not isinstance(self._part.definition, (Spring, CurveSpring)):
             raise AttributeError(f"{self.name!r} has no length: it is no Spring or CurveSpring")
-        return ex.line(self._part, self._source)
+        found = self._source._report((self._part,))[:, 0]
+        return found[0] if np.ndim(self._source.t) == 0 else found
 
     @property
     def length(self):
         """Distance of the ends of a spring [m], (T,)."""
-        return self._line()[0]
+        return self._line().length
 
     @property
     def length_rate(self):
         """Rate of this distance [m/s], (T,)."""
-        return self._line()[1]
+        return self._line().stretching
 
     @property
     def tension(self):
         """Force with which a spring, and its damper, pull the ends together [N], (T,)."""
-        self._line()
-        return self._value
+        return self._line().value
 
 
 @arguments.attributes()
@@ -511,13 +513,11 @@ class ContactView(View):
         """
         source, part = self._source, self._part
         if isinstance(part, RailContact):
-            return np.reshape(jc.gaps_of_rail(part.joint, source), np.shape(source.t))[()]
+            gaps = source._reports.motion(part.joint, source._saved).gap
+            return np.reshape(gaps, np.shape(source.t))[()]
         if isinstance(part, Stop):
-            if isinstance(part.coordinate, str):
-                q = jc.limited_angle(part.joint, part.coordinate, source)
-            else:
-                q = source.joint_coordinates(part.joint)[0][..., part.coordinate][()]
-            return part.side * (q - part.end)
+            q = source._reports.motion(part.joint, source._saved, part.coordinate).value
+            return part.side * (np.reshape(q, np.shape(source.t))[()] - part.end)
         x, Q = (np.reshape(a, (-1, *a.shape[-2:])) for a in (source.position, source.orientation))
         gaps = [
             gap_between(*(_pose(one, x[k], Q[k]) for one in (part.body, part.other)))[0]

@@ -20,8 +20,7 @@ import numpy as np
 from carom import arguments, checks, fields
 from carom.fields import Integer, Number, Value, Vector, keep
 from carom.geometry import quaternion
-from carom.results.forward_kinematics import Motion, put_ball, put_child, relative
-from carom.results.joint_coordinates import sides_of
+from carom.results.forward_kinematics import Motion, put_ball, put_child, relative, sides_of
 from carom.scene.bodies import Body, Ground
 from carom.scene.constraints import counted
 from carom.scene.forces import AppliedForce

@@ -10,7 +10,7 @@ import numpy as np
 from carom.geometry import quaternion
 from carom.model.compile import Compiled, attitudes
 from carom.scene.forces import Force, Torque
-from carom.scene.more_forces import Actuator, JointForce, JointSpring, Law
+from carom.scene.more_forces import Actuator, JointForce, Law
 
 #: rows that were saved before, index of the force, and the value: what was set as a run went
 History = list[tuple[int, int, Any]]
@@ -41,54 +41,37 @@ def put(system, law: Law | None, place: Place, value) -> None:
             column[row] = sign * value
 
 
-def places(scene, compiled: Compiled, implicit: bool) -> dict[int, Place]:
-    """Return where the forces of a scene are, by their index: in the order in which they were compiled."""
-    out, loads, pushes = {}, 0, 0
+def places(scene, compiled: Compiled) -> dict[int, Place]:
+    """Return where the forces of a scene are that a run may set, by their index."""
+    out = {}
     for force in scene.forces:
-        d = force.definition
+        d, at = force.definition, compiled.places.get(force.index)
+        rows = () if at is None else tuple(range(at.first, at.last))
         if isinstance(d, (Force, Torque)):
-            both = isinstance(d, Torque) and force.parent.index >= 0
-            rows = (loads, loads + 1) if both else (loads,)
-            at = compiled.to_principal[[force.child.index]]
-            frame = attitudes(force.child.orientation[None], at)[0] if d.follow else None
+            turn = compiled.to_principal[[force.child.index]]
+            frame = attitudes(force.child.orientation[None], turn)[0] if d.follow else None
             out[force.index] = Place(type(d).__name__.lower(), rows, frame)
-            loads += len(rows)
-        elif isinstance(d, (Actuator, JointForce)):
-            if isinstance(d, Actuator):
-                out[force.index] = Place("push", (pushes,), actuator=d)
-            elif not callable(d.force):
-                out[force.index] = Place("push", (pushes,))
-            pushes += 1
-        elif isinstance(d, JointSpring) and not implicit:
-            pushes += 1
+        elif isinstance(d, Actuator):
+            out[force.index] = Place("push", rows, actuator=d)
+        elif isinstance(d, JointForce) and not callable(d.force):
+            out[force.index] = Place("push", rows)
     return out
 
 
 def rows_of_forces(
-    history: History, scene, places: dict[int, Place], compiled: Compiled, saved: int
+    history: History, scene, compiled: Compiled, saved: int
 ) -> Iterator[tuple[int, int]]:
     """Go through ranges of saved rows in which forces stay as they are; write them into the compiled scene."""
-    first = 0
+    first, at = 0, places(scene, compiled)
     for index in {index for _, index, _ in history}:
-        put(compiled.system, compiled.laws.get(index), places[index], stated(scene, index))
+        put(compiled.system, compiled.laws.get(index), at[index], stated(scene, index))
     for row, index, value in history:
         if min(row, saved) > first:
             yield first, min(row, saved)
             first = min(row, saved)
-        put(compiled.system, compiled.laws.get(index), places[index], value)
+        put(compiled.system, compiled.laws.get(index), at[index], value)
     if saved > first:
         yield first, saved
-
-
-def values_of_forces(scene, history: History, saved: int) -> dict[int, np.ndarray]:
-    """Return the values at saved times, (T,) or (T, 3), of the forces that were set, by index."""
-    out: dict[int, np.ndarray] = {}
-    for row, index, value in history:
-        if index not in out:
-            first = np.array(stated(scene, index), dtype=float)
-            out[index] = np.repeat(first[None], saved, axis=0)
-        out[index][row:] = value
-    return out
 
 
 def stated(scene, index: int):

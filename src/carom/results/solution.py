@@ -22,19 +22,12 @@ from carom.results.event_tables import (
     JointImpulseTable,
     force_table,
 )
-from carom.results.exerted import rows_of
-from carom.results.joint_coordinates import (
-    coordinates,
-    in_degrees,
-    of_scene,
-    sides_of,
-    turns_of,
-)
+from carom.results.exerted import COLUMNS_EACH, rows_of, rubs
+from carom.results.joint_coordinates import in_degrees, of_scene
 from carom.results.ledger import Ledger
 from carom.results.named import Source
 from carom.results.names import ConstraintRows, Numbers, constraint_rows
 from carom.results.portable import Portable
-from carom.scene.constraints import counted
 from carom.status import Status
 from carom.stepping.settings import settings_of
 
@@ -223,8 +216,31 @@ class Solution(Portable, Drawn, Source):
         return Numbers(self.scene, self.pairs)
 
     @cached_property
+    def _reports(self):
+        from carom.results.reports import Reports
+
+        return Reports(self.scene)
+
+    @property
+    def _saved(self):
+        """The records of the run, as far as they were written."""
+        from carom.model.records import written
+
+        return written(self._run.records, self._run.clock)
+
+    def _report(self, forces) -> np.recarray:
+        """Return what some forces exert (T, R), as `Reports.exerted` does."""
+        ranges = self._assemble.ranges_of(self._run, self._reports.compiled, len(self.t))
+        frictions = self._solved[1] if any(map(rubs, forces)) else {}
+        return self._reports.exerted(forces, self._saved, ranges, frictions)
+
+    @cached_property
     def _exerted(self) -> np.ndarray:
-        return self._assemble.exerted_in(self)
+        from carom.results.reports import numbers
+
+        if not self.scene.forces:
+            return np.zeros((len(self.t), 0, COLUMNS_EACH))
+        return numbers(self._report(self.scene.forces))[..., :COLUMNS_EACH]
 
     def _exerted_by(self, force) -> np.ndarray:
         rows = [k for k, row in enumerate(rows_of(self.scene)) if row.force is force]
@@ -333,9 +349,8 @@ class Solution(Portable, Drawn, Source):
             If `joint` is not a joint, or belongs to another scene.
         """
         joint = of_scene(self.scene, joint)
-        rows = self._assemble.counted_turns(self._run)
-        turns = turns_of(joint, counted(self.scene.joints), rows)
-        read = coordinates(sides_of(joint), self, self.t, turns)
+        motion = self._reports.motion(joint, self._saved)
+        read = motion.value.copy(), motion.rate.copy()
         return in_degrees(joint, *read) if checks.flag("degrees", degrees) else read
 
     @cached_property

@@ -10,30 +10,14 @@ from carom import arguments, checks
 from carom.geometry import quaternion
 from carom.model.arrays import STATE
 from carom.results.event_tables import ForceTable, force_table
-from carom.results.exerted import exerted_by
+from carom.results.exerted import COLUMNS_EACH, rubs
 from carom.results.instant import Instant
-from carom.results.joint_coordinates import (
-    coordinates,
-    in_degrees,
-    of_scene,
-    sides_of,
-    turns_of,
-)
+from carom.results.joint_coordinates import in_degrees, of_scene
 from carom.results.named import Source
 from carom.results.names import Numbers
-from carom.scene.more_forces import JointFriction
 
 _NONE = np.array([1.0, 0.0, 0.0, 0.0])
 _NONE_SET: dict = {}
-
-
-class _OneTime:
-    """A state as the states of a run of one time."""
-
-    def __init__(self, state):
-        for name in ("position", "orientation", "velocity", "angular_velocity"):
-            setattr(self, name, getattr(state, name)[None])
-        self.joint_coordinates = state.joint_coordinates
 
 
 @arguments.attributes()
@@ -141,21 +125,43 @@ class SystemState(Source):
     def _touch(self) -> np.recarray:
         return self._at.touch
 
+    @property
+    def _reports(self):
+        from carom.results.reports import Reports
+
+        if Reports not in self._known:
+            self._known[Reports] = Reports(self._scene)
+        return self._known[Reports]
+
+    @cached_property
+    def _saved(self):
+        """The state as the records of a run of one saved time."""
+        from carom.results.reports import at_once
+
+        if self._instant is not None:
+            return at_once(self._rows, self.t, self._instant.turns[: self._instant.counted])
+        rows = self._rows.copy()
+        rows["Q"] = quaternion.multiply(self.orientation, self._reports.compiled.to_principal)
+        return at_once(rows, self.t)
+
+    def _report(self, forces) -> np.recarray:
+        """Return what some forces exert (1, R), as `Reports.exerted` does."""
+        self._reports.set(self._at.given)
+        frictions = self._solved[1] if any(map(rubs, forces)) else {}
+        return self._reports.exerted(forces, self._saved, ((0, 1),), frictions)
+
     def _exerted_by(self, force) -> np.ndarray:
-        value = self._at.given.get(force.index)
-        if isinstance(force.definition, JointFriction):
-            value = self._solved[1][force.index][0]
-        return exerted_by(force, self, self.t, value)
+        from carom.results.reports import numbers
 
-    @property
+        return numbers(self._report((force,)))[0, :, :COLUMNS_EACH]
+
+    @cached_property
     def _solved(self):
-        self._at.one_time = _OneTime(self)
-        return self._at.solved
+        return self._at.solved(self)
 
-    @property
+    @cached_property
     def _accelerations(self) -> np.ndarray:
-        self._at.one_time = _OneTime(self)
-        return self._at.accelerations
+        return self._at.accelerations(self)
 
     @property
     def _reactions(self) -> np.ndarray:
@@ -191,10 +197,8 @@ class SystemState(Source):
             Whether angles are in degrees. Default False: radians.
         """
         joint = of_scene(self._scene, joint)
-        if joint.index not in self._known:
-            self._known[joint.index] = sides_of(joint)
-        turns = self._instant and turns_of(joint, self._instant.numbers, self._instant.turns)
-        read = coordinates(self._known[joint.index], self, turns=turns)
+        motion = self._reports.motion(joint, self._saved)
+        read = motion.value[0], motion.rate[0]
         return in_degrees(joint, *read) if checks.flag("degrees", degrees) else read
 
     def __repr__(self) -> str:

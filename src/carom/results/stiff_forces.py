@@ -13,10 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.dynamics.force_rows import BUSHINGS, PUSHES, SPRINGS, write_force_rows
+from carom.dynamics.force_rows import write_force_rows
 from carom.model import records as r
-from carom.scene.forces import Bushing, Spring
-from carom.scene.more_forces import Actuator, CurveSpring, JointForce, JointSpring
+from carom.model.arrays import rows_of_kind
+from carom.scene.forces import Bushing
+from carom.scene.more_forces import CurveSpring, JointForce
 from carom.status import Advice
 
 FEW_TRIALS = 1000  # trial steps below which nothing is said
@@ -82,19 +83,16 @@ def _sentence(force, part: float, trials: int, end: float, run) -> str:
 def stiff_forces(run) -> list[Force]:
     """Return the linear springs, dampers and gains of the compiled scene, in the order of their rows."""
     system, out = run.compiled.system, []
-    springs = pushes = bushings = 0
-    for force in run.scene.forces:
-        d = force.definition
-        if isinstance(d, (Spring, CurveSpring)):
-            one, springs = system.springs[springs], springs + 1
-            out.append(Force(force.index, (SPRINGS, springs - 1, 0), one.stiffness, one.damping))
-        elif isinstance(d, (Actuator, JointForce, JointSpring)):
-            one, pushes = system.relations.pushes[pushes], pushes + 1
-            out.append(Force(force.index, (PUSHES, pushes - 1, 0), one.stiffness, one.damping))
-        elif isinstance(d, Bushing):
-            one, bushings = system.bushings[bushings], bushings + 1
-            k, c = (np.concatenate([one[a], one["turn_" + a]]) for a in ("stiffness", "damping"))
-            out += [Force(force.index, (BUSHINGS, bushings - 1, a), k[a], c[a]) for a in range(6)]
+    for index, (kind, first, last) in sorted(run.compiled.places.items()):
+        rows = rows_of_kind(system, kind)
+        of = [name for name in ("", "turn_") if f"{name}stiffness" in (rows.dtype.names or ())]
+        for number in range(first, last if of else first):
+            k, c = (
+                np.hstack([rows[name + end][number] for name in of]).tolist()
+                for end in ("stiffness", "damping")
+            )
+            pairs = enumerate(zip(k, c))
+            out += [Force(index, (kind, number, axis), *pair) for axis, pair in pairs]
     depends = [callable(getattr(run.scene.forces[f.index].definition, "force", None)) for f in out]
     return [f for f, gains in zip(out, depends) if gains or f.stiffness + f.damping > 0.0]
 

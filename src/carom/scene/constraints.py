@@ -34,6 +34,13 @@ def counted(joints) -> dict[tuple[int, int], int]:
     return {key: column for column, key in enumerate(turning)}
 
 
+def kind_of(joint: Joint, coordinate: int | str) -> str:
+    """Return "turn" or "slide", the kind of a coordinate of a joint, or of one that stops alone limit."""
+    if isinstance(coordinate, str):
+        return joint.definition.limits[coordinate]
+    return coordinate_kind(joint, coordinate)
+
+
 def coordinate_kind(joint: Joint | str, coordinate: int, name: str = "joint") -> str:
     """Return "turn" or "slide", the kind of a joint coordinate; refuse one that the joint does not have.
 

@@ -19,8 +19,6 @@ from carom import arguments, checks
 from carom.fields import keep
 from carom.scene.curve_table import ACCURACY, PiecewiseCurve, between, points_of, table_of
 
-FAR = 100.0  # weight of a direction across the motion, in squares of the distance of two knots
-
 
 @arguments.known
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -140,37 +138,22 @@ class Curve(PiecewiseCurve):
     def nearest(self, point: ArrayLike) -> float:
         """Return the arc length [m] of the point of the curve that is nearest to a point (3,)."""
         point = checks.finite_array("point", point, (3,), "m")
-        s = float(self.feet(point[None], np.zeros((1, 3)))[0])
+        s = self.foot_from(
+            point, self.knots[np.argmin(np.sum((self.ends[:, 0] - point) ** 2, axis=1))]
+        )
         return s if self.closed else min(max(s, 0.0), self.length)
 
-    def feet(self, points: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Return the arc lengths (K,) of points (K, 3) near the curve, with velocities (K, 3) along it.
-
-        Where the curve crosses itself, that of the branch along the velocity.
-        """
-        x, t = self.ends[:, 0], self.ends[:, 1]
-        speed = np.linalg.norm(velocity, axis=1, keepdims=True)
-        moves = speed > 1e-9 * np.max(speed, initial=0.0)
-        heading = np.where(moves, velocity / np.where(moves, speed, 1.0), 0.0)
-        spacing = np.max(np.diff(self.knots)) ** 2
-        s = np.zeros(len(points))
-        for k, point in enumerate(points):
-            across = 1.0 - (t @ heading[k]) ** 2 if moves[k, 0] else 0.0
-            away = np.sum((x - point) ** 2, axis=1) + FAR * spacing * across
-            s[k] = self.knots[np.argmin(away)]
-        return self.feet_from(points, s)
-
-    def feet_from(self, points: np.ndarray, s: np.ndarray, far: bool = False) -> np.ndarray:
-        """Return the arc lengths (K,) of points (K, 3) near places on the curve; they may be `far` from it."""
+    def foot_from(self, point: np.ndarray, s: float, far: bool = False) -> float:
+        """Return the arc length of the foot of a point (3,), from one nearby, or `far` from the curve."""
         longest = np.max(np.diff(self.knots))
         for k in range(20):
-            place, slope, bend = self._at(s)
-            e, square = points - place, np.sum(slope**2, axis=1)
+            place, slope, bend = self._at(np.array([s]))
+            e, square = point - place[0], np.sum(slope[0] ** 2)
             # the first corrections do without the curvature, which counts near the curve only
-            below = square - (np.sum(e * bend, axis=1) if k > 1 or far else 0.0)
-            step = np.sum(e * slope, axis=1) / np.maximum(below, 0.5 * square)
-            s = s + (np.clip(step, -longest, longest) if far else step)
-        return s
+            below = square - (np.sum(e * bend[0]) if k > 1 or far else 0.0)
+            step = np.sum(e * slope[0]) / max(below, 0.5 * square)
+            s = s + (min(max(step, -longest), longest) if far else step)
+        return float(s)
 
 
 @arguments.known

@@ -8,7 +8,7 @@ from typing import Any
 
 from carom import arguments, checks, fields
 from carom.fields import NumberOrNone, Value, Word, keep
-from carom.scene.constraints import acts_along, coordinate_kind
+from carom.scene.constraints import acts_along, kind_of
 from carom.scene.joints import Joint
 from carom.scene.materials import IMPACT_LAWS
 from carom.scene.restitution import Restitution
@@ -69,9 +69,7 @@ class Stop(PartOfScene):
     @property
     def turns(self) -> bool:
         """Whether it limits an angle."""
-        k = self.coordinate
-        d = self.joint.definition
-        return (d.limits[k] if isinstance(k, str) else coordinate_kind(self.joint, k)) == "turn"
+        return kind_of(self.joint, self.coordinate) == "turn"
 
     @property
     def side(self) -> float:

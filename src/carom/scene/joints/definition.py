@@ -35,6 +35,9 @@ class JointDefinition:
     coordinates : tuple of {"turn", "slide"}
         Coordinates of the joint: angles [rad] about ("turn") and displacements [m] along ("slide") the axes of
         `coordinate_frame`.
+    measured : tuple of {"turn", "slide"}
+        Kinds of the numbers that results have: those of `coordinates`, but for joints along whose coordinates
+        nothing acts.
     limits : dict of str to {"turn", "slide"}
         Angles [rad] and lengths [m] beside the coordinates that stops can limit (`Spherical`).
     rows : int
@@ -48,6 +51,7 @@ class JointDefinition:
     guide: ClassVar[str]
     turn: ClassVar[str]
     coordinates: ClassVar[tuple[str, ...]] = ()
+    measured: ClassVar[tuple[str, ...]] = ()
     limits: ClassVar[dict[str, str]] = {}
     rows: ClassVar[int]
     nonholonomic: ClassVar[int] = 0
@@ -56,6 +60,8 @@ class JointDefinition:
     def __init_subclass__(cls):
         if "rows" not in vars(cls):
             cls.rows = ACTIVE_POINT[cls.guide] + TURNS[cls.turn]
+        if "measured" not in vars(cls):
+            cls.measured = cls.coordinates
 
     def frame(self, flipped: bool = False) -> np.ndarray:
         """Return the axes (3, 3) of the joint as columns, in the world at the start, its direction first.

@@ -42,10 +42,6 @@ class OnCurve(JointDefinition):
         """Return the length of a closed curve [m], after which all is as before; 0 for an open one."""
         return self.curve.length if self.curve.closed else 0.0
 
-    def feet(self, points: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Return the arc lengths (K,) of the feet of points (K, 3) with velocities (K, 3)."""
-        return self.curve.feet(points, velocity)
-
     def foot(self, point: np.ndarray) -> float:
         """Return the arc length of the foot of a point (3,), from which the coordinate is measured."""
         return self.curve.nearest(point)
@@ -121,28 +117,21 @@ class PointOnCurve(OnCurve):
     def _seen(self, vectors: np.ndarray) -> np.ndarray:
         return vectors - (vectors @ self.side)[..., None] * self.side
 
-    def feet(self, points: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Return the arc lengths (K,) of the feet of points (K, 3) with velocities (K, 3)."""
+    def foot(self, point: np.ndarray) -> float:
+        """Return the arc length of the foot of a point (3,), from which the coordinate is measured."""
+        curve = self.curve
         if self.side is None:
-            return super().feet(points, velocity)
-        x, knots = self.curve.ends[:, 0], self.curve.knots
+            return super().foot(point)
+        x, knots = curve.ends[:, 0], curve.knots
         if self.plane.any():
-            starts = [np.argmin(np.sum((x - point) ** 2, axis=1)) for point in points]
-            return self.curve.feet_from(points, knots[starts], far=True)
-        near, starts = 4.0 * np.max(np.diff(knots)) ** 2, []
-        for point in points:  # the highest branch below it
+            s = curve.foot_from(point, knots[np.argmin(np.sum((x - point) ** 2, axis=1))], far=True)
+        else:  # the highest branch below it
+            near = 4.0 * np.max(np.diff(knots)) ** 2
             height, beside = (point - x) @ self.side, np.sum(self._seen(point - x) ** 2, axis=1)
             height[(beside > max(near, np.min(beside))) | (height < -math.sqrt(near))] = math.inf
             best = height if np.isfinite(height).any() else beside
-            starts.append(np.argmin(best))
-        return self.shadow.feet_from(self._seen(points), knots[starts])
-
-    def foot(self, point: np.ndarray) -> float:
-        """Return the arc length of the foot of a point (3,), from which the coordinate is measured."""
-        if self.side is None:
-            return super().foot(point)
-        s = float(self.feet(point[None], np.zeros((1, 3)))[0])
-        return s % self.curve.length if self.curve.closed else min(max(s, 0.0), self.curve.length)
+            s = self.shadow.foot_from(self._seen(point), knots[np.argmin(best)])
+        return s % curve.length if curve.closed else min(max(s, 0.0), curve.length)
 
     def across(self, anchor: np.ndarray) -> np.ndarray:
         """Return the normal (3,) of the plane of a rail that can be left, 0 for a curve in space.

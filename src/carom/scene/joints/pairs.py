@@ -48,6 +48,7 @@ class Spherical(JointDefinition):
     """
 
     guide, turn = "point", "ball"
+    measured = ("turn",) * 3
     limits: ClassVar = {"rotation": "turn", "swing": "turn", "twist": "turn"}
 
     anchor: Vector = fields.vector()

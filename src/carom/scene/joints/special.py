@@ -24,7 +24,7 @@ class Distance(JointDefinition):
     """
 
     guide, turn = "own", "own"
-    rows, in_trees = 1, False
+    rows, in_trees, measured = 1, False, ("slide",)
 
     anchor_parent: Vector = fields.vector()
     anchor_child: Vector = fields.vector()

@@ -13,9 +13,27 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
-from carom.geometry.rotation import conjugate, cross, log, multiply, rotate, rotate_back
+from carom._compiled.decorators import inlined, kernel
+from carom.geometry.rotation import (
+    conjugate,
+    cross,
+    log,
+    multiply,
+    rotate,
+    rotate_back,
+    unit_vector,
+)
+from carom.kinematics.joints import arm
 from carom.kinematics.wrench import add_force, point, point_velocity
+from carom.model.arrays import BUSHINGS
+
+KIND = BUSHINGS
+
+
+@inlined
+def count(system):
+    """Return how many there are."""
+    return system.bushings.shape[0]
 
 
 @kernel
@@ -55,8 +73,9 @@ def turn_moment(bushing, x, y, z):
 
 
 @kernel
-def add_bushing(bushing, state, work):
-    """Add the wrenches of a mount to both bodies; return the power of its dampers."""
+def add(system, i, state, power, work):
+    """Add the wrenches of a mount to both bodies; return `power` with that of its dampers."""
+    bushing = system.bushings[i]
     p, c = bushing.parent, bushing.child
     a = attitude(state, p, bushing.parent_frame)
     d0, d1, d2, t0, t1, t2 = displacement(bushing, state)
@@ -79,10 +98,10 @@ def add_bushing(bushing, state, work):
     add_force(work, p, (sx, sy, sz), f)
     add_torque(work, c, -mx, -my, -mz)
     add_torque(work, p, mx, my, mz)
-    power = 0.0
+    lost = 0.0
     for k in range(3):
-        power -= C[k] * u[k] * u[k] + D[k] * w[k] * w[k]
-    return power
+        lost -= C[k] * u[k] * u[k] + D[k] * w[k] * w[k]
+    return power + lost, math.nan, math.nan, math.nan
 
 
 @kernel
@@ -97,10 +116,34 @@ def add_torque(work, b, tx, ty, tz):
 
 
 @kernel
-def bushing_energy(bushing, state):
+def acts_at(system, i, state):
+    """Return the arm of the child to its anchor."""
+    return arm(state, system.bushings[i].child, system.bushings[i].child_anchor)
+
+
+@kernel
+def energy(system, i, state, t):
     """Return the elastic energy of a mount [J]."""
+    bushing = system.bushings[i]
     d0, d1, d2, t0, t1, t2 = displacement(bushing, state)
     K, T = bushing.stiffness, bushing.turn_stiffness
-    energy = K[0] * d0 * d0 + K[1] * d1 * d1 + K[2] * d2 * d2
-    energy += T[0] * t0 * t0 + T[1] * t1 * t1 + T[2] * t2 * t2
-    return 0.5 * energy
+    total = K[0] * d0 * d0 + K[1] * d1 * d1 + K[2] * d2 * d2
+    total += T[0] * t0 * t0 + T[1] * t1 * t1 + T[2] * t2 * t2
+    return 0.5 * total
+
+
+@kernel
+def unit_force(system, i, n, state, work):
+    """Add the wrenches of a unit force along, or a unit torque about, an axis of a mount."""
+    one = system.bushings[i]
+    axes = attitude(state, one.parent, one.parent_frame)
+    ex, ey, ez = rotate(axes, unit_vector(n % 3))
+    ax, ay, az, px, py, pz = point(state, one.parent, one.parent_anchor)
+    bx, by, bz, qx, qy, qz = point(state, one.child, one.child_anchor)
+    if n < 3:  # both forces act at the child's anchor
+        add_force(work, one.child, (bx, by, bz), (ex, ey, ez))
+        add_force(work, one.parent, (ax + qx - px, ay + qy - py, az + qz - pz), (-ex, -ey, -ez))
+    else:
+        add_torque(work, one.child, ex, ey, ez)
+        add_torque(work, one.parent, -ex, -ey, -ez)
+    return 0.0, 0.0

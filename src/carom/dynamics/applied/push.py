@@ -1,0 +1,76 @@
+"""Springs, dampers and forces along coordinates of joints.
+
+Q = -k (q - rest) - c q' + F,       U = k (q - rest)^2 / 2
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.call_address import call_function
+from carom._compiled.decorators import inlined, kernel
+from carom.kinematics import coordinate
+from carom.kinematics.coordinate import rate, slides, value
+from carom.kinematics.joints import child_arm
+from carom.model.arrays import PUSHES
+
+KIND = PUSHES
+
+
+@inlined
+def count(system):
+    """Return how many there are."""
+    return system.relations.pushes.shape[0]
+
+
+@kernel
+def push_force(relations, one, q, speed, t):
+    """Return the force along a coordinate, and the part of it that has no potential."""
+    free = one.force - one.damping * speed
+    if one.address != 0:
+        relations.read[0], relations.read[1] = q, speed
+        call_function(one.address, t, relations.read, relations.write)
+        free += relations.write[0]
+    return free - one.stiffness * (q - one.rest), free
+
+
+@kernel
+def add(system, i, state, power, work):
+    """Add a force along a coordinate; return `power` with that of its part without potential, and the force."""
+    one, t = system.relations.pushes[i], work.result[0].time
+    c = system.relations.coordinates[one.coordinate]
+    speed = rate(system, c, state)
+    force, free = push_force(system.relations, one, value(system, c, state), speed, t)
+    coordinate.push(system, c, state, force, work)
+    return power + free * speed, force, math.nan, math.nan
+
+
+@kernel
+def acts_along(c, state):
+    """Return the arm of the child to where a force along a coordinate acts; 0 for a torque."""
+    if slides(c):
+        return child_arm(c, state)
+    return 0.0, 0.0, 0.0
+
+
+@kernel
+def acts_at(system, i, state):
+    """Return the arm of the child to where it acts."""
+    c = system.relations.coordinates[system.relations.pushes[i].coordinate]
+    return acts_along(c, state)
+
+
+@kernel
+def energy(system, i, state, t):
+    """Return the energy of a spring along a coordinate [J]."""
+    one = system.relations.pushes[i]
+    stretch = value(system, system.relations.coordinates[one.coordinate], state) - one.rest
+    return 0.5 * one.stiffness * stretch * stretch
+
+
+@kernel
+def unit_force(system, i, n, state, work):
+    """Add the wrenches of a unit force along the coordinate; return this and its rate."""
+    c = system.relations.coordinates[system.relations.pushes[i].coordinate]
+    coordinate.push(system, c, state, 1.0, work)
+    return value(system, c, state), rate(system, c, state)
