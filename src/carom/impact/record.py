@@ -96,7 +96,8 @@ def write_share(data, contact, i, k):
     result, n = multiple.result, 3 * i
     taken, returned, loss = result.compression[i], result.restitution[i], result.friction[i]
     phases = layout.WEDGED if result.wedged[i] != 0 else 0
-    if multiple.e[i] > 0.0:
+    given = multiple.contact[i]
+    if given.restitution > 0.0:
         phases |= result.summary[0].marks & (layout.AT_ONCE | layout.PLASTIC)
     copy_block(group.W, n, records.impact[clock.struck].W)
     blow = Blow(
@@ -105,7 +106,7 @@ def write_share(data, contact, i, k):
         change=taken + returned - loss, phases=phases, duration=0.0,
     )  # fmt: skip
     write_blow(contact, group.points[0][i], data.state, blow, clock, records)
-    if not (phases & layout.PLASTIC != 0 and multiple.e[i] == 1.0 and group.mu[i] == 0.0):
+    if not (phases & layout.PLASTIC != 0 and given.restitution == 1.0 and given.friction == 0.0):
         clock.impacts += blow.change
 
 

@@ -99,7 +99,7 @@ def strike(model, data, method, c):
             inverse_masses(system, k, group.points[0], state, work, group.W)
             velocities(k, group.points[0], state, group.v[U])
         single = as_one(system, k, state, group, work)
-        if not single and data.multiple.e.shape[0] < k:
+        if not single and data.multiple.contact.shape[0] < k:
             work.step[0].grow, hit.code = FULL_MULTIPLE, GROW
             return
         begin_event(system, c, group.closed[0].feature, state, clock, records)

@@ -11,12 +11,12 @@ from carom._compiled.record_arrays import table
 from carom.collision.layout import MOST_POINTS
 from carom.friction.layout import ContactWork, new_contact_work
 from carom.impact.multiple.layout import (
+    CORNER_CONTACT,
     MultipleResult,
     MultipleSettings,
-    MultipleWorkspace,
     new_multiple_result,
-    new_multiple_workspace,
 )
+from carom.impact.multiple.workspace import MultipleWorkspace, new_multiple_workspace
 from carom.model.arrays import KIND_PAIR, STATE, System
 from carom.model.laws import PERSISTENT, law_of
 from carom.model.workspace import POINT
@@ -98,10 +98,7 @@ class MultipleImpact(NamedTuple):
     workspace: MultipleWorkspace
     settings: MultipleSettings
     result: MultipleResult
-    e: np.ndarray  # (K,)
-    law: np.ndarray  # (K,) of `carom.model.laws`
-    kappa: np.ndarray  # (K,)
-    pair: np.ndarray  # (K,) of `CornerContacts`
+    contact: np.recarray  # (K,) CORNER_CONTACT
     hertz: np.ndarray  # (K,) of a ball or an ellipsoid its stiffness by Hertz's law, else 0
 
 
@@ -151,8 +148,7 @@ def no_multiple(settings: MultipleSettings) -> MultipleImpact:
 
 def new_multiple(k: int, settings: MultipleSettings) -> MultipleImpact:
     """Return the workspace of impacts of `k` points."""
-    law, pair = np.zeros((2, k), dtype=np.int64)
     return MultipleImpact(
         workspace=new_multiple_workspace(k), settings=settings, result=new_multiple_result(k),
-        e=np.zeros(k), law=law, kappa=np.zeros(k), pair=pair, hertz=np.zeros(k),
+        contact=table(CORNER_CONTACT, k), hertz=np.zeros(k),
     )  # fmt: skip
