@@ -262,7 +262,7 @@ def solve_end(model, data, label, k, s, h):
 def rest_of(model, data, k, h):
     """Return the speed below which the bodies of k points are at rest at the end of a step of length h."""
     push = greatest(3 * k, data.group.v[C])
-    return rest_speed(model.controls, h * push, data.work.result[0].residual, k, FEW_REST)
+    return rest_speed(model.controls, h * push, data.work.search[0].residual, k, FEW_REST)
 
 
 @kernel
@@ -372,7 +372,7 @@ def note_residual(active, k, group, work):
         worst = max(worst, abs(group.v[U][3 * i]))
         if group.kind[i] == CONE:
             worst = max(worst, math.hypot(group.v[U][3 * i + 1], group.v[U][3 * i + 2]))
-    work.result[0].residual = max(work.result[0].residual, worst)
+    work.search[0].residual = max(work.search[0].residual, worst)
 
 
 @kernel

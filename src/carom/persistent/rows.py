@@ -60,8 +60,7 @@ def accelerate_freely(model, data, loaded, count, s):
     """
     system, work = model.system, data.work
     if loaded:
-        acceleration(system, work.stage, work, work.stages[s])
-        return work.result[0].power
+        return acceleration(system, work.stage, work, work.stages[s])
     for m in range(count):
         b = data.group.member[m]
         free_rates(system.bodies[b], system.gravity, work.stage[b], work.stages[s, b].rate)

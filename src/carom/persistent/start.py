@@ -62,10 +62,9 @@ def first_stage(model, data, label):
     """Write the accelerations of a group at the start of a step as stage 0, and the directions of slip.
 
     Return the number of points, the greatest rate at which friction turns a slip, the greatest acceleration by
-    friction, its power, and whether the contact problem has a solution. The power of loads is in `work.result`.
+    friction, the powers of loads and of friction, and whether the contact problem has a solution.
     """
-    group, work, system = data.group, data.work, model.system
-    result, controls = work.result[0], model.controls
+    group, system, controls = data.group, model.system, model.controls
     count, loaded, power = accelerate_start(model, data, label)
     first_modes(data, label)
     k = write_rows(model, data, label, 0)
@@ -90,9 +89,8 @@ def first_stage(model, data, label):
         set_modes(system, data.active, k, group)
         solve_springs(k, group)
     driven, rubbed = push_bodies(model, data, loaded, k, count, 0)
-    result.power = power + driven
     rate, friction = rates(k, group)
-    return k, rate if known else math.inf, friction, rubbed, found
+    return k, rate if known else math.inf, friction, (power + driven, rubbed), found
 
 
 @kernel
