@@ -8,7 +8,6 @@ from typing import NamedTuple
 from carom._compiled.decorators import kernel
 from carom.impact import layout
 from carom.impact.thresholds import NO_RESTITUTION
-from carom.impact.workspace import U
 from carom.kinematics.anisotropy import lengths_of_tangents
 from carom.kinematics.contact_point import power_of_surface
 from carom.law import impact_laws
@@ -101,7 +100,7 @@ def write_share(data, contact, i, k):
         phases |= result.summary[0].marks & (layout.AT_ONCE | layout.PLASTIC)
     copy_block(group.W, n, records.impact[clock.struck].W)
     blow = Blow(
-        together=k, before=three(group.v[U], n), after=three(result.velocity, n),
+        together=k, before=three(group.u, n), after=three(result.velocity, n),
         impulse=three(result.impulse, n), compression=taken, restitution=returned, friction=loss,
         change=taken + returned - loss, phases=phases, duration=0.0,
     )  # fmt: skip

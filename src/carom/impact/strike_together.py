@@ -17,7 +17,6 @@ from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSet
 from carom.impact.multiple.resolve import resolve_multiple
 from carom.impact.record import note_drive, write_share
 from carom.impact.thresholds import GROUP_SEED
-from carom.impact.workspace import U
 from carom.law.friction import bound_of_stick
 from carom.model.allowance import COUNT_FACTORS, left
 from carom.model.laws import PERSISTENT, STRIKES
@@ -30,7 +29,7 @@ HERTZ, LINEAR = 1.5, 1.0
 @unit
 def resolve_group(k, laws, group, multiple) -> int:
     """Solve the impact of k points; return its code."""
-    contacts = by_reference(CornerContacts(multiple.contact, group.W, group.v[U]))
+    contacts = by_reference(CornerContacts(multiple.contact, group.W, group.u))
     given, exponent = multiple.settings, exponent_of(k, multiple)
     if exponent == HERTZ and all_round(k, multiple):
         stiffen(k, multiple)
@@ -103,7 +102,7 @@ def strike_together(model, data, c, k):
     system = model.system
     active, state, group, multiple = data.active, data.state, data.group, data.multiple
     work, step = data.work, data.work.step[0]
-    hit, u = work.hit[0], group.v[U]
+    hit, u = work.hit[0], group.u
     count_blows(model, data, k)
     for i in range(k):
         contact = system.contacts[group.closed[i].contact]
@@ -181,7 +180,7 @@ def count_blows(model, data, k):
             continue
         for j in range(i, k):
             if group.closed[j].contact == c:
-                approach = max(approach, -group.v[U][3 * j])
+                approach = max(approach, -group.u[3 * j])
         contact, contact_state, last = system.contacts[c], data.active.contact_states[c], c
         if approach > slow(contact, data.state):
             count_blow(system, model.controls, contact, contact_state, approach, now)

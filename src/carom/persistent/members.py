@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import by_reference, kernel
+from carom._compiled.decorators import kernel
 from carom.dynamics.delassus import velocities
 from carom.dynamics.explicit import (
     add_stages,
@@ -32,13 +32,11 @@ from carom.friction.layout import (
     ENOUGH,
     ITERATIONS,
     SLIDING,
-    ContactProblem,
 )
 from carom.friction.solve import solve_cones
 from carom.friction.strategy import budget
 from carom.geometry.rotation import multiply, normalize
 from carom.geometry.thresholds import ROUND_OFF
-from carom.impact.workspace import C, P, U
 from carom.law.piecewise import any_depends_on_speed
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.coulomb_stage import solve_stage
@@ -157,10 +155,10 @@ def implicit_stage(model, data, label, s, hg, closes):
             b = group.member[m]
             copy_state(work.stage[b], group.free[b])  # its place: a surface may turn beneath it
             add_velocity(group.base[b], hg, work.stages[s, b], group.free[b])
-        velocities(k, group.points[0], group.free, group.v[U])
+        velocities(k, group.points[0], group.free, group.u)
         if k != before:
             for row in range(3 * k):
-                group.v[P][row] = 0.0
+                group.p[row] = 0.0
         lost = iterations[0]
         for i in range(k):
             group.closed[i].passes = 0
@@ -174,7 +172,7 @@ def implicit_stage(model, data, label, s, hg, closes):
             turned = renew_modes(model, data.active, k, hg, turn, group)
         for i in range(k):  # the work of friction of all points: what sticks has no velocity
             group.kind[i] = SLIDING
-        velocities(k, group.points[0], work.stage, group.v[U])
+        velocities(k, group.points[0], work.stage, group.u)
         driven, rubbed = push_bodies(model, data, loaded, k, count, s)
         power = applied + driven
     if model.controls.order > 0 and not closes and not change <= STAGE_CHANGE:
@@ -230,12 +228,12 @@ def move_stage(base, hg, length, stage, out):
 
 @kernel
 def solve_impulses(model, data, k, h):
-    """Write forces to P under which Coulomb's law holds with the velocities h W p + U."""
-    group, p = data.group, data.group.v[P]
+    """Write forces `p` under which Coulomb's law holds with the velocities h W p + u."""
+    group, p = data.group, data.group.p
     count = group.cone.count
     for i in range(3 * k):
         p[i] = 0.0
-        group.v[C][i] = group.v[U][i]
+        group.c[i] = group.u[i]
     turning = False
     for i in range(k):
         group.kind[i] = CONE
@@ -244,12 +242,9 @@ def solve_impulses(model, data, k, h):
         elif group.closed[i].motion != MOTION_POINT:
             group.mu[i], turning = 1.0, True
     group.cone.mismatch[ENOUGH], count[BUDGET] = 0.0, budget(k)
-    problem = by_reference(
-        ContactProblem(W=group.W, c=group.v[C], mu=group.mu, kind=group.kind, heading=group.heading)
-    )
     for _ in range(50 if turning else 1):
         change = bound_turning(model.system, k, group)
-        solve_cones(k, problem, p, group.cone)
+        solve_cones(k, group.problem, p, group.cone)
         group.equations.iterations[0] += count[ITERATIONS]
         if turning and not change > 1e-14:
             break
