@@ -122,9 +122,3 @@ def new_multiple_result(capacity: int) -> MultipleResult:
         np.zeros(3 * k), np.zeros(3 * k), np.zeros(k), np.zeros(k), np.zeros(k),
         np.zeros(k, dtype=np.int64), table(RESULT, 1),
     )  # fmt: skip
-
-
-def new_contacts(capacity: int) -> CornerContacts:
-    """Return arrays for up to `capacity` contacts of an impact."""
-    k = max(int(capacity), 1)
-    return CornerContacts(table(CORNER_CONTACT, k), np.zeros((3 * k, 3 * k)), np.zeros(3 * k))

@@ -97,9 +97,7 @@ def _weigh(n, slot, work):
 @kernel
 def _invert_normal(n, work):
     """Write W_nn^+ of `n` contacts."""
-    L, W, slot, weight = (
-        work.stick.L, work.W, work.closed, work.stick.weight,
-    )  # fmt: skip
+    L, W, slot, weight = work.stick.L, work.W, work.closed, work.stick.weight
     largest = 0.0
     for a in range(n):
         for b in range(a + 1):
@@ -111,9 +109,7 @@ def _invert_normal(n, work):
 @kernel
 def _invert_tangential(n, m, work):
     """Write K^+ of `m` contacts that stick, from Y = W_nn^+ W_nt with `n` contacts."""
-    L, W, Y, weight = (
-        work.stick.L, work.W, work.stick.coupling, work.stick.weight,
-    )  # fmt: skip
+    L, W, Y, weight = work.stick.L, work.W, work.stick.coupling, work.stick.weight
     pressed, stuck, largest = work.closed, work.stuck, 0.0
     for a in range(2 * m):
         row, scale = W[3 * stuck[a // 2] + 1 + a % 2], weight[a // 2]

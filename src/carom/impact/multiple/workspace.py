@@ -11,12 +11,7 @@ from carom._compiled.record_arrays import table
 from carom._compiled.simd import LANES
 from carom.friction.layout import ContactProblem, ContactWork, new_contact_work
 from carom.impact.layout import SIZE
-from carom.impact.multiple.layout import (
-    CornerContacts,
-    MultipleResult,
-    new_contacts,
-    new_multiple_result,
-)
+from carom.impact.multiple import layout as o
 
 ORDERS = 26  # room for series
 UNLIMITED = 2**62  # steps
@@ -106,7 +101,7 @@ class LayerState(NamedTuple):
 
     impulse: np.ndarray  # (3K,)
     velocity: np.ndarray  # (3K,)
-    depth: np.ndarray  # (4B,)
+    depth: np.ndarray  # (K + 3,), written four at a time
 
 
 class StickWork(NamedTuple):
@@ -209,14 +204,14 @@ class BlowWork(NamedTuple):
     """One impact of a sequence: its contacts, in classes and groups, and its result."""
 
     impact: np.recarray  # (1,) BLOW
-    contacts: CornerContacts
+    contacts: o.CornerContacts
     clean: (
         np.ndarray
     )  # (3K, 3K) W that acts: without round-off, and without tangents that have no friction
     classes: np.recarray  # (K,) CLASS
     members: np.ndarray  # (K,) int64, classes of a group
     stack: np.ndarray  # (K,) int64
-    result: MultipleResult
+    result: o.MultipleResult
 
 
 class MultipleWorkspace(NamedTuple):
@@ -247,29 +242,28 @@ def new_multiple_workspace(capacity: int) -> MultipleWorkspace:
         single=SingleImpact(np.zeros((3, 3)), np.zeros(3), np.zeros(SIZE)),
     )  # fmt: skip
     work.clock["left"] = UNLIMITED
+    contacts = o.CornerContacts(table(o.CORNER_CONTACT, k), np.zeros((n, n)), np.zeros(n))
     blow = BlowWork(
-        impact=table(BLOW, 1), contacts=new_contacts(k), clean=np.zeros((n, n)), classes=table(CLASS, k),
-        members=whole(k), stack=whole(k), result=new_multiple_result(k),
+        impact=table(BLOW, 1), contacts=contacts, clean=np.zeros((n, n)), classes=table(CLASS, k),
+        members=whole(k), stack=whole(k), result=o.new_multiple_result(k),
     )  # fmt: skip
     return MultipleWorkspace(work, blow)
 
 
-def _blocks(k: int) -> int:
-    """Return the number of blocks of `k` contacts."""
-    return (k + LANES - 1) // LANES
-
-
 def _new_state(k: int) -> LayerState:
-    """Return arrays for the state of `k` contacts; depths are written by blocks."""
-    return LayerState(np.zeros(3 * k), np.zeros(3 * k), np.zeros(LANES * _blocks(k)))
+    """Return arrays for the state of `k` contacts."""
+    return LayerState(np.zeros(3 * k), np.zeros(3 * k), np.zeros(k + LANES - 1))
 
 
 def _new_series(k: int) -> Series:
     """Return arrays for the series of `k` contacts."""
-    b = _blocks(k)
+    b = (k + LANES - 1) // LANES
     u, P = np.zeros((2, 3, ORDERS, b, LANES))
-    series = np.zeros((10, ORDERS, b, LANES))
-    numbers = np.zeros((8, b, LANES))
+    all_orders, numbers = partial(np.zeros, (ORDERS, b, LANES)), partial(np.zeros, (b, LANES))
     return Series(
-        u, P, *series, *numbers, end=np.zeros((2, LANES)), columns=np.zeros((3 * k, 3 * b, LANES))
-    )
+        u=u, P=P, depth=all_orders(), N=all_orders(), square=all_orders(), slip=all_orders(),
+        rub=all_orders(), stretched_rub=all_orders(), inverse=all_orders(), loss=all_orders(),
+        rate=all_orders(), sigma=all_orders(), slope=numbers(), mu=numbers(), over=numbers(),
+        braking=numbers(), slowness=numbers(), slipping=numbers(), at_depth=numbers(), at_u=numbers(),
+        end=np.zeros((2, LANES)), columns=np.zeros((3 * k, 3 * b, LANES)),
+    )  # fmt: skip
