@@ -80,9 +80,9 @@ def find_classes(k, blow, laws, scale_u):
         else:
             q += 1
     for q in range(count):
-        classes[q].size = 0
+        classes[q].members = 0
     for i in range(k):
-        classes[contact[i].of_class].size += 1
+        classes[contact[i].of_class].members += 1
     return count
 
 
@@ -193,7 +193,7 @@ def couple(blow, a, b, out):
     """Write W between the members a and b of a group, classes p and q: sum_ij W_ij / (m_p m_q)."""
     W, contact, k = blow.clean, blow.contacts.contact, blow.impact[0].k
     p, q = blow.members[a], blow.members[b]
-    size = blow.classes[p].size * blow.classes[q].size
+    size = blow.classes[p].members * blow.classes[q].members
     for r in range(3):
         for s in range(3):
             total = 0.0

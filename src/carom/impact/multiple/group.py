@@ -57,7 +57,7 @@ def strike_group(g, by_newton, settings, laws, workspace):
     for i in range(blow.impact[0].k):
         for a in range(n):
             if blow.contacts.contact[i].of_class == blow.members[a]:
-                c, share = work.contact[a], 1.0 / blow.classes[blow.members[a]].size
+                c, share = work.contact[a], 1.0 / blow.classes[blow.members[a]].members
                 for r in range(3):
                     out.impulse[3 * i + r] = impulse[3 * a + r] * share * speed / mass
                 out.compression[i] = -max(0.0, c.absorbed) * share * energy
@@ -98,7 +98,7 @@ def _fill(n, laws, exponent, blow, work):
         speed = max(speed, -u[3 * i])
         for r in range(3 if contact[i].acting > 0.0 else 1):
             most = max(most, abs(u[3 * i + r]))
-        stiff = max(stiff, contact[i].stiffness * all_of.size * W[3 * a, 3 * a])
+        stiff = max(stiff, contact[i].stiffness * all_of.members * W[3 * a, 3 * a])
     if not (mass > 0.0 and stiff > 0.0):
         return 0.0, 0.0, 0.0
     speed = max(speed, 1e-3 * most)
@@ -113,7 +113,7 @@ def _fill(n, laws, exponent, blow, work):
         c.mu, c.restitution, c.law = mu, given.restitution, given.law
         c.by_slip = 1 if mu > 0.0 and depends_on_slip(laws, c.law) else 0
         c.e = c.restitution
-        c.root = (given.stiffness * all_of.size * mass / stiff) ** (1.0 / exponent)
+        c.root = (given.stiffness * all_of.members * mass / stiff) ** (1.0 / exponent)
         c.grip = mu * (W[3 * a + 1, 3 * a + 1] + W[3 * a + 2, 3 * a + 2])
         for r in range(3):
             before[3 * a + r] = u[3 * i + r] / speed if r == 0 or mu > 0.0 else 0.0
@@ -155,7 +155,7 @@ def _exactly(laws, blow, work):
     e_t = laws.table[law].tangential_restitution
     if e_t != 0.0:
         return_slip(W, before, mu, e_t, single)
-    share = 1.0 / blow.classes[q].size
+    share = 1.0 / blow.classes[q].members
     for j in range(blow.impact[0].k):
         if contact[j].of_class == q:
             for r in range(3):

@@ -73,7 +73,7 @@ CLOCK = [
 #: contacts that move alike, solved as one
 CLASS = [
     ("first", "i8"),  # its first contact
-    ("size", "i8"),
+    ("members", "i8"),  # number of its contacts
     (
         "group",
         "i8",
