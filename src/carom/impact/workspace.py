@@ -75,12 +75,14 @@ class Group(NamedTuple):
     closed: np.recarray  # (K,) CLOSED_POINT
     count: np.ndarray  # (1,) those that `contact.closed_points` has listed
     points: np.recarray  # (2, K) POINT: of the present state; of the end of a step
-    u: np.ndarray  # (3K,) velocities
-    c: np.ndarray  # (3K,) velocities or accelerations without the unknown impulses or forces
-    p: np.ndarray  # (3K,) impulses or forces
-    a: np.ndarray  # (3K,) accelerations with them
-    back: np.ndarray  # (3K,) errors of positions or velocities, then the impulses that remove them
-    W: np.ndarray  # (3K, 3K) inverse mass
+    u: np.ndarray  # (3K,) velocities [m/s]
+    c: np.ndarray  # (3K,) velocities [m/s] or accelerations [m/s^2] without the unknown p
+    p: np.ndarray  # (3K,) impulses [N s] or forces [N]
+    a: np.ndarray  # (3K,) accelerations with them [m/s^2]
+    back: (
+        np.ndarray
+    )  # (3K,) errors of positions [m] or velocities, then the impulses that remove them
+    W: np.ndarray  # (3K, 3K) inverse mass [1/kg]
     idle: np.ndarray  # (2, K, K) the projector to normal forces that move nothing, and its square
     mu: np.ndarray  # (K,)
     kind: np.ndarray  # (K,) of `carom.friction`

@@ -106,11 +106,11 @@ RESULT = [
 class MultipleResult(NamedTuple):
     """Result of an impact of K contacts."""
 
-    impulse: np.ndarray  # (3K,)
-    velocity: np.ndarray  # (3K,) after
-    compression: np.ndarray  # (K,) work of the normal force while loading, <= 0
-    restitution: np.ndarray  # (K,) work of the normal force while unloading, >= 0
-    friction: np.ndarray  # (K,) energy dissipated by friction
+    impulse: np.ndarray  # (3K,) [N s]
+    velocity: np.ndarray  # (3K,) after [m/s]
+    compression: np.ndarray  # (K,) work of the normal force while loading, <= 0 [J]
+    restitution: np.ndarray  # (K,) work of the normal force while unloading, >= 0 [J]
+    friction: np.ndarray  # (K,) energy dissipated by friction [J]
     wedged: np.ndarray  # (K,) 1 if friction blocks the contact at the end: its law fails
     summary: np.recarray  # (1,) RESULT
 
