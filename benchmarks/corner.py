@@ -63,35 +63,29 @@ class Case:
     """One impact, with workspace, called in a compiled loop."""
 
     def __init__(self, problem, mu=0.0, e=0.5, law=STRONGE, kappa=None, repeat=200, **settings):
-        from carom.impact.multiple.api import stated_laws
-        from carom.impact.multiple.layout import (
-            CornerContacts,
-            MultipleSettings,
-            new_multiple_result,
-            new_multiple_workspace,
-        )
+        from carom.impact.multiple.api import stated_contacts, stated_laws
+        from carom.impact.multiple.layout import SIMULTANEOUS, MultipleSettings, new_multiple_result
+        from carom.impact.multiple.workspace import new_multiple_workspace
 
         W, u = problem
         k = len(u) // 3
         ones = np.ones(k)
         kappa = ones if kappa is None else np.array(kappa, float)
-        self.contacts = CornerContacts(
-            k, 0, np.ascontiguousarray(W), np.ascontiguousarray(u), mu * ones, e * ones,
-            np.arange(k), kappa, np.zeros(k, dtype=np.int64),
-            stated_laws(mu * ones, e * ones, [law] * k, 0 * ones, kappa),
-        )  # fmt: skip
+        self.k, self.laws = k, stated_laws(mu * ones, e * ones, [law] * k, 0 * ones, kappa)
+        W, u = np.ascontiguousarray(W), np.ascontiguousarray(u).reshape(k, 3)
+        self.contacts = stated_contacts(W, u, self.laws, SIMULTANEOUS)
         self.settings, self.repeat, self.given = MultipleSettings, repeat, settings
         self.workspace, self.out = new_multiple_workspace(k), new_multiple_result(k)
 
     def run(self, loop, rtol, **more):
         """Return microseconds, steps, rounds, velocities after."""
         settings = self.settings(rtol=rtol, **{**self.given, **more})
-        arguments = (self.contacts, settings, self.workspace, self.out)
+        arguments = (self.k, self.contacts, self.laws, settings, self.workspace, self.out)
         code = loop(1, *arguments)
         assert code == 0
         times = seconds(lambda: loop(self.repeat, *arguments), rounds=3)
         summary = self.out.summary[0]
-        after = self.out.velocity[: 3 * self.contacts.k].copy()
+        after = self.out.velocity[: 3 * self.k].copy()
         return min(times) / self.repeat / US, int(summary["steps"]), int(summary["rounds"]), after
 
 
@@ -101,10 +95,10 @@ def compiled_loop():
     from carom.impact.multiple.resolve import resolve_multiple
 
     @entry
-    def loop(count, contacts, settings, workspace, out):
+    def loop(count, k, contacts, laws, settings, workspace, out):
         code = 0
         for _ in range(count):
-            code = max(code, resolve_multiple(contacts, settings, workspace, out))
+            code = max(code, resolve_multiple(k, contacts, laws, settings, workspace, out))
         return code
 
     return loop

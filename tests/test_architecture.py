@@ -294,7 +294,7 @@ def test_a_code_is_declared_once():
         for name in integers(path):
             declared.setdefault(name, []).append(module)
     assert len(declared) > 300
-    assert {"NOT_FINITE", "EVENT_GAP", "NEW_P", "FEW_PAIRS"} <= set(declared)
+    assert {"NOT_FINITE", "EVENT_GAP", "NO_FRICTION", "FEW_PAIRS"} <= set(declared)
     assert {name: where for name, where in declared.items() if len(where) > 1} == {}
 
 

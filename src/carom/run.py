@@ -215,7 +215,7 @@ class Run(Running):
             self.islands = roomier(self.islands)
         elif what == r.FULL_MULTIPLE:
             points = max(
-                ROOM_AT_FIRST, 2 * len(self.multiple.e), 2 * int(self.work.hit["closed"][0])
+                ROOM_AT_FIRST, 2 * len(self.multiple.contact), 2 * int(self.work.hit["closed"][0])
             )
             self.multiple = new_multiple(min(len(self.group.mu), points), self.multiple.settings)
         elif what == r.NEW_PAIRS:

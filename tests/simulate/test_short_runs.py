@@ -138,7 +138,7 @@ def own(run):
     if system.joints.size == 0:
         system = system._replace(solver=())
         islands = tuple(part for part in islands if part is not run.islands.joined)
-    many = run.multiple if run.multiple.e.size > 1 else ()
+    many = run.multiple if len(run.multiple.contact) > 1 else ()
     return system, run.now, run.active, run.work, islands, run.group, many, run.clock, run.records
 
 

@@ -22,23 +22,24 @@ def bias_joints(system, state, work):
 
 
 @unit
-def acceleration(system, state, work, stage):
-    """Write the accelerations into `rate` of `stage`, and the power of loads to `work.result`."""
-    accelerations(system, state, work, stage)
+def acceleration(system, state, work, stage) -> float:
+    """Write the accelerations into `rate` of `stage`; return the power of loads."""
+    return accelerations(system, state, work, stage)
 
 
 @kernel
 def accelerations(system, state, work, stage):
-    """Write accelerations and power as `acceleration` does, compiled as a part of the caller."""
+    """Do the same as `acceleration`, compiled as a part of the caller."""
     applied = applied_wrenches(system, state, True, work)
     applied += add_stiff(system, state, work)
     bias_joints(system, state, work)
     solve(system, state, True, work)
-    work.result[0].power = applied + driven_power(system, state, work)
+    power = applied + driven_power(system, state, work)
     for b in range(system.bodies.shape[0]):
         motion, rate = work.body[b].motion, stage[b].rate
         for k in range(6):
             rate[k] = motion[k]
+    return power
 
 
 @kernel

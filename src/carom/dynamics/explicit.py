@@ -48,38 +48,35 @@ def any_held(active):
 @inlined
 def constrained(model, data, method, h):
     """Step the bodies that are joined, loaded or in contact; return the same as `explicit_step`."""
-    whole_step(model, data, method, h)
-    result = data.work.result[0]
-    return result.applied, result.code
+    return whole_step(model, data, method, h)
 
 
 @unit
-def whole_step(model, data, method, h):
-    """Take a step at once, or in parts in which no body turns far.
+def whole_step(model, data, method, h) -> tuple[float, int]:
+    """Take a step at once, or in parts in which no body turns far; return the same as `explicit_step`.
 
     The length of a part depends only on its start, so that the end is a continuous function of h.
     """
-    work, result = data.work, data.work.result[0]
-    begin, left, first = result.start, h, data.state
+    work, left, first = data.work, h, data.state
     stages, estimates = method.b.size, method.E.shape[0] > 0
-    applied = 0.0
+    applied, code = 0.0, 0
     forget_bounds(work)
     for part in range(MOST_PARTS):
         dt = left
         if not estimates and part < MOST_PARTS - 1:
             spin = fastest_spin(model.system, first, work)
             dt = min(left, STAGE_TURN * stages / max(spin, SMALLEST))
-        result.begin = begin + (h - left)
-        with_care(model, data, method, first, dt)
-        applied += result.applied
+        begin = work.result[0].start + (h - left)
+        more, code = with_care(model, data, method, first, (begin, dt))
+        applied += more
         left -= dt
-        if not (left > 0.0 and result.code == 0):
+        if not (left > 0.0 and code == 0):
             break
-        result.parts += 1
+        work.result[0].parts += 1
         first = work.part
         for b in range(first.shape[0]):
             copy_state(work.trial[b], first[b])
-    result.applied = applied
+    return applied, code
 
 
 @kernel
@@ -94,16 +91,19 @@ def fastest_spin(system, state, work):
 
 
 @kernel
-def with_care(model, data, method, start, h):
-    """Take a step; take it again with care if a stage was near a singular position (`singular_positions`)."""
-    work = data.work
+def with_care(model, data, method, start, span):
+    """Take a step; take it again with care if a stage was near a singular position (`singular_positions`).
+
+    `span` are the time at its start and its length. Return the work of loads, and a status.
+    """
+    applied, code = 0.0, 0
     for care in (False, True):
-        applied, code, least, most = constrained_step(model, data, method, start, care, h)
+        applied, code, least, most = constrained_step(model, data, method, start, span, care)
         if not is_singular(model.system, least, most):
             break
         if not care:
-            forget_misses(work)  # the first attempt does not count
-    work.result[0].applied, work.result[0].code = applied, code
+            forget_misses(data.work)  # the first attempt does not count
+    return applied, code
 
 
 @inlined
@@ -125,7 +125,6 @@ def fly(model, data, h):
         elif status == FREE:
             body, end = system.bodies[b], work.trial[b]
             free_flight(body, system.gravity, h, start[b], end, work.body[b])
-    work.result[0].held = 1 if held else 0
     return pending and not held
 
 
@@ -158,17 +157,17 @@ def mark_active(active, work):
 
 
 @kernel
-def constrained_step(model, data, method, start, care, h):
-    """Step the bodies that are joined, loaded or in contact from `result.begin`; others are in `work.trial`.
+def constrained_step(model, data, method, start, span, care):
+    """Step the bodies that are joined, loaded or in contact from `start`; others are in `work.trial`.
 
     With `care` the stages return to the joints first, and `pass_round` treats those in singular positions. A
     last stage without weight is at the end of the step (`known_end`). Return the work of loads, a status,
     and the least and the greatest number of rows that stages left out, or nearly left out.
     """
     system, work, stage = model.system, data.work, data.work.stage
-    A, weight, E, t0 = method.A, method.b, method.E, work.result[0].begin
+    A, weight, E, (t0, h) = method.A, method.b, method.E, span
     stages, last = weight.size, stages_within(method)
-    applied, least, most = 0.0, EVERY_ROW, 0
+    applied, power, least, most = 0.0, 0.0, EVERY_ROW, 0
     keeps = last < stages and not care and of_state_alone(system, data.active)
     for s in range(last + 1):
         combine(weight[:last] if s == last else A[s, :s], h, start, work.stages, stage)
@@ -183,16 +182,16 @@ def constrained_step(model, data, method, start, care, h):
         for b in range(stage.shape[0]):
             note_velocity(stage[b], work.stages[s, b])
         if s == 0 and keeps and recall(stage, work.stages[0], work):
-            applied += h * weight[0] * work.result[0].power
+            applied += h * weight[0] * work.known[0].power
             continue
-        accelerations(system, stage, work, work.stages[s])
+        power = accelerations(system, stage, work, work.stages[s])
         dropped = dropped_rows(system, SINGULARITY)
         least, most = min(least, dropped), max(most, dropped)
         if care:
-            pass_round(system, work, work.stages[s])
-        applied += h * weight[s] * work.result[0].power
+            power = pass_round(system, work, work.stages[s], power)
+        applied += h * weight[s] * power
     if keeps:
-        keep_end(stage, work.stages[last], work)
+        keep_end(stage, work.stages[last], power, work)
     if system.contacts.shape[0] > 0 or E.shape[0] > 0:
         bound_accelerations(work, stages)
     if E.shape[0] > 0:

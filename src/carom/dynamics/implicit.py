@@ -47,15 +47,13 @@ def implicit_step(model, data, method, h):
         return 0.0, 0
     if any_held(data.active):
         return constrained(model, data, method, h)
-    whole_step(model.system, data.state, h, data.work)
-    return data.work.result[0].applied, data.work.result[0].code
+    return whole_step(model.system, data.state, h, data.work)
 
 
 @unit
-def whole_step(system, start, h, work):
-    """Make the two stages, and return to the joints."""
-    result, stage, end = work.result[0], work.stage, work.trial
-    result.code = 0
+def whole_step(system, start, h, work) -> tuple[float, int]:
+    """Make the two stages, and return to the joints; return the same as `implicit_step`."""
+    result, stage, end, code = work.result[0], work.stage, work.trial, 0
     result.time = result.start
     power = accelerate(system, start, h, 0, work)
     for b in range(start.shape[0]):
@@ -81,9 +79,9 @@ def whole_step(system, start, h, work):
     forget_bounds(work)
     bound_accelerations(work, 2)
     if not (project_position(system, end, False, 1e-14, work) <= RESOLUTION):
-        result.code = CONSTRAINTS_LOST
+        code = CONSTRAINTS_LOST
     project_velocity(system, end, False, work)
-    result.applied = 0.5 * h * power + damper_work(system, start, h, end)
+    return 0.5 * h * power + damper_work(system, start, h, end), code
 
 
 @kernel

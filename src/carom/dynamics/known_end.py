@@ -29,9 +29,9 @@ def forget_end(work):
 
 
 @kernel
-def keep_end(state, rates, work):
-    """Keep the accelerations of a state, and the power of loads of the last solve."""
-    work.result[0].known_power = work.result[0].power
+def keep_end(state, rates, power, work):
+    """Keep the accelerations of a state, and the power of its loads."""
+    work.known[0].power = power
     for b in range(state.shape[0]):
         here, known, rate = state[b], work.known[b], rates[b].rate
         for k in range(3):
@@ -44,7 +44,7 @@ def keep_end(state, rates, work):
 
 @kernel
 def recall(state, rates, work):
-    """Write the accelerations and powers of a state if they are kept; return whether they are."""
+    """Write the accelerations of a state if they are kept; return whether they are."""
     for b in range(state.shape[0]):
         here, known = state[b], work.known[b]
         for k in range(3):
@@ -58,5 +58,4 @@ def recall(state, rates, work):
     for b in range(state.shape[0]):
         for k in range(6):
             rates[b].rate[k] = work.known[b].rate[k]
-    work.result[0].power = work.result[0].known_power
     return True

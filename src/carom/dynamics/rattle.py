@@ -51,17 +51,16 @@ def rattle_step(model, data, method, h):
         return 0.0, 0
     if any_held(data.active):
         return constrained(model, data, method, h)
-    result = data.work.result[0]
-    whole_step(method.parts, model.system, data.state, h, data.work)
-    if result.code == STALLED:
-        result.fallen += 1
+    applied, ended = whole_step(method.parts, model.system, data.state, h, data.work)
+    if ended == STALLED:
+        data.work.result[0].fallen += 1
         return constrained(model, data, method, h)
-    return result.applied, NO_CONVERGENCE if result.code == TOO_FAR else 0
+    return applied, NO_CONVERGENCE if ended == TOO_FAR else 0
 
 
 @unit
-def whole_step(parts, system, start, h, work):
-    """Make the parts of a step, one after the other."""
+def whole_step(parts, system, start, h, work) -> tuple[float, int]:
+    """Make the parts of a step, one after the other; return the work of loads and motors, and how it ended."""
     applied, code, result, end = 0.0, DONE, work.result[0], work.trial
     result.time = result.start
     for b in range(start.shape[0]):
@@ -78,7 +77,7 @@ def whole_step(parts, system, start, h, work):
             if system.bodies[b].ballistic == 0:
                 bound_changes(work.part[b], end[b], parts[s] * h, work.body[b].bound)
                 copy_state(end[b], work.part[b])
-    result.applied, result.code = applied, code
+    return applied, code
 
 
 @kernel

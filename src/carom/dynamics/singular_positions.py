@@ -53,19 +53,20 @@ def _is_singular(system, least, most):
     return most > usual[0]
 
 
-@unit(where=has_loops)
-def pass_round(system, work, rates):
+@unit
+def pass_round(system, work, rates, power) -> float:
     """Write the accelerations of a stage in a singular position from those before and after it on its path.
 
-    If all positions on the path are singular, the accelerations do not change.
+    If all positions on the path are singular, the accelerations do not change. `power` is that of loads in the
+    stage; return it for these accelerations.
     """
     dropped, usual, result = dropped_rows(system, SINGULARITY), system.solver.usual, work.result[0]
     if dropped <= usual[0]:
-        return
+        return power
     stage, sums = work.stage, work.trial
     pace, time, reach = turning_pace(system, stage), result.time, SINGULAR_TURN
     for _ in range(LONGER_TIMES if pace > 0.0 else 0):
-        power, most = _sum_rates(system, work, rates, reach, pace)
+        mean, most = _sum_rates(system, work, rates, reach, pace)
         result.time = time
         if most > usual[0]:
             reach *= SINGULAR_GROWTH
@@ -74,10 +75,9 @@ def pass_round(system, work, rates):
             if steps(system, b, work):
                 for k in range(3):
                     rates[b].rate[k], rates[b].rate[3 + k] = sums[b].v[k], sums[b].w[k]
-        result.power = power
-        return
+        return mean
     usual[0] = dropped
-    accelerations(system, stage, work, rates)
+    return accelerations(system, stage, work, rates)
 
 
 @kernel
@@ -112,9 +112,9 @@ def _sum_rates(system, work, rates, reach, pace):
             go_on(stage[b], ahead, work.beside[b])
         work.result[0].time = time + ahead
         return_stage(system, work.beside, work)
-        accelerations(system, work.beside, work, rates)
+        here = accelerations(system, work.beside, work, rates)
         most = max(most, dropped_rows(system, SINGULARITY))
-        power += share * work.result[0].power
+        power += share * here
         for b in range(stage.shape[0]):
             if steps(system, b, work):
                 rate = rates[b].rate

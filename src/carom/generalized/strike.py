@@ -146,7 +146,8 @@ class Strike:
             works, phases = out[[o.WORK_C, o.WORK_R, o.FRICTION_LOSS]], out[o.PHASES].astype(int)
             return code, after, p, works, phases & o.WEDGED
         from carom.impact.multiple import api
-        from carom.impact.multiple.layout import multiple_settings, new_multiple_workspace
+        from carom.impact.multiple.layout import multiple_settings
+        from carom.impact.multiple.workspace import new_multiple_workspace
 
         if self.room is None:
             self.room = new_multiple_workspace(len(self.blows))

@@ -15,7 +15,6 @@ from carom.contact.gap import slow
 from carom.contact.operations import is_fixed
 from carom.dynamics.delassus import inverse_masses
 from carom.geometry.thresholds import ROUND_OFF
-from carom.impact.workspace import U
 from carom.kinematics.contact_point import contact_velocity, copy_point, place
 
 
@@ -40,7 +39,7 @@ def as_one(system, k, state, group, work):
         place(contact, core, state, point)
     inverse_masses(system, 1, work.struck, state, work, hit.W)
     hit.u[0], hit.u[1], hit.u[2] = contact_velocity(point, state)
-    return k == 1 or move_alike(k, group.v[U], group.W, hit, 10.0 * slow(contact, state))
+    return k == 1 or move_alike(k, group.u, group.W, hit, 10.0 * slow(contact, state))
 
 
 @kernel

@@ -8,7 +8,6 @@ from typing import NamedTuple
 from carom._compiled.decorators import kernel
 from carom.impact import layout
 from carom.impact.thresholds import NO_RESTITUTION
-from carom.impact.workspace import U
 from carom.kinematics.anisotropy import lengths_of_tangents
 from carom.kinematics.contact_point import power_of_surface
 from carom.law import impact_laws
@@ -96,16 +95,17 @@ def write_share(data, contact, i, k):
     result, n = multiple.result, 3 * i
     taken, returned, loss = result.compression[i], result.restitution[i], result.friction[i]
     phases = layout.WEDGED if result.wedged[i] != 0 else 0
-    if multiple.e[i] > 0.0:
+    given = multiple.contact[i]
+    if given.restitution > 0.0:
         phases |= result.summary[0].marks & (layout.AT_ONCE | layout.PLASTIC)
     copy_block(group.W, n, records.impact[clock.struck].W)
     blow = Blow(
-        together=k, before=three(group.v[U], n), after=three(result.velocity, n),
+        together=k, before=three(group.u, n), after=three(result.velocity, n),
         impulse=three(result.impulse, n), compression=taken, restitution=returned, friction=loss,
         change=taken + returned - loss, phases=phases, duration=0.0,
     )  # fmt: skip
     write_blow(contact, group.points[0][i], data.state, blow, clock, records)
-    if not (phases & layout.PLASTIC != 0 and multiple.e[i] == 1.0 and group.mu[i] == 0.0):
+    if not (phases & layout.PLASTIC != 0 and given.restitution == 1.0 and given.friction == 0.0):
         clock.impacts += blow.change
 
 

@@ -27,7 +27,6 @@ from carom.impact.strike_together import strike_together
 from carom.impact.tangential import return_slip
 from carom.impact.thresholds import SEED
 from carom.impact.work_mode import restore_work
-from carom.impact.workspace import U
 from carom.kinematics.contact_point import contact_velocity
 from carom.kinematics.moving_surfaces import set_surfaces
 from carom.law.friction import bound_of_stick, depends_on_slip
@@ -95,9 +94,9 @@ def strike(model, data, method, c):
         hit.closed = max(k, 2) if jams else k  # after a jam active points are always decided again
         if k > 1:
             inverse_masses(system, k, group.points[0], state, work, group.W)
-            velocities(k, group.points[0], state, group.v[U])
+            velocities(k, group.points[0], state, group.u)
         single = as_one(system, k, state, group, work)
-        if not single and data.multiple.e.shape[0] < k:
+        if not single and data.multiple.contact.shape[0] < k:
             work.step[0].grow, hit.code = FULL_MULTIPLE, GROW
             return
         begin_event(system, c, group.closed[0].feature, state, clock, records)

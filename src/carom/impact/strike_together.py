@@ -17,7 +17,6 @@ from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSet
 from carom.impact.multiple.resolve import resolve_multiple
 from carom.impact.record import note_drive, write_share
 from carom.impact.thresholds import GROUP_SEED
-from carom.impact.workspace import U
 from carom.law.friction import bound_of_stick
 from carom.model.allowance import COUNT_FACTORS, left
 from carom.model.laws import PERSISTENT, STRIKES
@@ -30,12 +29,7 @@ HERTZ, LINEAR = 1.5, 1.0
 @unit
 def resolve_group(k, laws, group, multiple) -> int:
     """Solve the impact of k points; return its code."""
-    contacts = by_reference(
-        CornerContacts(
-            k=k, others=0, W=group.W, u=group.v[U], friction=group.mu, restitution=multiple.e,
-            law=multiple.law, stiffness=multiple.kappa, pair=multiple.pair, laws=laws,
-        )
-    )  # fmt: skip
+    contacts = by_reference(CornerContacts(multiple.contact, group.W, group.u))
     given, exponent = multiple.settings, exponent_of(k, multiple)
     if exponent == HERTZ and all_round(k, multiple):
         stiffen(k, multiple)
@@ -43,7 +37,7 @@ def resolve_group(k, laws, group, multiple) -> int:
         given.multiple, given.rtol, exponent, given.max_events, given.max_steps,
         given.max_rounds,
     )  # fmt: skip
-    return resolve_multiple(contacts, settings, multiple.workspace, multiple.result)
+    return resolve_multiple(k, contacts, laws, settings, multiple.workspace, multiple.result)
 
 
 @kernel
@@ -73,7 +67,7 @@ def stiffen(k, multiple):
     for i in range(k):
         most = max(most, multiple.hertz[i])
     for i in range(k):
-        multiple.kappa[i] *= multiple.hertz[i] / most
+        multiple.contact[i].stiffness *= multiple.hertz[i] / most
 
 
 @kernel
@@ -108,7 +102,7 @@ def strike_together(model, data, c, k):
     system = model.system
     active, state, group, multiple = data.active, data.state, data.group, data.multiple
     work, step = data.work, data.work.step[0]
-    hit, u = work.hit[0], group.v[U]
+    hit, u = work.hit[0], group.u
     count_blows(model, data, k)
     for i in range(k):
         contact = system.contacts[group.closed[i].contact]
@@ -118,18 +112,18 @@ def strike_together(model, data, c, k):
             hit.code = BLOCKED
             return
         j, contact_state = group.closed[i].active, active.contact_states[group.closed[i].contact]
-        law = contact.law[STRIKES]
-        multiple.e[i] = effective_restitution(system, contact, contact_state, -u[3 * i])
+        law, given = contact.law[STRIKES], multiple.contact[i]
+        given.restitution = effective_restitution(system, contact, contact_state, -u[3 * i])
         if j >= 0 and active.points[j].jams == 1:
             u[3 * i] -= GROUP_SEED * math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2)
             law = contact.law[PERSISTENT]
-        group.mu[i] = bound_of_stick(system.laws, law)
-        multiple.law[i], multiple.kappa[i] = law, system.laws.table[law].stiffness
+        given.friction = bound_of_stick(system.laws, law)
+        given.law, given.stiffness = law, system.laws.table[law].stiffness
         multiple.hertz[i] = 0.0
         if contact.ball_like == 1:
             multiple.hertz[i] = stiffness(system, contact, group.points[0][i], state)
         all_by_pairs = multiple.settings.multiple == SEQUENTIAL
-        multiple.pair[i] = pair_of(i, system, group.closed, all_by_pairs)
+        given.pair = pair_of(i, system, group.closed, all_by_pairs)
     passage = multiple.workspace.work.clock[0]
     if model.controls.retry == 1:  # the group can take a time-stepping step instead
         passage.left = int(max(0.0, left(model.controls, step, COUNT_FACTORS)) / k**3)
@@ -186,7 +180,7 @@ def count_blows(model, data, k):
             continue
         for j in range(i, k):
             if group.closed[j].contact == c:
-                approach = max(approach, -group.v[U][3 * j])
+                approach = max(approach, -group.u[3 * j])
         contact, contact_state, last = system.contacts[c], data.active.contact_states[c], c
         if approach > slow(contact, data.state):
             count_blow(system, model.controls, contact, contact_state, approach, now)

@@ -8,14 +8,14 @@ from typing import NamedTuple
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.friction.layout import ContactWork, new_contact_work
+from carom.friction.layout import ContactProblem, ContactWork, new_contact_work
 from carom.impact.multiple.layout import (
+    CORNER_CONTACT,
     MultipleResult,
     MultipleSettings,
-    MultipleWorkspace,
     new_multiple_result,
-    new_multiple_workspace,
 )
+from carom.impact.multiple.workspace import MultipleWorkspace, new_multiple_workspace
 from carom.model.arrays import STATE, System
 from carom.model.contact_kinds import is_found, most_points
 from carom.model.laws import PERSISTENT, law_of
@@ -48,10 +48,6 @@ CLOSED_POINT = [
     ("parent", "i8"),
 ]
 
-#: rows of `v`: velocities; velocities or accelerations without the unknown impulses; impulses or forces;
-#: accelerations with them; errors of positions or velocities, then the impulses that remove them
-U, C, P, ACCELERATIONS, RETURN = range(5)
-
 
 class Equations(NamedTuple):
     """A linear system A x = r for the forces or impulses in some rows of the points of a group."""
@@ -71,7 +67,7 @@ class Equations(NamedTuple):
 
 
 class Group(NamedTuple):
-    """Workspace for up to K points of N bodies, in few arrays, because each array costs time at every call.
+    """Workspace for up to K points of N bodies.
 
     Vectors (3K,) and matrices (3K, 3K) have rows n, t1, t2 for each point.
     """
@@ -79,8 +75,14 @@ class Group(NamedTuple):
     closed: np.recarray  # (K,) CLOSED_POINT
     count: np.ndarray  # (1,) those that `contact.closed_points` has listed
     points: np.recarray  # (2, K) POINT: of the present state; of the end of a step
-    v: np.ndarray  # (5, 3K) vectors
-    W: np.ndarray  # (3K, 3K) inverse mass
+    u: np.ndarray  # (3K,) velocities [m/s]
+    c: np.ndarray  # (3K,) velocities [m/s] or accelerations [m/s^2] without the unknown p
+    p: np.ndarray  # (3K,) impulses [N s] or forces [N]
+    a: np.ndarray  # (3K,) accelerations with them [m/s^2]
+    back: (
+        np.ndarray
+    )  # (3K,) errors of positions [m] or velocities, then the impulses that remove them
+    W: np.ndarray  # (3K, 3K) inverse mass [1/kg]
     idle: np.ndarray  # (2, K, K) the projector to normal forces that move nothing, and its square
     mu: np.ndarray  # (K,)
     kind: np.ndarray  # (K,) of `carom.friction`
@@ -89,6 +91,7 @@ class Group(NamedTuple):
     base: np.recarray  # (N,) STATE of an implicit stage, without its own term
     free: np.recarray  # (N,) STATE with velocities of a stage without forces of points
     equations: Equations
+    problem: ContactProblem  # of these W, c, mu, kind and heading
     cone: ContactWork
 
 
@@ -98,10 +101,7 @@ class MultipleImpact(NamedTuple):
     workspace: MultipleWorkspace
     settings: MultipleSettings
     result: MultipleResult
-    e: np.ndarray  # (K,)
-    law: np.ndarray  # (K,) of `carom.model.laws`
-    kappa: np.ndarray  # (K,)
-    pair: np.ndarray  # (K,) of `CornerContacts`
+    contact: np.recarray  # (K,) CORNER_CONTACT
     hertz: np.ndarray  # (K,) of a ball or an ellipsoid its stiffness by Hertz's law, else 0
 
 
@@ -121,11 +121,16 @@ def capacity(system: System, more: bool) -> int:
 def new_group(system: System, more: bool = False) -> Group:
     """Return the workspace for the largest group of `system`; with `more` contacts may be added."""
     n, k = system.bodies.size, capacity(system, more)
+    u, c, p, a, back = np.zeros((5, 3 * k))
+    problem = ContactProblem(
+        W=np.zeros((3 * k, 3 * k)), c=c, mu=np.zeros(k), kind=np.zeros(k, dtype=np.int64),
+        heading=np.zeros((k, 2)),
+    )  # fmt: skip
     return Group(
         closed=table(CLOSED_POINT, k), count=np.zeros(1, dtype=np.int64),
-        points=table(POINT, 2, k), v=np.zeros((5, 3 * k)),
-        W=np.zeros((3 * k, 3 * k)), idle=np.zeros((2, k, k)), mu=np.zeros(k),
-        kind=np.zeros(k, dtype=np.int64), heading=np.zeros((k, 2)), member=np.zeros(n, dtype=np.int64),
+        points=table(POINT, 2, k), u=u, c=c, p=p, a=a, back=back,
+        W=problem.W, idle=np.zeros((2, k, k)), mu=problem.mu, kind=problem.kind,
+        heading=problem.heading, problem=problem, member=np.zeros(n, dtype=np.int64),
         base=table(STATE, n), free=table(STATE, n),
         equations=new_equations(3 * k), cone=new_contact_work(k),
     )  # fmt: skip
@@ -150,8 +155,7 @@ def no_multiple(settings: MultipleSettings) -> MultipleImpact:
 
 def new_multiple(k: int, settings: MultipleSettings) -> MultipleImpact:
     """Return the workspace of impacts of `k` points."""
-    law, pair = np.zeros((2, k), dtype=np.int64)
     return MultipleImpact(
         workspace=new_multiple_workspace(k), settings=settings, result=new_multiple_result(k),
-        e=np.zeros(k), law=law, kappa=np.zeros(k), pair=pair, hertz=np.zeros(k),
+        contact=table(CORNER_CONTACT, k), hertz=np.zeros(k),
     )  # fmt: skip

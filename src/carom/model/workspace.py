@@ -157,24 +157,23 @@ STAGE = [
 ]
 
 #: accelerations of a body in a state (`carom.dynamics.known_end`)
-KNOWN = [*STATE, ("rate", "f8", 6)]
+KNOWN = [
+    *STATE,
+    ("rate", "f8", 6),
+    ("power", "f8"),  # of loads on all bodies, in the first row
+]
 
 #: results of a step of bodies that are joined, loaded or in contact
 RESULT = [
     ("applied", "f8"),
     ("friction", "f8"),
     ("code", "i8"),
-    ("power", "f8"),  # of loads, and of friction, with the last accelerations
-    ("known_power", "f8"),  # of loads, with the accelerations that are kept
-    ("residual", "f8"),  # greatest of the groups in contact at several points
     ("unnamed", "f8"),  # greatest of these: unexplained loss of energy, relative to the tolerance
     ("order", "i8"),  # of the estimate of its error
-    ("held", "i8"),  # 1 if joined or loaded bodies are in persistent contact
     ("stiff", "i8"),  # 1 if a trial of this step was taken by the implicit member
     ("parts", "i8"),  # additional parts of steps in which bodies turned far
     ("fallen", "i8"),  # steps of a symplectic method that the explicit method took instead
     ("start", "f8"),  # time at which the trial step starts
-    ("begin", "f8"),  # time at which its present part starts
     ("time", "f8"),  # time of the present state, on which prescribed motion depends
 ]
 
@@ -231,7 +230,8 @@ SEARCH = [
     ("code", "i8"),  # of the step without contacts,
     ("applied", "f8"),  # work of loads and of friction in it,
     ("friction", "f8"),
-    ("found", "i8"),  # whether an event is at its end
+    ("found", "i8"),  # whether an event is at its end,
+    ("residual", "f8"),  # greatest forbidden velocity that contacts have at its end [m/s]
 ]
 
 #: state of a body: in FREE flight, HELD by persistent contact, at rest (RESTS)

@@ -20,7 +20,6 @@ from carom.dynamics.energy import energies
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import RESOLUTION
 from carom.impact.thresholds import VELOCITY_LEFT
-from carom.impact.workspace import ACCELERATIONS, C, P, U
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_OPEN, MODE_STICK, PUSHED_IN
 from carom.model.event_rows import begin_event, end_event
@@ -82,7 +81,7 @@ def activate_group(model, data, k, label, horizon):
     inverse_masses(system, rows, group.points[0], state, work, group.W)
     pose_forces(model, data, rows, label)
     for row in range(3 * rows):  # a first guess: those of another group, or of other points
-        group.v[P][row] = 0.0
+        group.p[row] = 0.0
     decide_active(model, data, k, rows, horizon)
     if leave_unreachable(system, state, k, group):
         solve_among(system, k, rows, group)
@@ -92,7 +91,7 @@ def activate_group(model, data, k, label, horizon):
         stay = stay or closed_point.stays == 1
         if new < 0 and closed_point.stays == 1 and closed_point.active < 0:
             new = i
-        if closed_point.stays == 0 and group.v[U][3 * i] <= slow(
+        if closed_point.stays == 0 and group.u[3 * i] <= slow(
             system.contacts[closed_point.contact], state
         ):
             active.contact_states[closed_point.contact].leaving = 1  # lifts off without speed
@@ -115,7 +114,7 @@ def pose_forces(model, data, k, label):
     work.result[0].start = data.clocks[0].now
     accelerate_start(model, data, label)
     write_motion(system, k, data.state, work.stages[0], group, work)
-    still = controls.rest * greatest(3 * k, group.v[C]) * controls.step
+    still = controls.rest * greatest(3 * k, group.c) * controls.step
     for i in range(k):
         d1, d2, _ = slip_of(system, data, i, still)
         group.kind[i] = SLIDING if d1 != 0.0 or d2 != 0.0 else CONE
@@ -134,21 +133,21 @@ def decide_active(model, data, k, rows, horizon):
     system, state, group = model.system, data.state, data.group
     for i in range(k):
         closed_point = group.closed[i]
-        leaves = abs(group.v[U][3 * i]) > slow(system.contacts[closed_point.contact], state)
+        leaves = abs(group.u[3 * i]) > slow(system.contacts[closed_point.contact], state)
         closed_point.stays, closed_point.bounces = 0 if leaves else 1, 0.0
-    push = greatest(3 * k, group.v[C])
+    push = greatest(3 * k, group.c)
     for turn in range(k + 1):
         solve_among(system, k, rows, group)
         more = False
         for i in range(k):
-            contact, u = system.contacts[group.closed[i].contact], group.v[U][3 * i]
-            a = group.v[ACCELERATIONS][3 * i]
+            contact, u = system.contacts[group.closed[i].contact], group.u[3 * i]
+            a = group.a[3 * i]
             if group.closed[i].stays == 0:
                 end = horizon_of(system, contact, model.controls, -a, horizon)
                 if bounces_end(system, contact, u, -a, slow(contact, state), end):
                     group.closed[i].stays, more = 1, True
                     group.closed[i].bounces = time_without_torque(system, contact, u, -a, state)
-            elif turn == 0 and a > max(1e-10 * push, group.v[P][3 * i] * group.W[3 * i, 3 * i]):
+            elif turn == 0 and a > max(1e-10 * push, group.p[3 * i] * group.W[3 * i, 3 * i]):
                 group.closed[i].stays = 0  # it has no force
         if not more:
             break
@@ -177,11 +176,11 @@ def leave_unreachable(system, state, k, group):
         fastest, left = -1, 0.0
         for i in range(k):
             if group.closed[i].stays == 1:
-                if fastest < 0 or group.v[U][3 * i] > group.v[U][3 * fastest]:
+                if fastest < 0 or group.u[3 * i] > group.u[3 * fastest]:
                     fastest = i
         if fastest < 0:
             return written
-        most = group.v[U][3 * fastest]
+        most = group.u[3 * fastest]
         if not most > slow(system.contacts[group.closed[fastest].contact], state):
             return written
         find_pull(k, 0, 0.0, group)
@@ -268,7 +267,7 @@ def lay_down(model, data, k, label):
     """
     system, state, group, clock, off = model.system, data.state, data.group, data.clocks[0], False
     for i in range(k):
-        if group.closed[i].motion == MOTION_POINT and group.v[P][3 * i] > 0.0:
+        if group.closed[i].motion == MOTION_POINT and group.p[3 * i] > 0.0:
             size = system.contacts[group.closed[i].contact].extent
             off = off or abs(group.points[0][i].gap) > RESOLUTION * size
     if not off:

@@ -27,7 +27,6 @@ from carom.dynamics.delassus import on_drive
 from carom.dynamics.element_operations import driven_power
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER, SUM_ERROR
-from carom.impact.workspace import RETURN, C, U
 from carom.kinematics.contact_point import power_of_surface
 from carom.law.restitution import depends_on_approach, restitution_at
 from carom.law.turning import arm_of_torque
@@ -117,11 +116,11 @@ def end_bounces(model, data, k, label, horizon):
     speed = greatest_speed(system, state, count, group.member)
     still = 1e-12 * speed
     for i in range(3 * k):
-        still = max(still, controls.rest * controls.step * abs(group.v[C][i]))
+        still = max(still, controls.rest * controls.step * abs(group.c[i]))
     still = min(still, REST_SHARE * speed)
     for i in range(k):
         contact = system.contacts[group.closed[i].contact]
-        end = horizon_of(system, contact, controls, -group.v[C][3 * i], horizon)
+        end = horizon_of(system, contact, controls, -group.c[3 * i], horizon)
         if not time_to_stop(i, group) > end:  # friction ends with the slip
             group.heading[i, 0], group.heading[i, 1] = 0.0, 0.0
     find_pull(k, 1, SUM_ERROR * speed, group)
@@ -132,7 +131,7 @@ def end_bounces(model, data, k, label, horizon):
         find_pull(k, 0, SUM_ERROR * speed, group)
         normal, tangential = work_of_pull(k, group)
     name_work(normal, tangential, clock, work.step[0])
-    x = group.v[RETURN]
+    x = group.back
     for i in range(k):
         clock.loads += power_of_surface(group.points[0][i], state, x[3 * i : 3 * i + 3])
     if give(system, k, count, state, group, work):
@@ -148,7 +147,7 @@ def end_bounces(model, data, k, label, horizon):
 @kernel
 def work_of_pull(k, group):
     """Return the work of the impulses in RETURN: half of each times its velocities before and after."""
-    x, u = group.v[RETURN], group.v[U]
+    x, u = group.back, group.u
     normal, tangential = 0.0, 0.0
     for i in range(3 * k):
         if x[i] == 0.0:
@@ -163,24 +162,24 @@ def work_of_pull(k, group):
 @kernel
 def find_pull(k, friction, tiny, group):
     """Write the impulses that remove the velocities to RETURN: with friction (1) if they exist."""
-    x = group.v[RETURN]
+    x = group.back
     for i in range(k):  # the normal of a point that stays is removed, and its tangents if it sticks
         closed_point = group.closed[i]
         closed_point.rows = 0 if closed_point.stays == 0 else 3 if group.kind[i] == CONE else 1
     for with_friction in range(friction, -1, -1):
         n = factor_given(k, with_friction == 1, group)
         for i in range(3 * k):
-            x[i] = group.v[U][i]
+            x[i] = group.u[i]
         left = solve_rows(k, n, tiny, group, x)
         for i in range(k if with_friction == 1 else 0):
             if group.closed[i].rows == 1 and group.kind[i] == SLIDING:
                 for r in range(2):
                     x[3 * i + 1 + r] = -group.mu[i] * group.heading[i, r] * x[3 * i]
-        if left <= max(tiny, REMAINDER * greatest(3 * k, group.v[U])):
+        if left <= max(tiny, REMAINDER * greatest(3 * k, group.u)):
             return
 
 
 @kernel
 def velocity_after(q, k, group):
     """Return the velocity of row q after the impulses in RETURN."""
-    return add_product(group.v[U][q], 3 * k, group.W[q], group.v[RETURN])
+    return add_product(group.u[q], 3 * k, group.W[q], group.back)

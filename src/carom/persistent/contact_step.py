@@ -40,15 +40,18 @@ def contact_step(model, data, method, h):
     active, work, n = data.active, data.work, data.state.shape[0]
     data.group.equations.iterations[FACTORED] = 0
     result, joined = work.result[0], rubs(model.system)
-    result.applied, result.friction, result.code = 0.0, 0.0, 0
-    result.residual, result.unnamed = 0.0, 0.0
+    applied, friction, code = 0.0, 0.0, 0
+    work.search[0].residual, result.unnamed = 0.0, 0.0
     for i in range(active.count[0]):
         label = work.body[active.points[i].body].label
         joined = joined and label != n
         if active.points[i].rest == 0 and not was_visited(active, i, label, work):
-            step_group(model, data, method, label, h)
+            own = step_group(model, data, method, label, h)
+            applied, friction, code = applied + own[0], friction + own[1], max(code, own[2])
     if joined:  # friction in joints alone: a group without points
-        step_group(model, data, method, n, h)
+        own = step_group(model, data, method, n, h)
+        applied, friction, code = applied + own[0], friction + own[1], max(code, own[2])
+    result.applied, result.friction, result.code = applied, friction, code
     count_factors(data.group, work.step[0])
 
 
@@ -63,41 +66,38 @@ def was_visited(active, i, label, work):
 
 @kernel
 def step_group(model, data, method, label, h):
-    """Step one group: by the explicit member while modes last, else by the implicit one or the closing one."""
+    """Step one group: by the explicit member while modes last, else by the implicit one or the closing one.
+
+    Return the work of loads and of friction, and a status.
+    """
     work, group, clock, order = data.work, data.group, data.clocks[0], model.controls.order
     result = work.result[0]
-    k, rate, push, friction, _ = first_stage(model, data, label)
-    applied = result.power  # powers at the start
-    had, rubbed = result.applied, result.friction
+    k, rate, push, powers, _ = first_stage(model, data, label)
     clock.contact_steps += 1
     work.step[0].since += 5.0 * k * stages_within(method)
     if h * rate <= STIFF_SLIP and not (result.stiff == 1 and work.search[0].again == 1):
-        result.applied = had + h * method.b[0] * applied
-        result.friction = rubbed + h * method.b[0] * friction
-        k = explicit_member(model, data, method, label, h)
+        k, applied, friction = explicit_member(model, data, method, label, h, powers)
         s = stages_within(method)
         if k > 0 and write_end(model, data, label, k) and check_end(model, data, label, s, h, True):
             note_errors(model, data, method.E, label, k, h)
-            named = result.friction - rubbed + result.applied - had
-            note_unnamed(model, data, label, named, 0.0, push)
-            return
+            note_unnamed(model, data, label, friction + applied, 0.0, push)
+            return applied, friction, 0
         result.stiff = 1
     if not (order > 0 and 0.5 * h * h * push <= closing_size(model, data, label)):
         first_modes(data, label)
-        weight = method.stiff[method.stiff.shape[0] - 1, 0]
-        result.applied, result.friction = had + h * weight * applied, rubbed + h * weight * friction
-        if end_implicitly(model, data, method.stiff, label, h, False):
+        ended, applied, friction = end_implicitly(
+            model, data, (method.stiff, False), label, h, powers
+        )
+        if ended:
             note_errors(model, data, method.stiff_E, label, 0, h)
             if order > 0:
                 result.order = min(order, STIFF_ORDER)
-            named = result.friction - rubbed + result.applied - had
-            note_unnamed(model, data, label, named, 0.0, push)
-            return
+            note_unnamed(model, data, label, friction + applied, 0.0, push)
+            return applied, friction, 0
     first_modes(data, label)
-    result.applied, result.friction = had, rubbed
-    if not end_implicitly(model, data, method.closing, label, h, True):
-        result.code = CONSTRAINTS_LOST
-        return
+    ended, applied, friction = end_implicitly(model, data, (method.closing, True), label, h, powers)
+    if not ended:
+        return applied, friction, CONSTRAINTS_LOST
     lets_go = order > 0 and opens(data, label)
     if lets_go:
         note_errors(model, data, method.closing_E, label, 0, h)
@@ -105,26 +105,30 @@ def step_group(model, data, method, label, h):
         miss, b = work.body[group.member[m]].miss, group.member[m]
         bound_accelerations_of(work, b, 2)
         miss[0], miss[1], miss[2] = max(miss[0], 0.5 * h * h * push), 0.0, 0.0
-    named = result.friction - rubbed + result.applied - had
-    note_unnamed(model, data, label, named, h, push)
-    result.friction -= lost_in_stop(model, data, label, named)
+    note_unnamed(model, data, label, friction + applied, h, push)
+    friction -= lost_in_stop(model, data, label, friction + applied)
     if order > 0:
         result.order = 1 if lets_go else CLOSING_ORDER
+    return applied, friction, 0
 
 
 @kernel
-def end_implicitly(model, data, A, label, h, closes):
-    """Step a group by the stiff method A, and write its end; return whether there is one."""
-    k = implicit_member(model, data, A, label, h, closes)
+def end_implicitly(model, data, method, label, h, powers):
+    """Step a group by a stiff method, and write its end, as `implicit_member` says.
+
+    Return whether there is one, and the work of loads and of friction.
+    """
+    k, applied, friction = implicit_member(model, data, method, label, h, powers)
+    A, closes = method
     if k == 0:
-        return False
+        return False, applied, friction
     if not closes:
         note_left(model, data, k)
     note_modes(model, data, k, h)
     if not write_end(model, data, label, k):
-        return False
+        return False, applied, friction
     check_end(model, data, label, A.shape[0], h, False)
-    return True
+    return True, applied, friction
 
 
 @kernel

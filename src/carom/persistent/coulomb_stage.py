@@ -16,7 +16,6 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction.layout import CONE, SLIDING
-from carom.impact.workspace import C, P, U
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import is_driven, radius_of
@@ -29,9 +28,9 @@ STAGE_ITERATIONS, HALVES, TOGETHER = 40, 6, 3
 
 @kernel
 def solve_stage(k, hg, group):
-    """Write the forces of a stage to P; return whether they exist.
+    """Write the forces of a stage to `p`; return whether they exist.
 
-    U has u~, C the accelerations without forces. With hg = 0 the law is that of accelerations: slip goes on
+    `u` has u~, `c` the accelerations without forces. With hg = 0 the law is that of accelerations: slip goes on
     along `heading`, what has no velocity slips the way it accelerates.
     """
     closed = group.closed
@@ -66,12 +65,12 @@ def solve_forces(k, group):
 @kernel
 def change_loads(k, turn, group):
     """Unload springs that pull, or load one whose point approaches; return whether there is one."""
-    closed, p, push = group.closed, group.v[P], largest(k, group)
+    closed, p, push = group.closed, group.p, largest(k, group)
     if unload(k, turn < TOGETHER, group) > 0:
         return True
     for i in range(k):
         if closed[i].motion == MOTION_POINT and closed[i].presses == 0 and closed[i].weight > 0.0:
-            if dot(3 * k, group.W[3 * i], p) + group.v[C][3 * i] < -limits.SETTLED_SHARE * push:
+            if dot(3 * k, group.W[3 * i], p) + group.c[3 * i] < -limits.SETTLED_SHARE * push:
                 closed[i].presses = 1
                 return True
     return False
@@ -83,7 +82,7 @@ def largest(k, group):
     push = 0.0
     for i in range(k):
         if group.closed[i].motion == MOTION_POINT:
-            push = max(push, abs(group.v[C][3 * i]))
+            push = max(push, abs(group.c[3 * i]))
         elif group.closed[i].motion == MOTION_JOINT:
             push = max(push, group.mu[i] * group.W[3 * i + 1, 3 * i + 1])
     return push
@@ -103,10 +102,10 @@ def list_unknowns(k, group):
             if bound and a >= first and moves(group, row) and (a == 0 or group.mu[i] > 0.0):
                 rows[n], n = row, n + 1
             else:
-                group.v[P][row] = 0.0
+                group.p[row] = 0.0
         if closed_point.motion == MOTION_JOINT and is_driven(group, i):
-            u = group.v[U][3 * i + 1]
-            group.v[P][3 * i + 1] = -group.mu[i] if u > 0.0 else group.mu[i] if u < 0.0 else 0.0
+            u = group.u[3 * i + 1]
+            group.p[3 * i + 1] = -group.mu[i] if u > 0.0 else group.mu[i] if u < 0.0 else 0.0
     return n
 
 
@@ -116,11 +115,11 @@ def newton(k, hg, halves, idle, group):
 
     Halved steps can stop where discs meet, between stick and slip; whole steps then go on.
     """
-    n, p, equations = list_unknowns(k, group), group.v[P], group.equations
+    n, p, equations = list_unknowns(k, group), group.p, group.equations
     rows, before, r = equations.rows, equations.before, equations.r
     push, slip = largest(k, group), 0.0
     for i in range(k):
-        slip = max(slip, max(abs(group.v[U][3 * i + 1]), abs(group.v[U][3 * i + 2])))
+        slip = max(slip, max(abs(group.u[3 * i + 1]), abs(group.u[3 * i + 2])))
     enough = limits.EQUATION_ERROR * push + (1e-15 * slip / hg if hg > 0.0 else 0.0)
     size = write_equations(k, n, hg, idle, group)
     for _ in range(STAGE_ITERATIONS):
@@ -173,8 +172,8 @@ def write_equations(k, n, hg, idle, group):
 def write_normal(k, n, i, idle, group):
     """Write the equation of the normal force of one point, unknown i."""
     rows, errors, A = group.equations.rows, group.equations.r, group.equations.A
-    W, p, row = group.W[rows[i]], group.v[P], rows[i]
-    errors[i] = group.v[C][row] + dot(3 * k, W, p)
+    W, p, row = group.W[rows[i]], group.p, rows[i]
+    errors[i] = group.c[row] + dot(3 * k, W, p)
     for j in range(n):
         A[i, j] = W[rows[j]]
         if idle > 0.0 and rows[j] % 3 == 0:
@@ -187,15 +186,15 @@ def write_normal(k, n, i, idle, group):
 def write_disc(k, n, i, width, hg, group):
     """Write the equations of the friction of one point: unknowns i and, if `width` is 2, i + 1."""
     rows, errors, A = group.equations.rows, group.equations.r, group.equations.A
-    W, p = group.W, group.v[P]
+    W, p = group.W, group.p
     a, b, unit = rows[i], rows[i + width - 1], rows[i] // 3
     closed_point = group.closed[unit]
     # that of the point, or of the parent of a torque; below 0 for a joint
     normal = 3 * (unit if closed_point.motion == MOTION_POINT else closed_point.parent)
     scale = 0.5 * (W[a, a] + W[b, b])
     known = closed_point.passes == 1 if hg > 0.0 else group.kind[unit] == SLIDING
-    first = group.v[C][a] if hg == 0.0 else group.v[U][a] / hg
-    second = group.v[C][b] if hg == 0.0 else group.v[U][b] / hg
+    first = group.c[a] if hg == 0.0 else group.u[a] / hg
+    second = group.c[b] if hg == 0.0 else group.u[b] / hg
     ga = first + dot(3 * k, W[a], p)
     gb = second + dot(3 * k, W[b], p) if width == 2 else 0.0
     za, zb = p[a] - ga / scale, p[b] - gb / scale if width == 2 else 0.0

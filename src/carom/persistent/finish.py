@@ -16,7 +16,6 @@ from carom.dynamics.project import project_position, project_velocity
 from carom.dynamics.thresholds import ERROR_SHARE
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER, RESOLUTION
-from carom.impact.workspace import ACCELERATIONS, C, P, U
 from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT
@@ -96,9 +95,9 @@ def note_modes(model, data, k, h):
     friction could have stopped in the step goes on, whatever round-off has left of its force in a short step.
     """
     active, group, controls = data.active, data.group, model.controls
-    still = controls.rest * greatest(3 * k, group.v[C]) * controls.step
+    still = controls.rest * greatest(3 * k, group.c) * controls.step
     for i in range(k):
-        closed_point, u, p = group.closed[i], group.v[U], group.v[P]
+        closed_point, u, p = group.closed[i], group.u, group.p
         slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
         force = math.hypot(p[3 * i + 1], p[3 * i + 2])
         # of a point that does not press, round-off is no friction left
@@ -135,7 +134,7 @@ def turns_back(i, h, group):
     """
     if group.closed[i].motion != MOTION_JOINT:
         return False
-    return abs(group.v[U][3 * i + 1]) > braked(i, h, group)
+    return abs(group.u[3 * i + 1]) > braked(i, h, group)
 
 
 @kernel
@@ -161,7 +160,7 @@ def check_end(model, data, label, s, h, given) -> bool:
         note_velocity(work.stage[group.member[m]], work.stages[s, group.member[m]])
     accelerate_freely(model, data, loaded, count, s)
     k = write_rows(model, data, label, s)
-    push = greatest(3 * k, group.v[C])
+    push = greatest(3 * k, group.c)
     directions = set_modes(system, active, k, group)
     if given:
         if directions < (PASSED if locates(model, data) else SAME):
@@ -190,7 +189,7 @@ def check_end(model, data, label, s, h, given) -> bool:
         )
         if closed_point.motion == MOTION_JOINT:
             one = system.relations.frictions[closed_point.active]
-            one.force, one.stop = group.v[P][3 * i + 1], time_to_stop(i, group)
+            one.force, one.stop = group.p[3 * i + 1], time_to_stop(i, group)
             one.grip = 1.0
             if law or exact:
                 one.grip = grip_by_law(i, push, group) if one.mode == 0 else 1.0
@@ -231,7 +230,7 @@ def check_end(model, data, label, s, h, given) -> bool:
 @kernel
 def slip_at_end(i, group):
     """Return the speed of slip of a point, or of a joint."""
-    return math.hypot(group.v[U][3 * i + 1], group.v[U][3 * i + 2])
+    return math.hypot(group.u[3 * i + 1], group.u[3 * i + 2])
 
 
 @kernel
@@ -247,7 +246,7 @@ def solve_end(model, data, label, k, s, h):
         lasts = within_cones(k, group)
         if stick_where_slip_ends(model, data, k, h):
             onto_tangents(model.system, data, k, count)
-            velocities(k, group.points[0], work.trial, group.v[U])
+            velocities(k, group.points[0], work.trial, group.u)
             copy_to_stage(count, work.trial, group, work)
             lasts = True
         if lasts:
@@ -261,14 +260,14 @@ def solve_end(model, data, label, k, s, h):
 @kernel
 def rest_of(model, data, k, h):
     """Return the speed below which the bodies of k points are at rest at the end of a step of length h."""
-    push = greatest(3 * k, data.group.v[C])
-    return rest_speed(model.controls, h * push, data.work.result[0].residual, k, FEW_REST)
+    push = greatest(3 * k, data.group.c)
+    return rest_speed(model.controls, h * push, data.work.search[0].residual, k, FEW_REST)
 
 
 @kernel
 def end_mode(active_point, i, still, at_rest, group):
     """Let a point open that has no force and leaves its surface, faster than `still`, or stick at rest."""
-    leaves = group.v[P][3 * i] <= 0.0 and group.v[U][3 * i] > still
+    leaves = group.p[3 * i] <= 0.0 and group.u[3 * i] > still
     if leaves or active_point.passes == 1:
         active_point.next = MODE_OPEN
     if at_rest:
@@ -284,20 +283,20 @@ def add_forces_of_corners(active, k, group):
         if closed_point.listed == 0 and closed_point.motion == MOTION_POINT:
             force = active.points[closed_point.active].force
             for r in range(3):
-                force[r] += group.v[P][3 * i + r]
+                force[r] += group.p[3 * i + r]
 
 
 @kernel
 def gains(i, push, group):
     """Return whether a point accelerates along its surface."""
-    a = group.v[ACCELERATIONS]
+    a = group.a
     return math.hypot(a[3 * i + 1], a[3 * i + 2]) > 1e-7 * push
 
 
 @kernel
 def within_cones(k, group):
     """Return whether the friction of all points that stick, and torques that keep from turning, is allowed."""
-    p, most = group.v[P], 0.0
+    p, most = group.p, 0.0
     for i in range(k):
         most = max(most, p[3 * i])
     for i in range(k):
@@ -327,7 +326,7 @@ def stick_where_slip_ends(model, data, k, h):
             continue
         size = model.system.bodies[group.points[0][i].a].extent
         allowed = ERROR_SHARE * allowed_error(controls.rtol, controls.atol, size, 0.0)
-        speed = math.hypot(group.v[U][3 * i + 1], group.v[U][3 * i + 2])
+        speed = math.hypot(group.u[3 * i + 1], group.u[3 * i + 2])
         ends = controls.order > 0 and 0.5 * speed * abs(time_to_stop(i, group)) <= allowed
         ends = ends and h >= (1.0 - REMAINDER) * first_stop(model.system, active, closed_point)
         if ends or speed <= still:
@@ -366,13 +365,13 @@ def note_residual(active, k, group, work):
     """Raise the residual of the step to the greatest forbidden velocity."""
     worst = 0.0
     for i in range(k):
-        presses = group.closed[i].motion == MOTION_POINT and group.v[P][3 * i] > 0.0
+        presses = group.closed[i].motion == MOTION_POINT and group.p[3 * i] > 0.0
         if not presses or has_passed(active, i, group):
             continue
-        worst = max(worst, abs(group.v[U][3 * i]))
+        worst = max(worst, abs(group.u[3 * i]))
         if group.kind[i] == CONE:
-            worst = max(worst, math.hypot(group.v[U][3 * i + 1], group.v[U][3 * i + 2]))
-    work.result[0].residual = max(work.result[0].residual, worst)
+            worst = max(worst, math.hypot(group.u[3 * i + 1], group.u[3 * i + 2]))
+    work.search[0].residual = max(work.search[0].residual, worst)
 
 
 @kernel

@@ -13,7 +13,6 @@ from carom.contact.point_lists import write_closed
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.solve import free_body
 from carom.geometry.thresholds import ROUND_OFF
-from carom.impact.workspace import P
 from carom.kinematics.coordinate import along, drift, motion_along, push, slides, speeds_of
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.law.friction import bound_of_stick
@@ -94,12 +93,12 @@ def is_driven(group, i):
 
 @kernel
 def radius_of(group, i):
-    """Return the greatest friction of a point or an entry under the forces in P."""
+    """Return the greatest friction of a point or an entry under the forces in `p`."""
     closed_point = group.closed[i]
     if closed_point.motion == MOTION_JOINT:
         return group.mu[i]
     normal = closed_point.parent if closed_point.motion != MOTION_POINT else i
-    return group.mu[i] * max(0.0, group.v[P][3 * normal])
+    return group.mu[i] * max(0.0, group.p[3 * normal])
 
 
 @kernel

@@ -14,7 +14,6 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction.layout import SLIDING
-from carom.impact.workspace import ACCELERATIONS, C, P, U
 from carom.model.actions import (
     EVENT_BREAK,
     EVENT_JAM,
@@ -44,15 +43,15 @@ def greatest_push(k, group):
         for j in range(i if a.motion == MOTION_POINT and group.points[0][i].b != -1 else 0):
             if group.closed[j].contact == a.contact and group.closed[j].motion == MOTION_POINT:
                 return 0.0
-    return greatest(3 * k, group.v[C])
+    return greatest(3 * k, group.c)
 
 
 @kernel
 def time_to_stop(i, group):
     """Return the time until slip of point i stops at its present deceleration."""
     d1, d2 = group.heading[i, 0], group.heading[i, 1]
-    speed = group.v[U][3 * i + 1] * d1 + group.v[U][3 * i + 2] * d2
-    rate = group.v[ACCELERATIONS][3 * i + 1] * d1 + group.v[ACCELERATIONS][3 * i + 2] * d2
+    speed = group.u[3 * i + 1] * d1 + group.u[3 * i + 2] * d2
+    rate = group.a[3 * i + 1] * d1 + group.a[3 * i + 2] * d2
     return speed / -rate if group.kind[i] == SLIDING and rate < 0.0 else math.inf
 
 
@@ -67,7 +66,7 @@ def take_forces(active_point, i, group):
     active_point.stop = time_to_stop(i, group)
     for r in range(3):
         # a contact problem without a solution leaves forces that pull: no contact has them
-        active_point.force[r] = group.v[P][3 * i + r] if group.v[P][3 * i] > 0.0 else 0.0
+        active_point.force[r] = group.p[3 * i + r] if group.p[3 * i] > 0.0 else 0.0
         for j in range(3):
             active_point.W[r, j] = group.W[3 * i + r, 3 * i + j]
 
@@ -78,7 +77,7 @@ def set_margins(active_point, i, push, group):
     active_point.lift, active_point.grip = 1.0, 1.0
     if not push > 0.0:
         return
-    q, W, p, a = 3 * i, group.W, group.v[P], group.v[ACCELERATIONS]
+    q, W, p, a = 3 * i, group.W, group.p, group.a
     if active_point.next == MODE_OPEN:
         active_point.lift = -max(a[q] / push, 2.0 * EVENT_ERROR)
         return
@@ -95,7 +94,7 @@ def set_margins(active_point, i, push, group):
 @kernel
 def set_grip(active_point, i, push, group):
     """Write the grip of point i, which sticks at the start of the step."""
-    q, W, p, a = 3 * i, group.W, group.v[P], group.v[ACCELERATIONS]
+    q, W, p, a = 3 * i, group.W, group.p, group.a
     gain = math.sqrt(a[q + 1] ** 2 + a[q + 2] ** 2) / push
     if active_point.next == MODE_SLIP:
         active_point.grip = -max(gain, 2.0 * EVENT_ERROR)

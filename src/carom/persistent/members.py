@@ -7,14 +7,15 @@ explicit    the method of the run, with given modes (`carom.persistent.springs`)
 implicit    L-stable, of order 4: Coulomb's law at the velocity of each stage (`carom.persistent.coulomb_stage`)
 closing     implicit Euler, a stiff method of one stage; with impulses, like Moreau.s, where it has none
 
-Each returns whether it has made the step. The work of loads, and of friction, is added to `work.result`.
+Each returns the number of points at the end, 0 if it has not made the step, and the work of loads and of
+friction.
 """
 
 from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import by_reference, kernel
+from carom._compiled.decorators import kernel
 from carom.dynamics.delassus import velocities
 from carom.dynamics.explicit import (
     add_stages,
@@ -31,13 +32,11 @@ from carom.friction.layout import (
     ENOUGH,
     ITERATIONS,
     SLIDING,
-    ContactProblem,
 )
 from carom.friction.solve import solve_cones
 from carom.friction.strategy import budget
 from carom.geometry.rotation import multiply, normalize
 from carom.geometry.thresholds import ROUND_OFF
-from carom.impact.workspace import C, P, U
 from carom.law.piecewise import any_depends_on_speed
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.coulomb_stage import solve_stage
@@ -61,10 +60,14 @@ FIXED_POINT = 25  # iterations of the pose of a stage
 
 
 @kernel
-def explicit_member(model, data, method, label, h):
-    """Make the stages of the method of the run; return the number of points at its last one, 0 if modes end."""
+def explicit_member(model, data, method, label, h, powers):
+    """Make the stages of the method of the run; return the number of points at its last one, 0 if modes end.
+
+    `powers` are those of loads and of friction in stage 0. Return their work too.
+    """
     start, end, group, work = data.state, data.work.trial, data.group, data.work
     (count, loaded), result, k = bodies_of(model, data, label), work.result[0], 0
+    applied, friction = h * method.b[0] * powers[0], h * method.b[0] * powers[1]
     least = PASSED if locates(model, data) else SAME
     for s in range(1, stages_within(method)):
         for m in range(count):
@@ -74,29 +77,31 @@ def explicit_member(model, data, method, label, h):
         result.time = result.start + h * node(method.A[s, :s])
         power = accelerate_freely(model, data, loaded, count, s)
         k = write_rows(model, data, label, s)
-        if set_modes(model.system, data.active, k, group) < least:
-            return 0
-        if not solve_springs(k, group):
-            return 0
+        if set_modes(model.system, data.active, k, group) < least or not solve_springs(k, group):
+            return 0, 0.0, 0.0
         driven, rubbed = push_bodies(model, data, loaded, k, count, s)
-        result.applied += h * method.b[s] * (power + driven)
-        result.friction += h * method.b[s] * rubbed
+        applied += h * method.b[s] * (power + driven)
+        friction += h * method.b[s] * rubbed
     weights = method.b[: stages_within(method)]
     for m in range(count):
         b = group.member[m]
         combine_body(weights, h, start[b], work.stages, b, end[b])
     result.time = result.start + h
-    return k
+    return k, applied, friction
 
 
 @kernel
-def implicit_member(model, data, A, label, h, closes):
-    """Make the stages of the stiff method A; return the number of points at the end, 0 if one is not solved.
+def implicit_member(model, data, method, label, h, powers):
+    """Make the stages of a stiff method; return the number of points at the end, 0 if one is not solved.
 
-    One that `closes` has impulses where its stage has no solution.
+    `method` is its matrix, and whether it closes: then it has impulses where its stage has no solution.
+    `powers` are those of loads and of friction in stage 0. Return their work too.
     """
     start, end, group, work = data.state, data.work.trial, data.group, data.work
-    result, k, stages = work.result[0], 0, A.shape[0]
+    (A, closes), result, k = method, work.result[0], 0
+    stages = A.shape[0]
+    first = h * A[stages - 1, 0]
+    applied, friction = first * powers[0], first * powers[1]
     count, _ = bodies_of(model, data, label)
     for s in range(1, stages):
         for m in range(count):
@@ -107,13 +112,13 @@ def implicit_member(model, data, A, label, h, closes):
         result.time = result.start + h * node(A[s, : s + 1])
         k, power, rubbed = implicit_stage(model, data, label, s, h * A[s, s], closes)
         if k < 0:
-            return 0
-        result.applied += h * A[stages - 1, s] * power
-        result.friction += h * A[stages - 1, s] * rubbed
+            return 0, 0.0, 0.0
+        applied += h * A[stages - 1, s] * power
+        friction += h * A[stages - 1, s] * rubbed
     for m in range(count):
         b = group.member[m]
         copy_state(work.stage[b], end[b])
-    return k
+    return k, applied, friction
 
 
 @kernel
@@ -150,10 +155,10 @@ def implicit_stage(model, data, label, s, hg, closes):
             b = group.member[m]
             copy_state(work.stage[b], group.free[b])  # its place: a surface may turn beneath it
             add_velocity(group.base[b], hg, work.stages[s, b], group.free[b])
-        velocities(k, group.points[0], group.free, group.v[U])
+        velocities(k, group.points[0], group.free, group.u)
         if k != before:
             for row in range(3 * k):
-                group.v[P][row] = 0.0
+                group.p[row] = 0.0
         lost = iterations[0]
         for i in range(k):
             group.closed[i].passes = 0
@@ -167,7 +172,7 @@ def implicit_stage(model, data, label, s, hg, closes):
             turned = renew_modes(model, data.active, k, hg, turn, group)
         for i in range(k):  # the work of friction of all points: what sticks has no velocity
             group.kind[i] = SLIDING
-        velocities(k, group.points[0], work.stage, group.v[U])
+        velocities(k, group.points[0], work.stage, group.u)
         driven, rubbed = push_bodies(model, data, loaded, k, count, s)
         power = applied + driven
     if model.controls.order > 0 and not closes and not change <= STAGE_CHANGE:
@@ -223,12 +228,12 @@ def move_stage(base, hg, length, stage, out):
 
 @kernel
 def solve_impulses(model, data, k, h):
-    """Write forces to P under which Coulomb's law holds with the velocities h W p + U."""
-    group, p = data.group, data.group.v[P]
+    """Write forces `p` under which Coulomb's law holds with the velocities h W p + u."""
+    group, p = data.group, data.group.p
     count = group.cone.count
     for i in range(3 * k):
         p[i] = 0.0
-        group.v[C][i] = group.v[U][i]
+        group.c[i] = group.u[i]
     turning = False
     for i in range(k):
         group.kind[i] = CONE
@@ -237,12 +242,9 @@ def solve_impulses(model, data, k, h):
         elif group.closed[i].motion != MOTION_POINT:
             group.mu[i], turning = 1.0, True
     group.cone.mismatch[ENOUGH], count[BUDGET] = 0.0, budget(k)
-    problem = by_reference(
-        ContactProblem(W=group.W, c=group.v[C], mu=group.mu, kind=group.kind, heading=group.heading)
-    )
     for _ in range(50 if turning else 1):
         change = bound_turning(model.system, k, group)
-        solve_cones(k, problem, p, group.cone)
+        solve_cones(k, group.problem, p, group.cone)
         group.equations.iterations[0] += count[ITERATIONS]
         if turning and not change > 1e-14:
             break

@@ -31,7 +31,7 @@ def turn_modes(model, data):
     """Set the modes of several active points at the end of a step, and record its residual."""
     system, active, work, clock = model.system, data.active, data.work, data.clocks[0]
     changed = False
-    clock.residual = max(clock.residual, work.result[0].residual)
+    clock.residual = max(clock.residual, work.search[0].residual)
     for i in range(active.count[0] - 1, -1, -1):
         active_point = active.points[i]
         if active_point.rest == 1:

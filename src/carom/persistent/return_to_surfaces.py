@@ -22,7 +22,6 @@ from carom.dynamics.project import project_position, shift
 from carom.friction import lu
 from carom.friction.layout import SLIDING
 from carom.geometry.thresholds import SUM_ERROR
-from carom.impact.workspace import RETURN, P
 from carom.kinematics.contact_point import in_axes
 from carom.model.actions import MODE_STICK
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT
@@ -43,7 +42,7 @@ def mark_rows(system, active, k, group):
         group.closed[i].rows = 0
         if group.closed[i].motion != MOTION_POINT:
             continue
-        active_point, p, q = active.points[group.closed[i].active], group.v[P], 3 * i
+        active_point, p, q = active.points[group.closed[i].active], group.p, 3 * i
         if group.points[0][i].gap < -1e-12 * system.contacts[active_point.contact].extent:
             some = True
             group.closed[i].rows = 1
@@ -101,7 +100,7 @@ def onto_surfaces(system, data, k, count, state):
     group, work, points = data.group, data.work, data.group.points[0]
     if not mark_rows(system, data.active, k, group):
         return
-    n, x = -1, group.v[RETURN]
+    n, x = -1, group.back
     for _ in range(11):
         if errors(system, data, k, state):
             break
@@ -123,7 +122,7 @@ def mark_tangents(active, k, group):
         closed_point.rows = 0
         if closed_point.motion == MOTION_JOINT:
             closed_point.rows = 1 if sticks and not is_driven(group, i) else 0
-        elif closed_point.motion == MOTION_POINT and group.v[P][3 * i] > 0.0:
+        elif closed_point.motion == MOTION_POINT and group.p[3 * i] > 0.0:
             closed_point.rows = 0 if has_passed(active, i, group) else 3 if sticks else 1
 
 
@@ -132,7 +131,7 @@ def onto_tangents(system, data, k, count):
     """Remove the velocities of the bodies of the group that leave surfaces, or places that stick."""
     state, group, work = data.work.trial, data.group, data.work
     mark_tangents(data.active, k, group)
-    n, x = factor_given(k, False, group), group.v[RETURN]
+    n, x = factor_given(k, False, group), group.back
     tiny = SUM_ERROR * greatest_speed(system, state, count, group.member)
     for _ in range(2):  # W is that of the last stage
         velocities(k, group.points[0], state, x)
@@ -155,7 +154,7 @@ def greatest_speed(system, state, count, member):
 @kernel
 def give(system, k, count, state, group, work):
     """Change velocities of a group by the impulses in RETURN; return whether joints pass them on."""
-    p, member = group.v[RETURN], group.member
+    p, member = group.back, group.member
     joined = spread_all(system, group.points[0, :k], p, member[:count], state, work)
     for m in range(count):
         gain(work.body[member[m]].motion, state[member[m]])
@@ -165,7 +164,7 @@ def give(system, k, count, state, group, work):
 @kernel
 def errors(system, data, k, state):
     """Write the errors of all rows (0 for rows not given); return whether all are round-off."""
-    group, x, small = data.group, data.group.v[RETURN], True
+    group, x, small = data.group, data.group.back, True
     for i in range(k):
         closed_point, point = group.closed[i], group.points[0][i]
         x[3 * i], x[3 * i + 1], x[3 * i + 2] = 0.0, 0.0, 0.0

@@ -11,14 +11,13 @@ normal impulse is the bound d N/l, with the N of the last round.
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.impact.workspace import C, P
 from carom.law.turning import arm_of_torque
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT, MOTION_ROLL
 
 
 @kernel
 def bound_turning(system, k, group):
-    """Write the bounds of torques from the normal impulses (or forces) in P; return their relative change."""
+    """Write the bounds of torques from the normal impulses (or forces) in `p`; return their relative change."""
     change, largest = 0.0, 0.0
     for i in range(k):
         closed_point = group.closed[i]
@@ -26,18 +25,18 @@ def bound_turning(system, k, group):
             continue
         q, W = 3 * i, group.W
         d = arm_of_torque(system.laws, system.contacts[closed_point.contact], closed_point.motion)
-        bound = d / group.points[0][i].length * max(0.0, group.v[P][3 * closed_point.parent])
+        bound = d / group.points[0][i].length * max(0.0, group.p[3 * closed_point.parent])
         W[q, q] = 0.5 * (W[q + 1, q + 1] + W[q + 2, q + 2])
-        change = max(change, abs(group.v[C][q] + W[q, q] * bound))
+        change = max(change, abs(group.c[q] + W[q, q] * bound))
         largest = max(largest, W[q, q] * bound)
-        group.v[C][q] = -W[q, q] * bound
+        group.c[q] = -W[q, q] * bound
     return change / largest if largest > 0.0 else 0.0
 
 
 @kernel
 def take_torque(active_point, i, group):
     """Write the torque of the closed point i, of rolling or of pivoting, to its active point."""
-    p, length = group.v[P], group.points[0][i].length
+    p, length = group.p, group.points[0][i].length
     if group.closed[i].motion == MOTION_ROLL:
         active_point.torque[1] = length * p[3 * i + 1]
         active_point.torque[2] = length * p[3 * i + 2]

@@ -20,7 +20,6 @@ from carom.dynamics.delassus import accelerations, inverse_masses, spread_all, v
 from carom.dynamics.element_operations import driven_power
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER
-from carom.impact.workspace import C, P, U
 from carom.kinematics.contact_point import power_of_surface
 from carom.kinematics.flight import free_rates
 from carom.kinematics.moving_surfaces import set_surfaces
@@ -59,8 +58,7 @@ def accelerate_freely(model, data, loaded, count, s):
     """
     system, work = model.system, data.work
     if loaded:
-        acceleration(system, work.stage, work, work.stages[s])
-        return work.result[0].power
+        return acceleration(system, work.stage, work, work.stages[s])
     for m in range(count):
         b = data.group.member[m]
         free_rates(system.bodies[b], system.gravity, work.stage[b], work.stages[s, b].rate)
@@ -69,7 +67,7 @@ def accelerate_freely(model, data, loaded, count, s):
 
 @unit
 def write_rows(model, data, label, s) -> int:
-    """Find the points of a group in `work.stage`, and write W, U and C for the accelerations of stage s.
+    """Find the points of a group in `work.stage`, and write W, u and c for the accelerations of stage s.
 
     Return the number of points, with the entries of rolling and pivoting.
     """
@@ -86,15 +84,15 @@ def write_rows(model, data, label, s) -> int:
 
 @kernel
 def write_motion(system, k, state, rates, group, work):
-    """Write U, C and the friction of k points of a group in a state with given accelerations."""
+    """Write u, c and the friction of k points of a group in a state with given accelerations."""
     points = group.points[0]
-    velocities(k, points, state, group.v[U])
-    accelerations(k, points, state, rates, group.v[C])
+    velocities(k, points, state, group.u)
+    accelerations(k, points, state, rates, group.c)
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.motion == MOTION_JOINT:
             c = drift_of_coordinate(system, closed_point.active, state, work)
-            group.v[C][3 * i + 1] += c
+            group.c[3 * i + 1] += c
             law = system.relations.frictions[closed_point.active].law
             group.mu[i] = bound_of_stick(system.laws, law)
             continue
@@ -105,7 +103,7 @@ def write_motion(system, k, state, rates, group, work):
         elif not is_fixed(contact):
             d = drift(system, contact, closed_point.feature, points[i], state, work)
             for r in range(3):
-                group.v[C][3 * i + r] += d[r]
+                group.c[3 * i + r] += d[r]
 
 
 @kernel
@@ -117,12 +115,12 @@ def set_modes(system, active, k, group):
     """
     directions, fastest = SAME, 0.0
     for i in range(k):
-        u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
+        u1, u2 = group.u[3 * i + 1], group.u[3 * i + 2]
         fastest = max(fastest, math.sqrt(u1 * u1 + u2 * u2))
     for i in range(k):
         closed_point = group.closed[i]
         slips, d1, d2, speed = slip_at_start(system, active, closed_point)
-        u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
+        u1, u2 = group.u[3 * i + 1], group.u[3 * i + 2]
         slip = math.sqrt(u1 * u1 + u2 * u2)
         # what is not listed slips by its own velocity
         if closed_point.listed == 0 and closed_point.motion == MOTION_POINT:
@@ -132,7 +130,7 @@ def set_modes(system, active, k, group):
         group.heading[i, 0], group.heading[i, 1] = d1, d2
         if closed_point.motion == MOTION_JOINT and is_driven(group, i):
             group.kind[i] = SLIDING
-            speed = group.v[U][3 * i + 1]
+            speed = group.u[3 * i + 1]
             group.heading[i, 0] = 1.0 if speed > 0.0 else -1.0 if speed < 0.0 else 0.0
             continue
         if not slips or group.mu[i] == 0.0:
@@ -152,7 +150,7 @@ def set_modes(system, active, k, group):
 @kernel
 def beyond_stop(system, active, i, group):
     """Return the speed [m/s] that a point has against its slip at the start of the step, 0 if none."""
-    point, u = group.points[0][i], group.v[U]
+    point, u = group.points[0][i], group.u
     slips, d1, d2, _ = slip_at_start(system, active, group.closed[i])
     speed = -(u[3 * i + 1] * d1 + u[3 * i + 2] * d2)
     if not (slips and speed > 0.0):
@@ -164,7 +162,7 @@ def beyond_stop(system, active, i, group):
 def slip_of(system, data, i, still):
     """Return direction and speed of the slip of a point; no direction below `still`, or round-off."""
     group, closed_point, state = data.group, data.group.closed[i], data.state
-    u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
+    u1, u2 = group.u[3 * i + 1], group.u[3 * i + 2]
     speed = math.hypot(u1, u2)
     if closed_point.motion == MOTION_JOINT:
         return float(mode_of_joint(system, closed_point.active, u1, still, state)), 0.0, speed
@@ -204,9 +202,9 @@ def slip_at_start(system, active, closed_point):
 
 @unit
 def push_bodies(model, data, loaded, k, count, s) -> tuple[float, float]:
-    """Add the accelerations by the forces in P to stage s; return the powers of drives and friction."""
+    """Add the accelerations by the forces in `p` to stage s; return the powers of drives and friction."""
     system, group, work = model.system, data.group, data.work
-    u, p, power, driven = group.v[U], group.v[P], 0.0, 0.0
+    u, p, power, driven = group.u, group.p, 0.0, 0.0
     spread_all(system, group.points[0, :k], p, group.member[:count], work.stage, work)
     if loaded:
         driven = driven_power(system, work.stage, work)

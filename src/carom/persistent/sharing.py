@@ -15,7 +15,6 @@ import math
 from carom._compiled.decorators import kernel
 from carom.friction import lu
 from carom.geometry.thresholds import REMAINDER
-from carom.impact.workspace import P
 from carom.model.workspace import MOTION_POINT
 from carom.persistent.joint_rows import radius_of
 from carom.persistent.springs import SHARES, factor, grip, soften
@@ -68,7 +67,7 @@ def share(k, n, group):
     Else forces that are not unique would depend on those of the last stage, and change with each iteration of
     its pose: normal ones, and what sticks where others already hold it (a floor, and a hand that pushes).
     """
-    equations, p, W, m = group.equations, group.v[P], group.W, 0
+    equations, p, W, m = group.equations, group.p, group.W, 0
     rows, chosen, x, r = equations.rows, equations.chosen, equations.x, equations.r
     for i in range(n):
         whole = sticks(group, rows[i] // 3)
@@ -95,5 +94,5 @@ def share(k, n, group):
 @kernel
 def sticks(group, i):
     """Return whether the friction of the first guess of a point is within its disc."""
-    p = group.v[P]
+    p = group.p
     return math.hypot(p[3 * i + 1], p[3 * i + 2]) < (1.0 - REMAINDER) * radius_of(group, i)

@@ -11,7 +11,6 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.geometry.thresholds import REMAINDER
-from carom.impact.workspace import ACCELERATIONS, P, U
 from carom.law.friction import bound_of_stick, depends_on_slip, in_slip, margin_of_slip
 from carom.law.piecewise import any_depends_on_speed
 from carom.model.actions import MODE_SLIP, MODE_STICK
@@ -41,8 +40,8 @@ def has_law(system, closed_point):
 
 @kernel
 def set_friction(system, i, slips, group):
-    """Write the friction of entry i, if it has a law: in slip that at its velocity in U, in stick its bound."""
-    closed_point, u = group.closed[i], group.v[U]
+    """Write the friction of entry i, if it has a law: in slip that at its velocity `u`, in stick its bound."""
+    closed_point, u = group.closed[i], group.u
     if not has_law(system, closed_point):
         return
     laws, law = system.laws, law_of(system, closed_point)
@@ -59,7 +58,7 @@ def follow_laws(system, active, k, group):
     """Write the friction of entries that have a law, by modes; that of a corner without one, by velocity."""
     if not any_depends_on_speed(system.laws):
         return
-    u, fastest = group.v[U], 0.0
+    u, fastest = group.u, 0.0
     for row in range(3 * k):
         fastest = max(fastest, abs(u[row]))
     for i in range(k):
@@ -93,14 +92,14 @@ def first_modes_of_joints(system):
 @kernel
 def breaks_away(i, push, group):
     """Return whether an entry accelerates in slip: its break-away is located on a continuous margin."""
-    a = group.v[ACCELERATIONS]
+    a = group.a
     return math.hypot(a[3 * i + 1], a[3 * i + 2]) > BREAK_AWAY * push
 
 
 @kernel
 def grip_by_law(i, push, group):
     """Return the margin of an entry that sticks: of its force, or its gain, as accelerations by `push`."""
-    a, p, W, q = group.v[ACCELERATIONS], group.v[P], group.W, 3 * i
+    a, p, W, q = group.a, group.p, group.W, 3 * i
     if not push > 0.0:
         return 1.0
     if breaks_away(i, push, group):
@@ -143,15 +142,15 @@ def share_before_kink(model, active):
 def renew_modes(model, active, k, hg, turn, group):
     """Let what breaks away in a stage slip, and what its disc holds, or what turns back, stick.
 
-    U has the slip of the stage without its forces. Return whether a mode changes.
+    `u` has the slip of the stage without its forces. Return whether a mode changes.
     """
-    system, p, changed = model.system, group.v[P], False
+    system, p, changed = model.system, group.p, False
     for i in range(k):
         closed_point, q = group.closed[i], 3 * i
         if closed_point.listed == 0 or not has_law(system, closed_point):
             continue
-        u1 = group.v[U][q + 1] + hg * dot(3 * k, group.W[q + 1], p)
-        u2 = group.v[U][q + 2] + hg * dot(3 * k, group.W[q + 2], p)
+        u1 = group.u[q + 1] + hg * dot(3 * k, group.W[q + 1], p)
+        u2 = group.u[q + 2] + hg * dot(3 * k, group.W[q + 2], p)
         full = not math.hypot(p[q + 1], p[q + 2]) < FRICTION_LIMIT * radius_of(group, i)
         slips = slips_by_mode(system, active, closed_point)
         back = turn < TURNS_BACK and goes_back(system, active, closed_point, u1, u2)

@@ -28,7 +28,6 @@ from carom.friction import lu
 from carom.friction.layout import SLIDING
 from carom.geometry.thresholds import LAST_DIGIT, REMAINDER, ROUND_OFF
 from carom.impact.thresholds import GROUP_ERROR, LOADED_PART
-from carom.impact.workspace import ACCELERATIONS, C, P
 from carom.law.turning import arm_of_torque
 from carom.model.allowance import COUNT_FACTORS
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT, MOTION_ROLL
@@ -51,10 +50,10 @@ def bound_per_force(system, point, closed_point):
 def solve_springs(k, group) -> bool:
     """Write the forces of given modes, and accelerations of all points; return whether they exist.
 
-    C has the accelerations without forces. `kind` is SLIDING for points that slide along `heading`, and
+    `c` has the accelerations without forces. `kind` is SLIDING for points that slide along `heading`, and
     `presses` is 1 for those that press at first.
     """
-    push, rounds = greatest(3 * k, group.v[C]), 0
+    push, rounds = greatest(3 * k, group.c), 0
     soften(k, group)
     for turn in range(3 * k + 4):
         for i in range(k):
@@ -164,14 +163,14 @@ def grip(k, group):
     for i in range(k):
         if closed[i].motion == MOTION_POINT and closed[i].rows == 3 and closed[i].presses == 1:
             count += 1
-            bound = group.mu[i] * group.v[P][3 * i]
+            bound = group.mu[i] * group.p[3 * i]
             if bound > most:
                 most, base = bound, closed[i].stick
     if count < 2:
         return False
     for i in range(k):
         if closed[i].motion == MOTION_POINT and closed[i].rows == 3 and closed[i].presses == 1:
-            bound = group.mu[i] * group.v[P][3 * i]
+            bound = group.mu[i] * group.p[3 * i]
             hold = base * most / max(bound, LOADED_PART * most)
             changed = changed or abs(hold - closed[i].hold) > REMAINDER * hold
             closed[i].hold = hold
@@ -215,7 +214,7 @@ def turns_with(group, j, i):
 @kernel
 def first_forces(k, n, turn, push, group):
     """Solve for the forces; return how many points begin or cease to press, -1 if the rows cannot be met."""
-    p, equations, closed = group.v[P], group.equations, group.closed
+    p, equations, closed = group.p, group.equations, group.closed
     rows, x, r = equations.rows, equations.x, equations.r
     for row in range(3 * k):
         p[row] = 0.0
@@ -252,7 +251,7 @@ def sinks(k, push, group):
     for i in range(k):
         one = group.closed[i]
         if one.motion == MOTION_POINT and one.presses == 0 and one.weight > 0.0:
-            if group.v[ACCELERATIONS][3 * i] < -limits.NO_MARGIN * push:
+            if group.a[3 * i] < -limits.NO_MARGIN * push:
                 return True
     return False
 
@@ -263,7 +262,7 @@ def load(k, n, push, group):
 
     With eps all give way: the accelerations are less by eps R P F^T mu, R P F^T mu = S lam in the given rows.
     """
-    closed, equations, p, free = group.closed, group.equations, group.v[P], False
+    closed, equations, p, free = group.closed, group.equations, group.p, False
     rows, r = equations.rows, equations.r
     for i in range(k):
         free = free or (
@@ -294,7 +293,7 @@ def load(k, n, push, group):
 @kernel
 def unload(k, together, group):
     """Unload the springs that pull, all `together` or those that pull most; return how many."""
-    p, closed, most, worst, count = group.v[P], group.closed, 0.0, 0.0, 0
+    p, closed, most, worst, count = group.p, group.closed, 0.0, 0.0, 0
     for i in range(k):
         if closed[i].motion == MOTION_POINT:
             most, worst = max(most, p[3 * i]), min(worst, p[3 * i])
@@ -311,21 +310,21 @@ def unload(k, together, group):
 
 @kernel
 def acceleration_of(k, row, group):
-    """Return the acceleration in a row under the forces in P."""
-    return add_product(group.v[C][row], 3 * k, group.W[row], group.v[P])
+    """Return the acceleration in a row under the forces in `p`."""
+    return add_product(group.c[row], 3 * k, group.W[row], group.p)
 
 
 @kernel
 def note_accelerations(k, group):
-    """Write the accelerations of all points under the forces in P."""
+    """Write the accelerations of all points under the forces in `p`."""
     for row in range(3 * k):
-        group.v[ACCELERATIONS][row] = acceleration_of(k, row, group)
+        group.a[row] = acceleration_of(k, row, group)
 
 
 @kernel
 def add_force(k, group, row, x):
     """Add a force along a given row; with a normal force, its friction of slip, rolling and pivoting."""
-    p, i = group.v[P], row // 3
+    p, i = group.p, row // 3
     p[row] += x
     if row % 3 > 0:
         return

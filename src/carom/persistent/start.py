@@ -12,7 +12,6 @@ from carom._compiled.decorators import kernel
 from carom.contact.passed_edges import note_normal
 from carom.dynamics.explicit import copy_state, note_velocity
 from carom.friction.layout import SLIDING
-from carom.impact.workspace import C, P, U
 from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.coulomb_stage import solve_forces
@@ -62,14 +61,13 @@ def first_stage(model, data, label):
     """Write the accelerations of a group at the start of a step as stage 0, and the directions of slip.
 
     Return the number of points, the greatest rate at which friction turns a slip, the greatest acceleration by
-    friction, its power, and whether the contact problem has a solution. The power of loads is in `work.result`.
+    friction, the powers of loads and of friction, and whether the contact problem has a solution.
     """
-    group, work, system = data.group, data.work, model.system
-    result, controls = work.result[0], model.controls
+    group, system, controls = data.group, model.system, model.controls
     count, loaded, power = accelerate_start(model, data, label)
     first_modes(data, label)
     k = write_rows(model, data, label, 0)
-    push = greatest(3 * k, group.v[C])
+    push = greatest(3 * k, group.c)
     known = True
     for i in range(k):
         known = find_slip(model, data, i, controls.rest * push * controls.step) and known
@@ -90,9 +88,8 @@ def first_stage(model, data, label):
         set_modes(system, data.active, k, group)
         solve_springs(k, group)
     driven, rubbed = push_bodies(model, data, loaded, k, count, 0)
-    result.power = power + driven
     rate, friction = rates(k, group)
-    return k, rate if known else math.inf, friction, rubbed, found
+    return k, rate if known else math.inf, friction, (power + driven, rubbed), found
 
 
 @kernel
@@ -111,10 +108,10 @@ def note_break_away(system, data, k, push):
             continue
         none = none and smooth
         if closed_point.motion == MOTION_JOINT:
-            one, force = system.relations.frictions[closed_point.active], group.v[P][3 * i + 1]
+            one, force = system.relations.frictions[closed_point.active], group.p[3 * i + 1]
             broke = broke or (one.next == 0 and has_law(system, closed_point))
             one.next = one.mode = -1 if force > 0.0 else 1
-        elif closed_point.motion == MOTION_POINT and group.v[P][3 * i] > 0.0:
+        elif closed_point.motion == MOTION_POINT and group.p[3 * i] > 0.0:
             active_point = data.active.points[closed_point.active]
             broke = broke or (active_point.next != MODE_SLIP and has_law(system, closed_point))
             active_point.next = MODE_SLIP
@@ -163,14 +160,14 @@ def rates(k, group):
     rate, most, W = 0.0, 0.0, group.W
     for i in range(k):
         q = 3 * i
-        force = math.hypot(group.v[P][q + 1], group.v[P][q + 2])
+        force = math.hypot(group.p[q + 1], group.p[q + 2])
         if group.kind[i] != SLIDING:
             force = max(force, radius_of(group, i))
         braked = force * max(W[q + 1, q + 1], W[q + 2, q + 2])
         most = max(most, braked)
         if group.closed[i].motion == MOTION_JOINT:  # where W vanishes it turns back by itself
-            most = max(most, abs(group.v[C][q + 1]))
-        speed = math.hypot(group.v[U][q + 1], group.v[U][q + 2])
+            most = max(most, abs(group.c[q + 1]))
+        speed = math.hypot(group.u[q + 1], group.u[q + 2])
         if group.kind[i] == SLIDING and group.mu[i] > 0.0 and braked > 0.0:
             rate = max(rate, braked / speed if speed > 0.0 else math.inf)
     return rate, most

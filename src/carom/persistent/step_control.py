@@ -116,7 +116,7 @@ def turns_far(active, start, end, dt):
 def unsolved(controls, work, part):
     """Return whether the residual of the last trial step exceeds `part` of the speed that gravity gives."""
     gained = controls.step * controls.pull
-    return gained > 0.0 and not work.result[0].residual <= part * gained
+    return gained > 0.0 and not work.search[0].residual <= part * gained
 
 
 @inlined

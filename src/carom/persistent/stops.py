@@ -13,7 +13,6 @@ tolerances the error of a step beyond a stop does this (`rows.beyond_stop`).
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.impact.workspace import C, P, U
 from carom.model.workspace import MOTION_JOINT
 from carom.persistent.rows import slip_at_start, slip_of
 from carom.persistent.settle import dot, greatest
@@ -27,13 +26,13 @@ def locates(model, data):
 
 @kernel
 def note_left(model, data, k):
-    """Write the parts of slip of k points that are left at the end of a step, with their velocities in U."""
+    """Write the parts of slip of k points that are left at the end of a step, with their velocities in `u`."""
     if not locates(model, data):
         return
     system, active, group = model.system, data.active, data.group
-    still = 0.5 * model.controls.rest * greatest(3 * k, group.v[C]) * model.controls.step
+    still = 0.5 * model.controls.rest * greatest(3 * k, group.c) * model.controls.step
     for i in range(k):
-        closed_point, u = group.closed[i], group.v[U]
+        closed_point, u = group.closed[i], group.u
         slips, d1, d2, speed = slip_at_start(system, active, closed_point)
         if closed_point.listed == 0 or not (slips and speed > 2.0 * still):
             continue
@@ -64,17 +63,17 @@ def least_left(system, active):
 def pass_stops(model, data, k, hg):
     """Let points keep their friction that have passed their stops in a stage; return whether there are more.
 
-    U has the slip of the stage without its forces.
+    `u` has the slip of the stage without its forces.
     """
     group, more = data.group, False
     for i in range(k):
-        closed_point, p, q = group.closed[i], group.v[P], 3 * i
+        closed_point, p, q = group.closed[i], group.p, 3 * i
         slips, d1, d2, speed = slip_at_start(model.system, data.active, closed_point)
         moves = slips and speed > 0.0 and (d1 != 0.0 or d2 != 0.0)
         if closed_point.listed == 0 or closed_point.passes == 1 or not moves:
             continue
-        u1 = group.v[U][q + 1] + hg * dot(3 * k, group.W[q + 1], p)
-        u2 = group.v[U][q + 2] + hg * dot(3 * k, group.W[q + 2], p)
+        u1 = group.u[q + 1] + hg * dot(3 * k, group.W[q + 1], p)
+        u2 = group.u[q + 2] + hg * dot(3 * k, group.W[q + 2], p)
         if not u1 * d1 + u2 * d2 > 0.0:
             closed_point.passes, more = 1, True
             group.heading[i, 0], group.heading[i, 1] = d1, d2

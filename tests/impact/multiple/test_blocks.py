@@ -4,13 +4,9 @@ import numpy as np
 import pytest
 
 from carom.impact.api import resolve_impact
-from carom.impact.multiple.api import resolve_impacts, stated_laws
-from carom.impact.multiple.layout import (
-    CornerContacts,
-    MultipleSettings,
-    new_multiple_result,
-    new_multiple_workspace,
-)
+from carom.impact.multiple.api import resolve_impacts, stated_contacts, stated_laws
+from carom.impact.multiple.layout import SIMULTANEOUS, MultipleSettings, new_multiple_result
+from carom.impact.multiple.workspace import new_multiple_workspace
 from references.painleve import impact_without_collision
 
 
@@ -60,10 +56,9 @@ SLIPS = np.array([0.0, 1.0, 0.0])
 
 def jam(e, law, mu=1.6):
     settings, workspace, out = MultipleSettings(), new_multiple_workspace(1), new_multiple_result(1)
-    one = np.ones(1)
-    laws, zero = stated_laws([mu], [e], [law], [0.0], [1.0]), np.zeros(1, dtype=np.int64)
-    contacts = CornerContacts(1, 0, ROD, SLIPS, mu * one, e * one, zero, one, zero, laws)
-    return impact_without_collision(contacts, settings, workspace, out), out
+    laws = stated_laws([mu], [e], [law], [0.0], [1.0])
+    contacts = stated_contacts(ROD, SLIPS[None], laws, SIMULTANEOUS)
+    return impact_without_collision(1, contacts, laws, settings, workspace, out), out
 
 
 def test_painleve_rod():

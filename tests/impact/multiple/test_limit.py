@@ -3,15 +3,9 @@
 import numpy as np
 import pytest
 
-from carom.impact.multiple.api import stated_laws
-from carom.impact.multiple.layout import (
-    MULTIPLE,
-    CornerContacts,
-    MultipleSettings,
-    new_multiple_result,
-    new_multiple_workspace,
-)
-from carom.impact.multiple.resolve import resolve_multiple
+from carom.impact.multiple.api import solve, stated_laws
+from carom.impact.multiple.layout import MULTIPLE, MultipleSettings
+from carom.impact.multiple.workspace import new_multiple_workspace
 from carom.law.impact_laws import NUMBERS
 
 
@@ -23,16 +17,13 @@ def strike(k, left=None):
     u[::3] = -np.abs(u[::3])
     each = np.ones(k)
     laws = stated_laws(0.4 * each, 0.5 * each, [NUMBERS["newton"]] * k, 0 * each, each)
-    contacts = CornerContacts(
-        k, 0, W, u, 0.4 * each, 0.5 * each, np.arange(k), each, np.zeros(k, dtype=np.int64), laws
-    )
     settings = MultipleSettings(multiple=MULTIPLE["simultaneous"], rtol=1e-8, exponent=1.0)
-    out, workspace = new_multiple_result(k), new_multiple_workspace(k)
+    workspace = new_multiple_workspace(k)
     clock = workspace.work.clock
     if left is not None:
         clock["left"] = left
     begun = int(clock["left"][0])
-    resolve_multiple(contacts, settings, workspace, out)
+    _, out = solve(W, u.reshape(k, 3), laws, settings, workspace)
     return int(out.summary[0]["steps"]), begun, int(clock["left"][0]), out.impulse.copy()
 
 

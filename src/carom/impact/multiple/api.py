@@ -13,6 +13,7 @@ from carom.scene.friction import FrictionLaw, isotropic
 from carom.scene.restitution import Restitution
 
 if TYPE_CHECKING:
+    from carom.impact.multiple.layout import CornerContacts
     from carom.model.laws import Laws
 
 
@@ -226,20 +227,24 @@ def stated_laws(friction, restitution, law, tangential, stiffness) -> Laws:
 
 def solve(W, u, laws, settings, workspace=None):
     """Solve a multiple impact of contacts (k,) with velocities (k, 3) and laws (k,); return code and result."""
-    from carom.impact.multiple.layout import (
-        SEQUENTIAL,
-        CornerContacts,
-        new_multiple_result,
-        new_multiple_workspace,
-    )
+    from carom.impact.multiple.layout import new_multiple_result
     from carom.impact.multiple.resolve import resolve_multiple
+    from carom.impact.multiple.workspace import new_multiple_workspace
 
-    k, table = len(u), laws.table
+    k = len(u)
     room, out = workspace or new_multiple_workspace(k), new_multiple_result(k)
-    pair = np.arange(k) if settings.multiple == SEQUENTIAL else np.zeros(k, dtype=np.int64)
-    contacts = CornerContacts(
-        k=k, others=0, W=W, u=u.reshape(-1), friction=table.friction.copy(),
-        restitution=table.restitution.copy(), law=np.arange(k), stiffness=table.stiffness.copy(), pair=pair,
-        laws=laws,
-    )  # fmt: skip
-    return resolve_multiple(contacts, settings, room, out), out
+    contacts = stated_contacts(W, u, laws, settings.multiple)
+    return resolve_multiple(k, contacts, laws, settings, room, out), out
+
+
+def stated_contacts(W, u, laws: Laws, multiple: int) -> CornerContacts:
+    """Return contacts with these velocities (k, 3) and laws (k,)."""
+    from carom._compiled.record_arrays import table
+    from carom.impact.multiple.layout import CORNER_CONTACT, SEQUENTIAL, CornerContacts
+
+    contact, stated = table(CORNER_CONTACT, len(u)), laws.table
+    for name in ("friction", "restitution", "stiffness"):
+        contact[name] = stated[name]
+    contact["law"] = np.arange(len(u))
+    contact["pair"] = np.arange(len(u)) if multiple == SEQUENTIAL else 0
+    return CornerContacts(contact, W, u.reshape(-1))

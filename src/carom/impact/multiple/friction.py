@@ -40,7 +40,7 @@ def gather_stuck(k, work):
         if c.mode == OPEN:
             c.sticks &= o.HAS_STUCK
         elif c.sticks == 1 and c.mu > 0.0:
-            work.index[o.STUCK, z] = i
+            work.stuck[z] = i
             z += 1
     if z > 0:
         find_holding(z, work)
@@ -50,7 +50,7 @@ def gather_stuck(k, work):
 @kernel
 def _bearing(z, work, weight):
     """Write D = mu N of the sticking contacts a moment ahead, relative to the greatest; return the least."""
-    d, u, slot = work.vector[o.D], work.vector[o.NOW_U], work.index[o.STUCK]
+    d, u, slot = work.now.depth, work.now.velocity, work.stuck
     moment = limits.MOMENT_AHEAD
     for a in range(z):
         i = slot[a]
@@ -79,7 +79,7 @@ def _bearing(z, work, weight):
 @unit
 def find_holding(z, work):
     """Write H in T = -H a: H = D (D W_ZZ D)^+ D."""
-    weight, L, full = work.vector[o.SCALE], work.matrix[o.FACTOR], 0
+    weight, L, full = work.stick.weight, work.stick.L, 0
     if not _bearing(z, work, weight) > limits.LOADED_PART:
         for a in range(z):
             weight[a] = 1.0
@@ -96,8 +96,8 @@ def find_holding(z, work):
 @kernel
 def invert(n, rank, rows, work):
     """Write H = D (D A D)^+ D = R R^T, R = D L (L^T L)^-1, by L L^T = D A D with D for `rows` rows each."""
-    L, M, hold = work.matrix[o.FACTOR], work.matrix[o.MIDDLE], work.matrix[o.HOLDING]
-    weight, order = work.vector[o.SCALE], work.index[o.PIVOTED]
+    L, M, hold = work.stick.L, work.stick.gram, work.stick.H
+    weight, order = work.stick.weight, work.stick.order
     for p in range(rank):
         for q in range(rank):
             s = 0.0
@@ -120,14 +120,14 @@ def invert(n, rank, rows, work):
 @kernel
 def _factor(z, work, L):
     """Write L in D W_ZZ D = L L^T; return the rank."""
-    slot, W, weight = work.index[o.STUCK], work.matrix[o.MASS], work.vector[o.SCALE]
+    slot, W, weight = work.stuck, work.W, work.stick.weight
     n, largest = 2 * z, 0.0
     for a in range(n):
         row = W[3 * slot[a // 2] + 1 + a % 2]
         for b in range(a + 1):
             L[a, b] = weight[a // 2] * weight[b // 2] * row[3 * slot[b // 2] + 1 + b % 2]
         largest = max(largest, L[a, a])
-    return decompose(n, largest, work.index[o.PIVOTED], L)
+    return decompose(n, largest, work.stick.order, L)
 
 
 @kernel
@@ -147,17 +147,17 @@ def decompose(n, largest, order, L):
 @kernel
 def halt(k, z, work):
     """Bring the sticking contacts to rest: an impulse removes the rest of their velocity."""
-    stick(k, z, work, work.vector[o.NOW_P], work.vector[o.NOW_U])
+    stick(k, z, work, work.now.impulse, work.now.velocity)
     set_velocity(k, work)
     for b in range(z):
-        n = 3 * work.index[o.STUCK, b]
-        work.vector[o.NOW_U, n + 1], work.vector[o.NOW_U, n + 2] = 0.0, 0.0
+        n = 3 * work.stuck[b]
+        work.now.velocity[n + 1], work.now.velocity[n + 2] = 0.0, 0.0
 
 
 @kernel
 def stick(k, z, work, impulse, velocity):
     """Add to `impulse` the friction that keeps `z` contacts at rest, and its effect to `velocity`."""
-    hold, slot, t = work.matrix[o.HOLDING], work.index[o.STUCK], work.vector[o.STICK_T]
+    hold, slot, t = work.stick.H, work.stuck, work.stick.T
     for a in range(2 * z):
         s, row = 0.0, hold[a]
         for b in range(z):
@@ -169,7 +169,7 @@ def stick(k, z, work, impulse, velocity):
         x, y = t[2 * b], t[2 * b + 1]
         impulse[n + 1] += x
         impulse[n + 2] += y
-        row1, row2 = work.matrix[o.MASS, n + 1], work.matrix[o.MASS, n + 2]
+        row1, row2 = work.W[n + 1], work.W[n + 2]
         for i in range(3 * k):
             velocity[i] += x * row1[i] + y * row2[i]
     for b in range(z):
@@ -189,19 +189,19 @@ def gather_discs(k, work, u, most):
 
     Those that slip by more than `most` are left out.
     """
-    slot, cones, m = work.index[o.IN_DISC], work.cones, 0
+    slot, cones, m = work.discs, work.cones, 0
     for i in range(k):
         c = work.contact[i]
         if c.mode != OPEN and c.mu > 0.0 and (c.sticks == 1 or slip_of(u, i) <= most):
             slot[m] = i
-            work.vector[o.SLIP_MU, i] = c.mu
+            c.slip_mu = c.mu
             disc, trace = cones.contact[m], c.grip / c.mu
             disc.kind, disc.mu, disc.h2 = f.DISC, 0.0, 0.0
             disc.scale = math.sqrt(2.0 / trace) if trace > 0.0 else 1.0
             m += 1
     for a in range(3 * m):
         row = cones.W[a]
-        given = work.matrix[o.MASS, 3 * slot[a // 3] + a % 3]
+        given = work.W[3 * slot[a // 3] + a % 3]
         for b in range(3 * m):
             value = given[3 * slot[b // 3] + b % 3] if a % 3 > 0 and b % 3 > 0 else 0.0
             row[b] = cones.contact[a // 3].scale * value * cones.contact[b // 3].scale
@@ -213,16 +213,16 @@ def gather_discs(k, work, u, most):
 def solve_discs(m, work, step, force, u, tolerance):
     """Write the friction of `m` discs with which the velocity without it, `u`, ends a time `step`.
 
-    The radii are `SLIP_MU` times the normal forces of `force`, and `tolerance` is for velocities. Friction of
+    The radii are `slip_mu` times the normal forces of `force`, and `tolerance` is for velocities. Friction of
     the last solve is the first guess.
     """
-    slot, cones, last = work.index[o.IN_DISC], work.cones, work.vector[o.DISC_T]
+    slot, cones, last = work.discs, work.cones, work.disc_force
     t, bias, centre = cones.vector[f.ITERATE], cones.vector[f.BIAS], cones.vector[f.CENTRE]
     least, largest = math.inf, 0.0
     for s in range(m):
         n, a, disc = 3 * s, 3 * slot[s], cones.contact[s]
         scale = disc.scale
-        disc.h1 = work.vector[o.SLIP_MU, slot[s]] * force[a] / scale
+        disc.h1 = work.contact[slot[s]].slip_mu * force[a] / scale
         t[n], t[n + 1], t[n + 2] = in_disc(disc.h1, last[2 * s] / scale, last[2 * s + 1] / scale)
         bias[n], bias[n + 1], bias[n + 2] = 0.0, scale * u[a + 1] / step, scale * u[a + 2] / step
         for r in range(3):
@@ -250,10 +250,10 @@ def solve_discs(m, work, step, force, u, tolerance):
 @kernel
 def push(sizes, work, step, force, u):
     """Add the effect of the friction of discs within `step` to velocities; `sizes` as in `stages`."""
-    slot = work.index[o.IN_DISC]
+    slot = work.discs
     for s in range(sizes[1]):
         a = 3 * slot[s] + 1
         x, y = step * force[a], step * force[a + 1]
-        row1, row2 = work.matrix[o.MASS, a], work.matrix[o.MASS, a + 1]
+        row1, row2 = work.W[a], work.W[a + 1]
         for i in range(3 * sizes[0]):
             u[i] += x * row1[i] + y * row2[i]

@@ -23,17 +23,18 @@ from carom.law.friction import depends_on_slip
 
 
 @kernel
-def strike_group(g, contacts, still, by_newton, settings, workspace):
+def strike_group(g, by_newton, settings, laws, workspace):
     """Resolve the classes of group `g`; write impulses and works of their contacts.
 
     With `by_newton` they are one contact problem, without the passage of the layer.
     """
-    work, out = workspace.work, workspace.blow.result
+    work, blow = workspace.work, workspace.blow
+    out = blow.result
     summary = out.summary[0]
-    n = _gather(g, contacts, still, summary.classes, work)
-    if n == 0 or (n == 1 and not by_newton and _exactly(contacts, still, work, out) == one.OK):
+    n = _gather(g, summary.classes, blow, work.W)
+    if n == 0 or (n == 1 and not by_newton and _exactly(laws, blow, work) == one.OK):
         return
-    mass, speed, rate = _fill(n, contacts, still, settings.exponent, work)
+    mass, speed, rate = _fill(n, laws, settings.exponent, blow, work)
     if not (mass > 0.0 and rate > 0.0):
         return
     plastic = summary.plastic_change
@@ -44,7 +45,7 @@ def strike_group(g, contacts, still, by_newton, settings, workspace):
     passage = by_reference(
         o.Passage(
             settings.rtol, settings.exponent, settings.max_events, settings.max_steps,
-            settings.max_rounds, by_slip, speed, contacts.laws,
+            settings.max_rounds, by_slip, speed, laws,
         )
     )  # fmt: skip
     if by_newton:
@@ -52,13 +53,13 @@ def strike_group(g, contacts, still, by_newton, settings, workspace):
     else:
         pass_group(n, work, passage, summary)
     return_slips(n, work, passage)
-    energy, index = speed * speed / mass, work.index
-    for i in range(contacts.k):
+    energy, impulse = speed * speed / mass, work.now.impulse
+    for i in range(blow.impact[0].k):
         for a in range(n):
-            if index[o.CLASS, i] == index[o.MEMBER, a]:
-                c, share = work.contact[a], 1.0 / index[o.CLASS_SIZE, index[o.MEMBER, a]]
+            if blow.contacts.contact[i].of_class == blow.members[a]:
+                c, share = work.contact[a], 1.0 / blow.classes[blow.members[a]].members
                 for r in range(3):
-                    out.impulse[3 * i + r] = work.vector[o.NOW_P, 3 * a + r] * share * speed / mass
+                    out.impulse[3 * i + r] = impulse[3 * a + r] * share * speed / mass
                 out.compression[i] = -max(0.0, c.absorbed) * share * energy
                 out.restitution[i] = max(0.0, c.returned) * share * energy
                 out.friction[i] = max(0.0, c.loss) * share * energy
@@ -67,35 +68,37 @@ def strike_group(g, contacts, still, by_newton, settings, workspace):
 
 
 @kernel
-def _gather(g, contacts, still, classes, work):
+def _gather(g, classes, blow, W):
     """List the classes of group `g` and write W between them; return their number, 0 if none strikes."""
-    index, n, strikes = work.index, 0, False
+    n, strikes = 0, False
     for q in range(classes):
-        if index[o.GROUP, q] == g:
-            index[o.MEMBER, n] = q
+        if blow.classes[q].group == g:
+            blow.members[n] = q
             n += 1
-            strikes = strikes or contacts.u[3 * index[o.FIRST_MEMBER, q]] < -still
+            strikes = strikes or blow.contacts.u[3 * blow.classes[q].first] < -blow.impact[0].still
     if not strikes:
         return 0
     for a in range(n):
         for b in range(n):
-            couple(contacts, index, a, b, work.matrix[o.MASS])
+            couple(blow, a, b, W)
     return n
 
 
 @kernel
-def _fill(n, contacts, still, exponent, work):
+def _fill(n, laws, exponent, blow, work):
     """Scale the group and write its contacts; return the scales of W and u, and the scale of the rate."""
-    u, mu, kappa = contacts.u, contacts.friction, contacts.stiffness
-    index, W = work.index, work.matrix[o.MASS]
+    u, contact, classes, members = (
+        blow.contacts.u, blow.contacts.contact, blow.classes, blow.members,
+    )  # fmt: skip
+    W, before, still = work.W, work.before, blow.impact[0].still
     mass, speed, most, stiff = 0.0, 0.0, 0.0, 0.0
     for a in range(n):
-        i = index[o.FIRST_MEMBER, index[o.MEMBER, a]]
+        all_of, i = classes[members[a]], classes[members[a]].first
         mass = max(mass, W[3 * a, 3 * a])
         speed = max(speed, -u[3 * i])
-        for r in range(3 if mu[i] > 0.0 else 1):
+        for r in range(3 if contact[i].acting > 0.0 else 1):
             most = max(most, abs(u[3 * i + r]))
-        stiff = max(stiff, kappa[i] * index[o.CLASS_SIZE, index[o.MEMBER, a]] * W[3 * a, 3 * a])
+        stiff = max(stiff, contact[i].stiffness * all_of.members * W[3 * a, 3 * a])
     if not (mass > 0.0 and stiff > 0.0):
         return 0.0, 0.0, 0.0
     speed = max(speed, 1e-3 * most)
@@ -104,57 +107,57 @@ def _fill(n, contacts, still, exponent, work):
         for b in range(3 * n):
             row[b] /= mass
     for a in range(n):
-        q = index[o.MEMBER, a]
-        i = index[o.FIRST_MEMBER, q]
-        c = work.contact[a]
-        c.mu, c.restitution, c.law = mu[i], contacts.restitution[i], contacts.law[i]
-        c.by_slip = 1 if mu[i] > 0.0 and depends_on_slip(contacts.laws, c.law) else 0
-        c.e, c.members = c.restitution, index[o.CLASS_SIZE, q]
-        c.root = (kappa[i] * index[o.CLASS_SIZE, q] * mass / stiff) ** (1.0 / exponent)
-        c.grip = mu[i] * (W[3 * a + 1, 3 * a + 1] + W[3 * a + 2, 3 * a + 2])
+        all_of, i = classes[members[a]], classes[members[a]].first
+        c, given = work.contact[a], contact[i]
+        mu = given.acting
+        c.mu, c.restitution, c.law = mu, given.restitution, given.law
+        c.by_slip = 1 if mu > 0.0 and depends_on_slip(laws, c.law) else 0
+        c.e = c.restitution
+        c.root = (given.stiffness * all_of.members * mass / stiff) ** (1.0 / exponent)
+        c.grip = mu * (W[3 * a + 1, 3 * a + 1] + W[3 * a + 2, 3 * a + 2])
         for r in range(3):
-            work.vector[o.U0, 3 * a + r] = u[3 * i + r] / speed if r == 0 or mu[i] > 0.0 else 0.0
+            before[3 * a + r] = u[3 * i + r] / speed if r == 0 or mu > 0.0 else 0.0
         if abs(u[3 * i]) <= still:
-            work.vector[o.U0, 3 * a] = 0.0
-        c.approach = max(0.0, -work.vector[o.U0, 3 * a])
+            before[3 * a] = 0.0
+        c.approach = max(0.0, -before[3 * a])
     return mass, speed, stiff
 
 
 @kernel
-def _exactly(contacts, still, work, out):
+def _exactly(laws, blow, work):
     """Resolve a group of one class as one contact; return OK or NOT_RESOLVED.
 
     If its forces separate other contacts, or it is one impact of a sequence, it returns no more energy than it
     has absorbed, like each of several contacts. If it separates others and e = 0, the result is NOT_RESOLVED:
     all of them are one plastic event.
     """
-    index, W, before = work.index, work.matrix[o.SINGLE], work.vector[o.SINGLE_U]
-    q = index[o.MEMBER, 0]
-    i = index[o.FIRST_MEMBER, q]
-    mu, e, law = contacts.friction[i], contacts.restitution[i], contacts.law[i]
-    parts = parts_others(contacts.k, contacts.W, i, index)
+    W, before, single, out = work.single.W, work.single.u, work.single.out, blow.result
+    q, contact = blow.members[0], blow.contacts.contact
+    i = blow.classes[q].first
+    mu, e, law = contact[i].acting, contact[i].restitution, contact[i].law
+    parts = parts_others(blow, i)
     if parts and not e > 0.0:
         return o.NOT_RESOLVED
     for r in range(3):
-        before[r] = contacts.u[3 * i + r] if r == 0 or mu > 0.0 else 0.0
+        before[r] = blow.contacts.u[3 * i + r] if r == 0 or mu > 0.0 else 0.0
         for s in range(3):
-            W[r, s] = work.matrix[o.MASS, r, s]
-    single, summary = work.single, out.summary[0]
-    single[one.STILL] = still
-    several = parts or contacts.others > 0
-    slip = by_reference(SlipFriction(mu, law, contacts.laws))
-    code = resolve_single(work, slip, e, contacts.laws.table[law].impact_law)
+            W[r, s] = work.W[r, s]
+    summary = out.summary[0]
+    single[one.STILL] = blow.impact[0].still
+    several = parts or blow.impact[0].others > 0
+    slip = by_reference(SlipFriction(mu, law, laws))
+    code = resolve_single(work.single, slip, e, laws.table[law].impact_law)
     if several and code == one.OK and single[one.WORK_R] > -single[one.WORK_C]:
-        code = resolve_single(work, slip, 1.0, impact_laws.STRONGE)
+        code = resolve_single(work.single, slip, 1.0, impact_laws.STRONGE)
         summary.marks |= o.CAPPED
     if code != one.OK:
         return o.NOT_RESOLVED
-    e_t = contacts.laws.table[law].tangential_restitution
+    e_t = laws.table[law].tangential_restitution
     if e_t != 0.0:
         return_slip(W, before, mu, e_t, single)
-    share = 1.0 / index[o.CLASS_SIZE, q]
-    for j in range(contacts.k):
-        if index[o.CLASS, j] == q:
+    share = 1.0 / blow.classes[q].members
+    for j in range(blow.impact[0].k):
+        if contact[j].of_class == q:
             for r in range(3):
                 out.impulse[3 * j + r] = single[one.IMPULSE + r] * share
             out.compression[j] = single[one.WORK_C] * share
@@ -178,7 +181,7 @@ def all_plastic(k, work):
 
 @kernel
 def pass_group(k, work, settings, result):
-    """Resolve the group of `k` contacts in `work`; row U0 has the velocities before, row P gets the impulses.
+    """Resolve the group of `k` contacts in `work`, from the velocities `before`.
 
     If `left` of the clock is below 0 at the end, the group was stopped, because it took too many steps.
     """
@@ -209,9 +212,8 @@ def at_once(k, work, passage, result):
 
 
 @unit
-def resolve_single(work, slip, e, impact_law) -> int:
-    """Resolve the impact of one contact; return its code."""
-    W, u = work.matrix[o.SINGLE], work.vector[o.SINGLE_U]
+def resolve_single(given, slip, e, impact_law) -> int:
+    """Resolve a `SingleImpact`; return its code."""
     if slip.bound > 0.0 and depends_on_slip(slip.laws, slip.law):
-        return resolve_by_slip(W, u, slip, e, impact_law, work.single)
-    return resolve(W, u, slip.bound, e, impact_law, work.single)
+        return resolve_by_slip(given.W, given.u, slip, e, impact_law, given.out)
+    return resolve(given.W, given.u, slip.bound, e, impact_law, given.out)

@@ -15,9 +15,9 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import by_reference, kernel
+from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.friction.layout import BUDGET, CONE, ENOUGH, ContactProblem
+from carom.friction.layout import BUDGET, CONE, ENOUGH
 from carom.friction.solve import solve_cones
 from carom.friction.strategy import budget
 from carom.geometry.thresholds import SUM_ERROR
@@ -34,7 +34,7 @@ OWN_E, LEAST_E, NO_E, NO_FRICTION = range(4)
 @unit
 def solve_group(k, work, passage) -> tuple[int, float]:
     """Resolve the group; return its marks, and the change of energy in a plastic event."""
-    vector, W, least, most = work.vector, work.matrix[o.MASS], 1.0, 0.0
+    least, most = 1.0, 0.0
     marks, change = PLASTIC, 0.0
     for i in range(k):
         least = min(least, work.contact[i].restitution)
@@ -46,9 +46,9 @@ def solve_group(k, work, passage) -> tuple[int, float]:
             c.e = c.restitution if tried == OWN_E else least if tried == LEAST_E else 0.0
         change, residual = _once(k, work, passage, tried == NO_FRICTION)
         marks = AT_ONCE if tried == OWN_E else AT_ONCE | o.MISSED if tried == LEAST_E else PLASTIC
-        before, after, impulse = vector[o.U0], vector[o.NOW_U], vector[o.NOW_P]
+        before, after, impulse = work.before, work.now.velocity, work.now.impulse
         solved = residual <= VISIBLE_ERROR and bounded(3 * k, before, after, impulse)
-        if solved and sound(W, before, after, impulse, 1.0, (3 * k, VELOCITY_LEFT, GAIN)):
+        if solved and sound(work.W, before, after, impulse, 1.0, (3 * k, VELOCITY_LEFT, GAIN)):
             break
     return marks, change if marks & PLASTIC != 0 else 0.0
 
@@ -101,34 +101,31 @@ def round_off(n, row, impulse):
 @kernel
 def _mu_changes(k, work, passage, u):
     """Improve mu for the slip after, where there is any; return whether it has missed that."""
-    misses, mu = False, work.vector[o.MOREAU_MU]
+    misses, mu = False, work.problem.mu
     for i in range(k):
         c, slip = work.contact[i], slip_of(u, i)
         if by_law(c) and (slip > VELOCITY_LEFT or mu[i] > c.mu):
             miss = in_slip(c, passage, slip) - mu[i]
             misses = misses or abs(miss) > GAIN
-            mu[i] = by_secant(i, mu[i], miss, work)
+            mu[i] = by_secant(c, mu[i], miss)
     return misses
 
 
 @kernel
 def _once(k, work, passage, smooth):
     """Solve the contact problem, `smooth` without friction; return the change of energy and the residual."""
-    vector, heading, total, residual = work.vector, work.heading, 0.0, math.inf
-    before, bias, u, impulse = vector[o.U0], vector[o.MOREAU_C], vector[o.NOW_U], vector[o.NOW_P]
-    mu, kind = vector[o.MOREAU_MU], work.index[o.MOREAU_KIND]
+    problem, total, residual = work.problem, 0.0, math.inf
+    before, u, impulse = work.before, work.now.velocity, work.now.impulse
+    bias, mu, heading = problem.c, problem.mu, problem.heading
     for i in range(3 * k):
         bias[i] = before[i]
     for i in range(k):
         bias[3 * i] += work.contact[i].e * min(0.0, bias[3 * i])
         mu[i] = 0.0 if smooth else work.contact[i].mu
-        work.vector[o.MU_BEFORE, i] = mu[i]
-        kind[i], heading[i, 0], heading[i, 1] = CONE, 0.0, 0.0
+        work.contact[i].mu_before = mu[i]
+        problem.kind[i], heading[i, 0], heading[i, 1] = CONE, 0.0, 0.0
     work.cones.mismatch[ENOUGH] = 0.0
     work.cones.count[BUDGET] = budget(k)
-    problem = by_reference(
-        ContactProblem(W=work.matrix[o.MASS], c=bias, mu=mu, kind=kind, heading=heading)
-    )
     for _ in range(MOST_TURNS):
         _, residual, _ = solve_cones(k, problem, impulse, work.cones)
         set_velocity(k, work)

@@ -81,7 +81,7 @@ def release(c, d, p_n, p):
 @kernel
 def note_stick(i, work):
     """Mark a contact that has opened without slip: what its tangential restitution needs."""
-    u, c = work.vector[o.NOW_U], work.contact[i]
+    u, c = work.now.velocity, work.contact[i]
     if c.mode == OPEN and math.hypot(u[3 * i + 1], u[3 * i + 2]) <= VELOCITY_LEFT:
         c.sticks |= o.HAS_STUCK
 
@@ -116,18 +116,18 @@ def gauge(c, d, u_n):
 @inlined
 def evaluate(k, series, degree, x):
     """Write depths and normal velocities at x."""
-    at, line = series[o.S_AT], series.shape[2] * LANES
+    line = series.depth.shape[1] * LANES
     for b in range(blocks(k)):
         p = LANES * b
-        store(at, o.AT_D * line + p, values(line, series[o.S_D], p, degree, x))
-        store(at, o.AT_U * line + p, values(line, series[o.S_U], p, degree, x))
+        store(series.at_depth, p, values(line, series.depth, p, degree, x))
+        store(series.at_u, p, values(line, series.u[0], p, degree, x))
 
 
 @inlined
 def any_change(k, work, degree, x):
     """Return whether a contact has changed its mode at x."""
     evaluate(k, work.series, degree, x)
-    d, u = work.series[o.S_AT, o.AT_D], work.series[o.S_AT, o.AT_U]
+    d, u = work.series.at_depth, work.series.at_u
     for i in range(k):
         b, l = i // LANES, i % LANES
         if gauge(work.contact[i], d[b, l], u[b, l]) > IMPACT_ERROR:
@@ -136,23 +136,23 @@ def any_change(k, work, degree, x):
 
 
 @inlined
-def find_changes(k, work, degree, end, when):
-    """Write the time of the first change of each contact in [0, end] to `when`, 2 end if there is none.
+def find_changes(k, work, degree, end):
+    """Write the time of the first change of each contact in [0, end], 2 end if there is none.
 
     Return the earliest; changes after the sample next to it are not sought.
     """
     first, a = 2.0 * end, 0.0
-    d, u = work.series[o.S_AT, o.AT_D], work.series[o.S_AT, o.AT_U]
+    d, u = work.series.at_depth, work.series.at_u
     for i in range(k):
-        when[i] = first
+        work.contact[i].when = first
     for s in range(_EVENT_SAMPLES):
         x = end if s == _EVENT_SAMPLES - 1 else end * ((s + 1) / _EVENT_SAMPLES)
         if any_change(k, work, degree, x):
             for i in range(k):
                 c, b, l = work.contact[i], i // LANES, i % LANES
                 if gauge(c, d[b, l], u[b, l]) > IMPACT_ERROR:
-                    when[i] = _root(work, i, degree, a, x)
-                    first = min(first, when[i])
+                    c.when = _root(work, i, degree, a, x)
+                    first = min(first, c.when)
             break
         a = x
     return first
@@ -165,9 +165,9 @@ def _gauge_and_slope(c, i, over, series, degree, x):
     With `over` a contact in unloading opens, and does not load again.
     """
     if c.mode == LOAD:
-        s, slope = value_and_slope(series[o.S_U], i, degree, x)
+        s, slope = value_and_slope(series.u[0], i, degree, x)
         return s - IMPACT_ERROR, slope
-    s, slope = value_and_slope(series[o.S_D], i, degree, x)
+    s, slope = value_and_slope(series.depth, i, degree, x)
     if c.mode == OPEN:
         return s - c.d0 - IMPACT_ERROR, slope
     if over:
@@ -182,7 +182,7 @@ def _root(work, i, degree, a, b):
     By Newton's iteration with bisection.
     """
     c, series = work.contact[i], work.series
-    d = series[o.S_AT, o.AT_D, i // LANES, i % LANES]
+    d = series.at_depth[i // LANES, i % LANES]
     over = c.rest - d > d - c.d0 - c.most
     g, _ = _gauge_and_slope(c, i, over, series, degree, a)
     if g >= 0.0:
@@ -210,14 +210,14 @@ def _root(work, i, degree, a, b):
 
 
 @kernel
-def change_modes(k, work, when, latest, p, one_only):
-    """Change the mode of each contact with ``when <= latest``, or of one only; return their number."""
+def change_modes(k, work, latest, p, one_only):
+    """Change the mode of each contact whose time is at most `latest`, or of one only; return their number."""
     count = 0
     for i in range(k):
-        if not when[i] <= latest:
-            continue
         c = work.contact[i]
-        d, p_n = work.vector[o.D, i], work.vector[o.NOW_P, 3 * i]
+        if not c.when <= latest:
+            continue
+        d, p_n = work.now.depth[i], work.now.impulse[3 * i]
         count += 1
         if c.mode == OPEN:
             close(c)
@@ -238,10 +238,10 @@ def change_modes(k, work, when, latest, p, one_only):
 
 
 @kernel
-def would_unload(k, work, when, latest):
-    """Return whether one of the contacts with ``when <= latest`` ends its loading."""
+def would_unload(k, work, latest):
+    """Return whether one of the contacts whose time is at most `latest` ends its loading."""
     for i in range(k):
         c = work.contact[i]
-        if when[i] <= latest and c.mode == LOAD and work.vector[o.D, i] - c.d0 > IMPACT_ERROR:
+        if c.when <= latest and c.mode == LOAD and work.now.depth[i] - c.d0 > IMPACT_ERROR:
             return True
     return False

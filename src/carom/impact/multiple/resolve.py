@@ -10,48 +10,39 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import by_reference, entry, kernel
+from carom._compiled.decorators import entry, kernel
 from carom.geometry.thresholds import LAST_DIGIT
 from carom.impact import thresholds as limits
 from carom.impact.layout import BAD_INPUT, OK, PLASTIC
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.classes import find_groups, find_pressed, reduce
 from carom.impact.multiple.group import strike_group
-from carom.impact.multiple.layout import CornerContacts
 from carom.impact.multiple.moreau import sound
 
 
 @entry
-def resolve_multiple(contacts, settings, workspace, out):
-    """Resolve an impact of `CornerContacts`; return OK, or BAD_INPUT without a result.
+def resolve_multiple(k, contacts, laws, settings, workspace, out):
+    """Resolve an impact of k `CornerContacts`; return OK, or BAD_INPUT without a result.
 
     Contacts of one pair strike together, those of different pairs one after another. `settings` are
     `MultipleSettings`, `workspace` and `out` from `new_multiple_workspace` and `new_multiple_result`, K >= k.
     """
-    scale = _check(contacts)
+    scale = _check(k, contacts, laws)
     if not scale >= 0.0:
         return BAD_INPUT
-    _clear(contacts, out)
+    _clear(k, contacts, out)
     blow, count = workspace.blow, 0
-    together = settings.multiple == o.BY_NEWTON or strikes_at_once(contacts)
+    together = settings.multiple == o.BY_NEWTON or strikes_at_once(k, contacts)
     while True:
-        ends = together or count >= settings.max_events * contacts.k
-        m = choose(contacts, ends, limits.IMPACT_ERROR * scale, blow, out)
+        ends = together or count >= settings.max_events * k
+        m = choose(k, contacts, ends, limits.IMPACT_ERROR * scale, blow, out)
         if m == 0:
             break
         if ends and not together:  # the sequence does not end: the rest is plastic
             for a in range(m):
-                blow.given[o.BLOW_RESTITUTION, a] = 0.0
-        part = by_reference(
-            CornerContacts(
-                k=m, others=contacts.k - m, W=blow.W, u=blow.given[o.BLOW_U],
-                friction=blow.given[o.BLOW_FRICTION], restitution=blow.given[o.BLOW_RESTITUTION],
-                law=blow.law[0], stiffness=blow.given[o.BLOW_STIFFNESS], pair=blow.law[1],
-                laws=contacts.laws,
-            )
-        )  # fmt: skip
-        _together(part, scale, settings, workspace)
-        take(contacts, m, blow, out)
+                blow.contacts.contact[a].restitution = 0.0
+        _together(scale, settings, laws, workspace)
+        take(k, contacts, m, blow, out)
         count += 1
         if ends or workspace.work.clock[0].left < 0:
             break
@@ -59,34 +50,27 @@ def resolve_multiple(contacts, settings, workspace, out):
         out.summary[0].events += count
         out.summary[0].marks &= ~o.EXACT
     if not together:
-        _finish(contacts, out)
+        _finish(k, contacts, out)
     return OK
 
 
 @kernel
-def _together(contacts, scale, settings, workspace):
+def _together(scale, settings, laws, workspace):
     """Resolve an impact of contacts that strike together; `scale` is the greatest velocity of all contacts."""
-    work, out = workspace.work, workspace.blow.result
-    k, still, result = contacts.k, limits.IMPACT_ERROR * scale, out.summary[0]
-    _clear(contacts, out)
-    index, clean = work.index, work.matrix[o.CLEAN]
-    acting = by_reference(
-        CornerContacts(
-            k=k, others=contacts.others, W=clean, u=contacts.u, friction=work.vector[o.ACTING_MU],
-            restitution=contacts.restitution, law=contacts.law, stiffness=contacts.stiffness,
-            pair=contacts.pair, laws=contacts.laws,
-        )
-    )  # fmt: skip
-    result.classes = reduce(contacts, acting, scale, index)
-    find_pressed(acting, still, index)
-    groups = find_groups(k, result.classes, clean, index)
+    blow, clock = workspace.blow, workspace.work.clock[0]
+    contacts, out, k = blow.contacts, blow.result, blow.impact[0].k
+    result = out.summary[0]
+    _clear(k, contacts, out)
+    result.classes = reduce(k, blow, laws, scale)
+    find_pressed(k, blow, laws, blow.impact[0].still)
+    groups = find_groups(k, result.classes, blow)
     by_newton = settings.multiple == o.BY_NEWTON
     while True:
         for g in range(groups):
-            strike_group(g, acting, still, by_newton, settings, workspace)
-            if work.clock[0].left < 0:
+            strike_group(g, by_newton, settings, laws, workspace)
+            if clock.left < 0:
                 return  # it was stopped: there is no result
-        _finish(contacts, out)
+        _finish(k, contacts, out)
         exact = (result.marks & o.EXACT) != 0  # a single contact may gain energy with Newton's law
         bounds = (3 * k, limits.VISIBLE_ERROR, limits.ENERGY_BALANCE)
         if exact or sound(contacts.W, contacts.u, out.velocity, out.impulse, scale, bounds):
@@ -99,9 +83,9 @@ def _together(contacts, scale, settings, workspace):
 
 
 @kernel
-def _check(contacts):
+def _check(k, contacts, laws):
     """Return the greatest velocity, or NaN if the input is invalid."""
-    k, W, u, total, scale = contacts.k, contacts.W, contacts.u, 0.0, 0.0
+    W, u, total, scale = contacts.W, contacts.u, 0.0, 0.0
     for a in range(3 * k):
         row = W[a]
         scale = max(scale, abs(u[a]))
@@ -109,9 +93,10 @@ def _check(contacts):
         for b in range(3 * k):
             total += row[b]
     for i in range(k):
-        mu, e, kappa = contacts.friction[i], contacts.restitution[i], contacts.stiffness[i]
+        c = contacts.contact[i]
+        mu, e, kappa = c.friction, c.restitution, c.stiffness
         total += mu + e + kappa
-        known = 0 <= contacts.law[i] < contacts.laws.table.shape[0]
+        known = 0 <= c.law < laws.table.shape[0]
         sound = known and mu >= 0.0 and 0.0 <= e <= 1.0 and kappa > 0.0
         if not (sound and W[3 * i, 3 * i] >= 0.0):
             return math.nan
@@ -119,38 +104,38 @@ def _check(contacts):
 
 
 @kernel
-def _clear(contacts, out):
+def _clear(k, contacts, out):
     """Write the result for contacts none of which strikes."""
     result = out.summary[0]
     result.energy_change, result.plastic_change = 0.0, 0.0
     result.miss = 0.0
     result.steps, result.events, result.rounds, result.classes, result.marks = 0, 0, 0, 0, 0
-    for i in range(contacts.k):
+    for i in range(k):
         out.compression[i], out.restitution[i], out.friction[i] = 0.0, 0.0, 0.0
         out.wedged[i] = 0
-    for i in range(3 * contacts.k):
+    for i in range(3 * k):
         out.impulse[i] = 0.0
         out.velocity[i] = contacts.u[i]
 
 
 @kernel
-def strikes_at_once(contacts):
+def strikes_at_once(k, contacts):
     """Return whether all contacts belong to one pair, or all e are 0, which is one plastic event."""
     one, plastic = True, True
-    for i in range(contacts.k):
-        one = one and contacts.pair[i] == contacts.pair[0]
-        plastic = plastic and not contacts.restitution[i] > 0.0
+    for i in range(k):
+        one = one and contacts.contact[i].pair == contacts.contact[0].pair
+        plastic = plastic and not contacts.contact[i].restitution > 0.0
     return one or plastic
 
 
 @kernel
-def choose(contacts, every, least, blow, out):
+def choose(k, contacts, every, least, blow, out):
     """Gather the contacts of the next impact; return their number, 0 if none approaches faster than `least`.
 
     They belong to the pair that approaches fastest and to pairs that approach equally fast; if `every`, they
     are all contacts. `out` has the velocities.
     """
-    k, pair, member, u, fastest = contacts.k, contacts.pair, blow.member, out.velocity, 0.0
+    given, chosen, u, fastest = contacts.contact, blow.contacts.contact, out.velocity, 0.0
     for i in range(k):
         fastest = max(fastest, -u[3 * i])
     if not fastest > least:
@@ -159,31 +144,29 @@ def choose(contacts, every, least, blow, out):
     for i in range(k):
         strikes = every
         for j in range(0 if every else k):
-            strikes = strikes or (pair[j] == pair[i] and -u[3 * j] >= equal)
+            strikes = strikes or (given[j].pair == given[i].pair and -u[3 * j] >= equal)
         if strikes:
-            member[m] = i
+            chosen[m] = given[i]
+            chosen[m].place = i
             m += 1
     for a in range(m):
-        i = member[a]
-        blow.given[o.BLOW_FRICTION, a] = contacts.friction[i]
-        blow.given[o.BLOW_RESTITUTION, a] = contacts.restitution[i]
-        blow.given[o.BLOW_STIFFNESS, a] = contacts.stiffness[i]
-        blow.law[0, a], blow.law[1, a] = contacts.law[i], pair[i]
+        i = chosen[a].place
         for r in range(3):
-            blow.given[o.BLOW_U, 3 * a + r] = u[3 * i + r]
-            row, whole = blow.W[3 * a + r], contacts.W[3 * i + r]
+            blow.contacts.u[3 * a + r] = u[3 * i + r]
+            row, whole = blow.contacts.W[3 * a + r], contacts.W[3 * i + r]
             for b in range(m):
                 for s in range(3):
-                    row[3 * b + s] = whole[3 * member[b] + s]
+                    row[3 * b + s] = whole[3 * chosen[b].place + s]
+    blow.impact[0].k, blow.impact[0].others, blow.impact[0].still = m, k - m, least
     return m
 
 
 @kernel
-def take(contacts, m, blow, out):
+def take(k, contacts, m, blow, out):
     """Add the result of the impact of `m` contacts to the result of all contacts."""
-    member, part, u, W = blow.member, blow.result, out.velocity, contacts.W
+    part, u, W = blow.result, out.velocity, contacts.W
     for a in range(m):
-        i = member[a]
+        i = blow.contacts.contact[a].place
         out.compression[i] += min(0.0, part.compression[a])
         out.restitution[i] += max(0.0, part.restitution[a])
         out.friction[i] += max(0.0, part.friction[a])
@@ -191,10 +174,10 @@ def take(contacts, m, blow, out):
         for r in range(3):
             impulse = part.impulse[3 * a + r]
             out.impulse[3 * i + r] += impulse
-            if impulse != 0.0 and m < contacts.k:
-                for b in range(3 * contacts.k):
+            if impulse != 0.0 and m < k:
+                for b in range(3 * k):
                     u[b] += impulse * W[b, 3 * i + r]
-    if m == contacts.k:
+    if m == k:
         for b in range(3 * m):
             u[b] = part.velocity[b]
     result, done = out.summary[0], part.summary[0]
@@ -209,9 +192,9 @@ def take(contacts, m, blow, out):
 
 
 @kernel
-def _finish(contacts, out):
+def _finish(k, contacts, out):
     """Write u+ = u + W P and the energy; remove what round-off changed in it."""
-    k, W, u = contacts.k, contacts.W, contacts.u
+    W, u = contacts.W, contacts.u
     n, result = 3 * k, out.summary[0]
     P_, after = out.impulse, out.velocity
     most = 0.0
@@ -220,7 +203,7 @@ def _finish(contacts, out):
     for i in range(k):
         if not P_[3 * i] * W[3 * i, 3 * i] > LAST_DIGIT * most:
             P_[3 * i], P_[3 * i + 1], P_[3 * i + 2] = 0.0, 0.0, 0.0
-    capped, elastic = (result.marks & o.EXACT) == 0, _keeps_energy(contacts, out)
+    capped, elastic = (result.marks & o.EXACT) == 0, _keeps_energy(k, contacts, out)
     for turn in range(2):
         energy, gain = 0.0, 0.0
         for a in range(n):
@@ -241,13 +224,13 @@ def _finish(contacts, out):
 
 
 @kernel
-def _keeps_energy(contacts, out):
+def _keeps_energy(k, contacts, out):
     """Return whether all contacts with an impulse are elastic and without friction, and no body was trapped."""
     if (out.summary[0].marks & (PLASTIC | o.MISSED)) != 0:
         return False
-    for i in range(contacts.k):
-        acts = out.impulse[3 * i] > 0.0
-        if acts and (contacts.friction[i] > 0.0 or contacts.restitution[i] < 1.0):
+    for i in range(k):
+        c, acts = contacts.contact[i], out.impulse[3 * i] > 0.0
+        if acts and (c.friction > 0.0 or c.restitution < 1.0):
             return False
     return True
 

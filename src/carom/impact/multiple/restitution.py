@@ -57,17 +57,17 @@ def any_targets(k, work, passage):
 
 
 @kernel
-def misses(k, work, passage, out):
+def misses(k, work, passage):
     """Write ln(target/reached) of each contact; return the greatest magnitude, and whether an e_* is capped."""
     worst, capped = 0.0, False
     for i in range(k):
-        out[i] = 0.0
         c = work.contact[i]
+        work.outer[i].new_miss = 0.0
         if not has_target(c, passage) or c.wedged == 1:  # no e_* separates a wedged contact
             continue
         law = impact_law(c, passage)
         target = impact_laws.goal(law, c.restitution, c.approach, c.loading, 0.0)
-        reached = work.vector[o.NOW_U, 3 * i] if law in impact_laws.BY_SPEED else c.unloading
+        reached = work.now.velocity[3 * i] if law in impact_laws.BY_SPEED else c.unloading
         if not target > 0.0:
             continue
         miss = limits.LARGEST_CORRECTION
@@ -78,9 +78,16 @@ def misses(k, work, passage, out):
             miss = 0.0
         elif c.e <= limits.LEAST_RESTITUTION * (1.0 + 1e-12) and miss < 0.0:
             miss = 0.0
-        out[i] = miss
+        work.outer[i].new_miss = miss
         worst = max(worst, abs(miss))
     return worst, capped
+
+
+@kernel
+def accept(k, work):
+    """Make the new misses the present ones."""
+    for i in range(k):
+        work.outer[i].miss = work.outer[i].new_miss
 
 
 @kernel
@@ -94,85 +101,85 @@ def begin(k, work, passage, gain):
         m += 1 if has_target(work.contact[i], passage) else 0
     differing = limits.FIRST_DIFFERENCE if m < k else 1.0
     for i in range(k):
-        work.vector[o.OUT_X, i], work.vector[o.OUT_LAST, i] = math.log(work.contact[i].e), 0.0
+        work.outer[i].x, work.outer[i].last = math.log(work.contact[i].e), 0.0
         for j in range(k):
             mean = (1.0 - differing) / m if has_target(work.contact[j], passage) else 0.0
-            work.matrix[o.INVERSE, i, j] = -gain * (mean + (differing if i == j else 0.0))
+            work.inverse[i, j] = -gain * (mean + (differing if i == j else 0.0))
 
 
 @kernel
 def keep_best(k, work):
     """Save the e_* in use and their misses as the best so far."""
     for i in range(k):
-        work.vector[o.OUT_BEST, i] = work.vector[o.OUT_X, i]
-        work.vector[o.OUT_BEST_F, i] = work.vector[o.OUT_F, i]
+        a = work.outer[i]
+        a.best, a.best_miss = a.x, a.miss
 
 
 @kernel
 def back_to_best(k, work):
     """Return to the best e_* so far."""
     for i in range(k):
-        work.vector[o.OUT_X, i] = work.vector[o.OUT_BEST, i]
-        work.contact[i].e = math.exp(work.vector[o.OUT_BEST, i])
-        work.vector[o.OUT_F, i] = work.vector[o.OUT_BEST_F, i]
+        a = work.outer[i]
+        a.x, a.miss = a.best, a.best_miss
+        work.contact[i].e = math.exp(a.best)
 
 
 @kernel
 def improve(k, work):
-    """Step from the misses in row OUT_F: x <- x - J^-1 F, e_* in [e_min, 1]."""
-    v, H = work.vector, work.matrix[o.INVERSE]
+    """Step from the misses F: x <- x - J^-1 F, e_* in [e_min, 1]."""
+    outer, H = work.outer, work.inverse
     for i in range(k):
-        step = 0.0
+        a, step = outer[i], 0.0
         for j in range(k):
-            step -= H[i, j] * v[o.OUT_F, j]
-        if v[o.OUT_F, i] == 0.0:  # on target, capped, or without a target
+            step -= H[i, j] * outer[j].miss
+        if a.miss == 0.0:  # on target, capped, or without a target
             step = 0.0
         step = min(limits.LARGEST_CORRECTION, max(-limits.LARGEST_CORRECTION, step))
-        x = min(0.0, max(math.log(limits.LEAST_RESTITUTION), v[o.OUT_X, i] + step))
-        v[o.OUT_DX, i] = x - v[o.OUT_X, i]
-        v[o.OUT_X, i] = x
+        x = min(0.0, max(math.log(limits.LEAST_RESTITUTION), a.x + step))
+        a.step, a.x = x - a.x, x
         work.contact[i].e = math.exp(x)
 
 
 @kernel
 def learn(k, work):
-    """Update the inverse Jacobian H from the last step s (OUT_DX) and the change of misses y, so that H y = s.
+    """Update the inverse Jacobian H from the last step s and the change of misses y, so that H y = s.
 
     H <- H + (s - H y) v^T H / (v^T H y): Broyden's update, with v = s less its part along the step before, for
     which H stays right (Gay and Schnabel 1978).
     """
-    v, H = work.vector, work.matrix[o.INVERSE]
+    outer, H = work.outer, work.inverse
     size, along, before = 0.0, 0.0, 0.0
     for i in range(k):
-        v[o.OUT_DF, i] = v[o.OUT_NEW, i] - v[o.OUT_F, i]
-        v[o.OUT_F, i] = v[o.OUT_NEW, i]
-        size += v[o.OUT_DX, i] * v[o.OUT_DX, i]
-        along += v[o.OUT_DX, i] * v[o.OUT_LAST, i]
-        before += v[o.OUT_LAST, i] * v[o.OUT_LAST, i]
+        a = outer[i]
+        a.change = a.new_miss - a.miss
+        size += a.step * a.step
+        along += a.step * a.last
+        before += a.last * a.last
+    accept(k, work)
     share = along / before if before > 0.0 else 0.0
     left = size - share * along
     if not left > limits.PARALLEL_STEPS * size:
         share, left = 0.0, size
     bottom = 0.0
     for i in range(k):
-        total = 0.0
+        a, total = outer[i], 0.0
         for j in range(k):
-            total += H[i, j] * v[o.OUT_DF, j]
-        v[o.OUT_H, i] = total
-        v[o.OUT_V, i] = v[o.OUT_DX, i] - share * v[o.OUT_LAST, i]
-        v[o.OUT_LAST, i] = v[o.OUT_DX, i]
-        bottom += v[o.OUT_V, i] * total
+            total += H[i, j] * outer[j].change
+        a.reply = total
+        a.direction = a.step - share * a.last
+        a.last = a.step
+        bottom += a.direction * total
     if not abs(bottom) > 0.05 * left:
         return
     for j in range(k):
         row = 0.0
         for i in range(k):
-            row += v[o.OUT_V, i] * H[i, j]
-        v[o.OUT_NEW, j] = row / bottom
+            row += outer[i].direction * H[i, j]
+        outer[j].update = row / bottom
     for i in range(k):
-        correction = v[o.OUT_DX, i] - v[o.OUT_H, i]
+        correction = outer[i].step - outer[i].reply
         for j in range(k):
-            H[i, j] += correction * v[o.OUT_NEW, j]
+            H[i, j] += correction * outer[j].update
 
 
 @kernel
@@ -196,14 +203,14 @@ def iterate_restitution(k, work, settings, result):
     If they do not converge (two corners of one rigid edge cannot always both satisfy it), the nearest result is
     used if it is near enough, otherwise Stronge's law with the same e.
     """
-    v = work.vector
     tolerance = max(3.0 * settings.rtol, 1e-10)
     begin(k, work, settings, 1.0)
     ended = ENDED
-    worst, capped = misses(k, work, settings, v[o.OUT_F])
+    worst, capped = misses(k, work, settings)
     if not worst > tolerance:  # the first passage was coarse
         ended = run(k, work, settings, settings.rtol)
-        worst, capped = misses(k, work, settings, v[o.OUT_F])
+        worst, capped = misses(k, work, settings)
+    accept(k, work)
     keep_best(k, work)
     best, stale, rounds = worst, 0, 0
     while worst > tolerance and rounds < settings.max_rounds and ended == ENDED:
@@ -211,11 +218,11 @@ def iterate_restitution(k, work, settings, result):
         rtol = max(settings.rtol, min(limits.COARSE_TOLERANCE, 0.01 * worst))
         ended = run(k, work, settings, rtol)
         rounds += 1
-        worst, capped = misses(k, work, settings, v[o.OUT_NEW])
+        worst, capped = misses(k, work, settings)
         if not worst > tolerance and rtol > settings.rtol:
             rtol = settings.rtol
             ended = run(k, work, settings, rtol)
-            worst, capped = misses(k, work, settings, v[o.OUT_NEW])
+            worst, capped = misses(k, work, settings)
         learn(k, work)
         stale += 1
         if worst < best:

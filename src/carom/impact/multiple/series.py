@@ -13,7 +13,6 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.lanes import blocks, product
 from carom._compiled.simd import LANES, add, load, multiply, same, store, subtract
-from carom.impact.multiple import layout as o
 from carom.impact.multiple.friction import stick
 from carom.impact.multiple.normal_law import OPEN
 from carom.impact.thresholds import MOMENT_AHEAD
@@ -22,7 +21,7 @@ from carom.impact.thresholds import MOMENT_AHEAD
 @kernel
 def into_lanes(k, work):
     """Copy W of the group, column by column, in the form for the series."""
-    W, columns = work.matrix[o.MASS], work.columns
+    W, columns = work.W, work.series.columns
     width = columns.shape[1] // 3
     for j in range(3 * k):
         for b in range(blocks(k)):
@@ -55,15 +54,15 @@ def likely_force(c, d, u_n):
 def stretch_weights(k, work):
     """Write c_i, the rate at which a contact's own friction can change its slip; return if any matters."""
     stretched = False
-    u, d, weights = work.vector[o.NOW_U], work.vector[o.D], work.vector[o.WEIGHT]
+    u, d = work.now.velocity, work.now.depth
     for i in range(k):
-        weights[i] = 0.0
         c = work.contact[i]
+        c.braking = 0.0
         if slips(c):
             n = 3 * i
             r = math.sqrt(u[n + 1] * u[n + 1] + u[n + 2] * u[n + 2])
-            weights[i] = c.grip * likely_force(c, d[i], u[n])
-            if weights[i] * 2.0 > r:
+            c.braking = c.grip * likely_force(c, d[i], u[n])
+            if c.braking * 2.0 > r:
                 stretched = True
     return stretched
 
@@ -71,36 +70,35 @@ def stretch_weights(k, work):
 @inlined
 def begin(k, work, stretched):
     """Write order 0 of the series, and the data of each contact; return the number of closed contacts."""
-    S, vector, closed = work.series, work.vector, 0
-    lane = S[o.S_LANE]
+    S, closed = work.series, 0
     for b in range(blocks(k)):
         for l in range(LANES):
             i = LANES * b + l
             slope, rest, rough, inverse, fine, r = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-            pull = 0.0
+            braking = 0.0
             for s in range(3):
-                S[o.S_U + s, 0, b, l] = vector[o.NOW_U, 3 * i + s] if i < k else 0.0
-                S[o.S_P + s, 0, b, l] = vector[o.NOW_P, 3 * i + s] if i < k else 0.0
-            S[o.S_D, 0, b, l] = vector[o.D, i] if i < k else 0.0
-            S[o.S_LOSS, 0, b, l] = 0.0
+                S.u[s, 0, b, l] = work.now.velocity[3 * i + s] if i < k else 0.0
+                S.P[s, 0, b, l] = work.now.impulse[3 * i + s] if i < k else 0.0
+            S.depth[0, b, l] = work.now.depth[i] if i < k else 0.0
+            S.loss[0, b, l] = 0.0
             if i < k:
                 c = work.contact[i]
                 if c.mode != OPEN:
                     slope, rest = c.slope, c.rest
-                    work.index[o.CLOSED, closed] = i
+                    work.closed[closed] = i
                     closed += 1
                 if slips(c):
-                    x, y = S[o.S_U1, 0, b, l], S[o.S_U2, 0, b, l]
+                    x, y = S.u[1, 0, b, l], S.u[2, 0, b, l]
                     r = math.sqrt(x * x + y * y)
-                    rough, inverse, pull = c.mu, 1.0 / r, vector[o.WEIGHT, i]
+                    rough, inverse, braking = c.mu, 1.0 / r, c.braking
                     fine = 1.0 / math.sqrt(min(1.0, r))
-            S[o.S_N, 0, b, l] = slope * (S[o.S_D, 0, b, l] - rest)
-            S[o.S_R, 0, b, l] = r
-            S[o.S_G, 0, b, l] = inverse
-            lane[o.SLOPE, b, l], lane[o.ROUGH, b, l], lane[o.ONE_OVER, b, l] = slope, rough, inverse
-            lane[o.PULL, b, l], lane[o.SLOWNESS, b, l] = pull, fine
-        v = lane[o.ONE_OVER, b]
-        lane[o.SLIPPING, b, 0] = v[0] + v[1] + v[2] + v[3]
+            S.N[0, b, l] = slope * (S.depth[0, b, l] - rest)
+            S.slip[0, b, l] = r
+            S.inverse[0, b, l] = inverse
+            S.slope[b, l], S.mu[b, l], S.over[b, l] = slope, rough, inverse
+            S.braking[b, l], S.slowness[b, l] = braking, fine
+        v = S.over[b]
+        S.slipping[b, 0] = v[0] + v[1] + v[2] + v[3]
     return closed
 
 
@@ -110,16 +108,16 @@ def expand(k, z, closed, work, first, degree):
 
     Orders up to `first` are known; `z` contacts stick (see `friction`).
     """
-    S, lane = work.series, work.series[o.S_LANE]
-    line = S.shape[2] * LANES
-    un, u1, u2, d, normal = S[o.S_U], S[o.S_U1], S[o.S_U2], S[o.S_D], S[o.S_N]
-    q, sigma, stretched = S[o.S_Q], S[o.S_SIGMA], work.clock[0].stretched == 1
-    f = S[o.S_FS] if stretched else S[o.S_F]
+    S = work.series
+    line = S.depth.shape[1] * LANES
+    un, u1, u2, d, normal = S.u[0], S.u[1], S.u[2], S.depth, S.N
+    q, sigma, stretched = S.square, S.sigma, work.clock[0].stretched == 1
+    f = S.stretched_rub if stretched else S.rub
     for n in range(first, degree):
         step = same(1.0 / (n + 1))
         back = same(-1.0 / (n + 1))
         for b in range(blocks(k)):
-            if lane[o.SLIPPING, b, 0] > 0.0:
+            if S.slipping[b, 0] > 0.0:
                 _forces(line, S, LANES * b, n)
         if stretched:
             _stretch(k, line, S, n)
@@ -134,16 +132,16 @@ def expand(k, z, closed, work, first, degree):
                     rate = load(sigma, m)
                     force = add(force, multiply(load(normal, j), rate))
                     speed = add(speed, multiply(load(un, j), rate))
-                    grip = add(grip, multiply(load(S[o.S_F], j), rate))
+                    grip = add(grip, multiply(load(S.rub, j), rate))
                     j += line
                     m -= line
                 store(f, i, grip)
             depth = multiply(back, speed)
-            store(S[o.S_P], at, multiply(step, force))
+            store(S.P[0], at, multiply(step, force))
             store(d, at, depth)
-            store(normal, at, multiply(load(lane, o.SLOPE * line + p), depth))
+            store(normal, at, multiply(load(S.slope, p), depth))
             x, y, heat = same(0.0), same(0.0), same(0.0)
-            if lane[o.SLIPPING, b, 0] > 0.0:
+            if S.slipping[b, 0] > 0.0:
                 j, m = p, i
                 for _ in range(n + 1):
                     friction = load(f, j)
@@ -152,9 +150,9 @@ def expand(k, z, closed, work, first, degree):
                     heat = add(heat, multiply(friction, load(q, m)))
                     j += line
                     m -= line
-            store(S[o.S_P1], at, multiply(back, x))
-            store(S[o.S_P2], at, multiply(back, y))
-            store(S[o.S_LOSS], at, multiply(step, heat))
+            store(S.P[1], at, multiply(back, x))
+            store(S.P[2], at, multiply(back, y))
+            store(S.loss, at, multiply(step, heat))
         _answer(k, closed, work, n + 1)
         if z > 0:
             _hold(k, z, work, n + 1)
@@ -163,11 +161,11 @@ def expand(k, z, closed, work, first, degree):
 @inlined
 def _forces(line, S, p, n):
     """Write order `n` of |u_t|^2, |u_t| and mu N/|u_t| of the block at `p`; its sums in one loop."""
-    u1, u2, r, f, lane, i = S[o.S_U1], S[o.S_U2], S[o.S_R], S[o.S_F], S[o.S_LANE], n * line + p
-    x, y, g = load(u1, p), load(u2, p), load(lane, o.ONE_OVER * line + p)
-    force = multiply(load(lane, o.ROUGH * line + p), load(S[o.S_N], i))
+    u1, u2, r, f, i = S.u[1], S.u[2], S.slip, S.rub, n * line + p
+    x, y, g = load(u1, p), load(u2, p), load(S.over, p)
+    force = multiply(load(S.mu, p), load(S.N, i))
     if n == 0:
-        store(S[o.S_Q], i, add(multiply(x, x), multiply(y, y)))
+        store(S.square, i, add(multiply(x, x), multiply(y, y)))
         store(f, i, multiply(force, g))
         return
     q, rr, rf = same(0.0), same(0.0), same(0.0)
@@ -183,7 +181,7 @@ def _forces(line, S, p, n):
     q = add(q, add(ends, ends))
     speed = multiply(multiply(same(0.5), subtract(q, rr)), g)
     rf = add(rf, multiply(speed, load(f, p)))
-    store(S[o.S_Q], i, q)
+    store(S.square, i, q)
     store(r, i, speed)
     store(f, i, multiply(subtract(force, rf), g))
 
@@ -191,22 +189,16 @@ def _forces(line, S, p, n):
 @kernel
 def _stretch(k, line, S, n):
     """Write order `n` of dtau/dt = 1 + sum c_i/|u_t,i| and of dt/dtau, the same in all lanes."""
-    g, rate, sigma, lane, total = (
-        S[o.S_G],
-        S[o.S_RATE],
-        S[o.S_SIGMA],
-        S[o.S_LANE],
-        1.0 if n == 0 else 0.0,
-    )
+    g, rate, sigma, total = S.inverse, S.rate, S.sigma, 1.0 if n == 0 else 0.0
     for b in range(blocks(k)):
-        if lane[o.SLIPPING, b, 0] > 0.0:
+        if S.slipping[b, 0] > 0.0:
             p = LANES * b
             if n > 0:
-                s = product(line, S[o.S_R], g, p, n)
-                s = multiply(s, load(lane, o.ONE_OVER * line + p))
+                s = product(line, S.slip, g, p, n)
+                s = multiply(s, load(S.over, p))
                 store(g, n * line + p, multiply(same(-1.0), s))
             for l in range(LANES):
-                total += lane[o.PULL, b, l] * g[n, b, l]
+                total += S.braking[b, l] * g[n, b, l]
     store(rate, n * line, same(total))
     if n == 0:
         s = same(1.0 / total)
@@ -218,8 +210,8 @@ def _stretch(k, line, S, n):
 @inlined
 def _answer(k, closed, work, n):
     """Write order `n` of the velocities: W times the impulses of the closed contacts."""
-    S, columns, slot = work.series, work.columns, work.index[o.CLOSED]
-    line = S.shape[2] * LANES
+    S, columns, slot = work.series, work.series.columns, work.closed
+    line = S.depth.shape[1] * LANES
     row, b0 = 3 * line, n * line  # `row`: length of a column of W
     for b in range(blocks(k)):
         p = LANES * b
@@ -228,26 +220,26 @@ def _answer(k, closed, work, n):
             i = slot[a]
             at = 3 * i * row + p
             for r in range(3):
-                x = same(S[o.S_P + r, n, i // LANES, i % LANES])
+                x = same(S.P[r, n, i // LANES, i % LANES])
                 un = add(un, multiply(x, load(columns, at)))
                 u1 = add(u1, multiply(x, load(columns, at + line)))
                 u2 = add(u2, multiply(x, load(columns, at + 2 * line)))
                 at += row
-        store(S[o.S_U], b0 + p, un)
-        store(S[o.S_U1], b0 + p, u1)
-        store(S[o.S_U2], b0 + p, u2)
+        store(S.u[0], b0 + p, un)
+        store(S.u[1], b0 + p, u1)
+        store(S.u[2], b0 + p, u2)
 
 
 @kernel
 def _hold(k, z, work, n):
     """Add the friction of stick to order `n`."""
-    S, impulse, velocity = work.series, work.vector[o.ORDER_P], work.vector[o.ORDER_U]
+    S, impulse, velocity = work.series, work.more_impulse, work.more_velocity
     for i in range(k):
         for r in range(3):
-            impulse[3 * i + r] = S[o.S_P + r, n, i // LANES, i % LANES]
-            velocity[3 * i + r] = S[o.S_U + r, n, i // LANES, i % LANES]
+            impulse[3 * i + r] = S.P[r, n, i // LANES, i % LANES]
+            velocity[3 * i + r] = S.u[r, n, i // LANES, i % LANES]
     stick(k, z, work, impulse, velocity)
     for i in range(k):
         for r in range(3):
-            S[o.S_P + r, n, i // LANES, i % LANES] = impulse[3 * i + r]
-            S[o.S_U + r, n, i // LANES, i % LANES] = velocity[3 * i + r]
+            S.P[r, n, i // LANES, i % LANES] = impulse[3 * i + r]
+            S.u[r, n, i // LANES, i % LANES] = velocity[3 * i + r]

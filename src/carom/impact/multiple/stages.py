@@ -15,7 +15,6 @@ from carom._compiled.decorators import kernel
 from carom._compiled.simd import LANES
 from carom._compiled.units import unit
 from carom.friction.dense import add_product
-from carom.impact.multiple import layout as o
 from carom.impact.multiple import normal_law as law
 from carom.impact.multiple.friction import gather_discs, push, slip_of, solve_discs
 from carom.impact.multiple.layer import set_velocity
@@ -46,7 +45,7 @@ GAMMA, WEIGHTS, DEFECT = float(IMPLICIT[1, 1]), KENNEDY_CARPENTER.b, KENNEDY_CAR
 @unit
 def by_stages(k, work, rtol, passage) -> tuple[float, bool]:
     """Take an implicit step, cut at the first change of mode; return its length and whether a mode changes."""
-    clock, when, u = work.clock[0], work.vector[o.WHEN], work.vector[o.NOW_U]
+    clock, u = work.clock[0], work.now.velocity
     clock.stretched = 0
     if passage.by_slip:
         begin_to_stick(k, work, passage.exponent, slip_at_rest(rtol))
@@ -68,13 +67,13 @@ def by_stages(k, work, rtol, passage) -> tuple[float, bool]:
     clock.step = h * (5.0 if error < 1e-3 * rtol else 0.9 * (rtol / error) ** 0.25)
     clock.step = min(clock.step, 0.5)
     interpolate(k, work, h)
-    first = law.find_changes(k, work, 5, h, when)
+    first = law.find_changes(k, work, 5, h)
     changes = first <= h
     if changes:
         if first > INSTANT:
             h = _land(k, m, work, first, passage, rtol)
             for i in range(k):  # times of changes, relative to the new length of the step
-                when[i] -= first - h
+                work.contact[i].when -= first - h
         else:
             return first, True
     if passage.by_slip:
@@ -95,19 +94,19 @@ def slip_at_rest(rtol):
 @kernel
 def _land(k, m, work, h, passage, rtol):
     """Step to the change of mode near `h`, by Newton's iteration for the length of the step."""
-    when, lead = work.vector[o.WHEN], 0
+    lead = 0
     for i in range(k):
-        if when[i] < when[lead]:
+        if work.contact[i].when < work.contact[lead].when:
             lead = i
     c = work.contact[lead]
     for turn in range(5):
         implicit_step(k, m, work, h, passage, rtol)
         work.clock[0].steps += 1
-        d, u_n = work.vector[o.NEW_D, lead], work.vector[o.NEW_U, 3 * lead]
+        d, u_n = work.new.depth[lead], work.new.velocity[3 * lead]
         if c.mode == law.OPEN:
             g, rate = d - c.d0, -u_n
         elif c.mode == law.LOAD:
-            row, force = work.matrix[o.MASS, 3 * lead], work.stage[o.FORCE, 5]
+            row, force = work.W[3 * lead], work.stages.force[5]
             g, rate = u_n, 0.0
             for j in range(3 * k):
                 rate += row[j] * force[j]
@@ -130,13 +129,13 @@ def _sticks(s, work, slow):
 
     A law holds what sticks until it is pulled away, and it may hold a slip that would pass through 0.
     """
-    t, i = work.vector[o.DISC_T], work.index[o.IN_DISC, s]
-    u, n = work.vector[o.NEW_U], work.stage[o.FORCE, 5, 3 * i]
+    t, i = work.disc_force, work.discs[s]
+    u, n = work.new.velocity, work.stages.force[5, 3 * i]
     c = work.contact[i]
     if by_law(c) and (c.sticks == 1 or crosses_rest(work, i)):
         return 1
     size = math.sqrt(t[2 * s] * t[2 * s] + t[2 * s + 1] * t[2 * s + 1])
-    held = size < work.vector[o.SLIP_MU, i] * n * (1.0 - 1e-9)
+    held = size < c.slip_mu * n * (1.0 - 1e-9)
     return 1 if held and slip_of(u, i) < slow else 0
 
 
@@ -144,7 +143,7 @@ def _sticks(s, work, slow):
 def regime_changes(m, work, slow):
     """Return whether a contact begins or ceases to stick in the step: its error estimate is then too small."""
     for s in range(m):
-        if work.contact[work.index[o.IN_DISC, s]].sticks != _sticks(s, work, slow):
+        if work.contact[work.discs[s]].sticks != _sticks(s, work, slow):
             return True
     return False
 
@@ -153,7 +152,7 @@ def regime_changes(m, work, slow):
 def set_regime(m, work, slow):
     """Note which contacts stick."""
     for s in range(m):
-        work.contact[work.index[o.IN_DISC, s]].sticks = _sticks(s, work, slow)
+        work.contact[work.discs[s]].sticks = _sticks(s, work, slow)
 
 
 @kernel
@@ -161,7 +160,7 @@ def greatest_jump(m, work, passage, h):
     """Return the greatest error of laws in whose slip a step of length h passes through 0."""
     most = 0.0
     for s in range(m):
-        i = work.index[o.IN_DISC, s]
+        i = work.discs[s]
         c = work.contact[i]
         if by_law(c) and c.sticks == 0 and crosses_rest(work, i):
             most = max(most, jump(c, i, work, passage, h))
@@ -173,8 +172,8 @@ def begin_to_stick(k, work, p, slow):
     """Let contacts with a law stick that close at rest, and others slip that close."""
     for i in range(k):
         c = work.contact[i]
-        if by_law(c) and not law.force(c, work.vector[o.D, i], p) > slow:
-            c.sticks = 0 if slip_of(work.vector[o.NOW_U], i) > slow else 1
+        if by_law(c) and not law.force(c, work.now.depth[i], p) > slow:
+            c.sticks = 0 if slip_of(work.now.velocity, i) > slow else 1
 
 
 @kernel
@@ -183,8 +182,8 @@ def break_away(k, m, work, h, passage, rtol):
 
     The pull of the rest grows from 0 there: a root by secants from beyond.
     """
-    d, u, slow, low, x = work.vector[o.NEW_D], work.vector[o.NEW_U], slip_at_rest(rtol), 0.0, h
-    now, other, most = pull(k, work, passage, d, u, slow), h, 0.0
+    slow, low, x = slip_at_rest(rtol), 0.0, h
+    now, other, most = pull(k, work, passage, work.new, slow), h, 0.0
     if not now > PULL:
         return h
     for _ in range(MOST_TURNS):
@@ -196,7 +195,7 @@ def break_away(k, m, work, h, passage, rtol):
         x = root + (0.01 if x == h and other > h else 0.5) * (h - root)
         implicit_step(k, m, work, x, passage, rtol)
         work.clock[0].steps += 1
-        a = pull(k, work, passage, d, u, slow)
+        a = pull(k, work, passage, work.new, slow)
         if a > PULL:
             other, most, h, now = h, now, x, a
         else:
@@ -210,23 +209,22 @@ def break_away(k, m, work, h, passage, rtol):
 def implicit_step(k, m, work, h, passage, rtol) -> float:
     """Step from (d, P, u) by `h` to the new state; return the error, infinite if the friction is not found.
 
-    ``work.stage[FORCE, 0]`` has the present forces; `m` discs are gathered. At the end
-    ``work.stage[FORCE, 5]`` has the forces of the new instant.
+    Stage 0 has the present forces, and in the end stage 5 those of the new instant; `m` discs are gathered.
     """
     n = 3 * k
-    force, rate, W = work.stage[o.FORCE], work.stage[o.STAGE], work.matrix[o.MASS]
-    vector, worst = work.vector, 0.0
-    u, u1, q = vector[o.NOW_U], vector[o.NEW_U], vector[o.SCRATCH]
+    force, sinking, loss = work.stages.force, work.stages.sinking, work.stages.loss
+    W, worst = work.W, 0.0
+    u, u1, q = work.now.velocity, work.new.velocity, work.scratch
     for i in range(k):
-        rate[0, i] = -u[3 * i]
-        rate[0, k + i] = -(force[0, 3 * i + 1] * u[3 * i + 1] + force[0, 3 * i + 2] * u[3 * i + 2])
+        sinking[0, i] = -u[3 * i]
+        loss[0, i] = -(force[0, 3 * i + 1] * u[3 * i + 1] + force[0, 3 * i + 2] * u[3 * i + 2])
     for s in range(1, 6):
-        d = vector[o.NEW_D]
+        d = work.new.depth
         for i in range(k):
             total = 0.0
             for j in range(s):
-                total += EXPLICIT[s, j] * rate[j, i]
-            d[i] = vector[o.D, i] + h * total
+                total += EXPLICIT[s, j] * sinking[j, i]
+            d[i] = work.now.depth[i] + h * total
         normal_forces(k, work, d, passage.exponent, force[s])
         for i in range(n):
             total = GAMMA * force[s, i]
@@ -239,9 +237,9 @@ def implicit_step(k, m, work, h, passage, rtol) -> float:
             worst = math.inf
         for i in range(k):
             a = 3 * i
-            rate[s, i] = -u1[a]
-            rate[s, k + i] = -(force[s, a + 1] * u1[a + 1] + force[s, a + 2] * u1[a + 2])
-    p0, p1, error = vector[o.NOW_P], vector[o.NEW_P], vector[o.ERROR]
+            sinking[s, i] = -u1[a]
+            loss[s, i] = -(force[s, a + 1] * u1[a + 1] + force[s, a + 2] * u1[a + 2])
+    p0, p1, error = work.now.impulse, work.new.impulse, work.error
     for i in range(n):
         total, wrong = 0.0, 0.0
         for s in range(6):
@@ -256,9 +254,9 @@ def implicit_step(k, m, work, h, passage, rtol) -> float:
     for i in range(k):
         total, wrong = 0.0, 0.0
         for s in range(6):
-            total += WEIGHTS[s] * rate[s, i]
-            wrong += DEFECT[s] * rate[s, i]
-        vector[o.NEW_D, i] = vector[o.D, i] + h * total
+            total += WEIGHTS[s] * sinking[s, i]
+            wrong += DEFECT[s] * sinking[s, i]
+        work.new.depth[i] = work.now.depth[i] + h * total
         worst = max(worst, h * abs(wrong))
     return worst
 
@@ -270,9 +268,9 @@ def present_forces(k, m, work, h, p, rtol):
     For a contact that slips, T = -mu N u_t/|u_t|; for contacts at rest, T is the solution of §2.3. Both are
     limits of the friction for the velocity a moment ahead, as this moment tends to 0.
     """
-    vector, force, moment = work.vector, work.stage[o.FORCE, 0], INSTANT_STEP * h
-    u, ahead, q = vector[o.NOW_U], vector[o.NEW_U], vector[o.SCRATCH]
-    normal_forces(k, work, vector[o.D], p, force)
+    force, moment = work.stages.force[0], INSTANT_STEP * h
+    u, ahead, q = work.now.velocity, work.new.velocity, work.scratch
+    normal_forces(k, work, work.now.depth, p, force)
     for i in range(k):
         n = 3 * i
         slip = math.sqrt(u[n + 1] * u[n + 1] + u[n + 2] * u[n + 2])
@@ -280,7 +278,7 @@ def present_forces(k, m, work, h, p, rtol):
         for r in range(3):
             q[n + r] = moment * force[n + r]
             ahead[n + r] = u[n + r] if r == 0 else moves * u[n + r]
-    add_product(3 * k, work.matrix[o.MASS], q, ahead)
+    add_product(3 * k, work.W, q, ahead)
     if m > 0:
         solve_discs(m, work, moment, force, ahead, SLIP_SHARE * rtol * INSTANT_STEP)
 
@@ -292,9 +290,9 @@ def add_friction(sizes, work, s, step, passage, rtol):
     Return whether it is that of this velocity. `sizes` are the numbers of contacts and of discs.
     """
     _, m = sizes
-    force, u, least = work.stage[o.FORCE, s], work.vector[o.NEW_U], SLIP_SHARE * rtol
+    force, u, least = work.stages.force[s], work.new.velocity, SLIP_SHARE * rtol
     for i in range(sizes[0] if passage.by_slip else 0):
-        work.vector[o.MU_BEFORE, i] = work.vector[o.SLIP_MU, i]
+        work.contact[i].mu_before = work.contact[i].slip_mu
     for _ in range(MOST_TURNS):
         solve_discs(m, work, step, force, u, least)
         push(sizes, work, step, force, u)
@@ -307,14 +305,13 @@ def add_friction(sizes, work, s, step, passage, rtol):
 @kernel
 def advance(k, work, h):
     """Make the new state the present one; add the friction loss."""
-    rate, vector = work.stage[o.STAGE], work.vector
     for i in range(3 * k):
-        vector[o.NOW_P, i] = vector[o.NEW_P, i]
+        work.now.impulse[i] = work.new.impulse[i]
     for i in range(k):
-        vector[o.D, i] = vector[o.NEW_D, i]
+        work.now.depth[i] = work.new.depth[i]
         loss = 0.0
         for s in range(6):
-            loss += WEIGHTS[s] * rate[s, k + i]
+            loss += WEIGHTS[s] * work.stages.loss[s, i]
         work.contact[i].loss += max(0.0, h * loss)
 
 
@@ -324,18 +321,18 @@ def interpolate(k, work, h):
 
     Hermite's interpolation uses depth, velocity and acceleration at both ends.
     """
-    vector, W = work.vector, work.matrix[o.MASS]
-    a0, a1 = vector[o.SCRATCH], vector[o.ERROR]
+    W = work.W
+    a0, a1 = work.scratch, work.error
     for i in range(3 * k):
         a0[i] = 0.0
         a1[i] = 0.0
-    add_product(3 * k, W, work.stage[o.FORCE, 0], a0)
-    add_product(3 * k, W, work.stage[o.FORCE, 5], a1)
-    d, u = work.series[o.S_D], work.series[o.S_U]
+    add_product(3 * k, W, work.stages.force[0], a0)
+    add_product(3 * k, W, work.stages.force[5], a1)
+    d, u = work.series.depth, work.series.u[0]
     for i in range(k):
         n, b, l = 3 * i, i // LANES, i % LANES
-        y0, v0, w0 = vector[o.D, i], -vector[o.NOW_U, n], -a0[n]
-        y1, v1, w1 = vector[o.NEW_D, i], -vector[o.NEW_U, n], -a1[n]
+        y0, v0, w0 = work.now.depth[i], -work.now.velocity[n], -a0[n]
+        y1, v1, w1 = work.new.depth[i], -work.new.velocity[n], -a1[n]
         # Differences at the end from the Taylor polynomial at the start, times powers of h.
         e0 = y1 - y0 - h * (v0 + 0.5 * h * w0)
         e1 = h * (v1 - v0 - h * w0)

@@ -15,7 +15,6 @@ from carom._compiled.simd import LANES, add, greatest, larger, load, multiply, s
 from carom._compiled.units import unit
 from carom.geometry.thresholds import ROUND_OFF
 from carom.impact import thresholds as limits
-from carom.impact.multiple import layout as o
 from carom.impact.multiple import normal_law as law
 from carom.impact.multiple import series as taylor
 from carom.impact.multiple.friction import gather_stuck, halt
@@ -34,7 +33,7 @@ def pass_layer(k, work, settings, rtol, later) -> int:
 
     The tolerance is `rtol`, and `later` once the state at the first unloading is saved.
     """
-    clock, when, p = work.clock[0], work.vector[o.WHEN], settings.exponent
+    clock, p = work.clock[0], settings.exponent
     set_velocity(k, work)
     first_events, first_steps, h = clock.events, clock.steps, 0.0
     while True:
@@ -59,10 +58,10 @@ def pass_layer(k, work, settings, rtol, later) -> int:
         if changes:
             latest = h + limits.INSTANT
             clock.idle = clock.idle + 1 if h <= limits.INSTANT else 0
-            if clock.branched == 0 and law.would_unload(k, work, when, latest):
+            if clock.branched == 0 and law.would_unload(k, work, latest):
                 branch(k, work, latest)
                 rtol = later
-            law.change_modes(k, work, when, latest, p, clock.idle > 2 * k)
+            law.change_modes(k, work, latest, p, clock.idle > 2 * k)
             clock.events += 1
 
 
@@ -72,7 +71,7 @@ def series_step(k, work, rtol):
 
     The length is -1 if the step has to be taken by stages.
     """
-    clock, when, u = work.clock[0], work.vector[o.WHEN], work.vector[o.NOW_U]
+    clock, u = work.clock[0], work.now.velocity
     least = max(limits.SLIP_END, 0.1 * rtol)
     captured = False
     for i in range(k):
@@ -104,7 +103,7 @@ def series_step(k, work, rtol):
         if degree == most or law.any_change(k, work, degree, h):
             break
         degree = most
-    first = law.find_changes(k, work, degree, h, when)
+    first = law.find_changes(k, work, degree, h)
     changes, end = first <= h, min(first, h)
     slip = first_slip(z, work, degree, end)
     if slip < end:
@@ -127,16 +126,17 @@ def _stiff(k, work):
 
     With r = |u_t| and c the rate at which friction changes u_t, the direction relaxes in a time r/c.
     """
-    S, weights = work.series, work.vector[o.WEIGHT]
+    S = work.series
     for i in range(k):
-        if not taylor.slips(work.contact[i]):
+        contact = work.contact[i]
+        if not taylor.slips(contact):
             continue
         b, l = i // LANES, i % LANES
-        x, y = S[o.S_U1, 0, b, l], S[o.S_U2, 0, b, l]
+        x, y = S.u[1, 0, b, l], S.u[2, 0, b, l]
         r2 = x * x + y * y
-        c = weights[i]
+        c = contact.braking
         if c * c > limits.STIFFNESS * limits.STIFFNESS * r2:
-            growth = (x * S[o.S_U1, 1, b, l] + y * S[o.S_U2, 1, b, l]) / S[o.S_SIGMA, 0, 0, 0]
+            growth = (x * S.u[1, 1, b, l] + y * S.u[2, 1, b, l]) / S.sigma[0, 0, 0]
             if growth > -0.1 * c * math.sqrt(r2):
                 return True
     return False
@@ -158,16 +158,12 @@ def reach(k, work, degree, stretched, tolerance):
 @kernel
 def _greatest(k, S, n):
     """Return the greatest term of order `n`; those of slow slip have more weight, for its direction."""
-    line, most = S.shape[2] * LANES, same(0.0)
+    line, most = S.depth.shape[1] * LANES, same(0.0)
     for b in range(blocks(k)):
         i = n * line + LANES * b
-        x, y = load(S[o.S_U1], i), load(S[o.S_U2], i)
-        slip = multiply(
-            load(S[o.S_LANE], o.SLOWNESS * line + LANES * b), larger(_size(x), _size(y))
-        )
-        most = larger(
-            most, larger(slip, larger(_size(load(S[o.S_U], i)), _size(load(S[o.S_D], i))))
-        )
+        x, y = load(S.u[1], i), load(S.u[2], i)
+        slip = multiply(load(S.slowness, LANES * b), larger(_size(x), _size(y)))
+        most = larger(most, larger(slip, larger(_size(load(S.u[0], i)), _size(load(S.depth, i)))))
     return greatest(most)
 
 
@@ -180,21 +176,20 @@ def _size(v):
 @inlined
 def move(k, work, degree, x):
     """Move to `x` on the series: set velocities, depths and impulses, and add the friction loss."""
-    S, vector = work.series, work.vector
-    line = S.shape[2] * LANES
+    S, line = work.series, work.series.depth.shape[1] * LANES
     for b in range(blocks(k)):
         n = LANES * b
         for r in range(3):
-            store(S[o.S_AT], 0, values(line, S[o.S_P + r], n, degree, x))
-            store(S[o.S_AT], line, values(line, S[o.S_U + r], n, degree, x))
+            store(S.end, 0, values(line, S.P[r], n, degree, x))
+            store(S.end, LANES, values(line, S.u[r], n, degree, x))
             for i in range(n, min(k, n + LANES)):
-                vector[o.NOW_P, 3 * i + r] = S[o.S_AT, 0, 0, i - n]
-                vector[o.NOW_U, 3 * i + r] = S[o.S_AT, 1, 0, i - n]
-        store(vector[o.D], n, values(line, S[o.S_D], n, degree, x))
-        if S[o.S_LANE, o.SLIPPING, b, 0] > 0.0:
-            store(S[o.S_AT], 0, values(line, S[o.S_LOSS], n, degree, x))
+                work.now.impulse[3 * i + r] = S.end[0, i - n]
+                work.now.velocity[3 * i + r] = S.end[1, i - n]
+        store(work.now.depth, n, values(line, S.depth, n, degree, x))
+        if S.slipping[b, 0] > 0.0:
+            store(S.end, 0, values(line, S.loss, n, degree, x))
             for i in range(n, min(k, n + LANES)):
-                work.contact[i].loss += S[o.S_AT, 0, 0, i - n]
+                work.contact[i].loss += S.end[0, i - n]
 
 
 @inlined
@@ -202,7 +197,7 @@ def first_slip(z, work, degree, end):
     """Return the first x in [0, end] where one of `z` contacts can no longer stick, or 2 end."""
     first = 2.0 * end
     for b in range(z):
-        x = _first_end(work, work.index[o.STUCK, b], True, degree, min(end, first))
+        x = _first_end(work, work.stuck[b], True, degree, min(end, first))
         first = min(first, x)
     return first
 
@@ -249,9 +244,9 @@ def _has_ended(work, i, sticks, degree, x):
     if sticks:
         return _excess(work.contact[i], i, work.series, degree, x) > 0.0
     S, b, l = work.series, i // LANES, i % LANES
-    u1, _ = value_and_slope(S[o.S_U1], i, degree, x)
-    u2, _ = value_and_slope(S[o.S_U2], i, degree, x)
-    return u1 * S[o.S_U1, 0, b, l] + u2 * S[o.S_U2, 0, b, l] <= 0.0
+    u1, _ = value_and_slope(S.u[1], i, degree, x)
+    u2, _ = value_and_slope(S.u[2], i, degree, x)
+    return u1 * S.u[1, 0, b, l] + u2 * S.u[2, 0, b, l] <= 0.0
 
 
 @kernel
@@ -260,9 +255,9 @@ def _excess(c, i, S, degree, x):
     n, t1, t2 = 0.0, 0.0, 0.0
     b, l = i // LANES, i % LANES
     for j in range(degree, 0, -1):
-        n = n * x + j * S[o.S_P, j, b, l]
-        t1 = t1 * x + j * S[o.S_P1, j, b, l]
-        t2 = t2 * x + j * S[o.S_P2, j, b, l]
+        n = n * x + j * S.P[0, j, b, l]
+        t1 = t1 * x + j * S.P[1, j, b, l]
+        t2 = t2 * x + j * S.P[2, j, b, l]
     room = c.mu * max(0.0, n)
     return t1 * t1 + t2 * t2 - room * room * (1.0 + 1e-9) - 1e-20
 
@@ -270,10 +265,10 @@ def _excess(c, i, S, degree, x):
 @kernel
 def _keeps_on(S, p, degree, end):
     """Return whether all terms together are too small to turn the slip of the block at `p` by a right angle."""
-    u1, u2, line, f = S[o.S_U1], S[o.S_U2], S.shape[2] * LANES, same(end)
+    u1, u2, line, f = S.u[1], S.u[2], S.depth.shape[1] * LANES, same(end)
     x, y, s = load(u1, p), load(u2, p), same(0.0)
     for j in range(degree, 0, -1):
         turn = add(multiply(x, load(u1, j * line + p)), multiply(y, load(u2, j * line + p)))
         s = multiply(add(s, _size(turn)), f)
     left = subtract(s, add(multiply(x, x), multiply(y, y)))
-    return greatest(multiply(left, load(S[o.S_LANE], o.ONE_OVER * line + p))) <= 0.0
+    return greatest(multiply(left, load(S.over, p))) <= 0.0

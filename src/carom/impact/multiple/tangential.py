@@ -31,9 +31,9 @@ def return_slips(k, work, passage):
     n, m = _gather(k, work, passage.laws)
     if m == 0:
         return
-    W, Y, hold = work.matrix[o.MASS], work.matrix[o.INVERSE], work.matrix[o.HOLDING]
-    pressed, stuck, wish = work.index[o.CLOSED], work.index[o.STUCK], work.vector[o.STICK_T]
-    more, change = work.vector[o.ORDER_P], work.vector[o.ORDER_U]
+    W, Y, hold = work.W, work.stick.coupling, work.stick.H
+    pressed, stuck, wish = work.closed, work.stuck, work.stick.T
+    more, change = work.more_impulse, work.more_velocity
     _weigh(n, pressed, work)
     _invert_normal(n, work)
     for a in range(n):
@@ -56,14 +56,14 @@ def return_slips(k, work, passage):
     add_product(3 * k, W, more, change)
     s = _part_allowed(k, work)
     for a in range(3 * k):
-        work.vector[o.NOW_P, a] += s * more[a]
+        work.now.impulse[a] += s * more[a]
     set_velocity(k, work)
 
 
 @kernel
 def _gather(k, work, laws):
     """List the contacts with an impulse, and those that stick with the change of slip; return their numbers."""
-    P, u, wish = work.vector[o.NOW_P], work.vector[o.U0], work.vector[o.STICK_T]
+    P, u, wish = work.now.impulse, work.before, work.stick.T
     n, m, most, size = 0, 0, 0.0, 0.0
     for i in range(k):
         most = max(most, P[3 * i])
@@ -72,10 +72,10 @@ def _gather(k, work, laws):
     for i in range(k):
         c = work.contact[i]
         if P[3 * i] > GROUP_ERROR * most:
-            work.index[o.CLOSED, n] = i
+            work.closed[n] = i
             n += 1
             if c.sticks & o.HAS_STUCK != 0 and c.mu > 0.0:
-                work.index[o.STUCK, m] = i
+                work.stuck[m] = i
                 e_t = laws.table[c.law].tangential_restitution
                 for r in range(2):
                     wish[2 * m + r] = -e_t * u[3 * i + 1 + r]
@@ -87,7 +87,7 @@ def _gather(k, work, laws):
 @kernel
 def _weigh(n, slot, work):
     """Write the weights of contacts, the roots of their normal impulses."""
-    P, weight, most = work.vector[o.NOW_P], work.vector[o.SCALE], 0.0
+    P, weight, most = work.now.impulse, work.stick.weight, 0.0
     for a in range(n):
         most = max(most, P[3 * slot[a]])
     for a in range(n):
@@ -97,24 +97,20 @@ def _weigh(n, slot, work):
 @kernel
 def _invert_normal(n, work):
     """Write W_nn^+ of `n` contacts."""
-    L, W, slot, weight = (
-        work.matrix[o.FACTOR], work.matrix[o.MASS], work.index[o.CLOSED], work.vector[o.SCALE],
-    )  # fmt: skip
+    L, W, slot, weight = work.stick.L, work.W, work.closed, work.stick.weight
     largest = 0.0
     for a in range(n):
         for b in range(a + 1):
             L[a, b] = weight[a] * weight[b] * W[3 * slot[a], 3 * slot[b]]
         largest = max(largest, L[a, a])
-    invert(n, decompose(n, largest, work.index[o.PIVOTED], L), 1, work)
+    invert(n, decompose(n, largest, work.stick.order, L), 1, work)
 
 
 @kernel
 def _invert_tangential(n, m, work):
     """Write K^+ of `m` contacts that stick, from Y = W_nn^+ W_nt with `n` contacts."""
-    L, W, Y, weight = (
-        work.matrix[o.FACTOR], work.matrix[o.MASS], work.matrix[o.INVERSE], work.vector[o.SCALE],
-    )  # fmt: skip
-    pressed, stuck, largest = work.index[o.CLOSED], work.index[o.STUCK], 0.0
+    L, W, Y, weight = work.stick.L, work.W, work.stick.coupling, work.stick.weight
+    pressed, stuck, largest = work.closed, work.stuck, 0.0
     for a in range(2 * m):
         row, scale = W[3 * stuck[a // 2] + 1 + a % 2], weight[a // 2]
         for b in range(a + 1):
@@ -125,14 +121,14 @@ def _invert_tangential(n, m, work):
             for c in range(n):
                 total -= row[3 * pressed[c]] * Y[c, b]
             L[a, b] = scale * weight[b // 2] * total
-    invert(2 * m, decompose(2 * m, largest, work.index[o.PIVOTED], L), 2, work)
+    invert(2 * m, decompose(2 * m, largest, work.stick.order, L), 2, work)
 
 
 @kernel
 def _part_allowed(k, work):
     """Return the part s of the impulse that cones, open contacts and the energy that friction took allow."""
-    P, u, before = work.vector[o.NOW_P], work.vector[o.NOW_U], work.vector[o.U0]
-    more, change = work.vector[o.ORDER_P], work.vector[o.ORDER_U]
+    P, u, before = work.now.impulse, work.now.velocity, work.before
+    more, change = work.more_impulse, work.more_velocity
     s, drawn, back, lost, pressure = 1.0, 0.0, 0.0, 0.0, 0.0
     for i in range(k):
         c, a = work.contact[i], 3 * i

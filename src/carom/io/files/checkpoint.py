@@ -66,7 +66,7 @@ def capture(run) -> Checkpoint | None:
     if inside or (islands.plan[0].planned != 0):
         return None
     pairs = 0 if run.found is None else len(run.found)
-    multiple, spots = len(run.multiple.e), len(run.crowd.closed)
+    multiple, spots = len(run.multiple.contact), len(run.crowd.closed)
     found = {"multiple": multiple, "spots": spots, "room": len(islands.which), "pairs": pairs}
     return Checkpoint(found, {name: array.copy() for name, array in arrays_of(run)})
 
@@ -91,7 +91,7 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
         If the arrays are not those of this version of carom.
     """
     found = checkpoint.found
-    while len(run.multiple.e) < found["multiple"]:
+    while len(run.multiple.contact) < found["multiple"]:
         run.grow(r.FULL_MULTIPLE)
     while len(run.crowd.closed) < found["spots"]:
         run.grow(r.FULL_SPOTS)
