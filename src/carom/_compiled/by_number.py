@@ -15,19 +15,20 @@ def by_number(number: str, default: Callable, functions: Sequence[Callable | Non
     Parameters
     ----------
     number : str
-        Python expression of the parameters.
+        Python expression of the parameters. If it is one of them, the functions do not have it.
     default : callable
         Called for numbers without a function, for which `functions` has None. It is compiled as a kernel.
     functions : sequence
         Kernels or units.
     """
-    names = ", ".join(inspect.signature(default).parameters)
+    parameters = list(inspect.signature(default).parameters)
+    names, given = ", ".join(parameters), ", ".join(one for one in parameters if one != number)
     known: dict[str, Any] = {"otherwise": kernel(default)}
     lines = [f"def {default.__name__}({names}):"]
     for k, function in enumerate(functions):
         if function is not None:
             known[f"of_{k}"] = function
-            lines += [f"    if {number} == {k}:", f"        return of_{k}({names})"]
+            lines += [f"    if {number} == {k}:", f"        return of_{k}({given})"]
     lines.append(f"    return otherwise({names})")
     exec("\n".join(lines), known)
     made = known[default.__name__]
