@@ -98,23 +98,23 @@ def find_touches(system, contact, state, reach, work):
 
 
 @by_kind("contact")
-def touch_of_active(system, contact, known, state, work):
-    """Find the points; return which of them has the feature of a known one, or replaces it."""
-    list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
-    return which_touch(system, contact, known, state, work)
+def touch_of_active(system, contact, feature, p, state, work):
+    """Find the points; return which has a feature, or replaces the one that was at p (body axes)."""
+    return touch_of_listed(system, contact, feature, p, state, work)
 
 
 @unit
-def place_found(system, contact, known, state, point, work):
-    """Write the found point that has the feature of a known one, or replaces it."""
-    i = touch_of_active(system, contact, known, state, work)
-    write_touch(contact, work.touches[i], state, point)
+def touch_of_listed(system, contact, feature, p, state, work) -> int:
+    """Return this for points that are listed."""
+    list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+    return which_touch(system, contact, feature, p, state, work)
 
 
 @by_kind("contact")
 def place(system, contact, known, state, point, work):
     """Write an active or a listed point, or the point that replaces it, in a state."""
-    place_found(system, contact, known, state, point, work)
+    i = touch_of_active(system, contact, known.feature, known.point, state, work)
+    write_touch(contact, work.touches[i], state, point)
 
 
 @by_kind("model.system.contacts[c]")

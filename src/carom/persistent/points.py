@@ -92,7 +92,7 @@ def add_pair(system, data, i, k) -> int:
         for j in range(i, active.count[0]):
             if active.points[j].contact == c:
                 one = active.points[j]
-                t = touch_of_active(system, contact, one, state, work)
+                t = touch_of_active(system, contact, one.feature, one.point, state, work)
                 k = add_found(system, data, c, work.touches[t], j, k)
                 data.group.closed[k - 1].listed = 1
         return k
@@ -194,7 +194,7 @@ def add_nearest(system, data, j, k):
     one, state, group, work = data.active.points[j], data.work.stage, data.group, data.work
     c = one.contact
     contact = system.contacts[c]
-    t = which_touch(system, contact, one, state, work)
+    t = which_touch(system, contact, one.feature, one.point, state, work)
     touch = work.touches[t]
     for i in range(k):
         if group.closed[i].contact == c and group.closed[i].feature == touch.feature:

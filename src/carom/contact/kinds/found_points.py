@@ -93,9 +93,8 @@ def own_point(contact, touch, state, p):
 
 
 @kernel
-def which_touch(system, contact, known, state, work):
-    """Return the found point with the feature of a known one; if none has it any more, the nearest to that."""
-    feature, p = known.feature, known.point
+def which_touch(system, contact, feature, p, state, work):
+    """Return the point that has the feature; if none has it any more, the one nearest to the core point p."""
     q, x = state[contact.body].Q, state[contact.body].x
     r = rotate(q, p)
     best, chosen = math.inf, 0

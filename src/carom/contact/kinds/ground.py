@@ -64,10 +64,10 @@ def time_apart(system, contact, state, bounds, h, work):
 
 
 @unit
-def touch_of_active(system, contact, known, state, work) -> int:
-    """Write the point with the feature of a known one; return its place, 0."""
+def touch_of_active(system, contact, feature, p, state, work) -> int:
+    """Write the point that has a feature; return its place, 0."""
     a, b = placed(system, contact, contact.other_solid, state, work)
-    feature_on_surface(a, b, system.hulls, known.feature, work.pair, work.touches)
+    feature_on_surface(a, b, system.hulls, feature, work.pair, work.touches)
     return 0
 
 

@@ -23,19 +23,19 @@ way_past, curvatures = plane.way_past, plane.curvatures
 
 
 @unit
-def touch_of_active(system, contact, known, state, work) -> int:
-    """Write the points of a contact; return the one that has the feature of a known one, or replaces it.
+def touch_of_active(system, contact, feature, p, state, work) -> int:
+    """Write the points of a contact; return the one that has a feature, or that replaces it.
 
     Past the rim of the surface that is one of the solid that has been left.
     """
     reach = ACTIVE_REACH * smaller(contact)
     list_touches(system, contact, state, reach, work)
-    i = which_touch(system, contact, known, state, work)
+    i = which_touch(system, contact, feature, p, state, work)
     solid = solid_left(system, contact, work.touches[i].on_b)
     if solid < 0:
         return i
     list_on_solid(system, contact, solid, state, reach, work)
-    return which_touch(system, contact, known, state, work)
+    return which_touch(system, contact, feature, p, state, work)
 
 
 @kernel

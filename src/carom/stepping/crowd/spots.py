@@ -128,7 +128,7 @@ def place_all(model, data, first_spot, k, state, points):
         while i < k and crowd.closed[i].contact == c:
             spot = crowd.closed[i]
             if is_found(contact):
-                t = which_touch(system, contact, spot, state, work)
+                t = which_touch(system, contact, spot.feature, spot.point, state, work)
                 write_touch(contact, work.touches[t], state, points[i])
             else:
                 place(system, contact, spot, state, points[i], work)
