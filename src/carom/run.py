@@ -182,7 +182,7 @@ class Run(Running):
 
     @property
     def model(self) -> Model:
-        """The data that kernels only read: the compiled scene, and the settings of the run."""
+        """The compiled scene, and the settings of the run (docs/development/arrays.md)."""
         return Model(self.compiled.system, self.controls)
 
     @property

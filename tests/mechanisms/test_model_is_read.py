@@ -3,6 +3,9 @@
 The list is to get shorter, not longer.
 """
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 from mechanism_scenes import chain, four_bar
@@ -72,3 +75,17 @@ def test_a_run_changes_these_columns_of_its_model_only(make, method):
     # the factor and the workspace of the constrained solve are its own
     assert {name for name in changed if not name.startswith("solver.")} <= CHANGES
     assert changed
+
+
+def test_the_page_of_arrays_names_all_of_them():
+    page = (Path(__file__).parents[2] / "docs" / "development" / "arrays.md").read_text()
+    named = set(re.findall(r"\w+", " ".join(re.findall(r"`([^`]+)`", page))))
+    run = Run(bead(), checked_settings(0.2, step=0.01))
+    parts = (
+        run.compiled.system,
+        run.compiled.system.relations,
+        run.data,
+        run.data.active,
+        run.data.work,
+    )
+    assert {field for part in parts for field in part._fields} - named == {"there", "counted"}

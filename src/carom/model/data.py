@@ -13,7 +13,7 @@ from carom.model.workspace import ActiveSet, Work
 
 
 class Model(NamedTuple):
-    """A compiled scene, or an island of one, and the settings of its run: read only."""
+    """A compiled scene, or an island of one, and the settings of its run: what changes in it a test names."""
 
     system: System
     controls: Controls
