@@ -6,7 +6,7 @@ import inspect
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
 
 
 def by_number(number: str, default: Callable, functions: Sequence[Callable | None]) -> Any:
@@ -25,6 +25,9 @@ def by_number(number: str, default: Callable, functions: Sequence[Callable | Non
     names, given = ", ".join(parameters), ", ".join(one for one in parameters if one != number)
     known: dict[str, Any] = {"otherwise": kernel(default)}
     lines = [f"def {default.__name__}({names}):"]
+    first = next((k for k, function in enumerate(functions) if function is not None), 0)
+    if first > 0:  # most are of the common form, and one comparison tells
+        lines += [f"    if {number} < {first}:", f"        return otherwise({names})"]
     for k, function in enumerate(functions):
         if function is not None:
             known[f"of_{k}"] = function
@@ -33,4 +36,4 @@ def by_number(number: str, default: Callable, functions: Sequence[Callable | Non
     exec("\n".join(lines), known)
     made = known[default.__name__]
     made.__module__, made.__doc__ = default.__module__, default.__doc__
-    return kernel(made)
+    return inlined(made)  # a call costs what its comparisons do

@@ -59,9 +59,10 @@ def room(system, contact, state, pieces):
 @kernel
 def apart(system, contact, state, near):
     """Return whether the room around both bodies, or around two pieces of them, is larger than `near`."""
-    if room(system, contact, state, False) > near:
-        return True
-    return contact.part == 1 and room(system, contact, state, True) > near
+    for pieces in range(1 + contact.part):
+        if room(system, contact, state, pieces == 1) > near:
+            return True
+    return False
 
 
 @by_kind("contact")
@@ -100,20 +101,20 @@ def find_touches(system, contact, state, reach, work):
 @by_kind("contact")
 def touch_of_active(system, contact, feature, p, state, work):
     """Find the points; return which has a feature, or replaces the one that was at p (body axes)."""
-    return touch_of_listed(system, contact, feature, p, state, work)
+    list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+    return which_touch(system, contact, feature, p, state, work)
 
 
 @unit
-def touch_of_listed(system, contact, feature, p, state, work) -> int:
-    """Return this for points that are listed."""
-    list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
-    return which_touch(system, contact, feature, p, state, work)
+def find_active_touch(system, contact, feature, p, state, work) -> int:
+    """Return what `touch_of_active` does: all kinds are compiled as one unit."""
+    return touch_of_active(system, contact, feature, p, state, work)
 
 
 @by_kind("contact")
 def place(system, contact, known, state, point, work):
     """Write an active or a listed point, or the point that replaces it, in a state."""
-    i = touch_of_active(system, contact, known.feature, known.point, state, work)
+    i = find_active_touch(system, contact, known.feature, known.point, state, work)
     write_touch(contact, work.touches[i], state, point)
 
 
@@ -318,13 +319,13 @@ def drift(system, contact, feature, point, state, work):
 
     The point must have been written for this state.
     """
-    return drift_of_convex(system, contact, point, state)
+    return drift_of_solids(system, contact, contact.other_solid, point, state)
 
 
 @unit
-def drift_of_convex(system, contact, point, state) -> tuple[float, float, float]:
-    """Return this for two convex solids."""
-    return drift_of_solids(system, contact, contact.other_solid, point, state)
+def drift_of_row(system, contact, feature, point, state, work) -> tuple[float, float, float]:
+    """Return what `drift` does: all kinds are compiled as one unit."""
+    return drift(system, contact, feature, point, state, work)
 
 
 @by_kind("contact")

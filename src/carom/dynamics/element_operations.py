@@ -30,19 +30,13 @@ def has_own_rows(system, j):
 @by_element
 def position_error(system, j, state, work):
     """Write the error of position to the bias of an element."""
-    if system.joints[j].rows == 0:  # stops alone limit its coordinates
-        clear(work.joint[j].bias)
-    else:
-        joints.position_error(system.joints[j], state, work.joint[j].bias)
+    joints.position_error(system.joints[j], state, work.joint[j].bias)
 
 
 @by_element
 def velocity_error(system, j, state, work):
     """Write the error of velocity to the bias of an element."""
-    if system.joints[j].rows == 0:  # stops alone limit its coordinates
-        clear(work.joint[j].bias)
-    else:
-        joints.velocity_error(system.joints[j], state, work.joint[j].bias)
+    joints.velocity_error(system.joints[j], state, work.joint[j].bias)
 
 
 @by_element

@@ -23,11 +23,11 @@ from carom.contact.kinds.partner import smaller
 from carom.contact.kinds.rim import place_of, same_point
 from carom.contact.operations import (
     add_touch,
+    find_active_touch,
     find_touches,
     forms_faces,
     list_touches,
     place,
-    touch_of_active,
 )
 from carom.contact.point_lists import is_active, write_closed, write_turning
 from carom.contact.thresholds import ACTIVE_REACH, NORMAL_ERROR, PLACE_ERROR, REACH
@@ -92,7 +92,7 @@ def add_pair(system, data, i, k) -> int:
         for j in range(i, active.count[0]):
             if active.points[j].contact == c:
                 one = active.points[j]
-                t = touch_of_active(system, contact, one.feature, one.point, state, work)
+                t = find_active_touch(system, contact, one.feature, one.point, state, work)
                 k = add_found(system, data, c, work.touches[t], j, k)
                 data.group.closed[k - 1].listed = 1
         return k

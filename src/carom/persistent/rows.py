@@ -14,7 +14,7 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.gap import slow
 from carom.contact.groups import members
-from carom.contact.operations import drift, is_fixed
+from carom.contact.operations import drift_of_row, is_fixed
 from carom.dynamics.acceleration import accelerate, acceleration
 from carom.dynamics.delassus import accelerations, inverse_masses, spread_all, velocities
 from carom.dynamics.element_operations import driven_power
@@ -101,7 +101,7 @@ def write_motion(system, k, state, rates, group, work):
         if closed_point.motion != MOTION_POINT:
             group.mu[i] = bound_per_force(system, points[i], closed_point)
         elif not is_fixed(contact):
-            d = drift(system, contact, closed_point.feature, points[i], state, work)
+            d = drift_of_row(system, contact, closed_point.feature, points[i], state, work)
             for r in range(3):
                 group.c[3 * i + r] += d[r]
 

@@ -63,8 +63,8 @@ def time_apart(system, contact, state, bounds, h, work):
     return min(time, reach(gap, rate, most)), most
 
 
-@unit
-def touch_of_active(system, contact, feature, p, state, work) -> int:
+@kernel
+def touch_of_active(system, contact, feature, p, state, work):
     """Write the point that has a feature; return its place, 0."""
     a, b = placed(system, contact, contact.other_solid, state, work)
     feature_on_surface(a, b, system.hulls, feature, work.pair, work.touches)

@@ -6,7 +6,6 @@ Past its rim a point goes on with the solid that it has left. (Rules: `level_sur
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom._compiled.units import unit
 from carom.collision.layout import PROFILE
 from carom.contact.continuous_detection import CLEAR
 from carom.contact.kinds import plane
@@ -22,8 +21,8 @@ room, stays_far, list_touches = plane.room, plane.stays_far, plane.list_touches
 way_past, curvatures = plane.way_past, plane.curvatures
 
 
-@unit
-def touch_of_active(system, contact, feature, p, state, work) -> int:
+@kernel
+def touch_of_active(system, contact, feature, p, state, work):
     """Write the points of a contact; return the one that has a feature, or that replaces it.
 
     Past the rim of the surface that is one of the solid that has been left.
@@ -44,8 +43,8 @@ def passage_hidden(system, data, contact, bounds):
     return CLEAR, data.work.search[0].dt
 
 
-@unit
-def drift(system, contact, feature, point, state, work) -> tuple[float, float, float]:
+@kernel
+def drift(system, contact, feature, point, state, work):
     """Return (d/dt G) v of a point of the surface, or of the solid that it has left."""
     solid = solid_beyond(system, contact, point, state)
     profile = system.solids[contact.solid].kind == PROFILE

@@ -11,7 +11,6 @@ r' = w x r_core + R p'.
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom._compiled.units import unit
 from carom.collision.faces import LOWEST
 from carom.collision.features import vertex_a
 from carom.collision.layout import CYLINDER, PROFILE, Placed, Plane
@@ -52,8 +51,8 @@ def curvatures(system, contact, point, state):
     return curvature(system, contact.solid, contact.body, state, place_and_axes(point, state))
 
 
-@unit
-def drift(system, contact, feature, point, state, work) -> tuple[float, float, float]:
+@kernel
+def drift(system, contact, feature, point, state, work):
     """Return (d/dt G) v of the lowest point of a solid."""
     if system.solids[contact.solid].kind == PROFILE:
         return drift_of_profile(system, contact, -1, point, state)

@@ -12,9 +12,11 @@ from typing import Any
 
 from carom._compiled.by_number import by_number
 from carom.dynamics.elements import inertia, on_curve, own_rows, relation, stiff, user
-from carom.model.arrays import INERTIA, ON_CURVE, RELATION, STIFF, USER_ROWS
+from carom.model.arrays import INERTIA, KIND, ON_CURVE, RELATION, STIFF, USER_ROWS
 
-_FILES = dict.fromkeys(ON_CURVE, on_curve)
+#: a joint without rows has coordinates that stops limit, and no errors
+_FILES: dict[int, Any] = {number: own_rows for joint, number in KIND.items() if joint.rows == 0}
+_FILES |= dict.fromkeys(ON_CURVE, on_curve)
 _FILES |= {RELATION: relation, USER_ROWS: user, STIFF: stiff, INERTIA: inertia}
 
 
