@@ -188,15 +188,8 @@ def check_end(model, data, label, s, h, given) -> bool:
             given and not lasts and (breaks_away(i, push, group) if law else gains(i, push, group))
         )
         if closed_point.motion == MOTION_JOINT:
-            one = system.relations.frictions[closed_point.active]
-            one.force, one.stop = group.p[3 * i + 1], time_to_stop(i, group)
-            one.grip = 1.0
-            if law or exact:
-                one.grip = grip_by_law(i, push, group) if one.mode == 0 else 1.0
-            elif slips and one.next == 0:
-                if work.search[0].active == 0:
-                    return False
-                one.next = -1 if one.force > 0.0 else 1
+            if not end_joint(model, data, i, push, (law, exact, slips)):
+                return False
             continue
         active_point = active.points[closed_point.active]
         take_forces(active_point, i, group)
@@ -224,6 +217,24 @@ def check_end(model, data, label, s, h, given) -> bool:
         active_point.jams = jams_among(i, found, group)
     add_forces_of_corners(active, k, group)
     note_residual(active, k, group, work)
+    return True
+
+
+@kernel
+def end_joint(model, data, i, push, how):
+    """Write force, margin and mode of entry i, friction in a joint; return whether its mode lasted.
+
+    `how` says whether it has a law, whether stops are located, and whether it begins to slip.
+    """
+    group, (law, exact, slips) = data.group, how
+    one = model.system.relations.frictions[group.closed[i].active]
+    one.force, one.stop, one.grip = group.p[3 * i + 1], time_to_stop(i, group), 1.0
+    if law or exact:
+        one.grip = grip_by_law(i, push, group) if one.mode == 0 else 1.0
+    elif slips and one.next == 0:
+        if data.work.search[0].active == 0:
+            return False
+        one.next = -1 if one.force > 0.0 else 1
     return True
 
 

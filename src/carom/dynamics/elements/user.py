@@ -41,11 +41,24 @@ def read_poses(system, j, state, t, ahead):
 
 
 @kernel
+def call_rows(system, j, state, t, ahead):
+    """Call the function of the rows for the poses after a time `ahead`; return whose it is."""
+    user = read_poses(system, j, state, t, ahead)
+    call_function(user.address, t + ahead, system.relations.read, system.relations.write)
+    return user
+
+
+@kernel
+def width_of(user):
+    """Return the width of a result: six numbers for each body, and b."""
+    return 6 * (user.last - user.first) + 1
+
+
+@kernel
 def write_speeds(system, j, state, t, ahead, out):
     """Write a v - b (rows,) with the rows of the poses after a time `ahead`, and the present velocities."""
-    user = read_poses(system, j, state, t, ahead)
-    result, width = system.relations.write, 6 * (user.last - user.first) + 1
-    call_function(user.address, t + ahead, system.relations.read, result)
+    user = call_rows(system, j, state, t, ahead)
+    result, width = system.relations.write, width_of(user)
     for r in range(system.joints[j].rows):
         total = -result[(r + 1) * width - 1]
         for s in range(user.first, user.last):
@@ -58,10 +71,8 @@ def write_speeds(system, j, state, t, ahead, out):
 @unit
 def write_rows(system, j, state, work):
     """Write A and A M^-1 of the user's rows."""
-    t = work.result[0].time
-    user = read_poses(system, j, state, t, 0.0)
-    result, width = system.relations.write, 6 * (user.last - user.first) + 1
-    call_function(user.address, t, system.relations.read, result)
+    user = call_rows(system, j, state, work.result[0].time, 0.0)
+    result, width = system.relations.write, width_of(user)
     for r in range(system.joints[j].rows):
         for s in range(user.first, user.last):
             side, i = system.solver.sides[s], r * width + 6 * (s - user.first)
@@ -115,11 +126,9 @@ def acceleration_bias(system, j, state, work):
 @unit
 def prescribed_speeds(system, j, state, work, out):
     """Write b (rows,), the speeds that the rows prescribe."""
-    t = work.result[0].time
     clear(out)
-    user = read_poses(system, j, state, t, 0.0)
-    result, width = system.relations.write, 6 * (user.last - user.first) + 1
-    call_function(user.address, t, system.relations.read, result)
+    user = call_rows(system, j, state, work.result[0].time, 0.0)
+    result, width = system.relations.write, width_of(user)
     for r in range(system.joints[j].rows):
         out[r] = result[(r + 1) * width - 1]
 
@@ -127,10 +136,8 @@ def prescribed_speeds(system, j, state, work, out):
 @unit
 def add_wrenches(system, j, state, multiplier, work):
     """Add A^T multiplier to the wrenches."""
-    t = work.result[0].time
-    user = read_poses(system, j, state, t, 0.0)
-    result, width = system.relations.write, 6 * (user.last - user.first) + 1
-    call_function(user.address, t, system.relations.read, result)
+    user = call_rows(system, j, state, work.result[0].time, 0.0)
+    result, width = system.relations.write, width_of(user)
     for r in range(system.joints[j].rows):
         for s in range(user.first, user.last):
             wrench = work.body[system.solver.sides[s].body].wrench
