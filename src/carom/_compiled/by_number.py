@@ -6,10 +6,15 @@ import inspect
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 
 
-def by_number(number: str, default: Callable, functions: Sequence[Callable | None]) -> Any:
+def by_number(
+    number: str,
+    default: Callable,
+    functions: Sequence[Callable | None],
+    mark: Callable = kernel,
+) -> Any:
     """Return the kernel with the parameters of `default` that calls ``functions[number]`` with its arguments.
 
     Parameters
@@ -20,6 +25,8 @@ def by_number(number: str, default: Callable, functions: Sequence[Callable | Non
         Called for numbers without a function, for which `functions` has None. It is compiled as a kernel.
     functions : sequence
         Kernels or units.
+    mark : callable
+        Decorator of the result: `inlined` for small ones that each step calls often.
     """
     parameters = list(inspect.signature(default).parameters)
     names, given = ", ".join(parameters), ", ".join(one for one in parameters if one != number)
@@ -36,4 +43,4 @@ def by_number(number: str, default: Callable, functions: Sequence[Callable | Non
     exec("\n".join(lines), known)
     made = known[default.__name__]
     made.__module__, made.__doc__ = default.__module__, default.__doc__
-    return inlined(made)  # a call costs what its comparisons do
+    return mark(made)

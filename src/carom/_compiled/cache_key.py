@@ -68,6 +68,8 @@ def _value(name: str, value: object, seen: set[int]) -> Iterator[str]:
         value, "compiled"
     ):  # a unit is not linked in; its callers depend only on the type of its result
         yield f"{name} -> {getattr(value, 'returned', None)}"
+    if getattr(value, "targetoptions", {}).get("forceinline"):
+        yield f"{name} is inlined"
     for part in getattr(value, "parts", ()):
         yield from _reached(getattr(part, "py_func", part), seen)
     inner = getattr(value, "py_func", None)

@@ -233,7 +233,7 @@ class _Mechanism:
         scaled, own = A.copy(), rest[rows.bodies]
         scaled[..., 3:] = quaternion.rotate_back(Q, A[..., 3:])
         own[:, 3:] = quaternion.rotate_back(Q, own[:, 3:])
-        scaled = (scaled / half).reshape(len(A), -1)
+        scaled = (scaled / half).reshape(len(A), 6 * len(rows.bodies))
         weight = np.linalg.norm(scaled, axis=1)  # the square root of the diagonal of A M^-1 A^T
         weight[weight == 0.0] = 1.0
         share = np.linalg.lstsq((scaled / weight[:, None]).T, (own / half).ravel(), SMALLEST)[0]

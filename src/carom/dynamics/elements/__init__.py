@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from carom._compiled.by_number import by_number
+from carom._compiled.decorators import inlined
 from carom.dynamics.elements import inertia, on_curve, own_rows, relation, stiff, user
 from carom.model.arrays import INERTIA, KIND, ON_CURVE, RELATION, STIFF, USER_ROWS
 
@@ -30,4 +31,4 @@ def by_element(joint: Callable) -> Any:
     for k in range(1 + max(_FILES)):
         common = getattr(own_rows, name, None) if k in _FILES else None
         own.append(getattr(_FILES.get(k), name, common))
-    return by_number(kind, joint, own)
+    return by_number(kind, joint, own, inlined)

@@ -12,6 +12,7 @@ from importlib import import_module
 from typing import Any
 
 from carom._compiled.by_number import by_number
+from carom._compiled.decorators import inlined
 from carom.kinematics.coordinates import on_curve, slide
 from carom.model.arrays import LIMITED, OF_LIMIT, ON_CURVE, PRISMATIC
 
@@ -22,4 +23,4 @@ _FILES |= {OF_LIMIT[word]: import_module(f"{__name__}.{file}") for word, file in
 def by_coordinate(angle: Callable) -> Any:
     """Decorate the form of an operation for angles; the result calls that of the kind of a coordinate c."""
     own = [getattr(_FILES.get(k), angle.__name__, None) for k in range(1 + max(_FILES))]
-    return by_number("c.kind", angle, own)
+    return by_number("c.kind", angle, own, inlined)
