@@ -50,6 +50,8 @@ assert abs(s.impacts.time[0] - np.sqrt(2 * (z - 0.4) / 9.81)) < 1e-9
 u = z * np.sqrt(2 * 9.81 * (z - 0.4))  # speed along the thread
 assert abs(s.impacts.impulse[0, 0] - 1.5 * u) < 1e-9
 assert np.linalg.norm(s.position[:, 0], axis=1).max() < 1.0 + 1e-9
+s.save("thread.nc")
+assert np.abs(carom.Solution.load("thread.nc").joint_impulses.impulse).max() < 1e-12  # a joint without rows
 
 from carom.scene.viscous import ViscousFriction
 law = ViscousFriction(static=0.1, speed=5.0, most=0.5)
