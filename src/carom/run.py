@@ -316,8 +316,8 @@ class Run(Running):
             active.count[0] = start.count[0]
             active.points[: active.count[0]] = start.points[: active.count[0]]
             start.begun[0] = 0
-            relations = self.compiled.system.relations
-            relations.coordinates["reference"] = relations.coordinates["begun"]
+            turns = self.compiled.system.relations.memory.coordinates
+            turns["reference"] = turns["begun"]
         else:
             return
         self.clock[:] = (islands if islands.apart else start).clock
@@ -370,7 +370,7 @@ def check_ends(scene: Scene, compiled) -> None:
         c = relations.coordinates[k]
         if c.kind not in ON_CURVE:
             continue
-        one, s = relations.curves[c.number], float(c.reference)
+        one, s = relations.curves[c.number], float(relations.memory.coordinates[k].reference)
         margin = END_MARGIN * (one.high - one.low)
         if one.period == 0.0 and not one.low - margin <= s <= one.high + margin:
             raise ValueError(

@@ -161,7 +161,7 @@ def add_touches(contact, c, near, state, spots, work):
 def add_touch(contact, c, touch, state, k, group):
     """Write a found point as point k of a list."""
     own_point(contact, touch, state, group.closed[k].point)
-    write_closed(c, touch.feature, group.closed[k].point, group.closed[k])
+    write_closed(c, touch.feature, group.closed[k].point, k, group.closed[k])
     write_touch(contact, touch, state, group.points[0][k])
 
 

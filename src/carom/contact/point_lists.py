@@ -7,10 +7,10 @@ from carom.model.workspace import MOTION_POINT
 
 
 @kernel
-def write_closed(c, feature, p, closed_point):
-    """Write one point of a list, which is not known to be active."""
+def write_closed(c, feature, p, i, closed_point):
+    """Write point i of a list, which is not known to be active; its own force bounds its friction."""
     closed_point.contact, closed_point.feature, closed_point.active = c, feature, -1
-    closed_point.motion = MOTION_POINT
+    closed_point.motion, closed_point.parent = MOTION_POINT, i
     for k in range(3):
         closed_point.point[k] = p[k]
 
@@ -18,8 +18,8 @@ def write_closed(c, feature, p, closed_point):
 @kernel
 def write_turning(i, motion, parent, closed_point):
     """Write the rolling (`MOTION_ROLL`) or pivoting friction of point i of a list."""
-    write_closed(parent.contact, parent.feature, parent.point, closed_point)
-    closed_point.motion, closed_point.parent, closed_point.active = motion, i, parent.active
+    write_closed(parent.contact, parent.feature, parent.point, i, closed_point)
+    closed_point.motion, closed_point.active = motion, parent.active
 
 
 @kernel

@@ -115,14 +115,14 @@ def bias_springs(system, state, h, s, work):
     """Add the springs as rows of the solver."""
     g = GAMMA * h
     for i in range(system.relations.stiff.shape[0]):
-        one = system.relations.stiff[i]
+        one, last = system.relations.stiff[i], system.relations.memory.stiff[i]
         j, row = one.element, system.solver.rows[one.element]
         length, speed = stretch(system, one, state)
         d = g * one.damping + g * g * one.stiffness
         start, more = speed, 0.0
         if s == 1:  # subtract twice the velocities and accelerations of the first stage
-            start, more = speed - 2.0 * (one.speed + g * one.gain), 2.0 * one.gain
-        one.speed = speed
+            start, more = speed - 2.0 * (last.speed + g * last.gain), 2.0 * last.gain
+        last.speed = speed
         force = one.stiffness * length + one.damping * speed + g * one.stiffness * start
         work.joint[j].bias[0] = more - force / d
         row.ignored, row.compliance[0] = 0, 1.0 / d
@@ -132,11 +132,11 @@ def bias_springs(system, state, h, s, work):
 def release_springs(system, state, h, s, work):
     """Remove the springs from the rows again, and store the accelerations of the stage along them."""
     for i in range(system.relations.stiff.shape[0]):
-        one = system.relations.stiff[i]
+        one, last = system.relations.stiff[i], system.relations.memory.stiff[i]
         row, gain = system.solver.rows[one.element], along_row(system, one, state, work)
         if s == 1:  # sum of the rates of the dampers in both stages, minus the first rate
-            one.speed += GAMMA * h * (gain - one.gain)
-        one.gain = gain
+            last.speed += GAMMA * h * (gain - last.gain)
+        last.gain = gain
         row.ignored, row.compliance[0] = 1, 0.0
 
 
@@ -152,5 +152,6 @@ def damper_work(system, start, h, end):
         one = system.relations.stiff[i]
         _, first = stretch(system, one, start)
         _, last = stretch(system, one, end)
-        total -= 0.25 * h * one.damping * (one.speed + first) * (first + last)
+        rates = system.relations.memory.stiff[i].speed + first
+        total -= 0.25 * h * one.damping * rates * (first + last)
     return total

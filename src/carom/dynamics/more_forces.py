@@ -6,6 +6,7 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.dynamics.applied import OF_RELATIONS, added, energies
 from carom.kinematics.coordinate import counts_turns, rate, turn_within, value
+from carom.kinematics.coordinates.turns import memory_of
 from carom.kinematics.curve import is_beyond, is_on_curve
 from carom.kinematics.thresholds import TURN_OF_STEP
 from carom.model.parts_of_system import has_relations, has_turns
@@ -35,25 +36,29 @@ def note_turns(system, state, h) -> bool:
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
         if counts_turns(c):  # what nothing depends on may turn far in a step
-            c.reference += h * rate(system, c, state)
-        c.reference = value(system, c, state)
+            memory_of(system, c).reference += h * rate(system, c, state)
+        memory_of(system, c).reference = value(system, c, state)
         if is_on_curve(c):
-            left = left or is_beyond(system.relations.curves[c.number], c.reference)
+            left = left or is_beyond(
+                system.relations.curves[c.number], memory_of(system, c).reference
+            )
     return left
 
 
 @kernel
 def begin_turns(system):
     """Store the angles at the start of a step."""
-    for i in range(system.relations.coordinates.shape[0]):
-        system.relations.coordinates[i].begun = system.relations.coordinates[i].reference
+    turns = system.relations.memory.coordinates
+    for i in range(turns.shape[0]):
+        turns[i].begun = turns[i].reference
 
 
 @kernel
 def forget_turns(system):
     """Restore the angles at the start of the step."""
-    for i in range(system.relations.coordinates.shape[0]):
-        system.relations.coordinates[i].reference = system.relations.coordinates[i].begun
+    turns = system.relations.memory.coordinates
+    for i in range(turns.shape[0]):
+        turns[i].reference = turns[i].begun
 
 
 @unit(where=has_relations, otherwise=False)

@@ -25,6 +25,7 @@ from carom.dynamics.loops import add_reactions, factor, free_motion, substitute,
 from carom.dynamics.solve import solve
 from carom.dynamics.tree import joint_wrenches
 from carom.kinematics.coordinate import rate, value
+from carom.kinematics.coordinates.turns import memory_of
 from carom.kinematics.curve import is_on_curve, seek_feet, seek_foot
 from carom.model.arrays import FOREST, LOOPS, RELATION
 from carom.model.parts_of_system import has_turns
@@ -129,12 +130,12 @@ def expect_turn(system, saved, k, i):
     """
     c = system.relations.coordinates[i]
     if i < saved.turn.shape[1]:
-        c.reference = saved.turn[k, i].angle
+        memory_of(system, c).reference = saved.turn[k, i].angle
     elif k == 0:
-        c.reference = 0.0
+        memory_of(system, c).reference = 0.0
     else:
         mean = 0.5 * (rate(system, c, saved.state[k - 1]) + rate(system, c, saved.state[k]))
-        c.reference += mean * (saved.series[k].t - saved.series[k - 1].t)
+        memory_of(system, c).reference += mean * (saved.series[k].t - saved.series[k - 1].t)
 
 
 @kernel
@@ -144,7 +145,7 @@ def settle_turn(system, saved, k, i):
     if is_on_curve(c):  # saved states may be far from each other
         seek_foot(system, c, saved.state[k])
     else:
-        c.reference = value(system, c, saved.state[k])
+        memory_of(system, c).reference = value(system, c, saved.state[k])
 
 
 @unit(where=has_turns)
@@ -162,7 +163,7 @@ def follow_turns(system, saved, k):
             if relation.last - relation.first == 1:
                 term = relations.terms[relation.first]
                 angle = prescribed(relations, relation, saved.series[k].t)[0] / term.factor
-                relations.coordinates[term.coordinate].reference = angle
+                relations.memory.coordinates[term.coordinate].reference = angle
     for i in range(relations.coordinates.shape[0]):
         settle_turn(system, saved, k, i)
 
@@ -208,7 +209,7 @@ def saved_turns(system, saved, out):
     for k in range(saved.state.shape[0]):
         follow_turns(system, saved, k)
         for i in range(system.relations.coordinates.shape[0]):
-            out[k, i] = system.relations.coordinates[i].reference
+            out[k, i] = system.relations.memory.coordinates[i].reference
 
 
 @kernel

@@ -17,8 +17,8 @@ from carom.dynamics.reactions import expect_turn, follow_turns, settle_turn
 from carom.geometry.rotation import cross, log
 from carom.kinematics.coordinate import along, push, rate
 from carom.kinematics.coordinates.ball import axes_of
-from carom.kinematics.coordinates.turns import angular_velocity
-from carom.kinematics.curve import can_be_left, dot, is_on_curve
+from carom.kinematics.coordinates.turns import angular_velocity, memory_of
+from carom.kinematics.curve import can_be_left, dot, foot_of, is_on_curve
 from carom.kinematics.joints import anchor_gap, anchor_speed
 from carom.law.friction import bound_of_stick, depends_on_slip, in_slip
 from carom.model.arrays import DISTANCE, FRICTIONS, SPHERICAL
@@ -160,15 +160,15 @@ def write_guided(system, c, state, out):
     """Write value, rate and direction of a coordinate; of a rail that can be left, those of its foot."""
     a = out.along
     a[0], a[1], a[2] = along(system, c, state)
-    out.value, out.rate = c.reference, rate(system, c, state)
+    out.value, out.rate = memory_of(system, c).reference, rate(system, c, state)
     if not is_on_curve(c):
         return
-    one = system.relations.curves[c.number]
+    one, foot = system.relations.curves[c.number], foot_of(system, c)
     if can_be_left(one):  # in flight the foot has a speed of its own
-        out.rate /= one.ahead * math.sqrt(dot(one.slope, one.slope))
-        m, n = one.normal[0], one.normal[1]
+        out.rate /= foot.ahead * math.sqrt(dot(foot.slope, foot.slope))
+        m, n = foot.normal[0], foot.normal[1]
         a[0], a[1], a[2] = cross(m[0], m[1], m[2], n[0], n[1], n[2])
-        out.gap = one.gap[1]
+        out.gap = foot.gap[1]
 
 
 @entry

@@ -34,7 +34,8 @@ def note_rates(system, state):
     """Store the rates of `state`."""
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
-        rotor.rate = rate(system, system.relations.coordinates[rotor.coordinate], state)
+        c = system.relations.coordinates[rotor.coordinate]
+        system.relations.memory.rates[i] = rate(system, c, state)
 
 
 @unit(where=has_relations)
@@ -43,7 +44,7 @@ def add_rates(system, state, work):
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
         c = system.relations.coordinates[rotor.coordinate]
-        rotor.rate += motion_along(system, c, state, work)
+        system.relations.memory.rates[i] += motion_along(system, c, state, work)
 
 
 @unit(where=has_relations)
@@ -52,7 +53,8 @@ def keep_rates(system, state, work):
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
         c = system.relations.coordinates[rotor.coordinate]
-        push(system, c, state, -rotor.inertia * (rate(system, c, state) - rotor.rate), work)
+        change = rate(system, c, state) - system.relations.memory.rates[i]
+        push(system, c, state, -rotor.inertia * change, work)
 
 
 @unit(where=has_relations, otherwise=(0.0, 0.0))

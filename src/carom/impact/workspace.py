@@ -44,7 +44,7 @@ CLOSED_POINT = [
     ("hold", "f8"),  # compliance of its stick [1/kg]
     # as in its POINT; MOTION_JOINT for all friction in joints, with `active` as its number
     ("motion", "i8"),
-    # of a torque of rolling or pivoting friction: the closed point whose normal force bounds it
+    # the entry whose normal force bounds its friction: of a torque its point, of a point itself; or CONSTANT
     ("parent", "i8"),
 ]
 

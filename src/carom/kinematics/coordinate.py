@@ -40,7 +40,7 @@ def value(system, c, state):
     px, py, pz = axis(state, c.parent, c.parent_frame, 1)
     qx, qy, qz = axis(state, c.parent, c.parent_frame, 2)
     angle = math.atan2(qx * bx + qy * by + qz * bz, px * bx + py * by + pz * bz)
-    return with_turns(c, angle)
+    return with_turns(system, c, angle)
 
 
 @kernel

@@ -19,6 +19,7 @@ from carom._compiled.units import unit
 from carom.geometry.pieces import find_piece
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.geometry.thresholds import RESOLUTION, SMALLEST
+from carom.kinematics.coordinates.turns import memory_of
 from carom.kinematics.joints import anchor_speed, child_arm, parent_arm
 from carom.kinematics.thresholds import END_MARGIN, HEIGHT, NEAR_RAIL
 from carom.kinematics.wrench import add_force
@@ -75,54 +76,60 @@ def across_side(one, v):
 
 
 @kernel
-def place_at(one, pieces, i, t):
+def place_at(one, foot, pieces, i, t):
     """Write position, first and second derivative of piece i at a distance t from its start."""
     for k in range(3):
-        one.x[k], one.slope[k], one.second[k] = polynomial(pieces[i].c, k, t)
+        foot.x[k], foot.slope[k], foot.second[k] = polynomial(pieces[i].c, k, t)
     if is_upright(pieces[i]):
-        for v in (one.x, one.slope, one.second):
+        for v in (foot.x, foot.slope, foot.second):
             v[0], v[1], v[2] = across_side(one, v)
 
 
 @kernel
-def locate(one, pieces, s):
+def locate(one, foot, pieces, s):
     """Write the place of a coordinate on the curve, and return its piece."""
     t = s
     if one.period > 0.0:
         t -= one.period * math.floor((s - one.low) / one.period)
     place = find_piece(pieces, one.first, one.last, t)
-    place_at(one, pieces, place, t - pieces[place].start)
+    place_at(one, foot, pieces, place, t - pieces[place].start)
     return place
 
 
 @kernel
-def correction(one, point, curved):
+def correction(foot, point, curved):
     """Return Newton's correction of a place on the curve, towards the foot of a point.
 
     Far from the foot the curvature would lead away.
     """
     along, square, bend = 0.0, 0.0, 0.0
     for k in range(3):
-        d = point[k] - one.x[k]
-        along += d * one.slope[k]
-        bend += d * one.second[k]
-        square += one.slope[k] * one.slope[k]
+        d = point[k] - foot.x[k]
+        along += d * foot.slope[k]
+        bend += d * foot.second[k]
+        square += foot.slope[k] * foot.slope[k]
     return along / max(square - (bend if curved else 0.0), 0.5 * square)
 
 
 @kernel
-def follow(one, pieces, point, s):
+def follow(one, foot, pieces, point, s):
     """Return the foot of a point that Newton's iteration from s finds, and its piece; NaN if there is none."""
     place, small = one.first, RESOLUTION / max(one.sharpest, 1.0 / (one.high - one.low))
     done = False
     for k in range(MOST_CORRECTIONS):
-        place = locate(one, pieces, s)
+        place = locate(one, foot, pieces, s)
         if done:
             break
-        step = correction(one, point, k > 1)
+        step = correction(foot, point, k > 1)
         s += step
         done = abs(step) <= small  # the error after it is its square
     return s if done else math.nan, place
+
+
+@kernel
+def foot_of(system, c):
+    """Return the foot of a coordinate on its curve: the last that was asked for."""
+    return system.relations.memory.feet[c.number]
 
 
 @unit
@@ -132,18 +139,21 @@ def find_foot(system, c, state):
     That of a rail that can be left is the nearest one in flight.
     """
     one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
+    foot = foot_of(system, c)
     point, free = point_of(c, state), can_be_left(one)
     if is_upright(pieces[one.first]):
-        one.s, place = follow(one, pieces, across_side(one, point), c.reference)
-        write_upright(c, one, pieces[place], point, state)
+        foot.s, place = follow(
+            one, foot, pieces, across_side(one, point), memory_of(system, c).reference
+        )
+        write_upright(system, c, pieces[place], point, state)
         return
-    one.s, place = follow(one, pieces, point, c.reference)
-    if free and not distance(one, point) * one.sharpest + 0.0 * one.s <= NEAR_RAIL:
-        place = find_nearest(c, one, pieces, point)
+    foot.s, place = follow(one, foot, pieces, point, memory_of(system, c).reference)
+    if free and not distance(foot, point) * one.sharpest + 0.0 * foot.s <= NEAR_RAIL:
+        place = find_nearest(system, c, point)
     n = pieces[place].normal
-    write_axes(c, one, (n[0], n[1], n[2]), point, state)
+    write_axes(c, foot, (n[0], n[1], n[2]), point, state)
     if free:  # in its plane, where the centre of curvature is no place of its own
-        one.bend[0], one.ahead = 0.0, max(one.ahead, RESOLUTION)
+        foot.bend[0], foot.ahead = 0.0, max(foot.ahead, RESOLUTION)
 
 
 @kernel
@@ -153,78 +163,83 @@ def can_be_left(one):
 
 
 @kernel
-def find_nearest(c, one, pieces, point):
+def find_nearest(system, c, point):
     """Write the nearest foot on the whole curve, in the lap nearest to the last, and return its piece.
 
     The curve goes on straight beyond its ends. Near a centre of curvature, any near place does as the foot.
     """
+    one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
+    foot = foot_of(system, c)
     least, near, spacing = math.inf, one.low, 0.0
     for i in range(one.first, one.last):
         end = pieces[i + 1].start if i + 1 < one.last else one.high
         t, length = 0.0, end - pieces[i].start
-        place_at(one, pieces, i, t)
-        if distance(one, point) > 1.01 * length + least:
+        place_at(one, foot, pieces, i, t)
+        if distance(foot, point) > 1.01 * length + least:
             continue
         for _ in range(2):
-            t = min(max(t + correction(one, point, True), 0.0), length)
-            place_at(one, pieces, i, t)
-        if distance(one, point) < least:
-            least, near, spacing = distance(one, point), pieces[i].start + t, length
-    one.s = near
+            t = min(max(t + correction(foot, point, True), 0.0), length)
+            place_at(one, foot, pieces, i, t)
+        if distance(foot, point) < least:
+            least, near, spacing = distance(foot, point), pieces[i].start + t, length
+    foot.s = near
     for _ in range(MOST_CORRECTIONS):
-        place = locate(one, pieces, one.s)
-        step = correction(one, point, True)
-        if distance(one, point) > least + RESOLUTION * spacing:  # near a centre of curvature
-            place, one.s = locate(one, pieces, near), near
+        place = locate(one, foot, pieces, foot.s)
+        step = correction(foot, point, True)
+        if distance(foot, point) > least + RESOLUTION * spacing:  # near a centre of curvature
+            place, foot.s = locate(one, foot, pieces, near), near
             break
         if abs(step) <= RESOLUTION * spacing:
             break
-        one.s += min(max(step, -spacing), spacing)
-    if one.period == 0.0 and not one.low <= one.s <= one.high:
-        near = min(max(one.s, one.low), one.high)
-        place = locate(one, pieces, near)
-        one.s = near + correction(one, point, False)
+        foot.s += min(max(step, -spacing), spacing)
+    if one.period == 0.0 and not one.low <= foot.s <= one.high:
+        near = min(max(foot.s, one.low), one.high)
+        place = locate(one, foot, pieces, near)
+        foot.s = near + correction(foot, point, False)
     if one.period > 0.0:
-        one.s += one.period * math.floor((c.reference - one.s) / one.period + 0.5)
+        foot.s += one.period * math.floor(
+            (memory_of(system, c).reference - foot.s) / one.period + 0.5
+        )
     return place
 
 
 @kernel
-def write_axes(c, one, across, point, state):
+def write_axes(c, foot, across, point, state):
     """Write axes and curvature of a foot, and the gap of the point; `across` is a vector across the curve."""
-    side, t, b = 1.0 if c.kind == POINT_ON_CURVE else -1.0, one.slope, one.second
+    side, t, b = 1.0 if c.kind == POINT_ON_CURVE else -1.0, foot.slope, foot.second
     square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2]
     f = 1.0 / math.sqrt(square)
     tx, ty, tz = f * t[0], f * t[1], f * t[2]
     f = across[0] * tx + across[1] * ty + across[2] * tz
     nx, ny, nz = across[0] - f * tx, across[1] - f * ty, across[2] - f * tz
     f = 1.0 / math.sqrt(nx * nx + ny * ny + nz * nz)
-    dx, dy, dz = point[0] - one.x[0], point[1] - one.x[1], point[2] - one.x[2]
-    nx, ny, nz, one.ahead = f * nx, f * ny, f * nz, 1.0
+    dx, dy, dz = point[0] - foot.x[0], point[1] - foot.x[1], point[2] - foot.x[2]
+    nx, ny, nz, foot.ahead = f * nx, f * ny, f * nz, 1.0
     for r in range(2):
         if r == 1:
             nx, ny, nz = cross(tx, ty, tz, nx, ny, nz)
-        one.gap[r] = side * (nx * dx + ny * dy + nz * dz) + 0.0 * one.s  # NaN stays
-        one.bend[r] = side * (nx * b[0] + ny * b[1] + nz * b[2]) / square
-        one.ahead -= one.gap[r] * one.bend[r]
-        one.normal[r, 0], one.normal[r, 1], one.normal[r, 2] = to_world(c, state, (nx, ny, nz))
-    a = one.along
+        foot.gap[r] = side * (nx * dx + ny * dy + nz * dz) + 0.0 * foot.s  # NaN stays
+        foot.bend[r] = side * (nx * b[0] + ny * b[1] + nz * b[2]) / square
+        foot.ahead -= foot.gap[r] * foot.bend[r]
+        foot.normal[r, 0], foot.normal[r, 1], foot.normal[r, 2] = to_world(c, state, (nx, ny, nz))
+    a = foot.along
     a[0], a[1], a[2] = to_world(c, state, (side * tx, side * ty, side * tz))
 
 
 @kernel
-def write_upright(c, one, piece, point, state):
+def write_upright(system, c, piece, point, state):
     """Write the axes of a rail in space: across it, as seen along the free side, and towards the free side.
 
     The point stays above the rail, N . (y - c) over a foot that it sees along N. With the unit tangent
     t = (t.h) h + (t.N) N, the gap is (t.h) N . (y - c), and the normal n = (t.h) N - (t.N) h.
     """
-    t = one.s - piece.start
+    one, foot = system.relations.curves[c.number], foot_of(system, c)
+    t = foot.s - piece.start
     if one.period > 0.0:
-        t -= one.period * math.floor((one.s - one.low) / one.period)
-    n, h, s = one.side, one.slope, 1.0 / math.sqrt(dot(one.slope, one.slope))
+        t -= one.period * math.floor((foot.s - one.low) / one.period)
+    n, h, s = one.side, foot.slope, 1.0 / math.sqrt(dot(foot.slope, foot.slope))
     across = cross(n[0], n[1], n[2], h[0], h[1], h[2])
-    write_axes(c, one, across, across_side(one, point), state)
+    write_axes(c, foot, across, across_side(one, point), state)
     rise, height, bend, square, along = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(3):
         x, slope, second = polynomial(piece.c, k, t)
@@ -235,8 +250,8 @@ def write_upright(c, one, piece, point, state):
         along += s * h[k] * second
     f = 1.0 / math.sqrt(square)
     run, rise = f / s, f * rise
-    one.gap[1], one.bend[1] = run * height, (run * bend - rise * along) / square
-    m, a = one.normal[1], one.along
+    foot.gap[1], foot.bend[1] = run * height, (run * bend - rise * along) / square
+    m, a = foot.normal[1], foot.along
     for k in range(3):
         m[k] = run * m[k] - rise * a[k]
 
@@ -259,7 +274,8 @@ def seek_foot(system, c, state):
     A rail in space may lie above itself, as a helix does: the branch is the highest one below the point.
     """
     one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
-    place, before = point_of(c, state), c.reference
+    foot = foot_of(system, c)
+    place, before = point_of(c, state), memory_of(system, c).reference
     point, upright = place, is_upright(pieces[one.first])
     if upright:
         point = across_side(one, place)
@@ -268,17 +284,17 @@ def seek_foot(system, c, state):
     for i in range(one.first, one.last):
         end = pieces[i + 1].start if i + 1 < one.last else one.high
         t, spacing = 0.0, end - pieces[i].start
-        place_at(one, pieces, i, t)
-        if distance(one, point) > 1.01 * spacing + math.sqrt(least):
+        place_at(one, foot, pieces, i, t)
+        if distance(foot, point) > 1.01 * spacing + math.sqrt(least):
             continue
         for _ in range(2):
-            t = min(max(t + correction(one, point, False), 0.0), spacing)
-            place_at(one, pieces, i, t)
-        lap, along = abs(pieces[i].start + t - before), dot(u, one.slope)
+            t = min(max(t + correction(foot, point, False), 0.0), spacing)
+            place_at(one, foot, pieces, i, t)
+        lap, along = abs(pieces[i].start + t - before), dot(u, foot.slope)
         if one.period > 0.0:
             lap -= one.period * math.floor(lap / one.period + 0.5)
         turned = max(0.0, 1.0 - along * along / speed) if speed > SMALLEST else 0.0
-        away = distance(one, point) ** 2 + spacing * spacing * turned + (RESOLUTION * lap) ** 2
+        away = distance(foot, point) ** 2 + spacing * spacing * turned + (RESOLUTION * lap) ** 2
         if upright:
             height = height_above(one, pieces[i], t, place)
             if height < -2.0 * spacing:
@@ -286,10 +302,10 @@ def seek_foot(system, c, state):
             away += (HEIGHT * height) ** 2
         if away < least:
             least, found = away, pieces[i].start + t
-    c.reference = found
+    memory_of(system, c).reference = found
     find_foot(system, c, state)
-    laps = math.floor((before - one.s) / one.period + 0.5) if one.period > 0.0 else 0.0
-    c.reference = one.s + laps * one.period
+    laps = math.floor((before - foot.s) / one.period + 0.5) if one.period > 0.0 else 0.0
+    memory_of(system, c).reference = foot.s + laps * one.period
 
 
 @kernel
@@ -299,9 +315,9 @@ def dot(a, b):
 
 
 @kernel
-def distance(one, point):
+def distance(foot, point):
     """Return the distance of a point from the last place on the curve."""
-    x = one.x
+    x = foot.x
     return math.sqrt((point[0] - x[0]) ** 2 + (point[1] - x[1]) ** 2 + (point[2] - x[2]) ** 2)
 
 
@@ -326,32 +342,32 @@ def is_beyond(one, s):
 
 
 @kernel
-def curve_error(joint, one, out):
+def curve_error(joint, foot, out):
     """Write the error of position of the last foot: out[3 + r] for row r."""
     for k in range(6):
         out[k] = 0.0
     for r in range(joint.rows):
-        out[3 + r] = one.gap[r]
+        out[3 + r] = foot.gap[r]
 
 
 @kernel
-def curve_speed(c, one, state, out):
+def curve_speed(c, foot, state, out):
     """Write the error of velocity at the last foot: out[3 + r] for row r."""
     u = anchor_speed(c, state)
     for k in range(6):
         out[k] = 0.0
     for r in range(c.rows):
-        out[3 + r] = dot(one.normal[r], u)
+        out[3 + r] = dot(foot.normal[r], u)
 
 
 @kernel
-def curve_bias(c, one, state, out):
+def curve_bias(c, foot, state, out):
     """Write the bias of the acceleration at the last foot: out[3 + r] for row r."""
-    bias, speed = relative_bias(c, state), dot(one.along, anchor_speed(c, state))
+    bias, speed = relative_bias(c, state), dot(foot.along, anchor_speed(c, state))
     for k in range(6):
         out[k] = 0.0
     for r in range(c.rows):
-        out[3 + r] = dot(one.normal[r], bias) + one.bend[r] * speed * speed / one.ahead
+        out[3 + r] = dot(foot.normal[r], bias) + foot.bend[r] * speed * speed / foot.ahead
 
 
 @kernel
@@ -362,12 +378,12 @@ def speed_beside(c, state):
 
 
 @kernel
-def rail_drift(c, one, state):
+def rail_drift(c, foot, state):
     """Return (d/dt G) v of the contact of a rail, at the last foot: normal, tangent, across."""
-    bias, u, n, e = relative_bias(c, state), anchor_speed(c, state), one.normal[1], one.normal[0]
-    t, ahead = cross(e[0], e[1], e[2], n[0], n[1], n[2]), dot(one.along, u)
-    speed, across = dot(t, u), one.bend[0] * ahead * ahead / one.ahead
-    turn = one.bend[1] * speed / one.ahead  # rate at which n turns back, t ahead
+    bias, u, n, e = relative_bias(c, state), anchor_speed(c, state), foot.normal[1], foot.normal[0]
+    t, ahead = cross(e[0], e[1], e[2], n[0], n[1], n[2]), dot(foot.along, u)
+    speed, across = dot(t, u), foot.bend[0] * ahead * ahead / foot.ahead
+    turn = foot.bend[1] * speed / foot.ahead  # rate at which n turns back, t ahead
     return -dot(n, bias) - turn * speed, -dot(t, bias) + turn * dot(n, u), -dot(e, bias) - across
 
 
@@ -395,28 +411,28 @@ def relative_bias(c, state):
 
 
 @kernel
-def curve_rows(c, one, state, side):
+def curve_rows(c, foot, state, side):
     """Write A of both rows at the last foot, for one body of the joint."""
     s, arm = 1.0, child_arm(c, state)
     if side.body != c.child:
         s, arm = -1.0, parent_arm(c, state)
     for r in range(c.rows):
-        n, A = one.normal[r], side.A
+        n, A = foot.normal[r], side.A
         tx, ty, tz = cross(arm[0], arm[1], arm[2], n[0], n[1], n[2])
         A[r, 0], A[r, 1], A[r, 2] = s * n[0], s * n[1], s * n[2]
         A[r, 3], A[r, 4], A[r, 5] = s * tx, s * ty, s * tz
 
 
 @kernel
-def push_across(c, one, state, multiplier, work):
+def push_across(c, foot, state, multiplier, work):
     """Add the wrenches of the multipliers of both rows at the last foot."""
-    f = force_across(one, multiplier)
+    f = force_across(foot, multiplier)
     add_force(work, c.child, child_arm(c, state), f)
     add_force(work, c.parent, parent_arm(c, state), (-f[0], -f[1], -f[2]))
 
 
 @kernel
-def force_across(one, multiplier):
+def force_across(foot, multiplier):
     """Return the force on the child of the multipliers of both rows at the last foot."""
-    m, n, f, g = one.normal[0], one.normal[1], multiplier[0], multiplier[1]
+    m, n, f, g = foot.normal[0], foot.normal[1], multiplier[0], multiplier[1]
     return f * m[0] + g * n[0], f * m[1] + g * n[1], f * m[2] + g * n[2]

@@ -17,6 +17,7 @@ import numpy as np
 from carom.collision.layout import Hulls
 from carom.collision.level_layout import Levels
 from carom.model.laws import Laws
+from carom.model.memory import Memory
 from carom.scene import joints
 
 #: kinds of joints in kernels; those on curves come last
@@ -95,8 +96,7 @@ JOINT = [
     ("child_frame", "f8", (3, 3)),
     ("length", "f8"),  # distance; displacement of a screw per radian; radius of a rolling body
     ("number", "i8"),  # of a relation, or of rows of the user's, in `Relations`
-    ("reference", "f8"),  # angle of a coordinate at the start of the trial step, with whole turns
-    ("begun", "f8"),  # the same at the start of the step
+    ("index", "i8"),  # of a coordinate, in `Relations` and `Memory`
 ]
 
 #: a coordinate of a joint: an angle about (kind REVOLUTE), or a displacement along (PRISMATIC), the first axis
@@ -104,8 +104,7 @@ JOINT = [
 #: side may be the ground
 COORDINATE = JOINT
 
-#: the curve of a coordinate with its pieces, and workspace: the foot, which is the point of the curve nearest
-#: to that of the joint, in the last state that was asked for, in world axes
+#: the curve of a coordinate with its pieces
 CURVE = [
     ("first", "i8"),  # range of its pieces
     ("last", "i8"),
@@ -118,15 +117,6 @@ CURVE = [
         "f8",
         3,
     ),  # towards the free side of a rail that can be left, in axes of its body; else 0
-    ("x", "f8", 3),  # last place on the curve, in axes of its body; derivatives by the coordinate
-    ("slope", "f8", 3),
-    ("second", "f8", 3),
-    ("s", "f8"),  # coordinate of the foot
-    ("along", "f8", 3),  # direction in which it grows as the child moves relative to the parent
-    ("normal", "f8", (2, 3)),
-    ("gap", "f8", 2),  # position of the child beside the parent, along both normals
-    ("bend", "f8", 2),  # curvature of its path, along both normals
-    ("ahead", "f8"),  # 1 - curvature vector . gap: rate along the curve = speed / ahead
 ]
 
 #: a piece of a curve: a polynomial of degree 5 in s - start, in axes of the body of the curve
@@ -182,32 +172,18 @@ STIFF_SPRING = [
     ("rest", "f8"),
     ("child_side", "i8"),
     ("parent_side", "i8"),
-    ("speed", "f8"),  # rate of its length in the last stage; after a step, for its work
-    ("gain", "f8"),  # second derivative of its length in the last stage
 ]
 
 #: dry friction along a coordinate of a joint: |force| <= bound
 FRICTION = [
     ("coordinate", "i8"),
     ("law", "i8"),  # by number: its friction is a force [N] or a moment [N m]
-    ("next", "i8"),  # 1 or -1: slips in this direction; 0 sticks
-    ("mode", "i8"),  # the same at the start of the step
-    ("grip", "f8"),  # margin before a joint breaks away (`carom.persistent.margins`)
-    # with given steps: part of its slip left at the end of the step, below 0 beyond its stop
-    ("left", "f8"),
-    ("began", "f8"),  # its speed at the start of the step
-    ("kink", "f8", 2),  # margins before a kink of its law, as of an active point
-    ("speed", "f8"),  # at the start of the step
-    ("force", "f8"),  # of the last solve
-    ("stop", "f8"),  # time until its slip stops
-    ("first_stop", "f8"),  # the same at the start of the step
 ]
 
 #: inertia along a coordinate of a joint
 ROTOR = [
     ("coordinate", "i8"),
     ("inertia", "f8"),
-    ("rate", "f8"),  # q' that the rotor keeps, stored before the bodies move
 ]
 
 #: forces of a function of the user's: t, (bodies, 13) -> (bodies, 6)
@@ -399,8 +375,7 @@ class Relations(NamedTuple):
     curves: np.recarray  # CURVE
     curve_pieces: np.recarray  # CURVE_PIECE
     named: np.ndarray  # bodies of the user's functions
-    read: np.ndarray  # arguments of the user's functions
-    write: np.ndarray  # and results
+    memory: Memory
 
 
 class MovingSurfaces(NamedTuple):

@@ -11,6 +11,7 @@ from carom.collision.layout import new_pair_work, new_points
 from carom.model import workspace
 from carom.model.arrays import STATE, System
 from carom.model.contact_kinds import is_found
+from carom.model.memory import ACTIVE_POINT
 from carom.model.tableaus import KENNEDY_CARPENTER
 
 #: kinds of events, by code
@@ -150,7 +151,7 @@ def new_active_set(system: System) -> workspace.ActiveSet:
     between = max(len(system.bodies), len(system.solids))  # bodies, or pieces of them
     points = len(system.vertices) + 24 * between + 8 * grounded + len(contacts)
     active = workspace.ActiveSet(
-        points=table(workspace.ACTIVE_POINT, points),
+        points=table(ACTIVE_POINT, points),
         contact_states=table(workspace.CONTACT_STATE, len(contacts)),
         carries=np.zeros(len(system.vertices), dtype=np.int64),
         count=np.zeros(1, dtype=np.int64),

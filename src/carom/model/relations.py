@@ -10,7 +10,8 @@ from carom import checks
 from carom._compiled.composed import is_compiled, joined, once
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
-from carom.model import arrays
+from carom.model import arrays, memory
+from carom.model.actions import MODE_STICK
 from carom.model.curves import Curves
 from carom.model.more_forces import MoreForces, is_damped_spring
 from carom.model.pieces import PIECE, Pieces
@@ -237,23 +238,48 @@ class Elements:
         curves = self.coordinates.curves
         named = np.array(more.named, np.int64)
         read, write = np.zeros((2, max(self.width, more.width)))
+        rows.index = np.arange(len(rows))
+        kept = new_memory(
+            len(rows), len(more.frictions), len(self.stiff), len(self.rotors), len(curves.rows)
+        )
         relations = _joined(arrays.RELATION_ROW, self.relations)
         user = _joined(arrays.USER_ROW, self.user)
         tables = relations, listed, user, self.pieces.rows, *(_joined(*one) for one in forces)
         tables += _joined(arrays.CURVE, curves.rows), _joined(arrays.CURVE_PIECE, curves.pieces)
         return arrays.Relations._make(
-            [there, self.coordinates.counted, rows, *tables, named, read, write]
+            [
+                there,
+                self.coordinates.counted,
+                rows,
+                *tables,
+                named,
+                kept._replace(read=read, write=write),
+            ]
         )
+
+
+def new_memory(
+    coordinates: int = 0, frictions: int = 0, stiff: int = 0, rotors: int = 0, curves: int = 0
+) -> memory.Memory:
+    """Return the memory of a run that has not begun: friction sticks, and has no time to its stop."""
+    rubs = table(memory.ACTIVE_POINT, frictions)
+    for name in ("mode", "next"):
+        rubs[name] = MODE_STICK
+    turns, stretch = table(memory.TURN_OF_JOINT, coordinates), table(memory.STRETCH, stiff)
+    none = np.zeros(0)
+    return memory.Memory(
+        turns, rubs, stretch, np.zeros(rotors), table(memory.FOOT, curves), none, none
+    )
 
 
 @cache
 def no_relations() -> arrays.Relations:
     """Return the tables of a scene without coordinates."""
-    a, none = arrays, np.zeros(0)
+    a = arrays
     kinds = a.COORDINATE, a.RELATION_ROW, a.TERM, a.USER_ROW, PIECE, a.PUSH, a.USER_FORCE
     kinds += a.STIFF_SPRING, a.FRICTION, a.ROTOR, a.CURVE, a.CURVE_PIECE
     named = np.zeros(0, dtype=np.int64)
-    return a.Relations._make([0, 0, *(table(kind, 0) for kind in kinds), named, none, none])
+    return a.Relations._make([0, 0, *(table(kind, 0) for kind in kinds), named, new_memory()])
 
 
 def _joined(fields, rows) -> np.recarray:

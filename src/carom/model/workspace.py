@@ -23,49 +23,6 @@ CONTACT_STATE = [
     ("step", "i8"),  # last step in which the two were near each other, plus 1
 ]
 
-#: an active point: a point of persistent contact, over time (see `carom.persistent`)
-ACTIVE_POINT = [
-    ("contact", "i8"),
-    ("feature", "i8"),  # stays the same as long as the same parts touch: number of the vertex
-    ("body", "i8"),  # of the contact
-    ("other", "i8"),
-    ("fixed", "i8"),  # 1 if it stays where it is on the body: a vertex
-    ("found", "i8"),  # 1 if it is found anew in each state
-    ("mode", "i8"),  # 0 open, 1 slipping, 2 sticking
-    ("next", "i8"),  # mode after the trial step
-    ("comes_to_rest", "i8"),  # 1 if that step puts the body to rest
-    ("shares", "i8"),  # 1 if it shares its bodies with other active points
-    ("rest", "i8"),  # 1 if the body does not move at all
-    ("jams", "i8"),  # 1 if it slips and no finite force keeps it closed
-    ("point", "f8", 3),  # point of the core that carries the contact, body axes
-    ("anchor", "f8", 3),  # its position in the world since it sticks
-    ("force", "f8", 3),  # of the last solve, contact axes
-    ("heading", "f8", 2),  # direction of slip at the start of the step, or of starting slip
-    ("speed", "f8"),  # of slip at the start of the step
-    # of rolling and pivoting: direction and speed at the start of the step
-    ("turning", "f8", (2, 3)),
-    ("stop", "f8"),  # for several points: time until slip stops under the last forces
-    ("lift", "f8"),  # for several points: margin before opening at the end of a step, below 0: open
-    ("grip", "f8"),  # the same before slip
-    # with given steps: least part of a slip or turn left at the end, below 0 beyond its stop
-    ("left", "f8"),
-    ("began", "f8"),  # speed of slip at the start of the step
-    # margin before the slip passes a kink of its law, at start and end of the step: below 0 if it has passed
-    ("kink", "f8", 2),
-    ("due", "i8"),  # 1 if the event of the search may be its own, too
-    ("turn_stop", "f8", 2),  # as `stop`, of rolling and of pivoting
-    # time that bounces left out would still take: rolling and pivoting friction begin at its end
-    ("bounces", "f8"),
-    ("torque", "f8", 3),  # of rolling and pivoting friction, contact axes
-    ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
-    # `stop` with both `turn_stop` at the start of the step
-    ("first_stop", "f8", 3),
-    # normal at the start of the step and its owner; 1 if the point passes an edge in the step
-    ("normal", "f8", 3),
-    ("owner", "i8"),
-    ("passes", "i8"),
-]
-
 #: a contact point in one state
 POINT = [
     ("a", "i8"),  # body on the side that the normal points to
@@ -90,6 +47,9 @@ POINT = [
 #: pivoting (t1) and of a stop that ends a turn (n); of a stop that ends a slide (n); of a joint (t1)
 MOTION_POINT, MOTION_ROLL, MOTION_PIVOT = range(3)
 MOTION_STOP_TURN, MOTION_STOP_SLIDE, MOTION_JOINT = range(3, 6)
+
+#: `parent` of an entry of a group whose friction has a constant bound; else the one whose force bounds it
+CONSTANT = -1
 
 #: index that stands for a static body
 STATIC = -2

@@ -84,7 +84,7 @@ def step_group(model, data, method, label, h):
             return applied, friction, 0
         result.stiff = 1
     if not (order > 0 and 0.5 * h * h * push <= closing_size(model, data, label)):
-        first_modes(data, label)
+        first_modes(model.system, data, label)
         ended, applied, friction = end_implicitly(
             model, data, (method.stiff, False), label, h, powers
         )
@@ -94,7 +94,7 @@ def step_group(model, data, method, label, h):
                 result.order = min(order, STIFF_ORDER)
             note_unnamed(model, data, label, friction + applied, 0.0, push)
             return applied, friction, 0
-    first_modes(data, label)
+    first_modes(model.system, data, label)
     ended, applied, friction = end_implicitly(model, data, (method.closing, True), label, h, powers)
     if not ended:
         return applied, friction, CONSTRAINTS_LOST

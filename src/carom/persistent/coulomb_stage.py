@@ -16,7 +16,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction.layout import CONE, SLIDING
-from carom.model.workspace import MOTION_JOINT, MOTION_POINT
+from carom.model.workspace import CONSTANT, MOTION_POINT
 from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import is_driven, radius_of
 from carom.persistent.settle import dot, greatest, settle
@@ -83,7 +83,7 @@ def largest(k, group):
     for i in range(k):
         if group.closed[i].motion == MOTION_POINT:
             push = max(push, abs(group.c[3 * i]))
-        elif group.closed[i].motion == MOTION_JOINT:
+        elif group.closed[i].parent == CONSTANT:
             push = max(push, group.mu[i] * group.W[3 * i + 1, 3 * i + 1])
     return push
 
@@ -94,16 +94,16 @@ def list_unknowns(k, group):
     rows, n = group.equations.rows, 0
     for i in range(k):
         closed_point = group.closed[i]
-        parent = i if closed_point.motion == MOTION_POINT else closed_point.parent
         first = 0 if closed_point.motion == MOTION_POINT else 1
-        bound = closed_point.motion == MOTION_JOINT or group.closed[parent].presses == 1
+        parent = closed_point.parent
+        bound = parent == CONSTANT or group.closed[parent].presses == 1
         for a in range(3):
             row = 3 * i + a
             if bound and a >= first and moves(group, row) and (a == 0 or group.mu[i] > 0.0):
                 rows[n], n = row, n + 1
             else:
                 group.p[row] = 0.0
-        if closed_point.motion == MOTION_JOINT and is_driven(group, i):
+        if is_driven(group, i):
             u = group.u[3 * i + 1]
             group.p[3 * i + 1] = -group.mu[i] if u > 0.0 else group.mu[i] if u < 0.0 else 0.0
     return n
@@ -189,8 +189,9 @@ def write_disc(k, n, i, width, hg, group):
     W, p = group.W, group.p
     a, b, unit = rows[i], rows[i + width - 1], rows[i] // 3
     closed_point = group.closed[unit]
-    # that of the point, or of the parent of a torque; below 0 for a joint
-    normal = 3 * (unit if closed_point.motion == MOTION_POINT else closed_point.parent)
+    normal = (
+        3 * closed_point.parent
+    )  # row of the force that bounds the friction; below 0 if none does
     scale = 0.5 * (W[a, a] + W[b, b])
     known = closed_point.passes == 1 if hg > 0.0 else group.kind[unit] == SLIDING
     first = group.c[a] if hg == 0.0 else group.u[a] / hg

@@ -44,9 +44,9 @@ def note_first_stops(system, active):
         active_point = active.points[i]
         first, turns = active_point.first_stop, active_point.turn_stop
         first[0], first[1], first[2] = active_point.stop, turns[0], turns[1]
-    frictions = system.relations.frictions
+    frictions = system.relations.memory.frictions
     for i in range(frictions.shape[0]):
-        frictions[i].first_stop, frictions[i].mode = frictions[i].stop, frictions[i].next
+        frictions[i].first_stop[0], frictions[i].mode = frictions[i].stop, frictions[i].next
 
 
 @inlined
@@ -65,7 +65,7 @@ def find_contact_event(system, active, work):
             return EVENT_SEPARATE, i
         if active_point.grip < 0.0:
             return EVENT_CONE, i
-    frictions = system.relations.frictions
+    frictions = system.relations.memory.frictions
     for i in range(frictions.shape[0]):
         if frictions[i].grip < 0.0:
             return EVENT_BREAK, i

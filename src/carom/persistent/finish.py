@@ -18,7 +18,7 @@ from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER, RESOLUTION
 from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
-from carom.model.workspace import MOTION_JOINT, MOTION_POINT
+from carom.model.workspace import CONSTANT, MOTION_JOINT, MOTION_POINT
 from carom.persistent.active_set import clear
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.jam import jams_among
@@ -30,6 +30,7 @@ from carom.persistent.margins import (
     take_forces,
     time_to_stop,
 )
+from carom.persistent.memory import first_stop, memory_of, store_slip, turns
 from carom.persistent.return_to_surfaces import greatest_speed, onto_surfaces, onto_tangents
 from carom.persistent.rows import (
     PASSED,
@@ -38,7 +39,6 @@ from carom.persistent.rows import (
     bodies_of,
     push_bodies,
     set_modes,
-    store_slip,
     write_rows,
 )
 from carom.persistent.settle import greatest
@@ -111,19 +111,16 @@ def note_modes(model, data, k, h):
         slides = group.kind[i] == SLIDING and slip > 0.0
         d1, d2 = u[3 * i + 1] / slip if slides else 0.0, u[3 * i + 2] / slip if slides else 0.0
         store_slip(model.system, active, closed_point, d1, d2, slip if slides else 0.0)
-        if closed_point.motion == MOTION_POINT and group.mu[i] > 0.0:
+        if not turns(closed_point) and group.mu[i] > 0.0:
             next_mode = MODE_SLIP if group.kind[i] == SLIDING else MODE_STICK
-            active.points[closed_point.active].next = next_mode
+            memory_of(model.system, active, closed_point).next = next_mode
 
 
 @kernel
 def braked(i, h, group):
     """Return the greatest change of the slip of a point, or of the rate of a joint, by friction in a time h."""
     W, q = group.W, 3 * i
-    most = W[q + 1, q + 1]
-    if group.closed[i].motion != MOTION_JOINT:
-        most = max(most, W[q + 2, q + 2])
-    return h * radius_of(group, i) * most
+    return h * radius_of(group, i) * max(W[q + 1, q + 1], W[q + 2, q + 2])
 
 
 @kernel
@@ -132,9 +129,7 @@ def turns_back(i, h, group):
 
     Friction cannot have braked it: where W vanishes, a rate of round-off would stop all bodies.
     """
-    if group.closed[i].motion != MOTION_JOINT:
-        return False
-    return abs(group.u[3 * i + 1]) > braked(i, h, group)
+    return group.closed[i].parent == CONSTANT and abs(group.u[3 * i + 1]) > braked(i, h, group)
 
 
 @kernel
@@ -227,14 +222,14 @@ def end_joint(model, data, i, push, how):
     `how` says whether it has a law, whether stops are located, and whether it begins to slip.
     """
     group, (law, exact, slips) = data.group, how
-    one = model.system.relations.frictions[group.closed[i].active]
-    one.force, one.stop, one.grip = group.p[3 * i + 1], time_to_stop(i, group), 1.0
+    one = model.system.relations.memory.frictions[group.closed[i].active]
+    one.force[1], one.stop, one.grip = group.p[3 * i + 1], time_to_stop(i, group), 1.0
     if law or exact:
-        one.grip = grip_by_law(i, push, group) if one.mode == 0 else 1.0
-    elif slips and one.next == 0:
+        one.grip = grip_by_law(i, push, group) if one.mode == MODE_STICK else 1.0
+    elif slips and one.next == MODE_STICK:
         if data.work.search[0].active == 0:
             return False
-        one.next = -1 if one.force > 0.0 else 1
+        one.next = MODE_SLIP
     return True
 
 
@@ -358,17 +353,9 @@ def stick_where_slip_ends(model, data, k, h):
     for i in range(k):
         if group.closed[i].stays == 1:
             store_slip(model.system, active, group.closed[i], 0.0, 0.0, 0.0)
-            if group.closed[i].motion == MOTION_POINT:
-                active.points[group.closed[i].active].next = MODE_STICK
+            if not turns(group.closed[i]):
+                memory_of(model.system, active, group.closed[i]).next = MODE_STICK
     return True
-
-
-@kernel
-def first_stop(system, active, closed_point):
-    """Return the time to the stop of a slip that was predicted at the start of the step."""
-    if closed_point.motion == MOTION_JOINT:
-        return system.relations.frictions[closed_point.active].first_stop
-    return active.points[closed_point.active].first_stop[closed_point.motion]
 
 
 @kernel

@@ -15,8 +15,7 @@ from carom.dynamics.solve import free_body
 from carom.geometry.thresholds import ROUND_OFF
 from carom.kinematics.coordinate import along, drift, motion_along, push, slides, speeds_of
 from carom.kinematics.joints import child_arm, parent_arm
-from carom.law.friction import bound_of_stick
-from carom.model.workspace import MOTION_JOINT, MOTION_PIVOT, MOTION_POINT
+from carom.model.workspace import CONSTANT, MOTION_JOINT, MOTION_PIVOT
 from carom.persistent.thresholds import MOTOR_COMPLIANCE
 
 
@@ -37,12 +36,11 @@ def _add_frictions(system, state, k, group, work) -> int:
             break
         c = relations.coordinates[relations.frictions[i].coordinate]
         closed_point, point = group.closed[k], group.points[0][k]
-        write_closed(-1, 0, point.core, closed_point)
-        closed_point.motion, closed_point.active, closed_point.parent = MOTION_JOINT, i, -1
+        write_closed(-1, 0, point.core, CONSTANT, closed_point)
+        closed_point.motion, closed_point.active = MOTION_JOINT, i
         closed_point.listed, closed_point.weight = 1, 1.0
         place_coordinate(system, c, state, point)
         closed_point.spring = MOTOR_COMPLIANCE * response_alone(system, c, state, work)
-        group.mu[k] = bound_of_stick(system.laws, relations.frictions[i].law)
         k += 1
     return k
 
@@ -87,24 +85,22 @@ def drift_of_coordinate(system, i, state, work):
 
 @kernel
 def is_driven(group, i):
-    """Return whether joints and motors leave the coordinate of an entry no freedom."""
-    return not group.W[3 * i + 1, 3 * i + 1] > group.closed[i].spring
+    """Return whether entry i is a coordinate to which joints and motors leave no freedom."""
+    closed_point = group.closed[i]
+    return closed_point.motion == MOTION_JOINT and not (
+        group.W[3 * i + 1, 3 * i + 1] > closed_point.spring
+    )
+
+
+@kernel
+def rounding_of_rate(system, i, state):
+    """Return the round-off of the rate of the coordinate of friction i."""
+    c = system.relations.coordinates[system.relations.frictions[i].coordinate]
+    return ROUND_OFF * speeds_of(system, c, state)
 
 
 @kernel
 def radius_of(group, i):
-    """Return the greatest friction of a point or an entry under the forces in `p`."""
-    closed_point = group.closed[i]
-    if closed_point.motion == MOTION_JOINT:
-        return group.mu[i]
-    normal = closed_point.parent if closed_point.motion != MOTION_POINT else i
-    return group.mu[i] * max(0.0, group.p[3 * normal])
-
-
-@kernel
-def mode_of_joint(system, i, u, still, state):
-    """Return the way (1 or -1) of the slip u of friction i, or 0 if it is slower than `still`, or round-off."""
-    c = system.relations.coordinates[system.relations.frictions[i].coordinate]
-    if abs(u) <= max(still, ROUND_OFF * speeds_of(system, c, state)):
-        return 0
-    return 1 if u > 0.0 else -1
+    """Return the greatest friction of an entry: mu times the force in `p` that bounds it, or a constant."""
+    parent = group.closed[i].parent
+    return group.mu[i] if parent == CONSTANT else group.mu[i] * max(0.0, group.p[3 * parent])

@@ -132,8 +132,7 @@ def switch_due(system, active, search):
     if search.kind in (EVENT_STOP, EVENT_KINK, EVENT_KINK_OF_JOINT):
         return True  # the modes of the end of the step are those of the stop, or of slip
     if search.kind == EVENT_BREAK:
-        one = system.relations.frictions[search.contact]
-        one.next = -1 if one.force > 0.0 else 1
+        system.relations.memory.frictions[search.contact].next = MODE_SLIP
         return True
     for i in range(active.count[0]):
         active_point = active.points[i]

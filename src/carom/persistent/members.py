@@ -38,8 +38,9 @@ from carom.friction.strategy import budget
 from carom.geometry.rotation import multiply, normalize
 from carom.geometry.thresholds import ROUND_OFF
 from carom.law.piecewise import any_depends_on_speed
-from carom.model.workspace import MOTION_JOINT, MOTION_POINT
+from carom.model.workspace import CONSTANT, MOTION_POINT
 from carom.persistent.coulomb_stage import solve_stage
+from carom.persistent.memory import turns
 from carom.persistent.rolling_friction import bound_turning
 from carom.persistent.rows import (
     PASSED,
@@ -50,7 +51,7 @@ from carom.persistent.rows import (
     set_modes,
     write_rows,
 )
-from carom.persistent.slip_law import first_modes_of_joints, renew_modes
+from carom.persistent.slip_law import renew_modes
 from carom.persistent.springs import bound_per_force, solve_springs
 from carom.persistent.start import first_modes
 from carom.persistent.stops import locates, pass_stops
@@ -132,8 +133,7 @@ def implicit_stage(model, data, label, s, hg, closes):
     iterations = group.equations.iterations
     iterations[0], laws, turned = 0, any_depends_on_speed(model.system.laws), False
     if laws:
-        first_modes(data, label)
-        first_modes_of_joints(model.system)
+        first_modes(model.system, data, label)
     for m in range(count):
         copy_state(group.base[group.member[m]], work.stage[group.member[m]])
     for turn in range(FIXED_POINT):
@@ -237,7 +237,7 @@ def solve_impulses(model, data, k, h):
     turning = False
     for i in range(k):
         group.kind[i] = CONE
-        if group.closed[i].motion == MOTION_JOINT:
+        if group.closed[i].parent == CONSTANT:
             group.kind[i], group.heading[i, 0] = DISC, h * group.mu[i]
         elif group.closed[i].motion != MOTION_POINT:
             group.mu[i], turning = 1.0, True
@@ -249,7 +249,7 @@ def solve_impulses(model, data, k, h):
         if turning and not change > 1e-14:
             break
     for i in range(k):
-        if MOTION_POINT < group.closed[i].motion < MOTION_JOINT:
+        if turns(group.closed[i]):
             group.mu[i] = bound_per_force(model.system, group.points[0][i], group.closed[i])
     for i in range(3 * k):
         p[i] /= h

@@ -36,7 +36,7 @@ from carom.geometry.thresholds import RESOLUTION, ROUND_OFF
 from carom.kinematics.anisotropy import lengths_of_tangents, turn_plain
 from carom.kinematics.contact_point import copy_point
 from carom.law.turning import arm_of_torque
-from carom.model.workspace import MOTION_JOINT, MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
+from carom.model.workspace import CONSTANT, MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
 from carom.persistent.active_set import is_first
 from carom.persistent.joint_rows import add_frictions
 from carom.persistent.thresholds import (
@@ -72,7 +72,7 @@ def add_known(system, data, i, k):
     if k == group.closed.shape[0]:
         return k
     closed_point = group.closed[k]
-    write_closed(one.contact, one.feature, one.point, closed_point)
+    write_closed(one.contact, one.feature, one.point, k, closed_point)
     closed_point.active, closed_point.listed = i, 1
     contact = system.contacts[one.contact]
     place(system, contact, one, work.stage, group.points[0][k], work)
@@ -249,8 +249,10 @@ def weigh(system, k, group):
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.motion != MOTION_POINT:
-            turns = closed_point.motion != MOTION_JOINT
-            closed_point.weight, closed_point.stick = 1.0, softness if turns else 1.0
+            bounded = (
+                closed_point.parent != CONSTANT
+            )  # by a force: as soft as the stick of its point
+            closed_point.weight, closed_point.stick = 1.0, softness if bounded else 1.0
             continue
         if closed_point.weight < 0.0:
             weigh_patch(system, i, k, group)

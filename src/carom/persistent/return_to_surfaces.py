@@ -24,7 +24,7 @@ from carom.friction.layout import SLIDING
 from carom.geometry.thresholds import SUM_ERROR
 from carom.kinematics.contact_point import in_axes
 from carom.model.actions import MODE_STICK
-from carom.model.workspace import MOTION_JOINT, MOTION_POINT
+from carom.model.workspace import CONSTANT, MOTION_POINT
 from carom.persistent.joint_rows import is_driven
 from carom.persistent.settle import greatest, settle
 from carom.persistent.springs import list_given, response
@@ -120,7 +120,7 @@ def mark_tangents(active, k, group):
     for i in range(k):
         closed_point, sticks = group.closed[i], group.kind[i] != SLIDING
         closed_point.rows = 0
-        if closed_point.motion == MOTION_JOINT:
+        if closed_point.parent == CONSTANT:
             closed_point.rows = 1 if sticks and not is_driven(group, i) else 0
         elif closed_point.motion == MOTION_POINT and group.p[3 * i] > 0.0:
             closed_point.rows = 0 if has_passed(active, i, group) else 3 if sticks else 1

@@ -25,14 +25,13 @@ from carom.kinematics.flight import free_rates
 from carom.kinematics.moving_surfaces import set_surfaces
 from carom.law.friction import bound_of_stick
 from carom.law.piecewise import any_depends_on_speed
-from carom.model.actions import MODE_SLIP
-from carom.model.laws import PERSISTENT
-from carom.model.workspace import MOTION_JOINT, MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
+from carom.model.workspace import MOTION_JOINT, MOTION_PIVOT, MOTION_POINT
 from carom.persistent.joint_rows import (
     drift_of_coordinate,
     is_driven,
-    mode_of_joint,
+    rounding_of_rate,
 )
+from carom.persistent.memory import law_of, slip_at_start, turns
 from carom.persistent.points import find_points
 from carom.persistent.slip_law import follow_laws
 from carom.persistent.springs import bound_per_force
@@ -90,17 +89,15 @@ def write_motion(system, k, state, rates, group, work):
     accelerations(k, points, state, rates, group.c)
     for i in range(k):
         closed_point = group.closed[i]
+        if turns(closed_point):
+            group.mu[i] = bound_per_force(system, points[i], closed_point)
+            continue
+        group.mu[i] = bound_of_stick(system.laws, law_of(system, closed_point))
         if closed_point.motion == MOTION_JOINT:
-            c = drift_of_coordinate(system, closed_point.active, state, work)
-            group.c[3 * i + 1] += c
-            law = system.relations.frictions[closed_point.active].law
-            group.mu[i] = bound_of_stick(system.laws, law)
+            group.c[3 * i + 1] += drift_of_coordinate(system, closed_point.active, state, work)
             continue
         contact = system.contacts[closed_point.contact]
-        group.mu[i] = bound_of_stick(system.laws, contact.law[PERSISTENT])
-        if closed_point.motion != MOTION_POINT:
-            group.mu[i] = bound_per_force(system, points[i], closed_point)
-        elif not is_fixed(contact):
+        if not is_fixed(contact):
             d = drift_of_row(system, contact, closed_point.feature, points[i], state, work)
             for r in range(3):
                 group.c[3 * i + r] += d[r]
@@ -128,7 +125,7 @@ def set_modes(system, active, k, group):
         closed_point.presses = 1 if closed_point.weight > 0.0 else 0
         group.kind[i] = SLIDING if slips or group.mu[i] == 0.0 else CONE
         group.heading[i, 0], group.heading[i, 1] = d1, d2
-        if closed_point.motion == MOTION_JOINT and is_driven(group, i):
+        if is_driven(group, i):
             group.kind[i] = SLIDING
             speed = group.u[3 * i + 1]
             group.heading[i, 0] = 1.0 if speed > 0.0 else -1.0 if speed < 0.0 else 0.0
@@ -165,39 +162,12 @@ def slip_of(system, data, i, still):
     u1, u2 = group.u[3 * i + 1], group.u[3 * i + 2]
     speed = math.hypot(u1, u2)
     if closed_point.motion == MOTION_JOINT:
-        return float(mode_of_joint(system, closed_point.active, u1, still, state)), 0.0, speed
-    if speed > max(10.0 * slow(system.contacts[closed_point.contact], state), still):
+        rounding = rounding_of_rate(system, closed_point.active, state)
+    else:
+        rounding = 10.0 * slow(system.contacts[closed_point.contact], state)
+    if speed > max(rounding, still):
         return u1 / speed, u2 / speed, speed
     return 0.0, 0.0, speed
-
-
-@kernel
-def store_slip(system, active, closed_point, d1, d2, speed):
-    """Keep direction and speed of the slip of a point, joint or torque for the next step; zeros if it holds."""
-    if closed_point.motion == MOTION_JOINT:
-        one = system.relations.frictions[closed_point.active]
-        one.next, one.speed = 1 if d1 > 0.0 else -1 if d1 < 0.0 else 0, speed
-        return
-    active_point = active.points[closed_point.active]
-    if closed_point.motion != MOTION_POINT:
-        turning = active_point.turning[closed_point.motion - MOTION_ROLL]
-        turning[0], turning[1], turning[2] = d1, d2, speed
-        return
-    active_point.heading[0], active_point.heading[1], active_point.speed = d1, d2, speed
-
-
-@kernel
-def slip_at_start(system, active, closed_point):
-    """Return whether a point slips (or rolls, or pivots), and direction and speed at the start of the step."""
-    if closed_point.motion == MOTION_JOINT:
-        one = system.relations.frictions[closed_point.active]
-        return one.next != 0, float(one.next), 0.0, one.speed
-    active_point = active.points[closed_point.active]
-    if closed_point.motion != MOTION_POINT:
-        turning = active_point.turning[closed_point.motion - MOTION_ROLL]
-        return turning[2] > 0.0, turning[0], turning[1], turning[2]
-    d = active_point.heading
-    return active_point.next == MODE_SLIP, d[0], d[1], active_point.speed
 
 
 @unit

@@ -14,9 +14,8 @@ from carom.geometry.thresholds import REMAINDER
 from carom.law.friction import bound_of_stick, depends_on_slip, in_slip, margin_of_slip
 from carom.law.piecewise import any_depends_on_speed
 from carom.model.actions import MODE_SLIP, MODE_STICK
-from carom.model.laws import PERSISTENT
-from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.joint_rows import radius_of
+from carom.persistent.memory import law_of, memory_of, turns
 from carom.persistent.settle import dot
 from carom.persistent.thresholds import BREAK_AWAY, FRICTION_LIMIT
 
@@ -24,18 +23,9 @@ TURNS_BACK = 8  # iterations of a stage in which slip that turns back may still 
 
 
 @kernel
-def law_of(system, closed_point):
-    """Return the number of the law of a point or a joint in persistent contact."""
-    if closed_point.motion == MOTION_JOINT:
-        return system.relations.frictions[closed_point.active].law
-    return system.contacts[closed_point.contact].law[PERSISTENT]
-
-
-@kernel
 def has_law(system, closed_point):
     """Return whether the friction of a point or a joint depends on its slip."""
-    slides = closed_point.motion == MOTION_JOINT or closed_point.motion == MOTION_POINT
-    return slides and depends_on_slip(system.laws, law_of(system, closed_point))
+    return not turns(closed_point) and depends_on_slip(system.laws, law_of(system, closed_point))
 
 
 @kernel
@@ -47,8 +37,6 @@ def set_friction(system, i, slips, group):
     laws, law = system.laws, law_of(system, closed_point)
     if not slips:
         group.mu[i] = bound_of_stick(laws, law)
-    elif closed_point.motion == MOTION_JOINT:
-        group.mu[i] = in_slip(laws, law, abs(u[3 * i + 1]))
     else:
         group.mu[i] = in_slip(laws, law, math.hypot(u[3 * i + 1], u[3 * i + 2]))
 
@@ -75,18 +63,7 @@ def follow_laws(system, active, k, group):
 @kernel
 def slips_by_mode(system, active, closed_point):
     """Return whether a point, or a joint, slips by its mode."""
-    if closed_point.motion == MOTION_JOINT:
-        return system.relations.frictions[closed_point.active].next != 0
-    return active.points[closed_point.active].next == MODE_SLIP
-
-
-@kernel
-def first_modes_of_joints(system):
-    """Take the modes of the start of the step."""
-    for i in range(system.relations.frictions.shape[0]):
-        one = system.relations.frictions[i]
-        if depends_on_slip(system.laws, one.law):
-            one.next = one.mode
+    return memory_of(system, active, closed_point).next == MODE_SLIP
 
 
 @kernel
@@ -111,14 +88,10 @@ def grip_by_law(i, push, group):
 @kernel
 def note_kink(system, active, closed_point, slip):
     """Write the margins before the next kink of a law, of a point or a joint, at start and end of a step."""
-    if closed_point.motion == MOTION_JOINT:
-        one = system.relations.frictions[closed_point.active]
-        before, kink, slips = one.began, one.kink, one.mode != 0
-    else:
-        active_point = active.points[closed_point.active]
-        before, kink, slips = active_point.began, active_point.kink, active_point.mode == MODE_SLIP
+    memory = memory_of(system, active, closed_point)
+    before, kink = memory.began, memory.kink
     kink[0], kink[1] = 1.0, 1.0
-    if slips:
+    if memory.mode == MODE_SLIP:
         law = law_of(system, closed_point)
         kink[0] = margin_of_slip(system.laws, law, before, slip, before)
         kink[1] = margin_of_slip(system.laws, law, before, slip, slip)
@@ -131,7 +104,7 @@ def share_before_kink(model, active):
     for i in range(active.count[0] if any_depends_on_speed(model.system.laws) else 0):
         kink = active.points[i].kink
         share = min(share, kink[0] / (kink[0] - kink[1]) if kink[1] < 0.0 else 1.0)
-    frictions = model.system.relations.frictions
+    frictions = model.system.relations.memory.frictions
     for i in range(frictions.shape[0]):
         kink = frictions[i].kink
         share = min(share, kink[0] / (kink[0] - kink[1]) if kink[1] < 0.0 else 1.0)
@@ -157,20 +130,13 @@ def renew_modes(model, active, k, hg, turn, group):
         if slips == (full and not (slips and back)):
             continue
         changed = True
-        if closed_point.motion == MOTION_JOINT:
-            one = system.relations.frictions[closed_point.active]
-            one.next = 0 if slips else 1 if u1 > 0.0 else -1
-        else:
-            active.points[closed_point.active].next = MODE_STICK if slips else MODE_SLIP
+        memory_of(system, active, closed_point).next = MODE_STICK if slips else MODE_SLIP
     return changed
 
 
 @kernel
 def goes_back(system, active, closed_point, u1, u2):
     """Return whether the slip (u1, u2) is against that at the start of the step."""
-    if closed_point.motion == MOTION_JOINT:
-        one = system.relations.frictions[closed_point.active]
-        return one.speed > 0.0 and one.next * u1 <= 0.0
-    active_point = active.points[closed_point.active]
-    d = active_point.heading
-    return active_point.speed > 0.0 and u1 * d[0] + u2 * d[1] <= 0.0
+    memory = memory_of(system, active, closed_point)
+    d = memory.heading
+    return memory.speed > 0.0 and u1 * d[0] + u2 * d[1] <= 0.0

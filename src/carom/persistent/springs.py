@@ -30,7 +30,7 @@ from carom.geometry.thresholds import LAST_DIGIT, REMAINDER, ROUND_OFF
 from carom.impact.thresholds import GROUP_ERROR, LOADED_PART
 from carom.law.turning import arm_of_torque
 from carom.model.allowance import COUNT_FACTORS
-from carom.model.workspace import MOTION_JOINT, MOTION_POINT, MOTION_ROLL
+from carom.model.workspace import CONSTANT, MOTION_POINT, MOTION_ROLL
 from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import is_driven
 from carom.persistent.settle import add_product, greatest, settle
@@ -77,7 +77,7 @@ def rows_of(k, i, group):
     from rolling, two that stick from pivoting.
     """
     closed_point = group.closed[i]
-    if closed_point.motion == MOTION_JOINT:
+    if closed_point.parent == CONSTANT:
         return 0 if group.kind[i] == SLIDING else 1
     if closed_point.motion == MOTION_POINT:
         return 0 if closed_point.presses == 0 else 1 if group.kind[i] == SLIDING else 3
@@ -181,7 +181,7 @@ def grip(k, group):
 def moves(group, row):
     """Return whether a force along a row moves its point; if not, its W is round-off (planar motion)."""
     n, W = row - row % 3, group.W
-    if group.closed[row // 3].motion == MOTION_JOINT:
+    if group.closed[row // 3].parent == CONSTANT:
         return row % 3 == 1 and not is_driven(group, row // 3)
     return W[row, row] > 1e-12 * (W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2])
 
@@ -219,7 +219,7 @@ def first_forces(k, n, turn, push, group):
     for row in range(3 * k):
         p[row] = 0.0
     for i in range(k):
-        if closed[i].motion == MOTION_JOINT and group.kind[i] == SLIDING:
+        if closed[i].parent == CONSTANT and group.kind[i] == SLIDING:
             p[3 * i + 1] = -group.mu[i] * group.heading[i, 0]
     for i in range(n):
         x[i] = -acceleration_of(k, rows[i], group)

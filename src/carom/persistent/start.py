@@ -13,17 +13,17 @@ from carom.contact.passed_edges import note_normal
 from carom.dynamics.explicit import copy_state, note_velocity
 from carom.friction.layout import SLIDING
 from carom.model.actions import MODE_SLIP, MODE_STICK
-from carom.model.workspace import MOTION_JOINT, MOTION_POINT
+from carom.model.workspace import CONSTANT, MOTION_JOINT, MOTION_POINT
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.finish import gains, within_cones
 from carom.persistent.joint_rows import radius_of
+from carom.persistent.memory import memory_of, store_slip, turns
 from carom.persistent.rows import (
     accelerate_freely,
     bodies_of,
     push_bodies,
     set_modes,
     slip_of,
-    store_slip,
     write_rows,
 )
 from carom.persistent.settle import greatest
@@ -32,12 +32,14 @@ from carom.persistent.springs import solve_springs
 
 
 @kernel
-def first_modes(data, label):
+def first_modes(system, data, label):
     """Take the modes of the start of the step for those of its end, until the end is known."""
-    active = data.active
+    active, frictions = data.active, system.relations.memory.frictions
     for i in range(active.count[0]):
         if data.work.body[active.points[i].body].label == label:
             active.points[i].next, active.points[i].left = active.points[i].mode, 1.0
+    for i in range(frictions.shape[0] if label == data.work.body.shape[0] else 0):
+        frictions[i].next, frictions[i].left = frictions[i].mode, 1.0
 
 
 @kernel
@@ -65,7 +67,7 @@ def first_stage(model, data, label):
     """
     group, system, controls = data.group, model.system, model.controls
     count, loaded, power = accelerate_start(model, data, label)
-    first_modes(data, label)
+    first_modes(system, data, label)
     k = write_rows(model, data, label, 0)
     push = greatest(3 * k, group.c)
     known = True
@@ -107,14 +109,14 @@ def note_break_away(system, data, k, push):
         if not gains(i, push, group):
             continue
         none = none and smooth
-        if closed_point.motion == MOTION_JOINT:
-            one, force = system.relations.frictions[closed_point.active], group.p[3 * i + 1]
-            broke = broke or (one.next == 0 and has_law(system, closed_point))
-            one.next = one.mode = -1 if force > 0.0 else 1
-        elif closed_point.motion == MOTION_POINT and group.p[3 * i] > 0.0:
-            active_point = data.active.points[closed_point.active]
-            broke = broke or (active_point.next != MODE_SLIP and has_law(system, closed_point))
-            active_point.next = MODE_SLIP
+        presses = closed_point.motion != MOTION_POINT or group.p[3 * i] > 0.0
+        if turns(closed_point) or not presses:
+            continue
+        memory = memory_of(system, data.active, closed_point)
+        broke = broke or (memory.next != MODE_SLIP and has_law(system, closed_point))
+        memory.next = MODE_SLIP
+        if closed_point.motion == MOTION_JOINT:  # its event is that of this step
+            memory.mode = MODE_SLIP
     return none, broke
 
 
@@ -125,14 +127,15 @@ def find_slip(model, data, i, still):
     closed_point = group.closed[i]
     d1, d2, speed = slip_of(system, data, i, still)
     if closed_point.motion == MOTION_JOINT:
-        one = system.relations.frictions[closed_point.active]
-        store_slip(system, active, closed_point, d1, d2, speed)
+        one = system.relations.memory.frictions[closed_point.active]
+        store_slip(system, active, closed_point, d1, d2, speed if d1 != 0.0 else 0.0)
+        one.next = MODE_SLIP if d1 != 0.0 else MODE_STICK
         if d1 != 0.0:
-            one.mode = one.next
-        one.began, one.left = speed, 1.0
+            one.mode = MODE_SLIP
+        one.began = speed
         # without slip it has just broken away, or may turn back
-        set_friction(system, i, one.mode != 0, group)
-        return d1 != 0.0 or one.mode == 0
+        set_friction(system, i, one.mode == MODE_SLIP, group)
+        return d1 != 0.0 or one.mode == MODE_STICK
     active_point, moves = active.points[closed_point.active], d1 != 0.0 or d2 != 0.0
     if closed_point.listed == 0:
         return moves or active_point.next != MODE_SLIP or group.mu[i] == 0.0
@@ -165,7 +168,7 @@ def rates(k, group):
             force = max(force, radius_of(group, i))
         braked = force * max(W[q + 1, q + 1], W[q + 2, q + 2])
         most = max(most, braked)
-        if group.closed[i].motion == MOTION_JOINT:  # where W vanishes it turns back by itself
+        if group.closed[i].parent == CONSTANT:  # where W vanishes it turns back by itself
             most = max(most, abs(group.c[q + 1]))
         speed = math.hypot(group.u[q + 1], group.u[q + 2])
         if group.kind[i] == SLIDING and group.mu[i] > 0.0 and braked > 0.0:

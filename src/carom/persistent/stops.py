@@ -13,8 +13,8 @@ tolerances the error of a step beyond a stop does this (`rows.beyond_stop`).
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.model.workspace import MOTION_JOINT
-from carom.persistent.rows import slip_at_start, slip_of
+from carom.persistent.memory import memory_of, slip_at_start
+from carom.persistent.rows import slip_of
 from carom.persistent.settle import dot, greatest
 
 
@@ -40,17 +40,14 @@ def note_left(model, data, k):
         left = (u[3 * i + 1] * d1 + u[3 * i + 2] * d2) / speed
         if e1 == 0.0 and e2 == 0.0:  # a stop
             left = 0.0
-        if closed_point.motion == MOTION_JOINT:
-            system.relations.frictions[closed_point.active].left = left
-        else:
-            active_point = active.points[closed_point.active]
-            active_point.left = min(active_point.left, left)
+        memory = memory_of(system, active, closed_point)
+        memory.left = min(memory.left, left)
 
 
 @kernel
 def least_left(system, active):
     """Return the least part of a slip that is left at the end of the trial step."""
-    least, frictions = 1.0, system.relations.frictions
+    least, frictions = 1.0, system.relations.memory.frictions
     for i in range(active.count[0]):
         if active.points[i].rest == 0:
             least = min(least, active.points[i].left)

@@ -244,7 +244,7 @@ def contact_sums(touch: np.recarray, saved: int, contacts: int) -> tuple[np.ndar
 @contextmanager
 def _kept_turns(system):
     """Restore the whole turns of angles at the end; the reports count them along the saved states."""
-    reference = system.relations.coordinates["reference"]
+    reference = system.relations.memory.coordinates["reference"]
     kept = reference.copy()
     yield
     reference[:] = kept

@@ -19,7 +19,7 @@ class Instant:
         self.run, self.states, self.t, self.given, self.pairs = run, states, t, given, run.pairs
         system = run.compiled.system
         self.touch = touches(run)
-        self.turns = system.relations.coordinates["reference"].copy()
+        self.turns = system.relations.memory.coordinates["reference"].copy()
         self.numbers, self.counted = run.compiled.numbers, system.relations.counted
         if known.get("given") is not given:  # it is replaced where a force is set
             known["given"], known["loads"] = given, tuple(map(np.array, loads(system)))
@@ -54,7 +54,7 @@ class Instant:
         out = np.zeros((2, system.joints.size, 6))
         kept = Kept((system,))  # the run may go on
         present = {index: law.rest for index, law in compiled.laws.items()}
-        reference = system.relations.coordinates["reference"]
+        reference = system.relations.memory.coordinates["reference"]
         for coordinate, number in self.numbers.items():
             reference[compiled.numbers[coordinate]] = self.turns[number]
         for there, was in zip(loads(system), self.loads):

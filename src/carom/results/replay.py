@@ -104,7 +104,7 @@ class Replay:
         run.now[:] = self.states[i]
         run.clock["now"] = begin
         if self.turns.size:
-            run.compiled.system.relations.coordinates["reference"] = self.turns[i]
+            run.compiled.system.relations.memory.coordinates["reference"] = self.turns[i]
         run.grid = part_of_grid(self.grid, begin, until)
         return run.go_on(run.steps) is Status.SUCCESS
 

@@ -69,7 +69,7 @@ def event_value(model, data):
         return event_gap(system, data, search.contact, state)
     if search.kind == EVENT_BREAK:
         search.tolerance = BREAK_AWAY
-        return system.relations.frictions[search.contact].grip, 0.0
+        return system.relations.memory.frictions[search.contact].grip, 0.0
     if search.kind == EVENT_STOP:
         search.tolerance = 0.0  # what is round-off of a stop is zero
         return least_left(system, active), 0.0
@@ -91,7 +91,7 @@ def kink_of(system, active, search):
     if search.kind == EVENT_KINK:
         kink = active.points[search.contact].kink
     else:
-        kink = system.relations.frictions[search.contact].kink
+        kink = system.relations.memory.frictions[search.contact].kink
     return kink[0], kink[1]
 
 

@@ -67,7 +67,7 @@ def save(model, data):
     for b in range(now.shape[0]):
         copy_state(now[b], records.state[k, b])
     for i in range(records.turn.shape[1]):
-        records.turn[k, i].angle = model.system.relations.coordinates[i].reference
+        records.turn[k, i].angle = model.system.relations.memory.coordinates[i].reference
     if data.active.count[0] > 0:
         save_contacts(model, data, k)
     clock.saved += 1

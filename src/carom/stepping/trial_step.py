@@ -87,7 +87,7 @@ def may_err(system, active):
 @inlined
 def until_stop(model, active, dt, clock):
     """Return dt, or the time until slip of an active point or of a joint with friction stops."""
-    first, frictions = dt, model.system.relations.frictions
+    first, frictions = dt, model.system.relations.memory.frictions
     for i in range(frictions.shape[0]):
         first = min(first, frictions[i].stop if frictions[i].stop > 0.0 else first)
     for i in range(active.count[0]):

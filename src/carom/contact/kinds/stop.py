@@ -21,7 +21,7 @@ from carom.geometry.thresholds import RESOLUTION
 from carom.kinematics.contact_point import contact_velocity
 from carom.kinematics.coordinate import along, slides, value
 from carom.kinematics.coordinate import drift as rate_of_slope
-from carom.kinematics.curve import can_be_left, find_foot, is_on_curve, rail_drift
+from carom.kinematics.curve import can_be_left, find_foot, foot_of, is_on_curve, rail_drift
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.model.actions import NOTHING, PERSIST, STRIKE
 from carom.model.workspace import MOTION_POINT, MOTION_STOP_SLIDE, MOTION_STOP_TURN
@@ -35,7 +35,7 @@ def place_stop(system, contact, state, point):
     c = system.relations.coordinates[contact.solid]
     nx, ny, nz = along(system, c, state)
     if is_rail(system, c):
-        place_on_rail(contact, c, system.relations.curves[c.number], state, point)
+        place_on_rail(contact, c, foot_of(system, c), state, point)
         return
     # the row is that of the child relative to the parent; its sign changes if the child is the ground
     s = 1.0 if (contact.side > 0.0) == (contact.body == c.child) else -1.0
@@ -62,11 +62,11 @@ def is_rail(system, c):
 
 
 @kernel
-def place_on_rail(contact, c, one, state, point):
+def place_on_rail(contact, c, foot, state, point):
     """Write the contact point of a rail, at the last foot: normal, tangent, and across the plane."""
-    n, across, r, s = one.normal[1], one.normal[0], child_arm(c, state), parent_arm(c, state)
+    n, across, r, s = foot.normal[1], foot.normal[0], child_arm(c, state), parent_arm(c, state)
     t = cross(across[0], across[1], across[2], n[0], n[1], n[2])
-    point.a, point.b, point.gap = contact.body, contact.other, one.gap[1]
+    point.a, point.b, point.gap = contact.body, contact.other, foot.gap[1]
     point.motion, point.length, point.moves = MOTION_POINT, 1.0, 0
     for k in range(3):
         point.core[k], point.arm_a[k], point.arm_b[k] = 0.0, r[k], s[k]
@@ -86,7 +86,7 @@ def drift(system, contact, feature, point, state, work) -> tuple[float, float, f
     c = system.relations.coordinates[contact.solid]
     if is_rail(system, c):
         find_foot(system, c, state)
-        return rail_drift(c, system.relations.curves[c.number], state)
+        return rail_drift(c, foot_of(system, c), state)
     return contact.side * rate_of_slope(system, c, state, work.joint[0].target), 0.0, 0.0
 
 
@@ -129,7 +129,7 @@ def add_points(model, data, c, state, within, spots):
     point = spots.points[0][k]
     place_stop(model.system, model.system.contacts[c], state, point)
     if not point.gap > near or is_active(data.active, c):
-        write_closed(c, 0, point.core, spots.closed[k])
+        write_closed(c, 0, point.core, k, spots.closed[k])
         spots.count[0] = k + 1
     return True
 

@@ -193,7 +193,7 @@ def add_points(model, data, c, state, within, spots):
             k = spots.count[0]
             if k == spots.closed.shape[0]:
                 return False
-            write_closed(c, i, system.vertices[i], spots.closed[k])
+            write_closed(c, i, system.vertices[i], k, spots.closed[k])
             contact_point.place(contact, spots.closed[k].point, state, spots.points[0][k])
             spots.count[0] = k + 1
     return True

@@ -28,9 +28,9 @@ def push_force(relations, one, q, speed, t):
     """Return the force along a coordinate, and the part of it that has no potential."""
     free = one.force - one.damping * speed
     if one.address != 0:
-        relations.read[0], relations.read[1] = q, speed
-        call_function(one.address, t, relations.read, relations.write)
-        free += relations.write[0]
+        relations.memory.read[0], relations.memory.read[1] = q, speed
+        call_function(one.address, t, relations.memory.read, relations.memory.write)
+        free += relations.memory.write[0]
     return free - one.stiffness * (q - one.rest), free
 
 

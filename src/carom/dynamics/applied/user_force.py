@@ -22,7 +22,7 @@ def count(system):
 def read_states(system, force, state):
     """Write x, Q, v, w of the bodies of a user's force, in the axes of the scene."""
     relations, i = system.relations, 0
-    read = relations.read
+    read = relations.memory.read
     for n in range(force.first, force.last):
         b = relations.named[n]
         Q, a = state[b].Q, system.bodies[b].axes
@@ -40,12 +40,12 @@ def add(system, i, state, power, work):
     relations, at = system.relations, 0
     one = relations.forces[i]
     read_states(system, one, state)
-    call_function(one.address, work.result[0].time, relations.read, relations.write)
+    call_function(one.address, work.result[0].time, relations.memory.read, relations.memory.write)
     for n in range(one.first, one.last):
         b = relations.named[n]
         wrench, v, w = work.body[b].wrench, state[b].v, state[b].w
         for k in range(6):
-            f = relations.write[at + k]
+            f = relations.memory.write[at + k]
             wrench[k] += f
             if one.energy_address == 0:
                 power += f * (v[k] if k < 3 else w[k - 3])
@@ -67,5 +67,5 @@ def energy(system, i, state, t):
     if one.energy_address == 0:
         return 0.0
     read_states(system, one, state)
-    call_function(one.energy_address, t, relations.read, relations.write)
-    return relations.write[0]
+    call_function(one.energy_address, t, relations.memory.read, relations.memory.write)
+    return relations.memory.write[0]

@@ -10,6 +10,7 @@ from carom.kinematics.curve import (
     curve_rows,
     curve_speed,
     find_foot,
+    foot_of,
     force_across,
     push_across,
 )
@@ -18,19 +19,19 @@ from carom.kinematics.rows import mass_row
 
 @kernel
 def foot(system, joint, state):
-    """Return the curve of a joint, with the foot of its point in this state."""
+    """Return the foot of a joint on a curve in this state."""
     c = system.relations.coordinates[joint.number]
     find_foot(system, c, state)
-    return system.relations.curves[c.number]
+    return foot_of(system, c)
 
 
 @unit
 def write_rows(system, j, state, work):
     """Write A and A M^-1 of a joint on a curve."""
     solver, joint = system.solver, system.joints[j]
-    one, first, last = foot(system, joint, state), solver.rows[j].first, solver.rows[j].last
+    at, first, last = foot(system, joint, state), solver.rows[j].first, solver.rows[j].last
     for s in range(first, last):
-        curve_rows(joint, one, state, solver.sides[s])
+        curve_rows(joint, at, state, solver.sides[s])
         for r in range(joint.rows):
             mass_row(system, solver.sides[s], r, work)
 

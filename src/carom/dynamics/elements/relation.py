@@ -20,9 +20,9 @@ from carom.kinematics.rows import mass_row
 def prescribed(relations, relation, t):
     """Return f, f' and f'' at the time t."""
     if relation.address != 0:
-        relations.read[0] = t
-        call_function(relation.address, t, relations.read, relations.write)
-        return relations.write[0], relations.write[1], relations.write[2]
+        relations.memory.read[0] = t
+        call_function(relation.address, t, relations.memory.read, relations.memory.write)
+        return relations.memory.write[0], relations.memory.write[1], relations.memory.write[2]
     if relation.last_piece > relation.piece:
         return curve(relations.pieces, relation.piece, relation.last_piece, t)
     return relation.constant + relation.rate * t, relation.rate, 0.0

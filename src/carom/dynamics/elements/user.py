@@ -26,7 +26,7 @@ from carom.kinematics.rows import mass_row
 def read_poses(system, j, state, t, ahead):
     """Write the poses of the bodies after a time `ahead` at constant velocities."""
     user = system.relations.user[system.joints[j].number]
-    read, i = system.relations.read, 0
+    read, i = system.relations.memory.read, 0
     for s in range(user.first, user.last):
         b = system.solver.sides[s].body
         x, Q, v, w, a = state[b].x, state[b].Q, state[b].v, state[b].w, system.bodies[b].axes
@@ -44,7 +44,9 @@ def read_poses(system, j, state, t, ahead):
 def call_rows(system, j, state, t, ahead):
     """Call the function of the rows for the poses after a time `ahead`; return whose it is."""
     user = read_poses(system, j, state, t, ahead)
-    call_function(user.address, t + ahead, system.relations.read, system.relations.write)
+    call_function(
+        user.address, t + ahead, system.relations.memory.read, system.relations.memory.write
+    )
     return user
 
 
@@ -58,7 +60,7 @@ def width_of(user):
 def write_speeds(system, j, state, t, ahead, out):
     """Write a v - b (rows,) with the rows of the poses after a time `ahead`, and the present velocities."""
     user = call_rows(system, j, state, t, ahead)
-    result, width = system.relations.write, width_of(user)
+    result, width = system.relations.memory.write, width_of(user)
     for r in range(system.joints[j].rows):
         total = -result[(r + 1) * width - 1]
         for s in range(user.first, user.last):
@@ -72,7 +74,7 @@ def write_speeds(system, j, state, t, ahead, out):
 def write_rows(system, j, state, work):
     """Write A and A M^-1 of the user's rows."""
     user = call_rows(system, j, state, work.result[0].time, 0.0)
-    result, width = system.relations.write, width_of(user)
+    result, width = system.relations.memory.write, width_of(user)
     for r in range(system.joints[j].rows):
         for s in range(user.first, user.last):
             side, i = system.solver.sides[s], r * width + 6 * (s - user.first)
@@ -88,8 +90,8 @@ def position_error(system, j, state, work):
     user = read_poses(system, j, state, t, 0.0)
     clear(out)
     if user.position_address != 0:
-        result = system.relations.write
-        call_function(user.position_address, t, system.relations.read, result)
+        result = system.relations.memory.write
+        call_function(user.position_address, t, system.relations.memory.read, result)
         for r in range(system.joints[j].rows):
             out[r] = result[r]
 
@@ -128,7 +130,7 @@ def prescribed_speeds(system, j, state, work, out):
     """Write b (rows,), the speeds that the rows prescribe."""
     clear(out)
     user = call_rows(system, j, state, work.result[0].time, 0.0)
-    result, width = system.relations.write, width_of(user)
+    result, width = system.relations.memory.write, width_of(user)
     for r in range(system.joints[j].rows):
         out[r] = result[(r + 1) * width - 1]
 
@@ -137,7 +139,7 @@ def prescribed_speeds(system, j, state, work, out):
 def add_wrenches(system, j, state, multiplier, work):
     """Add A^T multiplier to the wrenches."""
     user = call_rows(system, j, state, work.result[0].time, 0.0)
-    result, width = system.relations.write, width_of(user)
+    result, width = system.relations.memory.write, width_of(user)
     for r in range(system.joints[j].rows):
         for s in range(user.first, user.last):
             wrench = work.body[system.solver.sides[s].body].wrench

@@ -27,8 +27,6 @@ FIXED = {
     "work.part", "work.middle", "work.iterate", "work.mean", "work.beside", "work.origin", "work.struck",
     "work.placed", "islands.clock", "islands.single.clock", "islands.joined", "islands.others",
     "islands.partner", "islands.partner_first", "islands.plane", "islands.plane_first",
-    "relations.relations", "relations.terms", "relations.user", "relations.pieces",
-    "relations.pushes", "relations.forces", "relations.named", "relations.curves", "relations.curve_pieces",
 }  # fmt: skip
 
 
@@ -157,7 +155,7 @@ def arrays_of(run) -> Iterator[tuple[str, np.ndarray]]:
     system = run.compiled.system
     roots = {
         "now": run.now, "clock": run.clock, "active": run.active, "work": run.work,
-        "islands": run.islands, "solver": system.solver, "relations": system.relations,
+        "islands": run.islands, "solver": system.solver, "memory": system.relations.memory,
         "watch": run.watch,
     }  # fmt: skip
     for name, root in roots.items():

@@ -77,7 +77,7 @@ def along(system, c, state):
 def value(system, c, state):
     """Return the angle; that of a twist with its whole turns."""
     angle = angle_of(c, state)
-    return with_turns(c, angle) if c.kind == TWIST else angle
+    return with_turns(system, c, angle) if c.kind == TWIST else angle
 
 
 @kernel

@@ -6,6 +6,7 @@ from carom._compiled.decorators import kernel
 from carom.kinematics.curve import (
     can_be_left,
     find_foot,
+    foot_of,
     is_upright,
     relative_bias,
     speed_beside,
@@ -24,7 +25,7 @@ def slides(c):
 def along(system, c, state):
     """Return the tangent at the foot."""
     find_foot(system, c, state)
-    a = system.relations.curves[c.number].along
+    a = foot_of(system, c).along
     return a[0], a[1], a[2]
 
 
@@ -32,7 +33,7 @@ def along(system, c, state):
 def value(system, c, state):
     """Return the coordinate of the foot [m]."""
     find_foot(system, c, state)
-    return system.relations.curves[c.number].s
+    return foot_of(system, c).s
 
 
 @kernel
@@ -64,9 +65,9 @@ def turn_within(system, c, start, end, h):
     Above a rail that can be left, the point may reach it (its gap is that at the end).
     """
     turn = h * max(abs(speed_along(system, c, start)), abs(speed_along(system, c, end)))
-    one = system.relations.curves[c.number]
+    one, foot = system.relations.curves[c.number], foot_of(system, c)
     if can_be_left(one):
         travel = h * max(speed_beside(c, start), speed_beside(c, end))
-        far = travel < one.gap[1] and not is_upright(system.relations.curve_pieces[one.first])
+        far = travel < foot.gap[1] and not is_upright(system.relations.curve_pieces[one.first])
         turn = 0.0 if far else TURN_OF_STEP / RAIL_TRAVEL * travel
     return turn * one.sharpest

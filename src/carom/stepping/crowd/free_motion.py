@@ -78,8 +78,8 @@ def friction_power(system, state):
     """Return the power of friction in joints, with the forces of the last contact step."""
     relations, power = system.relations, 0.0
     for i in range(relations.frictions.shape[0]):
-        one = relations.frictions[i]
-        power += one.force * rate(system, relations.coordinates[one.coordinate], state)
+        speed = rate(system, relations.coordinates[relations.frictions[i].coordinate], state)
+        power += relations.memory.frictions[i].force[1] * speed
     return power
 
 

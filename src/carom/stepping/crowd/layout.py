@@ -10,7 +10,8 @@ import numpy as np
 from carom._compiled.record_arrays import table
 from carom.friction import layout as friction
 from carom.model.arrays import STATE
-from carom.model.workspace import ACTIVE_POINT, POINT
+from carom.model.memory import ACTIVE_POINT
+from carom.model.workspace import POINT
 from carom.stepping.crowd.graph import WORD
 from carom.stepping.crowd.mixing import Mixing, new_mixing
 

@@ -27,6 +27,7 @@ from carom.model.arrays import (
     System,
 )  # fmt: skip
 from carom.model.contact_kinds import is_of_joint
+from carom.model.memory import Memory
 from carom.model.relations import no_relations
 from carom.model.solvers import no_joints
 
@@ -60,8 +61,8 @@ def joined_bodies(system: System) -> Joined:
         relations._replace(
             coordinates=_moved(relations.coordinates, place, ends),
             stiff=_moved(relations.stiff, place, ends),
-            frictions=relations.frictions.copy(),
             named=place[relations.named],
+            memory=Memory._make(kept.copy() for kept in relations.memory),
         ),
         _moved(system.springs, place, ends),
         _moved(system.loads, place, ("body", "frame")),
@@ -102,11 +103,8 @@ def _solver(solver: Solver, order: np.ndarray, place: np.ndarray, count: int) ->
 @kernel
 def enter_joined(system, joined):
     """Copy the state of joints from the scene; drop the factor, which may belong to other bodies."""
-    here, there, solver = joined.relations, system.relations, joined.solver
-    for i in range(here.coordinates.shape[0]):
-        here.coordinates[i].reference = there.coordinates[i].reference
-    for i in range(here.frictions.shape[0]):
-        here.frictions[i] = there.frictions[i]
+    copy_memory(system.relations.memory, joined.relations.memory)
+    solver = joined.solver
     for b in range(solver.workspace.shape[0]):
         solver.workspace[b, 0] = math.nan
     for b in range(solver.pose.shape[0]):
@@ -116,8 +114,13 @@ def enter_joined(system, joined):
 @kernel
 def end_joined(system, joined):
     """Copy the state of joints back to the scene."""
-    here, there = joined.relations, system.relations
-    for i in range(here.coordinates.shape[0]):
-        there.coordinates[i].reference = here.coordinates[i].reference
-    for i in range(here.frictions.shape[0]):
-        there.frictions[i] = here.frictions[i]
+    copy_memory(joined.relations.memory, system.relations.memory)
+
+
+@kernel
+def copy_memory(source, out):
+    """Copy what a step of joints goes on from."""
+    for i in range(source.coordinates.shape[0]):
+        out.coordinates[i].reference = source.coordinates[i].reference
+    for i in range(source.frictions.shape[0]):
+        out.frictions[i] = source.frictions[i]

@@ -11,8 +11,9 @@ from carom._compiled.record_arrays import table
 from carom.collision.sweep import SweepWork, new_sweep_work
 from carom.model.arrays import BODY, CONTACT, STATE, System
 from carom.model.contact_kinds import is_of_joint
+from carom.model.memory import ACTIVE_POINT
 from carom.model.records import CLOCK
-from carom.model.workspace import ACTIVE_POINT, BODY_WORK, CONTACT_STATE, ActiveSet
+from carom.model.workspace import BODY_WORK, CONTACT_STATE, ActiveSet
 from carom.scene.all_pairs import Defaults
 from carom.stepping.islands.joined import Joined, joined_bodies, no_bodies
 
