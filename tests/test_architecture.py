@@ -222,6 +222,18 @@ WALLS = {
         ("kinematics.coordinates", "model."),
         {"dynamics.tree"},  # elimination begins with the most frequent joint
     ),
+    "friction in joints": Wall(
+        {"MOTION_JOINT"},
+        (
+            "persistent.joint_rows",
+            "persistent.memory",
+            "kinematics.contact_point",
+            "dynamics.contact_impulse",
+            "model.",
+        ),
+        # round-off and drift of its row, and its mode, which is no event of a contact
+        {"persistent.rows", "persistent.start", "persistent.finish", "persistent.activation"},
+    ),
     "forces": Wall(
         {"SPRINGS", "LOADS", "BUSHINGS", "PUSHES", "USER_FORCES"},
         ("dynamics.applied", "model."),
@@ -242,7 +254,7 @@ def test_only_the_files_of_kinds_compare_kinds(wall):
         for name, path in modules().items()
         for node in statements(path)
         if isinstance(node.node, ast.ImportFrom)
-        and node.node.module == "carom.model.arrays"
+        and node.node.module in ("carom.model.arrays", "carom.model.workspace")
         and numbers & {one.name for one in node.node.names}
     }
     assert any(name.startswith(ask[0]) for name in found)

@@ -58,7 +58,9 @@ def test_asking_does_not_change_the_run(turned):
     references = turned._run.compiled.system.relations.memory.coordinates.reference.copy()
     again = carom.Solution._from_run(turned._run, turned.status)
     assert np.array_equal(again.constraint_errors, turned.constraint_errors)
-    assert np.array_equal(turned._run.compiled.system.relations.memory.coordinates.reference, references)
+    assert np.array_equal(
+        turned._run.compiled.system.relations.memory.coordinates.reference, references
+    )
     assert references[0] == pytest.approx(80.0)  # all turns are counted
 
 

@@ -344,7 +344,7 @@ def place(run: Endless, state: SystemState, qpos, qvel) -> None:
     turns = motion.turns
     if turns is not None:
         for name in ("reference", "begun"):
-            run.compiled.system.relations.coordinates[name] = turns
+            run.compiled.system.relations.memory.coordinates[name] = turns
     run.project()
     run.check(run.scene)
 
