@@ -24,6 +24,7 @@ if COMPILES:
         from carom._compiled.by_reference import refer
         from carom._compiled.cache import StampedCache
         from carom._compiled.link_only import PartCompiler
+        from carom._compiled.target import Kernel
         from carom._compiled.target import compiled as _compiled
     except (ImportError, AttributeError) as error:
         COMPILES = False
@@ -52,12 +53,16 @@ def kernel(function):
 
     Division follows IEEE (``error_model="numpy"``), and there is no fast-math: every run has the same results.
     """
-    return jit(**_PART)(function)
+    return _part(function, _PART)
 
 
 def inlined(function):
     """Compile `function` as `kernel` does, and always inline it: for functions called in every step."""
-    return jit(**_PART, forceinline=True)(function)
+    return _part(function, {**_PART, "forceinline": True})
+
+
+def _part(function, options):
+    return Kernel(function, options) if COMPILES else function
 
 
 def jit(**options):
