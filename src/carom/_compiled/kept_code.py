@@ -182,11 +182,8 @@ def _load(key: str) -> Code | None:
         context.refresh()
     if not all(map(llvm.address_of_symbol, needs)):  # LLVM would end the process
         return None
-    codegen = context.codegen()
-    # the symbols of the code are those of this module
-    stated = f'{codegen._create_empty_module(key)}\ndefine void @"{name}"() {{ ret void }}'
-    symbols = llvm.parse_assembly(stated).as_bitcode()
-    return Code(codegen.unserialize_library((key, "object", (code, symbols))), name)
+    state = key, "object", (code, [name], None)  # nothing links it in
+    return Code(context.codegen().unserialize_library(state), name)
 
 
 def _save(key: str, names: list[str], code: bytes) -> None:
