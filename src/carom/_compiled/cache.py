@@ -11,7 +11,7 @@ import warnings
 from functools import cached_property
 from pathlib import Path
 
-from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
 
 from carom._compiled import ahead, notice
 from carom._compiled.cache_key import stamp
@@ -21,9 +21,22 @@ from carom._compiled.file_lock import FileLock
 SHIPPED = Path(__file__).parent / "shipped"
 
 
+class _Reduced(CompileResultCacheImpl):
+    """What a file keeps of a compiled function: without its annotated text, and environments that hold nothing.
+
+    Each kernel has an environment, for Python objects that its code uses; those of a die are 1900.
+    """
+
+    def reduce(self, cres):
+        """Return what is kept."""
+        *kept, _, reload, environments = super().reduce(cres)
+        return *kept, "", reload, tuple(one for one in environments if one.consts)
+
+
 class StampedCache(FunctionCache):
     """A function cache that is valid while the stamp of its function does not change."""
 
+    _impl_class = _Reduced
     warned = False  # whether the warning that the cache cannot be written was given
 
     def __init__(self, py_func):
