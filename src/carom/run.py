@@ -385,7 +385,7 @@ def check_start(scene: Scene, compiled, start, work, options: Options) -> None:
     if not elements:
         return
     errors = np.zeros((2, len(system.joints), 6))
-    work.result[0].time = 0.0
+    work.moment[0].time = 0.0
     start_errors(system, start, work, *errors)
     if compiled.functions.failed is not None:
         raise compiled.functions.failed

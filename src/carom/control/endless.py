@@ -76,7 +76,7 @@ class Endless(Run):
             mine[name] = before[name]
         self.work.step["begin"] = mine.now
         for name in ("fallen", "parts"):
-            self.work.result[name] = old.work.result[name]
+            self.work.moment[name] = old.work.moment[name]
         if self.tolerances is not None:
             self.work.body["ahead"] = FIRST_STEP * self.controls.interval
         place()

@@ -181,7 +181,7 @@ def shrunk(error, order):
 @kernel
 def shorter(dt, error, clock, work):
     """Return the length to try after a step whose error was too large."""
-    factor = shrunk(error, work.result[0].order)
+    factor = shrunk(error, work.search[0].order)
     clock.rejected += 1
     for b in range(work.body.shape[0]):
         work.body[b].ahead = factor * dt
@@ -213,7 +213,7 @@ def plan_next(dt, error, again, controls, work):
     again (Gustafsson 1994).
     """
     for b in range(work.body.shape[0]):
-        plan(work.body[b], dt, error, again, work.result[0].order, controls.interval)
+        plan(work.body[b], dt, error, again, work.search[0].order, controls.interval)
 
 
 def complete(rtol: float, atol: float | None, system) -> tuple[float, float]:

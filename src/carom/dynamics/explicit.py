@@ -66,13 +66,13 @@ def whole_step(model, data, method, h) -> tuple[float, int]:
         if not estimates and part < MOST_PARTS - 1:
             spin = fastest_spin(model.system, first, work)
             dt = min(left, STAGE_TURN * stages / max(spin, SMALLEST))
-        begin = work.result[0].start + (h - left)
+        begin = work.moment[0].start + (h - left)
         more, code = with_care(model, data, method, first, (begin, dt))
         applied += more
         left -= dt
         if not (left > 0.0 and code == 0):
             break
-        work.result[0].parts += 1
+        data.clocks[0].parts += 1
         first = work.part
         for b in range(first.shape[0]):
             copy_state(work.trial[b], first[b])
@@ -171,7 +171,7 @@ def constrained_step(model, data, method, start, span, care):
     keeps = last < stages and not care and of_state_alone(system, data.active)
     for s in range(last + 1):
         combine(weight[:last] if s == last else A[s, :s], h, start, work.stages, stage)
-        work.result[0].time = t0 + h if s == last else t0 + h * node(A[s, :s])
+        work.moment[0].time = t0 + h if s == last else t0 + h * node(A[s, :s])
         if s == last:
             if not return_to_joints(system, stage, work):
                 return applied, CONSTRAINTS_LOST, least, most

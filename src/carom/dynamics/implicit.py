@@ -53,8 +53,8 @@ def implicit_step(model, data, method, h):
 @unit
 def whole_step(system, start, h, work) -> tuple[float, int]:
     """Make the two stages, and return to the joints; return the same as `implicit_step`."""
-    result, stage, end, code = work.result[0], work.stage, work.trial, 0
-    result.time = result.start
+    moment, stage, end, code = work.moment[0], work.stage, work.trial, 0
+    moment.time = moment.start
     power = accelerate(system, start, h, 0, work)
     for b in range(start.shape[0]):
         first = work.stages[0, b]
@@ -62,7 +62,7 @@ def whole_step(system, start, h, work) -> tuple[float, int]:
             first.speed[k] = start[b].v[k] + GAMMA * h * first.rate[k]
             first.speed[3 + k] = start[b].w[k] + GAMMA * h * first.rate[3 + k]
         move(start[b], h, first.speed, first.rate, stage[b])
-    result.time = result.start + h
+    moment.time = moment.start + h
     power += accelerate(system, stage, h, 1, work)
     for b in range(start.shape[0]):
         if system.bodies[b].ballistic == 1:

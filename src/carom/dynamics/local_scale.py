@@ -85,7 +85,7 @@ def greatest_pull(system, controls, state, work) -> float:
     the torque of a damper moves the links on both sides, and the rotor of its motor, not a hand alone.
     """
     step, pull = work.step[0], 0.0
-    work.result[0].time = step.begin
+    work.moment[0].time = step.begin
     applied_wrenches(system, state, False, work)
     for b in range(state.shape[0]):
         body, f = system.bodies[b], work.body[b].wrench

@@ -31,10 +31,10 @@ def error_of_move(system, start, h, end, work) -> float:
 
     The time of the start is `result.time`.
     """
-    t, ready = work.result[0].time, False
-    work.result[0].time = t + h
+    t, ready = work.moment[0].time, False
+    work.moment[0].time = t + h
     error = largest_position_error(system, end, work)
-    work.result[0].time = t
+    work.moment[0].time = t
     for j in range(system.joints.shape[0]):
         joint = system.joints[j]
         turn_back(system, j, start, end, work)
@@ -69,18 +69,18 @@ def mean_error(system, j, start, h, end, work):
     direction.
     """
     record = work.joint[j]
-    bias, target, t = record.bias, record.target, work.result[0].time
+    bias, target, t = record.bias, record.target, work.moment[0].time
     for k in range(6):
         target[k] = bias[k]
     most = 0.0
     for side in range(2):
         state = end if side == 1 else work.mean
-        work.result[0].time = t + h if side == 1 else t
+        work.moment[0].time = t + h if side == 1 else t
         velocity_error(system, j, state, work)
         keep_rows_without_position(system, j, start, state, work)
         for k in range(6):
             target[k] -= 0.5 * h * bias[k]
-    work.result[0].time = t
+    work.moment[0].time = t
     for k in range(6):
         bias[k] = target[k]
         most = max(most, abs(bias[k]))

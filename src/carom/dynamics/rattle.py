@@ -53,7 +53,7 @@ def rattle_step(model, data, method, h):
         return constrained(model, data, method, h)
     applied, ended = whole_step(method.parts, model.system, data.state, h, data.work)
     if ended == STALLED:
-        data.work.result[0].fallen += 1
+        data.clocks[0].fallen += 1
         return constrained(model, data, method, h)
     return applied, NO_CONVERGENCE if ended == TOO_FAR else 0
 
@@ -61,8 +61,8 @@ def rattle_step(model, data, method, h):
 @unit
 def whole_step(parts, system, start, h, work) -> tuple[float, int]:
     """Make the parts of a step, one after the other; return the work of loads and motors, and how it ended."""
-    applied, code, result, end = 0.0, DONE, work.result[0], work.trial
-    result.time = result.start
+    applied, code, moment, end = 0.0, DONE, work.moment[0], work.trial
+    moment.time = moment.start
     for b in range(start.shape[0]):
         bound = work.body[b].bound
         copy_state(start[b], work.part[b])
@@ -82,8 +82,8 @@ def whole_step(parts, system, start, h, work) -> tuple[float, int]:
 
 @kernel
 def one_part(system, start, h, end, work):
-    """Make one step of order 2 from `result.time` on; return the work of loads and motors, and how it ended."""
-    result = work.result[0]
+    """Make one step of order 2 from `moment.time` on; return the work of loads and motors, and how it ended."""
+    moment = work.moment[0]
     total = first_kick(system, start, h, work)
     lost = dropped_rows(system, 0.0)
     least, last, fine = math.inf, math.inf, round_off(system, start)
@@ -98,7 +98,7 @@ def one_part(system, start, h, end, work):
         least, last = min(least, error), error
         correct(system, start, h, work)
         total += driven_power(system, start, work)  # of an impulse: its work
-    result.time += h
+    moment.time += h
     total += second_kick(system, h, end, work)
     if dropped_rows(system, 0.0) != lost:
         return 0.0, STALLED

@@ -177,7 +177,7 @@ def reactions(system, augment, saved, rows, work, out):
     """
     h, touch = 0, saved.touch
     for k in range(rows[0], rows[1]):
-        state, work.result[0].time = saved.state[k], saved.series[k].t
+        state, work.moment[0].time = saved.state[k], saved.series[k].t
         follow_turns(system, saved, k)
         applied_wrenches(system, state, True, work)
         add_stiff(system, state, work)
@@ -198,7 +198,7 @@ def reactions(system, augment, saved, rows, work, out):
 def row_errors(system, saved, work, position, velocity):
     """Write the errors of position and velocity of each row of each element at saved states, (T, J, 6) each."""
     for k in range(saved.state.shape[0]):
-        work.result[0].time = saved.series[k].t
+        work.moment[0].time = saved.series[k].t
         follow_turns(system, saved, k)
         errors_at(system, saved.state[k], work, position[k], velocity[k])
 

@@ -108,7 +108,7 @@ def write_exerted(system, saved, rows, acting, work, out):
     forces, bodies, values = acting
     clear_wrenches(work)
     for k in range(rows[0], rows[1]):
-        state, work.result[0].time = saved.state[k], saved.series[k].t
+        state, work.moment[0].time = saved.state[k], saved.series[k].t
         follow_turns(system, saved, k)
         for i in range(forces.shape[0]):
             one = forces[i]

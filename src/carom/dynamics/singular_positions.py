@@ -60,14 +60,14 @@ def pass_round(system, work, rates, power) -> float:
     If all positions on the path are singular, the accelerations do not change. `power` is that of loads in the
     stage; return it for these accelerations.
     """
-    dropped, usual, result = dropped_rows(system, SINGULARITY), system.solver.usual, work.result[0]
+    dropped, usual, moment = dropped_rows(system, SINGULARITY), system.solver.usual, work.moment[0]
     if dropped <= usual[0]:
         return power
     stage, sums = work.stage, work.trial
-    pace, time, reach = turning_pace(system, stage), result.time, SINGULAR_TURN
+    pace, time, reach = turning_pace(system, stage), moment.time, SINGULAR_TURN
     for _ in range(LONGER_TIMES if pace > 0.0 else 0):
         mean, most = _sum_rates(system, work, rates, reach, pace)
-        result.time = time
+        moment.time = time
         if most > usual[0]:
             reach *= SINGULAR_GROWTH
             continue
@@ -99,7 +99,7 @@ def _sum_rates(system, work, rates, reach, pace):
     sum of power, and the greatest number of rows that were left out.
     """
     stage, sums = work.stage, work.trial
-    power, most, time = 0.0, 0, work.result[0].time
+    power, most, time = 0.0, 0, work.moment[0].time
     for b in range(stage.shape[0]):
         if steps(system, b, work):
             for k in range(3):
@@ -110,7 +110,7 @@ def _sum_rates(system, work, rates, reach, pace):
         ahead = (k if i % 2 == 0 else -k) * reach / pace
         for b in range(stage.shape[0]):
             go_on(stage[b], ahead, work.beside[b])
-        work.result[0].time = time + ahead
+        work.moment[0].time = time + ahead
         return_stage(system, work.beside, work)
         here = accelerations(system, work.beside, work, rates)
         most = max(most, dropped_rows(system, SINGULARITY))

@@ -79,10 +79,10 @@ def three_field_step(model, data, method, h) -> tuple[float, int]:
     change, applied = math.inf, 0.0
     for i in range(method.most):
         middle_of_arc(start, h, end, work.middle)
-        work.result[0].time = work.result[0].start + 0.5 * h
+        work.moment[0].time = work.moment[0].start + 0.5 * h
         applied = h * applied_wrenches(system, work.middle, False, work)
         momenta(system, start, h, work)
-        previous, work.result[0].time = change, work.result[0].start + h
+        previous, work.moment[0].time = change, work.moment[0].start + h
         change = velocity_block(system, method, h, end, work)
         if i < PASSES and system.solver.kind == LOOPS:
             hand_over(system, method, h, work)
@@ -227,7 +227,7 @@ def hand_over(system, method, h, work):
         for k in range(6):
             work.body[b].motion[k] = 0.0
     add_reactions(system, work)
-    work.result[0].time = work.result[0].start + 0.5 * h
+    work.moment[0].time = work.moment[0].start + 0.5 * h
     factor(system, work.middle, method.augment, work)
     for j in range(system.joints.shape[0]):
         for r in range(6):
@@ -237,17 +237,17 @@ def hand_over(system, method, h, work):
     for j in range(system.joints.shape[0]):
         for r in range(system.joints[j].rows):
             work.joint[j].multiplier[r] -= system.solver.rows[j].rhs[r]
-    work.result[0].time = work.result[0].start + h
+    work.moment[0].time = work.moment[0].start + h
 
 
 @kernel
 def driven_work(system, start, h, end, work):
     """Return the work of prescribed motions: impulse of each row times its mean speed."""
-    total, result = 0.0, work.result[0]
+    total, moment = 0.0, work.moment[0]
     for j in range(system.joints.shape[0]):
         record = work.joint[j]
         for side in range(2):
-            result.time = result.start + (h if side == 1 else 0.0)
+            moment.time = moment.start + (h if side == 1 else 0.0)
             prescribed_speeds(system, j, end if side == 1 else start, work, record.reaction)
             for r in range(system.joints[j].rows):
                 total += 0.5 * record.multiplier[r] * record.reaction[r]

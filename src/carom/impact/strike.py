@@ -51,13 +51,13 @@ def onto_surface(system, controls, c, state, work):
     rho, _ = strike_point(system, contact, state, tie, point)
     if rho >= -(tie if controls.location == LOCATE else tolerance):
         return 0
-    before = potential_energy(system, state, work.result[0].time)
+    before = potential_energy(system, state, work.moment[0].time)
     if return_map(system, contact, state, work, tie, tolerance) < 0:
         return RETURN_MAP_FAILED
     project_velocity(system, state, False, work)
     strike_point(system, contact, state, tie, point)
     if controls.location == WORK:
-        drop = before - potential_energy(system, state, work.result[0].time)
+        drop = before - potential_energy(system, state, work.moment[0].time)
         restore_work(system, contact, state, drop, work)
     return 0
 

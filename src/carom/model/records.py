@@ -39,6 +39,8 @@ CLOCK = [
     ("cuts", "i8"),
     ("trials", "i8"),
     ("rejected", "i8"),  # trial steps with too large an error
+    ("parts", "i8"),  # additional parts of steps in which bodies turned far
+    ("fallen", "i8"),  # steps of a symplectic method that the explicit method took instead
     ("slow", "i8"),  # trial steps so short that the run would not end (`carom.dynamics.adapt`)
     ("located", "i8"),
     ("holds", "i8"),
@@ -180,7 +182,7 @@ def new_work(system: System, stages: int) -> workspace.Work:
         stages=table(w.STAGE, max(stages, len(KENNEDY_CARPENTER.b)) + 1, n), known=table(w.KNOWN, n),
         stage=stage, trial=trial, part=part, middle=middle, iterate=iterate, mean=mean, beside=beside,
         origin=origin, struck=struck, placed=placed, pair=new_pair_work(), touches=new_points(),
-        solid_pose=np.zeros((2, 7)), hit=table(w.HIT, 1), result=table(w.RESULT, 1),
+        solid_pose=np.zeros((2, 7)), hit=table(w.HIT, 1), moment=table(w.MOMENT, 1),
         step=table(w.STEP, 1), search=table(w.SEARCH, 1), history=np.zeros((0, 16)),
     )  # fmt: skip
 

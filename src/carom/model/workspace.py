@@ -123,18 +123,10 @@ KNOWN = [
     ("power", "f8"),  # of loads on all bodies, in the first row
 ]
 
-#: results of a step of bodies that are joined, loaded or in contact
-RESULT = [
-    ("applied", "f8"),
-    ("friction", "f8"),
-    ("code", "i8"),
-    ("unnamed", "f8"),  # greatest of these: unexplained loss of energy, relative to the tolerance
-    ("order", "i8"),  # of the estimate of its error
-    ("stiff", "i8"),  # 1 if a trial of this step was taken by the implicit member
-    ("parts", "i8"),  # additional parts of steps in which bodies turned far
-    ("fallen", "i8"),  # steps of a symplectic method that the explicit method took instead
-    ("start", "f8"),  # time at which the trial step starts
-    ("time", "f8"),  # time of the present state, on which prescribed motion depends
+#: times on which prescribed motion depends
+MOMENT = [
+    ("start", "f8"),  # at which the trial step starts
+    ("time", "f8"),  # of the present state
 ]
 
 #: a step of an island, or of bodies that move together: between two steps nothing of it is kept
@@ -190,6 +182,12 @@ SEARCH = [
     ("code", "i8"),  # of the step without contacts,
     ("applied", "f8"),  # work of loads and of friction in it,
     ("friction", "f8"),
+    ("order", "i8"),  # of the estimate of its error,
+    ("stiff", "i8"),  # whether a trial of this step was taken by the implicit member,
+    (
+        "unnamed",
+        "f8",
+    ),  # its unexplained loss of energy, relative to the tolerance (the greatest of groups),
     ("found", "i8"),  # whether an event is at its end,
     ("residual", "f8"),  # greatest forbidden velocity that contacts have at its end [m/s]
 ]
@@ -241,7 +239,7 @@ class Work(NamedTuple):
     touches: np.recarray  # (8,) TOUCH_POINT of the last pair
     solid_pose: np.ndarray  # (2, 7) of its solids
     hit: np.recarray  # (1,) HIT
-    result: np.recarray  # (1,) RESULT
+    moment: np.recarray  # (1,) MOMENT
     step: np.recarray  # (1,) STEP
     search: np.recarray  # (1,) SEARCH
     history: np.ndarray  # (0, 16) no history inside the loop

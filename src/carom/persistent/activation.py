@@ -111,7 +111,7 @@ def activate_group(model, data, k, label, horizon):
 def pose_forces(model, data, k, label):
     """Write u, c = du/dt without contact forces, and the direction of slip, of the k points of the group."""
     system, controls, group, work = model.system, model.controls, data.group, data.work
-    work.result[0].start = data.clocks[0].now
+    work.moment[0].start = data.clocks[0].now
     accelerate_start(model, data, label)
     write_motion(system, k, data.state, work.stages[0], group, work)
     still = controls.rest * greatest(3 * k, group.c) * controls.step

@@ -31,17 +31,17 @@ STIFF_ORDER, CLOSING_ORDER = 4, 2
 
 
 @unit
-def contact_step(model, data, method, h):
+def contact_step(model, data, method, h) -> tuple[float, float, int]:
     """Write the end of a step of all groups that are in persistent contact and do not rest to `work.trial`.
 
-    The forces at the end are written to the active points; the work of friction and of loads, and a status, to
-    `work.result`.
+    The forces at the end are written to the active points. Return the work of loads and of friction, and a
+    status.
     """
     active, work, n = data.active, data.work, data.state.shape[0]
     data.group.equations.iterations[FACTORED] = 0
-    result, joined = work.result[0], rubs(model.system)
+    search, joined = work.search[0], rubs(model.system)
     applied, friction, code = 0.0, 0.0, 0
-    work.search[0].residual, result.unnamed = 0.0, 0.0
+    search.residual, search.unnamed = 0.0, 0.0
     for i in range(active.count[0]):
         label = work.body[active.points[i].body].label
         joined = joined and label != n
@@ -51,8 +51,8 @@ def contact_step(model, data, method, h):
     if joined:  # friction in joints alone: a group without points
         own = step_group(model, data, method, n, h)
         applied, friction, code = applied + own[0], friction + own[1], max(code, own[2])
-    result.applied, result.friction, result.code = applied, friction, code
     count_factors(data.group, work.step[0])
+    return applied, friction, code
 
 
 @kernel
@@ -71,18 +71,18 @@ def step_group(model, data, method, label, h):
     Return the work of loads and of friction, and a status.
     """
     work, group, clock, order = data.work, data.group, data.clocks[0], model.controls.order
-    result = work.result[0]
+    search = work.search[0]
     k, rate, push, powers, _ = first_stage(model, data, label)
     clock.contact_steps += 1
     work.step[0].since += 5.0 * k * stages_within(method)
-    if h * rate <= STIFF_SLIP and not (result.stiff == 1 and work.search[0].again == 1):
+    if h * rate <= STIFF_SLIP and not (search.stiff == 1 and search.again == 1):
         k, applied, friction = explicit_member(model, data, method, label, h, powers)
         s = stages_within(method)
         if k > 0 and write_end(model, data, label, k) and check_end(model, data, label, s, h, True):
             note_errors(model, data, method.E, label, k, h)
             note_unnamed(model, data, label, friction + applied, 0.0, push)
             return applied, friction, 0
-        result.stiff = 1
+        search.stiff = 1
     if not (order > 0 and 0.5 * h * h * push <= closing_size(model, data, label)):
         first_modes(model.system, data, label)
         ended, applied, friction = end_implicitly(
@@ -91,7 +91,7 @@ def step_group(model, data, method, label, h):
         if ended:
             note_errors(model, data, method.stiff_E, label, 0, h)
             if order > 0:
-                result.order = min(order, STIFF_ORDER)
+                search.order = min(order, STIFF_ORDER)
             note_unnamed(model, data, label, friction + applied, 0.0, push)
             return applied, friction, 0
     first_modes(model.system, data, label)
@@ -108,7 +108,7 @@ def step_group(model, data, method, label, h):
     note_unnamed(model, data, label, friction + applied, h, push)
     friction -= lost_in_stop(model, data, label, friction + applied)
     if order > 0:
-        result.order = 1 if lets_go else CLOSING_ORDER
+        search.order = 1 if lets_go else CLOSING_ORDER
     return applied, friction, 0
 
 

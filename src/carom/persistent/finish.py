@@ -63,7 +63,7 @@ def write_end(model, data, label, k) -> bool:
     if loaded and not (project_position(system, end, True, 1e-14, work) <= RESOLUTION):
         return False
     copy_to_stage(count, end, group, work)
-    set_surfaces(system, work.result[0].time)
+    set_surfaces(system, work.moment[0].time)
     place_closed(system, k, end, group, group.points[0], work)
     note_passed(system, data.active, k, group, data.state, end)
     onto_surfaces(system, data, k, count, end)

@@ -67,7 +67,7 @@ def explicit_member(model, data, method, label, h, powers):
     `powers` are those of loads and of friction in stage 0. Return their work too.
     """
     start, end, group, work = data.state, data.work.trial, data.group, data.work
-    (count, loaded), result, k = bodies_of(model, data, label), work.result[0], 0
+    (count, loaded), moment, k = bodies_of(model, data, label), work.moment[0], 0
     applied, friction = h * method.b[0] * powers[0], h * method.b[0] * powers[1]
     least = PASSED if locates(model, data) else SAME
     for s in range(1, stages_within(method)):
@@ -75,7 +75,7 @@ def explicit_member(model, data, method, label, h, powers):
             b = group.member[m]
             combine_body(method.A[s, :s], h, start[b], work.stages, b, work.stage[b])
             note_velocity(work.stage[b], work.stages[s, b])
-        result.time = result.start + h * node(method.A[s, :s])
+        moment.time = moment.start + h * node(method.A[s, :s])
         power = accelerate_freely(model, data, loaded, count, s)
         k = write_rows(model, data, label, s)
         if set_modes(model.system, data.active, k, group) < least or not solve_springs(k, group):
@@ -87,7 +87,7 @@ def explicit_member(model, data, method, label, h, powers):
     for m in range(count):
         b = group.member[m]
         combine_body(weights, h, start[b], work.stages, b, end[b])
-    result.time = result.start + h
+    moment.time = moment.start + h
     return k, applied, friction
 
 
@@ -99,7 +99,7 @@ def implicit_member(model, data, method, label, h, powers):
     `powers` are those of loads and of friction in stage 0. Return their work too.
     """
     start, end, group, work = data.state, data.work.trial, data.group, data.work
-    (A, closes), result, k = method, work.result[0], 0
+    (A, closes), moment, k = method, work.moment[0], 0
     stages = A.shape[0]
     first = h * A[stages - 1, 0]
     applied, friction = first * powers[0], first * powers[1]
@@ -110,7 +110,7 @@ def implicit_member(model, data, method, label, h, powers):
             add_stages(A[s, :s], h, start[b], work.stages, b, group.base[b])
             for r in range(6):
                 work.stages[s, b].rate[r] = work.stages[s - 1, b].rate[r]
-        result.time = result.start + h * node(A[s, : s + 1])
+        moment.time = moment.start + h * node(A[s, : s + 1])
         k, power, rubbed = implicit_stage(model, data, label, s, h * A[s, s], closes)
         if k < 0:
             return 0, 0.0, 0.0

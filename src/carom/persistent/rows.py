@@ -72,7 +72,7 @@ def write_rows(model, data, label, s) -> int:
     """
     system, group, work = model.system, data.group, data.work
     points, state = group.points[0], work.stage
-    set_surfaces(system, work.result[0].time)
+    set_surfaces(system, work.moment[0].time)
     k = find_points(system, data, label)
     inverse_masses(system, k, points, state, work, group.W)
     write_motion(system, k, state, work.stages[s], group, work)

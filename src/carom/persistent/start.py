@@ -54,7 +54,7 @@ def accelerate_start(model, data, label):
     count, loaded = bodies_of(model, data, label)
     for m in range(count):
         note_velocity(work.stage[group.member[m]], work.stages[0, group.member[m]])
-    work.result[0].time = work.result[0].start
+    work.moment[0].time = work.moment[0].start
     return count, loaded, accelerate_freely(model, data, loaded, count, 0)
 
 

@@ -50,7 +50,7 @@ def note_unnamed(model, data, label, named, h, push):
     (count, loaded), lost, may, by_euler = bodies_of(model, data, label), named, 0.0, 0.0
     if loaded:
         return
-    g, result = norm(system.gravity), data.work.result[0]
+    g, search = norm(system.gravity), data.work.search[0]
     fall = 0.5 * limits.FALL_LOSS * (model.controls.step * g) ** 2
     for m in range(count):
         b = member[m]
@@ -66,7 +66,7 @@ def note_unnamed(model, data, label, named, h, push):
         may = kinetic_of(body, start[member[0]]) + body.mass * g * body.extent
         may *= limits.BODY_LOSS
     over = abs(lost) - min(by_euler, abs(lost))
-    result.unnamed = max(result.unnamed, over / may if may > 0.0 else 0.0)
+    search.unnamed = max(search.unnamed, over / may if may > 0.0 else 0.0)
 
 
 @kernel
@@ -132,11 +132,11 @@ def too_long(model, data):
     shortest = dt <= limits.SHORTEST_CUT * controls.step
     if controls.order == 0 and not shortest and turns_far(active, start, end, dt):
         return True
-    result = work.result[0]
+    search = work.search[0]
     if shortest:
         return False
     part = limits.CUT_SHARE if search.pace < math.inf else 1.0
-    return not (result.unnamed <= part * by_tolerance(controls))
+    return not (search.unnamed <= part * by_tolerance(controls))
 
 
 @kernel
@@ -152,13 +152,13 @@ def goes_wild(controls, work):
     The limit grows with the root of the tolerance: with the tolerance itself a loss of a tenth of m g times
     the size would pass at 1e-4, which is more than the tolerance of the energy of a run.
     """
-    return work.result[0].unnamed > limits.LOSS_LIMIT * math.sqrt(by_tolerance(controls))
+    return work.search[0].unnamed > limits.LOSS_LIMIT * math.sqrt(by_tolerance(controls))
 
 
 @inlined
 def next_pace(pace, work):
     """Return the limit for the next step: twice the last limit, unless the loss would be too large."""
-    return 2.0 * pace if work.result[0].unnamed <= limits.GROWTH_SHARE * limits.CUT_SHARE else pace
+    return 2.0 * pace if work.search[0].unnamed <= limits.GROWTH_SHARE * limits.CUT_SHARE else pace
 
 
 @kernel

@@ -223,7 +223,7 @@ class _Mechanism:
         key = tuple(moved.tolist())
         rows = self.known[key] if key in self.known else self.rows_of(moved)
         self.known[key] = rows
-        self.work.result[0].time = t
+        self.work.moment[0].time = t
         write_rows(self.system, state, self.work)
         if self.functions.failed is not None:
             raise self.functions.failed

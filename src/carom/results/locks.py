@@ -61,7 +61,7 @@ def locked(run, status: Status) -> str:
 def decomposed(system, state, t: float):
     """Return the singular values, left vectors and elements of the rows at a state, each row of length 1."""
     work = new_work(system, 1)
-    work.result[0].time = t
+    work.moment[0].time = t
     A, owner = dense_rows(system, state, work)
     rows = (A / np.sqrt(mass_matrix(system))).reshape(len(A), -1)
     length = np.linalg.norm(rows, axis=1, keepdims=True)

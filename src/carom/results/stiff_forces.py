@@ -127,7 +127,7 @@ def fastest(run, forces: list[Force], state, t: float) -> tuple[float, int]:
 def force_rows(system, state, forces: list[Force], t: float):
     """Return J and M^-1 J^T of the forces beside the joints, (n, N, 6) each, and their coordinates (n, 2)."""
     work, n = r.new_work(system, 1), len(forces)
-    work.result[0].time = t
+    work.moment[0].time = t
     rows, values = np.zeros((2, n, len(system.bodies), 6)), np.zeros((n, 2))
     places = np.array([force.place for force in forces], dtype=np.int64)
     write_force_rows(system, state, places, work, rows, values)

@@ -274,15 +274,15 @@ def off_balance(model, data):
     is cut too: slip stops or turns within it, and the weights of its stages are not all positive.
     """
     controls, active, work = model.controls, data.active, data.work
-    result, search, clock, watch = work.result[0], work.search[0], data.clocks[0], data.watch[0]
+    search, clock, watch = work.search[0], data.clocks[0], data.watch[0]
     dt, named = search.dt, search.applied + search.friction
     shortest, careful = dt <= limits.SHORTEST_STEP * controls.step, search.pace < math.inf
     jams = search.active == 1 and search.kind == EVENT_JAM
     if active.count[0] == 0:
-        result.unnamed = 0.0
+        search.unnamed = 0.0
     watch.able = max(watch.able, work.step[0].able)
     off, grows = imbalance(model, data, named, clock.now, dt)
-    result.unnamed = max(result.unnamed, off)
+    search.unnamed = max(search.unnamed, off)
     cut = grows or off > (CUT_SHARE if careful else 1.0)
     round_off = limits.ENERGY_ROUND_OFF * watch.size
     if controls.order == 0 and search.friction > limits.FRICTION_GAIN * watch.exchanged + round_off:

@@ -189,8 +189,7 @@ def move_island(model, data, method):
     work = data.work
     if work.step[0].crowd == 0:
         return advance(model, data, method)
-    step_crowd(model, data, method)
-    code = work.result[0].code
+    code = step_crowd(model, data, method)
     if code == 0 and left_ball(model.system, data.state, work.step[0].length, work):
         return r.LEFT_BALL
     if code == 0 and model.controls.order > 0:

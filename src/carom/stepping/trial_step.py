@@ -68,7 +68,7 @@ def propose_step(model, data):
         dt = search.sure
         search.sure *= 2.0
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
-    data.work.result[0].stiff = 0
+    data.work.search[0].stiff = 0
     mark_count(data.work)
     search.eager = 1 if clock.in_moment < EVENTS_AT_NOW else 0
 
@@ -137,9 +137,9 @@ def trial_step(model, data, method):
     The code of the step without contact impulses is stored in the search, because a shorter step may succeed.
     """
     system, controls, active, now = model.system, model.controls, data.active, data.state
-    work, clock, result = data.work, data.clocks[0], data.work.result[0]
+    work, clock = data.work, data.clocks[0]
     own, search = work.step[0], work.search[0]
-    result.start, result.order = clock.now, controls.order
+    work.moment[0].start, search.order = clock.now, controls.order
     applied, code = step(model, data, method, search.dt)
     search.applied, search.friction, search.code = applied, 0.0, code
     clock.trials += 1
@@ -153,12 +153,12 @@ def trial_step(model, data, method):
         if crawls(clock, controls.duration - clock.now, search.dt, controls.interval):
             return STEP_TOO_SMALL
     if (active.count[0] > 0 or rubs(system)) and code == 0:
-        contact_step(model, data, method, search.dt)
-        if work.result[0].code != 0:  # a stage without a solution: a shorter step may have one
-            search.code = work.result[0].code
+        applied, friction, code = contact_step(model, data, method, search.dt)
+        if code != 0:  # a stage without a solution: a shorter step may have one
+            search.code = code
             return 0
-        search.applied += work.result[0].applied
-        search.friction += work.result[0].friction
+        search.applied += applied
+        search.friction += friction
     return 0
 
 

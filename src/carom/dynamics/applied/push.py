@@ -37,7 +37,7 @@ def push_force(relations, one, q, speed, t):
 @kernel
 def add(system, i, state, power, work):
     """Add a force along a coordinate; return `power` with that of its part without potential, and the force."""
-    one, t = system.relations.pushes[i], work.result[0].time
+    one, t = system.relations.pushes[i], work.moment[0].time
     c = system.relations.coordinates[one.coordinate]
     speed = rate(system, c, state)
     force, free = push_force(system.relations, one, value(system, c, state), speed, t)

@@ -40,7 +40,7 @@ def add(system, i, state, power, work):
     relations, at = system.relations, 0
     one = relations.forces[i]
     read_states(system, one, state)
-    call_function(one.address, work.result[0].time, relations.memory.read, relations.memory.write)
+    call_function(one.address, work.moment[0].time, relations.memory.read, relations.memory.write)
     for n in range(one.first, one.last):
         b = relations.named[n]
         wrench, v, w = work.body[b].wrench, state[b].v, state[b].w

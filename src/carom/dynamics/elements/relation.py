@@ -54,7 +54,7 @@ def write_rows(system, j, state, work):
 def position_error(system, j, state, work):
     """Write the error of the coordinates, sum c_k q_k - f, to the bias."""
     relation = of_joint(system, j)
-    total = -prescribed(system.relations, relation, work.result[0].time)[0]
+    total = -prescribed(system.relations, relation, work.moment[0].time)[0]
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]
         total += term.factor * value(system, system.relations.coordinates[term.coordinate], state)
@@ -66,7 +66,7 @@ def position_error(system, j, state, work):
 def velocity_error(system, j, state, work):
     """Write the error of the rates, sum c_k q_k' - f', to the bias."""
     relation = of_joint(system, j)
-    total = -prescribed(system.relations, relation, work.result[0].time)[1]
+    total = -prescribed(system.relations, relation, work.moment[0].time)[1]
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]
         total += term.factor * rate(system, system.relations.coordinates[term.coordinate], state)
@@ -78,7 +78,7 @@ def velocity_error(system, j, state, work):
 def acceleration_bias(system, j, state, work):
     """Write the required value of the row times the accelerations."""
     relation = of_joint(system, j)
-    total = prescribed(system.relations, relation, work.result[0].time)[2]
+    total = prescribed(system.relations, relation, work.moment[0].time)[2]
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]
         c = system.relations.coordinates[term.coordinate]
@@ -90,7 +90,7 @@ def acceleration_bias(system, j, state, work):
 def prescribed_speeds(system, j, state, work, out):
     """Write f' as the first of six numbers."""
     clear(out)
-    out[0] = prescribed(system.relations, of_joint(system, j), work.result[0].time)[1]
+    out[0] = prescribed(system.relations, of_joint(system, j), work.moment[0].time)[1]
 
 
 @unit

@@ -73,7 +73,7 @@ def write_speeds(system, j, state, t, ahead, out):
 @unit
 def write_rows(system, j, state, work):
     """Write A and A M^-1 of the user's rows."""
-    user = call_rows(system, j, state, work.result[0].time, 0.0)
+    user = call_rows(system, j, state, work.moment[0].time, 0.0)
     result, width = system.relations.memory.write, width_of(user)
     for r in range(system.joints[j].rows):
         for s in range(user.first, user.last):
@@ -86,7 +86,7 @@ def write_rows(system, j, state, work):
 @unit
 def position_error(system, j, state, work):
     """Write phi (rows,) to the bias, 0 for rows that restrict velocities only."""
-    t, out = work.result[0].time, work.joint[j].bias
+    t, out = work.moment[0].time, work.joint[j].bias
     user = read_poses(system, j, state, t, 0.0)
     clear(out)
     if user.position_address != 0:
@@ -100,13 +100,13 @@ def position_error(system, j, state, work):
 def velocity_error(system, j, state, work):
     """Write a v - b to the bias."""
     clear(work.joint[j].bias)
-    write_speeds(system, j, state, work.result[0].time, 0.0, work.joint[j].bias)
+    write_speeds(system, j, state, work.moment[0].time, 0.0, work.joint[j].bias)
 
 
 @unit
 def acceleration_bias(system, j, state, work):
     """Write the required values of the rows times the accelerations."""
-    t, out, workspace = work.result[0].time, work.joint[j].bias, work.joint[j].target
+    t, out, workspace = work.moment[0].time, work.joint[j].bias, work.joint[j].target
     user = system.relations.user[system.joints[j].number]
     g = system.gravity
     fall, ahead = math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]), math.inf
@@ -129,7 +129,7 @@ def acceleration_bias(system, j, state, work):
 def prescribed_speeds(system, j, state, work, out):
     """Write b (rows,), the speeds that the rows prescribe."""
     clear(out)
-    user = call_rows(system, j, state, work.result[0].time, 0.0)
+    user = call_rows(system, j, state, work.moment[0].time, 0.0)
     result, width = system.relations.memory.write, width_of(user)
     for r in range(system.joints[j].rows):
         out[r] = result[(r + 1) * width - 1]
@@ -138,7 +138,7 @@ def prescribed_speeds(system, j, state, work, out):
 @unit
 def add_wrenches(system, j, state, multiplier, work):
     """Add A^T multiplier to the wrenches."""
-    user = call_rows(system, j, state, work.result[0].time, 0.0)
+    user = call_rows(system, j, state, work.moment[0].time, 0.0)
     result, width = system.relations.memory.write, width_of(user)
     for r in range(system.joints[j].rows):
         for s in range(user.first, user.last):

@@ -38,19 +38,18 @@ def fly(model, data, method, h, loaded, cut):
     search, code, loads, friction = work.search[0], 0, 0.0, 0.0
     if loaded:
         count, active.count[0] = active.count[0], 0
-        work.result[0].start = work.step[0].begin + work.step[0].spent
+        work.moment[0].start = work.step[0].begin + work.step[0].spent
         applied, code = step(model, data, method, h)
         search.applied, search.friction = applied, 0.0
         if rubs(system) and code == 0:
-            contact_step(model, data, method, h)
-            code, search.friction = work.result[0].code, work.result[0].friction
-            search.applied += work.result[0].applied
+            applied, search.friction, code = contact_step(model, data, method, h)
+            search.applied += applied
         for b in range(now.shape[0]):
             copy_state(work.trial[b], crowd.flight[b])
             halfway(now[b], crowd.flight[b], crowd.flight_middle[b])
         if code == 0 and cut:  # forces may be too stiff for a step of this length
             named = search.applied + search.friction
-            off, grows = unbalanced(model, data, named, work.result[0].start, h)
+            off, grows = unbalanced(model, data, named, work.moment[0].start, h)
             code = TOO_LONG if grows or off > 1.0 else 0
         loads, friction = power_of_path(system, h, now, crowd.flight, crowd.middle, work)
         active.count[0] = count
@@ -89,15 +88,15 @@ def power_of_path(system, h, start, end, middle, work):
 
     Times h/6 this is the work, by Simpson's rule: the power of dampers is quadratic in time.
     """
-    result, begin = work.result[0], work.result[0].start
+    moment, begin = work.moment[0], work.moment[0].start
     for b in range(start.shape[0]):
         halfway(start[b], end[b], middle[b])
-    result.time = begin
+    moment.time = begin
     loads, friction = applied_wrenches(system, start, False, work), friction_power(system, start)
-    result.time = begin + 0.5 * h
+    moment.time = begin + 0.5 * h
     loads += 4.0 * applied_wrenches(system, middle, False, work)
     friction += 4.0 * friction_power(system, middle)
-    result.time = begin + h
+    moment.time = begin + h
     loads += applied_wrenches(system, end, False, work)
     return loads, friction + friction_power(system, end)
 

@@ -152,7 +152,7 @@ def impose(model, data, k, h):
     driven, joined = 0.0, system.joints.shape[0] > 0
     for i in range(k):
         driven += power_of_surface(crowd.points[0][i], crowd.middle, crowd.closed[i].impulse)
-    work.result[0].time = work.result[0].start + h
+    work.moment[0].time = work.moment[0].start + h
     if joined:
         note_rates(system, crowd.flight)
         add_rates(system, crowd.flight, work)

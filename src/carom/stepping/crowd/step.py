@@ -61,43 +61,42 @@ PIECES_OF_ONE = 16  # number of pieces of a step of a single body, which are che
 
 
 @unit
-def step_crowd(model, data, method):
-    """Move all bodies of an island to the end of the step; a code for `run` is written to `work.result`.
+def step_crowd(model, data, method) -> int:
+    """Move all bodies of an island to the end of the step; return a code for `run`.
 
     The step is divided into pieces; a piece that is too long is divided again while the work allowance permits
     it.
     """
     system, controls = model.system, model.controls
     now, work = data.state, data.work
-    step, result, search = work.step[0], work.result[0], work.search[0]
-    result.code = 0 if data.crowd.closed.shape[0] >= SPOTS else grow(step, r.FULL_SPOTS)
-    if result.code != 0:
-        return
+    step, search = work.step[0], work.search[0]
+    if data.crowd.closed.shape[0] < SPOTS:
+        return grow(step, r.FULL_SPOTS)
     if step.spent == 0.0:
         search.pace = math.inf
     while step.spent < step.length:
         if step.since > r.LONG:
-            result.code = r.PAUSE
-            return
+            return r.PAUSE
         dt = min(piece(system, now, controls, step.length - step.spent), search.pace)
         while True:
             step.tries += 1
             affordable = left(controls, step, COUNT_BLOCKS) >= CUT_PRODUCTS * data.active.count[0]
             patient = step.tries <= CUT_TRIES and affordable
             careful = patient and dt > SHORTEST_CUT * controls.interval
-            result.code = move_on(model, data, method, dt, patient, careful)
-            if result.code == CONSTRAINTS_LOST and dt > SHORTEST_CUT * controls.interval:
-                result.code = TOO_LONG
-            if result.code != TOO_LONG:
+            code = move_on(model, data, method, dt, patient, careful)
+            if code == CONSTRAINTS_LOST and dt > SHORTEST_CUT * controls.interval:
+                code = TOO_LONG
+            if code != TOO_LONG:
                 break
             dt *= 0.5
-        if result.code != 0:
-            return
+        if code != 0:
+            return code
         search.pace = 2.0 * dt
         if dt == step.length - step.spent:
             step.spent = step.length
         else:
             step.spent += dt
+    return 0
 
 
 @kernel

@@ -119,7 +119,7 @@ def part_work(work, islands, i):
         stage=work.stage[:n], trial=work.trial[:n], part=work.part[:n], middle=work.middle[:n],
         iterate=work.iterate[:n], mean=work.mean[:n], beside=work.beside[:n], origin=work.origin[:n],
         struck=work.struck, placed=work.placed, pair=work.pair, touches=work.touches,
-        solid_pose=work.solid_pose, hit=work.hit, result=work.result, step=work.step, search=work.search,
+        solid_pose=work.solid_pose, hit=work.hit, moment=work.moment, step=work.step, search=work.search,
         history=work.history,
     )  # fmt: skip
 
