@@ -314,7 +314,7 @@ class Kernel:
         self.__module__, self.__doc__ = function.__module__, function.__doc__
 
     @functools.cached_property
-    def dispatcher(self) -> Dispatcher:
+    def dispatcher(self) -> Any:
         """The function as Numba knows it."""
         return compiled(self.py_func, **self.targetoptions)
 
