@@ -1,8 +1,8 @@
-"""The kinds of forces on bodies, one file for each.
+"""The kinds of forces on bodies, one file for each, of the name of its table (`carom.scene.forces`).
 
 A kind defines
 
-- `KIND`, its number (`carom.model.arrays`), and `count(system)`, how many there are;
+- `count(system)`, how many there are: the rows of its table in `system.forces`;
 - `add(system, i, state, power, work)`: it adds its wrenches, and returns `power` with the power of its part
   without potential, then its value along a coordinate or a line, the length of the line and its rate, NaN for
   what it does not have;
@@ -17,14 +17,18 @@ Each step adds all of them; reports (`carom.dynamics.reports`) add one at a time
 from __future__ import annotations
 
 import math
+from importlib import import_module
 
 from carom._compiled.by_number import by_number
 from carom._compiled.decorators import inlined
-from carom.dynamics.applied import bushing, load, push, spring, user_force
+from carom.scene.forces import TABLES
 
-#: kinds of every scene, and those that only scenes with relations have, which are a unit of their own
-BETWEEN_BODIES, OF_RELATIONS = (spring, load, bushing), (push, user_force)
-KINDS = BETWEEN_BODIES + OF_RELATIONS
+_FILES = [import_module(f"{__name__}.{kind.name}") for kind in TABLES]
+#: kinds of every scene, and those that are a unit of their own, which only scenes with relations load
+BETWEEN_BODIES, OF_RELATIONS = (
+    tuple(file for file, kind in zip(_FILES, TABLES) if kind.apart == apart)
+    for apart in (False, True)
+)
 
 
 def added(kinds):
@@ -72,9 +76,7 @@ def energies(kinds):
 
 def _by_kind(common):
     """Return the kernel that calls the function of this name of a force, by the number of its kind."""
-    own = [None] * (1 + max(one.KIND for one in KINDS))
-    for one in KINDS:
-        own[one.KIND] = getattr(one, common.__name__, None)
+    own = [getattr(file, common.__name__, None) for file in _FILES]
     return by_number("kind", common, own)
 
 

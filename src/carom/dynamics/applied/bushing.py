@@ -25,15 +25,12 @@ from carom.geometry.rotation import (
 )
 from carom.kinematics.joints import arm
 from carom.kinematics.wrench import add_force, point, point_velocity
-from carom.model.arrays import BUSHINGS
-
-KIND = BUSHINGS
 
 
 @inlined
 def count(system):
     """Return how many there are."""
-    return system.bushings.shape[0]
+    return system.forces.bushing.shape[0]
 
 
 @kernel
@@ -75,7 +72,7 @@ def turn_moment(bushing, x, y, z):
 @kernel
 def add(system, i, state, power, work):
     """Add the wrenches of a mount to both bodies; return `power` with that of its dampers."""
-    bushing = system.bushings[i]
+    bushing = system.forces.bushing[i]
     p, c = bushing.parent, bushing.child
     a = attitude(state, p, bushing.parent_frame)
     d0, d1, d2, t0, t1, t2 = displacement(bushing, state)
@@ -118,13 +115,13 @@ def add_torque(work, b, tx, ty, tz):
 @kernel
 def acts_at(system, i, state):
     """Return the arm of the child to its anchor."""
-    return arm(state, system.bushings[i].child, system.bushings[i].child_anchor)
+    return arm(state, system.forces.bushing[i].child, system.forces.bushing[i].child_anchor)
 
 
 @kernel
 def energy(system, i, state, t):
     """Return the elastic energy of a mount [J]."""
-    bushing = system.bushings[i]
+    bushing = system.forces.bushing[i]
     d0, d1, d2, t0, t1, t2 = displacement(bushing, state)
     K, T = bushing.stiffness, bushing.turn_stiffness
     total = K[0] * d0 * d0 + K[1] * d1 * d1 + K[2] * d2 * d2
@@ -135,7 +132,7 @@ def energy(system, i, state, t):
 @kernel
 def unit_force(system, i, n, state, work):
     """Add the wrenches of a unit force along, or a unit torque about, an axis of a mount."""
-    one = system.bushings[i]
+    one = system.forces.bushing[i]
     axes = attitude(state, one.parent, one.parent_frame)
     ex, ey, ez = rotate(axes, unit_vector(n % 3))
     ax, ay, az, px, py, pz = point(state, one.parent, one.parent_anchor)

@@ -7,21 +7,18 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom.kinematics.joints import arm
 from carom.kinematics.wrench import add_force, point, point_velocity
-from carom.model.arrays import LOADS
-
-KIND = LOADS
 
 
 @inlined
 def count(system):
     """Return how many there are."""
-    return system.loads.shape[0]
+    return system.forces.load.shape[0]
 
 
 @kernel
 def add(system, i, state, power, work):
     """Add a force and torque; return `power` with theirs."""
-    load = system.loads[i]
+    load = system.forces.load[i]
     b, w = load.body, state[load.body].w
     f, t = arm(state, load.frame, load.force), arm(state, load.frame, load.torque)
     rx, ry, rz, _px, _py, _pz = point(state, b, load.anchor)
@@ -38,4 +35,4 @@ def add(system, i, state, power, work):
 @kernel
 def acts_at(system, i, state):
     """Return the arm of the body to its anchor."""
-    return arm(state, system.loads[i].body, system.loads[i].anchor)
+    return arm(state, system.forces.load[i].body, system.forces.load[i].anchor)

@@ -12,15 +12,12 @@ from carom._compiled.decorators import inlined, kernel
 from carom.kinematics import coordinate
 from carom.kinematics.coordinate import rate, slides, value
 from carom.kinematics.joints import child_arm
-from carom.model.arrays import PUSHES
-
-KIND = PUSHES
 
 
 @inlined
 def count(system):
     """Return how many there are."""
-    return system.relations.pushes.shape[0]
+    return system.forces.push.shape[0]
 
 
 @kernel
@@ -37,7 +34,7 @@ def push_force(relations, one, q, speed, t):
 @kernel
 def add(system, i, state, power, work):
     """Add a force along a coordinate; return `power` with that of its part without potential, and the force."""
-    one, t = system.relations.pushes[i], work.result[0].time
+    one, t = system.forces.push[i], work.result[0].time
     c = system.relations.coordinates[one.coordinate]
     speed = rate(system, c, state)
     force, free = push_force(system.relations, one, value(system, c, state), speed, t)
@@ -56,14 +53,14 @@ def acts_along(c, state):
 @kernel
 def acts_at(system, i, state):
     """Return the arm of the child to where it acts."""
-    c = system.relations.coordinates[system.relations.pushes[i].coordinate]
+    c = system.relations.coordinates[system.forces.push[i].coordinate]
     return acts_along(c, state)
 
 
 @kernel
 def energy(system, i, state, t):
     """Return the energy of a spring along a coordinate [J]."""
-    one = system.relations.pushes[i]
+    one = system.forces.push[i]
     stretch = value(system, system.relations.coordinates[one.coordinate], state) - one.rest
     return 0.5 * one.stiffness * stretch * stretch
 
@@ -71,6 +68,6 @@ def energy(system, i, state, t):
 @kernel
 def unit_force(system, i, n, state, work):
     """Add the wrenches of a unit force along the coordinate; return this and its rate."""
-    c = system.relations.coordinates[system.relations.pushes[i].coordinate]
+    c = system.relations.coordinates[system.forces.push[i].coordinate]
     coordinate.push(system, c, state, 1.0, work)
     return value(system, c, state), rate(system, c, state)

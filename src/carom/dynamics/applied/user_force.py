@@ -7,15 +7,12 @@ import math
 from carom._compiled.call_address import call_function
 from carom._compiled.decorators import inlined, kernel
 from carom.geometry.rotation import conjugate, multiply
-from carom.model.arrays import USER_FORCES
-
-KIND = USER_FORCES
 
 
 @inlined
 def count(system):
     """Return how many there are."""
-    return system.relations.forces.shape[0]
+    return system.forces.user_force.shape[0]
 
 
 @kernel
@@ -38,7 +35,7 @@ def read_states(system, force, state):
 def add(system, i, state, power, work):
     """Add the wrenches of a function; return `power` with theirs, unless they have a potential."""
     relations, at = system.relations, 0
-    one = relations.forces[i]
+    one = system.forces.user_force[i]
     read_states(system, one, state)
     call_function(one.address, work.result[0].time, relations.read, relations.write)
     for n in range(one.first, one.last):
@@ -63,7 +60,7 @@ def acts_at(system, i, state):
 def energy(system, i, state, t):
     """Return the energy of a potential [J], 0 without one."""
     relations = system.relations
-    one = relations.forces[i]
+    one = system.forces.user_force[i]
     if one.energy_address == 0:
         return 0.0
     read_states(system, one, state)

@@ -16,17 +16,9 @@ import numpy as np
 
 from carom._compiled.decorators import kernel
 from carom._compiled.record_arrays import table
-from carom.model.arrays import (
-    BUSHING,
-    FOREST,
-    JOINT,
-    LOAD,
-    SPRING,
-    Relations,
-    Solver,
-    System,
-)  # fmt: skip
+from carom.model.arrays import FOREST, JOINT, Relations, Solver, System
 from carom.model.contact_kinds import is_of_joint
+from carom.model.forces import Forces, no_forces, renumbered
 from carom.model.relations import no_relations
 from carom.model.solvers import no_joints
 
@@ -38,9 +30,7 @@ class Joined(NamedTuple):
     stops: np.ndarray  # (S,) contacts that are stops in joints
     joints: np.recarray
     relations: Relations
-    springs: np.recarray
-    loads: np.recarray
-    bushings: np.recarray
+    forces: Forces
     solver: Solver
 
 
@@ -63,9 +53,7 @@ def joined_bodies(system: System) -> Joined:
             frictions=relations.frictions.copy(),
             named=place[relations.named],
         ),
-        _moved(system.springs, place, ends),
-        _moved(system.loads, place, ("body", "frame")),
-        _moved(system.bushings, place, ends),
+        renumbered(system.forces, place),
         _solver(system.solver, order, place, len(body)),
     )
 
@@ -74,8 +62,7 @@ def joined_bodies(system: System) -> Joined:
 def no_bodies() -> Joined:
     """Return the empty joints and loads of islands without any."""
     none = np.zeros(0, dtype=np.int64)
-    forces = (table(kind, 0) for kind in (SPRING, LOAD, BUSHING))
-    return Joined._make([none, none, table(JOINT, 0), no_relations(), *forces, no_joints()])
+    return Joined(none, none, table(JOINT, 0), no_relations(), no_forces(), no_joints())
 
 
 def _moved(rows: np.recarray, place: np.ndarray, ends: tuple[str, ...]) -> np.recarray:
