@@ -318,13 +318,14 @@ def test_a_code_is_declared_once():
 #: folders whose thresholds are in their files `thresholds.py` (`tests/test_thresholds.py`)
 NUMERIC = {
     "geometry", "collision", "model", "law", "kinematics", "contact", "friction", "dynamics", "impact",
-    "persistent", "stepping",
+    "persistent", "stepping", "generalized",
 }  # fmt: skip
 #: floats beside them that are no thresholds: of mathematics, of a method, costs of work. It only gets shorter
 OTHER_FLOATS = {
     "dynamics.double_double": {"SPLITTER"},
     "dynamics.implicit": {"GAMMA"},
     "friction.residual": {"NOTHING"},
+    "generalized.differences": {"_FIRST", "_SECOND"},
     "impact.resolve_by_slip": {"_NONE"},
     "impact.spline": {"_X1", "_X2", "_X3", "_W1", "_W2", "_W3"},
     "impact.strike_together": {"HERTZ", "LINEAR"},

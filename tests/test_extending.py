@@ -12,7 +12,7 @@ import carom
 LIBRARY = Path(carom.__file__).parent
 PAGE = Path(__file__).parents[1] / "docs" / "development" / "extending.md"
 
-#: without the JIT, so that nothing is compiled: a method, a joint, a shape, a force, a ground, a limit, two laws
+#: without the JIT, so nothing is compiled: a method, a joint, a shape, a force, a ground, a limit, two laws
 RUN = """
 import numpy as np, carom
 

@@ -11,6 +11,7 @@ from carom._compiled.record_arrays import Columns, table
 from carom._compiled.template import Template
 from carom._compiled.user_functions import Functions
 from carom.geometry import quaternion
+from carom.geometry.thresholds import LAST_DIGIT
 from carom.model import graph, solvers
 from carom.model.arrays import (
     BODY,
@@ -30,7 +31,7 @@ from carom.model.placement import Placement
 from carom.model.relations import Coordinates, Elements
 from carom.model.stated_forces import ForceRows
 from carom.model.stops import with_stops
-from carom.model.thresholds import LARGEST_MASS_RATIO, MASS_RATIO
+from carom.model.thresholds import EQUAL_MOMENTS, LARGEST_MASS_RATIO, MASS_RATIO
 from carom.model.user_surfaces import add_functions
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, joined_tables, some_pairs
@@ -165,14 +166,14 @@ def principal(inertia: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     diagonal = inertia.diagonal().copy()
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = inertia.tolist()
     scale = max(xx, yy, zz)
-    if scale - min(xx, yy, zz) <= 1e-13 * scale:
+    if scale - min(xx, yy, zz) <= EQUAL_MOMENTS * scale:
         diagonal[:] = diagonal.sum() / 3.0
-    if max(map(abs, (xy, xz, yx, yz, zx, zy))) <= 1e-15 * scale:
+    if max(map(abs, (xy, xz, yx, yz, zx, zy))) <= LAST_DIGIT * scale:
         return diagonal, np.array([1.0, 0.0, 0.0, 0.0])
     moments, axes = np.linalg.eigh(inertia)
     if np.linalg.det(axes) < 0.0:
         axes[:, 0] *= -1.0
-    if np.ptp(moments) <= 1e-13 * scale:
+    if np.ptp(moments) <= EQUAL_MOMENTS * scale:
         return np.full(3, moments.mean()), np.array([1.0, 0.0, 0.0, 0.0])
     return moments, quaternion.from_matrix(axes)
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
+from carom.dynamics.thresholds import SERIES_TURN
 from carom.geometry.rotation import (
     conjugate,
     cross,
@@ -61,7 +62,7 @@ def turn_moment(bushing, x, y, z):
     m0, m1, m2 = K[0] * x, K[1] * y, K[2] * z
     t2 = x * x + y * y + z * z
     b = 1.0 / 12.0 + t2 / 720.0
-    if t2 > 1e-4:
+    if t2 > SERIES_TURN:
         t = math.sqrt(t2)
         b = 1.0 / t2 - 0.5 / (t * math.tan(0.5 * t))
     c = cross(x, y, z, m0, m1, m2)
