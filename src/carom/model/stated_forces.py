@@ -24,7 +24,7 @@ class ForceRows:
     """The rows of the forces of a scene; their definitions ask for points, coordinates and addresses."""
 
     def __init__(
-        self, scene, placement: Placement, coordinates, functions: Functions, pieces: Pieces,
+        self, scene, placement: Placement, coordinates: Any, functions: Functions, pieces: Pieces,
         friction_laws: LawTable, implicit: bool,
     ):  # fmt: skip
         self.point, self.axes, self.curve = placement.point, placement.axes, pieces.add

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom.dynamics.thresholds import SERIES_TURN
 from carom.geometry.rotation import (
     conjugate,
@@ -26,12 +26,6 @@ from carom.geometry.rotation import (
 )
 from carom.kinematics.joints import arm
 from carom.kinematics.wrench import add_force, point, point_velocity
-
-
-@inlined
-def count(system):
-    """Return how many there are."""
-    return system.forces.bushing.shape[0]
 
 
 @kernel
@@ -71,9 +65,8 @@ def turn_moment(bushing, x, y, z):
 
 
 @kernel
-def add(system, i, state, power, work):
+def add(system, bushing, state, power, work):
     """Add the wrenches of a mount to both bodies; return `power` with that of its dampers."""
-    bushing = system.forces.bushing[i]
     p, c = bushing.parent, bushing.child
     a = attitude(state, p, bushing.parent_frame)
     d0, d1, d2, t0, t1, t2 = displacement(bushing, state)
@@ -114,15 +107,14 @@ def add_torque(work, b, tx, ty, tz):
 
 
 @kernel
-def acts_at(system, i, state):
+def acts_at(system, bushing, state):
     """Return the arm of the child to its anchor."""
-    return arm(state, system.forces.bushing[i].child, system.forces.bushing[i].child_anchor)
+    return arm(state, bushing.child, bushing.child_anchor)
 
 
 @kernel
-def energy(system, i, state, t):
+def energy(system, bushing, state, t):
     """Return the elastic energy of a mount [J]."""
-    bushing = system.forces.bushing[i]
     d0, d1, d2, t0, t1, t2 = displacement(bushing, state)
     K, T = bushing.stiffness, bushing.turn_stiffness
     total = K[0] * d0 * d0 + K[1] * d1 * d1 + K[2] * d2 * d2
@@ -131,9 +123,8 @@ def energy(system, i, state, t):
 
 
 @kernel
-def unit_force(system, i, n, state, work):
+def unit_force(system, one, n, state, work):
     """Add the wrenches of a unit force along, or a unit torque about, an axis of a mount."""
-    one = system.forces.bushing[i]
     axes = attitude(state, one.parent, one.parent_frame)
     ex, ey, ez = rotate(axes, unit_vector(n % 3))
     ax, ay, az, px, py, pz = point(state, one.parent, one.parent_anchor)
