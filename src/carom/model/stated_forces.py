@@ -65,7 +65,7 @@ class ForceRows:
         """Return the place of a coordinate of a joint in its table."""
         return self.coordinates.number(joint, number)
 
-    def along_joint(self, function, force) -> int:
+    def along_joint(self, function, force) -> int | None:
         """Return the address of a function of time, coordinate and rate."""
         return self.function(of_coordinate(function), (2,), (1,), f"the force {force.name!r}")
 
