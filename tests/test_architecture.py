@@ -234,14 +234,6 @@ WALLS = {
         # round-off and drift of its row, and its mode, which is no event of a contact
         {"persistent.rows", "persistent.start", "persistent.finish", "persistent.activation"},
     ),
-    "forces": Wall(
-        {"SPRINGS", "LOADS", "BUSHINGS", "PUSHES", "USER_FORCES"},
-        ("dynamics.applied", "model."),
-        {
-            "results.stiff_forces",
-            "results.set_forces",
-        },  # which have a stiffness, a value that can be set
-    ),
 }
 
 
@@ -259,6 +251,23 @@ def test_only_the_files_of_kinds_compare_kinds(wall):
     }
     assert any(name.startswith(ask[0]) for name in found)
     assert {name for name in found if not name.startswith(ask)} <= others
+
+
+def test_only_the_files_of_forces_know_their_tables():
+    # All tables are copied and reported alike: a new force is a file there, which is given its rows, and its
+    # definition.
+    from carom.scene.forces import TABLES
+
+    names = {kind.name for kind in TABLES}
+    assert not [
+        name
+        for name, path in modules().items()
+        for node in ast.walk(tree(path))
+        if isinstance(node, ast.Attribute)
+        and node.attr in names
+        and ast.unparse(node.value).split(".")[-1] in ("forces", "tables")
+    ]
+    assert {f"dynamics.applied.{name}" for name in names} <= set(modules())
 
 
 def test_large_records_are_made_by_name():
@@ -322,13 +331,14 @@ def test_a_code_is_declared_once():
 #: folders whose thresholds are in their files `thresholds.py` (`tests/test_thresholds.py`)
 NUMERIC = {
     "geometry", "collision", "model", "law", "kinematics", "contact", "friction", "dynamics", "impact",
-    "persistent", "stepping",
+    "persistent", "stepping", "generalized",
 }  # fmt: skip
 #: floats beside them that are no thresholds: of mathematics, of a method, costs of work. It only gets shorter
 OTHER_FLOATS = {
     "dynamics.double_double": {"SPLITTER"},
     "dynamics.implicit": {"GAMMA"},
     "friction.residual": {"NOTHING"},
+    "generalized.differences": {"_FIRST", "_SECOND"},
     "impact.resolve_by_slip": {"_NONE"},
     "impact.spline": {"_X1", "_X2", "_X3", "_W1", "_W2", "_W3"},
     "impact.strike_together": {"HERTZ", "LINEAR"},

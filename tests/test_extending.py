@@ -12,7 +12,7 @@ import carom
 LIBRARY = Path(carom.__file__).parent
 PAGE = Path(__file__).parents[1] / "docs" / "development" / "extending.md"
 
-#: without the JIT, so that nothing is compiled: a method, a joint, a shape, a ground, a limit and two laws
+#: without the JIT, so nothing is compiled: a method, a joint, a shape, a force, a ground, a limit, two laws
 RUN = """
 import numpy as np, carom
 
@@ -31,6 +31,21 @@ s = carom.simulate(scene, 0.02, step=0.01)
 before, after = s.impacts[0].relative_velocity_before[0], s.impacts[0].relative_velocity_after[0]
 assert abs(after + 0.5 * before) < 1e-12  # a quarter of the energy
 assert s.impacts[0].law == "fraction"
+
+scene = carom.Scene(gravity=(0, 0, 0))
+scene.add_half_space((0, 0, 0), (0, 0, 1))
+scene.set_contact_default(restitution=1.0)
+ball = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 1, 0.5), velocity=(0, 0, -1.0))
+disc = scene.add_body(carom.Sphere(0.1), mass=2.0, position=(0, 0, 1), velocity=(3.0, 0, 0))
+scene.add_force(carom.forces.Drag(0.5, wind=(-1.0, 0, 0)), disc, name="drag")
+s = carom.simulate(scene, 1.0, step=0.02, save_at=0.1, method="rk8")
+v = 4.0 / (1.0 + 0.5 * 4.0 / 2.0 * s.t) - 1.0  # m u' = -k u^2, u = v + 1
+assert np.allclose(s.velocity[:, 1, 0], v, rtol=0, atol=1e-12)
+assert np.allclose(s.ledger.loads, v**2 - 9.0, rtol=0, atol=1e-12)  # all that it takes of m v^2/2
+s.save("drag.nc")
+again = carom.Solution.load("drag.nc")
+assert np.allclose(again["drag"].force[:, 0], -0.5 * (v + 1.0) ** 2, rtol=0, atol=1e-12)
+assert again.scene.forces[0].definition.factor == 0.5
 
 scene = carom.Scene(gravity=(0, 0, 0))
 tank = scene.add_surface(carom.surfaces.InsideTank(0.3, 1.0))
@@ -87,7 +102,7 @@ def add(text: str, root: Path) -> int:
 def test_what_the_page_adds_runs(tmp_path):
     ours = shutil.ignore_patterns("*.nb[ic]", "*.asked", "functions")  # all but bytecode
     shutil.copytree(LIBRARY, tmp_path / "src" / "carom", ignore=ours)
-    assert add(PAGE.read_text(), tmp_path) == 18
+    assert add(PAGE.read_text(), tmp_path) == 21
     ours = {"PYTHONPATH": str(tmp_path / "src"), "NUMBA_DISABLE_JIT": "1"}
     done = subprocess.run(
         [sys.executable, "-c", RUN],
@@ -108,6 +123,7 @@ def test_what_is_added_touches_few_rooms():
         "A method": {"dynamics"},
         "A joint": {"scene"},
         "A shape": {"scene"},
+        "A force": {"dynamics", "scene"},
         "A ground": {"collision", "scene"},
         "A coordinate that stops limit": {"kinematics", "model", "scene"},
         "A law of impact": {"law", "scene"},

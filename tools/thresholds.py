@@ -27,6 +27,7 @@ ROOMS = (
     "impact",
     "persistent",
     "stepping",
+    "generalized",
 )
 HEAD = """\
 # Thresholds

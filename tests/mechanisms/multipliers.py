@@ -286,7 +286,7 @@ def applied_force(system: System, x, Q, v, w) -> np.ndarray:
             out[:, b, :3] += force
             out[:, b, 3:] += quaternion.rotate_back(Q[:, b], np.cross(arm, force) + torque)
 
-    for s in system.springs:
+    for s in system.forces.spring:
         p, c = int(s.parent), int(s.child)
         (ap, xp, up), (ac, xc, uc) = ends(p, s.parent_anchor), ends(c, s.child_anchor)
         length = np.linalg.norm(xc - xp, axis=1, keepdims=True)
@@ -295,14 +295,14 @@ def applied_force(system: System, x, Q, v, w) -> np.ndarray:
         pull = (s.stiffness * (length - s.rest_length) + s.damping * rate) * e
         add(c, ac, -pull)
         add(p, ap, pull)
-    for load in system.loads:
+    for load in system.forces.load:
         b, frame = int(load.body), int(load.frame)
         force, torque = (
             np.zeros_like(x[:, b]) + a if frame < 0 else quaternion.rotate(Q[:, frame], a)
             for a in (load.force, load.torque)
         )
         add(b, ends(b, load.anchor)[0], force, torque)
-    for mount in system.bushings:
+    for mount in system.forces.bushing:
         place, force, torque = mount_wrench(mount, x, Q, v, w)
         for b, sign in ((int(mount.child), 1.0), (int(mount.parent), -1.0)):
             if b >= 0:

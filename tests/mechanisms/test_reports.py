@@ -1,7 +1,6 @@
 """What forces are reported to exert, and coordinates of joints, against what a run has done."""
 
 import math
-from typing import get_args
 
 import numpy as np
 import pytest
@@ -9,7 +8,7 @@ import pytest
 import carom
 from carom import GROUND, forces, joints
 from carom.geometry import quaternion
-from carom.scene.forces import ForceDefinition
+from carom.scene.forces import FORCES
 
 G = np.array([0.3, -0.2, -9.81])
 ENDS = dict(anchor_parent=(0.1, 0.3, 0.1), anchor_child=(1.2, -0.5, 0.3))
@@ -151,4 +150,4 @@ def test_each_kind_of_force_is_tried():
     joint = scene.add_joint(joints.Prismatic((1, 0, 0)), GROUND, pair[0])
     tried = {type(one(pair) if n == 0 else one) for one, n in FREE.values()}
     tried |= {type(make(joint, 0)) for make in ALONG.values()}
-    assert tried == set(get_args(ForceDefinition))
+    assert tried == set(FORCES)

@@ -17,6 +17,7 @@ from carom.collision.features import (
 )
 from carom.collision.found import put, put_parts
 from carom.collision.frame import from_a
+from carom.collision.thresholds import EDGE_GAIN, LEAST_SINE
 from carom.geometry.thresholds import RESOLUTION
 
 
@@ -155,9 +156,9 @@ def _through(pair, u):
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         size = math.sqrt(u[j] * u[j] + u[k] * u[k])  # of e_i x u = u_j e_k - u_k e_j
-        if size > 1e-7:
+        if size > LEAST_SINE:
             off = abs(u[j] * c[k] - u[k] * c[j]) - g[j] * abs(u[k]) - g[k] * abs(u[j])
-            if off / size > best + 1e-13 * (h + g[0] + g[1] + g[2]):
+            if off / size > best + EDGE_GAIN * (h + g[0] + g[1] + g[2]):
                 best, axis, cross = off / size, i, True
     n = pair.found[0].normal
     n[0], n[1], n[2] = 0.0, 0.0, 0.0

@@ -8,7 +8,7 @@ from carom._compiled.decorators import inlined, kernel
 from carom.collision.features import NOBODY, OF_A, OF_B, OF_SUPPORT, edge_part, of_edges
 from carom.collision.found import put, put_parts
 from carom.collision.thresholds import LEAST_SINE
-from carom.geometry.thresholds import ROUND_OFF
+from carom.geometry.thresholds import RESOLUTION, ROUND_OFF
 
 
 @inlined
@@ -80,7 +80,7 @@ def edge_pair(pair, best, axis):
     d1, d2 = b1 + best * n[i1] - q[i1], b2 + best * n[i2] - q[i2]
     t = (d1 * u1 + d2 * u2) / (sine * sine)
     z = q[i] + t * R[i, j]
-    slack = 1e-9 * (h[j] + g[i])
+    slack = RESOLUTION * (h[j] + g[i])
     inside = abs(t) <= h[j] + slack and abs(z) <= g[i] + slack
     t = max(-h[j], min(h[j], t))
     ax, ay, az = q[0] + t * R[0, j], q[1] + t * R[1, j], q[2] + t * R[2, j]

@@ -16,7 +16,7 @@ from carom.collision.faces import LOWEST, vertex
 from carom.collision.frame import from_a, point_of_a, to_a
 from carom.collision.layout import CYLINDER
 from carom.collision.support import change_of_support, propose, separation
-from carom.collision.thresholds import LEAST_SINE, SAME_DIRECTION
+from carom.collision.thresholds import LEAST_SINE, POLISH_STEP, SAME_DIRECTION
 from carom.geometry.thresholds import LAST_DIGIT, RESOLUTION, ROUND_OFF
 from carom.geometry.vectors import cross, dot, minus, plus
 
@@ -124,7 +124,7 @@ def _step(pair, edges, n):
     k22 = d + _curvature(pair, n, u, u)
     r1, r2 = dot(t, v), dot(u, v)
     determinant = k11 * k22 - k12 * k12
-    if not (determinant > 1e-12 * k11 * k22 and k11 > 0.0):
+    if not (determinant > ROUND_OFF * k11 * k22 and k11 > 0.0):
         return 0.0, 0.0, 0.0
     f, g = (k22 * r1 - k12 * r2) / determinant, (k11 * r2 - k12 * r1) / determinant
     return _normalized(*plus(plus(n, f, t), g, u))
@@ -136,7 +136,7 @@ def _iterate(pair, edges, n):
     for _ in range(POLISH_STEPS):
         x, y, z = _step(pair, edges, n)
         # The remaining error is about the square of this step, times lengths over radii of curvature.
-        if (x - n[0]) ** 2 + (y - n[1]) ** 2 + (z - n[2]) ** 2 < 1e-18:
+        if (x - n[0]) ** 2 + (y - n[1]) ** 2 + (z - n[2]) ** 2 < POLISH_STEP:
             return x, y, z
         n = x, y, z
     return 0.0, 0.0, 0.0

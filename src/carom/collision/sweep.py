@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom._compiled.decorators import entry, kernel
+from carom.collision.thresholds import CELL_SLACK
 from carom.geometry.vectors import dot, minus
 
 LEVELS = 40  # sizes down to 2^-40 of the largest ball; smaller balls share the last level
@@ -86,7 +87,7 @@ def _fill(centres, radii, widest, work):
     for e in range(LEVELS + 1):
         work.used[e] = 0
         # The cells are slightly wider than the balls.
-        work.width[e] = math.ldexp(2.0 * (1.0 + 1e-9) * widest, e - LEVELS)
+        work.width[e] = math.ldexp(2.0 * (1.0 + CELL_SLACK) * widest, e - LEVELS)
     for i in range(n):
         place = work.place[i]
         place[0] = -1

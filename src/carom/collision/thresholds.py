@@ -24,3 +24,7 @@ ENTERED = 0.8  #: radius of curvature of a hollow: greater circles do not reach 
 PARALLEL = 0.9998  #: cosine of the angle: about 1 degree: greatest of the axes of a profile and its partner
 NEARLY_FLAT = 0.05  #: sine of the angle: of a side of a corner to a face, which may rest on both its ends
 CHORD = 1.000001  #: arc of a curve: bound of its chord, with the error of the table by arc length
+EDGE_GAIN = 1e-13  #: sum of the sizes: a gap across an edge, not a face, is greater by more than round-off
+POLISH_STEP = 1e-18  #: 1: square of the last step of Newton's method to a normal: the error after it
+CELL_SLACK = 1e-9  #: width of a cell: by which it is wider than the balls in it
+REFERENCE_GAIN = 1e-9  #: cosine of the angle: a face is the reference unless the other is nearer by more

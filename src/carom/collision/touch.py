@@ -31,7 +31,7 @@ from carom.collision.round import (
 )
 from carom.collision.segments import are_parallel, ends_of_line
 from carom.collision.support import separation
-from carom.collision.thresholds import FACING
+from carom.collision.thresholds import FACING, REFERENCE_GAIN
 from carom.geometry.thresholds import ROUND_OFF
 
 
@@ -135,7 +135,7 @@ def _manifold(pair, reach):
             0
         ].feature = 0  # on a face any two edges, or diagonals, cross: `overlap` knows which count
     if max(on_a, on_b) > FACING:
-        ref = 1 if on_b + 1e-9 >= on_a else 0
+        ref = 1 if on_b + REFERENCE_GAIN >= on_a else 0
         m, f = s.normal[ref], 2.0 * ref - 1.0
         apart = separation(pair, f * m[0], f * m[1], f * m[2])
         if apart - a.inner - b.inner - (a.radius + b.radius) >= least - reach - tolerance:

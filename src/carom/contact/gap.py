@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
+from carom.contact.thresholds import STILL_PART
 from carom.geometry.rotation import norm
+from carom.geometry.thresholds import LAST_DIGIT
 
 
 @kernel
 def round_off(contact, state):
     """Return the round-off of a gap [m], from the size of the coordinates that it is computed from."""
     x = state[contact.body].x
-    return 1e-15 * (abs(contact.offset) + abs(x[0]) + abs(x[1]) + abs(x[2]) + contact.extent)
+    return LAST_DIGIT * (abs(contact.offset) + abs(x[0]) + abs(x[1]) + abs(x[2]) + contact.extent)
 
 
 @kernel
@@ -29,7 +31,7 @@ def slow(contact, state):
     s = speed_of(contact.body, contact.extent, state)
     if contact.other >= 0:
         s += speed_of(contact.other, contact.other_extent, state)
-    return 1e-13 * s + contact.still
+    return STILL_PART * s + contact.still
 
 
 @kernel

@@ -33,7 +33,7 @@ from carom.contact.operations import (
     way_past,
 )
 from carom.geometry.rotation import norm
-from carom.geometry.thresholds import RESOLUTION
+from carom.geometry.thresholds import RESOLUTION, ROUND_OFF
 from carom.geometry.vectors import minus
 from carom.model.workspace import FREE
 
@@ -170,7 +170,7 @@ def passage_between(model, data, c, step, at_end):
         ):  # slides or rolls along, unforced
             return CLEAR, first
     leaving = data.active.contact_states[c].leaving
-    if first + last < step.h * (1.0 - 1e-12) and bends and leaving == 0:
+    if first + last < step.h * (1.0 - ROUND_OFF) and bends and leaving == 0:
         return UNSURE, first
     return CLEAR, first
 
@@ -192,7 +192,7 @@ def passage_hidden(system, data, contact, bounds):
     first, most = time_apart(system, contact, start, bounds, h, work)
     bends = 0.125 * most * h * h > RESOLUTION * smaller(contact)
     bends = bends or way_past(contact, data) > limits.SAFE_DISPLACEMENT * smaller(contact)
-    return (UNSURE, first) if first + last < h * (1.0 - 1e-12) and bends else (CLEAR, first)
+    return (UNSURE, first) if first + last < h * (1.0 - ROUND_OFF) and bends else (CLEAR, first)
 
 
 @kernel

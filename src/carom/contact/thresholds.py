@@ -20,3 +20,4 @@ CUBIC_SHARE = 8.0 / 27.0  #: step times speed at the ends of a cubic: by which i
 CHORD_ANGLE = 2.23  #: distance of two quaternions: bound of their angle, up to a half turn: pi/sqrt(2)
 NORMAL_ERROR = 1e-6  #: 1, or size of the body: normals and heights of one plane differ by less, after turns
 EDGE_JUMP = 1e-3  #: 1: normals of edges, or of two points of a pair, that differ by less are one (`TILT`)
+STILL_PART = 1e-13  #: speeds of both bodies: relative velocity that counts as zero

@@ -37,7 +37,7 @@ class Applied:
                 "force must be a Force, a Torque or a JointForce with a number, got "
                 f"{force.name!r}, a {force.kind}{hint}"
             )
-        if place.column == "push":
+        if not isinstance(force.definition, (Force, Torque)):
             value = checks.number("value", value)
         else:
             value = checks.finite_array("value", value, (3,), unit=UNITS[type(force.definition)])
@@ -54,5 +54,5 @@ class Applied:
         if index in self._column:
             self.ctrl[self._column[index]] = value
         put(compiled.system, compiled.laws.get(index), place, value)
-        if self.run.islands.joined.loads.size:  # a second time, for the island of loaded bodies
+        if self.run.islands.joined.body.size:  # a second time, for the island of loaded bodies
             put(self.run.islands.joined, None, place, value)

@@ -125,7 +125,7 @@ def step_error(system, rtol, atol, work):
 def of_two(first, second):
     """Return the error from the two estimates of order 8; the second is 0 for methods with one estimate."""
     if second > 0.0:
-        return first * first / math.sqrt(first * first + 0.01 * second * second)
+        return first * first / math.sqrt(first * first + limits.THIRD_ORDER * second * second)
     return first
 
 

@@ -15,6 +15,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.geometry.rotation import cross, multiply, normalize, rotate_back
+from carom.geometry.thresholds import NO_CHANGE, ROUND_OFF
 
 
 @kernel
@@ -33,7 +34,7 @@ def turn_by_momentum(body, q, h, momenta, out):
         d = newton_change(J, a, b, g)
         b = (b[0] + d[0], b[1] + d[1], b[2] + d[2])
         change = max(abs(d[0]), max(abs(d[1]), abs(d[2])))
-        if change <= 1e-16 or (change <= 1e-12 and not change < 0.5 * last):
+        if change <= NO_CHANGE or (change <= ROUND_OFF and not change < 0.5 * last):
             done = True
             break
         last = change

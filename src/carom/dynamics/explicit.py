@@ -17,7 +17,7 @@ from carom.dynamics.known_end import keep_end, of_state_alone, recall
 from carom.dynamics.loops import dropped_rows
 from carom.dynamics.project import project_position, project_velocity
 from carom.dynamics.singular_positions import is_singular, pass_round, return_stage, steps
-from carom.dynamics.thresholds import SINGULARITY, STAGE_TURN
+from carom.dynamics.thresholds import JOINT_ERROR, SINGULARITY, STAGE_TURN
 from carom.geometry.rotation import multiply, normalize
 from carom.geometry.thresholds import RESOLUTION, SMALLEST
 from carom.kinematics.flight import free_flight
@@ -218,7 +218,7 @@ def return_to_joints(system, state, work):
     for b in range(state.shape[0]):
         if not steps(system, b, work):
             copy_state(work.trial[b], state[b])
-    if not (project_position(system, state, True, 1e-14, work) <= RESOLUTION):
+    if not (project_position(system, state, True, JOINT_ERROR, work) <= RESOLUTION):
         return False
     project_velocity(system, state, False, work)
     return True

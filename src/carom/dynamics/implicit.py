@@ -31,6 +31,7 @@ from carom.dynamics.explicit import (
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.project import project_position, project_velocity, shift
 from carom.dynamics.solve import solve
+from carom.dynamics.thresholds import JOINT_ERROR
 from carom.geometry.thresholds import RESOLUTION
 from carom.status import CONSTRAINTS_LOST
 
@@ -78,7 +79,7 @@ def whole_step(system, start, h, work) -> tuple[float, int]:
         move(start[b], h, second.speed, second.rate, end[b])
     forget_bounds(work)
     bound_accelerations(work, 2)
-    if not (project_position(system, end, False, 1e-14, work) <= RESOLUTION):
+    if not (project_position(system, end, False, JOINT_ERROR, work) <= RESOLUTION):
         code = CONSTRAINTS_LOST
     project_velocity(system, end, False, work)
     return 0.5 * h * power + damper_work(system, start, h, end), code

@@ -15,6 +15,7 @@ from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.project import project_velocity
 from carom.dynamics.solve import free_body, solve
 from carom.geometry.rotation import cross
+from carom.geometry.thresholds import ROUND_OFF
 
 SUBSTITUTIONS = 60  # for the velocities at the end
 
@@ -62,7 +63,7 @@ def second_kick(system, h, end, work):
             set_velocities(system, 0.0, end, work)
         power = applied_wrenches(system, end, False, work)
         previous, change = change, note_kick(system, k, work)
-        if change == 0.0 or (change <= 1e-12 and not change < 0.5 * previous):
+        if change == 0.0 or (change <= ROUND_OFF and not change < 0.5 * previous):
             break
         set_velocities(system, 0.5 * h, end, work)
         project_velocity(system, end, False, work)

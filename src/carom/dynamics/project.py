@@ -15,6 +15,7 @@ from carom.dynamics.contact_impulse import clear_wrenches, gain
 from carom.dynamics.element_operations import position_error, velocity_error
 from carom.dynamics.rotors import keep_rates
 from carom.dynamics.solve import solve, solve_near
+from carom.dynamics.thresholds import JOINT_ERROR, JOINT_NOISE, START_ERROR
 from carom.geometry.rotation import turn
 from carom.geometry.thresholds import EPSILON
 from carom.kinematics.curve import seek_feet
@@ -59,7 +60,7 @@ def project_position(system, state, near, tolerance, work) -> float:
     for _ in range(8):
         error = largest_position_error(system, state, work)
         # an error that decreases no more is round-off of the coordinates, far from the origin
-        if error <= tolerance or (error <= 1e-11 and error >= 0.5 * before):
+        if error <= tolerance or (error <= JOINT_NOISE and error >= 0.5 * before):
             break
         before = error
         clear_wrenches(work)
@@ -99,8 +100,8 @@ def project_start(system, state, work):
     error = 1.0
     seek_feet(system, state)
     for _ in range(20):
-        error = project_position(system, state, False, 1e-14, work)
-        if error <= 1e-13:
+        error = project_position(system, state, False, JOINT_ERROR, work)
+        if error <= START_ERROR:
             break
     project_velocity(system, state, False, work)
     return error

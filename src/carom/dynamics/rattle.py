@@ -33,6 +33,8 @@ from carom.dynamics.kick import add_momentum, first_kick, second_kick
 from carom.dynamics.loops import dropped_rows, solve_factored
 from carom.dynamics.move_error import error_of_move
 from carom.dynamics.solve import solve, solve_near
+from carom.dynamics.thresholds import COORDINATE_ERROR
+from carom.geometry.thresholds import LAST_DIGIT
 from carom.model.arrays import LOOPS
 from carom.model.parts_of_system import has_joints
 from carom.status import NO_CONVERGENCE
@@ -91,7 +93,7 @@ def one_part(system, start, h, end, work):
         if not move_all(system, start, h, end, work):
             return 0.0, TOO_FAR if k == 0 else STALLED
         error = error_of_move(system, start, h, end, work)
-        if error <= 1e-15 or (error <= 100.0 * fine and not error < 0.5 * last):
+        if error <= LAST_DIGIT or (error <= 100.0 * fine and not error < 0.5 * last):
             break
         if not error < 1e3 * least or k == SOLVES - 1:
             return 0.0, STALLED
@@ -112,7 +114,7 @@ def round_off(system, state):
     for b in range(state.shape[0]):
         x = state[b].x
         most = max(most, max(abs(x[0]), max(abs(x[1]), abs(x[2]))) / system.bodies[b].extent)
-    return 2e-16 * most
+    return COORDINATE_ERROR * most
 
 
 @kernel

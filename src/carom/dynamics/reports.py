@@ -21,7 +21,8 @@ from carom.kinematics.coordinates.turns import angular_velocity, memory_of
 from carom.kinematics.curve import can_be_left, dot, foot_of, is_on_curve
 from carom.kinematics.joints import anchor_gap, anchor_speed
 from carom.law.friction import bound_of_stick, depends_on_slip, in_slip
-from carom.model.arrays import DISTANCE, FRICTIONS, SPHERICAL
+from carom.model.arrays import DISTANCE, SPHERICAL
+from carom.model.forces import FRICTIONS
 
 #: a force in reports: its place, and the range of its bodies in a list, the first of which have a row each
 REPORTED = [

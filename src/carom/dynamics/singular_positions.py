@@ -22,7 +22,7 @@ from carom._compiled.units import unit
 from carom.dynamics.acceleration import accelerations
 from carom.dynamics.loops import dropped_rows
 from carom.dynamics.project import project_position, project_velocity
-from carom.dynamics.thresholds import SINGULAR_GROWTH, SINGULAR_TURN, SINGULARITY
+from carom.dynamics.thresholds import JOINT_ERROR, SINGULAR_GROWTH, SINGULAR_TURN, SINGULARITY
 from carom.geometry.rotation import turn
 from carom.model.arrays import LOOPS
 from carom.model.parts_of_system import has_loops
@@ -41,7 +41,7 @@ def steps(system, b, work):
 @unit(where=has_loops)
 def return_stage(system, stage, work):
     """Bring a stage to the joints, positions and velocities."""
-    project_position(system, stage, False, 1e-14, work)
+    project_position(system, stage, False, JOINT_ERROR, work)
     project_velocity(system, stage, False, work)
 
 

@@ -56,7 +56,9 @@ from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.loops import add_reactions, factor, substitute, subtract_rows
 from carom.dynamics.project import project_position, project_velocity
 from carom.dynamics.solve import free_body
+from carom.dynamics.thresholds import SLOWEST
 from carom.geometry.rotation import rotate, rotate_back, turn
+from carom.geometry.thresholds import LAST_DIGIT
 from carom.model.arrays import LOOPS
 from carom.model.workspace import RESTS
 from carom.status import NO_CONVERGENCE
@@ -177,7 +179,7 @@ def momenta(system, start, h, work):
         for k in range(3):
             wrench[k] = h * wrench[k] + body.mass * start[b].v[k]
             wrench[3 + k] = h * wrench[3 + k] + l[k]
-        bound, speed = work.body[b].bound, 1e-6 * body.extent / h
+        bound, speed = work.body[b].bound, SLOWEST * body.extent / h
         for k in range(3):
             spin = body.extent * abs(wrench[3 + k]) / max(J[0], max(J[1], J[2]))
             speed = max(speed, max(abs(wrench[k]) / body.mass, spin))
@@ -297,7 +299,7 @@ def position_block(system, method, start, h, end, work):
         if work.body[b].status != RESTS:
             move_along(start[b], last[b], h, end[b])
     if method.ode == 0 and system.joints.shape[0] > 0:
-        project_position(system, end, False, 1e-15, work)
+        project_position(system, end, False, LAST_DIGIT, work)
     for b in range(start.shape[0]):
         size = system.bodies[b].extent
         for k in range(3):

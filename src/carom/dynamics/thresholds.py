@@ -24,3 +24,12 @@ SINGULAR_TURN = 1e-2  #: rad: bodies turn by this angle to leave a singular posi
 SINGULAR_GROWTH = 3.0  #: angle before: if rows still depend on each other
 LAST_PIVOT = 1e-29  #: diagonal: smaller pivots are round-off of 31 digits
 DISPLACEMENT = 1e-5  #: size of a body: for differences of the user's functions
+JOINT_ERROR = 1e-14  #: size of a body: error of joints that a return to them leaves
+#: size of a body: error of joints that decreases no more: round-off of coordinates far from the origin
+JOINT_NOISE = 1e-11
+START_ERROR = 1e-13  #: size of a body: error of joints that `Options.project_start` leaves
+COORDINATE_ERROR = 2e-16  #: greatest coordinate: its round-off
+SLOWEST = 1e-6  #: size of a body in a step: least speed by which the convergence of its momenta is measured
+THIRD_ORDER = 0.01  #: square of the estimate of order 3: its weight beside that of order 5 (`dop853`)
+#: rad^2: squared angle of a mount above which its moment has the closed form: both are right to 2e-11
+SERIES_TURN = 1e-4

@@ -8,6 +8,7 @@ import numpy as np
 
 from carom import arguments, checks
 from carom.friction.checks import checked_inverse_masses, codes, per_contact
+from carom.friction.thresholds import HEADING_ERROR
 
 KINDS = {"coulomb": 0, "sliding": 1, "sticking": 2}
 
@@ -155,7 +156,7 @@ def _heading(value, k: int) -> np.ndarray:
         return np.zeros((k, 2))
     heading = checks.finite_array("heading", value, (k, 2))
     length = np.linalg.norm(heading, axis=1)
-    wrong = (length > 0.0) & (np.abs(length - 1.0) > 1e-6)
+    wrong = (length > 0.0) & (np.abs(length - 1.0) > HEADING_ERROR)
     if np.any(wrong):
         raise ValueError(
             f"heading must be unit vectors or zero, got {heading[wrong][0]} of length "

@@ -6,6 +6,7 @@ from carom._compiled.decorators import kernel
 from carom.friction.layout import CONE, DISC, SLIDING
 from carom.friction.one_contact import basis_of, solve_in_basis, solve_one
 from carom.friction.rays import solve_tangential
+from carom.friction.thresholds import NORMAL_PART
 
 
 @kernel
@@ -61,6 +62,6 @@ def solve_other(contact, W, c):
     d = w00 - w01 * a1 - w02 * a2
     g = c0 - w01 * b1 - w02 * b2
     n = 0.0
-    if g < 0.0 and d > 1e-13 * w00:
+    if g < 0.0 and d > NORMAL_PART * w00:
         n = -g / d
     return True, n, -b1 - a1 * n, -b2 - a2 * n

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.geometry.thresholds import ROUND_OFF
+from carom.friction.thresholds import TANGENTIAL_ERROR
+from carom.geometry.thresholds import REMAINDER, ROUND_OFF
 
 
 @kernel
@@ -73,7 +74,7 @@ def solve_in_basis(W, basis, velocity, mu):
     b1, b2 = c * b1 + s * b2, c * b2 - s * b1
     g1, g2 = c * wn1 + s * wn2, c * wn2 - s * wn1
     if d1 == 0.0 or d2 == 0.0:
-        tiny = 1e-13 * (abs(c1) + abs(c2) + (abs(wn1) + abs(wn2)) * abs(cn) / wnn)
+        tiny = TANGENTIAL_ERROR * (abs(c1) + abs(c2) + (abs(wn1) + abs(wn2)) * abs(cn) / wnn)
         b1 = b1 if d1 > 0.0 or abs(b1) > tiny else 0.0
         b2 = b2 if d2 > 0.0 or abs(b2) > tiny else 0.0
     found, p1, p2 = _tangential((d1, d2), (b1, b2), (g1, g2), wnn, cn, mu)
@@ -116,7 +117,7 @@ def _tangential(d, b, g, wnn, cn, mu):
         root = math.sqrt(rate * rate - 4.0 * m * cn * value)
         t = (rate + root) / (-2.0 * m * cn) if rate > 0.0 else 2.0 * value / (root - rate)
         alpha += t
-        if not t > 1e-9 * alpha:  # with quadratic convergence the rest is round-off
+        if not t > REMAINDER * alpha:  # with quadratic convergence the rest is round-off
             break
     e1, e2 = d1 + alpha, d2 + alpha
     if not (alpha > 0.0 and e2 > 0.0):

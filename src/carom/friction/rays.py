@@ -10,7 +10,8 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 from carom.friction.one_contact import eigenbasis
-from carom.geometry.thresholds import ROUND_OFF
+from carom.friction.thresholds import LEAST_TERM
+from carom.geometry.thresholds import LAST_DIGIT, ROUND_OFF
 
 
 @kernel
@@ -57,7 +58,7 @@ def outgoing(a1, a2, b11, b12, b22, mu):
     p, q = x * a1 + y * a2, x * a2 - y * a1
     m1, m2 = mu * b1, (mu * max(0.0, (b11 * b22 - b12 * b12) / b1) if b1 > 0.0 else 0.0)
     size = math.sqrt(a1 * a1 + a2 * a2)
-    least = 1e-30 * (size + m1)
+    least = LEAST_TERM * (size + m1)
     g = max(size - m1, least)  # |e(g)| >= size / (m1 + g): a lower bound of the root
     for _ in range(100):
         c, s = p / (m1 + g), q / (m2 + g)
@@ -65,7 +66,7 @@ def outgoing(a1, a2, b11, b12, b22, mu):
         if not norm2 > 1.0 and g <= least:
             return x * c - y * s, y * c + x * s, 0.0
         change = (math.sqrt(norm2) - 1.0) * norm2 / (c * c / (m1 + g) + s * s / (m2 + g))
-        if not change > 1e-15 * g:
+        if not change > LAST_DIGIT * g:
             break
         g += change
     norm = math.sqrt(norm2)

@@ -15,7 +15,7 @@ from carom.friction.cone import nearest, shift
 from carom.friction.layout import CONE, SLIDING
 from carom.friction.newton import velocity
 from carom.friction.operators import magnitude
-from carom.friction.thresholds import RESIDUAL
+from carom.friction.thresholds import GOAL_RESIDUAL, RESIDUAL
 from carom.geometry.thresholds import SUM_ERROR
 
 #: greatest values at the start: residual, |c_i|, (|W| |p|)_i, penetration, violation, complementarity
@@ -104,5 +104,5 @@ def residual(work, k):
             worst = r
         largest = max(largest, max(abs(c[n]), abs(c[n + 1]), abs(c[n + 2])) / t.scale)
     size = magnitude(work, k)
-    goal = max(1e-14 * largest + 0.08 * SUM_ERROR * size, work.mismatch[o.ENOUGH] * largest)
+    goal = max(GOAL_RESIDUAL * largest + 0.08 * SUM_ERROR * size, work.mismatch[o.ENOUGH] * largest)
     return worst, goal, RESIDUAL * largest + SUM_ERROR * size

@@ -101,7 +101,7 @@ def release(work, k):
         copy(k, kept, centre)
         work.count[o.FACTOR_ROWS] = -1
         newton(work, k, eps, True)
-        if work.mismatch[0] < 1e-8:
+        if work.mismatch[0] < limits.RELEASED_RESIDUAL:
             copy(k, p, kept)
             eps *= limits.RELEASE_FACTOR
         else:

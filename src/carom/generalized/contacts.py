@@ -16,6 +16,15 @@ from carom.friction.layout import CONE, SLIDING, SOLVED, ContactProblem, new_con
 from carom.friction.solve import solve_cones
 from carom.generalized.step import project
 from carom.generalized.strike import Strike, rows_of
+from carom.generalized.thresholds import (
+    CLOSED_DRAW,
+    CONE_ERROR,
+    CONE_PART,
+    DRAW,
+    PRESSED,
+    REVERSED_PART,
+)
+from carom.geometry.thresholds import SMALLEST
 from carom.model import actions as a
 from carom.persistent.thresholds import MOST_BOUNCES
 from carom.scene.restitution import Restitution
@@ -101,7 +110,7 @@ class Contacts(Strike):
             press = np.linalg.pinv(W[np.ix_(normal, normal)], rcond=self.run.system.drop)
             draw = W[3 * c, normal] @ press @ self.c[normal] - self.c[3 * c]
             # a contact that others keep closed (the fourth leg of a table) was located by round-off
-            least = -1e-9 if c == struck and kept else 1e-12
+            least = -CLOSED_DRAW if c == struck and kept else DRAW
             if draw > least * np.sqrt(size * self.W_ii[c, 0]) and self.stays(c, draw):
                 kept.append(c)
         return sorted(kept)
@@ -148,7 +157,7 @@ class Contacts(Strike):
                 chosen = [c for c in chosen if not self.u[c, 0] > 10.0 * self.still[c]]
                 continue
             p, w = p.reshape(k, 3), W[::3] @ p + c0[::3]
-            least = 1e-12 * np.max(np.abs(c0))
+            least = PRESSED * np.max(np.abs(c0))
             pressed = [c for i, c in enumerate(chosen) if p[i, 0] > 0.0 or abs(w[i]) <= least]
             if len(pressed) == k:
                 if self.breaks_away(chosen, p, heading):
@@ -165,7 +174,7 @@ class Contacts(Strike):
         if self.kind == a.EVENT_REVERSE:  # speed that all friction removes in .001 of a step
             c, friction = self.marked, self.friction @ np.abs(self.was.force[:, 0])
             brake = float(friction * self.W_ii[c, 1:].sum())
-            stop[c] = max(stop[c], 1e-3 * run.moment(brake) * brake)
+            stop[c] = max(stop[c], REVERSED_PART * run.moment(brake) * brake)
         v = run.x[run.n :].copy()
         active["mode"], active["heading"], active["force"] = a.MODE_OPEN, 0.0, 0.0
         active.mode[chosen] = np.where((self.slip <= stop)[chosen], a.MODE_STICK, a.MODE_SLIP)
@@ -180,7 +189,7 @@ class Contacts(Strike):
             along[self.marked] = -self.was.force[self.marked, 1:]  # stick has just ended
         along[self.loose.any(axis=1)] = self.loose[self.loose.any(axis=1)]
         along[self.friction == 0.0] = 0.0
-        return along[chosen] / np.maximum(np.linalg.norm(along[chosen], axis=1), 1e-300)[:, None]
+        return along[chosen] / np.maximum(np.linalg.norm(along[chosen], axis=1), SMALLEST)[:, None]
 
     def friction_along(self, chosen: list[int], heading: np.ndarray) -> np.ndarray:
         """Return mu (k,) of contacts: by laws that of their slip, and where they may stick its bound."""
@@ -194,8 +203,8 @@ class Contacts(Strike):
         """Note contacts with laws that cannot stick, and their directions of slip; return whether there are."""
         pull = np.linalg.norm(p[:, 1:], axis=1)
         fails = self.by_law[chosen] & ~heading.any(axis=1) & (self.was.mode[chosen] != a.MODE_STICK)
-        fails &= pull > (1.0 - 1e-10) * self.friction[chosen] * p[:, 0]
-        fails &= pull > 1e-12 * np.max(p[:, 0])
+        fails &= pull > (1.0 - CONE_PART) * self.friction[chosen] * p[:, 0]
+        fails &= pull > CONE_ERROR * np.max(p[:, 0])
         self.loose[np.array(chosen)[fails]] = -p[fails, 1:] / pull[fails, None]
         return bool(fails.any())
 
@@ -204,9 +213,11 @@ class Contacts(Strike):
         active, was, mu = self.run.active, self.was, self.friction[chosen]
         pull, most = np.linalg.norm(p[:, 1:], axis=1), mu * p[:, 0]
         free = (mu > 0.0) & ~heading.any(axis=1)
-        within = pull <= np.maximum(most * (1.0 - 1e-10), 1e-12 * np.max(p[:, 0]))
+        within = pull <= np.maximum(most * (1.0 - CONE_PART), CONE_ERROR * np.max(p[:, 0]))
         sticks = free & (within | (was.mode[chosen] == a.MODE_STICK))
-        turned = np.where(pull > 0.0, -p[:, 1:].T / np.maximum(pull, 1e-300), was.heading[chosen].T)
+        turned = np.where(
+            pull > 0.0, -p[:, 1:].T / np.maximum(pull, SMALLEST), was.heading[chosen].T
+        )
         active.mode[chosen] = np.where(sticks, a.MODE_STICK, a.MODE_SLIP)
         active.heading[chosen] = np.where(free & ~sticks, turned, heading.T).T
         active.force[chosen] = p

@@ -12,6 +12,7 @@ from carom.dynamics.methods import make_method
 from carom.generalized import layout as o
 from carom.generalized.motion import look
 from carom.generalized.step import move_freely
+from carom.generalized.thresholds import RETURN_ERROR, RETURN_GOAL, SYSTEM_DROP
 from carom.model.laws import laws_of
 from carom.options import Options
 from carom.status import Status
@@ -21,13 +22,12 @@ if TYPE_CHECKING:
 
 STAGES = 12
 PARTS = 64  # steps of order 4 along the arc of a return map: the error of a great circle of 1 rad is 2e-10
-NEAR = 1e-11  # of the coordinates: residual of a return map, beyond the round-off of its arc
 
 
 class Evaluation:
     """Compiled functions of a system and workspace to call them with."""
 
-    def __init__(self, system: GeneralizedSystem, drop: float = 1e-8):
+    def __init__(self, system: GeneralizedSystem, drop: float = SYSTEM_DROP):
         model, laws = system._model, laws_of(system.contacts)
         self.n, self.functions = model.n, Functions()
         addresses, parts = (
@@ -106,8 +106,8 @@ class Evaluation:
         kappa = np.linalg.lstsq(rows @ normals, rho)[0]
         # what `root` returns is not worked out from its code: that takes a seventh of the check of types
         search = cast("Any", root)
-        found = search(misses, np.append(q - normals @ kappa, kappa), tol=1e-14)
-        if not np.max(np.abs(found.fun)) <= NEAR * max(1.0, np.max(np.abs(q))):
+        found = search(misses, np.append(q - normals @ kappa, kappa), tol=RETURN_GOAL)
+        if not np.max(np.abs(found.fun)) <= RETURN_ERROR * max(1.0, np.max(np.abs(q))):
             raise ValueError(
                 f"position must be nearer to the contact, got {q!r}: the return map did not converge"
             )

@@ -17,13 +17,12 @@ from carom.contact.continuous_detection import cubic_clears
 from carom.generalized.linear import dot
 from carom.generalized.motion import acceleration, find_contacts, persists, slip_of
 from carom.generalized.step import take
+from carom.generalized.thresholds import CONE_ERROR, GAP_ERROR
 from carom.law.friction import bound_of_stick
 from carom.model import actions as a
 from carom.status import NOT_FINITE
 from carom.stepping.event_search import begin_search, next_trial, update_bracket
 
-ROUND_OFF = 1e-15  # of the gap's own terms
-CONE_ROUND_OFF = 1e-12  # of the greatest normal force, which is a result of elimination
 TRIALS = 200  # of a search: the bracket is then round-off of its length
 EARLIER = 20  # events that may lie before the first one that was found
 
@@ -51,14 +50,14 @@ def find_margins(motion, t):
             margin[kind, c], nothing[kind, c] = math.inf, 0.0
         if contact.mode == a.MODE_OPEN:
             margin[a.EVENT_GAP, c] = work.gap[c]
-            nothing[a.EVENT_GAP, c] = ROUND_OFF * work.gap_scale[c]
+            nothing[a.EVENT_GAP, c] = GAP_ERROR * work.gap_scale[c]
             margin[a.EVENT_RATE, c] = -dot(work.G[c, 0], end[system.n :], system.n)
             continue
         margin[a.EVENT_SEPARATE, c] = force[0]
         if contact.mode == a.MODE_STICK:
             pull = math.sqrt(force[1] * force[1] + force[2] * force[2])
             margin[a.EVENT_CONE, c] = mu * force[0] - pull
-            nothing[a.EVENT_CONE, c] = CONE_ROUND_OFF * most
+            nothing[a.EVENT_CONE, c] = CONE_ERROR * most
         elif mu > 0.0:
             u1, u2, _, _ = slip_of(system, contact.heading, c, end, work)
             margin[a.EVENT_REVERSE, c] = u1 * contact.heading[0] + u2 * contact.heading[1]

@@ -32,6 +32,7 @@ from carom.generalized.events import locate
 from carom.generalized.linear import copy_row, dot
 from carom.generalized.motion import evaluate, find_metric, kinetic_energy
 from carom.generalized.step import take
+from carom.generalized.thresholds import LEFT_OF_STEP, REVERSAL, SHORTEST_GIVEN, SLIP_TURN
 from carom.geometry.thresholds import SUM_ERROR
 from carom.law.friction import bound_of_stick
 from carom.model import actions as a
@@ -40,11 +41,6 @@ from carom.status import STEP_TOO_SMALL, SUCCESS
 from carom.stepping.energy_balance import note_exchanged
 from carom.stepping.grid import end_of, is_saved
 
-# Tangents of the greatest angle by which slip turns in a given step (15 degrees: of steps of .02 to .2 s of
-# pucks and sleds none is off by more than 1e-3 m; 3e-3 m with 30 degrees, 1e-2 m with 60), and of that by which
-# it may miss the opposite direction where it stops: a stop is located.
-TURN, STOPS = 0.268, 0.01
-SHORTEST = 2.0**-12  # of a given step: it is halved no further
 LONG = 20_000  # trial steps, times the square of the number of coordinates, after which the loop pauses
 
 
@@ -62,7 +58,7 @@ def time_loop(motion, x, plan, until, record):
             return PAUSE
         target = end_of(plan.grid, plan.duration, c.step + 1)
         left = target - c.now
-        if left > 1e-13 * plan.step:
+        if left > LEFT_OF_STEP * plan.step:
             part, code = take_accurately(motion, x, left, plan, c)
             if code != 0:
                 return code
@@ -98,7 +94,7 @@ def take_accurately(motion, x, left, plan, c):
         code = take(motion, c.now, x, part)
         c.trials += 1
         if plan.order == 0:
-            if code != 0 or part <= SHORTEST * plan.step or not turns(motion):
+            if code != 0 or part <= SHORTEST_GIVEN * plan.step or not turns(motion):
                 return part, code
             part *= 0.5
             continue
@@ -131,7 +127,7 @@ def turns(motion):
             v = work.stages[s] if s < motion.method.b.size else work.end[n:]
             u1, u2 = dot(work.G[c, 1], v, n), dot(work.G[c, 2], v, n)
             along, across = u1 * e1 + u2 * e2, abs(u1 * e2 - u2 * e1)
-            if across > (TURN * along if along > 0.0 else STOPS * abs(along)):
+            if across > (SLIP_TURN * along if along > 0.0 else REVERSAL * abs(along)):
                 return True
     return False
 

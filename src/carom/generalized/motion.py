@@ -15,13 +15,12 @@ from carom.friction import ldl, lu
 from carom.generalized import layout as o
 from carom.generalized.differences import evaluate_parts
 from carom.generalized.linear import add_row, copy_row, dot
+from carom.generalized.thresholds import COORDINATE_UNIT, METRIC_PIVOT
 from carom.law.friction import bound_of_stick, depends_on_slip, in_slip
 from carom.model import actions as a
 from carom.status import NOT_FINITE, SINGULAR_METRIC
 
 POSITION, RATE, ACCELERATION = range(3)  # what the rows must give
-LEAST = 1e-9  # of the unit of a coordinate, its size for tolerances: in the origin errors are not relative to 0
-SINGULAR = 1e-15  # of the diagonal: a pivot of the metric that is round-off
 
 
 @kernel
@@ -40,7 +39,7 @@ def find_metric(system, t, x, work):
     n, total = system.n, 0.0
     for i in range(n):
         copy_row(work.M[i], work.L[i], n)
-    ldl.factor(n, SINGULAR, work.L)
+    ldl.factor(n, METRIC_PIVOT, work.L)
     for i in range(n):
         if not 0.0 < work.L[i, i] < math.inf:
             for k in range(n * n):
@@ -90,10 +89,10 @@ def find_contacts(system, t, x, work):
 
 @kernel
 def terms(row, x, n):
-    """Return sum |row_j x_j|, with coordinates of at least `LEAST`."""
+    """Return sum |row_j x_j|, with coordinates of at least `COORDINATE_UNIT`."""
     total = 0.0
     for j in range(n):
-        total += abs(row[j]) * max(abs(x[j]), LEAST)
+        total += abs(row[j]) * max(abs(x[j]), COORDINATE_UNIT)
     return total
 
 

@@ -14,6 +14,8 @@ from carom.generalized.contacts import Contacts
 from carom.generalized.evaluate import Evaluation
 from carom.generalized.loop import save_now, time_loop
 from carom.generalized.step import project
+from carom.generalized.thresholds import AT_ONE_INSTANT, INSIDE
+from carom.geometry.thresholds import SMALLEST
 from carom.model.kept import Kept
 from carom.status import Status
 from carom.stepping.grid import STATES, Grid, part_of_grid, planned_grid
@@ -94,14 +96,14 @@ class GeneralizedRun(Running):
             raise ValueError(
                 f"position must satisfy the constraints, got phi(q) = {seen.phi.tolist()} at the start"
             )
-        right = np.all(np.abs(rates) <= tolerance * np.maximum(speeds, 1e-300))
+        right = np.all(np.abs(rates) <= tolerance * np.maximum(speeds, SMALLEST))
         if not (right or self.options.project_start):
             raise ValueError(
                 f"velocity must satisfy the constraints, got A v = {rates.tolist()} at the start; use "
                 "Options(project_start=True)"
             )
         sizes = np.abs(seen.G[:, 0]) @ np.abs(x[:n])
-        for contact in np.flatnonzero(seen.gap < -1e-9 * sizes):
+        for contact in np.flatnonzero(seen.gap < -INSIDE * sizes):
             name = self.user.contacts[contact].name
             raise ValueError(
                 f"position must not be inside a contact, got the gap {seen.gap[contact]:.6g} of {name!r}"
@@ -165,7 +167,7 @@ class GeneralizedRun(Running):
         clock, times = self.clock[0], self.located
         times.append(float(clock.now))
         before = times[-EVENTS_AT_ONCE] if len(times) >= EVENTS_AT_ONCE else -np.inf
-        if times[-1] - before <= 1e-10 * self.plan.step:
+        if times[-1] - before <= AT_ONE_INSTANT * self.plan.step:
             return Status.TOO_MANY_IMPACTS
         return self.contacts.resolve(int(clock.kind), int(clock.index))
 

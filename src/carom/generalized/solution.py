@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from carom import checks
+from carom.generalized.thresholds import TIME_ERROR
 from carom.geometry.spline import cubic
 from carom.results.drawn import Drawn
 from carom.results.endings import message
@@ -20,9 +21,6 @@ from carom.status import Status
 if TYPE_CHECKING:
     from carom.generalized.run import GeneralizedRun
     from carom.generalized.system import GeneralizedSystem
-
-
-ROUND_OFF = 1e-14  # of the time: that near to an event, it is not known on which side of it
 
 
 class CoordinateImpact(NamedTuple):
@@ -195,7 +193,7 @@ class GeneralizedSolution(Drawn):
         last, end, *_ = nodes[min(k + 1, len(at) - 1)]
         if time == begin:
             return start
-        if time > last - ROUND_OFF * self.t[-1]:
+        if time > last - TIME_ERROR * self.t[-1]:
             return end
         run = self._run.again(float(begin), start, active, time)
         if run.go_on(run.steps) is Status.SUCCESS:

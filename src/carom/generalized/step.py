@@ -20,10 +20,10 @@ from carom.generalized.motion import (
     slip_of,
     terms,
 )
+from carom.generalized.thresholds import CONSTRAINT_ERROR
+from carom.geometry.thresholds import LAST_UNITS
 from carom.model import actions as a
 from carom.status import CONSTRAINTS_LOST, NOT_FINITE
-
-_NONE = 4e-16  # relative to the terms of a row: its error cannot be smaller
 
 
 @kernel
@@ -123,7 +123,7 @@ def return_to_surfaces(system, active, t, x, work):
         find_rows(system, active, t, x, work)
         m = gather(system, active, POSITION, x, work)
         error = error_of(system, active, x, work)
-        if not error > _NONE or (iteration > 0 and error >= 0.5 * last):
+        if not error > LAST_UNITS or (iteration > 0 and error >= 0.5 * last):
             break
         last = error
         for j in range(n):
@@ -137,7 +137,7 @@ def return_to_surfaces(system, active, t, x, work):
         ldl.substitute(n, work.L, work.c)
         add_row(1.0, xi, x, n)
         add_row(-0.5, work.c, x, n)
-    return 0 if error <= 1e-9 else CONSTRAINTS_LOST
+    return 0 if error <= CONSTRAINT_ERROR else CONSTRAINTS_LOST
 
 
 @kernel

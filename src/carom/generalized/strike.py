@@ -8,6 +8,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import Columns
 from carom.generalized.solution import CoordinateImpact
+from carom.generalized.thresholds import STILL_COORDINATE
 from carom.impact import layout as o
 from carom.impact.resolve import resolve
 from carom.impact.tangential import return_slip
@@ -20,7 +21,6 @@ from carom.status import Status
 if TYPE_CHECKING:
     from carom.generalized.run import GeneralizedRun
 
-STILL = 1e-12  # relative to the speeds of a contact: a relative velocity that is round-off
 BLOWS = 200  # impacts at one instant
 
 
@@ -67,7 +67,7 @@ class Strike:
         self.slip = np.linalg.norm(self.u[:, 1:], axis=1)
         self.W_ii = np.diag(self.W).reshape(-1, 3)
         size = np.sqrt(np.maximum(self.W_ii.sum(axis=1), 0.0))
-        self.still = STILL * size * max(np.sqrt(max(v @ seen.M @ v, 0.0)), push)
+        self.still = STILL_COORDINATE * size * max(np.sqrt(max(v @ seen.M @ v, 0.0)), push)
         return code
 
     def strike(self, closed: list[int], jams: int = -1) -> int:

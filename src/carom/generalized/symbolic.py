@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from carom import checks
+from carom.generalized.thresholds import ZERO_EXPRESSION
 from carom.scene import expressions
 
 
@@ -145,7 +146,7 @@ class SymbolicModel:
         symbols = [*self.q, *self.v, self.t]
         f = sp.lambdify(symbols, [expression, sp.Integer(1)], "math")
         points = 0.1 + 0.8 * np.random.default_rng(0).random((4, len(symbols)))
-        return all(abs(f(*point)[0]) <= 1e-9 for point in points)
+        return all(abs(f(*point)[0]) <= ZERO_EXPRESSION for point in points)
 
     def add_contact(self, gap, gradient, tangent) -> None:
         """Store the expressions of a contact; its gradient is derived, not given."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from carom import arguments, checks
 from carom.generalized.stated import CoordinateContact
+from carom.generalized.thresholds import SYMMETRY
 from carom.scene.friction import FrictionLaw, bound_of
 from carom.scene.registry import Registry
 from carom.scene.restitution import Restitution
@@ -166,7 +167,7 @@ class GeneralizedSystem:
         self._parts, self._made = Registry("system"), None
         self.position, self.velocity = q, v
         M = checks.finite_array("metric at position", model.metric_at(q), (model.n, model.n))
-        if not np.allclose(M, M.T, rtol=0, atol=1e-12 * np.max(np.abs(M))):
+        if not np.allclose(M, M.T, rtol=0, atol=SYMMETRY * np.max(np.abs(M))):
             raise ValueError(f"metric must be symmetric, got {M.tolist()} at the start")
         if not np.linalg.eigvalsh(M)[0] > 0.0:
             raise ValueError(f"metric must be positive definite, got {M.tolist()} at the start")

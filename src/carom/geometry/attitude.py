@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from carom import checks
 from carom.arguments import known
 from carom.geometry import quaternion
-from carom.geometry.thresholds import UNIT_ERROR
+from carom.geometry.thresholds import ROUND_OFF, UNIT_ERROR
 from carom.status import MistakeWarning
 
 if TYPE_CHECKING:
@@ -119,7 +119,7 @@ def _warn_of_radians(name: str, degrees: np.ndarray) -> None:
     suspect = (
         (whole != 0.0)
         & (np.abs(whole) <= 720.0)
-        & (np.abs(halves - whole) <= 1e-12 * np.abs(whole))
+        & (np.abs(halves - whole) <= ROUND_OFF * np.abs(whole))
     )
     if suspect.any():
         angle, meant = float(degrees[suspect][0]), 0.5 * float(whole[suspect][0])

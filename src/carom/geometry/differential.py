@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from carom.geometry.quaternion import shaped
+from carom.geometry.thresholds import SMALLEST
 
 Array = NDArray[np.float64]
 
@@ -74,7 +75,7 @@ def _inverse(t2: Array) -> Array:
     for k in range(9, 0, -1):
         g = 1.0 - g * near / (2 * k * (2 * k + 3))
     u = np.sqrt(near)
-    u = np.where(u > 0.0, u, 1e-300)
+    u = np.where(u > 0.0, u, SMALLEST)
     v = np.sqrt(far)
     return np.where(
         u2 < 1.0, g / 12.0 * (u / np.sin(u)), (np.sin(v) - v * np.cos(v)) / (4.0 * far * np.sin(v))

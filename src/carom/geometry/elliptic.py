@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry
+from carom.geometry.thresholds import CARLSON_RANGE, HALF_DIGITS
 
 
 @entry
@@ -14,7 +15,7 @@ def quarter_period(kc):
         return math.inf
     a, b = 1.0, kc
     for _ in range(12):  # the number of digits doubles: 1e-150 takes 12
-        if abs(a - b) <= 1e-8 * a:
+        if abs(a - b) <= HALF_DIGITS * a:
             break
         a, b = 0.5 * (a + b), math.sqrt(a * b)
     return math.pi / (a + b)
@@ -29,7 +30,7 @@ def carlson(x, y, z):
     """
     for _ in range(600):  # each divides the differences by four; 1e-300 and 1 take 20
         a = (x + y + z) / 3.0
-        if not max(abs(a - x), max(abs(a - y), abs(a - z))) > 0.004 * a:
+        if not max(abs(a - x), max(abs(a - y), abs(a - z))) > CARLSON_RANGE * a:
             break
         p, q, r = math.sqrt(x), math.sqrt(y), math.sqrt(z)
         s = p * q + q * r + r * p

@@ -9,6 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from carom.geometry.thresholds import MATRIX_ERROR
+
 Array = NDArray[np.float64]
 _CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 
@@ -90,7 +92,7 @@ def matrix(q: ArrayLike) -> Array:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
-def from_matrix(rotation: ArrayLike, tolerance: float = 1e-6) -> Array:
+def from_matrix(rotation: ArrayLike, tolerance: float = MATRIX_ERROR) -> Array:
     """Return the unit quaternions (..., 4), w >= 0, of rotation matrices (..., 3, 3).
 
     Of the four vectors 4 q_i q, the one with the largest q_i is used, so no angle is singular

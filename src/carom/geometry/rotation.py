@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import entry, inlined, kernel
+from carom.geometry.thresholds import HALF_DIGITS
 
 
 @kernel
@@ -130,7 +131,7 @@ def log(q):
         w, x, y, z = -w, -x, -y, -z
     s2 = x * x + y * y + z * z
     s = math.sqrt(s2)
-    if s < 1e-8:
+    if s < HALF_DIGITS:
         f = 2.0 / w * (1.0 - s2 / (3.0 * w * w))
     else:
         f = 2.0 * math.atan2(s, w) / s

@@ -15,3 +15,8 @@ UNIT_ERROR = 1e-3  #: 1: error of the length of a given quaternion, or of a unit
 #: rad: rotation h |Wbar| above which the chart moves along: log is one-to-one below pi, and the true
 #: rotation may differ from the predicted one
 CHART_ANGLE = 2.0
+LAST_UNITS = 4e-16  #: value: two units in its last place: an iteration that changes it by less has ended
+NO_CHANGE = 1e-16  #: value, or whole: less than a unit in its last place: the same where rounding is known
+HALF_DIGITS = 1e-8  #: greater of two numbers: a difference, or a sine, whose square is round-off
+CARLSON_RANGE = 0.004  #: mean of three numbers: difference whose seventh power is round-off (DLMF 19.36.1)
+MATRIX_ERROR = 1e-6  #: 1: error of a given matrix, by which it is no rotation

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from carom._compiled.decorators import kernel
 from carom.friction.rays import solve_tangential
+from carom.geometry.thresholds import LAST_UNITS, ROUND_OFF
 from carom.impact.spline import Step, force, quadratures, slip_ratio, solve_slip
 from carom.impact.thresholds import SHORTEST_PART
 from carom.law import impact_laws
@@ -191,7 +192,9 @@ def shoot(contact, span, friction, history, row):
         _, k = force(contact, t1, t2)
         left = impact_laws.remaining(law, span.goal, state[2], total[3], total[0])
         change = left / impact_laws.rate(law, state[2], k)
-        if abs(change) <= 4e-16 * length or (abs(change) <= 1e-12 * length and abs(change) >= last):
+        if abs(change) <= LAST_UNITS * length or (
+            abs(change) <= ROUND_OFF * length and abs(change) >= last
+        ):
             return result
         if not abs(change) < 0.5 * length:
             break

@@ -17,7 +17,14 @@ from carom.geometry.thresholds import REMAINDER, ROUND_OFF, SUM_ERROR
 from carom.impact import layout as o
 from carom.impact.slip_step import expand, moved, normal_rate, write_end
 from carom.impact.taylor import reach
-from carom.impact.thresholds import IMPACT_ERROR, LONGEST_IMPULSE, SERIES_ACCURACY
+from carom.impact.thresholds import (
+    IMPACT_ERROR,
+    LONGEST_IMPULSE,
+    RAY_ANGLE,
+    RAY_TURN,
+    SERIES_ACCURACY,
+    STOPPED_SHARE,
+)
 from carom.impact.wedge import below_round_off, moves_nothing, power_of_two, pushed
 from carom.law import impact_laws
 
@@ -204,7 +211,7 @@ def _straightened(contact, s):
     if abs(f) <= IMPACT_ERROR * (abs(m[1]) + abs(m[2]) + mu * (m[3] + m[5])):
         return Line(STRAIGHT, -mu * c, -mu * n, g)
     slope = mu * ((m[3] - m[5]) * (c * c - n * n) + 4.0 * m[4] * c * n) - (m[1] * c + m[2] * n)
-    near = abs(f) * r <= -1e-14 * slope * contact.size and abs(f) <= -1e-3 * slope
+    near = abs(f) * r <= -RAY_TURN * slope * contact.size and abs(f) <= -RAY_ANGLE * slope
     if not (slope < 0.0 and near):
         return CURVE
     for _ in range(3):  # Newton onto the ray itself
@@ -242,7 +249,7 @@ def _along_curve(contact, phase, s):
         return write_end(contact, phase, s, new, t, h), AT_GOAL, marks
     if phase.restitution and below_round_off(m, new[3], new[4], new[5], phase.taken):
         return new, AT_WEDGE, marks | o.WEDGED
-    slips = math.sqrt(new[0] * new[0] + new[1] * new[1]) > 1e-3 * ROUND_OFF * size
+    slips = math.sqrt(new[0] * new[0] + new[1] * new[1]) > STOPPED_SHARE * ROUND_OFF * size
     return new, WITHIN if slips else AT_STOP, marks
 
 

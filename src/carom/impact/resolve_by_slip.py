@@ -17,7 +17,7 @@ from typing import NamedTuple
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.friction.rays import outgoing, stick_ratio
-from carom.geometry.thresholds import ROUND_OFF
+from carom.geometry.thresholds import LAST_UNITS, ROUND_OFF
 from carom.impact import layout as o
 from carom.impact.resolve import (
     AT_GOAL,
@@ -39,7 +39,13 @@ from carom.impact.resolve import (
     without_slip,
 )
 from carom.impact.slip_step import normal_rate
-from carom.impact.thresholds import LONGEST_IMPULSE, RAY_LENGTH, SLIP_ERROR
+from carom.impact.thresholds import (
+    FIRST_SLIP_STEP,
+    LONGEST_IMPULSE,
+    RAY_LENGTH,
+    SLIP_ERROR,
+    STOPPED_SHARE,
+)
 from carom.impact.wedge import below_round_off
 from carom.law import impact_laws
 from carom.law.friction import in_slip
@@ -79,7 +85,7 @@ def resolve_by_slip(W, u, friction, e, law, out) -> int:
     still, steps, at_rest = out[o.STILL] / units[0], 0, ROUND_OFF * size
     s = (start[1], start[2], start[0], 0.0, 0.0, 0.0, 0.0, 0.0)
     before, phase, line = (0.0, 0.0, 0.0, 0.0, 0.0), COMPRESSION, CURVE
-    phases, slip_end, h = 0, (-1.0, 0.0), 0.01
+    phases, slip_end, h = 0, (-1.0, 0.0), FIRST_SLIP_STEP
     stopped, ends = not math.sqrt(s[0] * s[0] + s[1] * s[1]) > at_rest, False
     while not ends:
         steps += 1
@@ -184,7 +190,7 @@ def _along_curve(slip, phase, s, h):
         return _land(slip, phase, s, new, h), AT_GOAL, marks, h
     if phase.restitution and below_round_off(m, new[3], new[4], new[5], phase.taken):
         return new, AT_WEDGE, marks | o.WEDGED, h
-    slips = math.sqrt(new[0] * new[0] + new[1] * new[1]) > 1e-3 * ROUND_OFF * size
+    slips = math.sqrt(new[0] * new[0] + new[1] * new[1]) > STOPPED_SHARE * ROUND_OFF * size
     return new, WITHIN if slips else AT_STOP, marks, h * wider
 
 
@@ -246,7 +252,7 @@ def _land(slip, phase, start, end, h):
         z = high - below * (high - low) / (below - above)
         s, _ = _step(slip, start, z)
         left = impact_laws.remaining(law, goal, s[2], s[3], s[7])
-        if not abs(left) > 4e-16 * first or not low < z < high:
+        if not abs(left) > LAST_UNITS * first or not low < z < high:
             break
         if left > 0.0:
             low, above = z, left

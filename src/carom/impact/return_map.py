@@ -16,6 +16,8 @@ from carom.contact.operations import strike_point
 from carom.dynamics.contact_impulse import alone, spread
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.project import project_position, shift
+from carom.dynamics.thresholds import JOINT_ERROR
+from carom.geometry.thresholds import RESOLUTION
 from carom.kinematics.contact_point import contact_motion, place
 
 
@@ -44,7 +46,7 @@ def return_map(system, contact, state, work, tie, tolerance):
             return -1
         if joined:
             carry(system, point, -rho / w_nn, state, state, work)
-            if not (project_position(system, state, False, 1e-14, work) <= 1e-9):
+            if not (project_position(system, state, False, JOINT_ERROR, work) <= RESOLUTION):
                 return -1
         else:
             kappa -= rho / w_nn

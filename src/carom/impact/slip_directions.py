@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from carom import checks
+from carom.geometry.thresholds import LAST_DIGIT
 from carom.impact.api import checked_inverse_mass
+from carom.impact.thresholds import LEAST_TURN, NO_TURN, SAME_SLIP, UNIT_ROOT
 
 
 @dataclass(frozen=True)
@@ -56,18 +58,18 @@ def invariant_directions(inverse_mass, friction: float) -> InvariantDirections:
     terms = np.array([-c, first, 0.0, np.conj(first), -np.conj(c)])
     size = float(np.max(np.abs(terms)))
     scale = float(np.max(np.abs(W)))
-    if not size > 1e-14 * scale * max(1.0, mu):
+    if not size > NO_TURN * scale * max(1.0, mu):
         return InvariantDirections(np.zeros(0), np.zeros(0), np.zeros(0, dtype=bool))
-    terms[np.abs(terms) < 1e-15 * size] = 0.0
+    terms[np.abs(terms) < LAST_DIGIT * size] = 0.0
     roots = np.roots(terms)
-    angles = np.angle(roots[np.abs(np.abs(roots) - 1.0) < 1e-6])
+    angles = np.angle(roots[np.abs(np.abs(roots) - 1.0) < UNIT_ROOT])
     for _ in range(3):  # Newton's iteration: the roots of the polynomial have errors of about 1e-12
         turn, slope = _turning(a, mu * B, angles)
-        angles = angles - np.where(np.abs(slope) > 1e-6 * size, turn / slope, 0.0)
+        angles = angles - np.where(np.abs(slope) > LEAST_TURN * size, turn / slope, 0.0)
     angles = np.sort(np.mod(angles, 2.0 * np.pi))
     keep = np.ones(len(angles), dtype=bool)
-    keep[1:] = np.diff(angles) > 1e-7
-    if len(angles) > 1 and angles[-1] - angles[0] > 2.0 * np.pi - 1e-7:
+    keep[1:] = np.diff(angles) > SAME_SLIP
+    if len(angles) > 1 and angles[-1] - angles[0] > 2.0 * np.pi - SAME_SLIP:
         keep[-1] = False
     angles = angles[keep]
     e = np.stack([np.cos(angles), np.sin(angles)])

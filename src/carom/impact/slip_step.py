@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
+from carom.geometry.thresholds import LAST_UNITS
 from carom.impact.taylor import integral, series, value
 from carom.law import impact_laws
 
@@ -61,7 +62,7 @@ def write_end(contact, phase, start, end, t, h):
         else:
             high = z
         new = z + left / slope if slope > 0.0 else math.inf
-        if not abs(left) > 4e-16 * first or new == z:
+        if not abs(left) > LAST_UNITS * first or new == z:
             return s
         if not (low < new < high):
             new = 0.5 * (low + high)

@@ -16,6 +16,7 @@ import math
 from typing import NamedTuple
 
 from carom._compiled.decorators import kernel
+from carom.geometry.thresholds import LAST_DIGIT, ROUND_OFF
 
 _X1, _X2, _X3 = 0.5 - 0.5 * math.sqrt(0.6), 0.5, 0.5 + 0.5 * math.sqrt(0.6)
 _W1, _W2, _W3 = 5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0
@@ -90,7 +91,7 @@ def solve_slip(contact, start, d, to_rest):
         change = abs(dx) + abs(dy)
         if not change < math.inf:
             break
-        if change <= 1e-15 * scale or (change <= 1e-12 * scale and change >= last):
+        if change <= LAST_DIGIT * scale or (change <= ROUND_OFF * scale and change >= last):
             return 1, Step(start, (ux, uy), (yx, yy), d)
         last = change
     return 0, Step(start, (ux, uy), (yx, yy), d)

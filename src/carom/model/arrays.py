@@ -16,6 +16,7 @@ import numpy as np
 
 from carom.collision.layout import Hulls
 from carom.collision.level_layout import Levels
+from carom.model.forces import Forces
 from carom.model.laws import Laws
 from carom.model.memory import Memory
 from carom.scene import joints
@@ -41,10 +42,6 @@ OWN_ROWS = min(ON_CURVE)  # the first of these kinds
 LIMITED = {"rotation": "ball", "swing": "ball", "twist": "ball"}
 OF_LIMIT = {word: number for number, word in enumerate(LIMITED, len(KIND) + 4)}
 SWING, TWIST = OF_LIMIT["swing"], OF_LIMIT["twist"]
-
-
-#: kinds of forces, each a table of its own; dry friction by the coordinate on which it acts
-SPRINGS, LOADS, BUSHINGS, PUSHES, USER_FORCES, FRICTIONS = range(6)
 
 
 def _kinds(chosen) -> tuple[int, ...]:
@@ -149,16 +146,6 @@ USER_ROW = [
     ("last", "i8"),
 ]
 
-#: a spring, damper and force along a coordinate of a joint
-PUSH = [
-    ("coordinate", "i8"),
-    ("stiffness", "f8"),
-    ("damping", "f8"),
-    ("rest", "f8"),
-    ("force", "f8"),  # constant
-    ("address", "i8"),  # of a function of the user's: t, (q, q') -> force; 0 for none
-]
-
 #: a spring and damper, a row in the implicit step: along a coordinate, or between two points
 STIFF_SPRING = [
     ("element", "i8"),  # its place in the table of joints
@@ -184,49 +171,6 @@ FRICTION = [
 ROTOR = [
     ("coordinate", "i8"),
     ("inertia", "f8"),
-]
-
-#: forces of a function of the user's: t, (bodies, 13) -> (bodies, 6)
-USER_FORCE = [
-    ("address", "i8"),
-    ("energy_address", "i8"),  # of their potential, 0 if they have none
-    ("first", "i8"),  # range of its bodies in `Relations.named`
-    ("last", "i8"),
-]
-
-SPRING = [
-    ("parent", "i8"),
-    ("child", "i8"),
-    ("parent_anchor", "f8", 3),
-    ("child_anchor", "f8", 3),
-    ("stiffness", "f8"),
-    ("damping", "f8"),
-    ("rest_length", "f8"),
-    ("piece", "i8"),  # tension as a curve of the length: range of pieces, empty if it is linear
-    ("last_piece", "i8"),
-]
-
-#: a force and torque on a point of a body, constant in the axes of a body or of the world
-LOAD = [
-    ("body", "i8"),
-    ("frame", "i8"),  # the body whose axes the vectors are in, -1 for the world
-    ("anchor", "f8", 3),
-    ("force", "f8", 3),
-    ("torque", "f8", 3),
-]
-
-#: an elastic mount: springs and dampers along and about three axes of the parent
-BUSHING = [
-    ("parent", "i8"),
-    ("child", "i8"),
-    ("parent_anchor", "f8", 3),
-    ("child_anchor", "f8", 3),
-    ("parent_frame", "f8", 4),  # from the axes of the mount to those of the body
-    ("child_frame", "f8", 4),
-    ("stiffness", "f8", 3),
-    ("damping", "f8", 3),
-    ("turn_stiffness", "f8", 3),
-    ("turn_damping", "f8", 3),
 ]
 
 #: a hull of vertices, enlarged by a radius, and a half-space; or two solids, one of them perhaps a half-space
@@ -367,8 +311,6 @@ class Relations(NamedTuple):
     terms: np.recarray  # TERM
     user: np.recarray  # USER_ROW
     pieces: np.recarray  # PIECE
-    pushes: np.recarray  # PUSH
-    forces: np.recarray  # USER_FORCE
     stiff: np.recarray  # STIFF_SPRING
     frictions: np.recarray  # (F,) FRICTION
     rotors: np.recarray  # ROTOR
@@ -386,14 +328,6 @@ class MovingSurfaces(NamedTuple):
     write: np.ndarray  # (8,) velocity and acceleration, rate of spin and its rate
 
 
-class Place(NamedTuple):
-    """Where kernels find a force: its rows in the table of its kind."""
-
-    kind: int  # SPRINGS, ...
-    first: int
-    last: int
-
-
 class System(NamedTuple):
     """All that the kernels know about a scene. Once compiled, only the workspaces in it change."""
 
@@ -401,9 +335,7 @@ class System(NamedTuple):
     gravity: np.ndarray  # (3,)
     joints: np.recarray  # (J,) JOINT of the scene, then relations and rows of the user's
     relations: Relations
-    springs: np.recarray  # SPRING
-    loads: np.recarray  # LOAD
-    bushings: np.recarray  # BUSHING
+    forces: Forces
     contacts: np.recarray  # (C,) CONTACT
     laws: Laws
     vertices: np.ndarray  # (V, 3) of all contacts, body axes
@@ -412,9 +344,3 @@ class System(NamedTuple):
     levels: Levels  # faces of solids of one body, or of static ones, in one plane
     moving: MovingSurfaces
     solver: Solver
-
-
-def rows_of_kind(system: System, kind: int) -> np.recarray:
-    """Return the table of a kind of forces."""
-    own, more = system, system.relations
-    return (own.springs, own.loads, own.bushings, more.pushes, more.forces, more.frictions)[kind]

@@ -11,37 +11,30 @@ from carom._compiled.record_arrays import Columns, table
 from carom._compiled.template import Template
 from carom._compiled.user_functions import Functions
 from carom.geometry import quaternion
-from carom.geometry.frames import triad
+from carom.geometry.thresholds import LAST_DIGIT
 from carom.model import graph, solvers
 from carom.model.arrays import (
     BODY,
-    BUSHING,
-    BUSHINGS,
     JOINT,
     KIND,
-    LOAD,
-    LOADS,
     SCREW,
-    SPRING,
-    SPRINGS,
     STATE,
     MovingSurfaces,
-    Place,
     System,
 )
 from carom.model.contacts import Contacts, Surfaces, compile_contacts, more_contacts
+from carom.model.forces import Place
 from carom.model.laws import LawTable
-from carom.model.more_forces import MoreForces
 from carom.model.moving_surfaces import moving_surfaces
 from carom.model.pieces import Pieces
 from carom.model.placement import Placement
 from carom.model.relations import Coordinates, Elements
+from carom.model.stated_forces import ForceRows
 from carom.model.stops import with_stops
-from carom.model.thresholds import LARGEST_MASS_RATIO, MASS_RATIO
+from carom.model.thresholds import EQUAL_MOMENTS, LARGEST_MASS_RATIO, MASS_RATIO
 from carom.model.user_surfaces import add_functions
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, joined_tables, some_pairs
-from carom.scene.forces import Bushing, CurveSpring, Force, Spring, Torque
 from carom.scene.more_forces import JointInertia, Law
 from carom.scene.scene import Scene
 
@@ -114,33 +107,29 @@ class _Moved:
         )
         if implicit:
             self.elements.add_springs(scene, self.placement)
-        self.more = MoreForces(scene, self.coordinates, self.functions, pieces, self.laws, implicit)
+        self.forces = ForceRows(
+            scene, self.placement, self.coordinates, self.functions, pieces, self.laws, implicit
+        )
         self.joints, self.flipped, self.solver = _joints(
             scene, moments, self.placement, self.elements, options, loops
         )
-        self.places = self.more.places
-        self.springs = _springs(scene, self.placement, self.more, implicit)
-        self.loads = _loads(scene, self.placement, self.places)
-        self.bushings = _bushings(scene, self.placement, self.places)
-        acting = self.springs, self.loads, self.bushings, self.more
-        self.bodies = _bodies(scene, moments, self.joints, self.elements, acting)
+        self.bodies = _bodies(scene, moments, self.joints, self.elements, self.forces.loaded)
         self.bodies["axes"] = self.to_principal
 
     def compiled(self, touching: Contacts, contacts: np.recarray, moving) -> Compiled:
         """Return the whole, with contacts and surfaces that move."""
-        relations = self.elements.arrays(self.solver, self.more)
+        relations = self.elements.arrays(self.solver, self.forces)
         system = System(
             bodies=self.bodies, gravity=np.array(self.scene.gravity), joints=self.joints,
-            relations=relations, springs=self.springs, loads=self.loads, bushings=self.bushings,
-            contacts=contacts, laws=self.laws.arrays(), vertices=touching.vertices,
-            solids=touching.solids, hulls=touching.hulls, levels=touching.levels, solver=self.solver,
-            moving=moving,
+            relations=relations, forces=self.forces.tables, contacts=contacts, laws=self.laws.arrays(),
+            vertices=touching.vertices, solids=touching.solids, hulls=touching.hulls,
+            levels=touching.levels, solver=self.solver, moving=moving,
         )  # fmt: skip
         return Compiled(
             system=system, start=self.start, to_principal=self.to_principal, flipped=self.flipped,
             functions=self.functions, pairs=touching.pairs, surfaces=touching.surfaces,
-            later=touching.later, laws=self.more.laws, numbers=self.coordinates.numbers,
-            places=self.places,
+            later=touching.later, laws=self.forces.laws, numbers=self.coordinates.numbers,
+            places=self.forces.places,
         )  # fmt: skip
 
 
@@ -177,14 +166,14 @@ def principal(inertia: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     diagonal = inertia.diagonal().copy()
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = inertia.tolist()
     scale = max(xx, yy, zz)
-    if scale - min(xx, yy, zz) <= 1e-13 * scale:
+    if scale - min(xx, yy, zz) <= EQUAL_MOMENTS * scale:
         diagonal[:] = diagonal.sum() / 3.0
-    if max(map(abs, (xy, xz, yx, yz, zx, zy))) <= 1e-15 * scale:
+    if max(map(abs, (xy, xz, yx, yz, zx, zy))) <= LAST_DIGIT * scale:
         return diagonal, np.array([1.0, 0.0, 0.0, 0.0])
     moments, axes = np.linalg.eigh(inertia)
     if np.linalg.det(axes) < 0.0:
         axes[:, 0] *= -1.0
-    if np.ptp(moments) <= 1e-13 * scale:
+    if np.ptp(moments) <= EQUAL_MOMENTS * scale:
         return np.full(3, moments.mean()), np.array([1.0, 0.0, 0.0, 0.0])
     return moments, quaternion.from_matrix(axes)
 
@@ -293,62 +282,6 @@ def rotors_in_tree(scene, kind, flipped) -> tuple[np.ndarray, bool]:
     return out, True
 
 
-def _springs(scene, frames, more, implicit):
-    kinds = CurveSpring if implicit else (Spring, CurveSpring)
-    chosen = [f for f in scene.forces if isinstance(f.definition, kinds)]
-    springs = table(SPRING, len(chosen))
-    for number, (s, f) in enumerate(zip(springs, chosen)):
-        d, more.places[f.index] = f.definition, Place(SPRINGS, number, number + 1)
-        s.parent, s.child = f.parent.index, f.child.index
-        s.parent_anchor[:] = frames.point(f.parent, d.anchor_parent)
-        s.child_anchor[:] = frames.point(f.child, d.anchor_child)
-        s.damping = d.damping
-        if isinstance(d, Spring):
-            s.stiffness, s.rest_length = d.stiffness, d.rest_length
-        else:
-            s.piece, s.last_piece = more.curves[f.index]
-    return springs
-
-
-def _loads(scene, frames, places):
-    rows, none = [], np.zeros(3)
-    for f in scene.forces:
-        d = f.definition
-        if not isinstance(d, (Torque, Force)):
-            continue
-        frame, first = f.child.index if d.follow else -1, len(rows)
-        vector = frames.axes(f.child, d.vector[:, None])[:, 0] if d.follow else d.vector
-        if isinstance(d, Torque):
-            rows.append((f.child.index, frame, none, none, vector))
-            if f.parent.index >= 0:
-                rows.append((f.parent.index, frame, none, none, -vector))
-        else:
-            anchor = f.child.position if d.anchor is None else d.anchor
-            rows.append((f.child.index, frame, frames.point(f.child, anchor), vector, none))
-        places[f.index] = Place(LOADS, first, len(rows))
-    loads = table(LOAD, len(rows))
-    for k, (body, frame, anchor, force, torque) in enumerate(rows):
-        loads.body[k], loads.frame[k] = body, frame
-        loads.anchor[k], loads.force[k], loads.torque[k] = anchor, force, torque
-    return loads
-
-
-def _bushings(scene, frames, places):
-    chosen = [f for f in scene.forces if isinstance(f.definition, Bushing)]
-    bushings = table(BUSHING, len(chosen))
-    for number, (b, f) in enumerate(zip(bushings, chosen)):
-        d, places[f.index] = f.definition, Place(BUSHINGS, number, number + 1)
-        b.parent, b.child = f.parent.index, f.child.index
-        anchor, world = f.child.position if d.anchor is None else d.anchor, triad(d.axis)
-        b.parent_anchor[:] = frames.point(f.parent, anchor)
-        b.child_anchor[:] = frames.point(f.child, anchor)
-        b.parent_frame[:] = quaternion.from_matrix(frames.axes(f.parent, world))
-        b.child_frame[:] = quaternion.from_matrix(frames.axes(f.child, world))
-        for name in ("stiffness", "damping", "turn_stiffness", "turn_damping"):
-            b[name][:] = getattr(d, name)
-    return bushings
-
-
 def start_sizes(scene) -> np.ndarray:
     """Return the size (N,) of the shape of each body; without a shape, the radius r with tr J = 2 m r^2."""
     return np.array(
@@ -372,8 +305,7 @@ def _extents(elements: Elements, joints) -> np.ndarray:
     return size
 
 
-def _bodies(scene, moments, joints, elements, acting):
-    springs, loads, bushings, more = acting
+def _bodies(scene, moments, joints, elements, loaded):
     bodies, number = table(BODY, len(scene.bodies)), np.arange(len(scene.bodies))
     ball = np.array([0.0 if b.shape is None else b.shape.size for b in scene.bodies])
     isolated = np.ones(len(bodies), dtype=np.int64)
@@ -382,13 +314,7 @@ def _bodies(scene, moments, joints, elements, acting):
     for touched in elements.touching:
         isolated[touched] = 0
     ballistic = isolated.copy()
-    for forces, ends in (
-        (springs, ("parent", "child")), (loads, ("body",)), (bushings, ("parent", "child"))
-    ):  # fmt: skip
-        for end in ends if len(forces) else ():
-            loaded = forces[end]
-            ballistic[loaded[loaded >= 0]] = 0
-    ballistic[more.named] = 0
+    ballistic[loaded[loaded >= 0]] = 0
     bodies["mass"] = [b.mass for b in scene.bodies]
     bodies["inertia"], bodies["extent"], bodies["ball"] = moments, _extents(elements, joints), ball
     bodies["isotropic"] = (moments[:, 1:] == moments[:, :1]).all(axis=1)

@@ -20,6 +20,7 @@ from carom.model.cores import Cores, new_cores, singly, swollen_alike
 from carom.model.laws import LawTable
 from carom.model.level_surfaces import find_levels, note_own, with_level_rows
 from carom.model.moving_surfaces import write_fields
+from carom.model.thresholds import LAYER_WIDTH, STILL_SPEED
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, meeting
 from carom.scene.friction import FIXED_TO, anisotropy_of
@@ -185,8 +186,8 @@ def _rows(scene, options: Options, pairs: PairTable, which: Rows, surfaces: Surf
     write_kinds(rows, surfaces.solids)
     note_own(rows, surfaces.levels)
     extent = rows["extent"]
-    rows["still"] = 1e-14 * _speed(scene, extent)
-    rows["width"] = 1e-5 * extent if options.layer_width is None else options.layer_width
+    rows["still"] = STILL_SPEED * _speed(scene, extent)
+    rows["width"] = LAYER_WIDTH * extent if options.layer_width is None else options.layer_width
     rows["penetration"] = options.penetration
     return rows
 

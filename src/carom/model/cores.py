@@ -11,6 +11,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom.geometry import quaternion
+from carom.geometry.thresholds import ROUND_OFF
 from carom.scene.pieces import Piece
 from carom.scene.shapes import Shape
 
@@ -105,6 +106,6 @@ def _corners(pieces: Sequence[Piece], size: float) -> np.ndarray:
     corners = [piece.corners for piece in pieces]
     points = np.concatenate([np.zeros((0, 3)), *(c for c in corners if c is not None)])
     if len(pieces) > 1:
-        places = np.round(points / (1e-12 * size))
+        places = np.round(points / (ROUND_OFF * size))
         points = points[np.sort(np.unique(places, axis=0, return_index=True)[1])]
     return points

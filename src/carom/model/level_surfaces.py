@@ -33,7 +33,7 @@ from carom.collision.level_layout import (
 )
 from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes
-from carom.geometry.thresholds import RESOLUTION
+from carom.geometry.thresholds import LAST_DIGIT, RESOLUTION
 from carom.model.arrays import CONTACT
 from carom.model.contact_kinds import ON_LEVEL
 from carom.model.graph import Sets
@@ -371,7 +371,7 @@ def _tables(surfaces: list[tuple[list[Face], float, np.ndarray]]) -> Levels:
 
 def _rounded(normal: np.ndarray) -> np.ndarray:
     """Return a normal without the round-off of zero in its components."""
-    normal = np.where(np.abs(normal) < 1e-15, 0.0, normal)
+    normal = np.where(np.abs(normal) < LAST_DIGIT, 0.0, normal)
     return normal / np.linalg.norm(normal)
 
 

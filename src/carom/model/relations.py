@@ -13,9 +13,9 @@ from carom._compiled.user_functions import Functions
 from carom.model import arrays, memory
 from carom.model.actions import MODE_STICK
 from carom.model.curves import Curves
-from carom.model.more_forces import MoreForces, is_damped_spring
 from carom.model.pieces import PIECE, Pieces
 from carom.model.placement import Placement
+from carom.model.stated_forces import ForceRows
 from carom.scene.constraints import Coupling, Rows, coordinate_kind, counted
 from carom.scene.forces import Spring
 from carom.scene.joints import Joint
@@ -122,7 +122,7 @@ class Elements:
         for force in scene.forces:
             d = force.definition
             made = table(arrays.STIFF_SPRING, 1)
-            if isinstance(d, Actuator) and is_damped_spring(d):
+            if isinstance(d, Actuator) and d.is_damped_spring:
                 made.stiffness, made.damping = d.spring
             elif isinstance(d, (Spring, JointSpring)) and d.stiffness + d.damping > 0.0:
                 made.stiffness, made.damping = d.stiffness, d.damping
@@ -195,11 +195,11 @@ class Elements:
             name = f"the motion of {constraint.name!r}"
             made.address = functions.address(of_time(d.motion), (1,), (3,), name)
 
-    def arrays(self, solver, more: MoreForces) -> arrays.Relations:
+    def arrays(self, solver, more: ForceRows) -> arrays.Relations:
         """Return the tables, with the sides that `solver` gave to the bodies."""
-        if not (self.kinds or self.coordinates.rows or more.any):
+        if not (self.kinds or self.coordinates.rows or more.any_apart):
             return no_relations()._replace(pieces=self.pieces.rows)
-        there = 1 if self.kinds or self.coordinates.used or more.any else 0
+        there = 1 if self.kinds or self.coordinates.used or more.any_apart else 0
         terms = []
         relation = iter(range(len(self.relations)))
         inertias = (float(rotor.inertia[0]) for rotor in self.rotors)
@@ -232,8 +232,7 @@ class Elements:
         for t, values in zip(listed, terms):
             t.coordinate, t.factor, t.child_side, t.parent_side = values
         forces = (
-            (arrays.PUSH, more.pushes), (arrays.USER_FORCE, more.forces), (arrays.STIFF_SPRING, self.stiff),
-            (arrays.FRICTION, more.frictions), (arrays.ROTOR, self.rotors),
+            (arrays.STIFF_SPRING, self.stiff), (arrays.FRICTION, more.frictions), (arrays.ROTOR, self.rotors),
         )  # fmt: skip
         curves = self.coordinates.curves
         named = np.array(more.named, np.int64)
@@ -276,7 +275,7 @@ def new_memory(
 def no_relations() -> arrays.Relations:
     """Return the tables of a scene without coordinates."""
     a = arrays
-    kinds = a.COORDINATE, a.RELATION_ROW, a.TERM, a.USER_ROW, PIECE, a.PUSH, a.USER_FORCE
+    kinds = a.COORDINATE, a.RELATION_ROW, a.TERM, a.USER_ROW, PIECE
     kinds += a.STIFF_SPRING, a.FRICTION, a.ROTOR, a.CURVE, a.CURVE_PIECE
     named = np.zeros(0, dtype=np.int64)
     return a.Relations._make([0, 0, *(table(kind, 0) for kind in kinds), named, new_memory()])

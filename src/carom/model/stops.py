@@ -9,7 +9,7 @@ from carom.model.arrays import CONTACT
 from carom.model.contact_kinds import OF_JOINT
 from carom.model.laws import LawTable
 from carom.model.relations import Elements
-from carom.model.thresholds import DIRECTION
+from carom.model.thresholds import DIRECTION, LAYER_WIDTH, STILL_SPEED
 from carom.scene.materials import IMPACT_LAWS
 
 
@@ -35,12 +35,12 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, laws: 
         if stop.joint.can_be_left:
             curve = stop.joint.definition.curve
             row.extent = row.other_extent = max(size, np.ptp(curve.ends[:, 0], axis=0).max())
-    rows.still = 1e-14 * np.sqrt(np.linalg.norm(scene.gravity) * rows.extent)
+    rows.still = STILL_SPEED * np.sqrt(np.linalg.norm(scene.gravity) * rows.extent)
     for row, stop in zip(rows, scene.stops):
         if stop.joint.can_be_left:  # its direction is that of the table of the curve
             fall = np.linalg.norm(scene.gravity) * stop.joint.definition.curve.length
             row.still = DIRECTION * (np.sqrt(fall) + np.linalg.norm(stop.joint.child.velocity))
-    rows.width = 1e-5 * rows.extent if options.layer_width is None else options.layer_width
+    rows.width = LAYER_WIDTH * rows.extent if options.layer_width is None else options.layer_width
     rows.penetration = options.penetration
     return np.concatenate([contacts, rows]).view(Columns)
 

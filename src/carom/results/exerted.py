@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from carom.scene.bodies import Body
-from carom.scene.constraints import coordinate_kind
-from carom.scene.forces import AppliedForce, Spring
-from carom.scene.more_forces import AlongJoint, CurveSpring, JointFriction, UserForce
+from carom.scene.forces import AppliedForce
+from carom.scene.more_forces import JointFriction, UserForce
 
 #: numbers of a row in results: force and torque on the body, world axes; value along a coordinate or a line;
 #: power
@@ -34,10 +33,7 @@ def rows_of(scene) -> list[Row]:
 
 def unit_of(force: AppliedForce) -> str:
     """Return the unit of the value of a force, "" if it has none."""
-    d = force.definition
-    if isinstance(d, AlongJoint):
-        return "N m" if coordinate_kind(d.joint, d.coordinate) == "turn" else "N"
-    return "N" if isinstance(d, (Spring, CurveSpring)) else ""
+    return force.definition.value_unit
 
 
 def rubs(force: AppliedForce) -> bool:

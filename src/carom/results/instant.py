@@ -6,6 +6,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import copied, table
 from carom.model.arrays import STATE
+from carom.model.forces import settable
 
 
 class Instant:
@@ -22,7 +23,7 @@ class Instant:
         self.turns = system.relations.memory.coordinates["reference"].copy()
         self.numbers, self.counted = run.compiled.numbers, system.relations.counted
         if known.get("given") is not given:  # it is replaced where a force is set
-            known["given"], known["loads"] = given, tuple(map(np.array, loads(system)))
+            known["given"], known["loads"] = given, tuple(map(np.array, settable(system.forces)))
         self.loads = known["loads"]
         self.laws = {index: law.rest for index, law in run.compiled.laws.items()}
 
@@ -57,7 +58,7 @@ class Instant:
         reference = system.relations.memory.coordinates["reference"]
         for coordinate, number in self.numbers.items():
             reference[compiled.numbers[coordinate]] = self.turns[number]
-        for there, was in zip(loads(system), self.loads):
+        for there, was in zip(settable(system.forces), self.loads):
             there[:] = was
         for index, rest in self.laws.items():
             compiled.laws[index].rest = rest
@@ -69,11 +70,6 @@ class Instant:
         for index, rest in present.items():
             compiled.laws[index].rest = rest
         return on_children(compiled, states[1:], out[1:]), np.array(work.body["motion"])
-
-
-def loads(system) -> tuple[np.ndarray, ...]:
-    """Return the columns of a compiled scene that have the forces that a run may set."""
-    return system.loads["force"], system.loads["torque"], system.relations.pushes["force"]
 
 
 def touches(run) -> np.recarray:

@@ -17,9 +17,10 @@ History = list[tuple[int, int, Any]]
 
 
 class Place(NamedTuple):
-    """Where kernels find a force: rows of `loads` with their signs, or a row of `pushes`."""
+    """Where kernels find the value of a force: rows of a column, which have it in turn with both signs."""
 
-    column: str  # force, torque or push
+    kind: int  # of the table in `System.forces`
+    column: str
     rows: tuple[int, ...]
     frame: np.ndarray | None = None  # of the body at the start, where the vector turns with it
     actuator: Actuator | None = None  # whose control is set
@@ -29,16 +30,14 @@ def put(system, law: Law | None, place: Place, value) -> None:
     """Write the value of a force where kernels find it, or a control into its law."""
     if law is not None:
         law.set(value)
-    elif place.column == "push":
-        if place.actuator is not None:
-            value = place.actuator.constant(value)
-        system.relations.pushes["force"][place.rows[0]] = value
-    else:
-        if place.frame is not None:
-            value = quaternion.rotate_back(place.frame, value)
-        column = system.loads[place.column]
-        for sign, row in zip((1.0, -1.0), place.rows):
-            column[row] = sign * value
+        return
+    if place.actuator is not None:
+        value = place.actuator.constant(value)
+    if place.frame is not None:
+        value = quaternion.rotate_back(place.frame, value)
+    column = system.forces[place.kind][place.column]
+    for sign, row in zip((1.0, -1.0), place.rows):
+        column[row] = sign * value
 
 
 def places(scene, compiled: Compiled) -> dict[int, Place]:
@@ -46,15 +45,17 @@ def places(scene, compiled: Compiled) -> dict[int, Place]:
     out = {}
     for force in scene.forces:
         d, at = force.definition, compiled.places.get(force.index)
-        rows = () if at is None else tuple(range(at.first, at.last))
+        if at is None:
+            continue
+        rows = tuple(range(at.first, at.last))
         if isinstance(d, (Force, Torque)):
             turn = compiled.to_principal[[force.child.index]]
             frame = attitudes(force.child.orientation[None], turn)[0] if d.follow else None
-            out[force.index] = Place(type(d).__name__.lower(), rows, frame)
+            out[force.index] = Place(at.kind, type(d).__name__.lower(), rows, frame)
         elif isinstance(d, Actuator):
-            out[force.index] = Place("push", rows, actuator=d)
+            out[force.index] = Place(at.kind, "force", rows, actuator=d)
         elif isinstance(d, JointForce) and not callable(d.force):
-            out[force.index] = Place("push", rows)
+            out[force.index] = Place(at.kind, "force", rows)
     return out
 
 

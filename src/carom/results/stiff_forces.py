@@ -15,7 +15,7 @@ import numpy as np
 
 from carom.dynamics.force_rows import write_force_rows
 from carom.model import records as r
-from carom.model.arrays import rows_of_kind
+from carom.model.forces import FRICTIONS
 from carom.scene.forces import Bushing
 from carom.scene.more_forces import CurveSpring, JointForce
 from carom.status import Advice
@@ -84,7 +84,9 @@ def stiff_forces(run) -> list[Force]:
     """Return the linear springs, dampers and gains of the compiled scene, in the order of their rows."""
     system, out = run.compiled.system, []
     for index, (kind, first, last) in sorted(run.compiled.places.items()):
-        rows = rows_of_kind(system, kind)
+        if kind == FRICTIONS:
+            continue
+        rows = system.forces[kind]
         of = [name for name in ("", "turn_") if f"{name}stiffness" in (rows.dtype.names or ())]
         for number in range(first, last if of else first):
             k, c = (

@@ -7,152 +7,31 @@ fixed in their body. Vectors are given in world axes; they stay constant, or tur
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, get_args
 
-import numpy as np
-from numpy.typing import ArrayLike
-
-from carom import arguments, checks, fields
-from carom.fields import REQUIRED, Flag, Number, Value, Vector, VectorOrNone, keep
+from carom import arguments, checks
 from carom.scene.bodies import GROUND, Body, Ground
 from carom.scene.constraints import with_parts
-from carom.scene.more_forces import (
-    Actuator,
-    AlongJoint,
-    CurveSpring,
-    JointForce,
-    JointFriction,
-    JointInertia,
-    JointSpring,
-    UserForce,
-)
-from carom.scene.values import MethodsOfScene, PartOfScene, apart, in_scene
+from carom.scene.force_definition import ForceDefinition
+from carom.scene.values import MethodsOfScene, PartOfScene, in_scene, subclasses_in
 
+# isort: off
+# The registry: a line a force; the order is that of the tables of kernels. A new one comes last.
+from carom.scene.body_forces import Spring as Spring
+from carom.scene.body_forces import Torque as Torque
+from carom.scene.body_forces import Force as Force
+from carom.scene.body_forces import Bushing as Bushing
+from carom.scene.more_forces import JointSpring as JointSpring
+from carom.scene.more_forces import JointForce as JointForce
+from carom.scene.more_forces import Actuator as Actuator
+from carom.scene.more_forces import JointFriction as JointFriction
+from carom.scene.more_forces import JointInertia as JointInertia
+from carom.scene.more_forces import CurveSpring as CurveSpring
+from carom.scene.more_forces import UserForce as UserForce
+# isort: on
 
-@arguments.known
-@dataclass(frozen=True, eq=False)
-class Spring:
-    """A spring and damper between a point of the parent and a point of the child.
-
-    It pulls the two points together with the force ``stiffness (d - rest_length) + damping d'``, where d is
-    their distance and d' its rate.
-
-    Parameters
-    ----------
-    stiffness
-        Stiffness [N/m], at least 0.
-    anchor_parent, anchor_child : (3,)
-        The two points, in the world at the start [m]. They must differ, because a line between equal points
-        has no direction.
-    rest_length
-        Length without spring force [m], at least 0. Default: the distance of the anchors at the start.
-    damping
-        Damping coefficient [N s/m], at least 0. Default 0.
-    """
-
-    stiffness: Number = fields.number(least=0, unit="N/m")
-    anchor_parent: Vector = fields.vector()
-    anchor_child: Vector = fields.vector()
-    rest_length: Value[float, float | None] = fields.number(None, least=0, unit="m")
-    damping: Number = fields.number(0.0, least=0, unit="N s/m")
-
-    def __post_init__(self):
-        distance = apart(self)
-        if self.rest_length is None:
-            keep(self, rest_length=distance)
-
-
-@arguments.known
-@dataclass(frozen=True, eq=False)
-class Torque:
-    """A constant torque `vector` (3,) [N m] on the child, in world axes.
-
-    The opposite torque acts on the parent; the ground does not move. If `follow` is True, the vector is given
-    at the start and turns with the child.
-    """
-
-    vector: Vector = fields.vector(unit="N m")
-    follow: Flag = fields.flag(False)
-
-
-@arguments.known
-@dataclass(frozen=True, eq=False)
-class Force:
-    """A constant force `vector` (3,) [N], world axes, on a point of the child.
-
-    `anchor` (3,) is the point, in the world at the start [m]; None is the mass centre. If `follow` is True,
-    the vector is given at the start and turns with the child (a thruster).
-    """
-
-    vector: Vector = fields.vector(unit="N")
-    anchor: VectorOrNone = fields.vector(None)
-    follow: Flag = fields.flag(False)
-
-
-def _along_across(unit: str, default: Any = REQUIRED) -> Vector:
-    """Return a field for (along, across, across), given as one number or a pair, at least 0."""
-
-    def check(name: str, value: ArrayLike) -> np.ndarray:
-        given = checks.real_array(name, value, "() or (2,)")
-        both = np.full(2, given) if given.ndim == 0 else given
-        pair = checks.finite_array(name, both, (2,), unit=unit)
-        if np.any(pair < 0.0):
-            raise ValueError(f"{name} must be at least 0, got {checks.shown(value)} [{unit}]")
-        return pair[[0, 1, 1]]
-
-    return Value(check, default)
-
-
-@arguments.known
-@dataclass(frozen=True, eq=False)
-class Bushing:
-    """An elastic mount between the child and the parent, without force or torque at the start.
-
-    It resists displacement along and across an axis of the parent, and rotation about the axis and across it.
-    Its potential is U = (d.K d + theta.K_t theta)/2, where d and theta are the displacement and the rotation
-    vector of the child relative to the parent. Rotations must stay below half a turn.
-
-    Parameters
-    ----------
-    stiffness
-        Stiffness [N/m], at least 0: one number, or (along the axis, across it).
-    turn_stiffness
-        Rotational stiffness [N m/rad], at least 0: one number, or (about the axis, across it). Default 0.
-    damping, turn_damping
-        Damping coefficients [N s/m] and [N m s/rad], given in the same way. Default 0.
-    axis : (3,), default (0, 0, 1)
-        Axis, in the world at the start; it turns with the parent.
-    anchor : (3,), optional
-        Point of action, in the world at the start [m]. Default: the mass centre of the child.
-
-    Attributes
-    ----------
-    stiffness, turn_stiffness, damping, turn_damping : (3,)
-        Values along, or about, the axis and two directions perpendicular to it.
-    """
-
-    stiffness: Vector = _along_across("N/m")
-    turn_stiffness: Vector = _along_across("N m/rad", 0.0)
-    damping: Vector = _along_across("N s/m", 0.0)
-    turn_damping: Vector = _along_across("N m s/rad", 0.0)
-    axis: Vector = fields.direction((0, 0, 1))
-    anchor: VectorOrNone = fields.vector(None)
-
-
-ForceDefinition = (
-    Spring
-    | Torque
-    | Force
-    | Bushing
-    | JointSpring
-    | JointForce
-    | Actuator
-    | JointFriction
-    | JointInertia
-    | CurveSpring
-    | UserForce
-)
-FORCES = get_args(ForceDefinition)
+FORCES = subclasses_in(globals(), ForceDefinition)
+#: tables of kernels, in this order
+TABLES = tuple(dict((one.table.name, one.table) for one in FORCES if one.table).values())
 
 
 @in_scene
@@ -190,9 +69,9 @@ class AppliedForce(PartOfScene):
 
 def force_on(definition) -> tuple | None:
     """Return the joint or the bodies that a definition contains; None if it contains none."""
-    if isinstance(definition, AlongJoint):
+    if hasattr(definition, "joint"):
         return (definition.joint,)
-    return definition.bodies if isinstance(definition, UserForce) else None
+    return getattr(definition, "bodies", None)
 
 
 def sides(first) -> tuple[Body | Ground, Body]:

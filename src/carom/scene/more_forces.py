@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,25 +18,70 @@ from carom.fields import (
     Vector,
     VectorOrNone,
 )
+from carom.scene.body_forces import SPRING, both_ends
 from carom.scene.constraints import (
     Bodies,
     OneJoint,
     acts_along,
+    coordinate_kind,
     distinct_bodies,
     joint_or_name,
 )
+from carom.scene.force_definition import ForceDefinition, ForceTable
 from carom.scene.friction import friction
 from carom.scene.values import apart
 
+#: a spring, damper and force along a coordinate of a joint
+PUSH = ForceTable(
+    "push",
+    [
+        ("coordinate", "i8"),
+        ("stiffness", "f8"),
+        ("damping", "f8"),
+        ("rest", "f8"),
+        ("force", "f8"),  # constant
+        ("address", "i8"),  # of a function of the user's: t, (q, q') -> force; 0 for none
+    ],
+    settable=("force",),
+)
+#: forces of a function of the user's: t, (bodies, 13) -> (bodies, 6)
+USER_FORCE = ForceTable(
+    "user_force",
+    [
+        ("address", "i8"),
+        ("energy_address", "i8"),  # of their potential, 0 if they have none
+        ("first", "i8"),  # range of its bodies in `Relations.named`
+        ("last", "i8"),
+    ],
+)
+
 
 @dataclass(frozen=True, eq=False)
-class AlongJoint:
+class AlongJoint(ForceDefinition):
     """What acts along a `coordinate` of a joint."""
 
     joint: OneJoint = Value(joint_or_name)
 
+    if TYPE_CHECKING:
+
+        @property
+        def coordinate(self) -> int:
+            """Its number: a field of each of them, which stands last."""
+            ...
+
     def __post_init__(self):
-        acts_along(self.joint, self.coordinate)  # pyright: ignore[reportAttributeAccessIssue]
+        acts_along(self.joint, self.coordinate)
+
+    @property
+    def value_unit(self) -> str:
+        """Unit of the value along the coordinate."""
+        return "N m" if coordinate_kind(self.joint, self.coordinate) == "turn" else "N"
+
+    def _rows(self, force, arrays) -> list[dict[str, Any]]:
+        assert self.table is not None
+        names = [column[0] for column in self.table.columns if hasattr(self, column[0])]
+        row = {name: getattr(self, name) for name in names}
+        return [{**row, "coordinate": arrays.coordinate(self.joint, self.coordinate)}]
 
 
 @arguments.known
@@ -58,10 +103,15 @@ class JointSpring(AlongJoint):
         Index of the coordinate of the joint. Default 0.
     """
 
+    table = PUSH
+
     stiffness: Number = fields.number(0.0, least=0.0)
     damping: Number = fields.number(0.0, least=0.0)
     rest: Number = fields.number(0.0)
     coordinate: Integer = fields.integer(0, least=0)
+
+    def _rows(self, force, arrays) -> list[dict[str, Any]]:
+        return [] if arrays.implicit else super()._rows(force, arrays)  # else a row of the solve
 
 
 def _number_or_function(name: str, value) -> float | Callable:
@@ -86,8 +136,21 @@ class JointForce(AlongJoint):
         Index of the coordinate of the joint. Default 0.
     """
 
+    table = PUSH
+
     force: Value[float | Callable, float | Callable] = Value(_number_or_function)
     coordinate: Integer = fields.integer(0, least=0)
+
+    @property
+    def has_kinks(self) -> bool:
+        """Whether it is a function."""
+        return callable(self.force)
+
+    def _rows(self, force, arrays) -> list[dict[str, Any]]:
+        number = arrays.coordinate(self.joint, self.coordinate)
+        if not callable(self.force):
+            return [{"coordinate": number, "force": self.force}]
+        return [{"coordinate": number, "address": arrays.along_joint(self.force, force)}]
 
 
 def _range(name: str, value) -> np.ndarray:
@@ -136,6 +199,23 @@ class Actuator(AlongJoint):
     control_range: VectorOrNone = Value(_range, None)
     force_range: VectorOrNone = Value(_range, None)
     coordinate: Integer = fields.integer(0, least=0)
+
+    table = PUSH
+
+    def _rows(self, force, arrays) -> list[dict[str, Any]]:
+        number = arrays.coordinate(self.joint, self.coordinate)
+        row: dict[str, Any] = {"coordinate": number, "force": self.constant(self.control)}
+        if self.law:
+            arrays.laws[force.index] = law = Law(self)
+            row["address"] = arrays.along_joint(law, force)
+        elif not (arrays.implicit and self.is_damped_spring):
+            row["stiffness"], row["damping"] = self.spring
+        return [row]
+
+    @property
+    def is_damped_spring(self) -> bool:
+        """Whether it has a spring and damper that an implicit step may take as a row."""
+        return not self.law and min(self.spring) >= 0.0 and max(self.spring) > 0.0
 
     @property
     def law(self) -> bool:
@@ -260,7 +340,7 @@ def _curve(name: str, given):
 
 @arguments.known
 @dataclass(frozen=True, eq=False)
-class CurveSpring:
+class CurveSpring(ForceDefinition):
     """A spring between a point of the parent and a point of the child, with a given characteristic curve.
 
     Parameters
@@ -275,6 +355,10 @@ class CurveSpring:
         Damping coefficient [N s/m], at least 0. Default 0.
     """
 
+    table = SPRING
+    has_kinks = True
+    value_unit = "N"
+
     anchor_parent: Vector = fields.vector()
     anchor_child: Vector = fields.vector()
     tension: Value[Any, Any] = Value(_curve)
@@ -283,10 +367,15 @@ class CurveSpring:
     def __post_init__(self):
         apart(self)
 
+    def _rows(self, force, arrays) -> list[dict[str, Any]]:
+        first, last = arrays.curve(self.tension)
+        own = {"damping": self.damping, "piece": first, "last_piece": last}
+        return [{**both_ends(self, force, arrays), **own}]
+
 
 @arguments.known
 @dataclass(frozen=True, eq=False)
-class UserForce:
+class UserForce(ForceDefinition):
     """User-defined forces and torques on any bodies.
 
     Parameters
@@ -303,17 +392,23 @@ class UserForce:
         of the forces is part of `potential_energy`; otherwise their work is in `ledger.loads`.
     """
 
+    table = USER_FORCE
+    has_kinks = True
+
     bodies: Bodies = Value(distinct_bodies)
     function: Function = fields.function()
     potential: FunctionOrNone = fields.function(None)
 
+    def _rows(self, force, arrays) -> list[dict[str, Any]]:
+        n, name = len(self.bodies), f"the force {force.name!r}"
+        row = {"address": arrays.function(self.function, (n, 13), (n, 6), name)}
+        if self.potential is not None:
+            of_potential = f"the potential of {name}"
+            row["energy_address"] = arrays.function(self.potential, (n, 13), (1,), of_potential)
+        row["first"], row["last"] = arrays.list_bodies(self.bodies)
+        return [row]
+
 
 def has_kinks(scene) -> bool:
     """Return whether forces of a scene are functions of the user or curves: these may have kinks and jumps."""
-    for force in scene.forces:
-        one = force.definition
-        if isinstance(one, (UserForce, CurveSpring)):
-            return True
-        if isinstance(one, JointForce) and callable(one.force):
-            return True
-    return False
+    return any(force.definition.has_kinks for force in scene.forces)

@@ -13,7 +13,7 @@ from carom._compiled.decorators import inlined, kernel
 from carom.contact.continuous_detection import BELOW, CLEAR, FLAT_RIM, UNSURE, cubic_root
 from carom.contact.operations import event_gap, located_within
 from carom.contact.passage import passage
-from carom.geometry.thresholds import ROUND_OFF
+from carom.geometry.thresholds import LAST_DIGIT, ROUND_OFF
 from carom.law.friction import depends_on_slip
 from carom.law.thresholds import KINK_ERROR
 from carom.model.actions import (
@@ -29,6 +29,7 @@ from carom.model.laws import PERSISTENT
 from carom.persistent.events import contact_event_value, find_contact_event
 from carom.persistent.stops import least_left
 from carom.persistent.thresholds import BREAK_AWAY, EVENT_ERROR, EVENT_MARGIN, JUMP_ERROR
+from carom.stepping.thresholds import EVENT_VALUE
 
 
 @inlined
@@ -112,8 +113,8 @@ def update_bracket(search, t, f, rate):
     if search.f_low < 0.0:  # the first value: only the sign is known at the low end
         search.f_low = abs(f)
         if search.tolerance < 0.0:
-            search.tolerance = 1e-13 * abs(f)
-    if abs(f) <= search.tolerance or search.high - search.low <= 1e-15 * search.width:
+            search.tolerance = EVENT_VALUE * abs(f)
+    if abs(f) <= search.tolerance or search.high - search.low <= LAST_DIGIT * search.width:
         return 1
     if only_sign(search) and f < 0.0 and -f * (t - search.low) <= JUMP_ERROR * search.width:
         return 1  # where it jumps, as what is shared does, its time is known to what that changes

@@ -13,7 +13,7 @@ from carom.options import Options
 from carom.scene.more_forces import JointFriction, JointInertia, has_kinks
 from carom.scene.remarks import check_location, remarks
 from carom.scene.scene import Scene
-from carom.stepping.thresholds import MOST_STEPS, SMOOTH_RTOL, TIGHT_RTOL
+from carom.stepping.thresholds import LEAST_RTOL, MOST_STEPS, SMOOTH_RTOL, TIGHT_RTOL
 
 LOCATIONS = ("locate", "project", "work")
 _DEFAULT = Options()
@@ -210,7 +210,7 @@ def either(names) -> str:
 def check_tolerances(adapts: bool, rtol, atol) -> tuple[float, float | None]:
     """Return the tolerances; refuse them if the step is given."""
     if adapts:
-        rtol = checks.number("rtol", RTOL if rtol is None else rtol, least=1e-13, most=0.1)
+        rtol = checks.number("rtol", RTOL if rtol is None else rtol, least=LEAST_RTOL, most=0.1)
         return rtol, None if atol is None else checks.number("atol", atol, least=0.0, unit="m")
     for name, value in (("rtol", rtol), ("atol", atol)):
         if value is not None:

@@ -38,3 +38,5 @@ RETURN_GAIN = 0.01  #: depth: that a pass leaves: gaps are not linear, so less i
 #: mean of the diagonal of W: least W_nn of a point that returns: with the normal through the axis of a
 #: hinge W_nn is round-off, and 1e-7 m would turn a gear by many teeth
 IMMOBILITY = 1e-6
+EVENT_VALUE = 1e-13  #: first value of the function of an event: that counts as its zero
+LEAST_RTOL = 1e-13  #: 1: least tolerance of a run that may be asked for

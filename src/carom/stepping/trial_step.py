@@ -12,6 +12,7 @@ from carom.dynamics.explicit import CONSTRAINTS_LOST, rubs
 from carom.dynamics.more_forces import turns_round
 from carom.dynamics.step import step
 from carom.dynamics.thresholds import LEAST_STEP, SAFETY
+from carom.geometry.thresholds import REMAINDER, ROUND_OFF
 from carom.model import records as r
 from carom.model.actions import (
     EVENT_CONE,
@@ -97,7 +98,7 @@ def until_stop(model, active, dt, clock):
             first = min(first, min(active_point.turn_stop[0], active_point.turn_stop[1]))
     # except if stops follow each other without end, or the difference is round-off of the step
     inside = first > model.controls.rest * min(dt, model.controls.step)
-    inside = inside and first < (1.0 - 1e-12) * dt
+    inside = inside and first < (1.0 - ROUND_OFF) * dt
     return first if inside and clock.in_moment < EVENTS_AT_NOW else dt
 
 
@@ -253,7 +254,7 @@ def halve(model, data, loses):
     in this step will be near in the next.
     """
     clock, search = data.clocks[0], data.work.search[0]
-    if search.active == 1 and search.dt <= 1e-9 * search.horizon:
+    if search.active == 1 and search.dt <= REMAINDER * search.horizon:
         search.found = 1
         return 0
     search.cuts += 1

@@ -8,6 +8,7 @@ from carom._compiled.decorators import kernel
 from carom.contact.continuous_detection import reach
 from carom.contact.gap import round_off
 from carom.geometry.rotation import multiply, rotate
+from carom.geometry.thresholds import LAST_DIGIT
 from carom.geometry.vectors import dot, minus
 from carom.kinematics.flight import relative_bound
 from carom.kinematics.wrench import point_velocity
@@ -80,7 +81,7 @@ def round_off_of_both(contact, state):
     if on_half_space(contact):
         return tiny
     x = centre_of_other(contact, state)
-    return max(tiny, 1e-15 * (abs(x[0]) + abs(x[1]) + abs(x[2]) + contact.other_extent))
+    return max(tiny, LAST_DIGIT * (abs(x[0]) + abs(x[1]) + abs(x[2]) + contact.other_extent))
 
 
 @kernel

@@ -19,7 +19,7 @@ from carom.contact.kinds import half_space
 from carom.contact.kinds.half_space import along_normal, ball_clears, greatest_acceleration
 from carom.contact.point_lists import write_closed
 from carom.geometry.rotation import cross, rotate_back
-from carom.geometry.thresholds import RESOLUTION
+from carom.geometry.thresholds import RESOLUTION, ROUND_OFF
 from carom.kinematics import contact_point
 from carom.model.actions import NOTHING, PERSIST, STRIKE
 from carom.model.workspace import FREE, RESTS
@@ -155,7 +155,7 @@ def passage(model, data, c):
                 verdict = BELOW
         elif (
             verdict == CLEAR
-            and t0 + reach(z1, -rate1, a) < h * (1.0 - 1e-12)
+            and t0 + reach(z1, -rate1, a) < h * (1.0 - ROUND_OFF)
             and sag > tiny  # what could be missed is more than the tolerance
             and data.active.contact_states[c].leaving == 0
             and not (smooth and cubic_clears(z0, rate0, z1, rate1, h, tiny))

@@ -1,15 +1,14 @@
-"""The kinds of forces on bodies, one file for each.
+"""The kinds of forces on bodies, one file for each, of the name of its table (`carom.scene.forces`).
 
-A kind defines
+A kind defines, for a row of its table,
 
-- `KIND`, its number (`carom.model.arrays`), and `count(system)`, how many there are;
-- `add(system, i, state, power, work)`: it adds its wrenches, and returns `power` with the power of its part
+- `add(system, row, state, power, work)`: it adds its wrenches, and returns `power` with the power of its part
   without potential, then its value along a coordinate or a line, the length of the line and its rate, NaN for
   what it does not have;
-- `acts_at(system, i, state)`: the arm, from the centre of its first body, to the point where it acts;
-- `energy(system, i, state, t)`, if it has a potential;
-- `unit_force(system, i, n, state, work)`, if it has a stiffness: it adds the wrenches of its unit force n, and
-  returns the coordinate and its rate where it acts along one.
+- `acts_at(system, row, state)`: the arm, from the centre of its first body, to the point where it acts;
+- `energy(system, row, state, t)`, if it has a potential;
+- `unit_force(system, row, n, state, work)`, if it has a stiffness: it adds the wrenches of its unit force n,
+  and returns the coordinate and its rate where it acts along one.
 
 Each step adds all of them; reports (`carom.dynamics.reports`) add one at a time.
 """
@@ -17,64 +16,68 @@ Each step adds all of them; reports (`carom.dynamics.reports`) add one at a time
 from __future__ import annotations
 
 import math
+from importlib import import_module
+from inspect import signature
+from typing import Any
 
 from carom._compiled.by_number import by_number
 from carom._compiled.decorators import inlined
-from carom.dynamics.applied import bushing, load, push, spring, user_force
+from carom.scene.forces import TABLES
 
-#: kinds of every scene, and those that only scenes with relations have, which are a unit of their own
-BETWEEN_BODIES, OF_RELATIONS = (spring, load, bushing), (push, user_force)
-KINDS = BETWEEN_BODIES + OF_RELATIONS
+_FILES = {kind.name: import_module(f"{__name__}.{kind.name}") for kind in TABLES}
+#: kinds of every scene, and those that are a unit of their own, which only scenes with relations load
+BETWEEN_BODIES, OF_RELATIONS = (
+    tuple(kind.name for kind in TABLES if kind.apart == apart) for apart in (False, True)
+)
+
+
+def _written(lines: list[str], known: dict[str, Any]) -> Any:
+    """Return the kernel `made` of lines of Python with the names that they use."""
+    exec("\n".join(lines), known)
+    made = known["made"]
+    made.__module__ = __name__
+    return inlined(made)
+
+
+def _each(kinds: tuple[str, ...], name: str, given: str, line: str, total: str) -> Any:
+    """Return the kernel that does a `line` for each row of some kinds, with the function of this name."""
+    own = {kind: getattr(_FILES[kind], name) for kind in kinds if hasattr(_FILES[kind], name)}
+    lines = [f"def made({given}):"]
+    for kind in own:
+        lines += [
+            f"    rows_{kind} = system.forces.{kind}",
+            f"    for i in range(rows_{kind}.shape[0]):",
+            f"        {line.format(of=f'of_{kind}', row=f'rows_{kind}[i]')}",
+        ]
+    named = {f"of_{kind}": function for kind, function in own.items()}
+    return _written([*lines, f"    return {total}"], named)
 
 
 def added(kinds):
     """Return the kernel that adds all forces of some kinds, and their power to that which is given."""
-    if not kinds:
-
-        @inlined
-        def none(system, state, power, work):
-            return power
-
-        return none
-    count, add, others = kinds[-1].count, kinds[-1].add, added(kinds[:-1])
-
-    @inlined
-    def these(system, state, power, work):
-        power = others(system, state, power, work)
-        for i in range(count(system)):
-            power, _, _, _ = add(system, i, state, power, work)
-        return power
-
-    return these
+    line = "power, _, _, _ = {of}(system, {row}, state, power, work)"
+    return _each(kinds, "add", "system, state, power, work", line, "power")
 
 
 def energies(kinds):
     """Return the kernel that adds the energies of all forces of some kinds to that which is given."""
-    kinds = [kind for kind in kinds if hasattr(kind, "energy")]
-    if not kinds:
+    line = "total += {of}(system, {row}, state, t)"
+    return _each(kinds, "energy", "system, state, t, total", line, "total")
 
-        @inlined
-        def none(system, state, t, total):
-            return total
 
-        return none
-    count, energy, others = kinds[-1].count, kinds[-1].energy, energies(kinds[:-1])
-
-    @inlined
-    def these(system, state, t, total):
-        total = others(system, state, t, total)
-        for i in range(count(system)):
-            total += energy(system, i, state, t)
-        return total
-
-    return these
+def _of_number(kind: str, common) -> Any:
+    """Return the kernel that takes the number of a force where that of its kind takes the row, or None."""
+    own = getattr(_FILES[kind], common.__name__, None)
+    if own is None:
+        return None
+    given = ", ".join(name for name in signature(common).parameters if name != "kind")
+    taken = given.replace("system, i", f"system, system.forces.{kind}[i]")
+    return _written([f"def made({given}):", f"    return own({taken})"], {"own": own})
 
 
 def _by_kind(common):
     """Return the kernel that calls the function of this name of a force, by the number of its kind."""
-    own = [None] * (1 + max(one.KIND for one in KINDS))
-    for one in KINDS:
-        own[one.KIND] = getattr(one, common.__name__, None)
+    own = [_of_number(kind, common) for kind in _FILES]
     return by_number("kind", common, own)
 
 

@@ -13,7 +13,8 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
+from carom.dynamics.thresholds import SERIES_TURN
 from carom.geometry.rotation import (
     conjugate,
     cross,
@@ -25,15 +26,6 @@ from carom.geometry.rotation import (
 )
 from carom.kinematics.joints import arm
 from carom.kinematics.wrench import add_force, point, point_velocity
-from carom.model.arrays import BUSHINGS
-
-KIND = BUSHINGS
-
-
-@inlined
-def count(system):
-    """Return how many there are."""
-    return system.bushings.shape[0]
 
 
 @kernel
@@ -64,7 +56,7 @@ def turn_moment(bushing, x, y, z):
     m0, m1, m2 = K[0] * x, K[1] * y, K[2] * z
     t2 = x * x + y * y + z * z
     b = 1.0 / 12.0 + t2 / 720.0
-    if t2 > 1e-4:
+    if t2 > SERIES_TURN:
         t = math.sqrt(t2)
         b = 1.0 / t2 - 0.5 / (t * math.tan(0.5 * t))
     c = cross(x, y, z, m0, m1, m2)
@@ -73,9 +65,8 @@ def turn_moment(bushing, x, y, z):
 
 
 @kernel
-def add(system, i, state, power, work):
+def add(system, bushing, state, power, work):
     """Add the wrenches of a mount to both bodies; return `power` with that of its dampers."""
-    bushing = system.bushings[i]
     p, c = bushing.parent, bushing.child
     a = attitude(state, p, bushing.parent_frame)
     d0, d1, d2, t0, t1, t2 = displacement(bushing, state)
@@ -116,15 +107,14 @@ def add_torque(work, b, tx, ty, tz):
 
 
 @kernel
-def acts_at(system, i, state):
+def acts_at(system, bushing, state):
     """Return the arm of the child to its anchor."""
-    return arm(state, system.bushings[i].child, system.bushings[i].child_anchor)
+    return arm(state, bushing.child, bushing.child_anchor)
 
 
 @kernel
-def energy(system, i, state, t):
+def energy(system, bushing, state, t):
     """Return the elastic energy of a mount [J]."""
-    bushing = system.bushings[i]
     d0, d1, d2, t0, t1, t2 = displacement(bushing, state)
     K, T = bushing.stiffness, bushing.turn_stiffness
     total = K[0] * d0 * d0 + K[1] * d1 * d1 + K[2] * d2 * d2
@@ -133,9 +123,8 @@ def energy(system, i, state, t):
 
 
 @kernel
-def unit_force(system, i, n, state, work):
+def unit_force(system, one, n, state, work):
     """Add the wrenches of a unit force along, or a unit torque about, an axis of a mount."""
-    one = system.bushings[i]
     axes = attitude(state, one.parent, one.parent_frame)
     ex, ey, ez = rotate(axes, unit_vector(n % 3))
     ax, ay, az, px, py, pz = point(state, one.parent, one.parent_anchor)

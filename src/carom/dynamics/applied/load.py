@@ -4,24 +4,14 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom.kinematics.joints import arm
 from carom.kinematics.wrench import add_force, point, point_velocity
-from carom.model.arrays import LOADS
-
-KIND = LOADS
-
-
-@inlined
-def count(system):
-    """Return how many there are."""
-    return system.loads.shape[0]
 
 
 @kernel
-def add(system, i, state, power, work):
+def add(system, load, state, power, work):
     """Add a force and torque; return `power` with theirs."""
-    load = system.loads[i]
     b, w = load.body, state[load.body].w
     f, t = arm(state, load.frame, load.force), arm(state, load.frame, load.torque)
     rx, ry, rz, _px, _py, _pz = point(state, b, load.anchor)
@@ -36,6 +26,6 @@ def add(system, i, state, power, work):
 
 
 @kernel
-def acts_at(system, i, state):
+def acts_at(system, load, state):
     """Return the arm of the body to its anchor."""
-    return arm(state, system.loads[i].body, system.loads[i].anchor)
+    return arm(state, load.body, load.anchor)

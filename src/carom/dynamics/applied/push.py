@@ -8,19 +8,10 @@ from __future__ import annotations
 import math
 
 from carom._compiled.call_address import call_function
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom.kinematics import coordinate
 from carom.kinematics.coordinate import rate, slides, value
 from carom.kinematics.joints import child_arm
-from carom.model.arrays import PUSHES
-
-KIND = PUSHES
-
-
-@inlined
-def count(system):
-    """Return how many there are."""
-    return system.relations.pushes.shape[0]
 
 
 @kernel
@@ -35,9 +26,9 @@ def push_force(relations, one, q, speed, t):
 
 
 @kernel
-def add(system, i, state, power, work):
+def add(system, one, state, power, work):
     """Add a force along a coordinate; return `power` with that of its part without potential, and the force."""
-    one, t = system.relations.pushes[i], work.moment[0].time
+    t = work.moment[0].time
     c = system.relations.coordinates[one.coordinate]
     speed = rate(system, c, state)
     force, free = push_force(system.relations, one, value(system, c, state), speed, t)
@@ -54,23 +45,22 @@ def acts_along(c, state):
 
 
 @kernel
-def acts_at(system, i, state):
+def acts_at(system, one, state):
     """Return the arm of the child to where it acts."""
-    c = system.relations.coordinates[system.relations.pushes[i].coordinate]
+    c = system.relations.coordinates[one.coordinate]
     return acts_along(c, state)
 
 
 @kernel
-def energy(system, i, state, t):
+def energy(system, one, state, t):
     """Return the energy of a spring along a coordinate [J]."""
-    one = system.relations.pushes[i]
     stretch = value(system, system.relations.coordinates[one.coordinate], state) - one.rest
     return 0.5 * one.stiffness * stretch * stretch
 
 
 @kernel
-def unit_force(system, i, n, state, work):
+def unit_force(system, one, n, state, work):
     """Add the wrenches of a unit force along the coordinate; return this and its rate."""
-    c = system.relations.coordinates[system.relations.pushes[i].coordinate]
+    c = system.relations.coordinates[one.coordinate]
     coordinate.push(system, c, state, 1.0, work)
     return value(system, c, state), rate(system, c, state)

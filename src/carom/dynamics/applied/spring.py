@@ -7,21 +7,12 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom.dynamics.curve import curve
 from carom.dynamics.elements.stiff import line_of
 from carom.geometry.pieces import find_piece
 from carom.kinematics.joints import arm
 from carom.kinematics.wrench import add_force, point, point_velocity
-from carom.model.arrays import SPRINGS
-
-KIND = SPRINGS
-
-
-@inlined
-def count(system):
-    """Return how many there are."""
-    return system.springs.shape[0]
 
 
 @kernel
@@ -33,9 +24,8 @@ def tension(system, spring, length):
 
 
 @kernel
-def add(system, i, state, power, work):
+def add(system, spring, state, power, work):
     """Add the force of a spring to both ends; return `power` with its damper's, tension, length, its rate."""
-    spring = system.springs[i]
     p, c = spring.parent, spring.child
     ax, ay, az, px, py, pz = point(state, p, spring.parent_anchor)
     bx, by, bz, qx, qy, qz = point(state, c, spring.child_anchor)
@@ -54,9 +44,9 @@ def add(system, i, state, power, work):
 
 
 @kernel
-def acts_at(system, i, state):
+def acts_at(system, spring, state):
     """Return the arm of the child to its anchor."""
-    return arm(state, system.springs[i].child, system.springs[i].child_anchor)
+    return arm(state, spring.child, spring.child_anchor)
 
 
 @kernel
@@ -74,9 +64,8 @@ def integral(pieces, first, last, t):
 
 
 @kernel
-def energy(system, i, state, t):
+def energy(system, s, state, t):
     """Return the energy of a spring [J]."""
-    s = system.springs[i]
     _, _, _, px, py, pz = point(state, s.parent, s.parent_anchor)
     _, _, _, qx, qy, qz = point(state, s.child, s.child_anchor)
     dx, dy, dz = qx - px, qy - py, qz - pz
@@ -87,9 +76,8 @@ def energy(system, i, state, t):
 
 
 @kernel
-def unit_force(system, i, n, state, work):
+def unit_force(system, one, n, state, work):
     """Add the wrenches of a unit force, which pushes the ends apart."""
-    one = system.springs[i]
     ex, ey, ez, _, ax, ay, az, bx, by, bz = line_of(one, state)
     add_force(work, one.child, (bx, by, bz), (ex, ey, ez))
     add_force(work, one.parent, (ax, ay, az), (-ex, -ey, -ez))

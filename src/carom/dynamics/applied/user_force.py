@@ -5,17 +5,8 @@ from __future__ import annotations
 import math
 
 from carom._compiled.call_address import call_function
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom.geometry.rotation import conjugate, multiply
-from carom.model.arrays import USER_FORCES
-
-KIND = USER_FORCES
-
-
-@inlined
-def count(system):
-    """Return how many there are."""
-    return system.relations.forces.shape[0]
 
 
 @kernel
@@ -35,10 +26,9 @@ def read_states(system, force, state):
 
 
 @kernel
-def add(system, i, state, power, work):
+def add(system, one, state, power, work):
     """Add the wrenches of a function; return `power` with theirs, unless they have a potential."""
     relations, at = system.relations, 0
-    one = relations.forces[i]
     read_states(system, one, state)
     call_function(one.address, work.moment[0].time, relations.memory.read, relations.memory.write)
     for n in range(one.first, one.last):
@@ -54,16 +44,15 @@ def add(system, i, state, power, work):
 
 
 @kernel
-def acts_at(system, i, state):
+def acts_at(system, one, state):
     """Return the arm to where it acts: torques are about mass centres."""
     return 0.0, 0.0, 0.0
 
 
 @kernel
-def energy(system, i, state, t):
+def energy(system, one, state, t):
     """Return the energy of a potential [J], 0 without one."""
     relations = system.relations
-    one = relations.forces[i]
     if one.energy_address == 0:
         return 0.0
     read_states(system, one, state)

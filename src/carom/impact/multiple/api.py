@@ -9,6 +9,7 @@ import numpy as np
 
 from carom import arguments, checks
 from carom.friction.checks import checked_inverse_masses, codes, per_contact
+from carom.impact.thresholds import GREATEST_LAYER_RTOL, LAYER_RTOL, LEAST_LAYER_RTOL
 from carom.scene.friction import FrictionLaw, isotropic
 from carom.scene.restitution import Restitution
 
@@ -79,7 +80,7 @@ def resolve_impacts(
     multiple: str = "simultaneous",
     stiffness=None,
     exponent: float = 1.0,
-    rtol: float = 1e-8,
+    rtol: float = LAYER_RTOL,
     tangential_restitution=0.0,
 ) -> CornerImpact:
     """Solve the multiple impact of k closed contacts, one or more of which strike.
@@ -166,7 +167,7 @@ def resolve_impacts(
     numbers = codes("law", law, k, NUMBERS)
     settings = MultipleSettings(
         multiple=MULTIPLE[checks.choice("multiple", multiple, MULTIPLE)],
-        rtol=checks.number("rtol", rtol, least=1e-12, most=1e-2),
+        rtol=checks.number("rtol", rtol, least=LEAST_LAYER_RTOL, most=GREATEST_LAYER_RTOL),
         exponent=checks.number("exponent", exponent, least=1.0, most=4.0),
     )
     laws = stated_laws(mu, e, numbers, e_t, kappa)

@@ -66,7 +66,7 @@ def _bearing(z, work, weight):
             weight[a] = force * force
             most = max(most, weight[a])
             now = max(now, c.mu * c.slope * (d[i] - c.rest))
-        if most > 1e-8 * now * now or turn == 1:
+        if most > limits.CLOSED_SQUARE * now * now or turn == 1:
             break
         moment = 0.0  # all open at the same time: use the present forces
     least = 1.0
@@ -229,7 +229,7 @@ def solve_discs(m, work, step, force, u, tolerance):
             centre[n + r] = t[n + r]
             largest = max(largest, abs(bias[n + r]))
         least = min(least, scale)
-    cones.mismatch[f.ENOUGH] = least * tolerance / step + 1e-14 * largest
+    cones.mismatch[f.ENOUGH] = least * tolerance / step + limits.LAYER_RESIDUAL * largest
     newton(cones, m, limits.LAYER_PROXIMAL, True)
     for _ in range(_TURNS):
         if cones.mismatch[0] <= cones.mismatch[f.ENOUGH]:

@@ -17,7 +17,7 @@ from carom.impact.multiple.tangential import return_slips
 from carom.impact.resolve import resolve
 from carom.impact.resolve_by_slip import SlipFriction, resolve_by_slip
 from carom.impact.tangential import return_slip
-from carom.impact.thresholds import COARSE_TOLERANCE
+from carom.impact.thresholds import APPROACH_PART, COARSE_TOLERANCE
 from carom.law import impact_laws
 from carom.law.friction import depends_on_slip
 
@@ -101,7 +101,7 @@ def _fill(n, laws, exponent, blow, work):
         stiff = max(stiff, contact[i].stiffness * all_of.members * W[3 * a, 3 * a])
     if not (mass > 0.0 and stiff > 0.0):
         return 0.0, 0.0, 0.0
-    speed = max(speed, 1e-3 * most)
+    speed = max(speed, APPROACH_PART * most)
     for a in range(3 * n):
         row = W[a]
         for b in range(3 * n):

@@ -8,6 +8,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom.impact.layout import BAD_INPUT
+from carom.impact.thresholds import LAYER_RTOL
 from carom.model.laws import Laws
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ class MultipleSettings(NamedTuple):
     """Settings of the resolver of multiple impacts."""
 
     multiple: int = SIMULTANEOUS
-    rtol: float = 1e-8  # relative error of velocities
+    rtol: float = LAYER_RTOL  # relative error of velocities
     exponent: float = 1.0  # p of the normal law; 0 in a run: by the shapes in contact
     max_events: int = 200  # changes of mode per contact
     max_steps: int = 2000  # per contact

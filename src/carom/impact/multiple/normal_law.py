@@ -18,8 +18,9 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.lanes import blocks, value_and_slope, values
 from carom._compiled.simd import LANES, store
+from carom.geometry.thresholds import LAST_DIGIT, NO_CHANGE
 from carom.impact.multiple import layout as o
-from carom.impact.thresholds import IMPACT_ERROR, VELOCITY_LEFT
+from carom.impact.thresholds import GAUGE_SHARE, IMPACT_ERROR, VELOCITY_LEFT
 
 OPEN, LOAD, UNLOAD = 0, 1, 2
 _EVENT_SAMPLES = 5
@@ -190,20 +191,20 @@ def _root(work, i, degree, a, b):
     x, width = b, b - a
     for _ in range(90):
         g, slope = _gauge_and_slope(c, i, over, series, degree, x)
-        if abs(g) <= 1e-3 * IMPACT_ERROR:
+        if abs(g) <= GAUGE_SHARE * IMPACT_ERROR:
             return x
         if g > 0.0:
             b = x
         else:
             a = x
-        if not b - a > 1e-15 * width:
+        if not b - a > LAST_DIGIT * width:
             break
         new = x - g / slope
         if not a < new < b:
             new = 0.5 * (a + b)
             if not a < new < b:
                 break
-        elif abs(new - x) <= 1e-16 * width:
+        elif abs(new - x) <= NO_CHANGE * width:
             return new
         x = new
     return b

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
+from carom.geometry.thresholds import ROUND_OFF
 from carom.impact import thresholds as limits
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.layer import resume, start
@@ -73,10 +74,10 @@ def misses(k, work, passage):
         miss = limits.LARGEST_CORRECTION
         if reached > target * math.exp(-limits.LARGEST_CORRECTION):
             miss = max(-limits.LARGEST_CORRECTION, math.log(target / reached))
-        if c.e >= 1.0 - 1e-12 and miss > 0.0:
+        if c.e >= 1.0 - ROUND_OFF and miss > 0.0:
             capped = True
             miss = 0.0
-        elif c.e <= limits.LEAST_RESTITUTION * (1.0 + 1e-12) and miss < 0.0:
+        elif c.e <= limits.LEAST_RESTITUTION * (1.0 + ROUND_OFF) and miss < 0.0:
             miss = 0.0
         work.outer[i].new_miss = miss
         worst = max(worst, abs(miss))
@@ -203,7 +204,7 @@ def iterate_restitution(k, work, settings, result):
     If they do not converge (two corners of one rigid edge cannot always both satisfy it), the nearest result is
     used if it is near enough, otherwise Stronge's law with the same e.
     """
-    tolerance = max(3.0 * settings.rtol, 1e-10)
+    tolerance = max(3.0 * settings.rtol, limits.LEAST_MISS)
     begin(k, work, settings, 1.0)
     ended = ENDED
     worst, capped = misses(k, work, settings)
@@ -215,7 +216,7 @@ def iterate_restitution(k, work, settings, result):
     best, stale, rounds = worst, 0, 0
     while worst > tolerance and rounds < settings.max_rounds and ended == ENDED:
         improve(k, work)
-        rtol = max(settings.rtol, min(limits.COARSE_TOLERANCE, 0.01 * worst))
+        rtol = max(settings.rtol, min(limits.COARSE_TOLERANCE, limits.MISS_SHARE * worst))
         ended = run(k, work, settings, rtol)
         rounds += 1
         worst, capped = misses(k, work, settings)

@@ -28,13 +28,17 @@ from carom.impact.multiple.slip_law import (
     pull,
 )
 from carom.impact.thresholds import (
+    BRACKET_STEP,
     CHANGE_TOLERANCE,
+    CONE_MARGIN,
+    EASY_STEP,
     INSTANT,
     INSTANT_STEP,
     PULL,
     SHORTEST_PART,
     SLIP_END,
     SLIP_SHARE,
+    STAGE_REST,
 )
 from carom.model.tableaus import KENNEDY_CARPENTER, KENNEDY_CARPENTER_EXPLICIT
 
@@ -64,7 +68,7 @@ def by_stages(k, work, rtol, passage) -> tuple[float, bool]:
         if not (error > allowed and h > SHORTEST_PART):
             break
         h *= max(0.2, 0.9 * (allowed / error) ** 0.25)
-    clock.step = h * (5.0 if error < 1e-3 * rtol else 0.9 * (rtol / error) ** 0.25)
+    clock.step = h * (5.0 if error < EASY_STEP * rtol else 0.9 * (rtol / error) ** 0.25)
     clock.step = min(clock.step, 0.5)
     interpolate(k, work, h)
     first = law.find_changes(k, work, 5, h)
@@ -88,7 +92,7 @@ def by_stages(k, work, rtol, passage) -> tuple[float, bool]:
 @kernel
 def slip_at_rest(rtol):
     """Return the slip that counts as rest."""
-    return max(SLIP_END, 0.01 * rtol)
+    return max(SLIP_END, STAGE_REST * rtol)
 
 
 @kernel
@@ -135,7 +139,7 @@ def _sticks(s, work, slow):
     if by_law(c) and (c.sticks == 1 or crosses_rest(work, i)):
         return 1
     size = math.sqrt(t[2 * s] * t[2 * s] + t[2 * s + 1] * t[2 * s + 1])
-    held = size < c.slip_mu * n * (1.0 - 1e-9)
+    held = size < c.slip_mu * n * (1.0 - CONE_MARGIN)
     return 1 if held and slip_of(u, i) < slow else 0
 
 
@@ -192,7 +196,7 @@ def break_away(k, m, work, h, passage, rtol):
             root = max(low, h - now * (other - h) / (most - now))
         if h - root <= INSTANT:
             break
-        x = root + (0.01 if x == h and other > h else 0.5) * (h - root)
+        x = root + (BRACKET_STEP if x == h and other > h else 0.5) * (h - root)
         implicit_step(k, m, work, x, passage, rtol)
         work.clock[0].steps += 1
         a = pull(k, work, passage, work.new, slow)

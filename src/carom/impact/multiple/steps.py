@@ -13,7 +13,7 @@ from carom._compiled.decorators import inlined, kernel
 from carom._compiled.lanes import blocks, value_and_slope, values
 from carom._compiled.simd import LANES, add, greatest, larger, load, multiply, same, store, subtract
 from carom._compiled.units import unit
-from carom.geometry.thresholds import ROUND_OFF
+from carom.geometry.thresholds import LAST_DIGIT, ROUND_OFF
 from carom.impact import thresholds as limits
 from carom.impact.multiple import normal_law as law
 from carom.impact.multiple import series as taylor
@@ -37,7 +37,9 @@ def pass_layer(k, work, settings, rtol, later) -> int:
     set_velocity(k, work)
     first_events, first_steps, h = clock.events, clock.steps, 0.0
     while True:
-        if drift(k, work, max(ROUND_OFF, 1e-4 * rtol), p) == 1 or wedged(k, work, h, p):
+        if drift(k, work, max(ROUND_OFF, limits.DRIFT_SHARE * rtol), p) == 1 or wedged(
+            k, work, h, p
+        ):
             set_velocity(k, work)
             return ENDED
         if (
@@ -107,7 +109,9 @@ def series_step(k, work, rtol):
     changes, end = first <= h, min(first, h)
     slip = first_slip(z, work, degree, end)
     if slip < end:
-        if slip <= 1e-9 or clock.cut == 1:  # only one more series step shares the forces anew
+        if (
+            slip <= limits.SHORTEST_PART or clock.cut == 1
+        ):  # only one more series step shares the forces anew
             clock.cut = 0
             return -1.0, False
         clock.cut, changes, end = 1, False, slip
@@ -231,7 +235,7 @@ def _first_end(work, i, sticks, degree, end):
                     high = x
                 else:
                     low = x
-                if high - low <= 1e-15 * end:
+                if high - low <= LAST_DIGIT * end:
                     break
             return low if sticks else high
         low = high
@@ -259,7 +263,7 @@ def _excess(c, i, S, degree, x):
         t1 = t1 * x + j * S.P[1, j, b, l]
         t2 = t2 * x + j * S.P[2, j, b, l]
     room = c.mu * max(0.0, n)
-    return t1 * t1 + t2 * t2 - room * room * (1.0 + 1e-9) - 1e-20
+    return t1 * t1 + t2 * t2 - room * room * (1.0 + limits.CONE_MARGIN) - limits.CONE_FLOOR
 
 
 @kernel

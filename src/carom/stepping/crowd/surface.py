@@ -10,6 +10,7 @@ from carom._compiled.decorators import kernel
 from carom.contact.kinds.partner import smaller
 from carom.contact.thresholds import PLACE_ERROR
 from carom.dynamics.project import project_position, shift
+from carom.dynamics.thresholds import JOINT_ERROR
 from carom.model.workspace import MOTION_POINT
 from carom.stepping.crowd.response import spread_impulses
 from carom.stepping.crowd.spots import place_all
@@ -27,7 +28,7 @@ def onto_surfaces(model, data, k):
     `crowd.points[1]` are the points at the end.
     """
     system, crowd, work, end = model.system, data.crowd, data.work, data.work.trial
-    missed = project_position(system, end, True, 1e-14, work)
+    missed = project_position(system, end, True, JOINT_ERROR, work)
     for _ in range(SURFACE_PASSES):
         place_all(model, data, 0, k, end, crowd.points[1])
         deepest, tiny = 0.0, 1.0
@@ -43,7 +44,7 @@ def onto_surfaces(model, data, k):
         lift(system, k, max(tiny, RETURN_GAIN * deepest), crowd, work)
         for b in range(end.shape[0]):
             shift(work.body[b].motion, 1.0, end[b])
-        missed = project_position(system, end, True, 1e-14, work)
+        missed = project_position(system, end, True, JOINT_ERROR, work)
     return missed
 
 

@@ -16,17 +16,9 @@ import numpy as np
 
 from carom._compiled.decorators import kernel
 from carom._compiled.record_arrays import table
-from carom.model.arrays import (
-    BUSHING,
-    FOREST,
-    JOINT,
-    LOAD,
-    SPRING,
-    Relations,
-    Solver,
-    System,
-)  # fmt: skip
+from carom.model.arrays import FOREST, JOINT, Relations, Solver, System
 from carom.model.contact_kinds import is_of_joint
+from carom.model.forces import Forces, no_forces, renumbered
 from carom.model.memory import Memory
 from carom.model.relations import no_relations
 from carom.model.solvers import no_joints
@@ -39,9 +31,7 @@ class Joined(NamedTuple):
     stops: np.ndarray  # (S,) contacts that are stops in joints
     joints: np.recarray
     relations: Relations
-    springs: np.recarray
-    loads: np.recarray
-    bushings: np.recarray
+    forces: Forces
     solver: Solver
 
 
@@ -64,9 +54,7 @@ def joined_bodies(system: System) -> Joined:
             named=place[relations.named],
             memory=Memory._make(kept.copy() for kept in relations.memory),
         ),
-        _moved(system.springs, place, ends),
-        _moved(system.loads, place, ("body", "frame")),
-        _moved(system.bushings, place, ends),
+        renumbered(system.forces, place),
         _solver(system.solver, order, place, len(body)),
     )
 
@@ -75,8 +63,7 @@ def joined_bodies(system: System) -> Joined:
 def no_bodies() -> Joined:
     """Return the empty joints and loads of islands without any."""
     none = np.zeros(0, dtype=np.int64)
-    forces = (table(kind, 0) for kind in (SPRING, LOAD, BUSHING))
-    return Joined._make([none, none, table(JOINT, 0), no_relations(), *forces, no_joints()])
+    return Joined(none, none, table(JOINT, 0), no_relations(), no_forces(), no_joints())
 
 
 def _moved(rows: np.recarray, place: np.ndarray, ends: tuple[str, ...]) -> np.recarray:

@@ -92,7 +92,7 @@ def part_system(system, islands, i, solver):
     first, own = islands.first, joints_of(islands, i)
     return System(
         bodies=islands.bodies[first[0, i] : first[0, i + 1]], gravity=system.gravity,
-        joints=own.joints, relations=own.relations, springs=own.springs, loads=own.loads, bushings=own.bushings,
+        joints=own.joints, relations=own.relations, forces=own.forces,
         contacts=islands.contacts[first[1, i] : first[1, i + 1]], vertices=system.vertices,
         laws=system.laws, solids=system.solids, hulls=system.hulls, levels=system.levels,
         moving=system.moving, solver=solver,

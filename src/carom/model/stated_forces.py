@@ -1,0 +1,106 @@
+"""The rows of the forces of a scene, by which it states them to kernels."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from carom._compiled.composed import is_compiled, joined, once
+from carom._compiled.record_arrays import table
+from carom._compiled.user_functions import Functions
+from carom.model.arrays import FRICTION
+from carom.model.forces import FRICTIONS, Forces, Place, bodies_in
+from carom.model.laws import LawTable
+from carom.model.pieces import Pieces
+from carom.model.placement import Placement
+from carom.scene.force_definition import ForceTable
+from carom.scene.forces import TABLES
+from carom.scene.friction import bound_of
+from carom.scene.more_forces import JointFriction, Law
+
+
+class ForceRows:
+    """The rows of the forces of a scene; their definitions ask for points, coordinates and addresses."""
+
+    def __init__(
+        self, scene, placement: Placement, coordinates: Any, functions: Functions, pieces: Pieces,
+        friction_laws: LawTable, implicit: bool,
+    ):  # fmt: skip
+        self.point, self.axes, self.curve = placement.point, placement.axes, pieces.add
+        self.function = functions.address
+        self.coordinates, self.implicit = coordinates, implicit
+        self.frictions, self.named, self.width = [], [], 0
+        self.laws: dict[int, Law] = {}  # of actuators, by the index of the force
+        self.places: dict[int, Place] = {}
+        rows, numbers = [[] for _ in TABLES], {kind.name: k for k, kind in enumerate(TABLES)}
+        for force in scene.forces:
+            d = force.definition
+            if d.table is not None:
+                kind = numbers[d.table.name]
+                self._place(force, kind, rows[kind], d._rows(force, self))
+            elif isinstance(d, JointFriction) and bound_of(d.bound) > 0.0:
+                made = _friction(d, coordinates, friction_laws)
+                self._place(force, FRICTIONS, self.frictions, [made])
+        self.tables = Forces(*map(_filled, TABLES, rows))
+
+    def _place(self, force, kind: int, rows: list, made: list) -> None:
+        if made:
+            self.places[force.index] = Place(kind, len(rows), len(rows) + len(made))
+            rows += made
+
+    @property
+    def any_apart(self) -> bool:
+        """Whether there are any whose kernels are loaded only by scenes that need them."""
+        apart = (len(rows) for kind, rows in zip(TABLES, self.tables) if kind.apart)
+        return any(apart) or len(self.frictions) > 0
+
+    @property
+    def loaded(self) -> np.ndarray:
+        """The bodies on which they act directly, -1 among them."""
+        columns = [rows[name] for rows in self.tables for name in bodies_in(rows)]
+        return np.concatenate([*columns, np.array(self.named, dtype=np.int64)])
+
+    def coordinate(self, joint, number: int) -> int:
+        """Return the place of a coordinate of a joint in its table."""
+        return self.coordinates.number(joint, number)
+
+    def along_joint(self, function, force) -> int | None:
+        """Return the address of a function of time, coordinate and rate."""
+        return self.function(of_coordinate(function), (2,), (1,), f"the force {force.name!r}")
+
+    def list_bodies(self, bodies) -> tuple[int, int]:
+        """Return the range of bodies in `Relations.named`, which are the argument of a function."""
+        first = len(self.named)
+        self.named += [b.index for b in bodies]
+        self.width = max(self.width, 13 * len(bodies))
+        return first, len(self.named)
+
+
+def _filled(kind: ForceTable, rows: list[dict[str, Any]]) -> np.recarray:
+    made = table(kind.columns, len(rows))
+    for k, row in enumerate(rows):
+        for name, value in row.items():
+            made[name][k] = value
+    return made
+
+
+def _friction(d, coordinates, friction_laws: LawTable):
+    made = table(FRICTION, 1)
+    made.coordinate, made.law = (
+        coordinates.number(d.joint, d.coordinate),
+        friction_laws.add(d.bound),
+    )
+    return made
+
+
+@once
+def of_coordinate(function):
+    """Return a function of (t, x), x = (q, q'), from a function of t, q and q'."""
+    if not is_compiled(function):
+        return lambda t, x: function(float(t), float(x[0]), float(x[1]))
+
+    def call(t, x):
+        return function(t, x[0], x[1])
+
+    return joined(call, function)
