@@ -59,8 +59,6 @@ SMALL = 0.02
 #: a number of more digits is a coefficient of a method, which nobody chose (`carom.model.tableaus`); what
 #: mathematics gives otherwise is written as a quotient, 1.0 / 120.0
 FEW = 2
-#: numbers in folders where they are still to be named: it only gets shorter
-UNNAMED = {"persistent": 15}
 
 
 def chosen(path: Path) -> list[str]:
@@ -80,5 +78,5 @@ def test_a_small_number_has_a_name(room):
     """In the file of thresholds of its folder, where it has a unit and a reason."""
     paths = [p for p in sorted((ROOT / room).rglob("*.py")) if p.name != "thresholds.py"]
     found = [where for path in paths for where in chosen(path)]
-    assert len(found) == UNNAMED.get(room, 0), found
+    assert not found
     assert chosen(ROOT / room / "thresholds.py")  # the others are found

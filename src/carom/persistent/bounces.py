@@ -26,7 +26,7 @@ from carom.contact.kinds.partner import smaller
 from carom.dynamics.delassus import on_drive
 from carom.dynamics.element_operations import driven_power
 from carom.friction.layout import CONE, SLIDING
-from carom.geometry.thresholds import REMAINDER, SUM_ERROR
+from carom.geometry.thresholds import REMAINDER, ROUND_OFF, SUM_ERROR
 from carom.kinematics.contact_point import power_of_surface
 from carom.law.restitution import depends_on_approach, restitution_at
 from carom.law.turning import arm_of_torque
@@ -114,7 +114,7 @@ def end_bounces(model, data, k, label, horizon):
     state, group, work, clock = data.state, data.group, data.work, data.clocks[0]
     count = members(work, label, group.member)
     speed = greatest_speed(system, state, count, group.member)
-    still = 1e-12 * speed
+    still = ROUND_OFF * speed
     for i in range(3 * k):
         still = max(still, controls.rest * controls.step * abs(group.c[i]))
     still = min(still, REST_SHARE * speed)

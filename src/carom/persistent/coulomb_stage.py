@@ -16,6 +16,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction.layout import CONE, SLIDING
+from carom.geometry.thresholds import LAST_DIGIT
 from carom.model.workspace import CONSTANT, MOTION_POINT
 from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import is_driven, radius_of
@@ -120,7 +121,7 @@ def newton(k, hg, halves, idle, group):
     push, slip = largest(k, group), 0.0
     for i in range(k):
         slip = max(slip, max(abs(group.u[3 * i + 1]), abs(group.u[3 * i + 2])))
-    enough = limits.EQUATION_ERROR * push + (1e-15 * slip / hg if hg > 0.0 else 0.0)
+    enough = limits.EQUATION_ERROR * push + (LAST_DIGIT * slip / hg if hg > 0.0 else 0.0)
     size = write_equations(k, n, hg, idle, group)
     for _ in range(STAGE_ITERATIONS):
         if size <= enough:
@@ -129,7 +130,10 @@ def newton(k, hg, halves, idle, group):
         for i in range(n):
             r[i], before[i] = -r[i], p[rows[i]]
         factor(n, rows, group)
-        asked, force = 0.01 * max(enough, limits.LINEAR_SHARE * size), greatest(3 * k, p)
+        asked, force = (
+            limits.LINEAR_ERROR * max(enough, limits.LINEAR_SHARE * size),
+            greatest(3 * k, p),
+        )
         rest = settle(n, 0.0, asked, limits.FORCE_ERROR * push, force, equations)
         part, best = 1.0, size
         for _ in range(halves):

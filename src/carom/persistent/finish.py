@@ -13,7 +13,7 @@ from carom.dynamics.adapt import allowed_error
 from carom.dynamics.delassus import on_drive, velocities
 from carom.dynamics.explicit import copy_state, note_velocity
 from carom.dynamics.project import project_position, project_velocity
-from carom.dynamics.thresholds import ERROR_SHARE
+from carom.dynamics.thresholds import ERROR_SHARE, JOINT_ERROR
 from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import REMAINDER, RESOLUTION
 from carom.kinematics.moving_surfaces import set_surfaces
@@ -52,7 +52,14 @@ from carom.persistent.slip_law import (
 from carom.persistent.springs import solve_springs
 from carom.persistent.step_control import rest_speed
 from carom.persistent.stops import locates, note_left
-from carom.persistent.thresholds import FEW_REST, FRICTION_LIMIT
+from carom.persistent.thresholds import (
+    DISC_ERROR,
+    EQUATION_ERROR,
+    FEW_REST,
+    FRICTION_LIMIT,
+    NO_MARGIN,
+    STAYING_SPEED,
+)
 
 
 @unit
@@ -60,7 +67,7 @@ def write_end(model, data, label, k) -> bool:
     """Bring bodies back to joints and surfaces, velocities to the tangents; return whether the joints close."""
     system, group, work, end = model.system, data.group, data.work, data.work.trial
     count, loaded = bodies_of(model, data, label)
-    if loaded and not (project_position(system, end, True, 1e-14, work) <= RESOLUTION):
+    if loaded and not (project_position(system, end, True, JOINT_ERROR, work) <= RESOLUTION):
         return False
     copy_to_stage(count, end, group, work)
     set_surfaces(system, work.moment[0].time)
@@ -199,7 +206,9 @@ def check_end(model, data, label, s, h, given) -> bool:
                 return False
             if not waits:
                 active_point.next = MODE_SLIP
-        still = max(1e-6 * (h * push), 10.0 * slow(system.contacts[closed_point.contact], end))
+        still = max(
+            STAYING_SPEED * (h * push), 10.0 * slow(system.contacts[closed_point.contact], end)
+        )
         end_mode(active_point, i, still, at_rest, group)
         set_margins(active_point, i, located, group)
         if active_point.mode == MODE_STICK and active_point.next != MODE_OPEN:
@@ -296,7 +305,7 @@ def add_forces_of_corners(active, k, group):
 def gains(i, push, group):
     """Return whether a point accelerates along its surface."""
     a = group.a
-    return math.hypot(a[3 * i + 1], a[3 * i + 2]) > 1e-7 * push
+    return math.hypot(a[3 * i + 1], a[3 * i + 2]) > NO_MARGIN * push
 
 
 @kernel
@@ -309,7 +318,7 @@ def within_cones(k, group):
         if group.kind[i] == SLIDING:
             continue
         force = math.hypot(p[3 * i + 1], p[3 * i + 2])
-        if force > radius_of(group, i) * (1.0 + 1e-10) + 1e-13 * most:
+        if force > radius_of(group, i) * (1.0 + DISC_ERROR) + EQUATION_ERROR * most:
             return False
     return True
 

@@ -246,7 +246,7 @@ def solve_impulses(model, data, k, h):
         change = bound_turning(model.system, k, group)
         solve_cones(k, group.problem, p, group.cone)
         group.equations.iterations[0] += count[ITERATIONS]
-        if turning and not change > 1e-14:
+        if turning and not change > LAST_CHANGE:
             break
     for i in range(k):
         if turns(group.closed[i]):

@@ -19,9 +19,10 @@ from carom.contact.passed_edges import has_passed
 from carom.dynamics.contact_impulse import gain
 from carom.dynamics.delassus import spread_all, velocities
 from carom.dynamics.project import project_position, shift
+from carom.dynamics.thresholds import JOINT_ERROR
 from carom.friction import lu
 from carom.friction.layout import SLIDING
-from carom.geometry.thresholds import SUM_ERROR
+from carom.geometry.thresholds import REMAINDER, ROUND_OFF, SUM_ERROR
 from carom.kinematics.contact_point import in_axes
 from carom.model.actions import MODE_STICK
 from carom.model.workspace import CONSTANT, MOTION_POINT
@@ -43,7 +44,7 @@ def mark_rows(system, active, k, group):
         if group.closed[i].motion != MOTION_POINT:
             continue
         active_point, p, q = active.points[group.closed[i].active], group.p, 3 * i
-        if group.points[0][i].gap < -1e-12 * system.contacts[active_point.contact].extent:
+        if group.points[0][i].gap < -ROUND_OFF * system.contacts[active_point.contact].extent:
             some = True
             group.closed[i].rows = 1
         if p[q] > 0.0 and not has_passed(active, i, group):
@@ -51,7 +52,7 @@ def mark_rows(system, active, k, group):
             friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
             contact = system.contacts[active_point.contact]
             core = contact.radius == 0.0 and active_point.fixed == 1
-            inside = friction < (1.0 - 1e-9) * group.mu[i] * p[q]
+            inside = friction < (1.0 - REMAINDER) * group.mu[i] * p[q]
             sticks = active_point.mode == MODE_STICK and inside
             # where it sticks to a surface that moves, its velocity alone is returned
             moves = group.points[0][i].moves == 1
@@ -110,7 +111,7 @@ def onto_surfaces(system, data, k, count, state):
         for m in range(count):
             shift(work.body[group.member[m]].motion, 1.0, state[group.member[m]])
         if system.joints.shape[0] > 0:
-            project_position(system, state, False, 1e-14, work)
+            project_position(system, state, False, JOINT_ERROR, work)
         place_closed(system, k, state, group, points, work)
 
 

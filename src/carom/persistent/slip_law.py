@@ -17,7 +17,7 @@ from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.persistent.joint_rows import radius_of
 from carom.persistent.memory import law_of, memory_of, turns
 from carom.persistent.settle import dot
-from carom.persistent.thresholds import BREAK_AWAY, FRICTION_LIMIT
+from carom.persistent.thresholds import BREAK_AWAY, FRICTION_LIMIT, LEAST_GRIP
 
 TURNS_BACK = 8  # iterations of a stage in which slip that turns back may still be found to stick
 
@@ -82,7 +82,7 @@ def grip_by_law(i, push, group):
     if breaks_away(i, push, group):
         return -math.hypot(a[q + 1], a[q + 2]) / push
     left = radius_of(group, i) - math.hypot(p[q + 1], p[q + 2])
-    return max(left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push, 0.01 * BREAK_AWAY)
+    return max(left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push, LEAST_GRIP * BREAK_AWAY)
 
 
 @kernel

@@ -183,7 +183,7 @@ def moves(group, row):
     n, W = row - row % 3, group.W
     if group.closed[row // 3].parent == CONSTANT:
         return row % 3 == 1 and not is_driven(group, row // 3)
-    return W[row, row] > 1e-12 * (W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2])
+    return W[row, row] > ROUND_OFF * (W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2])
 
 
 @kernel
