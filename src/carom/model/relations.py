@@ -245,16 +245,8 @@ class Elements:
         user = _joined(arrays.USER_ROW, self.user)
         tables = relations, listed, user, self.pieces.rows, *(_joined(*one) for one in forces)
         tables += _joined(arrays.CURVE, curves.rows), _joined(arrays.CURVE_PIECE, curves.pieces)
-        return arrays.Relations._make(
-            [
-                there,
-                self.coordinates.counted,
-                rows,
-                *tables,
-                named,
-                kept._replace(read=read, write=write),
-            ]
-        )
+        kept = kept._replace(read=read, write=write)
+        return arrays.Relations._make([there, self.coordinates.counted, rows, *tables, named, kept])
 
 
 def new_memory(

@@ -130,11 +130,8 @@ def newton(k, hg, halves, idle, group):
         for i in range(n):
             r[i], before[i] = -r[i], p[rows[i]]
         factor(n, rows, group)
-        asked, force = (
-            limits.LINEAR_ERROR * max(enough, limits.LINEAR_SHARE * size),
-            greatest(3 * k, p),
-        )
-        rest = settle(n, 0.0, asked, limits.FORCE_ERROR * push, force, equations)
+        asked = limits.LINEAR_ERROR * max(enough, limits.LINEAR_SHARE * size)
+        rest = settle(n, 0.0, asked, limits.FORCE_ERROR * push, greatest(3 * k, p), equations)
         part, best = 1.0, size
         for _ in range(halves):
             for i in range(n):
@@ -193,9 +190,7 @@ def write_disc(k, n, i, width, hg, group):
     W, p = group.W, group.p
     a, b, unit = rows[i], rows[i + width - 1], rows[i] // 3
     closed_point = group.closed[unit]
-    normal = (
-        3 * closed_point.parent
-    )  # row of the force that bounds the friction; below 0 if none does
+    normal = 3 * closed_point.parent  # of the force that bounds the friction; below 0 if none does
     scale = 0.5 * (W[a, a] + W[b, b])
     known = closed_point.passes == 1 if hg > 0.0 else group.kind[unit] == SLIDING
     first = group.c[a] if hg == 0.0 else group.u[a] / hg
