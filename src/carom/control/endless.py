@@ -25,6 +25,7 @@ PART = 65536  # rows for which room is made at a time
 GOES_ON = (
     "now", "loads", "impacts", "friction", "bounces", "step", "saved", "struck", "event", "snapped",
     "touched", "cuts", "trials", "rejected", "located", "holds", "contact_steps", "rounds", "whole",
+    "parts", "fallen",
 )  # fmt: skip
 MOST = 1e7  # longest steps in a call, where tolerances choose them
 
@@ -75,8 +76,6 @@ class Endless(Run):
         for name in GOES_ON:
             mine[name] = before[name]
         self.work.step["begin"] = mine.now
-        for name in ("fallen", "parts"):
-            self.work.moment[name] = old.work.moment[name]
         if self.tolerances is not None:
             self.work.body["ahead"] = FIRST_STEP * self.controls.interval
         place()
