@@ -17,7 +17,7 @@ $(VENV)/installed-%: pyproject.toml
 paper: $(VENV)/installed-paper ## reproduce the paper: figures and table under out/paper
 	$(BIN)/carom paper --out out/paper
 
-# everything is compiled before the tests, which would compile the same kernels at once. Beside it is done what
+# one process compiles everything before the tests: several would compile the same kernels. Beside it is done what
 # needs no compiled code. A file of tests is run by one process, which keeps its scenes. Each day another tenth of
 # the files is run with bodies that are nudged, and only so (tests/nudge.py)
 TENTH := $(shell echo $$(( $$(date +%s) / 86400 % 10 )))
@@ -25,7 +25,7 @@ TESTS := $(BIN)/python -m pytest -n auto --dist loadfile
 test: $(VENV)/installed-test ## style, types, tests but for the slow ones, today's tenth nudged, a part without the JIT
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/carom warmup & { $(BIN)/basedpyright && \
+	$(BIN)/carom warmup --workers 1 & { $(BIN)/basedpyright && \
 		NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -m plain $(call marked,plain); }; beside=$$?; wait; exit $$beside
 	CAROM_TEST_ALL_BUT=$(TENTH) $(TESTS) -m "not slow"
 	CAROM_TEST_NUDGE=1 CAROM_TEST_TENTH=$(TENTH) $(TESTS) -m "not slow"

@@ -28,7 +28,7 @@ class _Reduced(CompileResultCacheImpl):
     """
 
     def reduce(self, cres):
-        """Return what is kept."""
+        """Return the parts of a compiled function that its file keeps."""
         *kept, _, reload, environments = super().reduce(cres)
         return *kept, "", reload, tuple(one for one in environments if one.consts)
 

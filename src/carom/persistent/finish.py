@@ -206,22 +206,32 @@ def check_end(model, data, label, s, h, given) -> bool:
                 return False
             if not waits:
                 active_point.next = MODE_SLIP
-        still = max(
-            STAYING_SPEED * (h * push), 10.0 * slow(system.contacts[closed_point.contact], end)
-        )
+        rounding = 10.0 * slow(system.contacts[closed_point.contact], end)
+        still = max(STAYING_SPEED * (h * push), rounding)
         end_mode(active_point, i, still, at_rest, group)
         set_margins(active_point, i, located, group)
-        if active_point.mode == MODE_STICK and active_point.next != MODE_OPEN:
-            if law:
-                active_point.grip = grip_by_law(i, push, group)
-            elif exact and located == 0.0:
-                set_grip(active_point, i, push, group)
-        if smooth or not given:
-            active_point.grip = 1.0
+        margins = law, exact and located == 0.0, smooth or not given
+        end_grip(active_point, i, push, margins, group)
         active_point.jams = jams_among(i, found, group)
     add_forces_of_corners(active, k, group)
     note_residual(active, k, group, work)
     return True
+
+
+@kernel
+def end_grip(active_point, i, push, margins, group):
+    """Write the margin of a point before slip that its law asks for, or that stops which are located ask for.
+
+    `margins` says whether it has a law, whether stops are located, and whether slip is no event of this step.
+    """
+    law, exact, free = margins
+    if active_point.mode == MODE_STICK and active_point.next != MODE_OPEN:
+        if law:
+            active_point.grip = grip_by_law(i, push, group)
+        elif exact:
+            set_grip(active_point, i, push, group)
+    if free:
+        active_point.grip = 1.0
 
 
 @kernel
