@@ -46,7 +46,7 @@ from carom.persistent.settle import greatest
 from carom.persistent.slip_law import set_friction
 from carom.persistent.springs import FACTORED, count_factors
 from carom.persistent.start import accelerate_start, first_stage
-from carom.persistent.thresholds import LEAVES
+from carom.persistent.thresholds import LEAVING_PART
 from carom.status import TOO_MANY_POINTS
 
 
@@ -148,7 +148,7 @@ def decide_active(model, data, k, rows, horizon):
                 if bounces_end(system, contact, u, -a, slow(contact, state), end):
                     group.closed[i].stays, more = 1, True
                     group.closed[i].bounces = time_without_torque(system, contact, u, -a, state)
-            elif turn == 0 and a > max(LEAVES * push, group.p[3 * i] * group.W[3 * i, 3 * i]):
+            elif turn == 0 and a > max(LEAVING_PART * push, group.p[3 * i] * group.W[3 * i, 3 * i]):
                 group.closed[i].stays = 0  # it has no force
         if not more:
             break
