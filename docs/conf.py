@@ -31,7 +31,10 @@ templates_path = ["_templates"]
 
 myst_enable_extensions = ["amsmath", "deflist", "dollarmath"]
 myst_heading_anchors = 3
-suppress_warnings = ["myst.strikethrough"]
+suppress_warnings = [
+    "myst.strikethrough",
+    "ref.python",
+]  # `shape` in "array, shape (3,)" is a field of two classes
 
 autosummary_generate = True
 autodoc_typehints = "none"  # the docstrings say it, with shapes and units
