@@ -33,8 +33,8 @@ myst_enable_extensions = ["amsmath", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 suppress_warnings = [
     "myst.strikethrough",
-    "ref.python",
-]  # `shape` in "array, shape (3,)" is a field of two classes
+    "ref.python",  # the word in "array, shape (3,)", which is a field of two classes
+]
 
 autosummary_generate = True
 autodoc_typehints = "none"  # the docstrings say it, with shapes and units
