@@ -4,7 +4,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 # bytecode is kept: each of the many processes of the tests would compile all sources anew
 export PYTHONDONTWRITEBYTECODE =
-marked = $(shell grep -rlE --include='*.py' 'mark\.($(1))\b' tests)
+marked = $(shell grep -rlE --include='test_*.py' 'mark\.($(1))\b' tests)
 
 .PHONY: paper test test-all lint docs bench history release-check wheel clean
 
