@@ -107,7 +107,7 @@ def touch_of_active(system, contact, feature, p, state, work):
 
 @unit
 def find_active_touch(system, contact, feature, p, state, work) -> int:
-    """Return what `touch_of_active` does: all kinds are compiled as one unit."""
+    """Return the place of an active touch in `work.touches`: the kinds are one unit."""
     return touch_of_active(system, contact, feature, p, state, work)
 
 
@@ -324,7 +324,7 @@ def drift(system, contact, feature, point, state, work):
 
 @unit
 def drift_of_row(system, contact, feature, point, state, work) -> tuple[float, float, float]:
-    """Return what `drift` does: all kinds are compiled as one unit."""
+    """Return (d/dt G) v of a point of a contact, for all kinds in one unit."""
     return drift(system, contact, feature, point, state, work)
 
 

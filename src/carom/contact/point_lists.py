@@ -7,19 +7,19 @@ from carom.model.workspace import MOTION_POINT
 
 
 @kernel
-def write_closed(c, feature, p, i, closed_point):
-    """Write point i of a list, which is not known to be active; its own force bounds its friction."""
+def write_closed(c, feature, p, parent, closed_point):
+    """Write an entry that is not known to be active; the force of entry `parent` bounds its friction."""
     closed_point.contact, closed_point.feature, closed_point.active = c, feature, -1
-    closed_point.motion, closed_point.parent = MOTION_POINT, i
+    closed_point.motion, closed_point.parent = MOTION_POINT, parent
     for k in range(3):
         closed_point.point[k] = p[k]
 
 
 @kernel
-def write_turning(i, motion, parent, closed_point):
+def write_turning(i, motion, point, closed_point):
     """Write the rolling (`MOTION_ROLL`) or pivoting friction of point i of a list."""
-    write_closed(parent.contact, parent.feature, parent.point, i, closed_point)
-    closed_point.motion, closed_point.active = motion, parent.active
+    write_closed(point.contact, point.feature, point.point, i, closed_point)
+    closed_point.motion, closed_point.active = motion, point.active
 
 
 @kernel

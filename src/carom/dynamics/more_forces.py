@@ -6,7 +6,7 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.dynamics.applied import OF_RELATIONS, added, energies
 from carom.kinematics.coordinate import counts_turns, rate, turn_within, value
-from carom.kinematics.coordinates.turns import memory_of
+from carom.kinematics.coordinates.turns import turn_of
 from carom.kinematics.curve import is_beyond, is_on_curve
 from carom.kinematics.thresholds import TURN_OF_STEP
 from carom.model.parts_of_system import has_relations, has_turns
@@ -36,11 +36,11 @@ def note_turns(system, state, h) -> bool:
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
         if counts_turns(c):  # what nothing depends on may turn far in a step
-            memory_of(system, c).reference += h * rate(system, c, state)
-        memory_of(system, c).reference = value(system, c, state)
+            turn_of(system, c).reference += h * rate(system, c, state)
+        turn_of(system, c).reference = value(system, c, state)
         if is_on_curve(c):
             left = left or is_beyond(
-                system.relations.curves[c.number], memory_of(system, c).reference
+                system.relations.curves[c.number], turn_of(system, c).reference
             )
     return left
 

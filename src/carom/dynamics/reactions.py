@@ -25,7 +25,7 @@ from carom.dynamics.loops import add_reactions, factor, free_motion, substitute,
 from carom.dynamics.solve import solve
 from carom.dynamics.tree import joint_wrenches
 from carom.kinematics.coordinate import rate, value
-from carom.kinematics.coordinates.turns import memory_of
+from carom.kinematics.coordinates.turns import turn_of
 from carom.kinematics.curve import is_on_curve, seek_feet, seek_foot
 from carom.model.arrays import FOREST, LOOPS, RELATION
 from carom.model.parts_of_system import has_turns
@@ -130,12 +130,12 @@ def expect_turn(system, saved, k, i):
     """
     c = system.relations.coordinates[i]
     if i < saved.turn.shape[1]:
-        memory_of(system, c).reference = saved.turn[k, i].angle
+        turn_of(system, c).reference = saved.turn[k, i].angle
     elif k == 0:
-        memory_of(system, c).reference = 0.0
+        turn_of(system, c).reference = 0.0
     else:
         mean = 0.5 * (rate(system, c, saved.state[k - 1]) + rate(system, c, saved.state[k]))
-        memory_of(system, c).reference += mean * (saved.series[k].t - saved.series[k - 1].t)
+        turn_of(system, c).reference += mean * (saved.series[k].t - saved.series[k - 1].t)
 
 
 @kernel
@@ -145,7 +145,7 @@ def settle_turn(system, saved, k, i):
     if is_on_curve(c):  # saved states may be far from each other
         seek_foot(system, c, saved.state[k])
     else:
-        memory_of(system, c).reference = value(system, c, saved.state[k])
+        turn_of(system, c).reference = value(system, c, saved.state[k])
 
 
 @unit(where=has_turns)

@@ -17,7 +17,7 @@ from carom.dynamics.reactions import expect_turn, follow_turns, settle_turn
 from carom.geometry.rotation import cross, log
 from carom.kinematics.coordinate import along, push, rate
 from carom.kinematics.coordinates.ball import axes_of
-from carom.kinematics.coordinates.turns import angular_velocity, memory_of
+from carom.kinematics.coordinates.turns import angular_velocity, turn_of
 from carom.kinematics.curve import can_be_left, dot, foot_of, is_on_curve
 from carom.kinematics.joints import anchor_gap, anchor_speed
 from carom.law.friction import bound_of_stick, depends_on_slip, in_slip
@@ -161,7 +161,7 @@ def write_guided(system, c, state, out):
     """Write value, rate and direction of a coordinate; of a rail that can be left, those of its foot."""
     a = out.along
     a[0], a[1], a[2] = along(system, c, state)
-    out.value, out.rate = memory_of(system, c).reference, rate(system, c, state)
+    out.value, out.rate = turn_of(system, c).reference, rate(system, c, state)
     if not is_on_curve(c):
         return
     one, foot = system.relations.curves[c.number], foot_of(system, c)

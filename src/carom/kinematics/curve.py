@@ -19,7 +19,7 @@ from carom._compiled.units import unit
 from carom.geometry.pieces import find_piece
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.geometry.thresholds import RESOLUTION, SMALLEST
-from carom.kinematics.coordinates.turns import memory_of
+from carom.kinematics.coordinates.turns import turn_of
 from carom.kinematics.joints import anchor_speed, child_arm, parent_arm
 from carom.kinematics.thresholds import END_MARGIN, HEIGHT, NEAR_RAIL
 from carom.kinematics.wrench import add_force
@@ -143,11 +143,11 @@ def find_foot(system, c, state):
     point, free = point_of(c, state), can_be_left(one)
     if is_upright(pieces[one.first]):
         foot.s, place = follow(
-            one, foot, pieces, across_side(one, point), memory_of(system, c).reference
+            one, foot, pieces, across_side(one, point), turn_of(system, c).reference
         )
         write_upright(system, c, pieces[place], point, state)
         return
-    foot.s, place = follow(one, foot, pieces, point, memory_of(system, c).reference)
+    foot.s, place = follow(one, foot, pieces, point, turn_of(system, c).reference)
     if free and not distance(foot, point) * one.sharpest + 0.0 * foot.s <= NEAR_RAIL:
         place = find_nearest(system, c, point)
     n = pieces[place].normal
@@ -198,7 +198,7 @@ def find_nearest(system, c, point):
         foot.s = near + correction(foot, point, False)
     if one.period > 0.0:
         foot.s += one.period * math.floor(
-            (memory_of(system, c).reference - foot.s) / one.period + 0.5
+            (turn_of(system, c).reference - foot.s) / one.period + 0.5
         )
     return place
 
@@ -275,7 +275,7 @@ def seek_foot(system, c, state):
     """
     one, pieces = system.relations.curves[c.number], system.relations.curve_pieces
     foot = foot_of(system, c)
-    place, before = point_of(c, state), memory_of(system, c).reference
+    place, before = point_of(c, state), turn_of(system, c).reference
     point, upright = place, is_upright(pieces[one.first])
     if upright:
         point = across_side(one, place)
@@ -302,10 +302,10 @@ def seek_foot(system, c, state):
             away += (HEIGHT * height) ** 2
         if away < least:
             least, found = away, pieces[i].start + t
-    memory_of(system, c).reference = found
+    turn_of(system, c).reference = found
     find_foot(system, c, state)
     laps = math.floor((before - foot.s) / one.period + 0.5) if one.period > 0.0 else 0.0
-    memory_of(system, c).reference = foot.s + laps * one.period
+    turn_of(system, c).reference = foot.s + laps * one.period
 
 
 @kernel

@@ -20,6 +20,7 @@ from carom.model.forces import Forces
 from carom.model.laws import Laws
 from carom.model.memory import Memory
 from carom.scene import joints
+from carom.scene.force_definition import ENDS
 
 #: kinds of joints in kernels; those on curves come last
 KIND = {
@@ -150,10 +151,7 @@ USER_ROW = [
 STIFF_SPRING = [
     ("element", "i8"),  # its place in the table of joints
     ("coordinate", "i8"),  # -1: between two points
-    ("parent", "i8"),
-    ("child", "i8"),
-    ("parent_anchor", "f8", 3),
-    ("child_anchor", "f8", 3),
+    *ENDS,
     ("stiffness", "f8"),
     ("damping", "f8"),
     ("rest", "f8"),

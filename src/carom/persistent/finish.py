@@ -30,7 +30,7 @@ from carom.persistent.margins import (
     take_forces,
     time_to_stop,
 )
-from carom.persistent.memory import first_stop, memory_of, store_slip, turns
+from carom.persistent.memory import first_stop, is_torque, memory_of, store_slip
 from carom.persistent.return_to_surfaces import greatest_speed, onto_surfaces, onto_tangents
 from carom.persistent.rows import (
     PASSED,
@@ -118,7 +118,7 @@ def note_modes(model, data, k, h):
         slides = group.kind[i] == SLIDING and slip > 0.0
         d1, d2 = u[3 * i + 1] / slip if slides else 0.0, u[3 * i + 2] / slip if slides else 0.0
         store_slip(model.system, active, closed_point, d1, d2, slip if slides else 0.0)
-        if not turns(closed_point) and group.mu[i] > 0.0:
+        if not is_torque(closed_point) and group.mu[i] > 0.0:
             next_mode = MODE_SLIP if group.kind[i] == SLIDING else MODE_STICK
             memory_of(model.system, active, closed_point).next = next_mode
 
@@ -372,7 +372,7 @@ def stick_where_slip_ends(model, data, k, h):
     for i in range(k):
         if group.closed[i].stays == 1:
             store_slip(model.system, active, group.closed[i], 0.0, 0.0, 0.0)
-            if not turns(group.closed[i]):
+            if not is_torque(group.closed[i]):
                 memory_of(model.system, active, group.closed[i]).next = MODE_STICK
     return True
 

@@ -40,7 +40,7 @@ from carom.geometry.thresholds import ROUND_OFF
 from carom.law.piecewise import any_depends_on_speed
 from carom.model.workspace import CONSTANT, MOTION_POINT
 from carom.persistent.coulomb_stage import solve_stage
-from carom.persistent.memory import turns
+from carom.persistent.memory import is_torque
 from carom.persistent.rolling_friction import bound_turning
 from carom.persistent.rows import (
     PASSED,
@@ -249,7 +249,7 @@ def solve_impulses(model, data, k, h):
         if turning and not change > LAST_CHANGE:
             break
     for i in range(k):
-        if turns(group.closed[i]):
+        if is_torque(group.closed[i]):
             group.mu[i] = bound_per_force(model.system, group.points[0][i], group.closed[i])
     for i in range(3 * k):
         p[i] /= h

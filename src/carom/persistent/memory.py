@@ -29,7 +29,7 @@ def law_of(system, closed_point):
 
 
 @kernel
-def turns(closed_point):
+def is_torque(closed_point):
     """Return whether an entry is a torque of rolling or pivoting friction."""
     return MOTION_POINT < closed_point.motion < MOTION_JOINT
 
@@ -38,7 +38,7 @@ def turns(closed_point):
 def store_slip(system, active, closed_point, d1, d2, speed):
     """Keep direction and speed of the slip of an entry for the next step; zeros if it holds."""
     memory = memory_of(system, active, closed_point)
-    if turns(closed_point):
+    if is_torque(closed_point):
         turning = memory.turning[closed_point.motion - MOTION_ROLL]
         turning[0], turning[1], turning[2] = d1, d2, speed
         return
@@ -49,7 +49,7 @@ def store_slip(system, active, closed_point, d1, d2, speed):
 def slip_at_start(system, active, closed_point):
     """Return whether a point slips (or rolls, or pivots), and direction and speed at the start of the step."""
     memory = memory_of(system, active, closed_point)
-    if turns(closed_point):
+    if is_torque(closed_point):
         turning = memory.turning[closed_point.motion - MOTION_ROLL]
         return turning[2] > 0.0, turning[0], turning[1], turning[2]
     d = memory.heading
@@ -60,4 +60,4 @@ def slip_at_start(system, active, closed_point):
 def first_stop(system, active, closed_point):
     """Return the time to the stop of a slip that was predicted at the start of the step."""
     memory = memory_of(system, active, closed_point)
-    return memory.first_stop[closed_point.motion if turns(closed_point) else 0]
+    return memory.first_stop[closed_point.motion if is_torque(closed_point) else 0]

@@ -13,7 +13,7 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.law.turning import arm_of_torque
 from carom.model.workspace import MOTION_ROLL
-from carom.persistent.memory import turns
+from carom.persistent.memory import is_torque
 
 
 @kernel
@@ -22,7 +22,7 @@ def bound_turning(system, k, group):
     change, largest = 0.0, 0.0
     for i in range(k):
         closed_point = group.closed[i]
-        if not turns(closed_point):
+        if not is_torque(closed_point):
             continue
         q, W = 3 * i, group.W
         d = arm_of_torque(system.laws, system.contacts[closed_point.contact], closed_point.motion)

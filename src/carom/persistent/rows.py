@@ -31,7 +31,7 @@ from carom.persistent.joint_rows import (
     is_driven,
     rounding_of_rate,
 )
-from carom.persistent.memory import law_of, slip_at_start, turns
+from carom.persistent.memory import is_torque, law_of, slip_at_start
 from carom.persistent.points import find_points
 from carom.persistent.slip_law import follow_laws
 from carom.persistent.springs import bound_per_force
@@ -89,7 +89,7 @@ def write_motion(system, k, state, rates, group, work):
     accelerations(k, points, state, rates, group.c)
     for i in range(k):
         closed_point = group.closed[i]
-        if turns(closed_point):
+        if is_torque(closed_point):
             group.mu[i] = bound_per_force(system, points[i], closed_point)
             continue
         group.mu[i] = bound_of_stick(system.laws, law_of(system, closed_point))

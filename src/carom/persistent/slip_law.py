@@ -15,7 +15,7 @@ from carom.law.friction import bound_of_stick, depends_on_slip, in_slip, margin_
 from carom.law.piecewise import any_depends_on_speed
 from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.persistent.joint_rows import radius_of
-from carom.persistent.memory import law_of, memory_of, turns
+from carom.persistent.memory import is_torque, law_of, memory_of
 from carom.persistent.settle import dot
 from carom.persistent.thresholds import BREAK_AWAY, FRICTION_LIMIT, LEAST_GRIP
 
@@ -25,7 +25,9 @@ TURNS_BACK = 8  # iterations of a stage in which slip that turns back may still 
 @kernel
 def has_law(system, closed_point):
     """Return whether the friction of a point or a joint depends on its slip."""
-    return not turns(closed_point) and depends_on_slip(system.laws, law_of(system, closed_point))
+    return not is_torque(closed_point) and depends_on_slip(
+        system.laws, law_of(system, closed_point)
+    )
 
 
 @kernel

@@ -17,7 +17,7 @@ from carom.model.workspace import CONSTANT, MOTION_JOINT, MOTION_POINT
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.finish import gains, within_cones
 from carom.persistent.joint_rows import radius_of
-from carom.persistent.memory import memory_of, store_slip, turns
+from carom.persistent.memory import is_torque, memory_of, store_slip
 from carom.persistent.rows import (
     accelerate_freely,
     bodies_of,
@@ -110,7 +110,7 @@ def note_break_away(system, data, k, push):
             continue
         none = none and smooth
         presses = closed_point.motion != MOTION_POINT or group.p[3 * i] > 0.0
-        if turns(closed_point) or not presses:
+        if is_torque(closed_point) or not presses:
             continue
         memory = memory_of(system, data.active, closed_point)
         broke = broke or (memory.next != MODE_SLIP and has_law(system, closed_point))

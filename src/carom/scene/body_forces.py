@@ -12,16 +12,13 @@ from carom import arguments, checks, fields
 from carom.fields import REQUIRED, Flag, Number, Value, Vector, VectorOrNone, keep
 from carom.geometry import quaternion
 from carom.geometry.frames import triad
-from carom.scene.force_definition import ForceDefinition, ForceTable
+from carom.scene.force_definition import ENDS, ForceDefinition, ForceTable
 from carom.scene.values import apart
 
 SPRING = ForceTable(
     "spring",
     [
-        ("parent", "i8"),
-        ("child", "i8"),
-        ("parent_anchor", "f8", 3),
-        ("child_anchor", "f8", 3),
+        *ENDS,
         ("stiffness", "f8"),
         ("damping", "f8"),
         ("rest_length", "f8"),
@@ -47,10 +44,7 @@ LOAD = ForceTable(
 BUSHING = ForceTable(
     "bushing",
     [
-        ("parent", "i8"),
-        ("child", "i8"),
-        ("parent_anchor", "f8", 3),
-        ("child_anchor", "f8", 3),
+        *ENDS,
         ("parent_frame", "f8", 4),  # from the axes of the mount to those of the body
         ("child_frame", "f8", 4),
         ("stiffness", "f8", 3),

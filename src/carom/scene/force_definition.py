@@ -23,6 +23,10 @@ class ForceTable(NamedTuple):
 
 
 BODIES = ("parent", "child", "body", "frame")
+#: columns of what acts between points of two bodies
+ENDS: list[Any] = [
+    ("parent", "i8"), ("child", "i8"), ("parent_anchor", "f8", 3), ("child_anchor", "f8", 3),
+]  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)

@@ -109,9 +109,8 @@ def series_step(k, work, rtol):
     changes, end = first <= h, min(first, h)
     slip = first_slip(z, work, degree, end)
     if slip < end:
-        if (
-            slip <= limits.SHORTEST_PART or clock.cut == 1
-        ):  # only one more series step shares the forces anew
+        # only one more series step shares the forces anew
+        if slip <= limits.SHORTEST_PART or clock.cut == 1:
             clock.cut = 0
             return -1.0, False
         clock.cut, changes, end = 1, False, slip

@@ -10,7 +10,7 @@ TURN = 2.0 * math.pi
 
 
 @kernel
-def memory_of(system, c):
+def turn_of(system, c):
     """Return what a run keeps of a coordinate: `reference`, its value at the start of the trial step."""
     return system.relations.memory.coordinates[c.index]
 
@@ -18,7 +18,7 @@ def memory_of(system, c):
 @kernel
 def with_turns(system, c, angle):
     """Return the angle nearest to the reference of a coordinate."""
-    return angle + TURN * math.floor((memory_of(system, c).reference - angle) / TURN + 0.5)
+    return angle + TURN * math.floor((turn_of(system, c).reference - angle) / TURN + 0.5)
 
 
 @kernel
