@@ -316,8 +316,9 @@ class Run(Running):
             active.count[0] = start.count[0]
             active.points[: active.count[0]] = start.points[: active.count[0]]
             start.begun[0] = 0
-            turns = self.compiled.system.relations.memory.coordinates
-            turns["reference"] = turns["begun"]
+            memory = self.compiled.system.relations.memory
+            memory.coordinates[:] = start.memory.coordinates
+            memory.frictions[:] = start.memory.frictions
         else:
             return
         self.clock[:] = (islands if islands.apart else start).clock

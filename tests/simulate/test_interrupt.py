@@ -13,6 +13,7 @@ import pytest
 import carom
 from carom.model import records
 from carom.stepping import time_loop
+from files.compare import differences
 from simulate.scenes import die, turn
 
 #: A run says when it begins in earnest, and at its end how far it came. Longer than anybody waits.
@@ -121,3 +122,36 @@ def test_a_run_that_is_interrupted_goes_back_to_the_end_of_a_step(paused, count,
     np.testing.assert_array_equal(a.t, whole.t[: len(a.t)])
     np.testing.assert_array_equal(a.position, whole.position[: len(a.t)])
     np.testing.assert_array_equal(a.velocity, whole.velocity[: len(a.t)])
+
+
+def slider():
+    """A block that slides along an axis with dry friction, and stops in its first steps."""
+    scene = carom.Scene(gravity=(0, 0, 0))
+    block = scene.add_body(
+        carom.Box(0.2, 0.2, 0.2), mass=1.0, position=(1, 0, 0), velocity=(2, 0, 0)
+    )
+    slide = scene.add_joint(carom.joints.Prismatic(axis=(1, 0, 0)), carom.GROUND, block)
+    scene.add_force(carom.forces.JointSpring(slide, stiffness=100.0, rest=0.0))
+    scene.add_force(carom.forces.JointFriction(slide, 20.0))
+    return scene
+
+
+@pytest.mark.plain
+@pytest.mark.parametrize("last", [20, 34, 40, 47])
+def test_a_run_with_friction_in_joints_goes_on_as_if_not_interrupted(paused, tmp_path, last):
+    """The mode of dry friction is that at the start of the step, not that of the attempt."""
+    whole, run, left = carom.simulate(slider(), 0.5, step=0.05), time_loop.run, []
+
+    def entered(*arguments):
+        code = run(*arguments)
+        left.append(code)
+        if left.count(records.PAUSE) == last:
+            raise KeyboardInterrupt
+        return code
+
+    path = tmp_path / "run.h5"
+    with paused.context() as patch:
+        patch.setattr(time_loop, "run", entered)
+        part = carom.simulate(slider(), 0.5, step=0.05, save=path, throw=False)
+    assert part.status is carom.Status.INTERRUPTED
+    assert differences(carom.resume(path), whole) == []

@@ -343,8 +343,7 @@ def place(run: Endless, state: SystemState, qpos, qvel) -> None:
     now["v"], now["w"] = motion.velocity, motion.angular_velocity
     turns = motion.turns
     if turns is not None:
-        for name in ("reference", "begun"):
-            run.compiled.system.relations.memory.coordinates[name] = turns
+        run.compiled.system.relations.memory.coordinates["reference"] = turns
     run.project()
     run.check(run.scene)
 

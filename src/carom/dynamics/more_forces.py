@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.dynamics.applied import OF_RELATIONS, added, energies
 from carom.kinematics.coordinate import counts_turns, rate, turn_within, value
@@ -43,22 +42,6 @@ def note_turns(system, state, h) -> bool:
                 system.relations.curves[c.number], turn_of(system, c).reference
             )
     return left
-
-
-@kernel
-def begin_turns(system):
-    """Store the angles at the start of a step."""
-    turns = system.relations.memory.coordinates
-    for i in range(turns.shape[0]):
-        turns[i].begun = turns[i].reference
-
-
-@kernel
-def forget_turns(system):
-    """Restore the angles at the start of the step."""
-    turns = system.relations.memory.coordinates
-    for i in range(turns.shape[0]):
-        turns[i].reference = turns[i].begun
 
 
 @unit(where=has_relations, otherwise=False)

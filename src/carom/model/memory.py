@@ -52,7 +52,6 @@ ACTIVE_POINT = [
 #: a coordinate of a joint over time
 TURN_OF_JOINT = [
     ("reference", "f8"),  # its value at the start of the trial step, with whole turns
-    ("begun", "f8"),  # the same at the start of the step
 ]
 
 #: a spring of the implicit step

@@ -11,8 +11,9 @@ from carom._compiled.record_arrays import table
 from carom.collision.sweep import SweepWork, new_sweep_work
 from carom.model.arrays import BODY, CONTACT, STATE, System
 from carom.model.contact_kinds import is_of_joint
-from carom.model.memory import ACTIVE_POINT
+from carom.model.memory import ACTIVE_POINT, Memory
 from carom.model.records import CLOCK
+from carom.model.relations import no_relations
 from carom.model.workspace import BODY_WORK, CONTACT_STATE, ActiveSet
 from carom.scene.all_pairs import Defaults
 from carom.stepping.islands.joined import Joined, joined_bodies, no_bodies
@@ -58,6 +59,7 @@ class SingleIsland(NamedTuple):
     contact_states: np.recarray  # (M,) CONTACT_STATE
     points: np.recarray  # (P,) ACTIVE_POINT
     count: np.ndarray  # (1,) number of active points
+    memory: Memory
     clock: np.recarray  # (1,) CLOCK
 
 
@@ -109,17 +111,18 @@ def has_events(system: System, more: bool = False) -> bool:
 def new_single_island(system: System, active: ActiveSet) -> SingleIsland:
     """Return the workspace for bodies that move together."""
     bodies = system.bodies.size if has_events(system) else 0
-    return _single(bodies, len(active.contact_states), len(active.points))
+    memory = Memory._make(kept.copy() for kept in system.relations.memory)
+    return _single(bodies, len(active.contact_states), len(active.points), memory)
 
 
-def _single(bodies: int, contacts: int, points: int) -> SingleIsland:
+def _single(bodies: int, contacts: int, points: int, memory: Memory) -> SingleIsland:
     state, clock = table(STATE, bodies), table(CLOCK, 1)
     contact_states, actives = table(CONTACT_STATE, contacts), table(ACTIVE_POINT, points)
     begun, count = np.zeros((2, 1), dtype=np.int64)
-    return SingleIsland(begun, state, contact_states, actives, count, clock)
+    return SingleIsland(begun, state, contact_states, actives, count, memory, clock)
 
 
-_NOWHERE = _single(0, 0, 0)
+_NOWHERE = _single(0, 0, 0, no_relations().memory)
 
 
 def no_islands(system: System, active: ActiveSet) -> Islands:

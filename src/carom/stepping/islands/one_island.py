@@ -5,8 +5,8 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.contact.point_lists import mark
 from carom.dynamics.explicit import copy_state
-from carom.dynamics.more_forces import begin_turns, forget_turns
 from carom.persistent.active_set import regroup
+from carom.stepping.islands.joined import copy_memory
 from carom.stepping.islands.parts import give_up_body
 
 
@@ -27,7 +27,7 @@ def begin_single(system, active, now, clocks, work, start):
         copy_state(now[b], start.state[b])
     for i in range(active.count[0]):
         start.points[i] = active.points[i]
-    begin_turns(system)
+    copy_memory(system.relations.memory, start.memory)
     start.count[0], start.begun[0] = active.count[0], 1
     start.clock[0] = clocks[0]
 
@@ -56,7 +56,7 @@ def forget_single(system, active, now, clocks, work, start):
     mark_vertices(active, 1)
     clocks[0] = start.clock[0]
     work.step[0].spent, work.step[0].paused, start.begun[0] = 0.0, 0, 0
-    forget_turns(system)
+    copy_memory(start.memory, system.relations.memory)
     work.search[0].pending = 0
     regroup(system, active, work)
 
