@@ -37,7 +37,7 @@ def note_passed(system, active, k, group, start, end):
         if jumps and point.owner == NOBODY:
             jumps, least = are_sharp(system, contact), EDGE_JUMP
         jumps = jumps and jump_of_normal(active_point, point, start, end) > least
-        active_point.passes = 1 if jumps and contact_velocity(point, end)[0] > 0.0 else 0
+        active_point.passes = 1 if jumps and contact_velocity(system, point, end)[0] > 0.0 else 0
 
 
 @kernel

@@ -8,14 +8,9 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.dynamics.solve import free_body, solve
+from carom.kinematics.row_of_coordinate import push_in_row
 from carom.kinematics.wrench import add_force
-from carom.model.workspace import (
-    MOTION_JOINT,
-    MOTION_POINT,
-    MOTION_ROLL,
-    MOTION_STOP_SLIDE,
-    MOTION_STOP_TURN,
-)
+from carom.model.workspace import MOTION_PIVOT, MOTION_POINT, MOTION_ROLL, MOTION_STOP
 
 
 @kernel
@@ -30,13 +25,13 @@ def spread(system, point, state, p, work):
     """Write motion = P G^T p of all bodies, or of those at the point if they have no joints."""
     if not alone(system, point):
         clear_wrenches(work)
-        add_impulse(point, p, work)
+        add_impulse(system, point, state, p, work)
         solve(system, state, False, work)
         return
     clear_wrench(work.body[point.a])
     if point.b >= 0:
         clear_wrench(work.body[point.b])
-    add_impulse(point, p, work)
+    add_impulse(system, point, state, p, work)
     free_body(system.bodies[point.a], state[point.a].Q, work.body[point.a])
     if point.b >= 0:
         free_body(system.bodies[point.b], state[point.b].Q, work.body[point.b])
@@ -47,25 +42,17 @@ def acts(motion, r):
     """Return whether an impulse along row r of a point has an effect: see `add_impulse`."""
     if motion in (MOTION_POINT, MOTION_ROLL):
         return r >= (0 if motion == MOTION_POINT else 1)
-    return r == (0 if motion in (MOTION_STOP_TURN, MOTION_STOP_SLIDE) else 1)
+    return r == (0 if motion == MOTION_STOP else 1)
 
 
 @kernel
-def add_impulse(point, p, work):
+def add_impulse(system, point, state, p, work):
     """Add G^T p of an impulse p = (p_n, p_t1, p_t2) to the wrenches."""
     E, ln, l1, l2 = point.axes, p[0], p[1], p[2]
-    if point.motion == MOTION_STOP_TURN:
-        for k in range(3):
-            torque = point.length * ln * E[0, k]
-            work.body[point.a].wrench[3 + k] += torque
-            if point.b >= 0:
-                work.body[point.b].wrench[3 + k] -= torque
+    if point.motion > MOTION_PIVOT:
+        push_in_row(system, point, state, p, work)
         return
-    if point.motion == MOTION_STOP_SLIDE:
-        l1, l2 = 0.0, 0.0
-    elif point.motion == MOTION_JOINT:
-        ln, l1, l2 = l1, 0.0, 0.0
-    elif point.motion != MOTION_POINT:
+    if point.motion != MOTION_POINT:
         i, j = (1, 2) if point.motion == MOTION_ROLL else (0, 2)
         f1, f2 = point.length * l1, point.length * l2 if point.motion == MOTION_ROLL else 0.0
         for k in range(3):

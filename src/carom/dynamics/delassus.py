@@ -13,21 +13,21 @@ from carom.kinematics.contact_point import (
     in_axes,
 )
 from carom.kinematics.rows import inverse_inertia, symmetric_times
-from carom.model.workspace import MOTION_POINT, MOTION_STOP_SLIDE, MOTION_STOP_TURN
+from carom.model.workspace import MOTION_PIVOT, MOTION_POINT, MOTION_STOP
 
 
 @kernel
-def velocities(k, points, state, u):
+def velocities(system, k, points, state, u):
     """Write u = G v of k points."""
     for i in range(k):
-        u[3 * i], u[3 * i + 1], u[3 * i + 2] = contact_velocity(points[i], state)
+        u[3 * i], u[3 * i + 1], u[3 * i + 2] = contact_velocity(system, points[i], state)
 
 
 @kernel
-def accelerations(k, points, state, stage, a):
+def accelerations(system, k, points, state, stage, a):
     """Write du/dt of k points under the accelerations of a stage."""
     for i in range(k):
-        a[3 * i], a[3 * i + 1], a[3 * i + 2] = contact_acceleration(points[i], state, stage)
+        a[3 * i], a[3 * i + 1], a[3 * i + 2] = contact_acceleration(system, points[i], state, stage)
 
 
 @kernel
@@ -39,7 +39,9 @@ def still(motion):
 
 @kernel
 def still_ends(point, work):
-    """Zero the motions of the bodies of a point."""
+    """Zero the motions of the bodies of a point: of a stop of all, since a combination may move any."""
+    for b in range(work.body.shape[0] if point.motion > MOTION_PIVOT else 0):
+        still(work.body[b].motion)
     still(work.body[point.a].motion)
     if point.b >= 0:
         still(work.body[point.b].motion)
@@ -68,7 +70,9 @@ def inverse_masses(system, k, points, state, work, W):
                 continue
             spread(system, points[j], state, unit_vector(r), work)
             for i in range(k):
-                W[3 * i, m], W[3 * i + 1, m], W[3 * i + 2, m] = contact_motion(points[i], work)
+                W[3 * i, m], W[3 * i + 1, m], W[3 * i + 2, m] = contact_motion(
+                    system, points[i], state, work
+                )
         if alone(system, points[j]):
             still_ends(points[j], work)
         else:  # all joined bodies have a motion, not only those of the point
@@ -79,7 +83,7 @@ def inverse_masses(system, k, points, state, work, W):
             W[i, j], W[j, i] = m, m
     for i in range(k):
         # a stop has no tangents: any positive values do
-        if points[i].motion in (MOTION_STOP_TURN, MOTION_STOP_SLIDE):
+        if points[i].motion == MOTION_STOP:
             W[3 * i + 1, 3 * i + 1] = W[3 * i + 2, 3 * i + 2] = W[3 * i, 3 * i]
 
 
@@ -137,7 +141,7 @@ def spread_all(system, points, p, member, state, work):
         joined = joined or system.bodies[member[m]].isolated == 0
     clear_wrenches(work)
     for i in range(points.shape[0]):
-        add_impulse(points[i], p[3 * i : 3 * i + 3], work)
+        add_impulse(system, points[i], state, p[3 * i : 3 * i + 3], work)
     if joined:
         solve(system, state, False, work)
     else:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from carom._compiled.units import unit
 from carom.dynamics.applied import OF_RELATIONS, added, energies
-from carom.kinematics.coordinate import counts_turns, rate, turn_within, value
+from carom.kinematics.combination import is_combination, rate, value
+from carom.kinematics.coordinate import counts_turns, turn_within
 from carom.kinematics.coordinates.turns import turn_of
 from carom.kinematics.curve import is_beyond, is_on_curve
 from carom.kinematics.thresholds import TURN_OF_STEP
@@ -34,6 +35,8 @@ def note_turns(system, state, h) -> bool:
     left = False
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
+        if is_combination(c):  # the turns are those of its terms
+            continue
         if counts_turns(c):  # what nothing depends on may turn far in a step
             turn_of(system, c).reference += h * rate(system, c, state)
         turn_of(system, c).reference = value(system, c, state)
@@ -49,6 +52,8 @@ def turns_round(system, start, end, h) -> bool:
     """Return whether an angle may turn so far in a step that its whole turns are not known, or a foot."""
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
+        if is_combination(c):
+            continue
         if not turn_within(system, c, start, end, h) <= TURN_OF_STEP:
             return True
     return False

@@ -70,6 +70,10 @@ def _pull_size(work, i, a):
             G, v = link.rows[side], work.body[link.body[side]].motion
             for j in range(6):
                 s += abs(G[a, j]) * v[j]
+    for e in range(link.others, link.others_end if link.spans == 1 else link.others):
+        G, v = work.other[e].rows, work.body[work.other[e].body].motion
+        for j in range(6):
+            s += abs(G[a, j]) * v[j]
     return s
 
 
@@ -240,7 +244,10 @@ def _pull(work, i):
     u0, u1, u2 = _rate(link.rows[0], work.body[link.body[0]].motion)
     if link.body[1] >= 0:
         v0, v1, v2 = _rate(link.rows[1], work.body[link.body[1]].motion)
-        return u0 + v0, u1 + v1, u2 + v2
+        u0, u1, u2 = u0 + v0, u1 + v1, u2 + v2
+    for e in range(link.others, link.others_end if link.spans == 1 else link.others):
+        v0, v1, v2 = _rate(work.other[e].rows, work.body[work.other[e].body].motion)
+        u0, u1, u2 = u0 + v0, u1 + v1, u2 + v2
     return u0, u1, u2
 
 

@@ -76,6 +76,7 @@ LINK = [
     ("response", "f8", (2, 6, 3)),  # of both bodies to an impulse, P G^T; without joints M^-1 G^T
     ("others", "i8"),  # range of its rows of `other`
     ("others_end", "i8"),
+    ("spans", "i8"),  # 1 if the contact has rows of these bodies too
     ("local", "f8", 6),  # upper triangle of the diagonal block of W
     ("basis", "f8", 4),  # eigenbasis of that block (`one_contact.basis_of`)
     ("compliance", "f8", (3, 3)),  # inverse of J
@@ -83,7 +84,7 @@ LINK = [
 ]
 
 #: a body that an impulse moves through joints
-OTHER = [("body", "i8"), ("corner", "i8", 2), ("response", "f8", (6, 3))]
+OTHER = [("body", "i8"), ("corner", "i8", 2), ("rows", "f8", (3, 6)), ("response", "f8", (6, 3))]
 
 ISLAND_BODY = [("motion", "f8", 6), ("pivot", "i8", 6)]
 

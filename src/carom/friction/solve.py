@@ -82,10 +82,8 @@ def set_contact(contact, mu, kind, heading, trace):
 
 @kernel
 def scale_link(link, contact, mu, kind, heading):
-    """Write the product of rows and responses, and scale all three; return whether the contact is valid."""
+    """Add the products of rows and responses to `local`; scale all; return whether the contact is valid."""
     local = link.local
-    for r in range(6):
-        local[r] = 0.0
     for side in range(2):
         if link.body[side] < 0:
             continue

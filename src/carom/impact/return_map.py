@@ -41,7 +41,7 @@ def return_map(system, contact, state, work, tie, tolerance):
                 return iteration
         place(contact, core, state, point)
         spread(system, point, state, (1.0, 0.0, 0.0), work)
-        w_nn = contact_motion(point, work)[0]
+        w_nn = contact_motion(system, point, state, work)[0]
         if not w_nn > 0.0:
             return -1
         if joined:

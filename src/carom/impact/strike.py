@@ -87,14 +87,14 @@ def strike(model, data, method, c):
     for i in range(k):
         closed_point = group.closed[i]
         jams = jams or (closed_point.active >= 0 and active.points[closed_point.active].jams == 1)
-        u = contact_velocity(group.points[0][i], state)[0]
+        u = contact_velocity(system, group.points[0][i], state)[0]
         if u < -slow(system.contacts[closed_point.contact], state):
             approach = min(approach, u)
     if approach < 0.0 or jams:
         hit.closed = max(k, 2) if jams else k  # after a jam active points are always decided again
         if k > 1:
             inverse_masses(system, k, group.points[0], state, work, group.W)
-            velocities(k, group.points[0], state, group.u)
+            velocities(system, k, group.points[0], state, group.u)
         single = as_one(system, k, state, group, work)
         if not single and data.multiple.contact.shape[0] < k:
             work.step[0].grow, hit.code = FULL_MULTIPLE, GROW

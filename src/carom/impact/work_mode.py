@@ -19,10 +19,10 @@ def restore_work(system, contact, state, drop, work):
     """Change u_n at the core point of `work.hit` by the potential energy `drop` [J] that became kinetic."""
     hit, point = work.hit[0], work.struck[0]
     place(contact, hit.point, state, point)
-    un = contact_velocity(point, state)[0]
+    un = contact_velocity(system, point, state)[0]
     if un < 0.0:
         spread(system, point, state, (1.0, 0.0, 0.0), work)
-        w_nn = contact_motion(point, work)[0]
+        w_nn = contact_motion(system, point, state, work)[0]
         new = -math.sqrt(max(un * un + 2.0 * w_nn * drop, 0.0))
         spread(system, point, state, ((new - un) / w_nn, 0.0, 0.0), work)
         add_velocity(system, point, work, state)

@@ -10,14 +10,9 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.geometry.rotation import cross, rotate
 from carom.kinematics.anisotropy import lay_along_axis
+from carom.kinematics.row_of_coordinate import acceleration_in_row, motion_in_row, rate_in_row
 from carom.kinematics.wrench import point_velocity
-from carom.model.workspace import (
-    MOTION_JOINT,
-    MOTION_POINT,
-    MOTION_ROLL,
-    MOTION_STOP_SLIDE,
-    MOTION_STOP_TURN,
-)  # fmt: skip
+from carom.model.workspace import MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
 
 
 @kernel
@@ -59,6 +54,7 @@ def copy_field(p, q):
 def copy_point(p, q):
     """Copy a point."""
     q.a, q.b, q.gap, q.motion, q.length = p.a, p.b, p.gap, p.motion, p.length
+    q.coordinate = p.coordinate
     q.owner, q.parts[0], q.parts[1], q.moves = p.owner, p.parts[0], p.parts[1], p.moves
     if p.moves == 1:
         copy_field(p, q)
@@ -81,26 +77,11 @@ def in_axes(point, x, y, z):
 
 @kernel
 def turning_rows(point, x, y, z):
-    """Return the rows of a point of rolling or pivoting: relative angular velocity times a length.
-
-    For a stop that ends a turn, it is the angular velocity about its axis.
-    """
+    """Return the rows of a point of rolling or pivoting: relative angular velocity times a length."""
     n, t1, t2 = in_axes(point, x, y, z)
-    if point.motion == MOTION_STOP_TURN:
-        return point.length * n, 0.0, 0.0
     if point.motion == MOTION_ROLL:
         return 0.0, point.length * t1, point.length * t2
     return 0.0, point.length * n, 0.0
-
-
-@kernel
-def own_rows(point, u):
-    """Return u; for a stop that ends a slide, or a slide with friction, only the normal component."""
-    if point.motion == MOTION_STOP_SLIDE:
-        return u[0], 0.0, 0.0
-    if point.motion == MOTION_JOINT:
-        return 0.0, u[0], 0.0
-    return u
 
 
 @kernel
@@ -145,9 +126,11 @@ def power_of_surface(point, state, p):
 
 
 @kernel
-def contact_velocity(point, state):
+def contact_velocity(system, point, state):
     """Return u = G v, in contact axes; relative to a surface that moves in itself."""
-    if MOTION_POINT < point.motion < MOTION_STOP_SLIDE:
+    if point.motion > MOTION_PIVOT:
+        return rate_in_row(system, point, state)
+    if point.motion != MOTION_POINT:
         w, z = state[point.a].w, (0.0, 0.0, 0.0)
         if point.b >= 0:
             z = (state[point.b].w[0], state[point.b].w[1], state[point.b].w[2])
@@ -156,8 +139,7 @@ def contact_velocity(point, state):
     r, s = point.arm_a, point.arm_b
     ux, uy, uz = point_velocity(state, point.a, r[0], r[1], r[2])
     vx, vy, vz = point_velocity(state, point.b, s[0], s[1], s[2])
-    u = own_rows(point, in_axes(point, ux - vx, uy - vy, uz - vz))
-    return on_surface(point, state, 0, u)
+    return on_surface(point, state, 0, in_axes(point, ux - vx, uy - vy, uz - vz))
 
 
 @kernel
@@ -168,9 +150,11 @@ def motion_there(motion, r):
 
 
 @kernel
-def contact_motion(point, work):
+def contact_motion(system, point, state, work):
     """Return G of the motions that the last solve wrote, in contact axes."""
-    if MOTION_POINT < point.motion < MOTION_STOP_SLIDE:
+    if point.motion > MOTION_PIVOT:
+        return motion_in_row(system, point, state, work)
+    if point.motion != MOTION_POINT:
         m, z = work.body[point.a].motion, (0.0, 0.0, 0.0)
         if point.b >= 0:
             o = work.body[point.b].motion
@@ -180,17 +164,19 @@ def contact_motion(point, work):
     if point.b >= 0:
         vx, vy, vz = motion_there(work.body[point.b].motion, point.arm_b)
         ux, uy, uz = ux - vx, uy - vy, uz - vz
-    return own_rows(point, in_axes(point, ux, uy, uz))
+    return in_axes(point, ux, uy, uz)
 
 
 @kernel
-def contact_acceleration(point, state, stage):
+def contact_acceleration(system, point, state, stage):
     """Return du/dt in contact axes: a + alpha x r + w x (w x core) (a ball around the core does not turn).
 
     This is for a half-space, whose normal is constant. For two bodies and for stops the result is only G times
     the accelerations.
     """
-    if MOTION_POINT < point.motion < MOTION_STOP_SLIDE:
+    if point.motion > MOTION_PIVOT:
+        return acceleration_in_row(system, point, state, stage)
+    if point.motion != MOTION_POINT:
         m, z = stage[point.a].rate, (0.0, 0.0, 0.0)
         if point.b >= 0:
             o = stage[point.b].rate
@@ -200,12 +186,12 @@ def contact_acceleration(point, state, stage):
     if point.b >= 0:
         ax, ay, az = motion_there(stage[point.a].rate, point.arm_a)
         bx, by, bz = motion_there(stage[point.b].rate, point.arm_b)
-        return own_rows(point, in_axes(point, ax - bx, ay - by, az - bz))
+        return in_axes(point, ax - bx, ay - by, az - bz)
     v, w, c = state[point.a].v, state[point.a].w, point.core
     px, py, pz = cross(w[0], w[1], w[2], c[0], c[1], c[2])
     cx, cy, cz = cross(w[0], w[1], w[2], px, py, pz)
     ux, uy, uz = motion_there(stage[point.a].rate, point.arm_a)
-    u = own_rows(point, in_axes(point, ux + cx, uy + cy, uz + cz))
+    u = in_axes(point, ux + cx, uy + cy, uz + cz)
     if point.moves == 0:
         return u
     s = field_along(point, (v[0] + px, v[1] + py, v[2] + pz))

@@ -123,21 +123,59 @@ def add_rows(system, c, state, factor, child, parent):
 @kernel
 def motion_along(system, c, state, work):
     """Return the change of q' by the motions that the last solve wrote."""
-    ax, ay, az = along(system, c, state)
-    total = 0.0
-    for side in range(2):
-        b, s = (c.child, 1.0) if side == 0 else (c.parent, -1.0)
-        if b < 0:
-            continue
-        m = work.body[b].motion
-        if slides(c):
-            rx, ry, rz = child_arm(c, state) if side == 0 else parent_arm(c, state)
-            ux, uy, uz = cross(m[3], m[4], m[5], rx, ry, rz)
-            ux, uy, uz = ux + m[0], uy + m[1], uz + m[2]
-        else:
-            ux, uy, uz = m[3], m[4], m[5]
-        total += s * (ax * ux + ay * uy + az * uz)
+    axis, total = along(system, c, state), 0.0
+    if c.child >= 0:
+        total += of_side(c, 0, axis, six(work.body[c.child].motion), state)
+    if c.parent >= 0:
+        total += of_side(c, 1, axis, six(work.body[c.parent].motion), state)
     return total
+
+
+@kernel
+def acceleration_along(system, c, state, stage):
+    """Return q'' by the accelerations of a stage alone, without its drift."""
+    axis, total = along(system, c, state), 0.0
+    if c.child >= 0:
+        total += of_side(c, 0, axis, six(stage[c.child].rate), state)
+    if c.parent >= 0:
+        total += of_side(c, 1, axis, six(stage[c.parent].rate), state)
+    return total
+
+
+@kernel
+def rate_in(system, c, pose, state):
+    """Return q' with the positions of one state and the velocities of another."""
+    axis, total = along(system, c, pose), 0.0
+    if c.child >= 0:
+        total += of_side(c, 0, axis, velocity(state[c.child]), pose)
+    if c.parent >= 0:
+        total += of_side(c, 1, axis, velocity(state[c.parent]), pose)
+    return total
+
+
+@kernel
+def six(motion):
+    """Return the six numbers of a motion."""
+    return motion[0], motion[1], motion[2], motion[3], motion[4], motion[5]
+
+
+@kernel
+def velocity(body):
+    """Return the velocity of a body, linear and angular."""
+    v, w = body.v, body.w
+    return v[0], v[1], v[2], w[0], w[1], w[2]
+
+
+@kernel
+def of_side(c, side, axis, motion, state):
+    """Return the part of q' or q'' that a motion (linear, angular) of the child, or of the parent, has."""
+    ux, uy, uz = motion[3], motion[4], motion[5]
+    if slides(c):
+        rx, ry, rz = child_arm(c, state) if side == 0 else parent_arm(c, state)
+        ux, uy, uz = cross(ux, uy, uz, rx, ry, rz)
+        ux, uy, uz = ux + motion[0], uy + motion[1], uz + motion[2]
+    s = 1.0 if side == 0 else -1.0
+    return s * (axis[0] * ux + axis[1] * uy + axis[2] * uz)
 
 
 @kernel

@@ -43,6 +43,7 @@ OWN_ROWS = min(ON_CURVE)  # the first of these kinds
 LIMITED = {"rotation": "ball", "swing": "ball", "twist": "ball"}
 OF_LIMIT = {word: number for number, word in enumerate(LIMITED, len(KIND) + 4)}
 SWING, TWIST = OF_LIMIT["swing"], OF_LIMIT["twist"]
+COMBINATION = len(KIND) + 4 + len(LIMITED)  # sum of factors times coordinates of joints
 
 
 def _kinds(chosen) -> tuple[int, ...]:
@@ -99,7 +100,7 @@ JOINT = [
 
 #: a coordinate of a joint: an angle about (kind REVOLUTE), or a displacement along (PRISMATIC), the first axis
 #: of the parent's frame, arc length along a curve (ON_CURVE), or one that stops limit (OF_LIMIT); either
-#: side may be the ground
+#: side may be the ground. A COMBINATION of them has the terms of the relation `number`
 COORDINATE = JOINT
 
 #: the curve of a coordinate with its pieces

@@ -35,7 +35,9 @@ POINT = [
     ("owner", "i8"),  # of the normal, and the parts of both solids (`carom.collision.features`)
     ("parts", "i8", 2),
     ("motion", "i8"),  # that its rows measure: `MOTION_POINT`, ...
-    ("length", "f8"),  # that converts an angular velocity to a speed
+    # that converts an angular velocity, or the rate of a coordinate, to a speed; of an upper stop below 0
+    ("length", "f8"),
+    ("coordinate", "i8"),  # of a stop, or of friction in a joint
     (
         "moves",
         "i8",
@@ -43,10 +45,9 @@ POINT = [
     ("field", "f8", (4, 3)),
 ]
 
-#: `motion` of a point: that of two points, in rows n, t1, t2; relative rotation of rolling (t1, t2), of
-#: pivoting (t1) and of a stop that ends a turn (n); of a stop that ends a slide (n); of a joint (t1)
-MOTION_POINT, MOTION_ROLL, MOTION_PIVOT = range(3)
-MOTION_STOP_TURN, MOTION_STOP_SLIDE, MOTION_JOINT = range(3, 6)
+#: `motion` of a point: that of two points, in rows n, t1, t2; relative rotation of rolling (t1, t2) and of
+#: pivoting (t1); rate of a coordinate, of a stop (n) and of friction in a joint (t1)
+MOTION_POINT, MOTION_ROLL, MOTION_PIVOT, MOTION_STOP, MOTION_JOINT = range(5)
 
 #: `parent` of an entry of a group whose friction has a constant bound; else the one whose force bounds it
 CONSTANT = -1

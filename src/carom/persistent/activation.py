@@ -304,7 +304,7 @@ def mark_approaching(system, active, k, state, group):
     for i in range(k):
         closed_point = group.closed[i]
         contact = system.contacts[closed_point.contact]
-        if contact_velocity(group.points[0][i], state)[0] < -slow(contact, state):
+        if contact_velocity(system, group.points[0][i], state)[0] < -slow(contact, state):
             if closed_point.stays == 0:
                 active.contact_states[closed_point.contact].near = 1
 

@@ -79,9 +79,7 @@ def write_end(model, data, label, k) -> bool:
     copy_to_stage(count, end, group, work)
     for i in range(k):
         if group.closed[i].motion == MOTION_JOINT:
-            one = system.relations.frictions[group.closed[i].active]
-            c = system.relations.coordinates[one.coordinate]
-            place_coordinate(system, c, end, group.points[0][i])
+            place_coordinate(system, group.closed[i].active, end, group.points[0][i])
     onto_tangents(system, data, k, count)
     copy_to_stage(count, end, group, work)
     return True
@@ -271,7 +269,7 @@ def solve_end(model, data, label, k, s, h):
         lasts = within_cones(k, group)
         if stick_where_slip_ends(model, data, k, h):
             onto_tangents(model.system, data, k, count)
-            velocities(k, group.points[0], work.trial, group.u)
+            velocities(model.system, k, group.points[0], work.trial, group.u)
             copy_to_stage(count, work.trial, group, work)
             lasts = True
         if lasts:

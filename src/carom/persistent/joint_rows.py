@@ -13,8 +13,17 @@ from carom.contact.point_lists import write_closed
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.solve import free_body
 from carom.geometry.thresholds import ROUND_OFF
-from carom.kinematics.coordinate import along, drift, motion_along, push, slides, speeds_of
-from carom.kinematics.joints import child_arm, parent_arm
+from carom.kinematics.combination import (
+    drift,
+    first_of,
+    is_combination,
+    motion_along,
+    push,
+    speeds_of,
+    term_of,
+    terms_of,
+)
+from carom.kinematics.coordinate import along, slides
 from carom.model.workspace import CONSTANT, MOTION_JOINT, MOTION_PIVOT
 from carom.persistent.thresholds import MOTOR_COMPLIANCE
 
@@ -34,34 +43,44 @@ def _add_frictions(system, state, k, group, work) -> int:
     for i in range(relations.frictions.shape[0]):
         if k == group.closed.shape[0]:
             break
-        c = relations.coordinates[relations.frictions[i].coordinate]
         closed_point, point = group.closed[k], group.points[0][k]
         write_closed(-1, 0, point.core, CONSTANT, closed_point)
         closed_point.motion, closed_point.active = MOTION_JOINT, i
         closed_point.listed, closed_point.weight = 1, 1.0
-        place_coordinate(system, c, state, point)
-        closed_point.spring = MOTOR_COMPLIANCE * response_alone(system, c, state, work)
+        place_coordinate(system, i, state, point)
+        alone = response_alone(system, coordinate_of(system, i), state, work)
+        closed_point.spring = MOTOR_COMPLIANCE * alone
         k += 1
     return k
 
 
 @kernel
-def place_coordinate(system, c, state, point):
-    """Write a coordinate as a point: its row is the second of the point."""
+def coordinate_of(system, i):
+    """Return the coordinate of friction i."""
+    relations = system.relations
+    return relations.coordinates[relations.frictions[i].coordinate]
+
+
+@kernel
+def place_coordinate(system, i, state, point):
+    """Write the coordinate of friction i as a point: its row is the second of the point."""
+    c = first_of(system, coordinate_of(system, i))
     nx, ny, nz = along(system, c, state)
     s = 1.0 if c.child >= 0 else -1.0
     point.a, point.b = (c.child, c.parent) if c.child >= 0 else (c.parent, -1)
     tangents(s * nx, s * ny, s * nz, point.axes)
     for k in range(3):
         point.core[k], point.arm_a[k], point.arm_b[k] = 0.0, 0.0, 0.0
-    if slides(c):
-        r = child_arm(c, state) if c.child >= 0 else parent_arm(c, state)
-        point.arm_a[0], point.arm_a[1], point.arm_a[2] = r
-        if c.child >= 0:
-            r = parent_arm(c, state)
-            point.arm_b[0], point.arm_b[1], point.arm_b[2] = r
-    point.gap, point.length, point.moves = 0.0, 1.0, 0
-    point.motion = MOTION_JOINT if slides(c) else MOTION_PIVOT
+    point.gap, point.length, point.moves, point.motion = 0.0, 1.0, 0, MOTION_JOINT
+    point.coordinate = system.relations.frictions[i].coordinate
+
+
+@kernel
+def is_angle(system, point):
+    """Return whether the velocity of an entry is that of an angle: of pivoting, or of a joint that turns."""
+    if point.motion != MOTION_JOINT:
+        return point.motion == MOTION_PIVOT
+    return not slides(first_of(system, system.relations.coordinates[point.coordinate]))
 
 
 @kernel
@@ -69,18 +88,27 @@ def response_alone(system, c, state, work):
     """Return the acceleration of a coordinate by a unit force along it, of its bodies without joints."""
     clear_wrenches(work)
     push(system, c, state, 1.0, work)
+    if is_combination(c):
+        first, last = terms_of(system, c)
+        for i in range(first, last):
+            free_ends(system, term_of(system, i), state, work)
+    else:
+        free_ends(system, c, state, work)
+    return motion_along(system, c, state, work)
+
+
+@kernel
+def free_ends(system, c, state, work):
+    """Write the motions of both bodies of a joint without joints."""
     for b in (c.child, c.parent):
         if b >= 0:
             free_body(system.bodies[b], state[b].Q, work.body[b])
-    return motion_along(system, c, state, work)
 
 
 @kernel
 def drift_of_coordinate(system, i, state, work):
     """Return q'' of the coordinate of friction i for bodies without acceleration."""
-    relations = system.relations
-    c = relations.coordinates[relations.frictions[i].coordinate]
-    return drift(system, c, state, work.joint[0].target)
+    return drift(system, coordinate_of(system, i), state, work.joint[0].target)
 
 
 @kernel
@@ -95,8 +123,7 @@ def is_driven(group, i):
 @kernel
 def rounding_of_rate(system, i, state):
     """Return the round-off of the rate of the coordinate of friction i."""
-    c = system.relations.coordinates[system.relations.frictions[i].coordinate]
-    return ROUND_OFF * speeds_of(system, c, state)
+    return ROUND_OFF * speeds_of(system, coordinate_of(system, i), state)
 
 
 @kernel

@@ -155,7 +155,7 @@ def implicit_stage(model, data, label, s, hg, closes):
             b = group.member[m]
             copy_state(work.stage[b], group.free[b])  # its place: a surface may turn beneath it
             add_velocity(group.base[b], hg, work.stages[s, b], group.free[b])
-        velocities(k, group.points[0], group.free, group.u)
+        velocities(model.system, k, group.points[0], group.free, group.u)
         if k != before:
             for row in range(3 * k):
                 group.p[row] = 0.0
@@ -172,7 +172,7 @@ def implicit_stage(model, data, label, s, hg, closes):
             turned = renew_modes(model, data.active, k, hg, turn, group)
         for i in range(k):  # the work of friction of all points: what sticks has no velocity
             group.kind[i] = SLIDING
-        velocities(k, group.points[0], work.stage, group.u)
+        velocities(model.system, k, group.points[0], work.stage, group.u)
         driven, rubbed = push_bodies(model, data, loaded, k, count, s)
         power = applied + driven
     if model.controls.order > 0 and not closes and not change <= STAGE_CHANGE:

@@ -135,7 +135,7 @@ def onto_tangents(system, data, k, count):
     n, x = factor_given(k, False, group), group.back
     tiny = SUM_ERROR * greatest_speed(system, state, count, group.member)
     for _ in range(2):  # W is that of the last stage
-        velocities(k, group.points[0], state, x)
+        velocities(system, k, group.points[0], state, x)
         solve_rows(k, n, tiny, group, x)
         give(system, k, count, state, group, work)
 

@@ -25,9 +25,10 @@ from carom.kinematics.flight import free_rates
 from carom.kinematics.moving_surfaces import set_surfaces
 from carom.law.friction import bound_of_stick
 from carom.law.piecewise import any_depends_on_speed
-from carom.model.workspace import MOTION_JOINT, MOTION_PIVOT, MOTION_POINT
+from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.joint_rows import (
     drift_of_coordinate,
+    is_angle,
     is_driven,
     rounding_of_rate,
 )
@@ -85,8 +86,8 @@ def write_rows(model, data, label, s) -> int:
 def write_motion(system, k, state, rates, group, work):
     """Write u, c and the friction of k points of a group in a state with given accelerations."""
     points = group.points[0]
-    velocities(k, points, state, group.u)
-    accelerations(k, points, state, rates, group.c)
+    velocities(system, k, points, state, group.u)
+    accelerations(system, k, points, state, rates, group.c)
     for i in range(k):
         closed_point = group.closed[i]
         if is_torque(closed_point):
@@ -152,7 +153,7 @@ def beyond_stop(system, active, i, group):
     speed = -(u[3 * i + 1] * d1 + u[3 * i + 2] * d2)
     if not (slips and speed > 0.0):
         return 0.0
-    return speed * (system.bodies[point.a].extent if point.motion == MOTION_PIVOT else 1.0)
+    return speed * (system.bodies[point.a].extent if is_angle(system, point) else 1.0)
 
 
 @kernel

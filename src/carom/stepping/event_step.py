@@ -35,7 +35,7 @@ from carom.persistent.thresholds import CUT_RESIDUAL, STOP_RESIDUAL
 from carom.status import LEFT_CURVE, NO_CONVERGENCE, NOT_FINITE
 from carom.status import TOO_MANY_IMPACTS as TOO_MANY
 from carom.stepping.energy_balance import note_exchanged
-from carom.stepping.record import finite, grow, save_contacts
+from carom.stepping.record import finite, grow, room_of_touches, save_contacts
 from carom.stepping.trial_step import first_event, propose_step
 
 
@@ -211,7 +211,8 @@ def full(system, active, clock, records):
     """Return whether the records have no room for one turn of the loop."""
     rows = r.MARGIN + active.count[0]
     last = max(clock.event + 1, clock.struck) + rows
-    if last > records.event.shape[0] or clock.touched + rows > records.touch.shape[0]:
+    touches = clock.touched + room_of_touches(system, rows)
+    if last > records.event.shape[0] or touches > records.touch.shape[0]:
         return True
     return clock.snapped + 2 * (system.bodies.shape[0] + rows) > records.snapshot.shape[0]
 
@@ -266,7 +267,7 @@ def may_end(contact, system, controls, state, horizon, work):
     if not is_fixed(contact):
         return True
     point = work.struck[0]
-    rate = contact_velocity(point, state)[0]
+    rate = contact_velocity(system, point, state)[0]
     if rate <= slow(contact, state) or system.bodies[contact.body].ballistic == 0:
         return True
     work.body[contact.body].status = FREE

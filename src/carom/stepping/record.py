@@ -9,10 +9,13 @@ from carom.contact.operations import place
 from carom.dynamics.explicit import copy_state
 from carom.geometry.rotation import cross
 from carom.kinematics.anisotropy import lengths_of_tangents
+from carom.kinematics.combination import factor_of, is_combination, term_of, terms_of
 from carom.kinematics.contact_point import own_field
+from carom.kinematics.coordinate import along, slides
+from carom.kinematics.joints import child_arm, parent_arm
 from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.records import GROW
-from carom.model.workspace import MOTION_STOP_TURN
+from carom.model.workspace import MOTION_STOP
 from carom.stepping.energy_balance import begin_watch, note_energies
 
 
@@ -35,6 +38,12 @@ def still(state):
             if state[b].v[k] != 0.0 or state[b].w[k] != 0.0:
                 return False
     return True
+
+
+@inlined
+def room_of_touches(system, active):
+    """Return how many rows of touches a saved state may need: a stop of a combination has one for each term."""
+    return active + 2 * system.relations.terms.shape[0]
 
 
 @inlined
@@ -83,6 +92,9 @@ def save_contacts(model, data, k):
         active_point, point, touch = active.points[i], work.placed[0], records.touch[clock.touched]
         contact = system.contacts[active_point.contact]
         place(system, contact, active_point, now, point, work)
+        if point.motion == MOTION_STOP:
+            save_stop(model, data, k, i)
+            continue
         E, arm, other, f = point.axes, point.arm_a, point.arm_b, active_point.force
         touch.saved, touch.contact, touch.feature = k, contact.number, active_point.feature
         touch.mode, touch.body = active_point.mode, system.bodies[active_point.body].number
@@ -96,13 +108,6 @@ def save_contacts(model, data, k):
             a, b = lengths_of_tangents(point)
         tx, ty, tz = cross(arm[0], arm[1], arm[2], fx, fy, fz)
         sx, sy, sz = cross(other[0], other[1], other[2], -fx, -fy, -fz)
-        unit = 1.0
-        # the force of a stop of an angle is a torque divided by a length
-        if point.motion == MOTION_STOP_TURN:
-            unit = point.length
-            tx, ty, tz = unit * fx, unit * fy, unit * fz
-            sx, sy, sz = -tx, -ty, -tz
-            fx, fy, fz = 0.0, 0.0, 0.0
         torque = active_point.torque
         m = (torque[0], torque[1] / a, torque[2] / b)
         mx = m[0] * E[0, 0] + m[1] * E[1, 0] + m[2] * E[2, 0]
@@ -117,6 +122,53 @@ def save_contacts(model, data, k):
         o[0], o[1], o[2] = (sx - mx, sy - my, sz - mz) if pair else (0.0, 0.0, 0.0)
         p[0], p[1], p[2] = fx, fy, fz
         for j in range(3):
-            touch.force[j], touch.point[j] = unit * f[j], now[active_point.body].x[j] + arm[j]
+            touch.force[j], touch.point[j] = f[j], now[active_point.body].x[j] + arm[j]
         touch.force[1], touch.force[2] = a * touch.force[1], b * touch.force[2]
         clock.touched += 1
+
+
+@kernel
+def save_stop(model, data, k, i):
+    """Write the force of a stop at saved time k, a row for each joint of its coordinate."""
+    system, active_point, point = model.system, data.active.points[i], data.work.placed[0]
+    c = system.relations.coordinates[point.coordinate]
+    force = point.length * active_point.force[0]
+    if not is_combination(c):
+        save_along(model, data, (k, i), c, force)
+        return
+    first, last = terms_of(system, c)
+    for t in range(first, last):
+        save_along(model, data, (k, i), term_of(system, t), factor_of(system, t) * force)
+        if t > first:  # the first row has the force of the stop
+            data.records.touch[data.clocks[0].touched - 1].force[0] = 0.0
+
+
+@kernel
+def save_along(model, data, row, c, force):
+    """Write the wrenches on both bodies of a joint by the force of a stop along its coordinate."""
+    system, now, clock, (k, i) = model.system, data.state, data.clocks[0], row
+    active_point, point, touch = (
+        data.active.points[i],
+        data.work.placed[0],
+        data.records.touch[clock.touched],
+    )
+    touch.saved, touch.contact = k, system.contacts[active_point.contact].number
+    touch.feature, touch.mode, touch.power = active_point.feature, active_point.mode, 0.0
+    child, parent, s = c.child, c.parent, 1.0
+    if child < 0:
+        child, parent, s = parent, -1, -1.0
+    touch.body = system.bodies[child].number
+    touch.other = system.bodies[parent].number if parent >= 0 else -1
+    n, slide = along(system, c, now), slides(c)
+    f = (s * force * n[0], s * force * n[1], s * force * n[2])
+    r = child_arm(c, now) if s > 0.0 else parent_arm(c, now)
+    q = parent_arm(c, now) if parent >= 0 else (0.0, 0.0, 0.0)
+    t, o = f, (-f[0], -f[1], -f[2])
+    if slide:
+        t, o = cross(r[0], r[1], r[2], f[0], f[1], f[2]), cross(q[0], q[1], q[2], o[0], o[1], o[2])
+    for j in range(3):
+        touch.push[j], touch.moment[j] = f[j] if slide else 0.0, t[j]
+        touch.other_moment[j] = o[j] if parent >= 0 else 0.0
+        touch.force[j], touch.point[j] = 0.0, now[child].x[j] + r[j]
+    touch.force[0] = abs(point.length) * active_point.force[0]
+    clock.touched += 1

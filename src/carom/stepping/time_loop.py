@@ -24,7 +24,7 @@ from carom.stepping.event_step import NOT_FINITE, advance, left_ball
 from carom.stepping.grid import begin_and_length, end_of, is_saved
 from carom.stepping.islands import one_island, parts
 from carom.stepping.islands.plan import READY
-from carom.stepping.record import finite, grow, save, still
+from carom.stepping.record import finite, grow, room_of_touches, save, still
 
 REPEAT = -1  # the step is to be repeated
 
@@ -51,7 +51,8 @@ def run(model, data, method, islands, grid, until):
             continue
         if code != 0:
             return code
-        if clock.touched + data.active.points.shape[0] > data.records.touch.shape[0]:
+        rows = room_of_touches(model.system, data.active.points.shape[0])
+        if clock.touched + rows > data.records.touch.shape[0]:
             return grow(step, r.FULL_EVENTS)
         if islands.apart == 1:
             end_islands(model, data, islands)

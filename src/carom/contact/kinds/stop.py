@@ -18,13 +18,14 @@ from carom.contact.point_axes import tangents
 from carom.contact.point_lists import is_active, write_closed
 from carom.geometry.rotation import cross
 from carom.geometry.thresholds import RESOLUTION
+from carom.kinematics.combination import drift as rate_of_slope
+from carom.kinematics.combination import first_of, value
 from carom.kinematics.contact_point import contact_velocity
-from carom.kinematics.coordinate import along, slides, value
-from carom.kinematics.coordinate import drift as rate_of_slope
+from carom.kinematics.coordinate import along, slides
 from carom.kinematics.curve import can_be_left, find_foot, foot_of, is_on_curve, rail_drift
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.model.actions import NOTHING, PERSIST, STRIKE
-from carom.model.workspace import MOTION_POINT, MOTION_STOP_SLIDE, MOTION_STOP_TURN
+from carom.model.workspace import MOTION_POINT, MOTION_STOP
 
 located_within, rounding = gaps.located_within, round_off
 
@@ -32,12 +33,13 @@ located_within, rounding = gaps.located_within, round_off
 @unit
 def place_stop(system, contact, state, point):
     """Write the point, axes and gap of a stop."""
-    c = system.relations.coordinates[contact.solid]
+    of_stop = system.relations.coordinates[contact.solid]
+    c = first_of(system, of_stop)  # its axis and arms are for records alone
     nx, ny, nz = along(system, c, state)
     if is_rail(system, c):
         place_on_rail(contact, c, foot_of(system, c), state, point)
         return
-    # the row is that of the child relative to the parent; its sign changes if the child is the ground
+    # the normal is that of the child relative to the parent; its sign changes if the child is the ground
     s = 1.0 if (contact.side > 0.0) == (contact.body == c.child) else -1.0
     point.a, point.b = contact.body, contact.other
     tangents(s * nx, s * ny, s * nz, point.axes)
@@ -49,9 +51,8 @@ def place_stop(system, contact, state, point):
         if slides(c):
             r = parent_arm(c, state)
             point.arm_b[0], point.arm_b[1], point.arm_b[2] = r
-    point.gap = contact.side * value(system, c, state) - contact.offset
-    point.motion = MOTION_STOP_SLIDE if slides(c) else MOTION_STOP_TURN
-    point.length = abs(contact.side)
+    point.gap = contact.side * value(system, of_stop, state) - contact.offset
+    point.motion, point.length, point.coordinate = MOTION_STOP, contact.side, contact.solid
     point.moves = 0
 
 
@@ -77,7 +78,7 @@ def place_on_rail(contact, c, foot, state, point):
 def stop_gap(system, contact, state, work) -> tuple[float, float]:
     """Return the gap of a stop and its rate."""
     place_stop(system, contact, state, work.placed[0])
-    return work.placed[0].gap, contact_velocity(work.placed[0], state)[0]
+    return work.placed[0].gap, contact_velocity(system, work.placed[0], state)[0]
 
 
 @unit

@@ -8,8 +8,8 @@ from carom._compiled.decorators import kernel
 from carom.dynamics.energy import energies, kinetic_of, spin_momentum
 from carom.dynamics.rotors import energy_of_change
 from carom.geometry.rotation import norm
-from carom.kinematics.contact_point import contact_velocity
 from carom.persistent.step_control import lost_by, weigh
+from carom.stepping.crowd.response import velocity_of
 from carom.stepping.thresholds import CROWD_ERROR, CROWD_GAIN
 
 
@@ -43,7 +43,7 @@ def breaks_balance(model, data, k, gained):
         size += kinetic_of(system.bodies[b], start[b]) + weigh(system, b, start, end)
     for i in range(k):
         u, p = crowd.closed[i].before, crowd.closed[i].impulse
-        w = contact_velocity(crowd.points[0][i], end)
+        w = velocity_of(system, crowd.points[0][i], crowd, end)
         for j in range(3):
             work += 0.5 * p[j] * (u[j] + w[j])
     return not (gained <= CROWD_GAIN * size and abs(gained - work) <= CROWD_ERROR * size)

@@ -12,7 +12,6 @@ from carom.geometry.rotation import norm
 from carom.geometry.thresholds import RESOLUTION
 from carom.impact.layout import AT_END
 from carom.impact.record import Blow, three, write_blow
-from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.model.event_rows import note_event
 from carom.model.records import IMPACT, OPENS, PERSISTS, SLIPS, STICKS
@@ -20,7 +19,7 @@ from carom.model.workspace import MOTION_POINT, MOTION_ROLL
 from carom.persistent.active_set import begin_point
 from carom.persistent.step_control import rest_speed
 from carom.persistent.thresholds import CROWD_REST, FEW_REST
-from carom.stepping.crowd.response import block_of_point
+from carom.stepping.crowd.response import block_of_point, velocity_of
 
 
 @kernel
@@ -34,7 +33,7 @@ def finish(model, data, k, h, fall, residual):
     for i in range(k):
         spot, point = crowd.closed[i], crowd.points[0][i]
         p, u = spot.impulse, spot.before
-        w = contact_velocity(point, end)
+        w = velocity_of(system, point, crowd, end)
         normal = 0.5 * p[0] * (u[0] + w[0]) if spot.motion == MOTION_POINT else 0.0
         tangential = 0.5 * (p[1] * (u[1] + w[1]) + p[2] * (u[2] + w[2]))
         if spot.motion == MOTION_POINT and p[0] > 0.0 and spot.strikes == 1:
@@ -73,7 +72,8 @@ def finish(model, data, k, h, fall, residual):
 def write_impact(model, data, i, k, pressure, rubbing):
     """Write the row of an impact without duration; k points share the impulses of the step."""
     crowd, clock, records = data.crowd, data.clocks[0], data.records
-    spot, w = crowd.closed[i], contact_velocity(crowd.points[0][i], data.work.trial)
+    spot, end = crowd.closed[i], data.work.trial
+    w = velocity_of(model.system, crowd.points[0][i], crowd, end)
     block_of_point(crowd.problem, i, records.impact[clock.struck].W)
     blow = Blow(
         together=max(2, k), before=three(spot.before, 0), after=w, impulse=three(spot.impulse, 0),
@@ -81,7 +81,7 @@ def write_impact(model, data, i, k, pressure, rubbing):
         change=pressure + rubbing, phases=AT_END, duration=0.0,
     )  # fmt: skip
     contact = model.system.contacts[spot.contact]
-    write_blow(contact, crowd.points[0][i], data.work.trial, blow, clock, records)
+    write_blow(contact, crowd.points[0][i], end, blow, clock, records)
 
 
 @kernel
@@ -104,7 +104,7 @@ def list_active(model, data, k, h, tolerance):
             continue
         spot.place = count
         active_point = crowd.active[count]
-        _, w1, w2 = contact_velocity(crowd.points[0][i], end)
+        _, w1, w2 = velocity_of(system, crowd.points[0][i], crowd, end)
         w1, w2 = w1 + spot.drift[1], w2 + spot.drift[2]
         slips = math.sqrt(w1 * w1 + w2 * w2) > max(tolerance, 10.0 * slow(contact, end))
         mode = MODE_SLIP if slips else MODE_STICK

@@ -10,7 +10,7 @@ from carom.dynamics.project import shift
 from carom.dynamics.solve import solve
 from carom.dynamics.step import step
 from carom.geometry.rotation import conjugate, log, multiply, turn
-from carom.kinematics.coordinate import rate
+from carom.kinematics.combination import rate
 from carom.kinematics.flight import free_flight
 from carom.persistent.contact_step import contact_step
 from carom.stepping.energy_balance import unbalanced

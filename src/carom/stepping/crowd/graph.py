@@ -26,6 +26,9 @@ def find_order(n, k, crowd):
         for e in range(link[i].others, link[i].others_end):
             if graph.other[e] != crowd.problem.other[e].body:
                 known, graph.other[e] = False, crowd.problem.other[e].body
+    for i in range(k):
+        if link[i].spans == 1:  # blocks have the rows of two bodies: there are only sweeps
+            return False
     if known:
         return graph.count[2] >= 0
     graph.count[0], graph.count[1], graph.count[2] = n, k, -1

@@ -15,12 +15,12 @@ from carom.dynamics.thresholds import ERROR_SHARE
 from carom.friction.layout import ITERATE
 from carom.geometry.rotation import rotate, rotate_back
 from carom.geometry.thresholds import REMAINDER, RESOLUTION
-from carom.kinematics.contact_point import contact_velocity, power_of_surface
+from carom.kinematics.contact_point import power_of_surface
 from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.allowance import COUNT_BLOCKS, left
 from carom.stepping.crowd.free_motion import halfway
 from carom.stepping.crowd.pose import note_drift, pose
-from carom.stepping.crowd.response import respond, write_responses
+from carom.stepping.crowd.response import respond, velocity_of, write_responses
 from carom.stepping.crowd.solve import solve
 from carom.stepping.crowd.spots import gather, gather_sunk, place_all
 from carom.stepping.crowd.surface import onto_surfaces
@@ -37,14 +37,14 @@ def find_points(model, data, h, fall, wide):
     if k < 0:
         return k
     for b in range(n):
-        halfway(now[b], crowd.flight[b], crowd.middle[b])
+        halfway(now[b], crowd.flight[b], crowd.pose[b])
     place_all(model, data, 0, k, crowd.flight, crowd.points[1])
     for i in range(k):
         crowd.closed[i].left = crowd.points[1][i].gap
-    place_all(model, data, 0, k, crowd.middle, crowd.points[0])
+    place_all(model, data, 0, k, crowd.pose, crowd.points[0])
     if n > 1:
         place_all(model, data, 0, k, now, crowd.points[1])
-    note_drift(data.active, k, n > 1, now, crowd)
+    note_drift(model.system, data.active, k, n > 1, now, crowd)
     return k
 
 
@@ -65,7 +65,7 @@ def find_impulses(model, data, k, h, fall, patient):
     clock.trials += 1
     clock.contact_steps += 1
     work.step[0].since += 10.0 * (k + n)
-    if n > 1 and bounces_give(k, crowd, work.trial):
+    if n > 1 and bounces_give(system, k, crowd, work.trial):
         more = limit_bounces(system, data, k, tolerance, most)
         residual = max(residual, more)
     for i in range(k):
@@ -83,11 +83,13 @@ def work_of(i, p, before, after):
 
 
 @kernel
-def bounces_give(k, crowd, end):
+def bounces_give(system, k, crowd, end):
     """Return whether the impulses add energy and some point strikes."""
     total, size, strikes = 0.0, 0.0, False
     for i in range(k):
-        one = work_of(i, crowd.p, crowd.closed[i].before, contact_velocity(crowd.points[0][i], end))
+        one = work_of(
+            i, crowd.p, crowd.closed[i].before, velocity_of(system, crowd.points[0][i], crowd, end)
+        )
         total, size = total + one, size + abs(one)
         strikes = strikes or crowd.closed[i].strikes == 1
     return strikes and total > REMAINDER * size
@@ -106,7 +108,7 @@ def limit_bounces(system, data, k, tolerance, most):
         full[i] = crowd.p[i]
     for i in range(k):  # remove the bounds of restitution, and store w with restitution
         spot = crowd.closed[i]
-        w = contact_velocity(crowd.points[0][i], end)
+        w = velocity_of(system, crowd.points[0][i], crowd, end)
         if spot.strikes == 1 and spot.bound + spot.drift[0] > 0.0:
             crowd.c[3 * i] += spot.bound + spot.drift[0]
         spot.after[0], spot.after[1], spot.after[2] = w
@@ -115,7 +117,7 @@ def limit_bounces(system, data, k, tolerance, most):
     gain_all(crowd, work)
     a, b, c = 0.0, 0.0, 0.0  # coefficients of the work a + b s + c s^2
     for i in range(k):
-        u, w = crowd.closed[i].before, contact_velocity(crowd.points[0][i], end)
+        u, w = crowd.closed[i].before, velocity_of(system, crowd.points[0][i], crowd, end)
         for j in range(3):
             p, d = crowd.p[3 * i + j], full[3 * i + j] - crowd.p[3 * i + j]
             dw = crowd.closed[i].after[j] - w[j]
@@ -151,7 +153,7 @@ def impose(model, data, k, h):
     system, crowd, work, end = model.system, data.crowd, data.work, data.work.trial
     driven, joined = 0.0, system.joints.shape[0] > 0
     for i in range(k):
-        driven += power_of_surface(crowd.points[0][i], crowd.middle, crowd.closed[i].impulse)
+        driven += power_of_surface(crowd.points[0][i], crowd.pose, crowd.closed[i].impulse)
     work.moment[0].time = work.moment[0].start + h
     if joined:
         note_rates(system, crowd.flight)

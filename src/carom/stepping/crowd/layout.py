@@ -69,6 +69,9 @@ class Crowd(NamedTuple):
     flight: np.recarray  # (N,) STATE at the end of the step without contacts
     flight_middle: np.recarray  # (N,) STATE halfway there, for loaded bodies
     middle: np.recarray  # (N,) STATE halfway on a path
+    pose: (
+        np.recarray
+    )  # (N,) STATE halfway to the end without contacts, at which `points[0]` are placed
     pressed: np.recarray  # (N,) STATE at the end of the step, before bodies are moved apart
     active: np.recarray  # (P,) ACTIVE_POINT after the step
     follows: np.ndarray  # (P,) next active point of the same contact, -1 after the last
@@ -96,13 +99,13 @@ def new_crowd(bodies: int, active: int, points: int, joined: int = 0) -> Crowd:
         count=whole(4), body=whole((points, 3)), other=whole(others),
         near=whole((bodies, bodies // WORD + 1)), degree=whole(bodies), rank=whole(bodies),
     )  # fmt: skip
-    flight, flight_middle, middle, pressed = table(STATE, 4, bodies)
+    flight, flight_middle, middle, pose, pressed = table(STATE, 5, bodies)
     return Crowd(
         closed=table(SPOT, points), count=whole(1), points=table(POINT, 2, points),
         c=np.zeros(3 * points),
         p=np.zeros(3 * points), lift=np.zeros(points), bouncing=np.zeros(3 * points),
         problem=problem, mixing=new_mixing(points), graph=graph, flight=flight,
-        flight_middle=flight_middle, middle=middle, pressed=pressed,
+        flight_middle=flight_middle, middle=middle, pose=pose, pressed=pressed,
         active=table(ACTIVE_POINT, active), follows=whole(active), parent=whole(bodies),
         speed=np.zeros((2, bodies)),
     )  # fmt: skip

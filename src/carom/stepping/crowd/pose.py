@@ -12,7 +12,7 @@ from carom.law.restitution import restitution_at
 from carom.model.actions import MODE_STICK
 from carom.model.laws import PERSISTENT, STRIKES
 from carom.model.workspace import MOTION_POINT, MOTION_ROLL
-from carom.stepping.crowd.response import write_responses
+from carom.stepping.crowd.response import velocity_of, write_responses
 from carom.stepping.thresholds import LEAVING_SPEED
 
 
@@ -29,8 +29,8 @@ def pose(model, data, k, h, fall):
     for i in range(k):
         spot, point = crowd.closed[i], crowd.points[0][i]
         contact, p = system.contacts[spot.contact], crowd.p
-        spot.before[0], spot.before[1], spot.before[2] = contact_velocity(point, start)
-        free = contact_velocity(point, crowd.flight)
+        spot.before[0], spot.before[1], spot.before[2] = velocity_of(system, point, crowd, start)
+        free = velocity_of(system, point, crowd, crowd.flight)
         for r in range(3):
             crowd.c[3 * i + r], p[3 * i + r] = free[r], 0.0
         row = crowd.problem.contact[i]
@@ -61,7 +61,7 @@ def pose(model, data, k, h, fall):
 
 
 @kernel
-def note_drift(active, k, several, start, crowd):
+def note_drift(system, active, k, several, start, crowd):
     """Write the velocity of an active point from rows that turn: G_m v_0 - G_0 v_0, with tangents if it sticks.
 
     It is for several bodies; their rows at the start are in `crowd.points[1]`. A point that stays closed has
@@ -73,8 +73,8 @@ def note_drift(active, k, several, start, crowd):
         spot.drift[0], spot.drift[1], spot.drift[2] = 0.0, 0.0, 0.0
         if not (several and spot.active >= 0 and spot.motion == MOTION_POINT):
             continue
-        before = contact_velocity(crowd.points[1][i], start)
-        u = contact_velocity(crowd.points[0][i], start)
+        before = contact_velocity(system, crowd.points[1][i], start)
+        u = velocity_of(system, crowd.points[0][i], crowd, start)
         for r in range(3 if active.points[spot.active].mode == MODE_STICK else 1):
             spot.drift[r] = u[r] - before[r]
 

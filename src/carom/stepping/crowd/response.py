@@ -15,7 +15,9 @@ from carom.friction.island import write_motion
 from carom.friction.layout import CONE
 from carom.friction.solve import inverse_mass_of, scale_link
 from carom.geometry.rotation import unit_vector
-from carom.model.workspace import MOTION_STOP_TURN
+from carom.kinematics.contact_point import contact_velocity
+from carom.kinematics.row_of_coordinate import rate_in_pose
+from carom.model.workspace import MOTION_PIVOT, MOTION_STOP
 
 
 @kernel
@@ -28,13 +30,18 @@ def write_responses(system, first, k, crowd, work):
         link.body[0], link.body[1], link.others = point.a, point.b, last
         last = write_rows(system, point, crowd, link, last, work)
         link.others_end = last
+        for r in range(6):
+            link.local[r] = 0.0
+        for e in range(link.others, last if link.spans == 1 else link.others):
+            add_products(problem.other[e].rows, problem.other[e].response, link.local)
         scale_link(link, problem.contact[i], 0.0, CONE, (0.0, 0.0))
         s = problem.contact[i].scale
         for e in range(link.others, last):
             for r in range(6):
                 for a in range(3):
                     problem.other[e].response[r, a] *= s
-        if point.motion >= MOTION_STOP_TURN:  # it has no tangents: any positive number does
+                    problem.other[e].rows[a, r] *= s
+        if point.motion == MOTION_STOP:  # it has no tangents: any positive number does
             link.local[3] = link.local[5] = link.local[0]
 
 
@@ -59,7 +66,7 @@ def spread_impulses(system, k, crowd, work):
     clear_wrenches(work)
     for i in range(k):
         p = crowd.p
-        add_impulse(crowd.points[0][i], p[3 * i : 3 * i + 3], work)
+        add_impulse(system, crowd.points[0][i], crowd.pose, p[3 * i : 3 * i + 3], work)
     solve(system, crowd.flight, False, work)
 
 
@@ -76,27 +83,61 @@ def write_rows(system, point, crowd, link, first, work):
     A row is the wrench of a unit impulse, and its response the motion. The others are rows of `OTHER` from
     `first` on; return their end.
     """
-    other, last = crowd.problem.other, first
+    other, last, link.spans = crowd.problem.other, first, 0
     for b in range(0 if alone(system, point) else system.bodies.shape[0]):
         if system.bodies[b].isolated == 0 and b != link.body[0] and b != link.body[1]:
             other[last].body = b
             last += 1
     for r in range(3):
-        spread(system, point, crowd.flight, unit_vector(r), work)
+        respond_to(system, point, unit_vector(r), crowd, work)
         for side in range(2):
             if link.body[side] >= 0:
                 G, Y, memory = link.rows[side], link.response[side], work.body[link.body[side]]
                 for j in range(6):
                     G[r, j], Y[j, r] = memory.wrench[j], memory.motion[j]
         for e in range(first, last):
+            memory = work.body[other[e].body]
             for j in range(6):
-                other[e].response[j, r] = work.body[other[e].body].motion[j]
+                spans = point.motion == MOTION_STOP and memory.wrench[j] != 0.0
+                other[e].rows[r, j] = memory.wrench[j] if spans else 0.0
+                other[e].response[j, r] = memory.motion[j]
+                link.spans = 1 if spans else link.spans
     moved = first
     for e in range(first, last):
         if responds(other[e]):
             other[moved] = other[e]
             moved += 1
     return moved
+
+
+@kernel
+def respond_to(system, point, p, crowd, work):
+    """Write the wrenches and the motion of an impulse at a point; the rows of a stop are those of the pose."""
+    if point.motion > MOTION_PIVOT:
+        clear_wrenches(work)
+        add_impulse(system, point, crowd.pose, p, work)
+        solve(system, crowd.flight, False, work)
+        return
+    spread(system, point, crowd.flight, p, work)
+
+
+@kernel
+def velocity_of(system, point, crowd, state):
+    """Return u = G v of a point of a crowd: the rows of the pose, the velocities of a state."""
+    if point.motion > MOTION_PIVOT:
+        return rate_in_pose(system, point, crowd.pose, state)
+    return contact_velocity(system, point, state)
+
+
+@kernel
+def add_products(rows, response, local):
+    """Add the upper triangle of the product of rows and responses of a body."""
+    at = 0
+    for a in range(3):
+        for d in range(a, 3):
+            for j in range(6):
+                local[at] += rows[a, j] * response[j, d]
+            at += 1
 
 
 @kernel

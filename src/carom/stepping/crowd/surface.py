@@ -86,6 +86,10 @@ def lift_one(problem, i, gap, lam):
             G, y = link.rows[side], problem.body[link.body[side]].motion
             for j in range(6):
                 gap += G[0, j] * y[j] / s
+    for e in range(link.others, link.others_end if link.spans == 1 else link.others):
+        G, y = problem.other[e].rows, problem.body[problem.other[e].body].motion
+        for j in range(6):
+            gap += G[0, j] * y[j] / s
     before = lam[i]
     lam[i] = max(0.0, before - s * gap / link.local[0])
     d = lam[i] - before
