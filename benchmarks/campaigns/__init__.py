@@ -17,6 +17,7 @@ from campaigns import (
     loose_rails,
     mechanisms,
     piles,
+    plays,
     rails,
     rests,
     robots,
@@ -38,5 +39,5 @@ FAMILIES = {
     "rails": rails.case, "loose rails": loose_rails.case, "surfaces": surfaces.case, "grounds": grounds.case,
     "terrains": terrains.case, "cams": cams.case,
     "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "grains by slip": grains.by_slip,
-    "rough": rough.case,
+    "rough": rough.case, "plays": plays.case,
 }  # fmt: skip

@@ -24,6 +24,7 @@ from carom.dynamics.light_bodies import factor_geometry, geometric_motion
 from carom.dynamics.loops import add_reactions, factor, free_motion, substitute, subtract_rows
 from carom.dynamics.solve import solve
 from carom.dynamics.tree import joint_wrenches
+from carom.kinematics.combination import is_combination
 from carom.kinematics.coordinate import rate, value
 from carom.kinematics.coordinates.turns import turn_of
 from carom.kinematics.curve import is_on_curve, seek_feet, seek_foot
@@ -156,7 +157,8 @@ def follow_turns(system, saved, k):
     """
     relations = system.relations
     for i in range(relations.coordinates.shape[0]):
-        expect_turn(system, saved, k, i)
+        if not is_combination(relations.coordinates[i]):
+            expect_turn(system, saved, k, i)
     for j in range(system.joints.shape[0] if saved.turn.shape[1] == 0 else 0):
         if system.joints[j].kind == RELATION:
             relation = relations.relations[system.joints[j].number]
@@ -165,7 +167,8 @@ def follow_turns(system, saved, k):
                 angle = prescribed(relations, relation, saved.series[k].t)[0] / term.factor
                 relations.memory.coordinates[term.coordinate].reference = angle
     for i in range(relations.coordinates.shape[0]):
-        settle_turn(system, saved, k, i)
+        if not is_combination(relations.coordinates[i]):
+            settle_turn(system, saved, k, i)
 
 
 @entry

@@ -15,7 +15,8 @@ from carom.dynamics.applied.push import acts_along
 from carom.dynamics.contact_impulse import clear_wrench, clear_wrenches
 from carom.dynamics.reactions import expect_turn, follow_turns, settle_turn
 from carom.geometry.rotation import cross, log
-from carom.kinematics.coordinate import along, push, rate
+from carom.kinematics.combination import first_of, push, rate
+from carom.kinematics.coordinate import along
 from carom.kinematics.coordinates.ball import axes_of
 from carom.kinematics.coordinates.turns import angular_velocity, turn_of
 from carom.kinematics.curve import can_be_left, dot, foot_of, is_on_curve
@@ -73,7 +74,7 @@ def add_reported(system, one, values, state, work, row):
         if math.isnan(row.value):
             row.value = force_of_slip(system.laws, friction.law, rate(system, c, state))
         push(system, c, state, row.value, work)
-        return acts_along(c, state)
+        return acts_along(first_of(system, c), state)
     for i in range(one.first, one.last):
         _, row.value, row.length, row.stretching = add(one.kind, system, i, state, 0.0, work)
     return acts_at(one.kind, system, one.first, state)

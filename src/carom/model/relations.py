@@ -16,7 +16,8 @@ from carom.model.curves import Curves
 from carom.model.pieces import PIECE, Pieces
 from carom.model.placement import Placement
 from carom.model.stated_forces import ForceRows
-from carom.scene.constraints import Coupling, Rows, coordinate_kind, counted
+from carom.scene.constraints import Coupling, Rows
+from carom.scene.coordinates import Combination, coordinate_kind, counted
 from carom.scene.forces import Spring
 from carom.scene.joints import Joint
 from carom.scene.more_forces import Actuator, JointInertia, JointSpring
@@ -29,6 +30,7 @@ class Coordinates:
         self.placement = placement
         self.rows: list[np.recarray] = []
         self.numbers: dict[tuple[int, int | str], int] = {}
+        self.sums: dict[tuple[tuple[int, float], ...], int] = {}  # of combinations, by their terms
         self.curves = Curves()
         self.counted, self.used = 0, False
 
@@ -46,19 +48,38 @@ class Coordinates:
         for stop in stops:
             self.number(stop.joint, stop.coordinate)
 
-    def number(self, joint: Joint, coordinate: int | str) -> int:
+    def number(self, joint: Joint | Combination, coordinate: int | str) -> int:
         """Return the index of a coordinate in the table; a new one is added."""
         self.used = True
+        if isinstance(joint, Combination):
+            return self._of_terms(joint)
         key = joint.index, coordinate
         if key not in self.numbers:
             self.numbers[key] = len(self.rows)
             self.rows.append(self._row(joint, coordinate))
         return self.numbers[key]
 
+    def _of_terms(self, combination: Combination) -> int:
+        """Return the index of a combination in the table; a new one is added, with its terms."""
+        terms = tuple((self.number(joint, k), factor) for joint, k, factor in combination.terms)
+        if terms not in self.sums:
+            made, ends = table(arrays.COORDINATE, 1), [self.rows[k][0] for k, _ in terms]
+            moved = [int(one.child if one.child >= 0 else one.parent) for one in ends]
+            other = max(int(ends[0].parent) if ends[0].child >= 0 else -1, -1)
+            made.kind, made.child = arrays.COMBINATION, moved[0]
+            made.parent = moved[-1] if moved[-1] != moved[0] else other
+            self.sums[terms] = len(self.rows)
+            self.rows.append(made)
+        return self.sums[terms]
+
     def bodies(self, number: int) -> set[int]:
         """Return the bodies that a coordinate moves."""
         row = self.rows[number][0]
         return {int(row.child), int(row.parent)} - {-1}
+
+    def combinations(self):
+        """Return the index and the terms of each combination."""
+        return [(number, terms) for terms, number in self.sums.items()]
 
     def table(self) -> np.recarray:
         """Return all rows."""
@@ -228,6 +249,12 @@ class Elements:
             self.relations[k].last = len(terms)
             if kind == arrays.INERTIA:
                 solver.rows.compliance[solver.rows.first == first, 0] = 1.0 / next(inertias)
+        for number, own in self.coordinates.combinations():  # no element has them
+            made = table(arrays.RELATION_ROW, 1)
+            made.first, made.last = len(terms), len(terms) + len(own)
+            rows.number[number] = len(self.relations)
+            self.relations.append(made)
+            terms += [(coordinate, factor, -1, -1) for coordinate, factor in own]
         listed = table(arrays.TERM, len(terms))
         for t, values in zip(listed, terms):
             t.coordinate, t.factor, t.child_side, t.parent_side = values

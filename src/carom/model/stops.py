@@ -10,6 +10,7 @@ from carom.model.contact_kinds import OF_JOINT
 from carom.model.laws import LawTable
 from carom.model.relations import Elements
 from carom.model.thresholds import DIRECTION, LAYER_WIDTH, STILL_SPEED
+from carom.scene.coordinates import Combination
 from carom.scene.materials import IMPACT_LAWS
 
 
@@ -24,8 +25,8 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, laws: 
         c = elements.coordinates.rows[number][0]
         row.number, row.solid, row.kind = first + stop.index, number, OF_JOINT
         row.body, row.other = (c.child, c.parent) if c.child >= 0 else (c.parent, -1)
-        size = elements.sizes[stop.joint.child.index]
-        row.side = stop.side * (size if stop.turns else 1.0)
+        size, arm = _sizes(stop, elements.sizes)
+        row.side = stop.side * (arm if stop.turns else 1.0)
         row.offset = row.side * stop.end
         friction = stop.joint.definition.friction if stop.joint.can_be_left else 0.0
         law = IMPACT_LAWS.index(stop.impact_law)
@@ -43,6 +44,18 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, laws: 
     rows.width = LAYER_WIDTH * rows.extent if options.layer_width is None else options.layer_width
     rows.penetration = options.penetration
     return np.concatenate([contacts, rows]).view(Columns)
+
+
+def _sizes(stop, sizes: np.ndarray) -> tuple[float, float]:
+    """Return the size of a stop, and the arm that converts its angle to a length.
+
+    That of a combination is the longest of those of its angles, each times its factor.
+    """
+    if not isinstance(stop.joint, Combination):
+        size = sizes[stop.joint.child.index]
+        return size, size
+    own = [(sizes[joint.child.index], abs(factor)) for joint, _, factor in stop.joint.terms]
+    return max(size for size, _ in own), min(size / factor for size, factor in own)
 
 
 def _check_twists(scene) -> None:

@@ -16,9 +16,11 @@ from carom.kinematics.coordinates.turns import TURN
 from carom.model.arrays import RELATION
 from carom.model.compile import compile_scene
 from carom.model.records import TOUCH
-from carom.results.exerted import rubs
-from carom.scene.constraints import Driver, coordinate_kind
+from carom.results.exerted import bodies_of, rubs
+from carom.scene.constraints import Coupling, Driver
+from carom.scene.coordinates import Combination, coordinate_kind, kind_of, terms_of
 from carom.scene.friction import bound_of
+from carom.scene.joints import Joint
 from carom.scene.more_forces import JointFriction
 
 STILL = 1e-9  # of the speeds of the joint: below it the rate is round-off, and the joint sticks
@@ -45,7 +47,8 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
     turns = np.round(q / TURN)
     sticks = np.abs(rate) <= STILL * np.array([_speed(d, saved.state) for d in laws])
     most = np.array([bound_of(d.bound) for d in laws])
-    slip = states._reports.exerted(dry, saved, ((0, len(q)),), {}).value
+    rows = np.cumsum([0] + [len(bodies_of(force)) for force in dry])[:-1]  # the first of each
+    slip = states._reports.exerted(dry, saved, ((0, len(q)),), {}).value[:, rows]
     bound, value = np.abs(slip), np.where(sticks, 0.0, slip)
     while True:
         values = {force.index: value[:, k] for k, force in enumerate(dry)}
@@ -56,9 +59,7 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
             held = each[: len(laws)] == 1.0
             made = scene.copy()
             for k in np.flatnonzero(held):
-                made.add_constraint(
-                    Driver(laws[k].joint.name, rate=0.0, coordinate=laws[k].coordinate)
-                )
+                made.add_constraint(_held(laws[k]))
             rows = np.flatnonzero(np.all(alike == each, axis=1))
             first = len(scene.joints) + len(scene.constraints)
             compiled = compile_scene(made, run.options)
@@ -73,6 +74,13 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
         sticks = sticks & ~beyond
 
 
+def _held(d: JointFriction) -> Driver | Coupling:
+    """Return the motor at rest in the place of a friction."""
+    if isinstance(d.joint, Combination):
+        return Coupling({(joint.name, k): factor for joint, k, factor in d.joint.terms})
+    return Driver(d.joint.name, rate=0.0, coordinate=d.coordinate)
+
+
 def _turned(system, angles: np.ndarray) -> None:
     """Let the motors that were added last hold these angles: whole turns are counted from them."""
     own = system.joints["number"][system.joints["kind"] == RELATION]
@@ -84,7 +92,7 @@ def _speed(d: JointFriction, states) -> float:
 
     The work of the bound over a radian, or over the radius of gyration r, is about that of the speed.
     """
-    child, turns = d.joint.child, coordinate_kind(d.joint, d.coordinate) == "turn"
+    child, turns = d.joint.child, kind_of(d.joint, d.coordinate) == "turn"
     moves = states["w" if turns else "v"]
     moment = float(np.trace(child.inertia))  # about m r^2
     bound = bound_of(d.bound)
@@ -95,22 +103,23 @@ def _speed(d: JointFriction, states) -> float:
 def with_forces(states, values: dict[int, np.ndarray], touch) -> np.recarray:
     """Return active points, and the values (T,) of dry frictions as such points, in the order of time."""
     dry = [force for force in states._scene.forces if rubs(force)]
-    points = [_touches(force.definition, values[force.index], states) for force in dry]
+    points = [
+        _touches(joint, k, factor * values[force.index], states)
+        for force in dry
+        for joint, k, factor in terms_of(force.definition.joint, force.definition.coordinate)
+    ]
     full = np.concatenate([touch, *points])
     return full[np.argsort(full["saved"], kind="stable")].view(Columns)
 
 
-def _touches(d: JointFriction, value: np.ndarray, states) -> np.ndarray:
+def _touches(joint: Joint, k: int, value: np.ndarray, states) -> np.ndarray:
     """Return forces along a coordinate as active points, one for each time."""
-    child, parent = d.joint.child.index, d.joint.parent.index
-    motion, x = (
-        states._reports.motion(d.joint, states._saved, d.coordinate),
-        states._saved.state["x"],
-    )
+    child, parent = joint.child.index, joint.parent.index
+    motion, x = states._reports.motion(joint, states._saved, k), states._saved.state["x"]
     axis, arm = motion.along[:, 0] * value[:, None], motion.arm[:, 0]
     rows = table(TOUCH, len(value))
     rows["saved"], rows["body"], rows["other"] = range(len(value)), child, parent
-    if coordinate_kind(d.joint, d.coordinate) == "turn":
+    if coordinate_kind(joint, k) == "turn":
         rows["moment"], rows["other_moment"] = axis, -axis
         return rows
     beside = arm + x[:, child] - (x[:, parent] if parent >= 0 else 0.0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from carom.scene.bodies import Body
+from carom.scene.coordinates import Combination
 from carom.scene.forces import AppliedForce
 from carom.scene.more_forces import JointFriction, UserForce
 
@@ -21,9 +22,14 @@ class Row(NamedTuple):
 
 
 def bodies_of(force: AppliedForce) -> tuple[Body, ...]:
-    """Return the bodies of a force with a row each: its child, or all those of a user's force."""
+    """Return the bodies of a force with a row each: its child, or all of a user's force or a combination."""
     d = force.definition
-    return tuple(d.bodies) if isinstance(d, UserForce) else (force.child,)
+    if isinstance(d, UserForce):
+        return tuple(d.bodies)
+    if not isinstance(getattr(d, "joint", None), Combination):
+        return (force.child,)
+    ends = [end for joint in d.joint.joints for end in (joint.child, joint.parent)]
+    return tuple(dict.fromkeys(end for end in ends if isinstance(end, Body)))
 
 
 def rows_of(scene) -> list[Row]:

@@ -28,7 +28,7 @@ from carom.results.dense_output import curves
 from carom.results.event_tables import JointImpulse, JointImpulseTable
 from carom.results.reports import at_once
 from carom.scene.bodies import HalfSpace
-from carom.scene.constraints import kind_of
+from carom.scene.coordinates import kind_of, terms_of
 from carom.scene.more_forces import JointInertia
 from carom.scene.surfaces import SurfaceDefinition
 
@@ -184,7 +184,8 @@ class _Mechanism:
                 self.take(stop.joint, self.push[i], state, rest)
                 return
             along = stop.side * impacts.impulse[i, 0]
-            self.take_along(stop.joint, stop.coordinate, along, state, rest)
+            for joint, k, factor in terms_of(stop.joint, stop.coordinate):
+                self.take_along(joint, k, factor * along, state, rest)
             return
         for b, sign in ((pairs.body[number], -1.0), (pairs.other[number], 1.0)):
             if b >= 0:

@@ -16,8 +16,9 @@ from carom import arguments, checks
 from carom.geometry import quaternion
 from carom.results.names import UNITS
 from carom.scene.bodies import Body, HalfSpace, StaticBody
-from carom.scene.constraints import Constraint, Driver, coordinate_kind
+from carom.scene.constraints import Constraint, Driver
 from carom.scene.contacts import Contact, gap_between
+from carom.scene.coordinates import kind_of, terms_of
 from carom.scene.forces import AppliedForce, CurveSpring, Spring
 from carom.scene.joints import Joint
 from carom.scene.more_forces import AlongJoint, UserForce
@@ -312,9 +313,9 @@ class _Coordinate(ABC):
     def _coordinate(self, which: int):
         if self._along is None:
             raise AttributeError(f"{self.name!r} acts along no coordinate of a joint")
-        return self._source.joint_coordinates(self._along.joint)[which][
-            ..., self._along.coordinate
-        ][()]
+        read = self._source.joint_coordinates
+        terms = terms_of(self._along.joint, self._along.coordinate)
+        return sum(factor * read(joint)[which][..., k] for joint, k, factor in terms)[()]
 
     @property
     def coordinate(self):
@@ -328,7 +329,7 @@ class _Coordinate(ABC):
 
     def _acts(self, kind: str):
         """Return the force or torque along the coordinate; refuse the other one."""
-        own = coordinate_kind(self._along.joint, self._along.coordinate)
+        own = kind_of(self._along.joint, self._along.coordinate)
         if own != kind:
             asked, has = ("torque", "force") if kind == "turn" else ("force", "torque")
             raise AttributeError(

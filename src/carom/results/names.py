@@ -8,14 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.model.contact_kinds import is_of_joint
-from carom.scene.constraints import (
-    Constraint,
-    ConstraintDefinition,
-    Coupling,
-    Driver,
-    Gear,
-    coordinate_kind,
-)
+from carom.scene.constraints import Constraint, ConstraintDefinition, Coupling, Driver, Gear
+from carom.scene.coordinates import coordinate_kind
 from carom.scene.joints import Joint, JointDefinition, Screw
 from carom.scene.joints.definition import ACTIVE_POINT
 from carom.scene.restitution import Restitution

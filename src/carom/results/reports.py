@@ -23,6 +23,7 @@ from carom.model import records as r
 from carom.model.compile import compile_for_reports
 from carom.results.exerted import bodies_of, rubs
 from carom.results.set_forces import places, put, stated
+from carom.scene.coordinates import Combination
 from carom.scene.forces import AppliedForce
 
 
@@ -36,6 +37,8 @@ class Reports:
 
     def motion(self, joint, states: r.Records, k: int | str | None = None) -> np.recarray:
         """Return the motion, (T, n) MOTION, of all coordinates of a joint, or of one, at saved states."""
+        if isinstance(joint, Combination):
+            return self._sum(joint, states)
         own = range(len(joint.definition.measured)) if k is None else (k,)
         chosen = np.array([self.compiled.numbers[joint.index, one] for one in own], dtype=np.int64)
         out = table(MOTION, len(states.state), len(chosen))
@@ -47,6 +50,14 @@ class Reports:
             )
             out["along"][:, turned] *= -1.0
         return out
+
+    def _sum(self, combination: Combination, states: r.Records) -> np.recarray:
+        """Return the motion (T, 1) of a combination; direction and arm are those of its first coordinate."""
+        factors = [factor for _, _, factor in combination.terms]
+        own = [self.motion(joint, states, k) for joint, k, _ in combination.terms]
+        for name in ("value", "rate"):
+            own[0][name] = sum(factor * one[name] for factor, one in zip(factors, own))
+        return own[0]
 
     def exerted(
         self, forces: Sequence[AppliedForce], states: r.Records, ranges, frictions: Mapping

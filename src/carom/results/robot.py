@@ -22,7 +22,7 @@ from carom.fields import Integer, Number, Value, Vector, keep
 from carom.geometry import quaternion
 from carom.results.forward_kinematics import Motion, put_ball, put_child, relative, sides_of
 from carom.scene.bodies import Body, Ground
-from carom.scene.constraints import counted
+from carom.scene.coordinates import counted
 from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
 from carom.scene.more_forces import Actuator

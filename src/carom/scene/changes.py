@@ -13,9 +13,10 @@ from typing import Any, NamedTuple
 
 from carom import arguments, checks
 from carom.fields import keep
-from carom.scene.bodies import Body, HalfSpace, StaticBody, mass_and_inertia
+from carom.scene.bodies import Body, Ground, HalfSpace, StaticBody, mass_and_inertia
 from carom.scene.constraints import CONSTRAINTS, Constraint
 from carom.scene.contacts import Contact
+from carom.scene.coordinates import Combination
 from carom.scene.forces import FORCES, AppliedForce
 from carom.scene.joints import JOINTS, Joint
 from carom.scene.shapes.mesh import shape_given
@@ -43,7 +44,7 @@ KINDS: dict[type[Any], Kind] = {
 }
 _RANKS = {kind: k for k, kind in enumerate(KINDS)}
 LEAVES = (AppliedForce, Constraint, Stop, Contact)  # to which no part refers
-REFERRING = (*FORCES, *CONSTRAINTS)  # definitions that may contain parts
+REFERRING = (*FORCES, *CONSTRAINTS, Combination)  # definitions that may contain parts
 #: fields of parts and definitions that say which part it is, or to which it refers
 _FIXED = {"index", "name", "body", "other", "parent", "child", "frames", "joint", "bodies", "terms"}
 
@@ -67,7 +68,7 @@ def parts_in(value) -> Iterator[Any]:
     """Yield the parts to which a part or a definition refers, and the ground."""
     own = vars(value)
     for name in KINDS[type(value)].links if type(value) in KINDS else ():
-        yield own[name]
+        yield from _parts_of(own[name])
     if isinstance(value, REFERRING):
         for field in fields(value):
             yield from _parts_of(own[field.name])
@@ -76,7 +77,9 @@ def parts_in(value) -> Iterator[Any]:
 
 
 def _parts_of(value) -> Iterator[Any]:
-    if type(value) in KINDS:
+    if isinstance(value, Combination):
+        value = value.terms
+    if type(value) in KINDS or isinstance(value, Ground):
         yield value
     elif isinstance(value, tuple):
         for one in value:

@@ -5,72 +5,22 @@ Pass a definition to `Scene.add_constraint`.
 
 from __future__ import annotations
 
-import copy
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 from carom import arguments, checks, fields
-from carom.fields import Function, FunctionOrNone, Integer, NumberOrNone, Value, keep
+from carom.fields import Function, FunctionOrNone, Integer, NumberOrNone, Value
 from carom.scene.bodies import Body
-from carom.scene.joints import Joint, JointDefinition
+from carom.scene.coordinates import (
+    Combination,
+    OneJoint,
+    acts_along,
+    joint_or_name,
+    with_joints,
+)
+from carom.scene.joints import Joint
 from carom.scene.values import MethodsOfScene, PartOfScene, in_scene
-
-
-def joint_or_name(name: str, joint) -> Any:
-    """Return a joint, or its name, which is looked up when the definition is added to a scene."""
-    if isinstance(joint, str):
-        return checks.text(name, joint)
-    definition = isinstance(joint, JointDefinition)
-    hint = "; give what add_joint returned, or its name" if definition else ""
-    checks.instance(name, joint, (Joint,), hint)
-    return joint
-
-
-def counted(joints) -> dict[tuple[int, int], int]:
-    """Return the columns of coordinates whose turns or laps a run counts, by index of joint and coordinate."""
-    every = ((one, k) for one in joints for k in range(len(one.definition.coordinates)))
-    turning = [(one.index, k) for one, k in every if one.definition.period(k) > 0.0]
-    return {key: column for column, key in enumerate(turning)}
-
-
-def kind_of(joint: Joint, coordinate: int | str) -> str:
-    """Return "turn" or "slide", the kind of a coordinate of a joint, or of one that stops alone limit."""
-    if isinstance(coordinate, str):
-        return joint.definition.limits[coordinate]
-    return coordinate_kind(joint, coordinate)
-
-
-def coordinate_kind(joint: Joint | str, coordinate: int, name: str = "joint") -> str:
-    """Return "turn" or "slide", the kind of a joint coordinate; refuse one that the joint does not have.
-
-    A joint that is only named has any coordinate until it is known, of the kind "".
-    """
-    joint = joint_or_name(name, joint)
-    if isinstance(joint, str):
-        checks.integer("coordinate", coordinate, least=0)
-        return ""
-    own = joint.definition.coordinates
-    if not own:
-        raise ValueError(
-            f"{name} must have coordinates of its own (Revolute, Prismatic, ...), got {checks.shown(joint)}"
-        )
-    checks.integer("coordinate", coordinate, least=0)
-    if coordinate >= len(own):
-        raise ValueError(
-            f"coordinate must be below {len(own)}, the number of coordinates of {joint!r}, got {coordinate}"
-        )
-    return own[coordinate]
-
-
-def acts_along(joint: Joint | str, coordinate: int, name: str = "joint") -> None:
-    """Refuse a joint without this coordinate, and a rail that can be left, along which nothing acts."""
-    coordinate_kind(joint, coordinate, name)
-    if isinstance(joint, Joint) and joint.can_be_left:
-        raise ValueError(
-            f"{name} must be two-sided: nothing acts along a rail that can be left, got {joint!r}; its "
-            "friction is that of the joint"
-        )
 
 
 def _constant(name: str, rate) -> float:
@@ -93,14 +43,12 @@ def distinct_bodies(name: str, bodies: Body | str | Sequence[Body | str]) -> tup
     return listed
 
 
-#: fields for a joint and for bodies, which may be given by name
-OneJoint: TypeAlias = Value[Joint, Joint | str]
+#: a field for bodies, which may be given by name
 Bodies: TypeAlias = Value[tuple[Body, ...], Body | str | Sequence[Body | str]]
 
 
 @arguments.known
-@dataclass(frozen=True, init=False, eq=False)
-class Coupling:
+class Coupling(Combination):
     """A linear relation between joint coordinates: gears, racks, differentials.
 
     ``sum of factor_k (q_k - q_k(0)) = 0``, with q in radians or metres.
@@ -111,24 +59,6 @@ class Coupling:
         Factors of the coordinates, none of them 0. A key is a joint or its name, for its first coordinate, or a
         pair (joint, index of the coordinate).
     """
-
-    terms: tuple[tuple[Joint, int, float], ...]  #: joint, number of its coordinate, factor
-
-    def __init__(self, factors: Mapping[Joint | str | tuple[Joint | str, int], float]):
-        if not isinstance(factors, Mapping) or not factors:
-            raise ValueError(
-                f"factors must be a mapping from joints to numbers, got {checks.shown(factors)}"
-            )
-        terms = []
-        for key, factor in factors.items():
-            pair = key if isinstance(key, tuple) and len(key) == 2 else (key, 0)
-            joint, coordinate = pair
-            acts_along(joint, coordinate, "each key of factors")
-            factor = checks.number(f"factors[{joint!r}]", factor)
-            if factor == 0.0:
-                raise ValueError(f"factors[{joint!r}] must not be 0, got {factor!r}")
-            terms.append((joint, coordinate, factor))
-        keep(self, terms=tuple(terms))
 
 
 @arguments.known
@@ -271,24 +201,12 @@ def with_parts(definition: Any, member: Callable) -> Any:
     ValueError
         If the scene has no part with such a name (with the nearest one), or if a part is of another scene.
     """
-    if isinstance(definition, Coupling):
-        terms = tuple(
-            (member("each joint of the definition", joint, (Joint,)), k, factor)
-            for joint, k, factor in definition.terms
-        )
-        if len({term[:2] for term in terms}) != len(terms):
-            raise ValueError(
-                f"each joint of the definition must be given once, got {[t[0].name for t in terms]}"
-            )
-        for joint, k, _ in terms:
-            acts_along(joint, k, "each joint of the definition")
-        if terms == definition.terms:
-            return definition
-        made = copy.copy(definition)
-        keep(made, terms=terms)
-        return made
+    if isinstance(definition, Combination):
+        return with_joints(definition, member)
     own = {}
-    if hasattr(definition, "joint"):
+    if isinstance(getattr(definition, "joint", None), Combination):
+        own["joint"] = with_joints(definition.joint, member)
+    elif hasattr(definition, "joint"):
         own["joint"] = member("joint of the definition", definition.joint, (Joint,))
     elif hasattr(definition, "bodies"):
         own["bodies"] = tuple(

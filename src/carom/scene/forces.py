@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from carom import arguments, checks
 from carom.scene.bodies import GROUND, Body, Ground
 from carom.scene.constraints import with_parts
+from carom.scene.coordinates import Combination
 from carom.scene.force_definition import ForceDefinition
 from carom.scene.values import MethodsOfScene, PartOfScene, in_scene, subclasses_in
 
@@ -68,9 +69,10 @@ class AppliedForce(PartOfScene):
 
 
 def force_on(definition) -> tuple | None:
-    """Return the joint or the bodies that a definition contains; None if it contains none."""
+    """Return the joints or the bodies that a definition contains; None if it contains none."""
     if hasattr(definition, "joint"):
-        return (definition.joint,)
+        joint = definition.joint
+        return joint.joints if isinstance(joint, Combination) else (joint,)
     return getattr(definition, "bodies", None)
 
 

@@ -19,13 +19,14 @@ from carom.fields import (
     VectorOrNone,
 )
 from carom.scene.body_forces import SPRING, both_ends
-from carom.scene.constraints import (
-    Bodies,
+from carom.scene.constraints import Bodies, distinct_bodies
+from carom.scene.coordinates import (
+    Along,
     OneJoint,
     acts_along,
-    coordinate_kind,
-    distinct_bodies,
+    joint_or_combination,
     joint_or_name,
+    kind_of,
 )
 from carom.scene.force_definition import ForceDefinition, ForceTable
 from carom.scene.friction import friction
@@ -75,7 +76,7 @@ class AlongJoint(ForceDefinition):
     @property
     def value_unit(self) -> str:
         """Unit of the value along the coordinate."""
-        return "N m" if coordinate_kind(self.joint, self.coordinate) == "turn" else "N"
+        return "N m" if kind_of(self.joint, self.coordinate) == "turn" else "N"
 
     def _rows(self, force, arrays) -> list[dict[str, Any]]:
         assert self.table is not None
@@ -288,8 +289,9 @@ class JointFriction(AlongJoint):
 
     Parameters
     ----------
-    joint : Joint or str
-        The joint, or its name.
+    joint : Joint, str or mapping
+        The joint, or its name; or a mapping from joints to factors, which states a sum of their coordinates: on
+        joint k the friction is factor_k times that of the sum (`Scene.add_play`).
     bound : float or Friction
         Friction force [N] along a displacement or torque [N m] about an angle, at least 0; or a law of it,
         whose coefficients are forces or torques, and whose speed is that of the coordinate [m/s or rad/s].
@@ -297,6 +299,7 @@ class JointFriction(AlongJoint):
         Index of the coordinate of the joint. Default 0.
     """
 
+    joint: Along = Value(joint_or_combination)
     bound: Value[Any, Any] = friction(axis=False)
     coordinate: Integer = fields.integer(0, least=0)
 

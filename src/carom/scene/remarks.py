@@ -95,7 +95,7 @@ def _of_stops(scene: Scene) -> list[str]:
     found = [
         stop
         for stop in scene.stops
-        if stop.joint.kind != "Screw"  # which is made for many turns
+        if getattr(stop.joint, "kind", "") != "Screw"  # which is made for many turns
         and stop.turns
         and abs(stop.end) > 2.0 * math.pi
         and stop.end == round(stop.end)

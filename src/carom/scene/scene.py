@@ -13,15 +13,15 @@ from carom.scene.changes import KINDS, list_of, renewed
 from carom.scene.changes import dependents as dependents_of
 from carom.scene.constraints import Constraint, SceneConstraints, with_parts
 from carom.scene.contacts import Contact, check_gap
-from carom.scene.forces import AppliedForce, SceneForces
+from carom.scene.forces import AppliedForce
 from carom.scene.joints.adding import SceneJoints
 from carom.scene.look import Look, checked_look
 from carom.scene.pairs import Pairs
+from carom.scene.play import ScenePlay
 from carom.scene.registry import Derived, Registry
 from carom.scene.shapes import Shape
 from carom.scene.shown import Shown
 from carom.scene.solids import SceneSolids
-from carom.scene.stops import SceneStops
 from carom.scene.summary import counts, summary
 from carom.scene.touching import SceneContacts
 from carom.scene.values import in_scene
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 @in_scene
 @arguments.known
 class Scene(
-    SceneBodies, SceneSolids, SceneContacts, SceneJoints, SceneStops, SceneConstraints, SceneForces, Shown
+    SceneBodies, SceneSolids, SceneContacts, SceneJoints, ScenePlay, SceneConstraints, Shown
 ):  # fmt: skip
     """A system of bodies, half-spaces, contacts, joints and forces, with its initial state.
 

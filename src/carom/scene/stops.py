@@ -8,7 +8,14 @@ from typing import Any
 
 from carom import arguments, checks, fields
 from carom.fields import NumberOrNone, Value, Word, keep
-from carom.scene.constraints import acts_along, kind_of
+from carom.scene.coordinates import (
+    Combination,
+    Factors,
+    acts_along,
+    joint_or_combination,
+    kind_of,
+    with_joints,
+)
 from carom.scene.joints import Joint
 from carom.scene.materials import IMPACT_LAWS
 from carom.scene.restitution import Restitution
@@ -20,8 +27,11 @@ def _index_or_word(name: str, value) -> int | str:
     return value if isinstance(value, str) else checks.integer(name, value, least=0)
 
 
-def _check_coordinate(joint: Joint, coordinate: int | str) -> None:
+def _check_coordinate(joint: Joint | Combination, coordinate: int | str) -> None:
     """Refuse a coordinate that the joint does not have."""
+    if isinstance(joint, Combination):
+        acts_along(joint, checks.integer("coordinate", coordinate, least=0))
+        return
     limits = joint.definition.limits
     if isinstance(coordinate, str) or limits:
         if coordinate not in limits:
@@ -38,7 +48,8 @@ class Stop(PartOfScene):
 
     Attributes
     ----------
-    joint : Joint
+    joint : Joint or Combination
+        A joint, or a sum of joint coordinates times factors.
     coordinate : int or str
         Index of the coordinate of the joint, or the word for an angle of a ball joint.
     lower, upper : float or None
@@ -48,7 +59,7 @@ class Stop(PartOfScene):
     impact_law : str
     """
 
-    joint: Joint
+    joint: Joint | Combination
     coordinate: Value[Any, Any] = Value(_index_or_word)
     lower: NumberOrNone = fields.number(None)
     upper: NumberOrNone = fields.number(None)
@@ -105,7 +116,7 @@ class SceneStops(MethodsOfScene):
     @arguments.known
     def add_stop(
         self,
-        joint: Joint | str,
+        joint: Joint | str | Factors,
         *,
         lower: float | None = None,
         upper: float | None = None,
@@ -125,7 +136,8 @@ class SceneStops(MethodsOfScene):
         Parameters
         ----------
         joint
-            A joint of the scene that has coordinates, or its name.
+            A joint of the scene that has coordinates, or its name; or a mapping from joints to factors, which
+            states a sum of their coordinates: ``{"first": 1.0, ("second", 1): 2.5}`` (see `add_play`).
         lower, upper
             Exactly one of the two: the lower or the upper limit of the coordinate [rad or m]. The coordinate is
             0 at the start. For two limits add two stops.
@@ -142,11 +154,17 @@ class SceneStops(MethodsOfScene):
         name
             Name in the scene. Default ``"stop1"``, ``"stop2"``, ...
         """
-        joint = self._parts.member("joint", joint, (Joint,))
+        joint = self._joint_or_combination(joint)
         return self._parts.make(
             Stop, "stop", name, replace, joint=joint, coordinate=coordinate, lower=lower, upper=upper,
             restitution=restitution, impact_law=impact_law,
         )  # fmt: skip
+
+    def _joint_or_combination(self, joint) -> Joint | Combination:
+        given = joint_or_combination("joint", joint)
+        if isinstance(given, Combination):
+            return with_joints(given, self._parts.member, "each joint")
+        return self._parts.member("joint", given, (Joint,))
 
     @property
     def stops(self) -> tuple[Stop, ...]:

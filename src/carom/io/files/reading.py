@@ -39,7 +39,7 @@ from carom.results.exerted import rows_of
 from carom.results.joint_impulses import of_joints
 from carom.results.ledger import Ledger
 from carom.results.names import Numbers
-from carom.scene.constraints import counted
+from carom.scene.coordinates import counted
 from carom.status import Status
 from carom.stepping.settings import checked_settings
 

@@ -17,7 +17,8 @@ import numpy as np
 
 from carom import checks
 from carom.scene import bodies, contacts, forces, joints, stops
-from carom.scene.constraints import CONSTRAINTS, Constraint, Coupling, Gear, coordinate_kind
+from carom.scene.constraints import CONSTRAINTS, Constraint, Coupling, Gear
+from carom.scene.coordinates import Combination, coordinate_kind
 from carom.scene.curves import Curve, Spline
 from carom.scene.materials import Material
 from carom.scene.pieces import Piece, Shape
@@ -95,7 +96,9 @@ def _made(parts, part: Any) -> Any:
         checks.instance("definition", one, (joints.Joint, bodies.Body))  # no name
         parts.member("definition", one, (joints.Joint, bodies.Body))
     if isinstance(part, stops.Stop):
-        parts.member("joint", part.joint, (joints.Joint,))
+        of = part.joint
+        for one in of.joints if isinstance(of, Combination) else (of,):
+            parts.member("joint", one, (joints.Joint,))
     if isinstance(part, contacts.Contact):
         parts.member("body", part.body, (bodies.Body,))
         parts.member("other", part.other, KINDS)
@@ -104,7 +107,7 @@ def _made(parts, part: Any) -> Any:
     return type(part)(**{one.name: getattr(part, one.name) for one in fields(part)})
 
 
-def _check_coupling(record: Coupling) -> None:
+def _check_combination(record: Combination) -> None:
     if not isinstance(record.terms, tuple) or not record.terms:
         raise ValueError(f"terms must be a tuple of at least one, got {record.terms!r}")
     for joint, coordinate, factor in record.terms:
@@ -282,6 +285,6 @@ def _check_faces(faces, vertices: int) -> None:
 #: records that are not made again: their checks
 _LOOKS = {
     Convex: _check_convex, Mesh: _check_mesh, Compound: _check_compound, Piece: _check_piece,
-    Profile: _check_profile, Coupling: _check_coupling, Gear: _check_coupling, Curve: _check_curve,
-    Spline: _check_curve, Surface: _check_surface,
+    Profile: _check_profile, Curve: _check_curve, Spline: _check_curve, Surface: _check_surface,
+    **dict.fromkeys((Combination, Coupling, Gear), _check_combination),
 }  # fmt: skip

@@ -35,6 +35,7 @@ from carom.results.sensors import Frame, Sensor
 from carom.scene.bodies import FIXED, GROUND, Body, Ground
 from carom.scene.constraints import CONSTRAINTS, Constraint, Gear
 from carom.scene.contacts import Contact
+from carom.scene.coordinates import Combination
 from carom.scene.curves import CURVES
 from carom.scene.forces import FORCES, AppliedForce
 from carom.scene.joints import JOINTS, Joint
@@ -61,6 +62,7 @@ TYPES: dict[str, type[Any]] = {
         *CONSTRAINTS,
         *CURVES,
         *LAWS,
+        Combination,
         Gear,
         ContactLaw,
         Material,

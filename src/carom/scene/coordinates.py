@@ -1,0 +1,169 @@
+"""Coordinates of joints, and their combinations: along which forces, stops and constraints act."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias, TypeVar
+
+from carom import checks
+from carom.fields import Value, keep
+from carom.scene.bodies import Body, Ground
+from carom.scene.joints import Joint, JointDefinition
+
+#: how a user states a combination: for each joint or its name, or (joint, index of a coordinate), its factor
+Factors: TypeAlias = Mapping[Joint | str | tuple[Joint | str, int], float]
+
+
+def joint_or_name(name: str, joint) -> Any:
+    """Return a joint, or its name, which is looked up when the definition is added to a scene."""
+    if isinstance(joint, str):
+        return checks.text(name, joint)
+    definition = isinstance(joint, JointDefinition)
+    hint = "; give what add_joint returned, or its name" if definition else ""
+    checks.instance(name, joint, (Joint,), hint)
+    return joint
+
+
+def counted(joints) -> dict[tuple[int, int], int]:
+    """Return the columns of coordinates whose turns or laps a run counts, by index of joint and coordinate."""
+    every = ((one, k) for one in joints for k in range(len(one.definition.coordinates)))
+    turning = [(one.index, k) for one, k in every if one.definition.period(k) > 0.0]
+    return {key: column for column, key in enumerate(turning)}
+
+
+def kind_of(joint: Joint | Combination, coordinate: int | str) -> str:
+    """Return "turn" or "slide", the kind of a coordinate of a joint, or of one that stops alone limit.
+
+    A combination in which anything slides is a displacement; "" stands for joints that are only named.
+    """
+    if isinstance(joint, Combination):
+        kinds = {coordinate_kind(one, k) for one, k, _ in joint.terms}
+        return "slide" if "slide" in kinds else min(kinds)
+    if isinstance(coordinate, str):
+        return joint.definition.limits[coordinate]
+    return coordinate_kind(joint, coordinate)
+
+
+def coordinate_kind(joint: Joint | str, coordinate: int, name: str = "joint") -> str:
+    """Return "turn" or "slide", the kind of a joint coordinate; refuse one that the joint does not have.
+
+    A joint that is only named has any coordinate until it is known, of the kind "".
+    """
+    joint = joint_or_name(name, joint)
+    if isinstance(joint, str):
+        checks.integer("coordinate", coordinate, least=0)
+        return ""
+    own = joint.definition.coordinates
+    if not own:
+        raise ValueError(
+            f"{name} must have coordinates of its own (Revolute, Prismatic, ...), got {checks.shown(joint)}"
+        )
+    checks.integer("coordinate", coordinate, least=0)
+    if coordinate >= len(own):
+        raise ValueError(
+            f"coordinate must be below {len(own)}, the number of coordinates of {joint!r}, got {coordinate}"
+        )
+    return own[coordinate]
+
+
+def acts_along(joint: Joint | Combination | str, coordinate: int, name: str = "joint") -> None:
+    """Refuse a joint without this coordinate, and a rail that can be left, along which nothing acts."""
+    if isinstance(joint, Combination):
+        if coordinate != 0:
+            raise ValueError(
+                f"coordinate must be left out with a combination, got {checks.shown(coordinate)}"
+            )
+        return
+    coordinate_kind(joint, coordinate, name)
+    if isinstance(joint, Joint) and joint.can_be_left:
+        raise ValueError(
+            f"{name} must be two-sided: nothing acts along a rail that can be left, got {joint!r}; its "
+            "friction is that of the joint"
+        )
+
+
+def joint_or_combination(name: str, joint) -> Any:
+    """Return a joint, its name, or the combination that a mapping from joints to factors states."""
+    if isinstance(joint, Mapping):
+        return Combination(joint)
+    return joint if isinstance(joint, Combination) else joint_or_name(name, joint)
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Combination:
+    """A sum of joint coordinates, each times a factor: ``sum of factor_k (q_k - q_k(0))``."""
+
+    terms: tuple[tuple[Joint, int, float], ...]  #: joint, number of its coordinate, factor
+
+    def __init__(self, factors: Factors):
+        if not isinstance(factors, Mapping) or not factors:
+            raise ValueError(
+                f"factors must be a mapping from joints to numbers, got {checks.shown(factors)}"
+            )
+        terms = []
+        for key, factor in factors.items():
+            pair = key if isinstance(key, tuple) and len(key) == 2 else (key, 0)
+            joint, coordinate = pair
+            acts_along(joint, coordinate, "each key of factors")
+            factor = checks.number(f"factors[{joint!r}]", factor)
+            if factor == 0.0:
+                raise ValueError(f"factors[{joint!r}] must not be 0, got {factor!r}")
+            terms.append((joint, coordinate, factor))
+        keep(self, terms=tuple(terms))
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        """The joints of its terms."""
+        return tuple(joint for joint, _, _ in self.terms)
+
+    @property
+    def name(self) -> str:
+        """How it is called in messages: ``"1 first + 2.5 second"``."""
+        return " + ".join(f"{factor:g} {joint.name}" for joint, _, factor in self.terms)
+
+    @property
+    def child(self) -> Body:
+        """A body that it moves."""
+        return self.joints[0].child
+
+    @property
+    def parent(self) -> Body | Ground:
+        """Another body that it moves, or the ground."""
+        last = self.joints[-1].child
+        return self.joints[0].parent if last is self.child else last
+
+    @property
+    def can_be_left(self) -> bool:
+        """False: it has no rail."""
+        return False
+
+
+def terms_of(joint: Joint | Combination, coordinate: int | str):
+    """Return joints, coordinates and factors of a combination, or the one coordinate of a joint, once."""
+    return joint.terms if isinstance(joint, Combination) else ((joint, coordinate, 1.0),)
+
+
+T = TypeVar("T", bound=Combination)
+
+
+def with_joints(combination: T, member: Callable, name: str = "each joint of the definition") -> T:
+    """Return a combination whose joints are parts of a scene; one that has them already as it is."""
+    terms = tuple(
+        (member(name, joint, (Joint,)), k, factor) for joint, k, factor in combination.terms
+    )
+    if len({term[:2] for term in terms}) != len(terms):
+        raise ValueError(f"{name} must be given once, got {[t[0].name for t in terms]}")
+    for joint, k, _ in terms:
+        acts_along(joint, k, name)
+    if terms == combination.terms:
+        return combination
+    made = copy.copy(combination)
+    keep(made, terms=terms)
+    return made
+
+
+#: fields for a joint, and for a joint or a combination
+OneJoint: TypeAlias = Value[Joint, Joint | str]
+Along: TypeAlias = Value[Any, Any]
