@@ -33,7 +33,9 @@ TOPICS = {
             "add_contact", "set_contact_default", "ignore_contact", "contacts", "contact_law",
             "contact_default", "pairs_by_default",
         ),
-        "Joints and constraints": ("add_joint", "add_stop", "add_constraint", "joints", "stops", "constraints"),
+        "Joints and constraints": (
+            "add_joint", "add_stop", "add_play", "add_constraint", "joints", "stops", "constraints",
+        ),
         "Forces": ("add_force", "forces"),
         "Changes": ("replace", "remove", "copy"),
         "Model": ("robot",),

@@ -50,6 +50,7 @@ PLOTTED = {
     "bouncing_sphere",
     "counting_pi",
     "draw_shot",
+    "gear_rattle",
     "heap",
     "ladder",
     "load_a_model",

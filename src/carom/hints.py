@@ -103,7 +103,9 @@ ARGUMENTS = {
         "scene.add_force(carom.forces.JointSpring(joint, stiffness=, damping=))":
             "damping stiffness spring spring_constant damping_coefficient viscous_friction compliance",
         "clearance is no joint, but a contact: give the pin and its bearing shapes, such as a Cylinder in a "
-        "Compound, without a joint, and scene.add_contact": "clearance backlash play gap tolerance",
+        "Compound, without a joint, and scene.add_contact": "clearance gap tolerance",
+        "play between joints is scene.add_play({joint: factor, ...}, lower, upper, restitution=)":
+            "backlash play",
         "a motor is scene.add_constraint(carom.constraints.Driver(joint, rate=)) or "
         "scene.add_force(carom.forces.JointForce(joint, torque))": "motor torque force speed rate drive "
         "velocity",

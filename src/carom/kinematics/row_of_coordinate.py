@@ -11,8 +11,6 @@ from carom.kinematics.combination import acceleration_along, motion_along, push,
 from carom.model.parts_of_system import has_relations
 from carom.model.workspace import MOTION_STOP
 
-NONE = (0.0, 0.0, 0.0)
-
 
 @kernel
 def in_row(point, rate):
@@ -27,25 +25,25 @@ def coordinate_of(system, point):
     return system.relations.coordinates[point.coordinate]
 
 
-@unit(where=has_relations, otherwise=NONE)
+@unit(where=has_relations, otherwise=(0.0, 0.0, 0.0))
 def rate_in_row(system, point, state) -> tuple[float, float, float]:
     """Return the velocity of the point."""
     return in_row(point, rate(system, coordinate_of(system, point), state))
 
 
-@unit(where=has_relations, otherwise=NONE)
+@unit(where=has_relations, otherwise=(0.0, 0.0, 0.0))
 def rate_in_pose(system, point, pose, state) -> tuple[float, float, float]:
     """Return the velocity of the point with the positions of one state and the velocities of another."""
     return in_row(point, rate_in(system, coordinate_of(system, point), pose, state))
 
 
-@unit(where=has_relations, otherwise=NONE)
+@unit(where=has_relations, otherwise=(0.0, 0.0, 0.0))
 def motion_in_row(system, point, state, work) -> tuple[float, float, float]:
     """Return its change by the motions that the last solve wrote."""
     return in_row(point, motion_along(system, coordinate_of(system, point), state, work))
 
 
-@unit(where=has_relations, otherwise=NONE)
+@unit(where=has_relations, otherwise=(0.0, 0.0, 0.0))
 def acceleration_in_row(system, point, state, stage) -> tuple[float, float, float]:
     """Return its acceleration by those of a stage alone."""
     return in_row(point, acceleration_along(system, coordinate_of(system, point), state, stage))
