@@ -317,8 +317,7 @@ class Run(Running):
             active.points[: active.count[0]] = start.points[: active.count[0]]
             start.begun[0] = 0
             memory = self.compiled.system.relations.memory
-            memory.coordinates[:] = start.memory.coordinates
-            memory.frictions[:] = start.memory.frictions
+            memory.coordinates[:], memory.frictions[:] = start.turns, start.frictions
         else:
             return
         self.clock[:] = (islands if islands.apart else start).clock

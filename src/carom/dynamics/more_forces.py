@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from carom._compiled.units import unit
 from carom.dynamics.applied import OF_RELATIONS, added, energies
-from carom.kinematics.combination import is_combination, rate, value
-from carom.kinematics.coordinate import counts_turns, turn_within
+from carom.kinematics.combination import is_combination
+from carom.kinematics.coordinate import counts_turns, rate, turn_within, value
 from carom.kinematics.coordinates.turns import turn_of
 from carom.kinematics.curve import is_beyond, is_on_curve
 from carom.kinematics.thresholds import TURN_OF_STEP

@@ -22,7 +22,7 @@ from carom.model.workspace import CONSTANT, MOTION_JOINT, MOTION_POINT
 from carom.persistent.active_set import clear
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.jam import jams_among
-from carom.persistent.joint_rows import place_coordinate, radius_of
+from carom.persistent.joint_rows import radius_of
 from carom.persistent.margins import (
     greatest_push,
     set_grip,
@@ -77,9 +77,6 @@ def write_end(model, data, label, k) -> bool:
     if loaded:
         project_velocity(system, end, False, work)
     copy_to_stage(count, end, group, work)
-    for i in range(k):
-        if group.closed[i].motion == MOTION_JOINT:
-            place_coordinate(system, group.closed[i].active, end, group.points[0][i])
     onto_tangents(system, data, k, count)
     copy_to_stage(count, end, group, work)
     return True

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.contact.point_axes import tangents
 from carom.contact.point_lists import write_closed
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.solve import free_body
@@ -23,7 +22,7 @@ from carom.kinematics.combination import (
     term_of,
     terms_of,
 )
-from carom.kinematics.coordinate import along, slides
+from carom.kinematics.coordinate import slides
 from carom.model.workspace import CONSTANT, MOTION_JOINT, MOTION_PIVOT
 from carom.persistent.thresholds import MOTOR_COMPLIANCE
 
@@ -47,7 +46,7 @@ def _add_frictions(system, state, k, group, work) -> int:
         write_closed(-1, 0, point.core, CONSTANT, closed_point)
         closed_point.motion, closed_point.active = MOTION_JOINT, i
         closed_point.listed, closed_point.weight = 1, 1.0
-        place_coordinate(system, i, state, point)
+        place_coordinate(system, i, point)
         alone = response_alone(system, coordinate_of(system, i), state, work)
         closed_point.spring = MOTOR_COMPLIANCE * alone
         k += 1
@@ -62,15 +61,11 @@ def coordinate_of(system, i):
 
 
 @kernel
-def place_coordinate(system, i, state, point):
+def place_coordinate(system, i, point):
     """Write the coordinate of friction i as a point: its row is the second of the point."""
-    c = first_of(system, coordinate_of(system, i))
-    nx, ny, nz = along(system, c, state)
-    s = 1.0 if c.child >= 0 else -1.0
+    c = coordinate_of(system, i)
     point.a, point.b = (c.child, c.parent) if c.child >= 0 else (c.parent, -1)
-    tangents(s * nx, s * ny, s * nz, point.axes)
-    for k in range(3):
-        point.core[k], point.arm_a[k], point.arm_b[k] = 0.0, 0.0, 0.0
+    point.core[0], point.core[1], point.core[2] = 0.0, 0.0, 0.0
     point.gap, point.length, point.moves, point.motion = 0.0, 1.0, 0, MOTION_JOINT
     point.coordinate = system.relations.frictions[i].coordinate
 

@@ -19,7 +19,7 @@ from carom.contact.point_lists import is_active, write_closed
 from carom.geometry.rotation import cross
 from carom.geometry.thresholds import RESOLUTION
 from carom.kinematics.combination import drift as rate_of_slope
-from carom.kinematics.combination import first_of, value
+from carom.kinematics.combination import first_of, rate, value
 from carom.kinematics.contact_point import contact_velocity
 from carom.kinematics.coordinate import along, slides
 from carom.kinematics.curve import can_be_left, find_foot, foot_of, is_on_curve, rail_drift
@@ -77,8 +77,13 @@ def place_on_rail(contact, c, foot, state, point):
 @unit
 def stop_gap(system, contact, state, work) -> tuple[float, float]:
     """Return the gap of a stop and its rate."""
-    place_stop(system, contact, state, work.placed[0])
-    return work.placed[0].gap, contact_velocity(system, work.placed[0], state)[0]
+    c = system.relations.coordinates[contact.solid]
+    if is_rail(system, c):
+        place_stop(system, contact, state, work.placed[0])
+        return work.placed[0].gap, contact_velocity(system, work.placed[0], state)[0]
+    return contact.side * value(system, c, state) - contact.offset, contact.side * rate(
+        system, c, state
+    )
 
 
 @unit

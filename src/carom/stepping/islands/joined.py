@@ -90,7 +90,8 @@ def _solver(solver: Solver, order: np.ndarray, place: np.ndarray, count: int) ->
 @kernel
 def enter_joined(system, joined):
     """Copy the state of joints from the scene; drop the factor, which may belong to other bodies."""
-    copy_memory(system.relations.memory, joined.relations.memory)
+    a, b = system.relations.memory, joined.relations.memory
+    copy_memory(a.coordinates, a.frictions, b.coordinates, b.frictions)
     solver = joined.solver
     for b in range(solver.workspace.shape[0]):
         solver.workspace[b, 0] = math.nan
@@ -101,13 +102,14 @@ def enter_joined(system, joined):
 @kernel
 def end_joined(system, joined):
     """Copy the state of joints back to the scene."""
-    copy_memory(joined.relations.memory, system.relations.memory)
+    a, b = joined.relations.memory, system.relations.memory
+    copy_memory(a.coordinates, a.frictions, b.coordinates, b.frictions)
 
 
 @kernel
-def copy_memory(source, out):
+def copy_memory(turns, frictions, kept_turns, kept_frictions):
     """Copy what a step of joints goes on from."""
-    for i in range(source.coordinates.shape[0]):
-        out.coordinates[i].reference = source.coordinates[i].reference
-    for i in range(source.frictions.shape[0]):
-        out.frictions[i] = source.frictions[i]
+    for i in range(turns.shape[0]):
+        kept_turns[i] = turns[i]
+    for i in range(frictions.shape[0]):
+        kept_frictions[i] = frictions[i]

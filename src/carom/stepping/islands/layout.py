@@ -11,9 +11,8 @@ from carom._compiled.record_arrays import table
 from carom.collision.sweep import SweepWork, new_sweep_work
 from carom.model.arrays import BODY, CONTACT, STATE, System
 from carom.model.contact_kinds import is_of_joint
-from carom.model.memory import ACTIVE_POINT, Memory
+from carom.model.memory import ACTIVE_POINT, TURN_OF_JOINT
 from carom.model.records import CLOCK
-from carom.model.relations import no_relations
 from carom.model.workspace import BODY_WORK, CONTACT_STATE, ActiveSet
 from carom.scene.all_pairs import Defaults
 from carom.stepping.islands.joined import Joined, joined_bodies, no_bodies
@@ -59,7 +58,8 @@ class SingleIsland(NamedTuple):
     contact_states: np.recarray  # (M,) CONTACT_STATE
     points: np.recarray  # (P,) ACTIVE_POINT
     count: np.ndarray  # (1,) number of active points
-    memory: Memory
+    turns: np.recarray  # TURN_OF_JOINT
+    frictions: np.recarray  # ACTIVE_POINT, of dry friction in joints
     clock: np.recarray  # (1,) CLOCK
 
 
@@ -111,18 +111,20 @@ def has_events(system: System, more: bool = False) -> bool:
 def new_single_island(system: System, active: ActiveSet) -> SingleIsland:
     """Return the workspace for bodies that move together."""
     bodies = system.bodies.size if has_events(system) else 0
-    memory = Memory._make(kept.copy() for kept in system.relations.memory)
-    return _single(bodies, len(active.contact_states), len(active.points), memory)
+    turns, frictions = system.relations.memory.coordinates, system.relations.memory.frictions
+    sizes = len(active.contact_states), len(active.points), len(turns), len(frictions)
+    return _single(bodies, *sizes)
 
 
-def _single(bodies: int, contacts: int, points: int, memory: Memory) -> SingleIsland:
+def _single(bodies: int, contacts: int, points: int, turns: int, frictions: int) -> SingleIsland:
     state, clock = table(STATE, bodies), table(CLOCK, 1)
     contact_states, actives = table(CONTACT_STATE, contacts), table(ACTIVE_POINT, points)
     begun, count = np.zeros((2, 1), dtype=np.int64)
-    return SingleIsland(begun, state, contact_states, actives, count, memory, clock)
+    kept = table(TURN_OF_JOINT, turns), table(ACTIVE_POINT, frictions)
+    return SingleIsland(begun, state, contact_states, actives, count, *kept, clock)
 
 
-_NOWHERE = _single(0, 0, 0, no_relations().memory)
+_NOWHERE = _single(0, 0, 0, 0, 0)
 
 
 def no_islands(system: System, active: ActiveSet) -> Islands:

@@ -27,7 +27,8 @@ def begin_single(system, active, now, clocks, work, start):
         copy_state(now[b], start.state[b])
     for i in range(active.count[0]):
         start.points[i] = active.points[i]
-    copy_memory(system.relations.memory, start.memory)
+    memory = system.relations.memory
+    copy_memory(memory.coordinates, memory.frictions, start.turns, start.frictions)
     start.count[0], start.begun[0] = active.count[0], 1
     start.clock[0] = clocks[0]
 
@@ -56,7 +57,8 @@ def forget_single(system, active, now, clocks, work, start):
     mark_vertices(active, 1)
     clocks[0] = start.clock[0]
     work.step[0].spent, work.step[0].paused, start.begun[0] = 0.0, 0, 0
-    copy_memory(start.memory, system.relations.memory)
+    memory = system.relations.memory
+    copy_memory(start.turns, start.frictions, memory.coordinates, memory.frictions)
     work.search[0].pending = 0
     regroup(system, active, work)
 
