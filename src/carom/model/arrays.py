@@ -40,7 +40,7 @@ ON_CURVE = (POINT_ON_CURVE, CURVE_ON_POINT)
 RELATION, USER_ROWS, STIFF, INERTIA = range(len(KIND), len(KIND) + 4)
 OWN_ROWS = min(ON_CURVE)  # the first of these kinds
 #: coordinates that only stops limit: the word for each, and its file in `carom.kinematics.coordinates`
-LIMITED = {"rotation": "ball", "swing": "ball", "twist": "ball"}
+LIMITED = {"rotation": "ball", "swing": "ball", "twist": "ball", "length": "length"}
 OF_LIMIT = {word: number for number, word in enumerate(LIMITED, len(KIND) + 4)}
 SWING, TWIST = OF_LIMIT["swing"], OF_LIMIT["twist"]
 COMBINATION = len(KIND) + 4 + len(LIMITED)  # sum of factors times coordinates of joints

@@ -35,6 +35,7 @@ from carom.model.thresholds import EQUAL_MOMENTS, LARGEST_MASS_RATIO, MASS_RATIO
 from carom.model.user_surfaces import add_functions
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, joined_tables, some_pairs
+from carom.scene.coordinates import Length
 from carom.scene.more_forces import JointInertia, Law
 from carom.scene.scene import Scene
 
@@ -113,7 +114,8 @@ class _Moved:
         self.joints, self.flipped, self.solver = _joints(
             scene, moments, self.placement, self.elements, options, loops
         )
-        self.bodies = _bodies(scene, moments, self.joints, self.elements, self.forces.loaded)
+        loaded = np.append(self.forces.loaded, _tethered(scene))
+        self.bodies = _bodies(scene, moments, self.joints, self.elements, loaded)
         self.bodies["axes"] = self.to_principal
 
     def compiled(self, touching: Contacts, contacts: np.recarray, moving) -> Compiled:
@@ -303,6 +305,14 @@ def _extents(elements: Elements, joints) -> np.ndarray:
         inside = sides >= 0
         np.maximum.at(size, sides[inside], np.linalg.norm(anchors[inside], axis=1))
     return size
+
+
+def _tethered(scene) -> np.ndarray:
+    """Return the bodies whose distance a tether limits, -1 among them."""
+    lengths = [stop.joint for stop in scene.stops if isinstance(stop.joint, Length)]
+    return np.array(
+        [end.index for one in lengths for end in (one.parent, one.child)], dtype=np.int64
+    )
 
 
 def _bodies(scene, moments, joints, elements, loaded):

@@ -178,7 +178,7 @@ def new_work(system: System, stages: int) -> workspace.Work:
     body = table(w.BODY_WORK, n)
     body["room"] = np.inf
     return w.Work(
-        body=body, joint=table(w.JOINT_WORK, system.joints.size),
+        body=body, joint=table(w.JOINT_WORK, max(1, system.joints.size)),  # stops use the first
         stages=table(w.STAGE, max(stages, len(KENNEDY_CARPENTER.b)) + 1, n), known=table(w.KNOWN, n),
         stage=stage, trial=trial, part=part, middle=middle, iterate=iterate, mean=mean, beside=beside,
         origin=origin, struck=struck, placed=placed, pair=new_pair_work(), touches=new_points(),

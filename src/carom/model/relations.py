@@ -17,7 +17,7 @@ from carom.model.pieces import PIECE, Pieces
 from carom.model.placement import Placement
 from carom.model.stated_forces import ForceRows
 from carom.scene.constraints import Coupling, Rows
-from carom.scene.coordinates import Combination, coordinate_kind, counted
+from carom.scene.coordinates import Combination, Length, coordinate_kind, counted
 from carom.scene.forces import Spring
 from carom.scene.joints import Joint
 from carom.scene.more_forces import Actuator, JointInertia, JointSpring
@@ -48,7 +48,7 @@ class Coordinates:
         for stop in stops:
             self.number(stop.joint, stop.coordinate)
 
-    def number(self, joint: Joint | Combination, coordinate: int | str) -> int:
+    def number(self, joint: Joint | Combination | Length, coordinate: int | str) -> int:
         """Return the index of a coordinate in the table; a new one is added."""
         self.used = True
         if isinstance(joint, Combination):
@@ -85,7 +85,18 @@ class Coordinates:
         """Return all rows."""
         return np.concatenate([table(arrays.COORDINATE, 0), *self.rows]).view(Columns)
 
+    def _of_length(self, length: Length) -> np.recarray:
+        """Return the row of a distance."""
+        made, place = table(arrays.COORDINATE, 1), self.placement.point
+        made.kind = arrays.OF_LIMIT["length"]
+        made.parent, made.child = length.parent.index, length.child.index
+        made.parent_anchor[0] = place(length.parent, length.anchor_parent)
+        made.child_anchor[0] = place(length.child, length.anchor_child)
+        return made
+
     def _row(self, joint, coordinate):
+        if isinstance(joint, Length):
+            return self._of_length(joint)
         d, made = joint.definition, table(arrays.COORDINATE, 1)
         row = made[0]
         if d.guide == "curve":

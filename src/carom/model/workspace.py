@@ -223,7 +223,7 @@ class Work(NamedTuple):
     """Workspace of one run: it is made once and never grows."""
 
     body: np.recarray  # (N,) BODY_WORK
-    joint: np.recarray  # (J,) JOINT_WORK
+    joint: np.recarray  # (J,), at least 1, JOINT_WORK
     stages: np.recarray  # (S + 1, N) STAGE: of the S stages of a step; of a single state
     known: np.recarray  # (N,) KNOWN, of the end of the last step
     stage: np.recarray  # (N,) STATE of the present stage

@@ -28,7 +28,7 @@ from carom.results.dense_output import curves
 from carom.results.event_tables import JointImpulse, JointImpulseTable
 from carom.results.reports import at_once
 from carom.scene.bodies import HalfSpace
-from carom.scene.coordinates import kind_of, terms_of
+from carom.scene.coordinates import Length, kind_of, terms_of
 from carom.scene.more_forces import JointInertia
 from carom.scene.surfaces import SurfaceDefinition
 
@@ -184,6 +184,9 @@ class _Mechanism:
                 self.take(stop.joint, self.push[i], state, rest)
                 return
             along = stop.side * impacts.impulse[i, 0]
+            if isinstance(stop.joint, Length):
+                self.take_between(stop.joint, along, state, rest)
+                return
             for joint, k, factor in terms_of(stop.joint, stop.coordinate):
                 self.take_along(joint, k, factor * along, state, rest)
             return
@@ -191,6 +194,18 @@ class _Mechanism:
             if b >= 0:
                 arm = impacts.point[i] - state["x"][b]
                 rest[b] += sign * np.append(self.push[i], np.cross(arm, self.push[i]))
+
+    def take_between(self, length: Length, amount: float, state: np.recarray, rest: np.ndarray):
+        """Take the impulse of a tether from both ends."""
+        axis = amount * self.reports.motion(length, at_once(state, 0.0), 0).along[0, 0]
+        number = self.reports.compiled.numbers[length.index, 0]
+        row = self.reports.compiled.system.relations.coordinates[number]
+        for body, anchor, sign in (
+            (int(row.child), row.child_anchor, -1.0), (int(row.parent), row.parent_anchor, 1.0),
+        ):  # fmt: skip
+            if body >= 0:
+                arm = quaternion.rotate(state["Q"][body], anchor)
+                rest[body] += sign * np.append(axis, np.cross(arm, axis))
 
     def take_along(
         self, joint, k: int | str, amount: float, state: np.recarray, rest: np.ndarray

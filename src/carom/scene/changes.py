@@ -16,7 +16,7 @@ from carom.fields import keep
 from carom.scene.bodies import Body, Ground, HalfSpace, StaticBody, mass_and_inertia
 from carom.scene.constraints import CONSTRAINTS, Constraint
 from carom.scene.contacts import Contact
-from carom.scene.coordinates import Combination
+from carom.scene.coordinates import Combination, Length
 from carom.scene.forces import FORCES, AppliedForce
 from carom.scene.joints import JOINTS, Joint
 from carom.scene.shapes.mesh import shape_given
@@ -44,7 +44,7 @@ KINDS: dict[type[Any], Kind] = {
 }
 _RANKS = {kind: k for k, kind in enumerate(KINDS)}
 LEAVES = (AppliedForce, Constraint, Stop, Contact)  # to which no part refers
-REFERRING = (*FORCES, *CONSTRAINTS, Combination)  # definitions that may contain parts
+REFERRING = (*FORCES, *CONSTRAINTS, Combination, Length)  # definitions that may contain parts
 #: fields of parts and definitions that say which part it is, or to which it refers
 _FIXED = {"index", "name", "body", "other", "parent", "child", "frames", "joint", "bodies", "terms"}
 
@@ -79,6 +79,8 @@ def parts_in(value) -> Iterator[Any]:
 def _parts_of(value) -> Iterator[Any]:
     if isinstance(value, Combination):
         value = value.terms
+    elif isinstance(value, Length):
+        value = value.parent, value.child
     if type(value) in KINDS or isinstance(value, Ground):
         yield value
     elif isinstance(value, tuple):

@@ -7,6 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias, TypeVar
 
+import numpy as np
+
 from carom import checks
 from carom.fields import Value, keep
 from carom.scene.bodies import Body, Ground
@@ -33,11 +35,13 @@ def counted(joints) -> dict[tuple[int, int], int]:
     return {key: column for column, key in enumerate(turning)}
 
 
-def kind_of(joint: Joint | Combination, coordinate: int | str) -> str:
+def kind_of(joint: Joint | Combination | Length, coordinate: int | str) -> str:
     """Return "turn" or "slide", the kind of a coordinate of a joint, or of one that stops alone limit.
 
     A combination in which anything slides is a displacement; "" stands for joints that are only named.
     """
+    if isinstance(joint, Length):
+        return "slide"
     if isinstance(joint, Combination):
         kinds = {coordinate_kind(one, k) for one, k, _ in joint.terms}
         return "slide" if "slide" in kinds else min(kinds)
@@ -68,9 +72,11 @@ def coordinate_kind(joint: Joint | str, coordinate: int, name: str = "joint") ->
     return own[coordinate]
 
 
-def acts_along(joint: Joint | Combination | str, coordinate: int, name: str = "joint") -> None:
+def acts_along(
+    joint: Joint | Combination | Length | str, coordinate: int, name: str = "joint"
+) -> None:
     """Refuse a joint without this coordinate, and a rail that can be left, along which nothing acts."""
-    if isinstance(joint, Combination):
+    if isinstance(joint, (Combination, Length)):
         if coordinate != 0:
             raise ValueError(
                 f"coordinate must be left out with a combination, got {checks.shown(coordinate)}"
@@ -140,7 +146,46 @@ class Combination:
         return False
 
 
-def terms_of(joint: Joint | Combination, coordinate: int | str):
+@dataclass(frozen=True, eq=False)
+class Length:
+    """The distance of a point of `parent` from one of `child`: a coordinate that belongs to no joint.
+
+    Attributes
+    ----------
+    parent : Body or carom.GROUND
+    child : Body
+    anchor_parent, anchor_child : (3,)
+        The points, in the world at the start [m].
+    """
+
+    parent: Body | Ground
+    child: Body
+    anchor_parent: np.ndarray
+    anchor_child: np.ndarray
+
+    @property
+    def name(self) -> str:
+        """How it is called in messages."""
+        return f"{self.parent.name}-{self.child.name}"
+
+    @property
+    def index(self) -> tuple:
+        """What tells it from other coordinates, in the place of the index of a joint."""
+        ends = tuple(self.anchor_parent.tolist()), tuple(self.anchor_child.tolist())
+        return self.parent.index, self.child.index, *ends
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        """None."""
+        return ()
+
+    @property
+    def can_be_left(self) -> bool:
+        """False: it has no rail."""
+        return False
+
+
+def terms_of(joint: Joint | Combination | Length, coordinate: int | str):
     """Return joints, coordinates and factors of a combination, or the one coordinate of a joint, once."""
     return joint.terms if isinstance(joint, Combination) else ((joint, coordinate, 1.0),)
 

@@ -11,6 +11,7 @@ from carom.fields import NumberOrNone, Value, Word, keep
 from carom.scene.coordinates import (
     Combination,
     Factors,
+    Length,
     acts_along,
     joint_or_combination,
     kind_of,
@@ -27,9 +28,9 @@ def _index_or_word(name: str, value) -> int | str:
     return value if isinstance(value, str) else checks.integer(name, value, least=0)
 
 
-def _check_coordinate(joint: Joint | Combination, coordinate: int | str) -> None:
+def _check_coordinate(joint: Joint | Combination | Length, coordinate: int | str) -> None:
     """Refuse a coordinate that the joint does not have."""
-    if isinstance(joint, Combination):
+    if isinstance(joint, (Combination, Length)):
         acts_along(joint, checks.integer("coordinate", coordinate, least=0))
         return
     limits = joint.definition.limits
@@ -48,8 +49,8 @@ class Stop(PartOfScene):
 
     Attributes
     ----------
-    joint : Joint or Combination
-        A joint, or a sum of joint coordinates times factors.
+    joint : Joint, Combination or Length
+        A joint, a sum of joint coordinates times factors, or the distance that a tether limits.
     coordinate : int or str
         Index of the coordinate of the joint, or the word for an angle of a ball joint.
     lower, upper : float or None
@@ -59,7 +60,7 @@ class Stop(PartOfScene):
     impact_law : str
     """
 
-    joint: Joint | Combination
+    joint: Joint | Combination | Length
     coordinate: Value[Any, Any] = Value(_index_or_word)
     lower: NumberOrNone = fields.number(None)
     upper: NumberOrNone = fields.number(None)

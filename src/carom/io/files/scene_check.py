@@ -18,7 +18,7 @@ import numpy as np
 from carom import checks
 from carom.scene import bodies, contacts, forces, joints, stops
 from carom.scene.constraints import CONSTRAINTS, Constraint, Coupling, Gear
-from carom.scene.coordinates import Combination, coordinate_kind
+from carom.scene.coordinates import Combination, Length, coordinate_kind
 from carom.scene.curves import Curve, Spline
 from carom.scene.materials import Material
 from carom.scene.pieces import Piece, Shape
@@ -97,8 +97,10 @@ def _made(parts, part: Any) -> Any:
         parts.member("definition", one, (joints.Joint, bodies.Body))
     if isinstance(part, stops.Stop):
         of = part.joint
-        for one in of.joints if isinstance(of, Combination) else (of,):
+        for one in of.joints if isinstance(of, (Combination, Length)) else (of,):
             parts.member("joint", one, (joints.Joint,))
+        if isinstance(of, Length):
+            parts.pair(of.parent, of.child)
     if isinstance(part, contacts.Contact):
         parts.member("body", part.body, (bodies.Body,))
         parts.member("other", part.other, KINDS)

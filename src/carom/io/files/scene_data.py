@@ -35,7 +35,7 @@ from carom.results.sensors import Frame, Sensor
 from carom.scene.bodies import FIXED, GROUND, Body, Ground
 from carom.scene.constraints import CONSTRAINTS, Constraint, Gear
 from carom.scene.contacts import Contact
-from carom.scene.coordinates import Combination
+from carom.scene.coordinates import Combination, Length
 from carom.scene.curves import CURVES
 from carom.scene.forces import FORCES, AppliedForce
 from carom.scene.joints import JOINTS, Joint
@@ -63,6 +63,7 @@ TYPES: dict[str, type[Any]] = {
         *CURVES,
         *LAWS,
         Combination,
+        Length,
         Gear,
         ContactLaw,
         Material,

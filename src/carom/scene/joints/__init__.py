@@ -32,11 +32,12 @@ from carom.scene.joints.on_curve import CurveOnPoint as CurveOnPoint
 
 from carom.scene.joints.definition import JointDefinition as JointDefinition
 from carom.scene.joints.joint import Joint as Joint
+from carom.scene.joints.tether import Tether as Tether
 
 JOINTS = subclasses_in(globals(), JointDefinition)
 
-__getattr__ = members_of("carom.joints", [joint.__name__ for joint in JOINTS])
+__getattr__ = members_of("carom.joints", [joint.__name__ for joint in (*JOINTS, Tether)])
 
 
 def __dir__() -> list[str]:
-    return ["Joint", "JointDefinition", *(joint.__name__ for joint in JOINTS)]
+    return ["Joint", "JointDefinition", *(joint.__name__ for joint in (*JOINTS, Tether))]

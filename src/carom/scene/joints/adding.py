@@ -2,23 +2,37 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, overload
 
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.scene.bodies import Body, Ground
-from carom.scene.joints import JOINTS, Joint, JointDefinition
+from carom.scene.coordinates import Length
+from carom.scene.joints import JOINTS, Joint, JointDefinition, Tether
+from carom.scene.stops import Stop
+from carom.scene.values import MethodsOfScene
 
 if TYPE_CHECKING:
     from carom.geometry.attitude import Orientation
-from carom.scene.values import MethodsOfScene
 
 
 class SceneJoints(MethodsOfScene):
     """The methods of `Scene` for joints."""
 
-    @arguments.known
+    @overload
+    def add_joint(
+        self,
+        definition: Tether,
+        parent: Body | Ground | str | None = None,
+        child: Body | str | None = None,
+        *,
+        name: str | None = None,
+        replace: bool = False,
+    ) -> Stop: ...
+
+    @overload
     def add_joint(
         self,
         definition: JointDefinition,
@@ -29,14 +43,27 @@ class SceneJoints(MethodsOfScene):
         child_frame: tuple[ArrayLike, Orientation] | None = None,
         name: str | None = None,
         replace: bool = False,
-    ) -> Joint:
+    ) -> Joint: ...
+
+    @arguments.known
+    def add_joint(
+        self,
+        definition: JointDefinition | Tether,
+        parent: Body | Ground | str | None = None,
+        child: Body | str | None = None,
+        *,
+        parent_frame: tuple[ArrayLike, Orientation] | None = None,
+        child_frame: tuple[ArrayLike, Orientation] | None = None,
+        name: str | None = None,
+        replace: bool = False,
+    ) -> Joint | Stop:
         """Join two bodies, or a body and the ground.
 
         Parameters
         ----------
         definition
-            A joint of `carom.joints`. Its points and axes are in the world at the start; with frames, they are
-            in a frame that is fixed in both bodies.
+            A joint of `carom.joints`; of a `carom.joints.Tether` a `Stop` is made. Its points and axes are in
+            the world at the start; with frames, they are in a frame that is fixed in both bodies.
         parent
             A body or its name, or `carom.GROUND`.
         child
@@ -61,6 +88,10 @@ class SceneJoints(MethodsOfScene):
         >>> scene.add_joint(hinge, carom.GROUND, rod, name="hinge")
         Joint('hinge', Revolute, 'GROUND' -> 'rod')
         """
+        if isinstance(definition, Tether):
+            return self._add_tether(
+                definition, parent, child, name, replace, (parent_frame, child_frame)
+            )
         order = "; the order is add_joint(definition, parent, child)"
         checks.instance("definition", definition, JOINTS, order if _is_side(definition) else "")
         if parent is None or child is None:
@@ -73,6 +104,32 @@ class SceneJoints(MethodsOfScene):
         return self._parts.make(
             Joint, "joint", name, replace, definition=definition, parent=parent, child=child,
             frames=(parent_frame, child_frame),
+        )  # fmt: skip
+
+    def _add_tether(self, tether: Tether, parent, child, name, replace: bool, frames) -> Stop:
+        """Make the stop of a tether."""
+        if frames != (None, None):
+            raise ValueError(
+                "parent_frame and child_frame must be left out of a Tether, which has anchors"
+            )
+        if parent is None or child is None:
+            raise TypeError("parent and child must be given: add_joint(Tether(...), parent, child)")
+        parent, child = self._parts.pair(parent, child)
+        ends = []
+        for side, part in (("parent", parent), ("child", child)):
+            given = getattr(tether, f"anchor_{side}")
+            if given is None and isinstance(part, Ground):
+                raise ValueError(f"anchor_{side} must be given for a point of the ground, got None")
+            ends.append(part.position if given is None else given)
+        distance = math.dist(*ends)
+        if tether.length is None and distance == 0.0:
+            raise ValueError(
+                "length must be given if both points are the same at the start, got None"
+            )
+        return self._parts.make(
+            Stop, "tether", name, replace, joint=Length(parent, child, *ends), coordinate=0,
+            upper=distance if tether.length is None else tether.length, restitution=tether.restitution,
+            impact_law=tether.impact_law,
         )  # fmt: skip
 
     @property
