@@ -32,6 +32,12 @@ def spread(system, point, state, p, work):
     if point.b >= 0:
         clear_wrench(work.body[point.b])
     add_impulse(system, point, state, p, work)
+    respond_alone(system, point, state, work)
+
+
+@kernel
+def respond_alone(system, point, state, work):
+    """Write the motions of the bodies of a point by their wrenches: they have no joints."""
     free_body(system.bodies[point.a], state[point.a].Q, work.body[point.a])
     if point.b >= 0:
         free_body(system.bodies[point.b], state[point.b].Q, work.body[point.b])

@@ -111,10 +111,14 @@ def capacity(system: System, more: bool) -> int:
         return MOST_TOGETHER
     contacts, more_rows = system.contacts, len(system.relations.frictions)
     points = most_points(contacts)
-    if is_found(contacts).any():
+    component = system.bodies["component"]
+    between = (contacts["other"] >= 0) & (
+        component[contacts["body"]] != component[contacts["other"]]
+    )
+    if is_found(contacts).any() or between.any():
         return max(1, min(MOST_TOGETHER, int(points.sum()) + more_rows))
     rows = 1 + (law_of(system, contacts, PERSISTENT)["turning"] > 0.0).sum(axis=1)
-    count = np.bincount(system.bodies["component"][contacts["body"]], rows * points)
+    count = np.bincount(component[contacts["body"]], rows * points)
     return max(1, min(MOST_TOGETHER, int(count.max(initial=0.0)) + more_rows))
 
 

@@ -7,12 +7,14 @@ inertia.
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from carom.geometry import quaternion
 from carom.scene.bodies import Body
+from carom.scene.coordinates import Length
 from carom.scene.curves import Curve
 from carom.scene.forces import Spring
 from carom.scene.joints import CurveOnPoint, Distance, Joint, RollingDisc, RollingSphere
@@ -33,6 +35,7 @@ PIN = 0.15  # of the size of a body: a pin is no thicker
 #: Okabe and Ito's colours, told apart by colour-blind eyes; their vermilion and blue are for arrows
 COLOURS = ("#56B4E9", "#E69F00", "#009E73", "#F0E442", "#CC79A7", "#999999")
 JOINT, STATIC, ARROW = "#5b6873", "#c3ccd4", "#D55E00"
+CORD = 12  # straight pieces of a slack cord
 ROD = 0.012  # radius of rods of bodies without a shape, as a fraction of the size of the region
 ORIGIN = np.zeros(3)
 RAIL, RING = 400, 8  # most points along a curve, and sides of its tube
@@ -50,18 +53,33 @@ class Part(NamedTuple):
 
 
 class Link(NamedTuple):
-    """A spring or a rod between points of two bodies; of the ground (-1) in world axes."""
+    """A spring, a rod or a cord between points of two bodies; of the ground (-1) in world axes."""
 
     parent: int
     child: int
     parent_anchor: np.ndarray  #: (3,) body axes [m]
     child_anchor: np.ndarray
-    kind: str  #: "spring" or "rod"
+    kind: str  #: "spring", "rod" or "cord"
+    length: float = 0.0  #: of a cord [m]
 
     def ends(self, x: np.ndarray, Q: np.ndarray) -> list[np.ndarray]:
         """Return both ends (3,) at positions x (N, 3) and orientations Q (N, 4) of the bodies."""
         pairs = (self.parent, self.parent_anchor), (self.child, self.child_anchor)
         return [a if b < 0 else x[b] + quaternion.rotate(Q[b], a) for b, a in pairs]
+
+    def line(self, x: np.ndarray, Q: np.ndarray, up: np.ndarray) -> np.ndarray:
+        """Return the points (n, 3) along which it is drawn: a slack cord hangs as a parabola of its length.
+
+        Its depth is d = k sqrt(L^2 - c^2) over the distance c of its ends: k = sqrt(3)/4 for a flat one, 1/2
+        where the ends meet; between these it is taken as linear, within 2 % of the length of a level cord.
+        """
+        a, b = self.ends(x, Q)
+        slack = self.length**2 - float(np.sum((b - a) ** 2))
+        if not slack > 1e-3 * self.length**2:
+            return np.array([a, b])
+        bend = 0.5 - 0.067 * math.sqrt(1.0 - slack / self.length**2)
+        s, depth = np.linspace(0.0, 1.0, CORD + 1)[:, None], bend * math.sqrt(slack)
+        return a + s * (b - a) - 4.0 * s * (1.0 - s) * depth * up
 
 
 class Outline(NamedTuple):
@@ -270,7 +288,7 @@ def _anchor(joint: Joint, body) -> np.ndarray:
 
 
 def links_of(scene) -> list[Link]:
-    """Return springs and massless rods."""
+    """Return springs, massless rods and cords."""
     out = []
     for one in (*scene.forces, *scene.joints):
         d = one.definition
@@ -279,6 +297,11 @@ def links_of(scene) -> list[Link]:
             start, end = (_in_body(part, a) for part, a in pair)
             kind = "rod" if isinstance(d, Distance) else "spring"
             out.append(Link(one.parent.index, one.child.index, start, end, kind))
+    for stop in scene.stops:
+        of = stop.joint
+        if isinstance(of, Length):
+            ends = _in_body(of.parent, of.anchor_parent), _in_body(of.child, of.anchor_child)
+            out.append(Link(of.parent.index, of.child.index, *ends, "cord", stop.end))
     return out
 
 

@@ -8,7 +8,7 @@ connected to them (`OTHER`): motions that the back end finds for unit impulses. 
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.dynamics.contact_impulse import add_impulse, alone, clear_wrenches, spread
+from carom.dynamics.contact_impulse import add_impulse, alone, clear_wrenches, respond_alone, spread
 from carom.dynamics.solve import solve
 from carom.friction import layout as o
 from carom.friction.island import write_motion
@@ -116,7 +116,10 @@ def respond_to(system, point, p, crowd, work):
     if point.motion > MOTION_PIVOT:
         clear_wrenches(work)
         add_impulse(system, point, crowd.pose, p, work)
-        solve(system, crowd.flight, False, work)
+        if alone(system, point):
+            respond_alone(system, point, crowd.flight, work)
+        else:
+            solve(system, crowd.flight, False, work)
         return
     spread(system, point, crowd.flight, p, work)
 

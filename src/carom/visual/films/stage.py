@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -113,6 +114,7 @@ class Stage:
 
     def _place_planes(self, places) -> None:
         up, _, _ = vertical(self.solution.scene)
+        self.up = up
         light = 1.2 * self.axes.towards + 0.6 * self.axes.up - 0.5 * self.axes.right
         light = light / np.linalg.norm(light) + 0.8 * up
         self.light = light / np.linalg.norm(light)
@@ -183,7 +185,8 @@ class Stage:
         turn = quaternion.matrix(Q)[self.owner]
         corners = np.einsum("fij,fkj->fki", turn, self.all.corners) + x[self.owner][:, None]
         normals = np.einsum("fij,fkj->fki", turn, self.all.normals)
-        links = [self._link(*link.ends(x, Q)) for link in self.links]
+        lines = [link.line(x, Q, self.up) for link in self.links]
+        links = [self._link(*pair) for line in lines for pair in itertools.pairwise(line)]
         return joined([self.all._replace(corners=corners, normals=normals), *links])
 
     def _link(self, a, b) -> Model:

@@ -130,10 +130,11 @@ def header(show: Show, packer: Packer) -> dict:
 
 
 def _link(link, centre: np.ndarray) -> dict:
-    """Return a spring or a rod; points of the ground from the centre, as all points of the world."""
+    """Return a spring, rod or cord; points of the ground from the centre, as all points of the world."""
     ends = (link.parent, link.parent_anchor), (link.child, link.child_anchor)
     anchors = [(anchor if body >= 0 else anchor - centre).tolist() for body, anchor in ends]
-    return {"bodies": [link.parent, link.child], "anchors": anchors, "kind": link.kind}
+    sides = [link.parent, link.child]
+    return {"bodies": sides, "anchors": anchors, "kind": link.kind, "length": link.length}
 
 
 def _energy(solution, packer: Packer) -> dict:

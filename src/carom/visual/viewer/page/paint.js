@@ -59,13 +59,29 @@ class Painter {
         out.push({ mesh, colour, model: frame(...axesOf(Q), x), pattern: look === "round" });
       }
     const thick = 0.02 * this.run.place.radius;
-    for (const { bodies, anchors, kind } of this.run.links) {
+    for (const { bodies, anchors, kind, length } of this.run.links) {
       const [from, to] = anchors.map((a, k) => (bodies[k] < 0 ? a : carried(poses[bodies[k]], a)));
-      const along = sub(to, from), [a, b] = across(unit(along)), wide = kind === "rod" ? 0.35 * thick : thick;
-      const mesh = kind === "rod" ? this.furniture.shaft : this.furniture.coil;
-      out.push({ mesh, colour: rgba("#5b6873"), model: frame(times(wide, a), times(wide, b), along, from) });
+      const wide = kind === "spring" ? thick : 0.35 * thick;
+      const mesh = kind === "spring" ? this.furniture.coil : this.furniture.shaft;
+      const line = kind === "cord" ? this.hanging(from, to, length) : [from, to];
+      for (let k = 1; k < line.length; k++) {
+        const along = sub(line[k], line[k - 1]), [a, b] = across(unit(along));
+        const model = frame(times(wide, a), times(wide, b), along, line[k - 1]);
+        out.push({ mesh, colour: rgba("#5b6873"), model });
+      }
     }
     return out;
+  }
+
+  /** Points of a cord: a slack one hangs as a parabola of its length, nearly. */
+  hanging(from, to, length) {
+    const along = sub(to, from), slack = length ** 2 - norm(along) ** 2;
+    if (!(slack > 1e-3 * length ** 2)) return [from, to];
+    const bend = 0.5 - (0.067 * norm(along)) / length, depth = bend * Math.sqrt(slack), { up } = this.run.place;
+    return Array.from({ length: 13 }, (_, k) => {
+      const s = k / 12;
+      return add(add(from, times(s, along)), times(-4 * s * (1 - s) * depth, up));
+    });
   }
 
   /** An arrow as shaft and head. */
