@@ -15,7 +15,7 @@ CALLED = {
     "State", "Run",
     "Sphere", "Box", "Capsule", "Cylinder", "Disc", "Ellipsoid", "Convex", "Mesh", "Compound", "Part",
     "Revolute", "Spherical", "Prismatic", "Cylindrical", "Screw", "Universal", "Planar", "PointOnLine",
-    "PointOnPlane", "Fixed", "Distance", "KnifeEdge", "RollingSphere", "RollingDisc",
+    "PointOnPlane", "Fixed", "Distance", "Tether", "KnifeEdge", "RollingSphere", "RollingDisc",
     "InsideSphere", "InsideCylinder", "InsideCone", "InsideTorus", "HeightField", "Surface",
     "Gear", "Coupling", "Driver", "Rows",
     "Spring", "Force", "Torque", "Bushing", "JointSpring", "JointForce", "Actuator", "JointFriction",

@@ -122,7 +122,10 @@ def run():
             "load has no argument file=; it is called path=",
         ),
         (lambda s: s.joint_coordinates(name="pin"), "it has joint"),
-        (lambda s: s.scene.add_rope(1), r"a rope that may go slack is add_force"),
+        (
+            lambda s: s.scene.add_rope(1),
+            r"a cord that goes slack is add_joint\(carom\.joints\.Tether",
+        ),
         (lambda s: s.scene.add_conveyor(1), "surface_velocity="),
         (lambda s: s.plot("reactions"), "did you mean 'joints'"),
         (

@@ -28,6 +28,7 @@ from campaigns import (
     surfaces,
     teeth,
     terrains,
+    tethers,
     throws,
 )
 
@@ -39,5 +40,5 @@ FAMILIES = {
     "rails": rails.case, "loose rails": loose_rails.case, "surfaces": surfaces.case, "grounds": grounds.case,
     "terrains": terrains.case, "cams": cams.case,
     "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "grains by slip": grains.by_slip,
-    "rough": rough.case, "plays": plays.case,
+    "rough": rough.case, "plays": plays.case, "tethers": tethers.case,
 }  # fmt: skip

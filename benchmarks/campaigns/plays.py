@@ -22,7 +22,9 @@ def case(seed: int) -> Case:
     label = {"kind": "wheels" if wheels else "tree", "step": step, "bodies": len(scene.bodies)}
     count = int(rng.choice([1, 1, 1, 2, 3])) if one else 0
     label["plays"] = [_play(scene, one, rng) for _ in range(count)]
-    free = all(play["joints"] > 1 for play in label["plays"])  # a motor does not stop at a play of its own
+    free = all(
+        play["joints"] > 1 for play in label["plays"]
+    )  # a motor does not stop at a play of its own
     label["loads"] = [
         _load(scene, joint, rng, free and joint is made[0]) for joint in one if rng.random() < 0.4
     ]

@@ -166,10 +166,9 @@ _OF_SCENE = {
     _JOINT.format("Spherical"): "add_ball_joint add_spherical add_socket",
     _JOINT.format("Fixed"): "add_weld add_fixed_joint",
     _JOINT.format("Distance"): "add_rod add_distance",
-    "a rope that may go slack is add_force(carom.forces.CurveSpring(...)), whose tension is 0 up to its "
-    "length; a "
-    "massless rod is add_joint(carom.joints.Distance(...))": "add_rope add_cable add_string add_tether "
-    "add_chain",
+    "a cord that goes slack is add_joint(carom.joints.Tether(...)), an elastic one "
+    "add_force(carom.forces.CurveSpring(...)), a rod add_joint(carom.joints.Distance(...))":
+        "add_rope add_cable add_string add_tether add_chain",
     "a conveyor is a fixed part whose surface moves: add_half_space(..., surface_velocity=), or add_static":
         "add_conveyor add_belt add_conveyor_belt add_treadmill",
     "a turntable is a fixed part whose surface turns: add_half_space(..., surface_spin=), or add_static":
@@ -270,8 +269,8 @@ MEMBERS = {
         _ELSEWHERE.format("forces", "Torque"): "Torque",
         _ELSEWHERE.format("constraints", "Driver"): "Motor Driver Actuator",
         _ELSEWHERE.format("constraints", "Gear"): "Gear",
-        "a rope that may go slack is carom.forces.CurveSpring, a massless rod carom.joints.Distance":
-            "Rope Cable Tether",
+        "a cord that goes slack is carom.joints.Tether, an elastic one carom.forces.CurveSpring":
+            "Rope Cable Tether SlideJoint",
         "a conveyor is a fixed part with a surface that moves: scene.add_half_space(..., surface_velocity=)":
             "Conveyor ConveyorBelt",
         "a belt over wheels is carom.constraints.Coupling, one that carries is a surface that moves: "
@@ -283,7 +282,7 @@ MEMBERS = {
         "Prismatic": "slide slider translational PrismaticJoint",
         "Fixed": "weld rigid FixedJoint",
         "Distance": "rod",
-        "a rope that may go slack is carom.forces.CurveSpring, a rod is Distance": "rope cable tether",
+        "Tether": "rope cable cord string SlideJoint",
         "a belt over wheels is carom.constraints.Coupling": "belt chain",
         "a hinge is Revolute, and a rod is Distance": "PinJoint",
         "Universal": "cardan",
@@ -307,7 +306,8 @@ MEMBERS = {
         "JointFriction": "DryFriction CoulombFriction",
         "JointInertia": "Armature Rotor ReflectedInertia",
         "Bushing": "Mount",
-        "a rope that may go slack is CurveSpring, whose tension is 0 up to its length": "Rope Cable Tether",
+        "an elastic rope is CurveSpring, whose tension is 0 up to its length, a stiff one carom.joints.Tether":
+            "Rope Cable Tether",
         "UserForce": "Drag AirDrag Wind Buoyancy Magnus Custom CustomForce Function Field Wrench",
         "gravity is that of the scene: carom.Scene(gravity=...)": "Gravity",
         "friction of contacts is stated by scene.add_contact(..., friction=)": "Friction",
