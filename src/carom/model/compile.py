@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -53,7 +53,7 @@ class Compiled(NamedTuple):
     later: Defaults | None  # pairs of bodies that get rows when they come near each other
     laws: dict[int, Law]  # of actuators that are functions, by the index of the force
     numbers: dict[
-        tuple[int, int | str], int
+        tuple[Any, int | str], int
     ]  # of coordinates, by the index of the joint and their own
     places: dict[int, Place]  # where kernels find the forces, by their index
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -29,7 +30,7 @@ class Coordinates:
     def __init__(self, placement: Placement):
         self.placement = placement
         self.rows: list[np.recarray] = []
-        self.numbers: dict[tuple[int, int | str], int] = {}
+        self.numbers: dict[tuple[Any, int | str], int] = {}
         self.sums: dict[tuple[tuple[int, float], ...], int] = {}  # of combinations, by their terms
         self.curves = Curves()
         self.counted, self.used = 0, False

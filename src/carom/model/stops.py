@@ -49,11 +49,11 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, laws: 
 def _sizes(stop, sizes: np.ndarray) -> tuple[float, float]:
     """Return the size of a stop, and the arm that converts its angle to a length.
 
-    That of a combination is the longest of those of its angles, each times its factor.
+    That of a combination is the shortest of those of its angles, each over its factor.
     """
     if not isinstance(stop.joint, Combination):
         size = sizes[stop.joint.child.index]
-        return size, size
+        return float(size), float(size)
     own = [(sizes[joint.child.index], abs(factor)) for joint, _, factor in stop.joint.terms]
     return max(size for size, _ in own), min(size / factor for size, factor in own)
 

@@ -20,7 +20,6 @@ from carom.results.exerted import bodies_of, rubs
 from carom.scene.constraints import Coupling, Driver
 from carom.scene.coordinates import Combination, coordinate_kind, kind_of, terms_of
 from carom.scene.friction import bound_of
-from carom.scene.joints import Joint
 from carom.scene.more_forces import JointFriction
 
 STILL = 1e-9  # of the speeds of the joint: below it the rate is round-off, and the joint sticks
@@ -112,7 +111,7 @@ def with_forces(states, values: dict[int, np.ndarray], touch) -> np.recarray:
     return full[np.argsort(full["saved"], kind="stable")].view(Columns)
 
 
-def _touches(joint: Joint, k: int, value: np.ndarray, states) -> np.ndarray:
+def _touches(joint: Any, k: Any, value: np.ndarray, states) -> np.ndarray:
     """Return forces along a coordinate as active points, one for each time."""
     child, parent = joint.child.index, joint.parent.index
     motion, x = states._reports.motion(joint, states._saved, k), states._saved.state["x"]

@@ -26,9 +26,10 @@ def bodies_of(force: AppliedForce) -> tuple[Body, ...]:
     d = force.definition
     if isinstance(d, UserForce):
         return tuple(d.bodies)
-    if not isinstance(getattr(d, "joint", None), Combination):
+    of = getattr(d, "joint", None)
+    if not isinstance(of, Combination):
         return (force.child,)
-    ends = [end for joint in d.joint.joints for end in (joint.child, joint.parent)]
+    ends = [end for joint in of.joints for end in (joint.child, joint.parent)]
     return tuple(dict.fromkeys(end for end in ends if isinstance(end, Body)))
 
 

@@ -315,7 +315,8 @@ class _Coordinate(ABC):
             raise AttributeError(f"{self.name!r} acts along no coordinate of a joint")
         read = self._source.joint_coordinates
         terms = terms_of(self._along.joint, self._along.coordinate)
-        return sum(factor * read(joint)[which][..., k] for joint, k, factor in terms)[()]
+        found = [factor * read(joint)[which][..., k] for joint, k, factor in terms]
+        return np.sum(found, axis=0)[()]
 
     @property
     def coordinate(self):

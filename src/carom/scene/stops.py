@@ -155,9 +155,9 @@ class SceneStops(MethodsOfScene):
         name
             Name in the scene. Default ``"stop1"``, ``"stop2"``, ...
         """
-        joint = self._joint_or_combination(joint)
+        of = self._joint_or_combination(joint)
         return self._parts.make(
-            Stop, "stop", name, replace, joint=joint, coordinate=coordinate, lower=lower, upper=upper,
+            Stop, "stop", name, replace, joint=of, coordinate=coordinate, lower=lower, upper=upper,
             restitution=restitution, impact_law=impact_law,
         )  # fmt: skip
 
