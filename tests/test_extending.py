@@ -37,7 +37,7 @@ scene.add_half_space((0, 0, 0), (0, 0, 1))
 scene.set_contact_default(restitution=1.0)
 ball = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 1, 0.5), velocity=(0, 0, -1.0))
 disc = scene.add_body(carom.Sphere(0.1), mass=2.0, position=(0, 0, 1), velocity=(3.0, 0, 0))
-scene.add_force(carom.forces.Drag(0.5, wind=(-1.0, 0, 0)), disc, name="drag")
+scene.add_force(carom.forces.Resistance(0.5, wind=(-1.0, 0, 0)), disc, name="drag")
 s = carom.simulate(scene, 1.0, step=0.02, save_at=0.1, method="rk8")
 v = 4.0 / (1.0 + 0.5 * 4.0 / 2.0 * s.t) - 1.0  # m u' = -k u^2, u = v + 1
 assert np.allclose(s.velocity[:, 1, 0], v, rtol=0, atol=1e-12)

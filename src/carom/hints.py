@@ -308,7 +308,10 @@ MEMBERS = {
         "Bushing": "Mount",
         "an elastic rope is CurveSpring, whose tension is 0 up to its length, a stiff one carom.joints.Tether":
             "Rope Cable Tether",
-        "UserForce": "Drag AirDrag Wind Buoyancy Magnus Custom CustomForce Function Field Wrench",
+        "Drag": "AirDrag AirResistance FluidDrag Aerodynamic",
+        "Magnus": "Lift SpinLift",
+        "Buoyancy": "Archimedes Buoyant Float",
+        "UserForce": "Custom CustomForce Function Field Wrench",
         "gravity is that of the scene: carom.Scene(gravity=...)": "Gravity",
         "friction of contacts is stated by scene.add_contact(..., friction=)": "Friction",
     },

@@ -36,6 +36,11 @@ FREE = {
     "turning torque": (forces.Torque((0.1, 0.2, 0.3), follow=True), 2),
     "mount": (forces.Bushing((30.0, 20.0), anchor=(0.5, 0.4, 0.2), axis=(1, 0, 1), **MOUNT), 2),
     "user": (lambda pair: forces.UserForce(pair, of_user), 0),
+    "drag": (forces.Drag(30.0, coefficient=0.5, area=0.2), 1),
+    "wind": (forces.Wind((1.0, -2.0, 0.5), 30.0, coefficient=0.5, area=0.2), 1),
+    "field": (forces.Wind(lambda t, x: x - t, 30.0, coefficient=0.5, area=0.2), 1),
+    "lift": (forces.Magnus(30.0, radius=0.3, velocity=(1.0, 2.0, 0.0)), 1),
+    "buoyancy": (forces.Buoyancy(volume=2e-3), 1),
 }
 #: along a coordinate of a joint
 ALONG = {

@@ -28,6 +28,10 @@ from carom.scene.more_forces import JointFriction as JointFriction
 from carom.scene.more_forces import JointInertia as JointInertia
 from carom.scene.more_forces import CurveSpring as CurveSpring
 from carom.scene.more_forces import UserForce as UserForce
+from carom.scene.fluids import Drag as Drag
+from carom.scene.fluids import Wind as Wind
+from carom.scene.fluids import Magnus as Magnus
+from carom.scene.fluids import Buoyancy as Buoyancy
 # isort: on
 
 FORCES = subclasses_in(globals(), ForceDefinition)
