@@ -133,7 +133,7 @@ def expect_turn(system, saved, k, i):
     if i < saved.turn.shape[1]:
         turn_of(system, c).reference = saved.turn[k, i].angle
     elif k == 0:
-        turn_of(system, c).reference = 0.0
+        turn_of(system, c).reference = c.begin
     else:
         mean = 0.5 * (rate(system, c, saved.state[k - 1]) + rate(system, c, saved.state[k]))
         turn_of(system, c).reference += mean * (saved.series[k].t - saved.series[k - 1].t)

@@ -40,7 +40,13 @@ ON_CURVE = (POINT_ON_CURVE, CURVE_ON_POINT)
 RELATION, USER_ROWS, STIFF, INERTIA = range(len(KIND), len(KIND) + 4)
 OWN_ROWS = min(ON_CURVE)  # the first of these kinds
 #: coordinates that only stops limit: the word for each, and its file in `carom.kinematics.coordinates`
-LIMITED = {"rotation": "ball", "swing": "ball", "twist": "ball", "length": "length"}
+LIMITED = {
+    "rotation": "ball",
+    "swing": "ball",
+    "twist": "ball",
+    "length": "length",
+    "strand": "strand",
+}
 OF_LIMIT = {word: number for number, word in enumerate(LIMITED, len(KIND) + 4)}
 SWING, TWIST = OF_LIMIT["swing"], OF_LIMIT["twist"]
 COMBINATION = len(KIND) + 4 + len(LIMITED)  # sum of factors times coordinates of joints
@@ -96,6 +102,7 @@ JOINT = [
     ("length", "f8"),  # distance; displacement of a screw per radian; radius of a rolling body
     ("number", "i8"),  # of a relation, or of rows of the user's, in `Relations`
     ("index", "i8"),  # of a coordinate, in `Relations` and `Memory`
+    ("begin", "f8"),  # value of a coordinate at the start, from which its turns are counted
 ]
 
 #: a coordinate of a joint: an angle about (kind REVOLUTE), or a displacement along (PRISMATIC), the first axis

@@ -35,7 +35,7 @@ from carom.model.thresholds import EQUAL_MOMENTS, LARGEST_MASS_RATIO, MASS_RATIO
 from carom.model.user_surfaces import add_functions
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, joined_tables, some_pairs
-from carom.scene.coordinates import Length
+from carom.scene.coordinates import Combination, Length, terms_of
 from carom.scene.more_forces import JointInertia, Law
 from carom.scene.scene import Scene
 
@@ -114,8 +114,9 @@ class _Moved:
         self.joints, self.flipped, self.solver = _joints(
             scene, moments, self.placement, self.elements, options, loops
         )
-        loaded = np.append(self.forces.loaded, _tethered(scene))
-        self.bodies = _bodies(scene, moments, self.joints, self.elements, loaded)
+        alone, joined = _tethered(scene)
+        loaded = np.append(self.forces.loaded, alone)
+        self.bodies = _bodies(scene, moments, self.joints, self.elements, loaded, joined)
         self.bodies["axes"] = self.to_principal
 
     def compiled(self, touching: Contacts, contacts: np.recarray, moving) -> Compiled:
@@ -307,21 +308,24 @@ def _extents(elements: Elements, joints) -> np.ndarray:
     return size
 
 
-def _tethered(scene) -> np.ndarray:
-    """Return the bodies whose distance a tether limits, -1 among them."""
-    lengths = [stop.joint for stop in scene.stops if isinstance(stop.joint, Length)]
-    return np.array(
-        [end.index for one in lengths for end in (one.parent, one.child)], dtype=np.int64
-    )
+def _tethered(scene) -> tuple[np.ndarray, np.ndarray]:
+    """Return the bodies on tethers, -1 among them, and those that ropes join, more than two at once."""
+    alone, joined = [], []
+    for stop in scene.stops:
+        for one, _, _ in terms_of(stop.joint, stop.coordinate):
+            if isinstance(one, Length):
+                ends = joined if isinstance(stop.joint, Combination) else alone
+                ends += [one.parent.index, one.child.index]
+    return np.array(alone, dtype=np.int64), np.array(joined, dtype=np.int64)
 
 
-def _bodies(scene, moments, joints, elements, loaded):
+def _bodies(scene, moments, joints, elements, loaded, joined):
     bodies, number = table(BODY, len(scene.bodies)), np.arange(len(scene.bodies))
     ball = np.array([0.0 if b.shape is None else b.shape.size for b in scene.bodies])
     isolated = np.ones(len(bodies), dtype=np.int64)
     for side in ("parent", "child") if len(joints) else ():
         isolated[joints[side][joints[side] >= 0]] = 0
-    for touched in elements.touching:
+    for touched in (*elements.touching, joined[joined >= 0]):
         isolated[touched] = 0
     ballistic = isolated.copy()
     ballistic[loaded[loaded >= 0]] = 0

@@ -11,6 +11,7 @@ from carom import checks
 from carom._compiled.composed import is_compiled, joined, once
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
+from carom.geometry.frames import triad
 from carom.model import arrays, memory
 from carom.model.actions import MODE_STICK
 from carom.model.curves import Curves
@@ -18,7 +19,7 @@ from carom.model.pieces import PIECE, Pieces
 from carom.model.placement import Placement
 from carom.model.stated_forces import ForceRows
 from carom.scene.constraints import Coupling, Rows
-from carom.scene.coordinates import Combination, Length, coordinate_kind, counted
+from carom.scene.coordinates import Combination, Length, Strand, coordinate_kind, counted
 from carom.scene.forces import Spring
 from carom.scene.joints import Joint
 from carom.scene.more_forces import Actuator, JointInertia, JointSpring
@@ -90,6 +91,10 @@ class Coordinates:
         """Return the row of a distance."""
         made, place = table(arrays.COORDINATE, 1), self.placement.point
         made.kind = arrays.OF_LIMIT["length"]
+        if isinstance(length, Strand) and length.axis.any():
+            made.kind, made.length = arrays.OF_LIMIT["strand"], length.offset
+            made.parent_frame[0] = triad(length.axis)
+            made.begin = length.start
         made.parent, made.child = length.parent.index, length.child.index
         made.parent_anchor[0] = place(length.parent, length.anchor_parent)
         made.child_anchor[0] = place(length.child, length.anchor_child)
@@ -280,6 +285,7 @@ class Elements:
         kept = new_memory(
             len(rows), len(more.frictions), len(self.stiff), len(self.rotors), len(curves.rows)
         )
+        kept.coordinates.reference[:] = rows.begin
         relations = _joined(arrays.RELATION_ROW, self.relations)
         user = _joined(arrays.USER_ROW, self.user)
         tables = relations, listed, user, self.pieces.rows, *(_joined(*one) for one in forces)

@@ -184,11 +184,11 @@ class _Mechanism:
                 self.take(stop.joint, self.push[i], state, rest)
                 return
             along = stop.side * impacts.impulse[i, 0]
-            if isinstance(stop.joint, Length):
-                self.take_between(stop.joint, along, state, rest)
-                return
-            for joint, k, factor in terms_of(stop.joint, stop.coordinate):
-                self.take_along(joint, k, factor * along, state, rest)
+            for one, k, factor in terms_of(stop.joint, stop.coordinate):
+                if isinstance(one, Length):
+                    self.take_between(one, factor * along, state, rest)
+                else:
+                    self.take_along(one, k, factor * along, state, rest)
             return
         for b, sign in ((pairs.body[number], -1.0), (pairs.other[number], 1.0)):
             if b >= 0:

@@ -19,6 +19,7 @@ from carom.scene.look import Look as Look
 from carom.scene.materials import ContactLaw as ContactLaw
 from carom.scene.materials import Material as Material
 from carom.scene.restitution import Restitution as Restitution
+from carom.scene.rope import Pulley as Pulley
 from carom.scene.scene import Scene as Scene
 from carom.scene.shapes import Box as Box
 from carom.scene.shapes import Capsule as Capsule

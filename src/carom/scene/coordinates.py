@@ -43,7 +43,7 @@ def kind_of(joint: Joint | Combination | Length, coordinate: int | str) -> str:
     if isinstance(joint, Length):
         return "slide"
     if isinstance(joint, Combination):
-        kinds = {coordinate_kind(one, k) for one, k, _ in joint.terms}
+        kinds = {kind_of(one, k) for one, k, _ in joint.terms}
         return "slide" if "slide" in kinds else min(kinds)
     if isinstance(coordinate, str):
         return joint.definition.limits[coordinate]
@@ -119,9 +119,16 @@ class Combination:
             terms.append((joint, coordinate, factor))
         keep(self, terms=tuple(terms))
 
+    @classmethod
+    def _of(cls, terms) -> Combination:
+        """Return the combination of these terms: coordinates, their numbers, factors."""
+        made = object.__new__(cls)
+        keep(made, terms=tuple(terms))
+        return made
+
     @property
     def joints(self) -> tuple[Joint, ...]:
-        """The joints of its terms."""
+        """The joints of its terms, or the lengths."""
         return tuple(joint for joint, _, _ in self.terms)
 
     @property
@@ -183,6 +190,30 @@ class Length:
     def can_be_left(self) -> bool:
         """False: it has no rail."""
         return False
+
+
+@dataclass(frozen=True, eq=False)
+class Strand(Length):
+    """A strand of rope between two circles, or points, with its parts of the arcs round them.
+
+    Attributes
+    ----------
+    axis : (3,)
+        Axis of both circles, in the world; 0 if both are points, and the strand is a `Length`.
+    offset : float
+        Radius of the first circle minus that of the second [m]; radii against the axis are below 0.
+    start : float
+        Its value at the start [m].
+    """
+
+    axis: np.ndarray
+    offset: float
+    start: float
+
+    @property
+    def index(self) -> tuple:
+        """What tells it from other coordinates."""
+        return (*super().index, *self.axis.tolist(), self.offset, self.start)
 
 
 def terms_of(joint: Joint | Combination | Length, coordinate: int | str):

@@ -12,7 +12,8 @@ from carom.scene.friction import FrictionLaw, bound_of, isotropic
 from carom.scene.joints import Joint
 from carom.scene.more_forces import JointFriction
 from carom.scene.restitution import Restitution
-from carom.scene.stops import SceneStops, Stop
+from carom.scene.rope import SceneRope
+from carom.scene.stops import Stop
 
 
 class Play(NamedTuple):
@@ -23,7 +24,7 @@ class Play(NamedTuple):
     friction: AppliedForce | None
 
 
-class ScenePlay(SceneStops, SceneForces):
+class ScenePlay(SceneRope, SceneForces):
     """The method of `Scene` for play, which consists of stops and a force."""
 
     @arguments.known

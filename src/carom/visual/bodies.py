@@ -14,7 +14,7 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.scene.bodies import Body
-from carom.scene.coordinates import Length
+from carom.scene.coordinates import Length, Strand, terms_of
 from carom.scene.curves import Curve
 from carom.scene.forces import Spring
 from carom.scene.joints import CurveOnPoint, Distance, Joint, RollingDisc, RollingSphere
@@ -298,10 +298,11 @@ def links_of(scene) -> list[Link]:
             kind = "rod" if isinstance(d, Distance) else "spring"
             out.append(Link(one.parent.index, one.child.index, start, end, kind))
     for stop in scene.stops:
-        of = stop.joint
-        if isinstance(of, Length):
-            ends = _in_body(of.parent, of.anchor_parent), _in_body(of.child, of.anchor_child)
-            out.append(Link(of.parent.index, of.child.index, *ends, "cord", stop.end))
+        for of, _, _ in terms_of(stop.joint, stop.coordinate):
+            if isinstance(of, Length):
+                ends = _in_body(of.parent, of.anchor_parent), _in_body(of.child, of.anchor_child)
+                length = stop.end if of is stop.joint and not isinstance(of, Strand) else 0.0
+                out.append(Link(of.parent.index, of.child.index, *ends, "cord", length))
     return out
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from carom import checks
 from carom.scene import bodies, contacts, forces, joints, stops
 from carom.scene.constraints import CONSTRAINTS, Constraint, Coupling, Gear
-from carom.scene.coordinates import Combination, Length, coordinate_kind
+from carom.scene.coordinates import Combination, Length, kind_of
 from carom.scene.curves import Curve, Spline
 from carom.scene.materials import Material
 from carom.scene.pieces import Piece, Shape
@@ -97,10 +97,11 @@ def _made(parts, part: Any) -> Any:
         parts.member("definition", one, (joints.Joint, bodies.Body))
     if isinstance(part, stops.Stop):
         of = part.joint
-        for one in of.joints if isinstance(of, (Combination, Length)) else (of,):
-            parts.member("joint", one, (joints.Joint,))
-        if isinstance(of, Length):
-            parts.pair(of.parent, of.child)
+        for one in of.joints if isinstance(of, Combination) else (of,):
+            if isinstance(one, Length):
+                parts.pair(one.parent, one.child)
+            else:
+                parts.member("joint", one, (joints.Joint,))
     if isinstance(part, contacts.Contact):
         parts.member("body", part.body, (bodies.Body,))
         parts.member("other", part.other, KINDS)
@@ -113,7 +114,7 @@ def _check_combination(record: Combination) -> None:
     if not isinstance(record.terms, tuple) or not record.terms:
         raise ValueError(f"terms must be a tuple of at least one, got {record.terms!r}")
     for joint, coordinate, factor in record.terms:
-        coordinate_kind(joint, coordinate)
+        kind_of(joint, coordinate)
         if checks.number("factor", factor) == 0.0:
             raise ValueError("factor must not be 0, got 0")
 

@@ -35,7 +35,7 @@ from carom.results.sensors import Frame, Sensor
 from carom.scene.bodies import FIXED, GROUND, Body, Ground
 from carom.scene.constraints import CONSTRAINTS, Constraint, Gear
 from carom.scene.contacts import Contact
-from carom.scene.coordinates import Combination, Length
+from carom.scene.coordinates import Combination, Length, Strand
 from carom.scene.curves import CURVES
 from carom.scene.forces import FORCES, AppliedForce
 from carom.scene.joints import JOINTS, Joint
@@ -64,6 +64,7 @@ TYPES: dict[str, type[Any]] = {
         *LAWS,
         Combination,
         Length,
+        Strand,
         Gear,
         ContactLaw,
         Material,

@@ -1,0 +1,286 @@
+"""Ropes over pulleys: strands that pull, each a stop of a sum of lengths and of angles of wheels."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import count, pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from carom import arguments, checks, fields
+from carom.fields import Number, NumberOrNone, Value, Vector, VectorOrNone
+from carom.geometry.frames import triad
+from carom.scene.bodies import Body, Ground
+from carom.scene.coordinates import Combination, Strand
+from carom.scene.joints import Joint
+from carom.scene.restitution import Restitution
+from carom.scene.stops import SceneStops, Stop
+
+PARALLEL = 1e-9  # cosine: of axes that count as parallel
+LENGTH_ERROR = 1e-9  # length: by which it may be shorter than at the start
+
+
+def _part(name: str, value: Any) -> Any:
+    checks.instance(name, value, (Body, Ground, str))
+    return value
+
+
+@arguments.known
+@dataclass(frozen=True, eq=False)
+class Pulley:
+    """A wheel over which a rope goes, in the plane across its axis.
+
+    Parameters
+    ----------
+    wheel : Body, str or carom.GROUND
+        The wheel, on a `Revolute` joint about this axis, or the ground for one that does not turn.
+    radius : float
+        Radius of the rope's centre line [m], above 0.
+    axis : (3,)
+        Axis of the wheel, in the world: the rope goes round it by the right-hand rule, in the order in which
+        `add_rope` lists what it goes over. It must keep its direction.
+    friction : float, optional
+        None (default): the rope does not slip, and turns the wheel. 0: it slips freely.
+    center : (3,), optional
+        Centre, in the world at the start [m]. Default: the mass centre of the wheel; of the ground it must be
+        given.
+    """
+
+    wheel: Value[Any, Any] = Value(_part)
+    radius: Number = fields.number(above=0.0, unit="m")
+    axis: Vector = fields.direction()
+    friction: NumberOrNone = fields.number(None, least=0.0)
+    center: VectorOrNone = fields.vector(None)
+
+    def __post_init__(self):
+        if self.friction is not None and self.friction > 0.0:
+            raise ValueError(
+                f"friction must be None (no slip) or 0 (free slip), got {self.friction:g}: friction of a rope "
+                "that slips is not there yet"
+            )
+
+
+class Rope(NamedTuple):
+    """The stops of a rope, one for each part between wheels without slip. `Scene.add_rope` makes it."""
+
+    stops: tuple[Stop, ...]
+
+
+class _End(NamedTuple):
+    """What a rope goes over: a circle, or a point."""
+
+    part: Any
+    point: np.ndarray
+    radius: float = 0.0
+    axis: np.ndarray | None = None
+    slips: bool = True
+
+
+class SceneRope(SceneStops):
+    """The method of `Scene` for ropes."""
+
+    @arguments.known
+    def add_rope(
+        self,
+        over,
+        length: float | None = None,
+        *,
+        stiffness: float | None = None,
+        restitution: float | Restitution = 0.0,
+        impact_law: str = "newton",
+        name: str | None = None,
+    ) -> Rope:
+        """Add a rope without mass over points and pulleys: it pulls, and does not push.
+
+        A rope slides freely through points, and turns wheels on which it does not slip (`carom.Pulley`), so
+        that its tension changes there. It gets taut by an impact, with restitution.
+
+        Parameters
+        ----------
+        over : sequence
+            What it goes over, from one end to the other: a body or its name (its mass centre), a pair (body or
+            `carom.GROUND`, point in the world at the start), or a `carom.Pulley`. The first and the last are
+            the ends, and no pulleys.
+        length : float, optional
+            Length of the rope [m], at least that at the start. Default: it is taut at the start. On wheels
+            without slip what is slack is at first in the first part.
+        stiffness : None
+            Elastic ropes over pulleys are not there yet (between two points: `carom.forces.CurveSpring`).
+        restitution : float or Restitution
+            Of the jerk by which it gets taut, from 0 (default) to 1, or its law.
+        impact_law : str
+            As for `add_stop`.
+        name : str, optional
+            Default ``"rope1"``, ``"rope2"``, ... With wheels without slip its parts have the names
+            ``"<name>.1"``, ``"<name>.2"``, ..., from the first end on.
+
+        Returns
+        -------
+        Rope
+            With its `stops`.
+
+        Raises
+        ------
+        ValueError
+            If the rope has fewer than two ends, axes of neighbours are not parallel, a circle is inside another
+            one, a wheel without slip has no `Revolute` joint about its axis, or `length` is too short.
+
+        Examples
+        --------
+        >>> import carom
+        >>> scene = carom.Scene()
+        >>> wheel = scene.add_body(carom.Cylinder(0.1, 0.02), mass=0.5, orientation=carom.euler("x", 90))
+        >>> hinge = scene.add_joint(carom.joints.Revolute((0, 0, 0), (0, 1, 0)), carom.GROUND, wheel)
+        >>> for name, x in (("left", -0.1), ("right", 0.1)):
+        ...     load = scene.add_body(carom.Sphere(0.03), mass=1.0, position=(x, 0, -1), name=name)
+        >>> rope = scene.add_rope(["left", carom.Pulley(wheel, 0.1, (0, 1, 0)), "right"])
+        >>> [stop.name for stop in rope.stops]
+        ['rope1.1', 'rope1.2']
+        """
+        if stiffness is not None:
+            raise ValueError(
+                f"stiffness must be None, got {checks.shown(stiffness)}: elastic ropes over pulleys are not "
+                "there yet; between two points give carom.forces.CurveSpring"
+            )
+        ends = [self._end(k, one) for k, one in enumerate(checks.listed("over", over, "Body"))]
+        if len(ends) < 2 or ends[0].axis is not None or ends[-1].axis is not None:
+            raise ValueError(
+                "over must begin and end with a body or a point, and have two of them at least"
+            )
+        if name is None:
+            own = {stop.name.partition(".")[0] for stop in self.stops}
+            name = next(f"rope{k}" for k in count(1) if f"rope{k}" not in own)
+        parts, slack = _parts(ends, self._wheel_terms), 0.0
+        if length is not None:
+            least = sum(strand.length for strand in _strands(ends))
+            slack = checks.number("length", length, above=0.0, unit="m") - least
+            if slack < -LENGTH_ERROR * length:
+                raise ValueError(
+                    f"length must be at least {least:.9g} m, that at the start, got {length:g}"
+                )
+        stops = []
+        for k, (terms, start) in enumerate(parts):
+            own = name if len(parts) == 1 else f"{name}.{k + 1}"
+            upper = start + (max(0.0, slack) if k == 0 else 0.0)
+            of = terms[0][0] if len(terms) == 1 else Combination._of(terms)
+            stops.append(
+                self._parts.make(
+                    Stop, "rope", own, False, joint=of, coordinate=0, upper=upper, restitution=restitution,
+                    impact_law=impact_law,
+                )
+            )  # fmt: skip
+        return Rope(tuple(stops))
+
+    def _end(self, k: int, one: Any) -> _End:
+        """Return what a rope goes over, with parts of the scene."""
+        name = f"over[{k}]"
+        if isinstance(one, Pulley):
+            wheel = self._member(name, one.wheel)
+            if one.center is None and isinstance(wheel, Ground):
+                raise ValueError(
+                    f"center of {name} must be given for a pulley of the ground, got None"
+                )
+            center = wheel.position if one.center is None else one.center
+            slips = one.friction is not None or isinstance(wheel, Ground)
+            return _End(wheel, center, one.radius, one.axis, slips)
+        if isinstance(one, tuple):
+            part, point = one
+            return _End(self._member(name, part), checks.finite_array(name, point, (3,), "m"))
+        body = self._member(name, one)
+        if isinstance(body, Ground):
+            raise ValueError(
+                f"{name} must be a pair (carom.GROUND, point), got {checks.shown(one)}"
+            )
+        return _End(body, body.position)
+
+    def _member(self, name: str, part: Any) -> Any:
+        return part if isinstance(part, Ground) else self._parts.member(name, part, (Body,))
+
+    def _wheel_terms(self, end: _End, factor: float) -> list[tuple[Any, int, float]]:
+        """Return the angle of a wheel about its axis as a term; none for what the rope slips over."""
+        if end.slips:
+            return []
+        for joint in self._parts.parts(Joint):
+            if joint.kind != "Revolute" or end.part not in (joint.child, joint.parent):
+                continue
+            cosine = float(joint.definition.axis @ end.axis)  # pyright: ignore
+            if abs(cosine) > 1.0 - PARALLEL:
+                side = 1.0 if joint.child is end.part else -1.0
+                return [(joint, 0, side * math.copysign(factor * end.radius, factor * cosine))]
+        raise ValueError(
+            f"wheel {end.part.name!r} must have a Revolute joint about its axis, on which the rope turns it"
+        )
+
+
+class _Strand(NamedTuple):
+    """A strand: its coordinate, None if nothing moves it, its length with arcs at the start, and its angle."""
+
+    of: Strand | None
+    length: float
+    axis: np.ndarray | None  #: about which angles are measured
+    angle: float | None
+
+
+def _strands(ends: list[_End]) -> list[_Strand]:
+    """Return the strands of a rope."""
+    out: list[_Strand] = []
+    for a, b in pairwise(ends):
+        out.append(_strand(a, b, out[-1] if out else _Strand(None, 0.0, None, None)))
+    return out
+
+
+def _parts(ends: list[_End], wheel_terms) -> list[tuple[list, float]]:
+    """Return the terms of each part between wheels without slip, and its value at the start."""
+    out: list[tuple[list, float]] = []
+    terms, total = [], 0.0
+    for b, strand in zip(ends[1:], _strands(ends)):
+        if strand.of is not None:
+            terms.append((strand.of, 0, 1.0))
+            total += strand.of.start
+        if not b.slips:
+            out.append(([*terms, *wheel_terms(b, 1.0)], total))
+            terms, total = wheel_terms(b, -1.0), 0.0
+    return [*out, (terms, total)]
+
+
+def _strand(a: _End, b: _End, last: _Strand) -> _Strand:
+    """Return the strand from a to b, after another one."""
+    own = a.axis if a.axis is not None else b.axis
+    if own is None:
+        length = float(np.linalg.norm(b.point - a.point))
+        return last._replace(of=_between(a, b, np.zeros(3), 0.0, length), length=length)
+    axis = own if last.axis is None else last.axis
+    sides = [0.0 if end.axis is None else float(end.axis @ axis) for end in (a, b)]
+    for end, side in zip((a, b), sides):
+        if end.axis is not None and abs(side) < 1.0 - PARALLEL:
+            raise ValueError(
+                f"axes of the pulleys of a rope must be parallel, got {end.axis} and {axis}"
+            )
+    rho = math.copysign(a.radius, sides[0]) - math.copysign(b.radius, sides[1])
+    x, y = (b.point - a.point) @ triad(axis)[:, 1:]
+    d2 = float(x * x + y * y)
+    if not d2 > rho * rho:
+        raise ValueError(
+            f"a strand must be between circles outside each other, got a distance of {math.sqrt(d2):g} m "
+            f"for radii of {a.radius:g} m and {b.radius:g} m"
+        )
+    length = math.sqrt(d2 - rho * rho)
+    angle = math.atan2(length * y + rho * x, length * x - rho * y)
+    if (
+        last.angle is not None and a.axis is not None
+    ):  # the arc round a is less than a turn, by its own axis
+        way = math.copysign(1.0, sides[0])
+        angle = last.angle + way * ((way * (angle - last.angle)) % (2.0 * math.pi))
+    whole = length + rho * angle
+    return _Strand(_between(a, b, axis, rho, whole), whole, axis, angle)
+
+
+def _between(a: _End, b: _End, axis, rho: float, start: float) -> Strand | None:
+    """Return the coordinate of a strand, whose second end is a body: seen from there it has turned by pi."""
+    if not isinstance(b.part, Ground):
+        return Strand(a.part, b.part, a.point, b.point, axis, rho, start)
+    if isinstance(a.part, Ground):
+        return None
+    return Strand(b.part, a.part, b.point, a.point, axis, rho, start + rho * math.pi)

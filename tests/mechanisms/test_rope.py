@@ -1,0 +1,192 @@
+"""Ropes over points and pulleys: closed forms of tension, acceleration and jerks; results, files and errors."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import carom
+from carom import GROUND, joints
+from files.compare import differences
+
+G = 9.81
+R = 0.1
+
+
+def atwood(masses, inertia=0.01, friction=None, length=None, e=0.0, height=(-1.0, -1.0)):
+    """Two loads on a rope over a wheel; `inertia` is that of the wheel."""
+    scene = carom.Scene(gravity=(0, 0, -G))
+    wheel = scene.add_body(carom.Cylinder(R, 0.02), mass=0.5, inertia=(inertia,) * 3, name="wheel")
+    scene.add_joint(joints.Revolute((0, 0, 0), (0, 1, 0)), GROUND, wheel, name="hinge")
+    for name, side, mass, z in zip("ab", (-R, R), masses, height):
+        scene.add_body(carom.Sphere(0.03), mass=mass, position=(side, 0, z), name=name)
+    pulley = carom.Pulley(wheel, R, (0, 1, 0), friction=friction)
+    scene.add_rope(["a", pulley, "b"], length, restitution=e)
+    return scene
+
+
+@pytest.mark.parametrize("friction", [None, 0.0])
+@pytest.mark.parametrize("how", [{}, {"rtol": 1e-10}, {"step": 1e-2}])
+def test_atwood(friction, how):
+    """a = (m_2 - m_1) g/(m_1 + m_2 + I/R^2), tensions m_1 (g + a), m_2 (g - a); a rope that slips has I = 0."""
+    s = carom.simulate(atwood((2.0, 2.5), friction=friction), 1.2, **how)
+    a = 0.5 * G / (4.5 + (1.0 if friction is None else 0.0))
+    fall = 0.5 * a * s.t**2
+    np.testing.assert_allclose(s["a"].position[:, 2], -1 + fall, atol=1e-9)
+    np.testing.assert_allclose(s["b"].position[:, 2], -1 - fall, atol=1e-9)
+    turn = fall / R if friction is None else 0.0 * fall
+    np.testing.assert_allclose(s["hinge"].coordinate, turn, atol=1e-8)
+    tensions = (2.0 * (G + a), 2.5 * (G - a))
+    for name, tension in zip(("rope1.1", "rope1.2") if friction is None else ("rope1",), tensions):
+        np.testing.assert_allclose(s[name].force[1:, 0], tension, rtol=1e-9)
+        np.testing.assert_allclose(s[name].gap, 0.0, atol=1e-10)
+    # the hinge carries both tensions and the weight of the wheel
+    total = sum(tensions) if friction is None else 2.0 * tensions[0]
+    np.testing.assert_allclose(s["hinge"].force[-1], (0, 0, total + 0.5 * G), atol=1e-8)
+
+
+@pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
+def test_a_rope_gets_taut(e):
+    """Both loads fall freely until .1 m of slack is out: P = (1 + e) (v_1 + v_2)/(1/m_1 + 1/m_2)."""
+    slack = 0.1
+    scene = atwood((1.0, 2.0), friction=0.0, length=2.0 + np.pi * R + slack, e=e)
+    s = carom.simulate(scene, 0.2, rtol=1e-10)
+    t = np.sqrt(slack / G)  # each falls half of it
+    np.testing.assert_allclose(s.impacts.time[0], t, atol=1e-10)
+    impulse = (1 + e) * 2 * G * t / 1.5
+    np.testing.assert_allclose(s.impacts.impulse[0, 0], impulse, rtol=1e-9)
+    np.testing.assert_allclose(
+        s.impacts.energy_change[0], -0.5 * (1 - e * e) * (2 * G * t) ** 2 / 1.5, atol=1e-9
+    )
+
+
+def tackle(load, block):
+    """A block on four strands: under its two sheaves, over two fixed ones, to a load."""
+    scene = carom.Scene(gravity=(0, 0, -G))
+    made = scene.add_body(carom.Box(0.6, 0.1, 0.1), mass=block, position=(0.3, 0, -2), name="block")
+    scene.add_joint(joints.Prismatic((0, 0, 1)), GROUND, made, name="guide")
+    scene.add_body(carom.Sphere(0.03), mass=load, position=(0.8, 0, -1), name="load")
+    under, over = (0, -1, 0), (0, 1, 0)
+    scene.add_rope(
+        [
+            (GROUND, (0, 0, 0)),
+            carom.Pulley(made, R, under, friction=0, center=(0.1, 0, -2)),
+            carom.Pulley(GROUND, R, over, center=(0.3, 0, 0)),
+            carom.Pulley(made, R, under, friction=0, center=(0.5, 0, -2)),
+            carom.Pulley(GROUND, R, over, center=(0.7, 0, 0)),
+            "load",
+        ],
+        name="fall",
+    )
+    return scene
+
+
+def test_block_and_tackle():
+    """4 : 1: in balance for M = 4 m; else the load has (m + M/16) a = (m - M/4) g."""
+    s = carom.simulate(tackle(1.0, 4.0), 1.0)
+    np.testing.assert_allclose(s["load"].position[-1, 2], -1.0, atol=1e-9)
+    np.testing.assert_allclose(s["fall"].force[1:, 0], G, rtol=1e-9)
+    s = carom.simulate(tackle(1.5, 4.0), 0.5, rtol=1e-9)
+    a = 0.5 * G / (1.5 + 0.25)
+    np.testing.assert_allclose(s["load"].position[:, 2], -1.0 - 0.5 * a * s.t**2, atol=1e-8)
+    np.testing.assert_allclose(s["block"].position[:, 2], -2.0 + 0.125 * a * s.t**2, atol=1e-8)
+
+
+def test_a_string_through_a_hole():
+    """A ball circles and a load hangs on its string: (m + M) r'' = m h^2/r^3 - M g, h = r^2 phi'."""
+    scene = carom.Scene(gravity=(0, 0, 0))
+    ball = scene.add_body(
+        carom.Sphere(0.03), mass=1.0, position=(1, 0, 0), velocity=(0, 3, 0), name="ball"
+    )
+    load = scene.add_body(carom.Sphere(0.03), mass=2.0, position=(0, 0, -1), name="load")
+    scene.add_force(carom.forces.Force((0, 0, -2.0 * G)), load)
+    scene.add_rope([ball, (GROUND, (0, 0, 0)), load], name="string")
+    s = carom.simulate(scene, 1.5, rtol=1e-10)
+    known = solve_ivp(
+        lambda t, y: (y[1], (9.0 / y[0] ** 3 - 2 * G) / 3.0), (0, 1.5), (1.0, 0.0), method="DOP853",
+        rtol=1e-12, atol=1e-12, t_eval=s.t,
+    )  # fmt: skip
+    np.testing.assert_allclose(np.linalg.norm(s["ball"].position, axis=1), known.y[0], atol=1e-7)
+    np.testing.assert_allclose(s["load"].position[:, 2], known.y[0] - 2.0, atol=1e-7)
+    np.testing.assert_allclose(s["string"].gap, 0.0, atol=1e-9)
+
+
+def test_a_pendulum_that_winds_round_a_drum():
+    """Its string is laid on the drum as it swings: l + R (arc) is constant, and so is the energy."""
+    scene = carom.Scene(gravity=(0, 0, -G))
+    bob = scene.add_body(
+        carom.Sphere(0.03), mass=0.5, position=(R, 0, -1), velocity=(-3.0, 0, 0), name="bob"
+    )
+    drum = carom.Pulley(GROUND, R, (0, 1, 0), center=(0, 0, 0))
+    scene.add_rope([(GROUND, (-0.5, 0, R)), drum, bob], name="string")
+    s = carom.simulate(scene, 2.0, rtol=1e-10)
+    x, z = bob_path = s["bob"].position[:, [0, 2]].T
+    assert bob_path.shape[0] == 2
+    d = np.hypot(x, z)
+    straight = np.sqrt(d * d - R * R)
+    # from the top of the drum, where the string comes in, round to where it leaves
+    leaves = np.unwrap(np.arctan2(x, z)) - np.arccos(R / d)
+    taut = s["string"].force[1:-1, 0] > 0.0
+    whole = straight + R * leaves
+    np.testing.assert_allclose(whole[1:-1][taut], whole[0], atol=1e-9)
+    np.testing.assert_allclose(s.total_energy, s.total_energy[0], atol=1e-7)
+
+
+def test_files(tmp_path):
+    scene = atwood((1.0, 1.5), length=2.0 + np.pi * R + 0.02)
+    whole = carom.simulate(scene, 0.4, step=1e-2)
+    path = tmp_path / "run.h5"
+
+    def stop(done, total):
+        if done >= 0.5 * total:
+            raise KeyboardInterrupt
+
+    carom.simulate(scene, 0.4, step=1e-2, save=path, progress=stop, throw=False)
+    assert differences(carom.resume(path), whole) == []
+    again = carom.Solution.load(path).scene
+    assert repr(again.stops) == repr(scene.stops)
+
+
+def test_changes():
+    scene = atwood((1.0, 1.5))
+    scene.replace("a", mass=3.0)
+    first = scene["rope1.1"].joint.terms[0][0]
+    assert first.parent is scene["a"]
+    scene.remove("hinge", dependents=True)
+    assert not scene.stops
+
+
+@pytest.mark.parametrize(
+    ("over", "more", "message"),
+    [
+        (["a"], {}, "over must begin and end with a body or a point"),
+        (["a", carom.Pulley("wheel", R, (0, 1, 0))], {}, "over must begin and end with"),
+        (["a", GROUND, "b"], {}, r"over\[1\] must be a pair"),
+        (["a", carom.Pulley(GROUND, R, (0, 1, 0)), "b"], {}, r"center of over\[1\] must be given"),
+        (
+            ["a", carom.Pulley("wheel", R, (1, 0, 0)), "b"],
+            {},
+            "must have a Revolute joint about its axis",
+        ),
+        (
+            ["a", carom.Pulley("wheel", 3.0, (0, 1, 0)), "b"],
+            {},
+            "a strand must be between circles outside",
+        ),
+        (
+            ["a", carom.Pulley("wheel", R, (0, 1, 0)), "b"],
+            {"length": 1.0},
+            "length must be at least 2.314",
+        ),
+        (["a", "b"], {"stiffness": 10.0}, "stiffness must be None"),
+        (["a", "c"], {}, r"over\[1\] must be"),
+    ],
+)
+def test_wrong_input(over, more, message):
+    scene = atwood((1.0, 1.5))
+    with pytest.raises((ValueError, TypeError), match=message):
+        scene.add_rope(over, name="other", **more)
+
+
+def test_friction_of_a_rope_is_not_there_yet():
+    with pytest.raises(ValueError, match="friction must be None"):
+        carom.Pulley("wheel", R, (0, 1, 0), friction=0.2)
