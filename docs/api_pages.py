@@ -15,7 +15,7 @@ CALLED = {
     "State", "Run",
     "Sphere", "Box", "Capsule", "Cylinder", "Disc", "Ellipsoid", "Convex", "Mesh", "Compound", "Part",
     "Revolute", "Spherical", "Prismatic", "Cylindrical", "Screw", "Universal", "Planar", "PointOnLine",
-    "PointOnPlane", "Fixed", "Distance", "Tether", "KnifeEdge", "RollingSphere", "RollingDisc",
+    "PointOnPlane", "Fixed", "Distance", "Tether", "Pulley", "KnifeEdge", "RollingSphere", "RollingDisc",
     "InsideSphere", "InsideCylinder", "InsideCone", "InsideTorus", "HeightField", "Surface",
     "Gear", "Coupling", "Driver", "Rows",
     "Spring", "Force", "Torque", "Bushing", "JointSpring", "JointForce", "Actuator", "JointFriction",
@@ -34,7 +34,7 @@ TOPICS = {
             "contact_default", "pairs_by_default",
         ),
         "Joints and constraints": (
-            "add_joint", "add_stop", "add_play", "add_constraint", "joints", "stops", "constraints",
+            "add_joint", "add_stop", "add_play", "add_rope", "add_constraint", "joints", "stops", "constraints",
         ),
         "Forces": ("add_force", "forces"),
         "Changes": ("replace", "remove", "copy"),

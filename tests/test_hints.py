@@ -123,7 +123,7 @@ def run():
         ),
         (lambda s: s.joint_coordinates(name="pin"), "it has joint"),
         (
-            lambda s: s.scene.add_rope(1),
+            lambda s: s.scene.add_cable(1),
             r"a cord that goes slack is add_joint\(carom\.joints\.Tether",
         ),
         (lambda s: s.scene.add_conveyor(1), "surface_velocity="),

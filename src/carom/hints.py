@@ -168,7 +168,7 @@ _OF_SCENE = {
     _JOINT.format("Distance"): "add_rod add_distance",
     "a cord that goes slack is add_joint(carom.joints.Tether(...)), an elastic one "
     "add_force(carom.forces.CurveSpring(...)), a rod add_joint(carom.joints.Distance(...))":
-        "add_rope add_cable add_string add_tether add_chain",
+        "add_cable add_string add_tether add_chain",
     "a conveyor is a fixed part whose surface moves: add_half_space(..., surface_velocity=), or add_static":
         "add_conveyor add_belt add_conveyor_belt add_treadmill",
     "a turntable is a fixed part whose surface turns: add_half_space(..., surface_spin=), or add_static":

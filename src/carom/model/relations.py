@@ -92,7 +92,7 @@ class Coordinates:
         made, place = table(arrays.COORDINATE, 1), self.placement.point
         made.kind = arrays.OF_LIMIT["length"]
         if isinstance(length, Strand) and length.axis.any():
-            made.kind, made.length = arrays.OF_LIMIT["strand"], length.offset
+            made.kind, made.length = arrays.OF_LIMIT["strand"], length.radii[0] - length.radii[1]
             made.parent_frame[0] = triad(length.axis)
             made.begin = length.start
         made.parent, made.child = length.parent.index, length.child.index

@@ -200,20 +200,20 @@ class Strand(Length):
     ----------
     axis : (3,)
         Axis of both circles, in the world; 0 if both are points, and the strand is a `Length`.
-    offset : float
-        Radius of the first circle minus that of the second [m]; radii against the axis are below 0.
+    radii : (2,)
+        Radii of the first circle and of the second [m]; below 0 if the rope goes round against the axis.
     start : float
         Its value at the start [m].
     """
 
     axis: np.ndarray
-    offset: float
+    radii: np.ndarray
     start: float
 
     @property
     def index(self) -> tuple:
         """What tells it from other coordinates."""
-        return (*super().index, *self.axis.tolist(), self.offset, self.start)
+        return (*super().index, *self.axis.tolist(), *self.radii.tolist(), self.start)
 
 
 def terms_of(joint: Joint | Combination | Length, coordinate: int | str):

@@ -250,7 +250,7 @@ def _strand(a: _End, b: _End, last: _Strand) -> _Strand:
     own = a.axis if a.axis is not None else b.axis
     if own is None:
         length = float(np.linalg.norm(b.point - a.point))
-        return last._replace(of=_between(a, b, np.zeros(3), 0.0, length), length=length)
+        return last._replace(of=_between(a, b, np.zeros(3), np.zeros(2), length), length=length)
     axis = own if last.axis is None else last.axis
     sides = [0.0 if end.axis is None else float(end.axis @ axis) for end in (a, b)]
     for end, side in zip((a, b), sides):
@@ -258,7 +258,8 @@ def _strand(a: _End, b: _End, last: _Strand) -> _Strand:
             raise ValueError(
                 f"axes of the pulleys of a rope must be parallel, got {end.axis} and {axis}"
             )
-    rho = math.copysign(a.radius, sides[0]) - math.copysign(b.radius, sides[1])
+    radii = np.array([math.copysign(a.radius, sides[0]), math.copysign(b.radius, sides[1])])
+    rho = float(radii[0] - radii[1])
     x, y = (b.point - a.point) @ triad(axis)[:, 1:]
     d2 = float(x * x + y * y)
     if not d2 > rho * rho:
@@ -274,13 +275,14 @@ def _strand(a: _End, b: _End, last: _Strand) -> _Strand:
         way = math.copysign(1.0, sides[0])
         angle = last.angle + way * ((way * (angle - last.angle)) % (2.0 * math.pi))
     whole = length + rho * angle
-    return _Strand(_between(a, b, axis, rho, whole), whole, axis, angle)
+    return _Strand(_between(a, b, axis, radii, whole), whole, axis, angle)
 
 
-def _between(a: _End, b: _End, axis, rho: float, start: float) -> Strand | None:
+def _between(a: _End, b: _End, axis, radii: np.ndarray, start: float) -> Strand | None:
     """Return the coordinate of a strand, whose second end is a body: seen from there it has turned by pi."""
     if not isinstance(b.part, Ground):
-        return Strand(a.part, b.part, a.point, b.point, axis, rho, start)
+        return Strand(a.part, b.part, a.point, b.point, axis, radii, start)
     if isinstance(a.part, Ground):
         return None
-    return Strand(b.part, a.part, b.point, a.point, axis, rho, start + rho * math.pi)
+    turned = start + float(radii[0] - radii[1]) * math.pi
+    return Strand(b.part, a.part, b.point, a.point, axis, -radii[::-1], turned)

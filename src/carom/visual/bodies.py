@@ -37,7 +37,7 @@ COLOURS = ("#56B4E9", "#E69F00", "#009E73", "#F0E442", "#CC79A7", "#999999")
 JOINT, STATIC, ARROW = "#5b6873", "#c3ccd4", "#D55E00"
 CORD = 12  # straight pieces of a slack cord
 ROD = 0.012  # radius of rods of bodies without a shape, as a fraction of the size of the region
-ORIGIN = np.zeros(3)
+ORIGIN, NO_RADII = np.zeros(3), np.zeros(2)
 RAIL, RING = 400, 8  # most points along a curve, and sides of its tube
 
 
@@ -61,11 +61,25 @@ class Link(NamedTuple):
     child_anchor: np.ndarray
     kind: str  #: "spring", "rod" or "cord"
     length: float = 0.0  #: of a cord [m]
+    radii: np.ndarray = (
+        NO_RADII  #: (2,) of the circles round which a strand of rope goes, about `axis` (3,)
+    )
+    axis: np.ndarray = ORIGIN
 
     def ends(self, x: np.ndarray, Q: np.ndarray) -> list[np.ndarray]:
         """Return both ends (3,) at positions x (N, 3) and orientations Q (N, 4) of the bodies."""
         pairs = (self.parent, self.parent_anchor), (self.child, self.child_anchor)
-        return [a if b < 0 else x[b] + quaternion.rotate(Q[b], a) for b, a in pairs]
+        centres = [a if b < 0 else x[b] + quaternion.rotate(Q[b], a) for b, a in pairs]
+        if not self.radii.any():
+            return centres
+        # as `carom.kinematics.coordinates.strand`: from where it leaves one circle to where it meets the other
+        d = centres[1] - centres[0]
+        d = d - np.asarray(d @ self.axis)[..., None] * self.axis
+        square, rho = np.sum(d * d, axis=-1, keepdims=True), self.radii[0] - self.radii[1]
+        length = np.sqrt(np.maximum(square - rho * rho, 0.0))
+        along = (length * d + rho * np.cross(self.axis, d)) / square
+        beside = np.cross(along, self.axis)
+        return [centre + r * beside for centre, r in zip(centres, self.radii)]
 
     def line(self, x: np.ndarray, Q: np.ndarray, up: np.ndarray) -> np.ndarray:
         """Return the points (n, 3) along which it is drawn: a slack cord hangs as a parabola of its length.
@@ -301,8 +315,11 @@ def links_of(scene) -> list[Link]:
         for of, _, _ in terms_of(stop.joint, stop.coordinate):
             if isinstance(of, Length):
                 ends = _in_body(of.parent, of.anchor_parent), _in_body(of.child, of.anchor_child)
-                length = stop.end if of is stop.joint and not isinstance(of, Strand) else 0.0
-                out.append(Link(of.parent.index, of.child.index, *ends, "cord", length))
+                pair = of.parent.index, of.child.index
+                if isinstance(of, Strand):
+                    out.append(Link(*pair, *ends, "cord", 0.0, of.radii, of.axis))
+                else:
+                    out.append(Link(*pair, *ends, "cord", stop.end))
     return out
 
 

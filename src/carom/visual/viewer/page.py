@@ -134,7 +134,8 @@ def _link(link, centre: np.ndarray) -> dict:
     ends = (link.parent, link.parent_anchor), (link.child, link.child_anchor)
     anchors = [(anchor if body >= 0 else anchor - centre).tolist() for body, anchor in ends]
     sides = [link.parent, link.child]
-    return {"bodies": sides, "anchors": anchors, "kind": link.kind, "length": link.length}
+    made = {"bodies": sides, "anchors": anchors, "kind": link.kind, "length": link.length}
+    return made | {"radii": link.radii.tolist(), "axis": link.axis.tolist()}
 
 
 def _energy(solution, packer: Packer) -> dict:

@@ -59,8 +59,9 @@ class Painter {
         out.push({ mesh, colour, model: frame(...axesOf(Q), x), pattern: look === "round" });
       }
     const thick = 0.02 * this.run.place.radius;
-    for (const { bodies, anchors, kind, length } of this.run.links) {
-      const [from, to] = anchors.map((a, k) => (bodies[k] < 0 ? a : carried(poses[bodies[k]], a)));
+    for (const { bodies, anchors, kind, length, radii, axis } of this.run.links) {
+      const ends = anchors.map((a, k) => (bodies[k] < 0 ? a : carried(poses[bodies[k]], a)));
+      const [from, to] = radii[0] || radii[1] ? this.strand(ends, radii, axis) : ends;
       const wide = kind === "spring" ? thick : 0.35 * thick;
       const mesh = kind === "spring" ? this.furniture.coil : this.furniture.shaft;
       const line = kind === "cord" ? this.hanging(from, to, length) : [from, to];
@@ -71,6 +72,14 @@ class Painter {
       }
     }
     return out;
+  }
+
+  /** Ends of a strand of rope between two circles: where it leaves the one and meets the other. */
+  strand(centres, radii, axis) {
+    const whole = sub(centres[1], centres[0]), d = sub(whole, times(dot(whole, axis), axis));
+    const square = dot(d, d), rho = radii[0] - radii[1], length = Math.sqrt(Math.max(square - rho * rho, 0));
+    const along = times(1 / square, add(times(length, d), times(rho, cross(axis, d)))), beside = cross(along, axis);
+    return centres.map((centre, k) => add(centre, times(radii[k], beside)));
   }
 
   /** Points of a cord: a slack one hangs as a parabola of its length, nearly. */
