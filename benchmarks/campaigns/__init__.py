@@ -22,6 +22,7 @@ from campaigns import (
     rests,
     robots,
     rolls,
+    ropes,
     rough,
     slides,
     strikes,
@@ -40,5 +41,5 @@ FAMILIES = {
     "rails": rails.case, "loose rails": loose_rails.case, "surfaces": surfaces.case, "grounds": grounds.case,
     "terrains": terrains.case, "cams": cams.case,
     "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "grains by slip": grains.by_slip,
-    "rough": rough.case, "plays": plays.case, "tethers": tethers.case,
+    "rough": rough.case, "plays": plays.case, "tethers": tethers.case, "ropes": ropes.case,
 }  # fmt: skip
