@@ -82,7 +82,7 @@ def begin_watch(system, now, t, watch):
     kinetic, potential, size = energies(system, now, t)
     watch.total, watch.potential = kinetic + potential, potential
     watch.exchanged, watch.struck, watch.named, watch.gains = kinetic, 0, 0.0, 0
-    watch.size, watch.depth, watch.speed, watch.unsolved = size, 0.0, 0.0, 0.0
+    watch["size"], watch.depth, watch.speed, watch.unsolved = size, 0.0, 0.0, 0.0
     for i in range(5):
         watch.amount[i], watch.time[i] = 0.0, t
     for i in range(4):
@@ -139,7 +139,7 @@ def watch_step(system, data):
     residual -= clock.loads + clock.impacts + clock.friction + clock.bounces
     note_exchanged(clock, kinetic)
     exchanged = max(watch.exchanged, max(clock.exchanged, abs(potential - watch.potential)))
-    watch.exchanged, watch.size = exchanged, max(watch.size, size)
+    watch.exchanged, watch["size"] = exchanged, max(watch["size"], size)
     watch.able = max(watch.able, step.able)
     watch.named += given_by_law(system, clock, data.records, watch)
     total = abs(residual)
@@ -284,7 +284,7 @@ def off_balance(model, data):
     off, grows = imbalance(model, data, named, clock.now, dt)
     search.unnamed = max(search.unnamed, off)
     cut = grows or off > (CUT_SHARE if careful else 1.0)
-    round_off = limits.ENERGY_ROUND_OFF * watch.size
+    round_off = limits.ENERGY_ROUND_OFF * watch["size"]
     if controls.order == 0 and search.friction > limits.FRICTION_GAIN * watch.exchanged + round_off:
         cut = True
     if (cut and not shortest) or (grows and (jams or search.active == 1)):

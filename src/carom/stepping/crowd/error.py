@@ -22,7 +22,7 @@ def note_error(system, until, h, now, end, work):
     g = system.gravity
     for b in range(now.shape[0]):
         memory, x, y = work.body[b], now[b], end[b]
-        mean, last = memory.mean, memory.piece_end
+        mean, last = memory["mean"], memory.piece_end  # `record.mean` is a method of NumPy's
         follows = last > 0.0 and abs(until - h - last) <= ROUND_OFF * until
         linear, turning, still, free = 0.0, 0.0, 0.0, 0.0
         for k in range(3):
