@@ -162,6 +162,14 @@ def stated():
             "add_stop", joint="@hinge", lower=-1.0, upper=None, restitution=0.5, impact_law="newton",
             coordinate=0, name="new", replace=True,
         ),
+        "Scene.add_play": of_scene(
+            "add_play", joint="@hinge", lower=-1.0, upper=1.0, restitution=0.5, friction=0.1,
+            impact_law="newton", coordinate=0, name="new",
+        ),
+        "Scene.add_rope": of_scene(
+            "add_rope", over=["ball", "box"], length=100.0, stiffness=None, restitution=0.5,
+            impact_law="newton", name="new",
+        ),
         "Scene.add_contact": of_scene(
             "add_contact", body="@box", other="@floor", **number, **words, name="new", replace=True
         ),
@@ -226,6 +234,13 @@ def stated():
                  hessian=lambda x, y, z: np.diag([-0.2, 0.0, 0.0])),
         ),
         "joints.Distance": lambda: (joints.Distance, dict(anchor_parent=three, anchor_child=(0, 0, 0.0))),
+        "joints.Tether": lambda: (
+            joints.Tether,
+            dict(length=1.0, anchor_parent=three, anchor_child=three, restitution=0.5, impact_law="newton"),
+        ),
+        "Pulley": lambda: (
+            carom.Pulley, dict(wheel="wheel", radius=1.0, axis=three, friction=0.0, center=three),
+        ),
         "joints.KnifeEdge": lambda: (
             joints.KnifeEdge, dict(anchor=three, direction=three, normal=(0, 0, 1.0)),
         ),
@@ -265,6 +280,14 @@ def stated():
         "forces.UserForce": lambda: (
             forces.UserForce, dict(bodies=[parts().ball], function=of_nothing, potential=of_nothing),
         ),
+        "forces.Drag": lambda: (forces.Drag, dict(density=1.2, coefficient=0.5, area=0.1)),
+        "forces.Wind": lambda: (
+            forces.Wind, dict(velocity=three, density=1.2, coefficient=0.5, area=0.1),
+        ),
+        "forces.Magnus": lambda: (
+            forces.Magnus, dict(density=1.2, coefficient=1.0, radius=0.1, velocity=three),
+        ),
+        "forces.Buoyancy": lambda: (forces.Buoyancy, dict(density=1.2, surface=0.1, volume=0.1)),
         "constraints.Coupling": lambda: (constraints.Coupling, dict(factors={parts().hinge: 1.0})),
         "constraints.Gear": with_part(constraints.Gear, first="@hinge", second="@slide", ratio=2.0),
         "constraints.Driver": with_part(

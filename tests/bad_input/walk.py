@@ -48,6 +48,7 @@ INSTEAD = {
 #: whose values may be functions, and so classes
 FUNCTIONS = {
     ("forces.JointForce", "force"),
+    ("forces.Wind", "velocity"),
     ("Scene.add_half_space", "surface_velocity"),
     ("Scene.add_static", "surface_velocity"),
     ("Scene.add_surface", "surface_velocity"),

@@ -155,7 +155,8 @@ class SceneRope(SceneStops):
         parts, slack = _parts(ends, self._wheel_terms), 0.0
         if length is not None:
             least = sum(strand.length for strand in _strands(ends))
-            slack = checks.number("length", length, above=0.0, unit="m") - least
+            length = checks.number("length", length, above=0.0, unit="m")
+            slack = length - least
             if slack < -LENGTH_ERROR * length:
                 raise ValueError(
                     f"length must be at least {least:.9g} m, that at the start, got {length:g}"
