@@ -50,7 +50,6 @@ def acceleration_in_row(system, point, state, stage) -> tuple[float, float, floa
 
 
 @unit(where=has_relations)
-def push_in_row(system, point, state, p, work):
-    """Add the wrenches of an impulse p (n, t1, t2) of the point."""
-    amount = p[0] if point.motion == MOTION_STOP else p[1]
+def push_in_row(system, point, state, amount, work):
+    """Add the wrenches of an impulse in the row of the point."""
     push(system, coordinate_of(system, point), state, point.length * amount, work)
