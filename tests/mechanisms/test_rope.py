@@ -187,6 +187,43 @@ def test_wrong_input(over, more, message):
         scene.add_rope(over, name="other", **more)
 
 
+def test_a_strand_that_leaves_its_plane_is_told_of():
+    scene = atwood((1.0, 1.5))
+    assert not carom.simulate(scene, 0.2).warnings
+    scene.replace("a", velocity=(0, 0.5, 0))
+    with pytest.warns(
+        carom.AccuracyWarning, match="out of the plane of its pulley, most at t = 0.2 s"
+    ):
+        carom.simulate(scene, 0.2)
+
+
+def test_a_wheel_that_moves_is_refused():
+    """The torque of its joint would act on what carries it, too."""
+    scene = carom.Scene()
+    boom = scene.add_body(carom.Box(1, 0.1, 0.1), mass=1.0, position=(0.5, 0, 1), name="boom")
+    scene.add_joint(joints.Revolute((0, 0, 1), (0, 1, 0)), GROUND, boom)
+    wheel = scene.add_body(carom.Cylinder(R, 0.02), mass=0.5, position=(1, 0, 1), name="wheel")
+    scene.add_joint(joints.Revolute((1, 0, 1), (0, 1, 0)), boom, wheel)
+    for name, x in (("a", 0.9), ("b", 1.1)):
+        scene.add_body(carom.Sphere(0.03), mass=1.0, position=(x, 0, 0), name=name)
+    with pytest.raises(ValueError, match=r"about its axis on carom\.GROUND"):
+        scene.add_rope(["a", carom.Pulley(wheel, R, (0, 1, 0)), "b"])
+
+
+def test_a_mass_centre_is_an_end_wherever_it_is():
+    """A load that is placed elsewhere afterwards hangs on its mass centre still."""
+    scene = carom.Scene()
+    ball = scene.add_body(carom.Box(0.1, 0.2, 0.3), mass=1.0, position=(0, 0, -1), name="ball")
+    scene.add_joint(joints.Tether(2.0, anchor_parent=(0, 0, 0)), GROUND, ball, name="cord")
+    scene.replace("ball", position=(1.0, 0.0, -1.0))
+    assert scene["cord"].joint.ends[1].tolist() == [1.0, 0.0, -1.0]
+    s = carom.simulate(scene, 1.5)
+    assert not s.angular_velocity.any()
+    np.testing.assert_allclose(
+        s["cord"].gap, 2.0 - np.linalg.norm(s.position[:, 0], axis=1), atol=1e-9
+    )
+
+
 def test_friction_of_a_rope_is_not_there_yet():
     with pytest.raises(ValueError, match="friction must be None"):
         carom.Pulley("wheel", R, (0, 1, 0), friction=0.2)

@@ -96,8 +96,8 @@ class Coordinates:
             made.parent_frame[0] = triad(length.axis)
             made.begin = length.start
         made.parent, made.child = length.parent.index, length.child.index
-        made.parent_anchor[0] = place(length.parent, length.anchor_parent)
-        made.child_anchor[0] = place(length.child, length.anchor_child)
+        made.parent_anchor[0] = place(length.parent, length.ends[0])
+        made.child_anchor[0] = place(length.child, length.ends[1])
         return made
 
     def _row(self, joint, coordinate):

@@ -28,6 +28,7 @@ from carom.results.names import (
     restitution_of,
     row_units,
 )
+from carom.results.ropes import tipped_strands
 from carom.results.tipped_profiles import tipped
 from carom.scene.forces import AppliedForce
 from carom.scene.materials import IMPACT_LAWS
@@ -67,6 +68,7 @@ def assemble(run, status: Status) -> dict:
             *remarks(impact, event, run),
             *stiff_forces.remarks(run, series, state),
             *beyond_bounds(run, impact, rec.touch, series["t"]),
+            *tipped_strands(run, rec.state, series["t"]),
         ),
         "stats": {
             "steps": clock["step"], "trial_steps": clock["trials"], "rejected": clock["rejected"],

@@ -161,14 +161,21 @@ class Length:
     ----------
     parent : Body or carom.GROUND
     child : Body
-    anchor_parent, anchor_child : (3,)
-        The points, in the world at the start [m].
+    anchor_parent, anchor_child : (3,) or None
+        The points, in the world at the start [m]; None for the mass centre, wherever it is.
     """
 
     parent: Body | Ground
     child: Body
-    anchor_parent: np.ndarray
-    anchor_child: np.ndarray
+    anchor_parent: np.ndarray | None
+    anchor_child: np.ndarray | None
+
+    @property
+    def ends(self) -> tuple[np.ndarray, np.ndarray]:
+        """The points of parent and child, in the world at the start."""
+        pairs = (self.parent, self.anchor_parent), (self.child, self.anchor_child)
+        a, b = (end.position if at is None else at for end, at in pairs)  # pyright: ignore
+        return a, b
 
     @property
     def name(self) -> str:
@@ -178,8 +185,7 @@ class Length:
     @property
     def index(self) -> tuple:
         """What tells it from other coordinates, in the place of the index of a joint."""
-        ends = tuple(self.anchor_parent.tolist()), tuple(self.anchor_child.tolist())
-        return self.parent.index, self.child.index, *ends
+        return self.parent.index, self.child.index, *(tuple(end.tolist()) for end in self.ends)
 
     @property
     def joints(self) -> tuple[Joint, ...]:

@@ -35,7 +35,8 @@ class Pulley:
     Parameters
     ----------
     wheel : Body, str or carom.GROUND
-        The wheel, on a `Revolute` joint about this axis, or the ground for one that does not turn.
+        The wheel, or the ground for one that does not turn. If the rope does not slip, it is the child of a
+        `Revolute` joint about this axis on the ground; a wheel that moves is one that it slips over.
     radius : float
         Radius of the rope's centre line [m], above 0.
     axis : (3,)
@@ -73,6 +74,7 @@ class _End(NamedTuple):
 
     part: Any
     point: np.ndarray
+    anchor: np.ndarray | None  #: the point, None for the mass centre
     radius: float = 0.0
     axis: np.ndarray | None = None
     slips: bool = True
@@ -125,7 +127,8 @@ class SceneRope(SceneStops):
         ------
         ValueError
             If the rope has fewer than two ends, axes of neighbours are not parallel, a circle is inside another
-            one, a wheel without slip has no `Revolute` joint about its axis, or `length` is too short.
+            one, a wheel without slip has no `Revolute` joint about its axis on the ground, or `length` is too
+            short.
 
         Examples
         --------
@@ -185,16 +188,17 @@ class SceneRope(SceneStops):
                 )
             center = wheel.position if one.center is None else one.center
             slips = one.friction is not None or isinstance(wheel, Ground)
-            return _End(wheel, center, one.radius, one.axis, slips)
+            return _End(wheel, center, one.center, one.radius, one.axis, slips)
         if isinstance(one, tuple):
             part, point = one
-            return _End(self._member(name, part), checks.finite_array(name, point, (3,), "m"))
+            at = checks.finite_array(name, point, (3,), "m")
+            return _End(self._member(name, part), at, at)
         body = self._member(name, one)
         if isinstance(body, Ground):
             raise ValueError(
                 f"{name} must be a pair (carom.GROUND, point), got {checks.shown(one)}"
             )
-        return _End(body, body.position)
+        return _End(body, body.position, None)
 
     def _member(self, name: str, part: Any) -> Any:
         return part if isinstance(part, Ground) else self._parts.member(name, part, (Body,))
@@ -204,14 +208,15 @@ class SceneRope(SceneStops):
         if end.slips:
             return []
         for joint in self._parts.parts(Joint):
-            if joint.kind != "Revolute" or end.part not in (joint.child, joint.parent):
+            if joint.kind != "Revolute" or joint.child is not end.part:
                 continue
             cosine = float(joint.definition.axis @ end.axis)  # pyright: ignore
-            if abs(cosine) > 1.0 - PARALLEL:
-                side = 1.0 if joint.child is end.part else -1.0
-                return [(joint, 0, side * math.copysign(factor * end.radius, factor * cosine))]
+            # the torque of a joint acts on both its sides, that of a rope on the wheel alone
+            if abs(cosine) > 1.0 - PARALLEL and isinstance(joint.parent, Ground):
+                return [(joint, 0, math.copysign(factor * end.radius, factor * cosine))]
         raise ValueError(
-            f"wheel {end.part.name!r} must have a Revolute joint about its axis, on which the rope turns it"
+            f"wheel {end.part.name!r} must have a Revolute joint about its axis on carom.GROUND, by which the "
+            "rope turns it; over a wheel that moves let it slip: carom.Pulley(..., friction=0)"
         )
 
 
@@ -282,8 +287,8 @@ def _strand(a: _End, b: _End, last: _Strand) -> _Strand:
 def _between(a: _End, b: _End, axis, radii: np.ndarray, start: float) -> Strand | None:
     """Return the coordinate of a strand, whose second end is a body: seen from there it has turned by pi."""
     if not isinstance(b.part, Ground):
-        return Strand(a.part, b.part, a.point, b.point, axis, radii, start)
+        return Strand(a.part, b.part, a.anchor, b.anchor, axis, radii, start)
     if isinstance(a.part, Ground):
         return None
     turned = start + float(radii[0] - radii[1]) * math.pi
-    return Strand(b.part, a.part, b.point, a.point, axis, -radii[::-1], turned)
+    return Strand(b.part, a.part, b.anchor, a.anchor, axis, -radii[::-1], turned)

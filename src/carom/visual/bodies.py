@@ -314,7 +314,7 @@ def links_of(scene) -> list[Link]:
     for stop in scene.stops:
         for of, _, _ in terms_of(stop.joint, stop.coordinate):
             if isinstance(of, Length):
-                ends = _in_body(of.parent, of.anchor_parent), _in_body(of.child, of.anchor_child)
+                ends = _in_body(of.parent, of.ends[0]), _in_body(of.child, of.ends[1])
                 pair = of.parent.index, of.child.index
                 if isinstance(of, Strand):
                     out.append(Link(*pair, *ends, "cord", 0.0, of.radii, of.axis))

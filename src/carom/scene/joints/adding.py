@@ -115,19 +115,16 @@ class SceneJoints(MethodsOfScene):
         if parent is None or child is None:
             raise TypeError("parent and child must be given: add_joint(Tether(...), parent, child)")
         parent, child = self._parts.pair(parent, child)
-        ends = []
-        for side, part in (("parent", parent), ("child", child)):
-            given = getattr(tether, f"anchor_{side}")
-            if given is None and isinstance(part, Ground):
-                raise ValueError(f"anchor_{side} must be given for a point of the ground, got None")
-            ends.append(part.position if given is None else given)
-        distance = math.dist(*ends)
+        if isinstance(parent, Ground) and tether.anchor_parent is None:
+            raise ValueError("anchor_parent must be given for a point of the ground, got None")
+        of = Length(parent, child, tether.anchor_parent, tether.anchor_child)
+        distance = math.dist(*of.ends)
         if tether.length is None and distance == 0.0:
             raise ValueError(
                 "length must be given if both points are the same at the start, got None"
             )
         return self._parts.make(
-            Stop, "tether", name, replace, joint=Length(parent, child, *ends), coordinate=0,
+            Stop, "tether", name, replace, joint=of, coordinate=0,
             upper=distance if tether.length is None else tether.length, restitution=tether.restitution,
             impact_law=tether.impact_law,
         )  # fmt: skip
