@@ -17,7 +17,7 @@ ROOT = Path(carom.__file__).parent
 ORDER = (
     "_compiled", "hints", "arguments", "checks", "fields", "options", "status", "geometry", "scene",
     "collision", "model", "law", "kinematics", "contact", "friction", "dynamics", "impact", "persistent",
-    "stepping", "results", "generalized", "run", "io", "control", "simulate", "studies", "visual",
+    "stepping", "results", "run", "generalized", "io", "control", "simulate", "studies", "visual",
     "baselines", "paper", "bench", "cli",
 )  # fmt: skip
 #: methods of what users hold in their hands that need a floor above, imported where they are called

@@ -212,9 +212,10 @@ def simulate(
                 f"events must be left out with a system in coordinates, got {checks.shown(events)}"
             )
 
-        from carom.generalized.run import GeneralizedRun
+        from carom.generalized.run import CoordinateRun
+        from carom.generalized.scene import CoordinateScene
 
-        run = GeneralizedRun(scene, settings)
+        run = CoordinateRun(CoordinateScene(scene._as_it_is()), settings)
     else:
         check_scene(scene, settings)
         found = None if events is None else conditions(events, scene)

@@ -30,7 +30,8 @@ def pendulum():
 def test_double_pendulum_converges_with_order_four(pendulum):
     # Against rk8 in steps of 1 ms, whose error is below 1e-13.
     exact = carom.simulate(pendulum, 1.0, step=1e-3, method="rk8").q[-1]
-    runs = [carom.simulate(pendulum, 1.0, step=h) for h in (0.02, 0.01, 0.005)]
+    whole = carom.Options(energy_tolerance=1.0)  # no step is cut for its energy
+    runs = [carom.simulate(pendulum, 1.0, step=h, options=whole) for h in (0.02, 0.01, 0.005)]
     errors = [np.max(np.abs(run.q[-1] - exact)) for run in runs]
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert np.all(orders > 3.7)
@@ -100,8 +101,8 @@ def test_slider_crank_three_ways():
     np.testing.assert_allclose(loop.q[:, 2], scene.position[:, 2, 0], rtol=0, atol=1e-10)
     np.testing.assert_allclose(-scene.angular_velocity[:, 0, 1], one.v[:, 0], rtol=0, atol=1e-8)
     position, velocity = loop.constraint_errors
-    assert np.max(position) < 1e-15
-    assert np.max(velocity) < 1e-14
+    assert np.max(position) < 1e-13  # the return to joints leaves 1e-14
+    assert np.max(velocity) < 1e-13
 
 
 @pytest.mark.parametrize("law", ["newton", "stronge"])
@@ -119,7 +120,8 @@ def test_rod_bounces_to_rest_on_the_floor(law):
     np.testing.assert_allclose(ours.impulse[:count, 0], impulse[:count, 0], rtol=0, atol=1e-10)
     friction = np.abs(impulse[:count, 1:]).max(axis=1)
     np.testing.assert_allclose(np.abs(ours.impulse[:count, 1]), friction, rtol=0, atol=1e-10)
-    np.testing.assert_allclose(here.q[-1, :2], scene.position[-1, 0, ::2], rtol=0, atol=1e-10)
+    # bounces of less than a step, up to 1e-6 m high, are left out: they leave 4e-10 m
+    np.testing.assert_allclose(here.q[-1, :2], scene.position[-1, 0, ::2], rtol=0, atol=5e-9)
     np.testing.assert_allclose(here.v[-1], 0.0, atol=1e-15)
     assert np.max(np.abs(here.ledger.residual)) < 1e-11
     assert {str(kind) for kind in here.events.kind} == {"impact", "held"}

@@ -39,9 +39,14 @@ def test_stick_slip(tolerance):
     slips = (2 * np.pi - 2 * np.arctan(D * w / V)) / w
     period, start = 2 * D / V + slips, law.static * G / (k * V)
     run = carom.simulate(system, start + 3.5 * period, rtol=tolerance, atol=tolerance)
+    # a slip that ends is a parabola in time: its end is known to the root of the tolerance
+    stop = 10 * np.sqrt(tolerance)
     times = [run.events.time[run.events.kind == kind] for kind in ("slips", "sticks")]
     assert times[0] == pytest.approx(start + period * np.arange(4), abs=30 * tolerance)
-    assert times[1][-3:] == pytest.approx(start + slips + period * np.arange(3), abs=30 * tolerance)
+    assert times[1][-3:] == pytest.approx(start + slips + period * np.arange(3), abs=stop)
+    assert run.evaluate(times[0])[0][:, 0] == pytest.approx(
+        V * times[0] - law.static * G / k, abs=30 * tolerance
+    )
     assert np.max(np.abs(run.ledger.residual)) < 10 * tolerance
 
 
@@ -56,7 +61,8 @@ def test_a_slide_to_rest(law):
         rtol=1e-12, atol=1e-13, method="DOP853",
     )  # fmt: skip
     run = carom.simulate(block(law, velocity=(2.0, 0.0)), 2.0, rtol=1e-10, atol=1e-10)
-    assert run.events.time[run.events.kind == "sticks"] == pytest.approx(exact.t[-1:], abs=1e-9)
+    # the end of a slip, a parabola in time: 8e-8 s
+    assert run.events.time[run.events.kind == "sticks"] == pytest.approx(exact.t[-1:], abs=1e-6)
     assert run.q[-1, 0] == pytest.approx(exact.y[0, -1], abs=1e-9)
 
 

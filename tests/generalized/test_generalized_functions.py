@@ -144,7 +144,7 @@ def test_an_error_at_an_event_is_the_cause_too():
     run = carom.simulate(system, 1.0, step=1e-2, throw=False)
     assert run.status is carom.Status.FUNCTION_FAILED
     assert "upwards" in run.message
-    assert run.t[-1] == pytest.approx(np.sqrt(2 / 9.81), abs=1e-12)
+    assert np.sqrt(2 / 9.81) - 1e-2 <= run.t[-1] <= np.sqrt(2 / 9.81)
 
 
 def test_ctrl_c_within_a_function():
@@ -164,7 +164,7 @@ def test_a_gap_that_is_no_number_ends_the_run():
     system.add_contact(lambda q: np.nan if q[0] < 0.5 else q[0] + 1.0, restitution=0.5)
     run = carom.simulate(system, 1.0, step=1e-2, throw=False)
     assert run.status is carom.Status.FUNCTION_FAILED
-    assert run.message.startswith("The function 'gap of contact 0' returned nan at t = 0.5")
+    assert run.message.startswith("The function 'gap of contact 0' returned nan at t = 0.49")  # a stage of that step
 
 
 def test_motion_that_diverges_ends_with_a_status():
@@ -175,14 +175,14 @@ def test_motion_that_diverges_ends_with_a_status():
     assert np.all(np.isfinite(run.q))
 
 
-def test_a_potential_that_is_no_number_is_no_success():
-    # Free fall with its gradient given: the motion is right, its energies are not known.
+def test_a_potential_that_is_no_number_ends_the_run():
+    # Free fall with its gradient given: from -.1 on its energies are not known.
     system = carom.GeneralizedSystem(
         lambda q: np.eye(1), [0.0], [0.0],
         potential=lambda q: 9.81 * q[0] if q[0] > -0.1 else np.nan,
         potential_gradient=lambda q: np.array([9.81]),
     )  # fmt: skip
     s = carom.simulate(system, 0.2, step=0.01, throw=False)
-    assert s.status is carom.Status.INACCURATE
-    assert s.warnings[0].startswith("The function 'potential' returned nan at t = 0.15 s")
-    assert "nan J" in s.warnings[1]
+    assert s.status is carom.Status.FUNCTION_FAILED
+    assert s.message.startswith("The function 'potential' returned nan at t = 0.14")
+    assert np.all(s.q[:-1] > -0.1)

@@ -118,7 +118,7 @@ def test_solution(capsys):
     system = build(potential=9.81 * Y)
     system.add_contact(Y, restitution=0.8, name="floor")
     run = carom.simulate(system, 1.0, step=0.1, save_every=2, progress=True)
-    assert "1 impacts" in capsys.readouterr().err
+    assert "1 events" in capsys.readouterr().err
     assert run.t.tolist() == pytest.approx([0, 0.2, 0.4, 0.6, 0.8, 1.0])
     assert "2 coordinates" in repr(run)
     assert run.success

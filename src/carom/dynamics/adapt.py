@@ -34,6 +34,7 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom.dynamics import thresholds as limits
 from carom.geometry.rotation import norm
+from carom.model.parts_of_system import has_metric
 
 MISS_OF_OTHERS, MISS_SCALE = 2, 3  # places in `miss`
 KINKS_IN_A_ROW = (
@@ -64,12 +65,12 @@ def note_miss(system, E, h, longest, b, work):
 
     Return T.
     """
-    L, bound, miss = system.bodies[b].extent, work.body[b].bound, work.body[b].miss
-    speed = L * bound[2]
-    for s in range(E.shape[1]):
-        u = work.stages[s, b].speed
-        speed = max(speed, math.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) + L * norm(u[3:]))
-    pace = max(speed, math.sqrt(L * (bound[0] + L * bound[1])))
+    L, miss = system.bodies[b].extent, work.body[b].miss
+    speed, pace = pace_of(system, E, b, work)
+    if has_metric(system):  # coordinates are one system: what is at rest does not wait for ever
+        for other in range(work.body.shape[0]):
+            size = system.bodies[other].extent
+            pace = max(pace, L / size * pace_of(system, E, other, work)[1])
     T = min(longest, L / pace if pace > 0.0 else 0.0)
     for e in range(E.shape[0]):
         m, k = greatest_error(E[e], h, L, T, b, work), min(e, MISS_OF_OTHERS)
@@ -77,6 +78,17 @@ def note_miss(system, E, h, longest, b, work):
             miss[k] = m
     miss[MISS_SCALE] = max(miss[MISS_SCALE], max(L, abs(h) * speed))
     return T
+
+
+@kernel
+def pace_of(system, E, b, work):
+    """Return the greatest speed of body b in a step, and its size over the time in which it moves by that."""
+    L, bound = system.bodies[b].extent, work.body[b].bound
+    speed = L * bound[2]
+    for s in range(E.shape[1]):
+        u = work.stages[s, b].speed
+        speed = max(speed, math.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) + L * norm(u[3:]))
+    return speed, max(speed, math.sqrt(L * (bound[0] + L * bound[1])))
 
 
 @kernel

@@ -10,7 +10,13 @@ from carom._compiled.decorators import kernel
 from carom.dynamics.solve import free_body, solve
 from carom.kinematics.row_of_coordinate import push_in_row
 from carom.kinematics.wrench import add_force
-from carom.model.workspace import MOTION_PIVOT, MOTION_POINT, MOTION_ROLL, MOTION_STOP
+from carom.model.workspace import (
+    MOTION_PIVOT,
+    MOTION_POINT,
+    MOTION_ROLL,
+    MOTION_STOP,
+    MOTION_THREE,
+)
 
 
 @kernel
@@ -48,7 +54,7 @@ def acts(motion, r):
     """Return whether an impulse along row r of a point has an effect: see `add_impulse`."""
     if motion in (MOTION_POINT, MOTION_ROLL):
         return r >= (0 if motion == MOTION_POINT else 1)
-    return r == (0 if motion == MOTION_STOP else 1)
+    return motion == MOTION_THREE or r == (0 if motion == MOTION_STOP else 1)
 
 
 @kernel
@@ -56,7 +62,7 @@ def add_impulse(system, point, state, p, work):
     """Add G^T p of an impulse p = (p_n, p_t1, p_t2) to the wrenches."""
     E, ln, l1, l2 = point.axes, p[0], p[1], p[2]
     if point.motion > MOTION_PIVOT:
-        push_in_row(system, point, state, ln if point.motion == MOTION_STOP else l1, work)
+        push_in_row(system, point, state, p, work)
         return
     if point.motion != MOTION_POINT:
         i, j = (1, 2) if point.motion == MOTION_ROLL else (0, 2)

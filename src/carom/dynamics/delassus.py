@@ -13,7 +13,7 @@ from carom.kinematics.contact_point import (
     in_axes,
 )
 from carom.kinematics.rows import inverse_inertia, symmetric_times
-from carom.model.workspace import MOTION_PIVOT, MOTION_POINT, MOTION_STOP
+from carom.model.workspace import MOTION_PIVOT, MOTION_POINT, MOTION_STOP, MOTION_THREE
 
 
 @kernel
@@ -82,9 +82,10 @@ def inverse_masses(system, k, points, state, work, W):
             m = 0.5 * (W[i, j] + W[j, i])
             W[i, j], W[j, i] = m, m
     for i in range(k):
-        # a stop has no tangents: any positive values do
-        if points[i].motion == MOTION_STOP:
-            W[3 * i + 1, 3 * i + 1] = W[3 * i + 2, 3 * i + 2] = W[3 * i, 3 * i]
+        # a stop has no tangents, a contact in a plane one: any positive values do
+        if points[i].motion in (MOTION_STOP, MOTION_THREE):
+            for m in (3 * i + 1, 3 * i + 2):
+                W[m, m] = W[m, m] if W[m, m] > 0.0 else W[3 * i, 3 * i]
 
 
 @kernel

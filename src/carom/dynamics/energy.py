@@ -5,8 +5,10 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.dynamics.elements.stiff import stiff_energy
 from carom.dynamics.forces import potential_energy
+from carom.dynamics.metric import metric_energy
 from carom.dynamics.rotors import rotor_energy
 from carom.geometry.rotation import norm, rotate, rotate_back
+from carom.model.parts_of_system import has_metric
 
 
 @kernel
@@ -21,6 +23,8 @@ def kinetic_of(body, state):
 @kernel
 def kinetic_energy(system, state):
     """Return the kinetic energy of all bodies, and of inertia along coordinates of joints [J]."""
+    if has_metric(system):
+        return metric_energy(system, state)
     total = 0.0
     for b in range(state.shape[0]):
         total += kinetic_of(system.bodies[b], state[b])

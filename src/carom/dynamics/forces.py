@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.dynamics.applied import BETWEEN_BODIES, added, energies
+from carom.dynamics.metric import add_loads, own_potential
 from carom.dynamics.more_forces import add_more_forces, more_energy
 from carom.geometry.rotation import cross, rotate, rotate_back
 
@@ -28,6 +29,7 @@ def applied_wrenches(system, state, gyroscopic, work):
             tx, ty, tz = cross(J[0] * W[0], J[1] * W[1], J[2] * W[2], W[0], W[1], W[2])
             wrench[3], wrench[4], wrench[5] = rotate(q, (tx, ty, tz))
     power = between_bodies(system, state, 0.0, work)
+    power += add_loads(system, state, gyroscopic, work)
     return power + add_more_forces(system, state, work)
 
 
@@ -57,4 +59,4 @@ def potential_energy(system, state, t):
         x = state[b].x
         potential -= system.bodies[b].mass * (x[0] * g[0] + x[1] * g[1] + x[2] * g[2])
     potential = energies_between(system, state, t, potential)
-    return potential + more_energy(system, state, t)
+    return potential + more_energy(system, state, t) + own_potential(system, state, t)

@@ -7,10 +7,11 @@ from carom._compiled.units import unit
 from carom.dynamics.element_operations import write_reaction
 from carom.dynamics.light_bodies import factor_light, solve_light
 from carom.dynamics.loops import factor, solve_factored
+from carom.dynamics.metric import solve_metric
 from carom.dynamics.tree import solve_tree
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.pose import keep_poses, same_pose
-from carom.model.arrays import FOREST, NO_JOINTS
+from carom.model.arrays import FOREST, METRIC, NO_JOINTS
 
 
 @unit
@@ -65,6 +66,8 @@ def _solve(system, state, biased, near, work):
         solve_free(system, state, biased, near, work)
     elif system.solver.kind == FOREST:
         solve_tree(system, state, biased, near, work)
+    elif system.solver.kind == METRIC:
+        solve_metric(system, state, biased, near, work)
     elif system.solver.scaled.shape[0] > 0:
         solve_spread(system, state, biased, near, work)
     else:

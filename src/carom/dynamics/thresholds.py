@@ -17,6 +17,7 @@ LEAST_STEP = 1e-14  #: duration: least length of a step
 #: time in which its load moves a body by its size: of a body in contact: it moves by the square
 LOAD_STEP = 0.2
 STAGE_TURN = 0.075  #: rad: rotation of a body for each stage of a part of a step (0.3 for `rk4`)
+METRIC_PIVOT = 1e-15  #: diagonal of a metric: a pivot that is round-off
 RANK = 1e-8  #: largest singular value of rows of length 1: smaller ones are those of dependent rows
 PARTICIPATION = 1e-6  #: a vector of length 1: least component of a row that takes part in a dependence
 SINGULARITY = 1e-5  #: diagonal of a row: square of its angle to the rows before it: it depends on them

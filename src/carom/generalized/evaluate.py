@@ -1,59 +1,63 @@
-"""The compiled functions of a system, and their evaluation at single states."""
+"""The functions of a system at single states: its geometry."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
+from carom._compiled.decorators import entry
 from carom._compiled.record_arrays import table
 from carom._compiled.user_functions import Functions
-from carom.dynamics.methods import make_method
-from carom.generalized import layout as o
-from carom.generalized.motion import look
-from carom.generalized.step import move_freely
-from carom.generalized.thresholds import RETURN_ERROR, RETURN_GOAL, SYSTEM_DROP
-from carom.model.laws import laws_of
-from carom.options import Options
-from carom.status import Status
+from carom.generalized.scene import OwnModel
+from carom.generalized.thresholds import ARC_ERROR, RETURN_ERROR, RETURN_GOAL, SYSTEM_DROP
+from carom.kinematics.own_functions import (
+    find_constraints,
+    find_gaps,
+    find_inertia,
+    find_loads,
+)
+from carom.model.arrays import STATE
+from carom.model.own_coordinates import OwnCoordinates, forget_state
 
 if TYPE_CHECKING:
     from carom.generalized.system import GeneralizedSystem
 
-STAGES = 12
-PARTS = 64  # steps of order 4 along the arc of a return map: the error of a great circle of 1 rad is 2e-10
+
+class Alone(NamedTuple):
+    """The part of a compiled scene that its functions read."""
+
+    own: OwnCoordinates
+
+
+@entry
+def look(system, state, t):
+    """Find all quantities at a state."""
+    find_inertia(system, state, True)
+    find_loads(system, state, t)
+    find_constraints(system, state, True)
+    find_gaps(system, state, True)
 
 
 class Evaluation:
     """Compiled functions of a system and workspace to call them with."""
 
-    def __init__(self, system: GeneralizedSystem, drop: float = SYSTEM_DROP):
-        model, laws = system._model, laws_of(system.contacts)
-        self.n, self.functions = model.n, Functions()
-        addresses, parts = (
-            np.array(one, dtype=np.int64) for one in model.addresses(self.functions)
-        )
-        sizes = model.n, model.holonomic, model.rows, len(laws.table)
-        self.system = o.Coordinates(addresses, parts.reshape(-1, 3), *sizes, laws, drop)
-        self.work = o.new_work(self.system, STAGES)
-        self.none_active = table(o.CONTACT, len(laws.table))
+    def __init__(self, system: GeneralizedSystem):
+        self.n, self.functions = system._model.n, Functions()
+        model = OwnModel(system._model, len(system.contacts))
+        self.own = model.arrays(self.functions, SYSTEM_DROP)
+        self.state = table(STATE, self.n)
 
-    def compute(self, x, t: float) -> int:
-        """Compute all quantities at a state (q, v) without active contacts, into `work`; return a status."""
-        code = look(self.system, self.none_active, t, x, self.work)
-        return Status.FUNCTION_FAILED if self.functions.failed is not None else code
-
-    def look(self, x, t: float = 0.0) -> o.Work:
-        """Return `work` at (q, v), or at (q, 0) for q; raise the error of a user-defined function."""
-        self.compute(np.append(x, np.zeros(2 * self.n - len(x))), t)
-        self.failed()
-        return self.work
-
-    def failed(self) -> None:
-        """Raise the error that a function of the user's has raised."""
+    def look(self, x, t: float = 0.0) -> OwnCoordinates:
+        """Return all quantities at (q, v), or at (q, 0) for q; raise the error of a user-defined function."""
+        x = np.append(x, np.zeros(2 * self.n - len(x)))
+        self.state["x"][:, 0], self.state["v"][:, 0] = np.split(x, 2)
+        forget_state(self.own)
+        look(Alone(self.own), self.state, t)
         error, self.functions.failed = self.functions.failed, None
         if error is not None:
             raise error
+        return self.own
 
     def christoffel(self, q) -> np.ndarray:
         """Return Gamma^k_ij, from 4 Gamma(v, w) = Gamma(v + w, v + w) - Gamma(v - w, v - w)."""
@@ -64,21 +68,28 @@ class Evaluation:
 
         first = [[bend(a + b) - bend(a - b) for b in e] for a in e]  # (i, j, k)
         first = 0.25 * np.moveaxis(np.array(first), 2, 0).reshape(n, -1)
-        return np.linalg.solve(self.work.M, first).reshape(n, n, n)
+        return np.linalg.solve(self.own.M, first).reshape(n, n, n)
 
-    def autoparallel(self, q, v, parts):
+    def autoparallel(self, q, v):
         """Return the end (q, v) of an autoparallel: the motion without loads, constraints and contacts."""
-        x, part = np.concatenate([q, v]), self.system.part.copy()
-        part[o.OF_METRIC + 1 :] = 0
-        free = self.system._replace(
-            address=self.system.address * [1, 0, 0, 0], part=part, holonomic=0, rows=0, contacts=0
-        )
-        work, method = o.new_work(free, STAGES), make_method("rk4", Options())
-        code = move_freely(o.Motion(free, method, table(o.CONTACT, 0), work), x, parts)
-        self.failed()
-        if code != 0:
-            raise ValueError(f"the autoparallel could not be integrated: {Status(code).message}")
-        return x[: self.n], x[self.n :]
+        from scipy.integrate import solve_ivp
+
+        def rate(t, x):
+            seen = self.look(x)
+            if not np.all(np.isfinite(seen.inertia)):
+                raise ValueError("the autoparallel could not be integrated: the metric is not finite")
+            try:
+                return np.append(x[self.n :], -np.linalg.solve(seen.M, seen.c))
+            except np.linalg.LinAlgError as error:
+                raise ValueError(
+                    "the autoparallel could not be integrated: the metric is singular"
+                ) from error
+
+        start = np.concatenate([q, v])
+        found = solve_ivp(rate, (0.0, 1.0), start, "DOP853", rtol=ARC_ERROR, atol=ARC_ERROR)
+        if not found.success:
+            raise ValueError(f"the autoparallel could not be integrated: {found.message}")
+        return np.split(found.y[:, -1], 2)
 
     def return_map(self, q, contact: int):
         """Return coordinates q_e on the surface of a contact, and of the constraints.
@@ -100,7 +111,7 @@ class Evaluation:
         def misses(unknowns):
             at, kappa = unknowns[:n], unknowns[n:]
             rho, _, normals = surfaces(at)
-            return np.append(self.autoparallel(at, normals @ kappa, PARTS)[0] - q, rho)
+            return np.append(self.autoparallel(at, normals @ kappa)[0] - q, rho)
 
         rho, rows, normals = surfaces(q)
         kappa = np.linalg.lstsq(rows @ normals, rho)[0]

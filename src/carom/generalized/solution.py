@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from carom import checks
-from carom.generalized.thresholds import TIME_ERROR
-from carom.geometry.spline import cubic
+from carom._compiled.user_functions import Fault, returned
 from carom.results.drawn import Drawn
-from carom.results.endings import message
 from carom.results.event_tables import EventTable
 from carom.results.ledger import Ledger
+from carom.results.solution import Solution
 from carom.scene.table import RecordTable
 from carom.status import Status
 
 if TYPE_CHECKING:
-    from carom.generalized.run import GeneralizedRun
     from carom.generalized.system import GeneralizedSystem
 
 
@@ -53,14 +50,18 @@ class CoordinateImpactTable(RecordTable[CoordinateImpact]):
         return f"<CoordinateImpactTable: {len(self)} impacts>"
 
 
-def impact_table(records: list[CoordinateImpact], n: int) -> CoordinateImpactTable:
-    """Return the table of impacts of a system of n coordinates."""
-    v = np.zeros(3)
-    like = CoordinateImpact(
-        0.0, 0, np.zeros(n), v, v, v, 0.0, "", np.zeros((3, 3)), 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0
-    )
-    columns = {name: np.array(column) for name, column in zip(like._fields, zip(like, *records))}
-    return CoordinateImpactTable(**{name: column[1:] for name, column in columns.items()})
+#: columns that are those of the impacts of a scene; the place is in coordinates
+_SAME = tuple(name for name in CoordinateImpact._fields if name not in ("position", "inverse_mass"))
+
+
+def impact_table(solution: Solution, system: GeneralizedSystem) -> CoordinateImpactTable:
+    """Return the impacts of the scene of a system, in coordinates."""
+    impacts, n = solution.impacts, len(system.position)
+    there = solution.evaluate(impacts.time)[0][..., 0] if len(impacts) else np.zeros((0, n))
+    rows = np.any(system.evaluation().look(system.position).G != 0.0, axis=2)[impacts.contact]
+    W = impacts.inverse_mass * rows[:, :, None] * rows[:, None, :]  # 0 along tangents that are not there
+    same = {name: getattr(impacts, name) for name in _SAME}
+    return CoordinateImpactTable(**same, position=there, inverse_mass=W)
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,61 +99,61 @@ class GeneralizedSolution(Drawn):
     t: np.ndarray
     q: np.ndarray
     v: np.ndarray
-    kinetic_energy: np.ndarray
-    potential_energy: np.ndarray
-    impacts: CoordinateImpactTable
-    events: EventTable
-    ledger: Ledger
     status: Status
     stats: dict[str, int]
     system: GeneralizedSystem = field(repr=False)
     settings: dict[str, Any]
-    _run: GeneralizedRun = field(repr=False)
+    _of_scene: Solution = field(repr=False)
     warnings: tuple[str, ...] = ()
 
     @classmethod
-    def _from_run(cls, run: GeneralizedRun, status: Status) -> GeneralizedSolution:
-        """Make the solution from the records of a run."""
-        from carom._compiled.user_functions import Fault, returned
-        from carom.results.accuracy import inaccurate, sentences, watched
-
-        saved, n = int(run.clock[0].saved), run.n
-        series: Any = run.series[:saved]
-        ledger = Ledger(**{one.name: np.array(series[one.name]) for one in fields(Ledger)})
-        t, states, said = np.array(series.now), run.states[:saved].copy(), ()
-        energies = np.column_stack([ledger.kinetic, ledger.potential])
-        if len(bad := np.argwhere(~np.isfinite(energies))):
-            k, which = bad[0]
-            name = f"The {run.user._model.kind} {('metric', 'potential')[which]!r}"
-            said = (f"{Fault(name, float(t[k]), states[k], returned(energies[k]))}.",)
-        watch = watched(t, ledger, series.given, series.exchanged[-1], run.options.energy_tolerance)
-        watch["size"] = max(watch.size, run.contacts.light)
-        warnings = (*said, *sentences(watch, run.how.finer))
-        if status is Status.SUCCESS and inaccurate(watch):
-            status = Status.INACCURATE
-        events = [np.array(column) for column in zip(*run.contacts.events)] or [np.zeros(0)] * 3
-        names = {contact.name: k for k, contact in enumerate(run.user.contacts)}.copy
+    def _of(cls, solution: Solution) -> GeneralizedSolution:
+        """Return the solution of the scene of a system in coordinates."""
+        scene: Any = solution.scene
+        q, v = solution.position[..., 0].copy(), solution.velocity[..., 0].copy()
         return cls(
-            t=t, q=states[:, :n].copy(), v=states[:, n:].copy(), kinetic_energy=ledger.kinetic,
-            potential_energy=ledger.potential,
-            impacts=impact_table(run.contacts.records, n)._by_name(names),
-            events=EventTable(*events)._by_name(names), ledger=ledger, status=status, warnings=warnings,
-            stats=run.counted(), system=run.user, settings=run.settings,
-            _run=run,
+            t=solution.t, q=q, v=v, status=solution.status, stats=solution.stats, system=scene.system,
+            settings=solution.settings, _of_scene=solution,
+            warnings=(*not_finite(solution, scene.system, q, v), *solution.warnings),
         )  # fmt: skip
+
+    @property
+    def kinetic_energy(self) -> np.ndarray:
+        """Kinetic energy (T,) [J]."""
+        return self._of_scene.kinetic_energy
+
+    @property
+    def potential_energy(self) -> np.ndarray:
+        """Potential energy (T,) [J]."""
+        return self._of_scene.potential_energy
+
+    @property
+    def ledger(self) -> Ledger:
+        """Energy balance of the run."""
+        return self._of_scene.ledger
+
+    @property
+    def events(self) -> EventTable:
+        """Impacts and changes of persistent contacts, in the order of time."""
+        return self._of_scene.events
+
+    @cached_property
+    def impacts(self) -> CoordinateImpactTable:
+        """One record for each impact."""
+        names = {contact.name: contact.index for contact in self.system.contacts}.copy
+        return impact_table(self._of_scene, self.system)._by_name(names)
 
     @property
     def message(self) -> str:
         """How the run ended, in sentences; if it failed, with the time that it reached."""
-        run = self._run
-        return message(self.status, run.reason, run.how.finer, self.t[-1], self.warnings)
+        return self._of_scene.message
 
     @cached_property
     def constraint_errors(self) -> tuple[np.ndarray, np.ndarray]:
         """Greatest errors of the constraints at each saved time: of phi(q) (T,) and of A v (T,)."""
         position, rate = np.zeros(len(self.t)), np.zeros(len(self.t))
         for k in range(len(self.t)):
-            seen = self._run.made.look(np.append(self.q[k], self.v[k]), float(self.t[k]))
+            seen = self.system.evaluation().look(np.append(self.q[k], self.v[k]), float(self.t[k]))
             position[k] = np.max(np.abs(seen.phi), initial=0.0)
             rate[k] = np.max(np.abs(seen.A @ self.v[k]), initial=0.0)
         return position, rate
@@ -160,7 +161,7 @@ class GeneralizedSolution(Drawn):
     def evaluate(self, t, side: str = "right") -> tuple[np.ndarray, np.ndarray]:
         """Return (q, v) at times between saved ones, with the accuracy of the run.
 
-        The motion is stepped again from the saved state or the event before.
+        The motion is computed again from the saved state before.
 
         Parameters
         ----------
@@ -179,42 +180,23 @@ class GeneralizedSolution(Drawn):
         ValueError
             If a time is outside the run, or `side` is invalid.
         """
-        checks.choice("side", side, ("right", "left"))
-        times = checks.times("t", t, self.t[0], self.t[-1])
-        states = np.array([self._state(float(time), side == "left") for time in times])
-        q, v = np.split(states.reshape(-1, 2 * self.q.shape[1]), 2, axis=1)
-        return (q[0], v[0]) if np.ndim(t) == 0 else (q, v)
-
-    def _state(self, time: float, left: bool) -> np.ndarray:
-        """Return the state (q, v) at a time, before or after an event at this time."""
-        at, nodes = self._nodes
-        k = max(int(np.searchsorted(at, time, side="left" if left else "right")) - 1, 0)
-        begin, _, start, active = nodes[k]
-        last, end, *_ = nodes[min(k + 1, len(at) - 1)]
-        if time == begin:
-            return start
-        if time > last - TIME_ERROR * self.t[-1]:
-            return end
-        run = self._run.again(float(begin), start, active, time)
-        if run.go_on(run.steps) is Status.SUCCESS:
-            return run.x
-        h = last - begin  # the end of a run that failed
-        return np.concatenate(cubic((time - begin) / h, h, *np.split(start, 2), *np.split(end, 2)))
-
-    @cached_property
-    def _nodes(self) -> tuple[np.ndarray, list[tuple]]:
-        """Times, and times, states before and after, and contacts, of events and saved steps in order."""
-        events, nodes = self._run.nodes, list(self._run.nodes)
-        at = np.array([time for time, *_ in events])
-        since = np.searchsorted(at, self.t, side="right") - 1  # the last event
-        for time, x, i in zip(self.t, np.hstack([self.q, self.v]), since):
-            if i < 0 or at[i] < time:  # a step that ends with an event is saved after it
-                nodes.append((time, x, x, events[i][3] if i >= 0 else self._run.active))
-        nodes.sort(key=lambda node: node[0])
-        return np.array([time for time, *_ in nodes]), nodes
+        x, _, v, _ = self._of_scene.evaluate(t, side)
+        return x[..., 0], v[..., 0]
 
     def __repr__(self) -> str:
         return (
             f"<GeneralizedSolution: {self.q.shape[1]} coordinates, t = {self.t[0]:g} .. "
             f"{self.t[-1]:g} s in {len(self.t)} saved steps, {len(self.impacts)} impacts; {self.message}>"
         )
+
+
+def not_finite(solution: Solution, system: GeneralizedSystem, q, v) -> tuple[str, ...]:
+    """Return a sentence about the first energy that is not finite, if one is."""
+    energies = np.column_stack([solution.kinetic_energy, solution.potential_energy])
+    bad = np.argwhere(~np.isfinite(energies))
+    if not len(bad):
+        return ()
+    k, which = bad[0]
+    name = f"The {system._model.kind} {('metric', 'potential')[which]!r}"
+    state = np.append(q[k], v[k])
+    return (f"{Fault(name, float(solution.t[k]), state, returned(energies[k]))}.",)

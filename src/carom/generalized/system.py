@@ -272,11 +272,11 @@ class GeneralizedSystem:
         """Return the gaps (C,) of all contacts at coordinates (n,)."""
         return self._look(position).gap.copy()
 
-    def autoparallel(self, position, velocity, parts: int = 100) -> tuple[np.ndarray, np.ndarray]:
+    def autoparallel(self, position, velocity) -> tuple[np.ndarray, np.ndarray]:
         """Return the end (q, v) of the autoparallel from `position` with `velocity`, after a time of 1.
 
-        The autoparallel is a geodesic of the metric, ``q'' + Gamma(q', q') = 0``. It is integrated by `parts`
-        (1 to 100 000) Runge-Kutta steps of order 4.
+        The autoparallel is a geodesic of the metric, ``q'' + Gamma(q', q') = 0``. It is integrated
+        to 1e-13 of the coordinates by SciPy's `solve_ivp`.
 
         Raises
         ------
@@ -284,8 +284,7 @@ class GeneralizedSystem:
             If an argument is invalid, or the metric becomes singular.
         """
         v = checks.finite_array("velocity", velocity, (self.coordinates,))
-        parts = checks.integer("parts", parts, least=1, most=100_000)
-        return self.evaluation().autoparallel(self._at(position), v, parts)
+        return self.evaluation().autoparallel(self._at(position), v)
 
     def return_map(self, position, contact: CoordinateContact | str) -> np.ndarray:
         """Return the coordinates that the return map gives: there the gap of a contact is zero.

@@ -43,7 +43,7 @@ def value(system, c, state):
     return with_turns(system, c, angle)
 
 
-@kernel
+@by_coordinate
 def rate(system, c, state):
     """Return q'."""
     ax, ay, az = along(system, c, state)
@@ -78,7 +78,7 @@ def turn_within(system, c, start, end, h):
     return h * max(abs(rate(system, c, start)), abs(rate(system, c, end)))
 
 
-@kernel
+@by_coordinate
 def push(system, c, state, force, work):
     """Add the wrenches of a force [N] or torque [N m] along the coordinate to both bodies."""
     ax, ay, az = along(system, c, state)
@@ -120,7 +120,7 @@ def add_rows(system, c, state, factor, child, parent):
         A[0, 5] += s * tz
 
 
-@kernel
+@by_coordinate
 def motion_along(system, c, state, work):
     """Return the change of q' by the motions that the last solve wrote."""
     axis, total = along(system, c, state), 0.0
@@ -131,7 +131,7 @@ def motion_along(system, c, state, work):
     return total
 
 
-@kernel
+@by_coordinate
 def acceleration_along(system, c, state, stage):
     """Return q'' by the accelerations of a stage alone, without its drift."""
     axis, total = along(system, c, state), 0.0
@@ -142,7 +142,7 @@ def acceleration_along(system, c, state, stage):
     return total
 
 
-@kernel
+@by_coordinate
 def rate_in(system, c, pose, state):
     """Return q' with the positions of one state and the velocities of another."""
     axis, total = along(system, c, pose), 0.0
@@ -178,7 +178,7 @@ def of_side(c, side, axis, motion, state):
     return s * (axis[0] * ux + axis[1] * uy + axis[2] * uz)
 
 
-@kernel
+@by_coordinate
 def speeds_of(system, c, state):
     """Return a bound of the speeds of both sides, whose difference is q'."""
     total = 0.0

@@ -19,6 +19,7 @@ from carom.collision.level_layout import Levels
 from carom.model.forces import Forces
 from carom.model.laws import Laws
 from carom.model.memory import Memory
+from carom.model.own_coordinates import OwnCoordinates
 from carom.scene import joints
 from carom.scene.force_definition import ENDS
 
@@ -34,10 +35,11 @@ SPHERICAL = KIND[joints.Spherical]
 ROLLING_SPHERE, ROLLING_DISC = KIND[joints.RollingSphere], KIND[joints.RollingDisc]
 #: kinds in the table of joints whose rows are numbers of their own: a point of the child on a curve of the
 #: parent, and a curve of the child on a point of the parent; a relation of coordinates of joints; rows of the
-#: user's own; a spring and damper as a row, for the implicit step; inertia along a coordinate as a row
+#: user's own; a spring and damper as a row, for the implicit step; inertia along a coordinate as a row; constraints
+#: of a system in the user's coordinates
 POINT_ON_CURVE, CURVE_ON_POINT = KIND[joints.PointOnCurve], KIND[joints.CurveOnPoint]
 ON_CURVE = (POINT_ON_CURVE, CURVE_ON_POINT)
-RELATION, USER_ROWS, STIFF, INERTIA = range(len(KIND), len(KIND) + 4)
+RELATION, USER_ROWS, STIFF, INERTIA, OWN_CONSTRAINT = range(len(KIND), len(KIND) + 5)
 OWN_ROWS = min(ON_CURVE)  # the first of these kinds
 #: coordinates that only stops limit: the word for each, and its file in `carom.kinematics.coordinates`
 LIMITED = {
@@ -46,10 +48,11 @@ LIMITED = {
     "twist": "ball",
     "length": "length",
     "strand": "strand",
+    "own": "own",
 }
-OF_LIMIT = {word: number for number, word in enumerate(LIMITED, len(KIND) + 4)}
+OF_LIMIT = {word: number for number, word in enumerate(LIMITED, len(KIND) + 5)}
 SWING, TWIST = OF_LIMIT["swing"], OF_LIMIT["twist"]
-COMBINATION = len(KIND) + 4 + len(LIMITED)  # sum of factors times coordinates of joints
+COMBINATION = len(KIND) + 5 + len(LIMITED)  # sum of factors times coordinates of joints
 
 
 def _kinds(chosen) -> tuple[int, ...]:
@@ -275,14 +278,15 @@ BODY_AXES, OTHER_AXES, WORLD_AXES = 1, 2, 3
 HEAD, WIDTH = 52, 14
 
 
-#: kinds of back ends: each body by itself; articulated-body elimination; sparse Cholesky factor
-NO_JOINTS, FOREST, LOOPS = range(3)
+#: kinds of back ends: each body by itself; articulated-body elimination; sparse Cholesky factor; dense metric of
+#: coordinates of the user's own
+NO_JOINTS, FOREST, LOOPS, METRIC = range(4)
 
 
 class Solver(NamedTuple):
     """Arrays of the constrained solve; those that its kind does not need are empty."""
 
-    kind: int  # NO_JOINTS, FOREST or LOOPS
+    kind: int  # NO_JOINTS, FOREST, LOOPS or METRIC
     # forest: articulated-body elimination (`carom.dynamics.tree`)
     links: np.recarray  # (N,) LINK
     rotor: np.ndarray  # (N, most freedoms) inertia along each freedom of the joint of a link
@@ -350,3 +354,4 @@ class System(NamedTuple):
     levels: Levels  # faces of solids of one body, or of static ones, in one plane
     moving: MovingSurfaces
     solver: Solver
+    own: OwnCoordinates

@@ -17,6 +17,7 @@ from carom.model.arrays import (
     BODY,
     JOINT,
     KIND,
+    OWN_CONSTRAINT,
     SCREW,
     STATE,
     MovingSurfaces,
@@ -26,6 +27,7 @@ from carom.model.contacts import Contacts, Surfaces, compile_contacts, more_cont
 from carom.model.forces import Place
 from carom.model.laws import LawTable
 from carom.model.moving_surfaces import moving_surfaces
+from carom.model.own_coordinates import ROWS_OF_ELEMENT, OwnCoordinates, no_own_coordinates
 from carom.model.pieces import Pieces
 from carom.model.placement import Placement
 from carom.model.relations import Coordinates, Elements
@@ -111,9 +113,14 @@ class _Moved:
         self.forces = ForceRows(
             scene, self.placement, self.coordinates, self.functions, pieces, self.laws, implicit
         )
-        self.joints, self.flipped, self.solver = _joints(
-            scene, moments, self.placement, self.elements, options, loops
-        )
+        if scene._own is None:
+            self.own = no_own_coordinates()
+            self.joints, self.flipped, self.solver = _joints(
+                scene, moments, self.placement, self.elements, options, loops
+            )
+        else:
+            self.own = scene._own.arrays(self.functions, options.drop_tolerance)
+            self.joints, self.flipped, self.solver = _constraints(self.own)
         alone, joined = _tethered(scene)
         loaded = np.append(self.forces.loaded, alone)
         self.bodies = _bodies(scene, moments, self.joints, self.elements, loaded, joined)
@@ -126,7 +133,7 @@ class _Moved:
             bodies=self.bodies, gravity=np.array(self.scene.gravity), joints=self.joints,
             relations=relations, forces=self.forces.tables, contacts=contacts, laws=self.laws.arrays(),
             vertices=touching.vertices, solids=touching.solids, hulls=touching.hulls,
-            levels=touching.levels, solver=self.solver, moving=moving,
+            levels=touching.levels, solver=self.solver, moving=moving, own=self.own,
         )  # fmt: skip
         return Compiled(
             system=system, start=self.start, to_principal=self.to_principal, flipped=self.flipped,
@@ -259,6 +266,18 @@ def _joints(scene, moments, placement, elements, options, loops):
     return joints, flipped, solver
 
 
+def _constraints(own: OwnCoordinates):
+    """Return elements of the constraints of a system in coordinates of the user's own, as `_joints` does."""
+    firsts = np.arange(0, own.rows, ROWS_OF_ELEMENT)
+    made = table(JOINT, len(firsts))
+    made.kind, made.parent, made.rows = (
+        OWN_CONSTRAINT,
+        -1,
+        np.minimum(ROWS_OF_ELEMENT, own.rows - firsts),
+    )
+    return made, np.zeros(len(made), dtype=bool), solvers.metric_solver(len(made))
+
+
 def rotors_in_tree(scene, kind, flipped) -> tuple[np.ndarray, bool]:
     """Return the inertia (J, 6) along each freedom of the joints of a forest, and whether this is possible.
 
@@ -329,6 +348,8 @@ def _bodies(scene, moments, joints, elements, loaded, joined):
         isolated[touched] = 0
     ballistic = isolated.copy()
     ballistic[loaded[loaded >= 0]] = 0
+    if scene._own is not None:
+        isolated[:] = ballistic[:] = 0
     bodies["mass"] = [b.mass for b in scene.bodies]
     bodies["inertia"], bodies["extent"], bodies["ball"] = moments, _extents(elements, joints), ball
     bodies["isotropic"] = (moments[:, 1:] == moments[:, :1]).all(axis=1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import inlined
-from carom.model.arrays import LOOPS
+from carom.model.arrays import LOOPS, METRIC
 
 
 @inlined
@@ -22,6 +22,18 @@ def has_joints(system):
 def has_loops(system):
     """Return whether the constraints are solved as rows, which closed loops need."""
     return system.solver.kind == LOOPS
+
+
+@inlined
+def has_metric(system):
+    """Return whether the bodies stand for coordinates of the user's own."""
+    return system.solver.kind == METRIC
+
+
+@inlined
+def are_joined(system):
+    """Return whether an impulse on a body may move others."""
+    return system.joints.shape[0] > 0 or has_metric(system)
 
 
 @inlined

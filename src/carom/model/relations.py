@@ -19,7 +19,7 @@ from carom.model.pieces import PIECE, Pieces
 from carom.model.placement import Placement
 from carom.model.stated_forces import ForceRows
 from carom.scene.constraints import Coupling, Rows
-from carom.scene.coordinates import Combination, Length, Strand, coordinate_kind, counted
+from carom.scene.coordinates import Combination, Gap, Length, Strand, coordinate_kind, counted
 from carom.scene.forces import Spring
 from carom.scene.joints import Joint
 from carom.scene.more_forces import Actuator, JointInertia, JointSpring
@@ -87,6 +87,13 @@ class Coordinates:
         """Return all rows."""
         return np.concatenate([table(arrays.COORDINATE, 0), *self.rows]).view(Columns)
 
+    def _of_gap(self, gap: Gap, row: int) -> np.recarray:
+        """Return the row of a gap, or of a tangential speed."""
+        made = table(arrays.COORDINATE, 1)
+        made.kind, made.number = arrays.OF_LIMIT["own"], 3 * gap.number + row
+        made.child, made.parent = gap.child.index, -1
+        return made
+
     def _of_length(self, length: Length) -> np.recarray:
         """Return the row of a distance."""
         made, place = table(arrays.COORDINATE, 1), self.placement.point
@@ -101,6 +108,8 @@ class Coordinates:
         return made
 
     def _row(self, joint, coordinate):
+        if isinstance(joint, Gap):
+            return self._of_gap(joint, coordinate)
         if isinstance(joint, Length):
             return self._of_length(joint)
         d, made = joint.definition, table(arrays.COORDINATE, 1)

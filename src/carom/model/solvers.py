@@ -7,7 +7,18 @@ from functools import cache
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.model.arrays import FOREST, HEAD, LINK, LOOPS, NO_JOINTS, ROW, SIDE, WIDTH, Solver
+from carom.model.arrays import (
+    FOREST,
+    HEAD,
+    LINK,
+    LOOPS,
+    METRIC,
+    NO_JOINTS,
+    ROW,
+    SIDE,
+    WIDTH,
+    Solver,
+)
 from carom.model.graph import Sets, elimination
 
 
@@ -22,6 +33,11 @@ def no_joints() -> Solver:
         block=np.zeros((0, 6, 6)), drop=0.0, pose=np.zeros((0, 7)), usual=np.full(1, -1),
         fine=np.zeros((2, 0, 6, 6)), digits=np.zeros((0, 4, 6)), scaled=np.zeros((0, 3, 6)),
     )  # fmt: skip
+
+
+def metric_solver(constraints: int) -> Solver:
+    """Return the back end of coordinates of the user's own, with so many elements of constraints."""
+    return no_joints()._replace(kind=METRIC, rows=table(ROW, constraints), usual=np.full(1, -1))
 
 
 def tree_solver(

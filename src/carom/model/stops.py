@@ -10,7 +10,7 @@ from carom.model.contact_kinds import OF_JOINT
 from carom.model.laws import LawTable
 from carom.model.relations import Elements
 from carom.model.thresholds import DIRECTION, LAYER_WIDTH, STILL_SPEED
-from carom.scene.coordinates import Combination
+from carom.scene.coordinates import Combination, Gap
 from carom.scene.materials import IMPACT_LAWS
 
 
@@ -22,15 +22,19 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, laws: 
     rows, first = table(CONTACT, len(scene.stops)), int(contacts.number.max(initial=-1)) + 1
     for row, stop in zip(rows, scene.stops):
         number = elements.coordinates.number(stop.joint, stop.coordinate)
+        if isinstance(stop.joint, Gap):  # its tangents follow
+            for r in (1, 2):
+                elements.coordinates.number(stop.joint, r)
         c = elements.coordinates.rows[number][0]
         row.number, row.solid, row.kind = first + stop.index, number, OF_JOINT
         row.body, row.other = (c.child, c.parent) if c.child >= 0 else (c.parent, -1)
         size, arm = _sizes(stop, elements.sizes)
         row.side = stop.side * (arm if stop.turns else 1.0)
         row.offset = row.side * stop.end
-        friction = stop.joint.definition.friction if stop.joint.can_be_left else 0.0
-        law = IMPACT_LAWS.index(stop.impact_law)
-        row.law[:] = laws.add(friction, stop.restitution, impact_law=law, length=abs(row.side))
+        row.law[:] = laws.add(
+            stop.friction, stop.restitution, impact_law=IMPACT_LAWS.index(stop.impact_law),
+            tangential_restitution=stop.tangential_restitution, length=abs(row.side),
+        )  # fmt: skip
         row.extent = row.other_extent = size
         row.first, row.last = 0, 1
         if stop.joint.can_be_left:

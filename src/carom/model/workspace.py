@@ -37,7 +37,7 @@ POINT = [
     ("motion", "i8"),  # that its rows measure: `MOTION_POINT`, ...
     # that converts an angular velocity, or the rate of a coordinate, to a speed; of an upper stop below 0
     ("length", "f8"),
-    ("coordinate", "i8"),  # of a stop, or of friction in a joint
+    ("coordinate", "i8"),  # of a stop, or of friction in a joint; the first of three
     (
         "moves",
         "i8",
@@ -46,8 +46,8 @@ POINT = [
 ]
 
 #: `motion` of a point: that of two points, in rows n, t1, t2; relative rotation of rolling (t1, t2) and of
-#: pivoting (t1); rate of a coordinate, of a stop (n) and of friction in a joint (t1)
-MOTION_POINT, MOTION_ROLL, MOTION_PIVOT, MOTION_STOP, MOTION_JOINT = range(5)
+#: pivoting (t1); rate of a coordinate, of a stop (n) and of friction in a joint (t1); rates of three coordinates
+MOTION_POINT, MOTION_ROLL, MOTION_PIVOT, MOTION_STOP, MOTION_JOINT, MOTION_THREE = range(6)
 
 #: `parent` of an entry of a group whose friction has a constant bound; else the one whose force bounds it
 CONSTANT = -1

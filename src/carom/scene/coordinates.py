@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeAlias, TypeVar
+from typing import Any, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -196,6 +196,31 @@ class Length:
     def can_be_left(self) -> bool:
         """False: it has no rail."""
         return False
+
+
+@dataclass(frozen=True, eq=False)
+class Gap(Length):
+    """The gap of a contact in coordinates of the user's own.
+
+    Attributes
+    ----------
+    number : int
+        Number of the contact.
+    """
+
+    number: int = 0
+
+    @property
+    def index(self) -> tuple:
+        """What tells it from other coordinates."""
+        return "gap", self.number
+
+
+class OwnSystem(Protocol):
+    """A system in coordinates of the user's own, as the compiled scene needs it."""
+
+    def arrays(self, functions: Any, drop: float) -> Any:
+        """Return its arrays (`carom.model.own_coordinates`); `functions` are those of the run."""
 
 
 @dataclass(frozen=True, eq=False)

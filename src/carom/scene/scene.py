@@ -28,6 +28,7 @@ from carom.scene.values import in_scene
 
 if TYPE_CHECKING:
     from carom.results.robot import Robot
+    from carom.scene.coordinates import OwnSystem
 
 
 @in_scene
@@ -63,6 +64,9 @@ class Scene(
     >>> scene.add_contact(ball, ground, restitution=0.8)
     Contact('ball-ground', restitution=0.8, friction=0, impact_law='newton')
     """
+
+    #: the system in coordinates of the user's own for which the bodies stand
+    _own: OwnSystem | None = None
 
     def __init__(self, gravity: ArrayLike = (0.0, 0.0, -9.81)):
         self._parts = Registry()

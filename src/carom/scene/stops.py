@@ -93,6 +93,16 @@ class Stop(PartOfScene):
         """The limit of the coordinate [rad or m]: `lower` or `upper`."""
         return self.lower if self.upper is None else self.upper  # pyright: ignore[reportReturnType]
 
+    @property
+    def friction(self) -> Any:
+        """Friction of its face: none."""
+        return 0.0
+
+    @property
+    def tangential_restitution(self) -> float:
+        """None."""
+        return 0.0
+
     def __repr__(self) -> str:
         which = "upper" if self.lower is None else "lower"
         where = f"{which}={self.end:g}, restitution={self.restitution:g}"
@@ -106,6 +116,11 @@ class RailContact(Stop):
         d: Any = joint.definition
         keep(self, index=index, name=f"{joint.child.name}-{joint.name}", joint=joint, coordinate=0)
         keep(self, lower=0.0, upper=None, restitution=d.restitution, impact_law=d.impact_law)
+
+    @property
+    def friction(self) -> Any:
+        """Friction of the rail."""
+        return self.joint.definition.friction  # pyright: ignore[reportAttributeAccessIssue]
 
     def __repr__(self) -> str:
         return f"RailContact({self.name!r}, restitution={self.restitution:g})"

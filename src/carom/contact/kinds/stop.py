@@ -25,7 +25,8 @@ from carom.kinematics.coordinate import along, slides
 from carom.kinematics.curve import can_be_left, find_foot, foot_of, is_on_curve, rail_drift
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.model.actions import NOTHING, PERSIST, STRIKE
-from carom.model.workspace import MOTION_POINT, MOTION_STOP
+from carom.model.parts_of_system import has_metric
+from carom.model.workspace import MOTION_POINT, MOTION_STOP, MOTION_THREE
 
 located_within, rounding = gaps.located_within, round_off
 
@@ -52,7 +53,8 @@ def place_stop(system, contact, state, point):
             r = parent_arm(c, state)
             point.arm_b[0], point.arm_b[1], point.arm_b[2] = r
     point.gap = contact.side * value(system, of_stop, state) - contact.offset
-    point.motion, point.length, point.coordinate = MOTION_STOP, contact.side, contact.solid
+    point.motion = MOTION_THREE if has_metric(system) else MOTION_STOP
+    point.length, point.coordinate = contact.side, contact.solid
     point.moves = 0
 
 
@@ -93,7 +95,12 @@ def drift(system, contact, feature, point, state, work) -> tuple[float, float, f
     if is_rail(system, c):
         find_foot(system, c, state)
         return rail_drift(c, foot_of(system, c), state)
-    return contact.side * rate_of_slope(system, c, state, work.joint[0].target), 0.0, 0.0
+    out, k = work.joint[0].target, contact.solid
+    n = contact.side * rate_of_slope(system, c, state, out)
+    if not has_metric(system):
+        return n, 0.0, 0.0
+    t1 = rate_of_slope(system, system.relations.coordinates[k + 1], state, out)
+    return n, t1, rate_of_slope(system, system.relations.coordinates[k + 2], state, out)
 
 
 @kernel

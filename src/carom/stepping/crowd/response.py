@@ -17,7 +17,8 @@ from carom.friction.solve import inverse_mass_of, scale_link
 from carom.geometry.rotation import unit_vector
 from carom.kinematics.contact_point import contact_velocity
 from carom.kinematics.row_of_coordinate import rate_in_pose
-from carom.model.workspace import MOTION_PIVOT, MOTION_STOP
+from carom.model.parts_of_system import are_joined
+from carom.model.workspace import MOTION_PIVOT, MOTION_STOP, MOTION_THREE
 
 
 @kernel
@@ -41,8 +42,9 @@ def write_responses(system, first, k, crowd, work):
                 for a in range(3):
                     problem.other[e].response[r, a] *= s
                     problem.other[e].rows[a, r] *= s
-        if point.motion == MOTION_STOP:  # it has no tangents: any positive number does
-            link.local[3] = link.local[5] = link.local[0]
+        if point.motion in (MOTION_STOP, MOTION_THREE):  # without tangents any positive number does
+            for m in (3, 5):
+                link.local[m] = link.local[m] if link.local[m] > 0.0 else link.local[0]
 
 
 @kernel
@@ -51,7 +53,7 @@ def respond(system, k, gamma, crowd, work):
     problem = crowd.problem
     for i in range(3 * k):
         crowd.p[i] = gamma * problem.contact[i // 3].scale * problem.vector[o.ITERATE, i]
-    if system.joints.shape[0] > 0:
+    if are_joined(system):
         spread_impulses(system, k, crowd, work)
         return
     write_motion(problem, k, problem.vector[o.ITERATE])
@@ -98,7 +100,7 @@ def write_rows(system, point, crowd, link, first, work):
         for e in range(first, last):
             memory = work.body[other[e].body]
             for j in range(6):
-                spans = point.motion == MOTION_STOP and memory.wrench[j] != 0.0
+                spans = point.motion in (MOTION_STOP, MOTION_THREE) and memory.wrench[j] != 0.0
                 other[e].rows[r, j] = memory.wrench[j] if spans else 0.0
                 other[e].response[j, r] = memory.motion[j]
                 link.spans = 1 if spans else link.spans

@@ -11,6 +11,7 @@ from carom.contact.kinds.partner import smaller
 from carom.contact.thresholds import PLACE_ERROR
 from carom.dynamics.project import project_position, shift
 from carom.dynamics.thresholds import JOINT_ERROR
+from carom.model.parts_of_system import are_joined
 from carom.model.workspace import MOTION_POINT
 from carom.stepping.crowd.response import spread_impulses
 from carom.stepping.crowd.spots import place_all
@@ -51,7 +52,7 @@ def onto_surfaces(model, data, k):
 @kernel
 def lift(system, k, tolerance, crowd, work):
     """Write the motion of all bodies that removes the penetration of the points, to a tolerance [m]."""
-    problem, lam, joined = crowd.problem, crowd.lift, system.joints.shape[0] > 0
+    problem, lam, joined = crowd.problem, crowd.lift, are_joined(system)
     for b in range(problem.body.shape[0]):
         for j in range(6):
             problem.body[b].motion[j] = 0.0

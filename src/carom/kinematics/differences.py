@@ -14,8 +14,7 @@ import numpy as np
 from carom._compiled.call_address import call_function
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
-from carom.generalized import layout as o
-from carom.generalized.linear import copy_row, dot
+from carom.model import own_coordinates as o
 
 STEP = float(np.finfo(float).eps ** 0.2)
 STEP_TWICE = float(np.finfo(float).eps ** (1.0 / 6.0))
@@ -26,38 +25,55 @@ _SECOND = (-1.0 / 12.0, 4.0 / 3.0, -2.5, 4.0 / 3.0, -1.0 / 12.0)
 @inlined
 def has_parts(system):
     """Return whether the system consists of functions without derivatives of its own."""
-    return system.part.shape[0] > 0
-
-
-@unit(where=has_parts)
-def evaluate_parts(system, which, t, x, work):
-    """Write the result of one of the four functions of a system, made of the user's functions.
-
-    Those of the coordinates get a copy of them, `work.point`.
-    """
-    h = system.holonomic
-    copy_row(x, work.point, system.n)
-    if which == o.CALL_INERTIA:
-        evaluate_inertia(system, t, x, work)
-    elif which == o.CALL_LOADS:
-        evaluate_loads(system, t, x, work)
-    elif which == o.CALL_ROWS:
-        phi, A, rate = work.phi, work.A, work.A_rate
-        evaluate_rows(system.part[o.OF_CONSTRAINT], t, x, (phi, A, rate), work)
-        evaluate_rows(system.part[o.OF_ROWS], t, x, (phi, A[h:], rate[h:]), work)
-    else:
-        for c in range(system.contacts):
-            gap, G, rate, part = work.gap[c:], work.G[c], work.G_rate[c], o.OF_CONTACT + 2 * c
-            evaluate_rows(system.part[part], t, x, (gap, G, rate), work)
-            evaluate_rows(system.part[part + 1], t, x, (gap, G[1:], rate[1:]), work)
+    return system.own.parts.shape[0] > 0
 
 
 @kernel
-def evaluate_inertia(system, t, x, work):
+def copy_row(row, out, n):
+    """Copy n numbers."""
+    for j in range(n):
+        out[j] = row[j]
+
+
+@kernel
+def dot(a, b, n):
+    """Return the sum of the products of n numbers."""
+    total = 0.0
+    for j in range(n):
+        total += a[j] * b[j]
+    return total
+
+
+@unit(where=has_parts)
+def evaluate_parts(system, which, t):
+    """Write the result of one of the four functions at the state `own.x`, made of the user's functions.
+
+    Those of the coordinates get a copy of them, `own.point`.
+    """
+    own = system.own
+    h, x = own.holonomic, own.x
+    copy_row(x, own.point, own.n)
+    if which == o.CALL_INERTIA:
+        evaluate_inertia(own, t, x)
+    elif which == o.CALL_LOADS:
+        evaluate_loads(own, t, x)
+    elif which == o.CALL_ROWS:
+        phi, A, rate = own.phi, own.A, own.A_rate
+        evaluate_rows(own.parts[o.OF_CONSTRAINT], t, x, (phi, A, rate), own)
+        evaluate_rows(own.parts[o.OF_ROWS], t, x, (phi, A[h:], rate[h:]), own)
+    else:
+        for c in range(own.contacts):
+            gap, G, rate, part = own.gap[c:], own.G[c], own.G_rate[c], o.OF_CONTACT + 2 * c
+            evaluate_rows(own.parts[part], t, x, (gap, G, rate), own)
+            evaluate_rows(own.parts[part + 1], t, x, (gap, G[1:], rate[1:]), own)
+
+
+@kernel
+def evaluate_inertia(own, t, x):
     """Write M and Gamma_kij v_i v_j."""
-    n, c, part, dM = system.n, work.c, system.part[o.OF_METRIC], work.slope
-    call_function(part[0], t, work.point, work.M)
-    find_slope(part, t, x, n, work)
+    n, c, part, dM = own.n, own.c, own.parts[o.OF_METRIC], own.slope
+    call_function(part.address, t, own.point, own.M)
+    find_slope(part, t, x, n, own)
     for i in range(n):
         c[i] = 0.0
         for j in range(n):
@@ -67,57 +83,57 @@ def evaluate_inertia(system, t, x, work):
 
 
 @kernel
-def evaluate_loads(system, t, x, work):
+def evaluate_loads(own, t, x):
     """Write V, Q - dV, Q v."""
-    n, out = system.n, work.loads
-    potential, force = system.part[o.OF_POTENTIAL], system.part[o.OF_FORCE]
+    n, out = own.n, own.loads
+    potential, force = own.parts[o.OF_POTENTIAL], own.parts[o.OF_FORCE]
     for j in range(n + 2):
         out[j] = 0.0
-    if force[0] != 0:
-        call_function(force[0], t, x, out[1:])
+    if force.address != 0:
+        call_function(force.address, t, x, out[1:])
     for j in range(n):
         out[n + 1] += out[1 + j] * x[n + j]
-    if potential[0] != 0:
-        call_function(potential[0], t, work.point, out)
-        find_slope(potential, t, x, n, work)
+    if potential.address != 0:
+        call_function(potential.address, t, own.point, out)
+        find_slope(potential, t, x, n, own)
         for j in range(n):
-            out[1 + j] -= work.slope[j]
+            out[1 + j] -= own.slope[j]
 
 
 @kernel
-def evaluate_rows(part, t, x, out, work):
+def evaluate_rows(part, t, x, out, own):
     """Write values, rows A and (dA/dt) v of a function and its derivative; of rows alone, the last two."""
     values, A, rates = out
-    n, m, v = work.point.size, part[2], x[work.point.size :]
-    if part[0] != 0:
-        call_function(part[0], t, work.point, values)
-    if part[1] != 0:
-        call_function(part[1], t, work.point, A)
-        differ((part[1], m * n, t), x, (v, along(x, STEP), _FIRST), work.slope, work)
+    n, m, v = own.point.size, part.results, x[own.point.size :]
+    if part.address != 0:
+        call_function(part.address, t, own.point, values)
+    if part.slope_address != 0:
+        call_function(part.slope_address, t, own.point, A)
+        differ((part.slope_address, m * n, t), x, (v, along(x, STEP), _FIRST), own.slope, own)
         for i in range(m):
-            rates[i] = dot(work.slope[i * n :], v, n)
-    elif part[0] != 0:
-        find_slope(part, t, x, n, work)
+            rates[i] = dot(own.slope[i * n :], v, n)
+    elif part.address != 0:
+        find_slope(part, t, x, n, own)
         for i in range(m):
             for j in range(n):
-                A[i, j] = work.slope[j * m + i]
+                A[i, j] = own.slope[j * m + i]
         h = along(x, STEP_TWICE)
-        differ((part[0], m, t), x, (v, h, _SECOND), rates, work)
+        differ((part.address, m, t), x, (v, h, _SECOND), rates, own)
         for i in range(m if h > 0.0 else 0):
             rates[i] /= h
 
 
 @kernel
-def find_slope(part, t, x, n, work):
-    """Write the derivatives (n, m) of a function of the coordinates into `work.slope`."""
-    if part[1] != 0:
-        call_function(part[1], t, work.point, work.slope)
+def find_slope(part, t, x, n, own):
+    """Write the derivatives (n, m) of a function of the coordinates into `own.slope`."""
+    if part.slope_address != 0:
+        call_function(part.slope_address, t, own.point, own.slope)
         return
-    axis = work.axis
+    axis = own.axis
     for k in range(n):
         axis[k] = 1.0
         h = STEP * max(1.0, abs(x[k]))
-        differ((part[0], part[2], t), x, (axis, h, _FIRST), work.slope[k * part[2] :], work)
+        differ((part.address, part.results, t), x, (axis, h, _FIRST), own.slope[k * part.results :], own)
         axis[k] = 0.0
 
 
@@ -131,12 +147,12 @@ def along(x, part):
 
 
 @kernel
-def differ(function, x, stencil, out, work):
+def differ(function, x, stencil, out, own):
     """Write sum_s weight_s f_i(q + s h way) / h of a function: its address, number of results, time.
 
     The stencil is the way, h and the weights; it gives 0 for h = 0.
     """
-    (address, m, t), (way, h, weight), q, y = function, stencil, work.point, work.sample
+    (address, m, t), (way, h, weight), q, y = function, stencil, own.point, own.sample
     n = q.size
     for i in range(m):
         out[i] = 0.0

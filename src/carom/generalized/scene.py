@@ -1,0 +1,81 @@
+"""The scene of a system in coordinates of the user's own: a body for each coordinate, a stop for each contact.
+
+A body stands for a coordinate along its first axis, x[0] = q (`carom.model.own_coordinates`). So such a system
+has the steps, impacts, persistent contacts, records and events of all scenes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.fields import keep
+from carom.model.own_coordinates import own_coordinates
+from carom.scene.bodies import GROUND, Body
+from carom.scene.coordinates import Gap
+from carom.scene.scene import Scene
+from carom.scene.stops import Stop
+
+
+class OwnModel:
+    """The functions of a system, as the compiled scene needs them."""
+
+    def __init__(self, model, contacts: int):
+        self.model, self.contacts = model, contacts
+
+    def arrays(self, functions, drop: float):
+        """Return the arrays of the system with the addresses of its functions."""
+        addresses, parts = self.model.addresses(functions)
+        sizes = self.model.n, self.model.holonomic, self.model.rows, self.contacts
+        return own_coordinates(sizes, drop, addresses, parts)
+
+
+class GapContact(Stop):
+    """A contact of a system, as the stop of its gap."""
+
+    def __init__(self, contact, body: Body):
+        gap = Gap(GROUND, body, None, None, contact.index)
+        keep(self, index=contact.index, name=contact.name, joint=gap, coordinate=0, contact=contact)
+        keep(self, lower=0.0, upper=None, restitution=contact.restitution)
+        keep(self, impact_law=contact.impact_law)
+
+    @property
+    def friction(self):
+        """Its friction, or its law."""
+        return self.contact.friction
+
+    @property
+    def tangential_restitution(self) -> float:
+        """Its e_t."""
+        return self.contact.tangential_restitution
+
+
+class CoordinateScene(Scene):
+    """The scene of a system in coordinates of the user's own."""
+
+    def __init__(self, system):
+        M = system._model.metric_at(system.position)
+        super().__init__(gravity=(0.0, scale_of_loads(system, M), 0.0))
+        self.system = system
+        for b, (q, v) in enumerate(zip(system.position.tolist(), system.velocity.tolist())):
+            m = float(M[b, b])
+            J = m / 1.5  # of a body of the size 1
+            self.add_body(
+                mass=m, inertia=(J, J, J), position=(q, 0, 0), velocity=(v, 0, 0), name=f"q{b}"
+            )
+        self._own = OwnModel(system._model, len(system.contacts))
+
+    @property
+    def stops(self) -> tuple:
+        """The contacts."""
+        return tuple(GapContact(one, self.bodies[0]) for one in self.system.contacts)
+
+
+def scale_of_loads(system, M: np.ndarray) -> float:
+    """Return the greatest acceleration by loads at the start.
+
+    It stands in the place of gravity, across the axis along which the bodies move: so it moves nothing, and
+    gives speeds and times that count as zero their scale.
+    """
+    seen = system.evaluation().look(np.append(system.position, system.velocity))
+    pull = float(np.abs(np.linalg.solve(M, seen.load)).max())
+    return pull if np.isfinite(pull) else 0.0
