@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from carom._compiled.template import Template, arrays_of
@@ -29,6 +31,7 @@ from carom.options import Options
 from carom.results.accuracy import inaccurate
 from carom.results.costs import costs
 from carom.results.solution import Solution
+from carom.results.state import SystemState
 from carom.scene.all_pairs import PairTable
 from carom.scene.joints import Joint
 from carom.scene.more_forces import has_kinks
@@ -325,8 +328,15 @@ class Run(Running):
         points = active.points[: active.count[0]]
         active.carries[points["feature"][points["fixed"] == 1]] = 1
 
-    def solution(self, status: Status) -> Solution:
-        """Return the solution; after a failure it ends with the last state, saved or not."""
+    def state(self, known: dict | None = None) -> Any:
+        """Return the present state, for user-defined functions; `known` keeps what states share."""
+        return SystemState(self, known)
+
+    def solution(self, status: Status, **watched) -> Any:
+        """Return the solution; after a failure it ends with the last state, saved or not.
+
+        `watched` are its fields that a watch for events has found.
+        """
         if status is Status.SUCCESS:
             status = self.judged(status)
         else:
@@ -336,7 +346,7 @@ class Run(Running):
             if further and whole:
                 self.records = r.with_room(self.records, clock.saved)
                 self.save_now()
-        return Solution._from_run(self, status)
+        return Solution._from_run(self, status, **watched)
 
 
 def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:

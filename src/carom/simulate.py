@@ -207,31 +207,26 @@ def simulate(
             )
         checks.choice("method of a system in coordinates", settings.method, EXPLICIT)
         checks.choice("impact_location of a system in coordinates", impact_location, LOCATIONS[:1])
-        if events is not None:
-            raise ValueError(
-                f"events must be left out with a system in coordinates, got {checks.shown(events)}"
-            )
-
-        from carom.generalized.run import CoordinateRun
+        from carom.generalized.run import CoordinateRun as Run
         from carom.generalized.scene import CoordinateScene
 
-        run = CoordinateRun(CoordinateScene(scene._as_it_is()), settings)
+        moved = CoordinateScene(scene)
     else:
-        check_scene(scene, settings)
-        found = None if events is None else conditions(events, scene)
-        if found is not None and save is not None:
-            raise ValueError(
-                "save must be left out with events, because such a run cannot be resumed, got "
-                f"{checks.shown(save)}; save the solution at its end: solution.save(path)"
-            )
-
         from carom.run import Run
 
-        run = Run(scene, settings)
-        if found is not None:
-            from carom.control.watched import Watched
+        moved = scene
+        check_scene(scene, settings)
+    found = None if events is None else conditions(events, moved)
+    if found is not None and save is not None:
+        raise ValueError(
+            "save must be left out with events, because such a run cannot be resumed, got "
+            f"{checks.shown(save)}; save the solution at its end: solution.save(path)"
+        )
+    run = Run(moved, settings)
+    if found is not None:
+        from carom.control.watched import Watched
 
-            run = Watched(run, found)
+        run = Watched(run, found)
     keeper = None
     if save is not None:
         from carom.io.files.keeper import Keeper

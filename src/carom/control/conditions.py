@@ -15,7 +15,8 @@ from carom.scene.bodies import Body, HalfSpace, StaticBody
 Event = str | Callable[[float, SystemState], float]
 AT_REST, FIRST_IMPACT = "at rest", "first impact of "
 ALLOWED = (
-    f'a function f(t, state), "{AT_REST}", or "{FIRST_IMPACT}A and B" with the names of two parts'
+    f'a function f(t, state), "{AT_REST}", "{FIRST_IMPACT}A and B" with the names of two parts, or '
+    f'"{FIRST_IMPACT}S" with that of a stop'
 )
 
 
@@ -65,8 +66,9 @@ def _condition(name: str, event, scene) -> Condition:
     if event == AT_REST:
         return Condition(shown, _moves, 1, -1.0, rest=True)
     if event.startswith(FIRST_IMPACT):
-        pair = _pair(name, event.removeprefix(FIRST_IMPACT), scene)
-        strikes = _Strikes(*pair)
+        words = event.removeprefix(FIRST_IMPACT)
+        stops = {stop.name: stop.index for stop in scene.stops}
+        strikes = _StopStrikes(stops[words]) if words in stops else _Strikes(*_pair(name, words, scene))
         return Condition(shown, strikes, 1, 1.0, strikes.when)
     raise ValueError(f"{name} must be {ALLOWED}; got {checks.shown(event)}")
 
@@ -90,6 +92,23 @@ def _of_function(name: str, function) -> Condition:
 def _moves(look: Observed) -> float:
     """Return 1 while something moves, -1 when nothing does."""
     return 1.0 if math.isinf(look.run.clock["still"][0]) else -1.0
+
+
+class _StopStrikes:
+    """1 when a stop has been struck in the present step; -1 before."""
+
+    def __init__(self, number: int):
+        self.number = number
+
+    def __call__(self, look: Observed) -> float:
+        return -1.0 if self.when(look) is None else 1.0
+
+    def when(self, look: Observed) -> float | None:
+        """Return the time of its first impact in the step, or None."""
+        run = look.run
+        rows = run.records.impact[look.struck : int(run.clock["struck"][0])]
+        times = rows["time"][rows["contact"] == len(run.pairs.body) + self.number]
+        return float(times.min()) if len(times) else None
 
 
 class _Strikes:

@@ -8,7 +8,6 @@ taken once more as a whole, with the same bits as without a watch.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -82,16 +81,14 @@ class Watched:
             [one.state for one in self.happened if one.condition == i]
             for i in range(len(self.times))
         ]
-        return replace(
-            self.run.solution(status),
-            t_events=[np.array([state.t for state in states]) for states in own],
-            state_events=own,
-            _stopped_by=self.stopped_by,
-        )
+        return self.run.solution(
+            status, t_events=[np.array([state.t for state in states]) for states in own],
+            state_events=own, _stopped_by=self.stopped_by,
+        )  # fmt: skip
 
     def look(self) -> Observed:
         """Return the run as conditions see it."""
-        return Observed(self.run, SystemState(self.run, self.joints), self.struck)
+        return Observed(self.run, self.run.state(self.joints), self.struck)
 
     def value(self, condition: Condition, look: Observed) -> float:
         """Return the value of a condition."""

@@ -8,7 +8,6 @@ import numpy as np
 
 from carom._compiled.decorators import entry
 from carom._compiled.record_arrays import table
-from carom._compiled.user_functions import Functions
 from carom.generalized.scene import OwnModel
 from carom.generalized.thresholds import ARC_ERROR, RETURN_ERROR, RETURN_GOAL, SYSTEM_DROP
 from carom.kinematics.own_functions import (
@@ -43,9 +42,8 @@ class Evaluation:
     """Compiled functions of a system and workspace to call them with."""
 
     def __init__(self, system: GeneralizedSystem):
-        self.n, self.functions = system._model.n, Functions()
-        model = OwnModel(system._model, len(system.contacts))
-        self.own = model.arrays(self.functions, SYSTEM_DROP)
+        self.n, self.model = system._model.n, OwnModel(system._model, len(system.contacts))
+        self.own = self.model.arrays(SYSTEM_DROP)
         self.state = table(STATE, self.n)
 
     def look(self, x, t: float = 0.0) -> OwnCoordinates:
@@ -54,7 +52,7 @@ class Evaluation:
         self.state["x"][:, 0], self.state["v"][:, 0] = np.split(x, 2)
         forget_state(self.own)
         look(Alone(self.own), self.state, t)
-        error, self.functions.failed = self.functions.failed, None
+        error, self.model.functions.failed = self.model.functions.failed, None
         if error is not None:
             raise error
         return self.own

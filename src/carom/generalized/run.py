@@ -6,6 +6,7 @@ import numpy as np
 
 from carom.generalized.scene import CoordinateScene
 from carom.generalized.solution import GeneralizedSolution
+from carom.generalized.state import CoordinateState
 from carom.generalized.thresholds import INSIDE
 from carom.geometry.thresholds import SMALLEST
 from carom.model.own_coordinates import OwnCoordinates
@@ -34,12 +35,16 @@ class CoordinateRun(Run):
                 f"position must not be inside a contact, got the gap {seen.gap[contact]:.6g} of {name!r}"
             )
 
-    def solution(self, status: Status) -> GeneralizedSolution:  # pyright: ignore
+    def state(self, known: dict | None = None) -> CoordinateState:
+        """Return the present state, for user-defined functions."""
+        return CoordinateState(self)
+
+    def solution(self, status: Status, **watched) -> GeneralizedSolution:
         """Return the solution; after a failure it ends with the last state, saved or not."""
         own = self.compiled.system.own
         if status in LOST and own.singular[0] == 1.0:
             status = Status.SINGULAR_METRIC
-        return GeneralizedSolution._of(super().solution(status))
+        return GeneralizedSolution._of(super().solution(status, **watched))
 
 
 def check_constraints(system, seen: OwnCoordinates, options) -> None:

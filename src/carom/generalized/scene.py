@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom._compiled.user_functions import Functions
 from carom.fields import keep
-from carom.model.own_coordinates import own_coordinates
+from carom.model.own_coordinates import OwnCoordinates, own_coordinates
 from carom.scene.bodies import GROUND, Body
 from carom.scene.coordinates import Gap
 from carom.scene.scene import Scene
@@ -17,16 +18,17 @@ from carom.scene.stops import Stop
 
 
 class OwnModel:
-    """The functions of a system, as the compiled scene needs them."""
+    """The compiled functions of a system, which all its runs share."""
 
     def __init__(self, model, contacts: int):
-        self.model, self.contacts = model, contacts
+        self.functions = Functions()
+        self.addresses = model.addresses(self.functions)
+        self.sizes = model.n, model.holonomic, model.rows, contacts
 
-    def arrays(self, functions, drop: float):
-        """Return the arrays of the system with the addresses of its functions."""
-        addresses, parts = self.model.addresses(functions)
-        sizes = self.model.n, self.model.holonomic, self.model.rows, self.contacts
-        return own_coordinates(sizes, drop, addresses, parts)
+    def arrays(self, drop: float) -> OwnCoordinates:
+        """Return the arrays of the system, for one run."""
+        self.functions.forget()
+        return own_coordinates(self.sizes, drop, *self.addresses)
 
 
 class GapContact(Stop):
@@ -53,16 +55,17 @@ class CoordinateScene(Scene):
     """The scene of a system in coordinates of the user's own."""
 
     def __init__(self, system):
-        M = system._model.metric_at(system.position)
-        super().__init__(gravity=(0.0, scale_of_loads(system, M), 0.0))
-        self.system = system
+        made = system.evaluation()
+        M = made.look(np.append(system.position, system.velocity)).M.copy()
+        super().__init__(gravity=(0.0, scale_of_loads(made.own), 0.0))
+        self.system = system._as_it_is()
         for b, (q, v) in enumerate(zip(system.position.tolist(), system.velocity.tolist())):
             m = float(M[b, b])
             J = m / 1.5  # of a body of the size 1
             self.add_body(
                 mass=m, inertia=(J, J, J), position=(q, 0, 0), velocity=(v, 0, 0), name=f"q{b}"
             )
-        self._own = OwnModel(system._model, len(system.contacts))
+        self._own = made.model
 
     @property
     def stops(self) -> tuple:
@@ -70,12 +73,11 @@ class CoordinateScene(Scene):
         return tuple(GapContact(one, self.bodies[0]) for one in self.system.contacts)
 
 
-def scale_of_loads(system, M: np.ndarray) -> float:
+def scale_of_loads(seen: OwnCoordinates) -> float:
     """Return the greatest acceleration by loads at the start.
 
     It stands in the place of gravity, across the axis along which the bodies move: so it moves nothing, and
     gives speeds and times that count as zero their scale.
     """
-    seen = system.evaluation().look(np.append(system.position, system.velocity))
-    pull = float(np.abs(np.linalg.solve(M, seen.load)).max())
+    pull = float(np.abs(np.linalg.solve(seen.M, seen.load)).max())
     return pull if np.isfinite(pull) else 0.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from carom.scene.table import RecordTable
 from carom.status import Status
 
 if TYPE_CHECKING:
+    from carom.generalized.state import CoordinateState
     from carom.generalized.system import GeneralizedSystem
 
 
@@ -182,6 +183,16 @@ class GeneralizedSolution(Drawn):
         """
         x, _, v, _ = self._of_scene.evaluate(t, side)
         return x[..., 0], v[..., 0]
+
+    @property
+    def t_events(self) -> list[np.ndarray] | None:
+        """For each of the `events` that `simulate` was given the times [s] at which it happened, or None."""
+        return self._of_scene.t_events
+
+    @property
+    def state_events(self) -> list[list[CoordinateState]] | None:
+        """The states at these times."""
+        return cast("Any", self._of_scene.state_events)
 
     def __repr__(self) -> str:
         return (

@@ -99,7 +99,8 @@ class _Moved:
     """The bodies of a scene, and all that acts on them but contacts, as arrays."""
 
     def __init__(self, scene: Scene, options: Options, loops: bool, implicit: bool):
-        self.scene, self.functions = scene, Functions()
+        self.scene = scene
+        self.functions = Functions() if scene._own is None else scene._own.functions
         self.start, self.to_principal, moments = _start(scene)
         self.placement = Placement(self.start, self.to_principal)
         self.coordinates = Coordinates(self.placement)
@@ -119,7 +120,7 @@ class _Moved:
                 scene, moments, self.placement, self.elements, options, loops
             )
         else:
-            self.own = scene._own.arrays(self.functions, options.drop_tolerance)
+            self.own = scene._own.arrays(options.drop_tolerance)
             self.joints, self.flipped, self.solver = _constraints(self.own)
         alone, joined = _tethered(scene)
         loaded = np.append(self.forces.loaded, alone)

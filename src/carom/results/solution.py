@@ -149,11 +149,11 @@ class Solution(Portable, Drawn, Source):
     _reason: str = field(repr=False, default="")
 
     @classmethod
-    def _from_run(cls, run: Run, status: Status) -> Solution:
+    def _from_run(cls, run: Run, status: Status, **watched) -> Solution:
         """Make the solution from the records of a run."""
         from carom.results.assemble import assemble
 
-        return cls(**assemble(run, status))
+        return cls(**assemble(run, status), **watched)
 
     @property
     def _assemble(self):

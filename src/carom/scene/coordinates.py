@@ -219,8 +219,10 @@ class Gap(Length):
 class OwnSystem(Protocol):
     """A system in coordinates of the user's own, as the compiled scene needs it."""
 
-    def arrays(self, functions: Any, drop: float) -> Any:
-        """Return its arrays (`carom.model.own_coordinates`); `functions` are those of the run."""
+    functions: Any
+
+    def arrays(self, drop: float) -> Any:
+        """Return its arrays (`carom.model.own_coordinates`)."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,147 @@
+"""Systems in coordinates of the user's own: rods, tables, pucks, rows of blocks, pendulums that strike, closed loops."""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+import carom
+from campaigns.case import Case
+
+G = 9.81
+LAWS = "newton", "poisson", "stronge"
+
+
+def symbols(names: str):
+    """Return coordinates and their rates."""
+    return sp.symbols(names), sp.symbols(" ".join(f"d{name}" for name in names.split()))
+
+
+def rate(f, q, v):
+    """Return the rate of a function of the coordinates."""
+    return sum(sp.diff(f, one) * speed for one, speed in zip(q, v))
+
+
+def contact(rng) -> dict:
+    """Return a random law of a contact."""
+    return {
+        "restitution": float(rng.choice([0.0, 1.0, rng.uniform(0.0, 0.9)])),
+        "friction": float(rng.choice([0.0, rng.uniform(0.0, 1.0)])),
+        "impact_law": str(rng.choice(LAWS)),
+    }
+
+
+def rod(rng):
+    """Return a rod over a floor: two contacts of its ends."""
+    q, v = symbols("x z a")
+    x, z, a = q
+    system = carom.GeneralizedSystem.from_sympy(
+        q, v, metric=sp.diag(1, 1, sp.Rational(1, 12)), potential=G * z,
+        position=[0, rng.uniform(0.6, 1.0), rng.uniform(-1.5, 1.5)],
+        velocity=rng.uniform(-2.0, 2.0, 3),
+    )  # fmt: skip
+    law = contact(rng)
+    for k in (-1, 1):
+        end = x + k * sp.cos(a) / 2, z + k * sp.sin(a) / 2
+        system.add_contact(end[1], tangent=rate(end[0], q, v), **law)
+    return system
+
+
+def table(rng):
+    """Return a table on four legs that slides on a floor, for small angles."""
+    q, v = symbols("z a b x y")
+    third = sp.Rational(1, 3)
+    system = carom.GeneralizedSystem.from_sympy(
+        q, v, metric=sp.diag(1, third, third, 1, 1), potential=G * q[0],
+        position=[rng.uniform(0.05, 0.3), *rng.uniform(-0.03, 0.03, 2), 0, 0],
+        velocity=[0, *rng.uniform(-0.3, 0.3, 2), *rng.uniform(-1.0, 1.0, 2)],
+    )  # fmt: skip
+    law, slip = contact(rng), [v[3] + v[2] / 5, v[4] - v[1] / 5]
+    for x, y in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
+        system.add_contact(q[0] + x * q[1] + y * q[2], tangent=slip, **law)
+    return system
+
+
+def puck(rng):
+    """Return a puck on a floor in a wind that turns."""
+    q, v = symbols("x y z")
+    t, force = sp.Symbol("t", real=True), rng.uniform(0.0, 4.0)
+    w = rng.uniform(0.0, 8.0)
+    system = carom.GeneralizedSystem.from_sympy(
+        q, v, metric=sp.eye(3), potential=G * q[2], time=t,
+        forces=[force * sp.cos(w * t), force * sp.sin(w * t), 0],
+        position=[0, 0, rng.choice([0.0, 0.1])], velocity=[*rng.uniform(-1.0, 1.0, 2), 0],
+    )  # fmt: skip
+    system.add_contact(q[2], tangent=v[:2], **contact(rng))
+    return system
+
+
+def row(rng):
+    """Return a row of blocks on a line, joined by springs, that a wall and each other stop."""
+    n = int(rng.integers(2, 6))
+    q, v = symbols(" ".join(f"x{k}" for k in range(n)))
+    masses = 10.0 ** rng.uniform(-1.0, 1.0, n)
+    V = sum(
+        rng.uniform(1.0, 200.0) * (q[k + 1] - q[k] - 1) ** 2 / 2
+        for k in range(n - 1)
+        if rng.random() < 0.5
+    )
+    system = carom.GeneralizedSystem.from_sympy(
+        q, v, metric=sp.diag(*masses.tolist()), potential=V + rng.uniform(0.0, 5.0) * sum(q),
+        position=np.cumsum(rng.uniform(1.0, 1.5, n)), velocity=rng.uniform(-2.0, 2.0, n),
+    )  # fmt: skip
+    law = contact(rng) | {"friction": 0.0}
+    system.add_contact(q[0] - sp.Rational(1, 2), **law)
+    for k in range(n - 1):
+        system.add_contact(q[k + 1] - q[k] - sp.Rational(9, 10), **law)
+    return system
+
+
+def pendulum(rng):
+    """Return a double pendulum that strikes a wall and a floor."""
+    q, v = symbols("a b")
+    a, b = q
+    x, z = sp.sin(a) + sp.sin(b), -sp.cos(a) - sp.cos(b)
+    elbow = sp.sin(a), -sp.cos(a)
+    T = (rate(x, q, v) ** 2 + rate(z, q, v) ** 2) / 2
+    T += rng.uniform(0.2, 5.0) * (rate(elbow[0], q, v) ** 2 + rate(elbow[1], q, v) ** 2) / 2
+    system = carom.GeneralizedSystem.from_sympy(
+        q, v, kinetic_energy=sp.expand(T), potential=G * (z + elbow[1]),
+        position=rng.uniform(-1.5, 0.2, 2), velocity=rng.uniform(-3.0, 3.0, 2),
+    )  # fmt: skip
+    system.add_contact(sp.Float(rng.uniform(0.9, 1.5)) - x, tangent=rate(z, q, v), **contact(rng))
+    return system
+
+
+def loop(rng):
+    """Return a slider-crank of three coordinates and two constraints, whose slider a stop stops."""
+    q, v = symbols("a b x")
+    a, b, x = q
+    long = rng.uniform(1.3, 3.0)
+    angle = rng.uniform(-3.0, 3.0)
+    other = -np.arcsin(np.sin(angle) / long)
+    place = np.cos(angle) + long * np.cos(other)
+    J = np.array([[-np.sin(angle), -long * np.sin(other), -1.0], [np.cos(angle), long * np.cos(other), 0]])
+    speed = rng.uniform(-6.0, 6.0)
+    rates = np.linalg.solve(J[:, 1:], -J[:, 0] * speed)
+    system = carom.GeneralizedSystem.from_sympy(
+        q, v, metric=sp.diag(*(10.0 ** rng.uniform(-1.0, 1.0, 3)).tolist()), potential=G * sp.sin(a),
+        constraints=[sp.cos(a) + long * sp.cos(b) - x, sp.sin(a) + long * sp.sin(b)],
+        position=[angle, other, place], velocity=[speed, *rates],
+    )  # fmt: skip
+    stop = rng.uniform(long - 0.9, long + 0.9)
+    gap = x - min(stop, place - 0.01) if rng.random() < 0.5 else max(stop, place + 0.01) - x
+    system.add_contact(gap, **contact(rng) | {"friction": 0.0})
+    return system
+
+
+KINDS = {"rod": rod, "table": table, "puck": puck, "row": row, "pendulum": pendulum, "loop": loop}
+
+
+def case(seed: int) -> Case:
+    """Return system number `seed`: kinds in turn, the rest at random."""
+    rng = np.random.default_rng([77, seed])
+    kind = list(KINDS)[seed % len(KINDS)]
+    system = KINDS[kind](rng)
+    step = float(rng.choice([1e-3, 5e-3, 2e-2]))
+    return Case(system, 1.2, step, {"kind": kind, "step": step})
