@@ -338,7 +338,7 @@ OTHER_FLOATS = {
     "dynamics.double_double": {"SPLITTER"},
     "dynamics.implicit": {"GAMMA"},
     "friction.residual": {"NOTHING"},
-    "generalized.differences": {"_FIRST", "_SECOND"},
+    "kinematics.differences": {"_FIRST", "_SECOND"},
     "impact.resolve_by_slip": {"_NONE"},
     "impact.spline": {"_X1", "_X2", "_X3", "_W1", "_W2", "_W3"},
     "impact.strike_together": {"HERTZ", "LINEAR"},

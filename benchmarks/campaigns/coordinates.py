@@ -1,4 +1,4 @@
-"""Systems in coordinates of the user's own: rods, tables, pucks, rows of blocks, pendulums that strike, closed loops."""
+"""Systems in coordinates of the user's own: rods, tables, pucks, rows of blocks, pendulums, closed loops."""
 
 from __future__ import annotations
 
@@ -121,7 +121,9 @@ def loop(rng):
     angle = rng.uniform(-3.0, 3.0)
     other = -np.arcsin(np.sin(angle) / long)
     place = np.cos(angle) + long * np.cos(other)
-    J = np.array([[-np.sin(angle), -long * np.sin(other), -1.0], [np.cos(angle), long * np.cos(other), 0]])
+    J = np.array(
+        [[-np.sin(angle), -long * np.sin(other), -1.0], [np.cos(angle), long * np.cos(other), 0]]
+    )
     speed = rng.uniform(-6.0, 6.0)
     rates = np.linalg.solve(J[:, 1:], -J[:, 0] * speed)
     system = carom.GeneralizedSystem.from_sympy(

@@ -68,7 +68,9 @@ def _condition(name: str, event, scene) -> Condition:
     if event.startswith(FIRST_IMPACT):
         words = event.removeprefix(FIRST_IMPACT)
         stops = {stop.name: stop.index for stop in scene.stops}
-        strikes = _StopStrikes(stops[words]) if words in stops else _Strikes(*_pair(name, words, scene))
+        strikes = (
+            _StopStrikes(stops[words]) if words in stops else _Strikes(*_pair(name, words, scene))
+        )
         return Condition(shown, strikes, 1, 1.0, strikes.when)
     raise ValueError(f"{name} must be {ALLOWED}; got {checks.shown(event)}")
 

@@ -22,7 +22,7 @@ from carom.model.parts_of_system import has_metric
 
 @kernel
 def factor(system, state):
-    """Factor M and K in the position of `state`, unless they are those of this position; NaN if M is singular."""
+    """Factor M and K in the position of `state`, unless they are those of it; NaN if M is singular."""
     own = system.own
     n, known = own.n, True
     for j in range(n):

@@ -75,7 +75,9 @@ class Evaluation:
         def rate(t, x):
             seen = self.look(x)
             if not np.all(np.isfinite(seen.inertia)):
-                raise ValueError("the autoparallel could not be integrated: the metric is not finite")
+                raise ValueError(
+                    "the autoparallel could not be integrated: the metric is not finite"
+                )
             try:
                 return np.append(x[self.n :], -np.linalg.solve(seen.M, seen.c))
             except np.linalg.LinAlgError as error:
@@ -87,7 +89,8 @@ class Evaluation:
         found = solve_ivp(rate, (0.0, 1.0), start, "DOP853", rtol=ARC_ERROR, atol=ARC_ERROR)
         if not found.success:
             raise ValueError(f"the autoparallel could not be integrated: {found.message}")
-        return np.split(found.y[:, -1], 2)
+        q, v = np.split(found.y[:, -1], 2)
+        return q, v
 
     def return_map(self, q, contact: int):
         """Return coordinates q_e on the surface of a contact, and of the constraints.

@@ -12,7 +12,6 @@ from carom.geometry.thresholds import SMALLEST
 from carom.model.own_coordinates import OwnCoordinates
 from carom.run import Run
 from carom.status import Status
-from carom.stepping.settings import Settings
 
 #: how a run ends whose metric is singular, among other reasons
 LOST = Status.NOT_FINITE, Status.CONSTRAINTS_LOST, Status.NO_CONVERGENCE

@@ -10,6 +10,7 @@ import numpy as np
 
 from carom._compiled.user_functions import Functions
 from carom.fields import keep
+from carom.generalized.stated import CoordinateContact
 from carom.model.own_coordinates import OwnCoordinates, own_coordinates
 from carom.scene.bodies import GROUND, Body
 from carom.scene.coordinates import Gap
@@ -34,8 +35,10 @@ class OwnModel:
 class GapContact(Stop):
     """A contact of a system, as the stop of its gap."""
 
-    def __init__(self, contact, body: Body):
-        gap = Gap(GROUND, body, None, None, contact.index)
+    contact: CoordinateContact
+
+    def __init__(self, contact: CoordinateContact, body: Body, size: float):
+        gap = Gap(GROUND, body, None, None, contact.index, size)
         keep(self, index=contact.index, name=contact.name, joint=gap, coordinate=0, contact=contact)
         keep(self, lower=0.0, upper=None, restitution=contact.restitution)
         keep(self, impact_law=contact.impact_law)
@@ -55,29 +58,33 @@ class CoordinateScene(Scene):
     """The scene of a system in coordinates of the user's own."""
 
     def __init__(self, system):
-        made = system.evaluation()
-        M = made.look(np.append(system.position, system.velocity)).M.copy()
-        super().__init__(gravity=(0.0, scale_of_loads(made.own), 0.0))
-        self.system = system._as_it_is()
-        for b, (q, v) in enumerate(zip(system.position.tolist(), system.velocity.tolist())):
-            m = float(M[b, b])
-            J = m / 1.5  # of a body of the size 1
+        made, sizes = system.evaluation(), system.scale
+        seen = made.look(np.append(system.position, system.velocity))
+        super().__init__(gravity=(0.0, scale_of_loads(seen, sizes), 0.0))
+        self.system, self._own = system._as_it_is(), made.model
+        state = zip(seen.M.diagonal(), sizes, system.position, system.velocity)
+        for b, (m, size, q, v) in enumerate(state):
             self.add_body(
-                mass=m, inertia=(J, J, J), position=(q, 0, 0), velocity=(v, 0, 0), name=f"q{b}"
-            )
-        self._own = made.model
+                mass=m, inertia=np.full(3, m * size**2 / 1.5), position=(q, 0, 0), velocity=(v, 0, 0),
+                name=f"q{b}",
+            )  # fmt: skip
+        self._contacts = []
+        for contact, row in zip(system.contacts, np.abs(seen.G[:, 0]) * sizes):
+            b = int(np.argmax(row))
+            size = float(row[b]) if 0.0 < row[b] < np.inf else 1.0
+            self._contacts.append(GapContact(contact, self.bodies[b], size))
 
     @property
     def stops(self) -> tuple:
         """The contacts."""
-        return tuple(GapContact(one, self.bodies[0]) for one in self.system.contacts)
+        return tuple(self._contacts)
 
 
-def scale_of_loads(seen: OwnCoordinates) -> float:
-    """Return the greatest acceleration by loads at the start.
+def scale_of_loads(seen: OwnCoordinates, sizes: np.ndarray) -> float:
+    """Return the greatest acceleration by loads at the start, by the sizes of coordinates, times the least.
 
     It stands in the place of gravity, across the axis along which the bodies move: so it moves nothing, and
     gives speeds and times that count as zero their scale.
     """
-    pull = float(np.abs(np.linalg.solve(seen.M, seen.load)).max())
+    pull = float(np.abs(np.linalg.solve(seen.M, seen.load) / sizes).max() * sizes.min())
     return pull if np.isfinite(pull) else 0.0

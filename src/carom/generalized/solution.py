@@ -60,7 +60,9 @@ def impact_table(solution: Solution, system: GeneralizedSystem) -> CoordinateImp
     impacts, n = solution.impacts, len(system.position)
     there = solution.evaluate(impacts.time)[0][..., 0] if len(impacts) else np.zeros((0, n))
     rows = np.any(system.evaluation().look(system.position).G != 0.0, axis=2)[impacts.contact]
-    W = impacts.inverse_mass * rows[:, :, None] * rows[:, None, :]  # 0 along tangents that are not there
+    W = (
+        impacts.inverse_mass * rows[:, :, None] * rows[:, None, :]
+    )  # 0 along tangents that are not there
     same = {name: getattr(impacts, name) for name in _SAME}
     return CoordinateImpactTable(**same, position=there, inverse_mass=W)
 

@@ -7,6 +7,7 @@ from copy import copy
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.generalized.stated import CoordinateContact
@@ -48,6 +49,9 @@ class GeneralizedSystem:
         Functions that return the derivatives: ``(n, n, n)`` with the index of the derivative first, ``(n,)``,
         and ``(h, n)``. Default: central differences of order 4. Their error is about 1e-12 for functions that
         vary on a scale of 1 of each coordinate (1e-10 for second derivatives of constraints); see the notes.
+    scale : float or (n,), optional
+        Size of each coordinate in its unit, above 0: that in which errors are measured (`rtol` of `simulate`).
+        Default 1.
 
     Raises
     ------
@@ -80,6 +84,7 @@ class GeneralizedSystem:
         metric_derivative: Callable | None = None,
         potential_gradient: Callable | None = None,
         constraint_jacobian: Callable | None = None,
+        scale: ArrayLike = 1.0,
     ):
         given = dict(
             metric=metric, potential=potential, force=force, constraint=constraint, rows=rows,
@@ -96,7 +101,7 @@ class GeneralizedSystem:
             )
         from carom.generalized.functional import FunctionalModel
 
-        self._start(FunctionalModel(q, v, given), q, v)
+        self._start(FunctionalModel(q, v, given), q, v, scale)
 
     @classmethod
     @arguments.known
@@ -115,6 +120,7 @@ class GeneralizedSystem:
         time=None,
         position,
         velocity,
+        scale: ArrayLike = 1.0,
     ) -> GeneralizedSystem:
         """Make a system from SymPy expressions; all derivatives are exact, and the expressions are compiled.
 
@@ -142,6 +148,8 @@ class GeneralizedSystem:
             Symbol of the time.
         position, velocity : array_like, shape (n,)
             Initial coordinates and velocities.
+        scale : float or (n,), optional
+            Size of each coordinate in its unit, as for `GeneralizedSystem`. Default 1.
 
         Raises
         ------
@@ -159,10 +167,14 @@ class GeneralizedSystem:
         q = checks.finite_array("position", position, (model.n,))
         v = checks.finite_array("velocity", velocity, (model.n,))
         system = cls.__new__(cls)
-        system._start(model, q, v)
+        system._start(model, q, v, scale)
         return system
 
-    def _start(self, model, q, v) -> None:
+    def _start(self, model, q, v, scale) -> None:
+        sizes = checks.finite_array("scale", scale, () if np.ndim(scale) == 0 else (model.n,))
+        if not np.all(sizes > 0.0):
+            raise ValueError(f"scale must be above 0, got {checks.shown(scale)}")
+        self.scale = np.broadcast_to(sizes, model.n)
         self._model: Any = model
         self._parts, self._made = Registry("system"), None
         self.position, self.velocity = q, v

@@ -133,7 +133,13 @@ def find_slope(part, t, x, n, own):
     for k in range(n):
         axis[k] = 1.0
         h = STEP * max(1.0, abs(x[k]))
-        differ((part.address, part.results, t), x, (axis, h, _FIRST), own.slope[k * part.results :], own)
+        differ(
+            (part.address, part.results, t),
+            x,
+            (axis, h, _FIRST),
+            own.slope[k * part.results :],
+            own,
+        )
         axis[k] = 0.0
 
 

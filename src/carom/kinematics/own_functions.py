@@ -13,13 +13,13 @@ from carom.model.own_coordinates import CALL_CONTACTS, CALL_INERTIA, CALL_LOADS,
 
 @kernel
 def is_known(seen, n, state, t, moving):
-    """Return whether results belong to the coordinates of a state; if `moving`, also to its rates and the time."""
+    """Return whether results belong to the coordinates of a state; if `moving`, also to rates and time."""
     for j in range(n):
-        if not seen[j] == state[j].x[0]:
+        if seen[j] != state[j].x[0]:
             return False
     if moving:
         for j in range(n):
-            if not seen[n + j] == state[j].v[0]:
+            if seen[n + j] != state[j].v[0]:
                 return False
         return seen[2 * n] == t
     return True

@@ -1,7 +1,7 @@
 """The rows (n, t1, t2) of a point that are rates of coordinates, times the length of the point.
 
-That of a stop is the first row of its point, that of friction in a joint the second; the others are 0. A contact
-in coordinates of the user's own has three.
+That of a stop is the first row of its point, that of friction in a joint the second; the others are 0. A
+contact in coordinates of the user's own has three.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.kinematics.combination import (
     acceleration_along,
-    drift,
     motion_along,
     push,
     rate,

@@ -35,8 +35,8 @@ SPHERICAL = KIND[joints.Spherical]
 ROLLING_SPHERE, ROLLING_DISC = KIND[joints.RollingSphere], KIND[joints.RollingDisc]
 #: kinds in the table of joints whose rows are numbers of their own: a point of the child on a curve of the
 #: parent, and a curve of the child on a point of the parent; a relation of coordinates of joints; rows of the
-#: user's own; a spring and damper as a row, for the implicit step; inertia along a coordinate as a row; constraints
-#: of a system in the user's coordinates
+#: user's own; a spring and damper as a row, for the implicit step; inertia along a coordinate as a row;
+#: constraints of a system in the user's coordinates
 POINT_ON_CURVE, CURVE_ON_POINT = KIND[joints.PointOnCurve], KIND[joints.CurveOnPoint]
 ON_CURVE = (POINT_ON_CURVE, CURVE_ON_POINT)
 RELATION, USER_ROWS, STIFF, INERTIA, OWN_CONSTRAINT = range(len(KIND), len(KIND) + 5)
@@ -278,8 +278,8 @@ BODY_AXES, OTHER_AXES, WORLD_AXES = 1, 2, 3
 HEAD, WIDTH = 52, 14
 
 
-#: kinds of back ends: each body by itself; articulated-body elimination; sparse Cholesky factor; dense metric of
-#: coordinates of the user's own
+#: kinds of back ends: each body by itself; articulated-body elimination; sparse Cholesky factor; dense
+#: metric of coordinates of the user's own
 NO_JOINTS, FOREST, LOOPS, METRIC = range(4)
 
 

@@ -80,10 +80,10 @@ def own_coordinates(sizes: tuple[int, ...], drop: float, functions, parts) -> Ow
     most, row, touch = max(n, k, 2) * n, h + k * n, C * (1 + 3 * n)
     inertia, loads = np.zeros(n * n + n), np.zeros(n + 2)
     constraints, touching = np.zeros(row + k), np.zeros(touch + 3 * C)
-    known = table(FUNCTION, len(functions)), table(PART, len(parts))
-    known[0]["address"] = functions
-    for name, column in zip(known[1].dtype.names, zip(*parts)):
-        known[1][name] = column
+    called, listed = table(FUNCTION, len(functions)), table(PART, len(parts))
+    called["address"] = functions
+    for (name, _), column in zip(PART, zip(*parts)):
+        listed[name] = column
     views: dict[str, Any] = {
         "inertia": inertia, "M": inertia[: n * n].reshape(n, n), "c": inertia[n * n :],
         "loads": loads, "load": loads[1 : n + 1],
@@ -93,13 +93,14 @@ def own_coordinates(sizes: tuple[int, ...], drop: float, functions, parts) -> Ow
         "G_rate": touching[touch:].reshape(C, 3),
     }  # fmt: skip
     shapes = {
-        "pose": n, "singular": 1, "L": (n, n), "Z": (k, n), "K": (k, k), "a": n, "multiplier": k, "x": 2 * n, "point": n,
-        "axis": n, "sample": most, "slope": n * most,
+        "pose": n, "singular": 1, "L": (n, n), "Z": (k, n), "K": (k, k), "a": n, "multiplier": k, "x": 2 * n,
+        "point": n, "axis": n, "sample": most, "slope": n * most,
     }  # fmt: skip
     own = {name: np.zeros(shape) for name, shape in shapes.items()}
     made = OwnCoordinates(
-        n, h, k, C, drop, *known, seen=np.zeros((4, 2 * n + 1)), **views, **own
-    )
+        n=n, holonomic=h, rows=k, contacts=C, drop=drop, functions=called, parts=listed,
+        seen=np.zeros((4, 2 * n + 1)), **views, **own,
+    )  # fmt: skip
     forget_state(made)
     return made
 

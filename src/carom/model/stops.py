@@ -38,7 +38,7 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, laws: 
         row.extent = row.other_extent = size
         row.first, row.last = 0, 1
         if stop.joint.can_be_left:
-            curve = stop.joint.definition.curve
+            curve = stop.joint.definition.curve  # pyright: ignore[reportAttributeAccessIssue]
             row.extent = row.other_extent = max(size, np.ptp(curve.ends[:, 0], axis=0).max())
     rows.still = STILL_SPEED * np.sqrt(np.linalg.norm(scene.gravity) * rows.extent)
     for row, stop in zip(rows, scene.stops):
@@ -55,6 +55,8 @@ def _sizes(stop, sizes: np.ndarray) -> tuple[float, float]:
 
     That of a combination is the shortest of those of its angles, each over its factor.
     """
+    if isinstance(stop.joint, Gap):
+        return stop.joint.size, 1.0
     if not isinstance(stop.joint, Combination):
         size = sizes[stop.joint.child.index]
         return float(size), float(size)

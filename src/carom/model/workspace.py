@@ -46,7 +46,8 @@ POINT = [
 ]
 
 #: `motion` of a point: that of two points, in rows n, t1, t2; relative rotation of rolling (t1, t2) and of
-#: pivoting (t1); rate of a coordinate, of a stop (n) and of friction in a joint (t1); rates of three coordinates
+#: pivoting (t1); rate of a coordinate, of a stop (n) and of friction in a joint (t1); of three
+#: coordinates
 MOTION_POINT, MOTION_ROLL, MOTION_PIVOT, MOTION_STOP, MOTION_JOINT, MOTION_THREE = range(6)
 
 #: `parent` of an entry of a group whose friction has a constant bound; else the one whose force bounds it

@@ -206,9 +206,12 @@ class Gap(Length):
     ----------
     number : int
         Number of the contact.
+    size : float
+        The greatest of the changes of the gap by that of a coordinate by its size.
     """
 
     number: int = 0
+    size: float = 1.0
 
     @property
     def index(self) -> tuple:

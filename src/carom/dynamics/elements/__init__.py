@@ -12,7 +12,15 @@ from typing import Any
 
 from carom._compiled.by_number import by_number
 from carom._compiled.decorators import inlined
-from carom.dynamics.elements import inertia, on_curve, own_constraints, own_rows, relation, stiff, user
+from carom.dynamics.elements import (
+    inertia,
+    on_curve,
+    own_constraints,
+    own_rows,
+    relation,
+    stiff,
+    user,
+)
 from carom.model.arrays import INERTIA, KIND, ON_CURVE, OWN_CONSTRAINT, RELATION, STIFF, USER_ROWS
 
 #: a joint without rows has coordinates that stops limit, and no errors
