@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -56,7 +57,6 @@ from carom.stepping.islands.layout import (
     together,
     with_partners,
 )
-from carom.stepping.running import Running
 from carom.stepping.settings import Settings
 from carom.stepping.thresholds import STEP_SHARE
 
@@ -64,9 +64,11 @@ ROOM_AT_FIRST = 8  # points of an impact for which there is room at first
 LOCATIONS = {"locate": LOCATE, "project": PROJECT, "work": WORK}
 
 
-class Run(Running):
+class Run:
     """A run that can be continued step by step; `solution` may be taken at any time."""
 
+    #: is asked at pauses; True interrupts the run
+    to_stop: Callable[[], bool] = staticmethod(lambda: False)
     #: what a run passes to compiled code has one type, whatever its scene and method
     call = Entries()
     costs = costs  # for the progress bar
@@ -176,6 +178,26 @@ class Run(Running):
         check_stops(*initial)
 
     @property
+    def steps(self) -> int:
+        """Number of steps to the end."""
+        return self.grid.last
+
+    @property
+    def steps_done(self) -> int:
+        """Number of finished steps."""
+        return int(self.clock["step"][0])
+
+    @property
+    def reached(self) -> float:
+        """Time that the run has reached [s]."""
+        return float(self.clock["now"][0])
+
+    @property
+    def failure(self) -> BaseException | None:
+        """The error that a user-defined function has raised, or None."""
+        return self.functions.failed
+
+    @property
     def settings(self) -> dict:
         """The arguments of the run, by name."""
         known = self.how.as_dict()
@@ -281,6 +303,29 @@ class Run(Running):
             if code != r.GROW:
                 return code
             self.grow(self.work.step[0].grow)
+
+    def go_on(self, until: int) -> Status:
+        """Continue to step number `until`, or to a failure."""
+        while True:
+            code = self.take_steps(int(until))
+            if code == r.PAUSE and self.failure is None:
+                if self.to_stop():  # here Ctrl-C is raised
+                    return Status.INTERRUPTED
+            elif isinstance(self.failure, KeyboardInterrupt):  # while a plain function ran
+                self.functions.forget()
+                return Status.INTERRUPTED
+            elif self.failure is not None or self.is_to_blame(code):
+                return Status.FUNCTION_FAILED
+            else:
+                return Status(code)
+
+    def is_to_blame(self, code: int) -> bool:
+        """Return whether a user-defined function without a finite result has ended the run."""
+        functions, begin = self.functions, self.begin()
+        if code == Status.SUCCESS or functions.blame(begin) or not functions.has_compiled:
+            return self.failure is not None
+        self.blame_compiled()
+        return functions.blame(begin)
 
     def begin(self) -> float:
         """Return the start of the step: a trial step of it has failed."""

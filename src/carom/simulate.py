@@ -99,8 +99,8 @@ def simulate(
         body should be at most about ``atol + rtol * size`` [m], where `size` is the size of the body; an error
         of an angle is multiplied by `size`. Defaults: 1e-8, and `rtol` times the size of the smallest body.
         Free flight and times of impacts are exact to round-off. Errors grow in chaotic motion.
-        Time-stepping steps do not follow the tolerance. Each coordinate of a `GeneralizedSystem` has the size
-        1, in its own unit. (Mathematics page, §1.3; "Choose an accuracy".)
+        Time-stepping steps do not follow the tolerance. Both are in sizes of the coordinates of a
+        `GeneralizedSystem`, its `scale`. (Mathematics page, §1.3; "Choose an accuracy".)
     impact_location : {"locate", "project", "work"}
         ``"locate"`` (default): the time of an impact is located inside the step (event detection); the return
         map only refines the position. ``"project"``: as in the paper, the step keeps its length and the return

@@ -28,7 +28,7 @@ def symbolic():
     return carom.GeneralizedSystem.from_sympy, dict(
         coordinates=[x, y], velocities=[dx, dy], kinetic_energy=None, metric=sp.eye(2), potential=k * x**2,
         forces=[0, 0], constraints=[], rates=[], parameters={k: 1.0}, time=t, position=[0.0, 1.0],
-        velocity=[0.0, 0.0],
+        velocity=[0.0, 0.0], scale=1.0,
     )  # fmt: skip
 
 
@@ -40,6 +40,7 @@ def run(folder):
         **system, potential=lambda q: 0.0, force=lambda t, q, v: np.zeros(2), constraint=lambda q: q[:1],
         rows=lambda q: np.zeros((1, 2)), metric_derivative=lambda q: np.zeros((2, 2, 2)),
         potential_gradient=lambda q: np.zeros(2), constraint_jacobian=lambda q: np.array([[1.0, 0.0]]),
+        scale=[1.0, 2.0],
     )  # fmt: skip
     found = {
         "GeneralizedSystem": lambda: (carom.GeneralizedSystem, full),
@@ -56,7 +57,7 @@ def run(folder):
         "GeneralizedSystem.christoffel": lambda: (one_oscillator().christoffel, dict(position=[1.0])),
         "GeneralizedSystem.gaps": lambda: (one_oscillator().gaps, dict(position=[1.0])),
         "GeneralizedSystem.autoparallel": lambda: (
-            one_oscillator().autoparallel, dict(position=[1.0], velocity=[1.0], parts=2),
+            one_oscillator().autoparallel, dict(position=[1.0], velocity=[1.0]),
         ),
         "GeneralizedSystem.return_map": lambda: (
             one_oscillator().return_map, dict(position=[1.0], contact="wall"),

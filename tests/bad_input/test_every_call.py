@@ -48,7 +48,7 @@ HANDED_BACK = {
     "AccuracyWarning", "GROUND", "ContactSolution", "CornerImpact", "Ensemble", "Impact", "LayerHistory",
     "MistakeWarning", "Model", "Sensitivities", "SimulationError", "Solution", "Status",
     "generalized.CoordinateContact", "generalized.GeneralizedSolution",
-    "generalized.CoordinateImpactTable", "generalized.CoordinateImpact",
+    "generalized.CoordinateImpactTable", "generalized.CoordinateImpact", "generalized.CoordinateState",
     "dynamics.mobility.Mobility", "results.ImpactTable", "results.ImpactRecord",
     "results.EventTable", "results.ContactTable",
     "results.ForceTable", "all_pairs.PairTable", "results.Ledger",

@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import lu_factor
 
 from carom._compiled.decorators import entry
-from carom.friction.lu import factor, factor_in_order, substitute, substitute_in_order
+from carom.friction.lu import factor, substitute
 
 
 @entry
@@ -13,12 +13,6 @@ def solve_in_place(A, n, pivot, x):
     replaced = factor(A, n, pivot, 1e-14)
     substitute(A, n, pivot, x)
     return replaced
-
-
-@entry
-def solve_in_order(A, n, inverse, drop, x):
-    factor_in_order(A, n, inverse, drop)
-    substitute_in_order(A, n, inverse, x)
 
 
 @pytest.mark.plain
@@ -51,19 +45,3 @@ def test_empty_pivots_are_replaced():
     A, x = np.zeros((2, 2)), np.array([0.0, 0.0])
     assert solve_in_place(A, 2, np.zeros(2, dtype=np.int64), x) == 2
     assert np.all(x == 0.0)
-
-
-@pytest.mark.plain
-def test_rows_that_depend_on_earlier_ones_are_left_out():
-    """R M^-1 D with a row of R, and of D, twice: the solution without it, and 0 in its place."""
-    random = np.random.default_rng(3)
-    R = random.normal(size=(4, 6))
-    D = R + 0.2 * random.normal(size=R.shape)
-    rows = [0, 1, 2, 1, 3]
-    A, x, inverse = R[rows] @ D[rows].T, random.normal(size=5), np.zeros(5)
-    y = x.copy()
-    solve_in_order(A, 5, inverse, 1e-12, y)
-    assert inverse[3] == y[3] == 0.0
-    np.testing.assert_allclose(
-        y[[0, 1, 2, 4]], np.linalg.solve(R @ D.T, x[[0, 1, 2, 4]]), rtol=1e-12
-    )

@@ -284,3 +284,46 @@ def test_steps_in_contact_are_as_many_as_the_order_says(friction, speed):
         counts.append(run.stats["trial_steps"])
     assert np.abs(ends[1] - ends[0]).max() < 1e-8
     assert 1.2 < counts[1] / counts[0] < 2.2  # 10^(2/8) = 1.8
+
+
+@pytest.mark.plain
+def test_forces_modes_and_intervals_are_in_the_results():
+    run = carom.simulate(on_floor([0, 0], [1, 0]), 0.5, step=0.02)
+    stops = run.t > 1 / (0.3 * G)
+    assert run.contact_force.shape == (26, 1, 3)
+    np.testing.assert_allclose(run.contact_force[:, 0, 0], G, rtol=1e-13)
+    np.testing.assert_allclose(run.contact_force[~stops, 0, 1], -0.3 * G, rtol=1e-13)
+    assert run.contact_mode[:, 0].tolist() == [2 if stop else 1 for stop in stops]
+    assert [str(mode) for mode in run.contacts.mode] == ["slipping", "sticking"]
+    assert np.max(run.held_residual) < 1e-14
+
+
+def test_an_impact_has_its_history():
+    run = carom.simulate(on_floor([0, 1], [2, 0]), 0.5)
+    layer = run.impact_history(0)
+    np.testing.assert_allclose(
+        layer.velocity[-1], run.impacts[0].relative_velocity_after, rtol=0, atol=1e-12
+    )
+
+
+@pytest.mark.parametrize("size", [1e-3, 1e4])
+def test_coordinates_in_other_units_move_alike(size):
+    """A rod in coordinates of 1/size metres and radians, with tolerances in their sizes."""
+    q, v = symbols("x z a")
+    runs = []
+    for unit in (1.0, size):
+        x, z, a = (sp.Float(unit) * one for one in q)
+        ends = [(x + k * sp.cos(a) / 2, z + k * sp.sin(a) / 2) for k in (-1, 1)]
+        system = GeneralizedSystem.from_sympy(
+            q, v, metric=unit**2 * sp.diag(1, 1, sp.Rational(1, 12)), potential=G * z,
+            position=np.array([0, 0.7, 0.4]) / unit, velocity=np.array([0.3, 0, 1.0]) / unit,
+            scale=1.0 / unit,
+        )  # fmt: skip
+        for end in ends:
+            system.add_contact(end[1], tangent=rate(end[0], q, v), restitution=0.5, friction=0.3)
+        runs.append((unit, carom.simulate(system, 1.5, rtol=1e-8)))
+    (_, first), (unit, other) = runs
+    # rest after 39 impacts; no rule has a unit, so the trial steps are as many but for round-off
+    assert abs(other.stats["trial_steps"] - first.stats["trial_steps"]) <= 10
+    assert len(other.impacts) == len(first.impacts)
+    np.testing.assert_allclose(unit * other.q[-1], first.q[-1], rtol=0, atol=1e-7)

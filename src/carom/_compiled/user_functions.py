@@ -195,20 +195,6 @@ class Arrays(dict):
         return self[address]
 
 
-def from_python(function, inside: tuple[int, ...], outside: tuple[int, ...]) -> Callable:
-    """Return ``function(t, x)`` for calls from Python; of a function compiled by Numba the code for runs."""
-    if not is_compiled(function):
-        return function
-    made = _compiled(function, inside, outside)
-
-    def call(t, x):
-        read, out = np.array(x, dtype=float).reshape(inside), np.empty(outside)
-        FORM(made.address)(t, read.ctypes.data, out.ctypes.data)
-        return out
-
-    return call
-
-
 @once
 def _compiled(function, inside, outside):
     """Compile the wrapper of a function that Numba has compiled."""

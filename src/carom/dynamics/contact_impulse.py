@@ -62,7 +62,7 @@ def add_impulse(system, point, state, p, work):
     """Add G^T p of an impulse p = (p_n, p_t1, p_t2) to the wrenches."""
     E, ln, l1, l2 = point.axes, p[0], p[1], p[2]
     if point.motion > MOTION_PIVOT:
-        push_in_row(system, point, state, p, work)
+        push_in_row(system, point, state, (ln, l1, l2), work)
         return
     if point.motion != MOTION_POINT:
         i, j = (1, 2) if point.motion == MOTION_ROLL else (0, 2)

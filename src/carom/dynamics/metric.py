@@ -29,7 +29,7 @@ def factor(system, state):
         known = known and own.pose[j] == state[j].x[0]
     if known:
         return
-    find_inertia(system, state, False)
+    find_inertia(system.own, state, False)
     for i in range(n):
         own.pose[i] = state[i].x[0]
         for j in range(n):
@@ -53,7 +53,7 @@ def factor_rows(system, state):
     """Write Z = M^-1 A and factor K = A Z^T."""
     own = system.own
     n, k = own.n, own.rows
-    find_constraints(system, state, False)
+    find_constraints(system.own, state, False)
     for r in range(k):
         for j in range(n):
             own.Z[r, j] = own.A[r, j]
@@ -114,7 +114,7 @@ def react(system, state, biased, work):
 def metric_energy(system, state) -> float:
     """Return the kinetic energy v M v/2 [J]."""
     own, total = system.own, 0.0
-    find_inertia(system, state, False)
+    find_inertia(system.own, state, False)
     for i in range(own.n):
         for j in range(own.n):
             total += state[i].v[0] * own.M[i, j] * state[j].v[0]
@@ -125,11 +125,11 @@ def metric_energy(system, state) -> float:
 def add_loads(system, state, moving, work) -> float:
     """Add Q - dV and, if `moving`, -Gamma(v, v) to the wrenches; return the power Q.v."""
     own = system.own
-    find_loads(system, state, work.moment[0].time)
+    find_loads(system.own, state, work.moment[0].time)
     for j in range(own.n):
         work.body[j].wrench[0] += own.load[j]
     if moving:
-        find_inertia(system, state, True)
+        find_inertia(system.own, state, True)
         for j in range(own.n):
             work.body[j].wrench[0] -= own.c[j]
     return own.loads[own.n + 1]
@@ -138,5 +138,5 @@ def add_loads(system, state, moving, work) -> float:
 @unit(where=has_metric, otherwise=0.0)
 def own_potential(system, state, t) -> float:
     """Return the potential V [J]."""
-    find_loads(system, state, t)
+    find_loads(system.own, state, t)
     return system.own.loads[0]

@@ -1,4 +1,4 @@
-"""Dense LU in place, for the leading part of larger arrays: with partial pivoting; in the order of the rows."""
+"""Dense LU with partial pivoting, in place, for the leading part of larger arrays."""
 
 from __future__ import annotations
 
@@ -77,35 +77,3 @@ def substitute(A, n, pivot, x):
         for j in range(i + 1, n):
             s -= a[j] * x[j]
         x[i] = s / a[i]
-
-
-@kernel
-def factor_in_order(A, n, inverse, drop):
-    """Factor A = L U in place (unit L), in the order of the rows.
-
-    A pivot below `drop` times its original diagonal belongs to a row that depends on earlier ones: row and
-    column are left out (``inverse`` is 0 there).
-    """
-    for i in range(n):
-        diagonal = abs(A[i, i])
-        for j in range(n):
-            t = A[i, j]
-            for s in range(min(i, j)):
-                if inverse[s] != 0.0:
-                    t -= A[i, s] * A[s, j]
-            A[i, j] = t * inverse[j] if j < i else t
-        inverse[i] = 1.0 / A[i, i] if abs(A[i, i]) > drop * diagonal else 0.0
-
-
-@kernel
-def substitute_in_order(A, n, inverse, b):
-    """Replace b by the solution; 0 in the rows that are left out."""
-    for i in range(n):
-        for s in range(i):
-            b[i] -= A[i, s] * b[s]
-        if inverse[i] == 0.0:
-            b[i] = 0.0
-    for i in range(n - 1, -1, -1):
-        for s in range(i + 1, n):
-            b[i] -= A[i, s] * b[s]
-        b[i] *= inverse[i]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -23,27 +23,24 @@ if TYPE_CHECKING:
     from carom.generalized.system import GeneralizedSystem
 
 
-class Alone(NamedTuple):
-    """The part of a compiled scene that its functions read."""
-
-    own: OwnCoordinates
-
-
 @entry
-def look(system, state, t):
+def look(own, state, t):
     """Find all quantities at a state."""
-    find_inertia(system, state, True)
-    find_loads(system, state, t)
-    find_constraints(system, state, True)
-    find_gaps(system, state, True)
+    find_inertia(own, state, True)
+    find_loads(own, state, t)
+    find_constraints(own, state, True)
+    find_gaps(own, state, True)
 
 
 class Evaluation:
     """Compiled functions of a system and workspace to call them with."""
 
     def __init__(self, system: GeneralizedSystem):
-        self.n, self.model = system._model.n, OwnModel(system._model, len(system.contacts))
-        self.own = self.model.arrays(SYSTEM_DROP)
+        self.n, self.model = (
+            system._model.n,
+            OwnModel(system._model, len(system.contacts), system.scale),
+        )
+        self.own = self.model.arrays(SYSTEM_DROP, np.ones(self.n))
         self.state = table(STATE, self.n)
 
     def look(self, x, t: float = 0.0) -> OwnCoordinates:
@@ -51,7 +48,7 @@ class Evaluation:
         x = np.append(x, np.zeros(2 * self.n - len(x)))
         self.state["x"][:, 0], self.state["v"][:, 0] = np.split(x, 2)
         forget_state(self.own)
-        look(Alone(self.own), self.state, t)
+        look(self.own, self.state, t)
         error, self.model.functions.failed = self.model.functions.failed, None
         if error is not None:
             raise error

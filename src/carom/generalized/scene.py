@@ -1,7 +1,7 @@
 """The scene of a system in coordinates of the user's own: a body for each coordinate, a stop for each contact.
 
-A body stands for a coordinate along its first axis, x[0] = q (`carom.model.own_coordinates`). So such a system
-has the steps, impacts, persistent contacts, records and events of all scenes.
+A body of the size 1 stands for a coordinate along its first axis (`carom.model.own_coordinates`). So such a
+system has the steps, impacts, persistent contacts, records and events of all scenes.
 """
 
 from __future__ import annotations
@@ -21,15 +21,16 @@ from carom.scene.stops import Stop
 class OwnModel:
     """The compiled functions of a system, which all its runs share."""
 
-    def __init__(self, model, contacts: int):
-        self.functions = Functions()
+    def __init__(self, model, contacts: int, scale: np.ndarray):
+        self.functions, self.scale = Functions(), scale
         self.addresses = model.addresses(self.functions)
         self.sizes = model.n, model.holonomic, model.rows, contacts
 
-    def arrays(self, drop: float) -> OwnCoordinates:
+    def arrays(self, drop: float, scale: np.ndarray | None = None) -> OwnCoordinates:
         """Return the arrays of the system, for one run."""
         self.functions.forget()
-        return own_coordinates(self.sizes, drop, *self.addresses)
+        scale = self.scale if scale is None else scale
+        return own_coordinates(self.sizes, np.array(scale), drop, *self.addresses)
 
 
 class GapContact(Stop):
@@ -62,10 +63,11 @@ class CoordinateScene(Scene):
         seen = made.look(np.append(system.position, system.velocity))
         super().__init__(gravity=(0.0, scale_of_loads(seen, sizes), 0.0))
         self.system, self._own = system._as_it_is(), made.model
-        state = zip(seen.M.diagonal(), sizes, system.position, system.velocity)
-        for b, (m, size, q, v) in enumerate(state):
+        state = zip(seen.M.diagonal(), sizes, system.position / sizes, system.velocity / sizes)
+        for b, (m, size, x, v) in enumerate(state):
+            mass = m * size**2
             self.add_body(
-                mass=m, inertia=np.full(3, m * size**2 / 1.5), position=(q, 0, 0), velocity=(v, 0, 0),
+                mass=mass, inertia=np.full(3, mass / 1.5), position=(x, 0, 0), velocity=(v, 0, 0),
                 name=f"q{b}",
             )  # fmt: skip
         self._contacts = []
@@ -81,10 +83,10 @@ class CoordinateScene(Scene):
 
 
 def scale_of_loads(seen: OwnCoordinates, sizes: np.ndarray) -> float:
-    """Return the greatest acceleration by loads at the start, by the sizes of coordinates, times the least.
+    """Return the greatest acceleration by loads at the start, by the sizes of the coordinates.
 
     It stands in the place of gravity, across the axis along which the bodies move: so it moves nothing, and
     gives speeds and times that count as zero their scale.
     """
-    pull = float(np.abs(np.linalg.solve(seen.M, seen.load) / sizes).max() * sizes.min())
+    pull = float(np.abs(np.linalg.solve(seen.M, seen.load) / sizes).max())
     return pull if np.isfinite(pull) else 0.0

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
-from carom._compiled.user_functions import Fault, returned
 from carom.results.drawn import Drawn
-from carom.results.event_tables import EventTable
+from carom.results.event_tables import ContactTable, EventTable
 from carom.results.ledger import Ledger
-from carom.results.solution import Solution
 from carom.scene.table import RecordTable
 from carom.status import Status
 
 if TYPE_CHECKING:
     from carom.generalized.state import CoordinateState
     from carom.generalized.system import GeneralizedSystem
+    from carom.impact.history import LayerHistory
+    from carom.results.solution import Solution
 
 
 class CoordinateImpact(NamedTuple):
@@ -58,7 +58,11 @@ _SAME = tuple(name for name in CoordinateImpact._fields if name not in ("positio
 def impact_table(solution: Solution, system: GeneralizedSystem) -> CoordinateImpactTable:
     """Return the impacts of the scene of a system, in coordinates."""
     impacts, n = solution.impacts, len(system.position)
-    there = solution.evaluate(impacts.time)[0][..., 0] if len(impacts) else np.zeros((0, n))
+    there = (
+        system.scale * solution.evaluate(impacts.time)[0][..., 0]
+        if len(impacts)
+        else np.zeros((0, n))
+    )
     rows = np.any(system.evaluation().look(system.position).G != 0.0, axis=2)[impacts.contact]
     W = (
         impacts.inverse_mass * rows[:, :, None] * rows[:, None, :]
@@ -87,10 +91,20 @@ class GeneralizedSolution(Drawn):
         Greatest entries of phi(q) and of A v, the rates of the constraints.
     ledger : Ledger
         Energy balance of the run.
+    contacts : ContactTable
+        Intervals of persistent contact.
+    contact_mode : (T, C)
+        Mode of each contact: 0 open, 1 slipping, 2 sticking.
+    contact_force : (T, C, 3)
+        Forces of persistent contacts: normal, tangent 1, tangent 2 [N].
+    held_residual : (T,)
+        Greatest residual of the contact law in persistent contacts [m/s], as of `Solution`.
+    t_events, state_events
+        Times and states of the `events` of `simulate`, as of `Solution`; None without any.
     status : Status
         How the run ended; see also `success` and `message`.
     warnings : tuple of str
-        Sentences about energy errors above `Options.energy_tolerance` at saved times.
+        Sentences as those of `Solution`, about energies, penetrations and contact problems.
     stats : dict
         Counts: steps, located events, impacts, contacts that became persistent.
     system : GeneralizedSystem
@@ -113,7 +127,8 @@ class GeneralizedSolution(Drawn):
     def _of(cls, solution: Solution) -> GeneralizedSolution:
         """Return the solution of the scene of a system in coordinates."""
         scene: Any = solution.scene
-        q, v = solution.position[..., 0].copy(), solution.velocity[..., 0].copy()
+        scale = scene.system.scale
+        q, v = scale * solution.position[..., 0], scale * solution.velocity[..., 0]
         return cls(
             t=solution.t, q=q, v=v, status=solution.status, stats=solution.stats, system=scene.system,
             settings=solution.settings, _of_scene=solution,
@@ -139,6 +154,30 @@ class GeneralizedSolution(Drawn):
     def events(self) -> EventTable:
         """Impacts and changes of persistent contacts, in the order of time."""
         return self._of_scene.events
+
+    @property
+    def contacts(self) -> ContactTable:
+        """Intervals of persistent contact."""
+        return self._of_scene.contacts
+
+    @property
+    def contact_mode(self) -> np.ndarray:
+        """Mode (T, C) of each contact: 0 open, 1 slipping, 2 sticking."""
+        return self._of_scene.contact_mode
+
+    @property
+    def contact_force(self) -> np.ndarray:
+        """Forces (T, C, 3) of persistent contacts: normal, tangent 1, tangent 2 [N]."""
+        return self._of_scene.contact_force
+
+    @property
+    def held_residual(self) -> np.ndarray:
+        """Greatest residual (T,) of the contact law in persistent contacts [m/s], as of `Solution`."""
+        return self._of_scene.held_residual
+
+    def impact_history(self, k: int, steps: int | None = None) -> LayerHistory:
+        """Return impact k resolved in time inside its boundary layer, as `Solution.impact_history` does."""
+        return self._of_scene.impact_history(k, steps)
 
     @cached_property
     def impacts(self) -> CoordinateImpactTable:
@@ -184,7 +223,7 @@ class GeneralizedSolution(Drawn):
             If a time is outside the run, or `side` is invalid.
         """
         x, _, v, _ = self._of_scene.evaluate(t, side)
-        return x[..., 0], v[..., 0]
+        return self.system.scale * x[..., 0], self.system.scale * v[..., 0]
 
     @property
     def t_events(self) -> list[np.ndarray] | None:
@@ -205,6 +244,8 @@ class GeneralizedSolution(Drawn):
 
 def not_finite(solution: Solution, system: GeneralizedSystem, q, v) -> tuple[str, ...]:
     """Return a sentence about the first energy that is not finite, if one is."""
+    from carom._compiled.user_functions import Fault, returned
+
     energies = np.column_stack([solution.kinetic_energy, solution.potential_energy])
     bad = np.argwhere(~np.isfinite(energies))
     if not len(bad):

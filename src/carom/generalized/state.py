@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 
 class CoordinateState:
     """The coordinates of a system at one time. Read only; it stays as it is when the run goes on.
@@ -21,7 +19,8 @@ class CoordinateState:
     def __init__(self, run):
         clock = run.clock[0]
         self.t = float(clock.now)
-        self.q, self.v = np.array(run.now.x[:, 0]), np.array(run.now.v[:, 0])
+        scale = run.compiled.system.own.scale
+        self.q, self.v = scale * run.now.x[:, 0], scale * run.now.v[:, 0]
         self.q.flags.writeable = self.v.flags.writeable = False
         self.kinetic_energy, self.potential_energy = float(clock.kinetic), float(clock.potential)
 

@@ -50,7 +50,7 @@ class GeneralizedSystem:
         and ``(h, n)``. Default: central differences of order 4. Their error is about 1e-12 for functions that
         vary on a scale of 1 of each coordinate (1e-10 for second derivatives of constraints); see the notes.
     scale : float or (n,), optional
-        Size of each coordinate in its unit, above 0: that in which errors are measured (`rtol` of `simulate`).
+        Size of each coordinate in its unit, above 0, in which `rtol` and `atol` of `simulate` are measured.
         Default 1.
 
     Raises

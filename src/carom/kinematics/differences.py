@@ -23,9 +23,9 @@ _SECOND = (-1.0 / 12.0, 4.0 / 3.0, -2.5, 4.0 / 3.0, -1.0 / 12.0)
 
 
 @inlined
-def has_parts(system):
+def has_parts(own):
     """Return whether the system consists of functions without derivatives of its own."""
-    return system.own.parts.shape[0] > 0
+    return own.parts.shape[0] > 0
 
 
 @kernel
@@ -45,12 +45,11 @@ def dot(a, b, n):
 
 
 @unit(where=has_parts)
-def evaluate_parts(system, which, t):
+def evaluate_parts(own, which, t):
     """Write the result of one of the four functions at the state `own.x`, made of the user's functions.
 
     Those of the coordinates get a copy of them, `own.point`.
     """
-    own = system.own
     h, x = own.holonomic, own.x
     copy_row(x, own.point, own.n)
     if which == o.CALL_INERTIA:

@@ -26,27 +26,33 @@ def is_known(seen, n, state, t, moving):
 
 
 @kernel
-def is_new(system, which, state, t, moving):
+def is_new(own, which, state, t, moving):
     """Return whether a function must be called; if so, note that its results are those of a state."""
-    own = system.own
     n, seen, x = own.n, own.seen[which], own.x
     if is_known(seen, n, state, t, moving):
         return False
     for j in range(n):
-        x[j], x[n + j] = state[j].x[0], state[j].v[0]
-        seen[j], seen[n + j] = x[j], x[n + j]
+        seen[j], seen[n + j] = state[j].x[0], state[j].v[0]
+        x[j], x[n + j] = own.scale[j] * seen[j], own.scale[j] * seen[n + j]
     seen[2 * n] = t
     return True
 
 
 @kernel
-def call(system, which, t, out):
-    """Call a function at the state `own.x`; its results are views of `out`."""
-    own = system.own
+def measure(rows, scale):
+    """Multiply rows (k, n) by the sizes of the coordinates."""
+    for r in range(rows.shape[0]):
+        for j in range(scale.size):
+            rows[r, j] *= scale[j]
+
+
+@kernel
+def call(own, which, t, out):
+    """Call a function at the state `own.x`, in the units of the user; its results are views of `out`."""
     if own.functions[which].address != 0:
         call_function(own.functions[which].address, t, own.x, out)
     else:
-        evaluate_parts(system, which, t)
+        evaluate_parts(own, which, t)
 
 
 @kernel
@@ -57,28 +63,38 @@ def last_time(own):
 
 
 @kernel
-def find_inertia(system, state, moving):
+def find_inertia(own, state, moving):
     """Find M and, if `moving`, Gamma(v, v) of a state."""
-    if is_new(system, CALL_INERTIA, state, 0.0, moving):
-        call(system, CALL_INERTIA, last_time(system.own), system.own.inertia)
+    if is_new(own, CALL_INERTIA, state, 0.0, moving):
+        call(own, CALL_INERTIA, last_time(own), own.inertia)
+        measure(own.M, own.scale)
+        for i in range(own.n):
+            own.c[i] *= own.scale[i]
+            for j in range(own.n):
+                own.M[i, j] *= own.scale[i]
 
 
 @kernel
-def find_loads(system, state, t):
+def find_loads(own, state, t):
     """Find V, Q - dV and Q.v of a state."""
-    if is_new(system, CALL_LOADS, state, t, True):
-        call(system, CALL_LOADS, t, system.own.loads)
+    if is_new(own, CALL_LOADS, state, t, True):
+        call(own, CALL_LOADS, t, own.loads)
+        for j in range(own.n):
+            own.load[j] *= own.scale[j]
 
 
 @kernel
-def find_constraints(system, state, moving):
+def find_constraints(own, state, moving):
     """Find phi and A and, if `moving`, (dA/dt) v of a state."""
-    if is_new(system, CALL_ROWS, state, 0.0, moving):
-        call(system, CALL_ROWS, last_time(system.own), system.own.constraints)
+    if is_new(own, CALL_ROWS, state, 0.0, moving):
+        call(own, CALL_ROWS, last_time(own), own.constraints)
+        measure(own.A, own.scale)
 
 
 @kernel
-def find_gaps(system, state, moving):
+def find_gaps(own, state, moving):
     """Find gaps and G and, if `moving`, (dG/dt) v of a state."""
-    if is_new(system, CALL_CONTACTS, state, 0.0, moving):
-        call(system, CALL_CONTACTS, last_time(system.own), system.own.touching)
+    if is_new(own, CALL_CONTACTS, state, 0.0, moving):
+        call(own, CALL_CONTACTS, last_time(own), own.touching)
+        for c in range(own.contacts):
+            measure(own.G[c], own.scale)

@@ -104,17 +104,6 @@ class LawTable:
         return laws._replace(table=np.concatenate([laws.table, more]).view(Columns))
 
 
-def laws_of(stated) -> Laws:
-    """Return the laws of contacts in coordinates of the user's own, one for each, in their order."""
-    laws = LawTable()
-    for one in stated:
-        laws.add(
-            one.friction, one.restitution, impact_law=IMPACT_LAWS.index(one.impact_law),
-            tangential_restitution=one.tangential_restitution,
-        )  # fmt: skip
-    return laws.arrays()
-
-
 def law_rows(rows: Sequence[tuple]) -> np.recarray:
     """Return records of laws, from tuples of their columns."""
     made = table(LAW, len(rows))

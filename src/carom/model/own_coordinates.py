@@ -1,9 +1,9 @@
 """A system in coordinates of the user's own, as arrays: body b of its scene stands for coordinate b.
 
-Its place along the first axis is the coordinate, x[0] = q_b and v[0] = dq_b/dt; nothing else of it moves. Its
-functions are called as ``f(t, x, out)`` with x = (q, v) (`carom._compiled.user_functions`); the layout of their
-results is defined here. Each keeps its results with the state that they belong to, so they are called once for
-a state.
+Its place along the first axis is the coordinate by its size, x[0] = q_b / scale_b; nothing else of it moves.
+The functions of the system are called as ``f(t, x, out)`` with x = (q, v) (`carom._compiled.user_functions`);
+the layout of their results is defined here. Each keeps its results with the state that they belong to, so they
+are called once for a state.
 """
 
 from __future__ import annotations
@@ -43,6 +43,7 @@ class OwnCoordinates(NamedTuple):
     drop: float  # a row is left out if its pivot is below this part of its diagonal
     functions: np.recarray  # (4,) FUNCTION
     parts: np.recarray  # (P,) PART
+    scale: np.ndarray  # (n,) size of each coordinate in its unit
     # workspace: what the functions returned, then views of it
     seen: np.ndarray  # (4, 2n+1) arguments (q, v, t) of the last calls
     inertia: np.ndarray
@@ -67,15 +68,17 @@ class OwnCoordinates(NamedTuple):
     a: np.ndarray  # (n,)
     multiplier: np.ndarray  # (k,)
     # of calls and differences
-    x: np.ndarray  # (2n,) the state (q, v)
+    x: np.ndarray  # (2n,) the state (q, v), in the units of the user
     point: np.ndarray  # (n,)
     axis: np.ndarray  # (n,) 0, or one axis
     sample: np.ndarray  # results there
     slope: np.ndarray  # (n, m) derivatives of m results
 
 
-def own_coordinates(sizes: tuple[int, ...], drop: float, functions, parts) -> OwnCoordinates:
-    """Return the arrays of a system; `sizes` are n, h, k and C, the others rows of FUNCTION and PART."""
+def own_coordinates(
+    sizes: tuple[int, ...], scale: np.ndarray, drop: float, functions, parts
+) -> OwnCoordinates:
+    """Return the arrays of a system; `sizes` are n, h, k and C, the last two rows of FUNCTION and PART."""
     n, h, k, C = sizes
     most, row, touch = max(n, k, 2) * n, h + k * n, C * (1 + 3 * n)
     inertia, loads = np.zeros(n * n + n), np.zeros(n + 2)
@@ -99,7 +102,8 @@ def own_coordinates(sizes: tuple[int, ...], drop: float, functions, parts) -> Ow
     own = {name: np.zeros(shape) for name, shape in shapes.items()}
     made = OwnCoordinates(
         n=n, holonomic=h, rows=k, contacts=C, drop=drop, functions=called, parts=listed,
-        seen=np.zeros((4, 2 * n + 1)), **views, **own,
+        scale=scale,
+        seen=np.zeros((4, 2 * n + 1 if n > 0 else 0)), **views, **own,
     )  # fmt: skip
     forget_state(made)
     return made
@@ -113,4 +117,4 @@ def forget_state(own: OwnCoordinates) -> None:
 @cache
 def no_own_coordinates() -> OwnCoordinates:
     """Return the arrays of a scene of bodies."""
-    return own_coordinates((0, 0, 0, 0), 0.0, [], [])
+    return own_coordinates((0, 0, 0, 0), np.zeros(0), 0.0, [], [])

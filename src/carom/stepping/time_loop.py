@@ -15,7 +15,7 @@ from carom.model.allowance import begin_count, end_count
 from carom.model.controls import LOCATE
 from carom.model.data import Data, Model
 from carom.persistent.active_set import regroup
-from carom.status import BLOCKED, LEFT_CURVE, OUT_OF_PLANE, STEP_TOO_SMALL
+from carom.status import BLOCKED, FUNCTION_FAILED, LEFT_CURVE, OUT_OF_PLANE, STEP_TOO_SMALL
 from carom.stepping.crowd.error import watch_error
 from carom.stepping.crowd.layout import SPOTS
 from carom.stepping.crowd.step import step_crowd
@@ -202,10 +202,10 @@ def move_island(model, data, method):
 def may_be_whole(code, active):
     """Return whether a step that ended with this code may succeed as a time-stepping step of a crowd.
 
-    Forces that grow without bound, mechanisms that lock, ends of curves, and bodies that tip beside a profile
-    are not mended by it.
+    Forces that grow without bound, mechanisms that lock, ends of curves, bodies that tip beside a profile and
+    gaps without a value are not mended by it.
     """
-    if code in (BLOCKED, LEFT_CURVE, OUT_OF_PLANE):
+    if code in (BLOCKED, LEFT_CURVE, OUT_OF_PLANE, FUNCTION_FAILED):
         return False
     return code != STEP_TOO_SMALL or active.count[0] > 0
 

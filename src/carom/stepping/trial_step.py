@@ -200,9 +200,7 @@ def is_root(model, data):
     f, rate = event_value(model, data)
     state = update_bracket(search, search.dt, f, rate)
     if state < 0:
-        if search.kind == EVENT_GAP and finite(work.trial):
-            return lost_gap(system.contacts[search.contact])
-        return NOT_FINITE
+        return no_value(system, work)
     if state == 0 and search.kind == EVENT_SEPARATE and f > 0.0:
         # as a force falls to zero its cone does, so slip may come first: beyond the opening nothing shows it
         if data.active.points[search.contact].grip < 0.0:
@@ -212,6 +210,15 @@ def is_root(model, data):
         search.dt = next_trial(search)
         return ONCE_MORE
     return 0
+
+
+@inlined
+def no_value(system, work):
+    """Return the code of a search whose function has no value in a trial step."""
+    search = work.search[0]
+    if search.kind == EVENT_GAP and finite(work.trial):
+        return lost_gap(system.contacts[search.contact])
+    return NOT_FINITE
 
 
 @inlined
@@ -282,7 +289,8 @@ def bracket(model, data):
     f, rate = event_value(model, data)
     if search.kind in (EVENT_KINK, EVENT_KINK_OF_JOINT):  # known at the start, too
         search.f_low = kink_of(system, data.active, search)[0]
-    update_bracket(search, search.dt, f, rate)
+    if update_bracket(search, search.dt, f, rate) < 0:
+        return no_value(system, work)
     dt = next_trial(search)
     if search.kind == EVENT_GAP:
         guess = first_inside(system, data, search.contact)

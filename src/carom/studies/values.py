@@ -28,7 +28,6 @@ STATE_FIELDS = {"position": 3, "orientation": 4, "velocity": 3, "angular_velocit
 POSES = ("position", "orientation")
 #: numbers of a contact law that the compiled scene has as they are
 LAW_FIELDS = ("restitution", "friction", "friction_held", "rolling_friction", "pivoting_friction")
-BODY_FIELDS = ("mass", "inertia")
 #: what no run depends on, and what has no number or word
 LEFT_OUT = ("material", "color", "look")
 SPIN, PLACE_OF_RATE = "surface_spin", 1  # a tuple, and where its rate is

@@ -27,6 +27,7 @@ from carom.kinematics.joints import child_arm, parent_arm
 from carom.model.actions import NOTHING, PERSIST, STRIKE
 from carom.model.parts_of_system import has_metric
 from carom.model.workspace import MOTION_POINT, MOTION_STOP, MOTION_THREE
+from carom.status import FUNCTION_FAILED
 
 located_within, rounding = gaps.located_within, round_off
 
@@ -125,6 +126,12 @@ def least_gap(system, contact, state, work):
 def event_gap(system, data, c, state):
     """Return the gap of a stop, and its rate."""
     return stop_gap(system, system.contacts[c], state, data.work)
+
+
+@kernel
+def lost_gap(contact):
+    """Return the status of a stop without a gap: the user's function has no value."""
+    return FUNCTION_FAILED
 
 
 @kernel

@@ -13,7 +13,7 @@ from carom.model.own_coordinates import ROWS_OF_ELEMENT
 def position_error(system, j, state, work):
     """Write phi to the bias, 0 for rows that restrict velocities only."""
     own, out = system.own, work.joint[j].bias
-    find_constraints(system, state, False)
+    find_constraints(system.own, state, False)
     clear(out)
     for r in range(system.joints[j].rows):
         row = ROWS_OF_ELEMENT * j + r
@@ -24,7 +24,7 @@ def position_error(system, j, state, work):
 def velocity_error(system, j, state, work):
     """Write A v to the bias."""
     own, out = system.own, work.joint[j].bias
-    find_constraints(system, state, False)
+    find_constraints(system.own, state, False)
     clear(out)
     for r in range(system.joints[j].rows):
         for b in range(own.n):
@@ -35,7 +35,7 @@ def velocity_error(system, j, state, work):
 def acceleration_bias(system, j, state, work):
     """Write -(dA/dt) v, the required values of the rows times the accelerations."""
     own, out = system.own, work.joint[j].bias
-    find_constraints(system, state, True)
+    find_constraints(system.own, state, True)
     clear(out)
     for r in range(system.joints[j].rows):
         out[r] = -own.A_rate[ROWS_OF_ELEMENT * j + r]
@@ -45,7 +45,7 @@ def acceleration_bias(system, j, state, work):
 def add_wrenches(system, j, state, multiplier, work):
     """Add A^T multiplier to the wrenches."""
     own = system.own
-    find_constraints(system, state, False)
+    find_constraints(system.own, state, False)
     for r in range(system.joints[j].rows):
         for b in range(own.n):
             work.body[b].wrench[0] += multiplier[r] * own.A[ROWS_OF_ELEMENT * j + r, b]

@@ -5,6 +5,8 @@ The rows (n, t1, t2) of contact c are the coordinates 3 c, 3 c + 1 and 3 c + 2; 
 
 from __future__ import annotations
 
+import math
+
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.kinematics.own_functions import find_gaps
@@ -24,9 +26,10 @@ def along(system, c, state):
 
 @unit
 def value(system, c, state) -> float:
-    """Return the gap."""
-    find_gaps(system, state, False)
-    return system.own.gap[c.number // 3]
+    """Return the gap, or no number where its function has no value."""
+    find_gaps(system.own, state, False)
+    gap = system.own.gap[c.number // 3]
+    return gap if gap < math.inf else math.nan
 
 
 @unit
@@ -39,7 +42,7 @@ def rate(system, c, state) -> float:
 def rate_in(system, c, pose, state) -> float:
     """Return G v with the positions of one state and the velocities of another."""
     own, total = system.own, 0.0
-    find_gaps(system, pose, False)
+    find_gaps(system.own, pose, False)
     for j in range(own.n):
         total += own.G[c.number // 3, c.number % 3, j] * state[j].v[0]
     return total
@@ -48,7 +51,7 @@ def rate_in(system, c, pose, state) -> float:
 @unit
 def drift(system, c, state, out) -> float:
     """Return (dG/dt) v."""
-    find_gaps(system, state, True)
+    find_gaps(system.own, state, True)
     return system.own.G_rate[c.number // 3, c.number % 3]
 
 
@@ -68,7 +71,7 @@ def turn_within(system, c, start, end, h):
 def push(system, c, state, force, work):
     """Add G^T force."""
     own = system.own
-    find_gaps(system, state, False)
+    find_gaps(system.own, state, False)
     for j in range(own.n):
         work.body[j].wrench[0] += force * own.G[c.number // 3, c.number % 3, j]
 
@@ -77,7 +80,7 @@ def push(system, c, state, force, work):
 def motion_along(system, c, state, work) -> float:
     """Return G of the motions that the last solve wrote."""
     own, total = system.own, 0.0
-    find_gaps(system, state, False)
+    find_gaps(system.own, state, False)
     for j in range(own.n):
         total += own.G[c.number // 3, c.number % 3, j] * work.body[j].motion[0]
     return total
@@ -87,7 +90,7 @@ def motion_along(system, c, state, work) -> float:
 def acceleration_along(system, c, state, stage) -> float:
     """Return G of the accelerations of a stage."""
     own, total = system.own, 0.0
-    find_gaps(system, state, False)
+    find_gaps(system.own, state, False)
     for j in range(own.n):
         total += own.G[c.number // 3, c.number % 3, j] * stage[j].rate[0]
     return total
@@ -97,7 +100,7 @@ def acceleration_along(system, c, state, stage) -> float:
 def speeds_of(system, c, state) -> float:
     """Return the sum of the terms of its rate."""
     own, total = system.own, 0.0
-    find_gaps(system, state, False)
+    find_gaps(system.own, state, False)
     for j in range(own.n):
         total += abs(own.G[c.number // 3, c.number % 3, j] * state[j].v[0])
     return total
