@@ -6,11 +6,13 @@ import time
 import warnings
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
+from typing import Any
 
 import numpy as np
 
 import carom
 from carom.collision.api import nearest_points
+from carom.generalized import GeneralizedSolution
 from carom.geometry import quaternion
 from carom.model.contact_rows import touching_pairs
 from carom.scene.friction import bound_of
@@ -25,14 +27,16 @@ PARTS = 10  # of the way between two corners, at whose ends the depth in curved 
 
 @dataclass
 class Case:
-    """A scene to be run, with a line that says what it is."""
+    """A scene, or a system in coordinates, to be run, with a line that says what it is."""
 
-    scene: carom.Scene
+    scene: Any
     duration: float
     step: float
     label: dict = field(default_factory=dict)
     #: how far a solution is from what bodies that cannot pass through each other may do: at most 1
     off: Callable[[carom.Solution], float] | None = None
+    #: greatest penetration of a solution, where shapes do not tell it
+    deep: Callable[[Any], float] | None = None
 
 
 @dataclass
@@ -68,6 +72,12 @@ def wrong(row: dict) -> list[str]:
     return found
 
 
+def speeds(s: carom.Solution, step: float) -> float:
+    """Return the greatest speed of a run."""
+    speed = float(np.max(np.linalg.norm(s.velocity, axis=2), initial=0.0))
+    return max(speed, step * float(np.linalg.norm(s.scene.gravity)))
+
+
 def run(case: Case, tolerances: bool = False) -> Outcome:
     """Run a case with its step, or by the default tolerances, and measure the result."""
     how = {} if tolerances else {"step": case.step}
@@ -76,17 +86,17 @@ def run(case: Case, tolerances: bool = False) -> Outcome:
         warnings.simplefilter("ignore")
         s = carom.simulate(case.scene, case.duration, throw=False, **how)
     spent = time.process_time() - begin
+    deep = case.deep(s) if case.deep is not None else max(depth(s.scene, s), overlap(s.scene, s))
+    s = s._of_scene if isinstance(s, GeneralizedSolution) else s
     scale, least = exchanged(s, case.step), ROUND_OFF * size(s)
     energies = {
         "impacts": s.ledger.impacts,
         "friction": s.ledger.friction,
         "bounces": s.ledger.bounces,
     }
-    laws = [*case.scene.contacts, *filter(None, [case.scene.contact_default])]
+    laws = [*case.scene.contacts, *filter(None, [getattr(case.scene, "contact_default", None)])]
     if any(law.impact_law == "newton" and bound_of(law.friction) > 0.0 for law in laws):
         del energies["impacts"]  # Newton's law may gain energy by itself
-    speed = float(np.max(np.linalg.norm(s.velocity, axis=2), initial=0.0))
-    speed = max(speed, case.step * float(np.linalg.norm(case.scene.gravity)))
     return Outcome(
         status=s.status.name,
         reached=float(s.t[-1] / case.duration),
@@ -94,8 +104,8 @@ def run(case: Case, tolerances: bool = False) -> Outcome:
         residual=max(0.0, float(np.max(np.abs(s.ledger.residual))) - least) / scale,
         gained=max(0.0, max((rise(line) for line in energies.values()), default=0.0) - least)
         / scale,
-        depth=max(depth(case.scene, s), overlap(case.scene, s)),
-        slip_residual=float(np.max(s.held_residual)) / max(speed, 1e-300),
+        depth=deep,
+        slip_residual=float(np.max(s.held_residual)) / max(speeds(s, case.step), 1e-300),
         impulse=impulse(s),
         impacts=len(s.impacts),
         wedged=int(np.sum(s.impacts.wedged)),

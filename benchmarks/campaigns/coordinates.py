@@ -146,4 +146,9 @@ def case(seed: int) -> Case:
     kind = list(KINDS)[seed % len(KINDS)]
     system = KINDS[kind](rng)
     step = float(rng.choice([1e-3, 5e-3, 2e-2]))
-    return Case(system, 1.2, step, {"kind": kind, "step": step})
+    return Case(system, 1.2, step, {"kind": kind, "step": step}, deep=depth)
+
+
+def depth(s: carom.generalized.GeneralizedSolution) -> float:
+    """Return the greatest depth of a gap at a saved time."""
+    return max(0.0, *(-float(np.min(s.system.gaps(q))) for q in s.q))
