@@ -1,6 +1,7 @@
 """The short form of benchmarks/campaigns/coordinates.py: rods, tables, pucks, rows, pendulums, closed loops."""
 
 import pytest
+
 from campaigns import coordinates
 from campaigns.case import run
 

@@ -164,8 +164,7 @@ def test_a_gap_that_is_no_number_ends_the_run():
     system.add_contact(lambda q: np.nan if q[0] < 0.5 else q[0] + 1.0, restitution=0.5)
     run = carom.simulate(system, 1.0, step=1e-2, throw=False)
     assert run.status is carom.Status.FUNCTION_FAILED
-    assert run.message.startswith(
-        "The function 'gap of contact 0' returned nan at t = 0.5"
+    assert run.message.startswith("The function 'gap of contact 0' returned nan at t = 0.5")
 
 
 def test_motion_that_diverges_ends_with_a_status():
