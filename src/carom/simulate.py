@@ -136,7 +136,7 @@ def simulate(
         File to which the run is saved, repeatedly and at its end (needs ``carom[files]``). If the process is
         killed, the file has the results up to the last saving, and `resume` continues the run from there. If a
         saving before the end fails, for example on a full disk, a `RuntimeWarning` says so and the run
-        continues. Not available for a `GeneralizedSystem`.
+        continues.
     save_seconds : float
         Interval between two savings [s of real time]; at least ten times as long as one saving takes.
         Default 60.
@@ -201,10 +201,6 @@ def simulate(
         atol=atol, options=options, scene=scene,
     )  # fmt: skip
     if isinstance(scene, GeneralizedSystem):
-        if save is not None:
-            raise ValueError(
-                f"save must be left out with a system in coordinates, got {checks.shown(save)}"
-            )
         checks.choice("method of a system in coordinates", settings.method, EXPLICIT)
         checks.choice("impact_location of a system in coordinates", impact_location, LOCATIONS[:1])
         from carom.generalized.run import CoordinateRun as Run

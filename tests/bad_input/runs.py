@@ -108,7 +108,8 @@ def run(folder):
         ),
         "resume": lambda: (
             carom.resume,
-            dict(path=saved(folder), until=None, functions={}, save_seconds=60.0, progress=None, throw=True),
+            dict(path=saved(folder), until=None, functions={}, system=None, save_seconds=60.0, progress=None,
+                 throw=True),
         ),
         "Solution.load": lambda: (carom.Solution.load, dict(path=saved(folder), functions={})),
         "Solution.simulate": lambda: (solution().simulate, dict(duration=0.1, progress=None, throw=True)),

@@ -36,13 +36,17 @@ class CoordinateRun(Run):
 
     def state(self, known: dict | None = None) -> CoordinateState:
         """Return the present state, for user-defined functions."""
-        return CoordinateState(self)
+        return CoordinateState(super().state(known), self.compiled.system.own.scale)
 
     def solution(self, status: Status, **watched) -> GeneralizedSolution:
         """Return the solution; after a failure it ends with the last state, saved or not."""
         own = self.compiled.system.own
         if status in LOST and own.singular[0] == 1.0:
             status = Status.SINGULAR_METRIC
+        if "state_events" in watched:
+            watched["state_events"] = [
+                [one._state for one in some] for some in watched["state_events"]
+            ]
         return GeneralizedSolution._of(super().solution(status, **watched))
 
 

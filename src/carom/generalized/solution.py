@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
+from carom import arguments, checks
 from carom.results.drawn import Drawn
 from carom.results.event_tables import ContactTable, EventTable
 from carom.results.ledger import Ledger
@@ -51,6 +54,7 @@ class CoordinateImpactTable(RecordTable[CoordinateImpact]):
         return f"<CoordinateImpactTable: {len(self)} impacts>"
 
 
+FILES = ".nc", ".h5", ".hdf5"  # suffixes of files of runs
 #: columns that are those of the impacts of a scene; the place is in coordinates
 _SAME = tuple(name for name in CoordinateImpact._fields if name not in ("position", "inverse_mass"))
 
@@ -233,7 +237,94 @@ class GeneralizedSolution(Drawn):
     @property
     def state_events(self) -> list[list[CoordinateState]] | None:
         """The states at these times."""
-        return cast("Any", self._of_scene.state_events)
+        from carom.generalized.state import CoordinateState
+
+        found, scale = self._of_scene.state_events, self.system.scale
+        if found is None:
+            return None
+        return [[CoordinateState(one, scale) for one in some] for some in found]
+
+    @property
+    def _run(self):
+        return self._of_scene._run
+
+    @arguments.known
+    def save(self, path: str | os.PathLike) -> None:
+        """Write the run to a file, which `load` reads; needs ``carom[files]``.
+
+        It is that of a scene (see `Solution.save`) with ``q`` and ``v`` (time, coordinate). Functions and
+        expressions of the system are not in it.
+
+        Parameters
+        ----------
+        path : str or path
+            Path that ends in ``.nc``, ``.h5`` or ``.hdf5``, in a folder that exists.
+
+        Raises
+        ------
+        ImportError
+            If h5netcdf is missing.
+        OSError
+            If the file cannot be written; an old file then stays unchanged.
+        ValueError
+            If the folder does not exist, or the suffix is not one of these.
+        """
+        where = checks.file_to_write("path", path)
+        if where.suffix.lower() not in FILES:
+            raise ValueError(f"path must end in {', '.join(FILES)}, got {str(where)!r}")
+        self._of_scene.save(where)
+
+    @classmethod
+    @arguments.known
+    def load(cls, path: str | os.PathLike, system: GeneralizedSystem) -> GeneralizedSolution:
+        """Return the solution in a file, bit for bit equal to the one that was saved.
+
+        Parameters
+        ----------
+        path : str or path
+            Path of the file.
+        system : GeneralizedSystem
+            The system of the run, as it was at its start.
+
+        Raises
+        ------
+        FileNotFoundError
+            If the file does not exist.
+        ValueError
+            If it is not a file of such a run, is damaged or changed, or the start, the metric there, the scale
+            or the contacts of the system are others.
+        """
+        from carom.results.solution import Solution
+
+        return cls._of(Solution._load(checks.path("path", path), system=system))
+
+    @arguments.known
+    def simulate(
+        self, duration: float, *, progress: bool | Callable[[float, float], None] | None = None,
+        throw: bool = True,
+    ) -> GeneralizedSolution:  # fmt: skip
+        """Continue the run from its end, as `Solution.simulate` does.
+
+        Parameters
+        ----------
+        duration : float
+            Additional time to simulate [s].
+        progress, throw
+            As for `carom.simulate`.
+
+        Returns
+        -------
+        GeneralizedSolution
+            The solution for the whole time, from the start.
+
+        Raises
+        ------
+        ValueError
+            If the run has not reached its end, or was continued since.
+        SimulationError
+            If the run fails and `throw` is True.
+        """
+        return cast("Any", self._of_scene.simulate(duration, progress=progress, throw=throw))
 
     def __repr__(self) -> str:
         return (

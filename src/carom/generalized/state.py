@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from carom.results.state import SystemState
+
 
 class CoordinateState:
     """The coordinates of a system at one time. Read only; it stays as it is when the run goes on.
@@ -16,13 +20,11 @@ class CoordinateState:
         Energies [J].
     """
 
-    def __init__(self, run):
-        clock = run.clock[0]
-        self.t = float(clock.now)
-        scale = run.compiled.system.own.scale
-        self.q, self.v = scale * run.now.x[:, 0], scale * run.now.v[:, 0]
+    def __init__(self, state: SystemState, scale: np.ndarray):
+        self._state, self.t = state, state.t
+        self.q, self.v = scale * state.position[:, 0], scale * state.velocity[:, 0]
         self.q.flags.writeable = self.v.flags.writeable = False
-        self.kinetic_energy, self.potential_energy = float(clock.kinetic), float(clock.potential)
+        self.kinetic_energy, self.potential_energy = state.kinetic_energy, state.potential_energy
 
     def __repr__(self) -> str:
         return f"<CoordinateState: {len(self.q)} coordinates at t = {self.t:g} s>"

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Self
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
 
 from carom import arguments
 
@@ -81,14 +82,22 @@ class Portable:
             if the scene has no such function.
         """
         from carom import checks
-        from carom.io.files.reading import read
 
         where = checks.path("path", path)
         if functions is not None and not isinstance(functions, Mapping):
             raise ValueError(
                 f"functions must be a mapping from names, got {checks.shown(functions)}"
             )
-        fields = read(where, functions)
+        return cls._load(where, functions)
+
+    @classmethod
+    def _load(
+        cls, path: Path, functions: Mapping[str, Callable] | None = None, system: Any = None
+    ) -> Self:
+        """Return the solution in a file: of a scene, or of a system in coordinates, which is given."""
+        from carom.io.files.reading import read
+
+        fields = read(path, functions, system)
         cached = fields.pop("cached")
         solution = cls(**fields)
         vars(solution).update(cached)

@@ -20,10 +20,12 @@ from carom.scene.scene import Scene
 
 def run_again(scene: Scene, settings: dict, options: Options):
     """Return a new run with the settings of another one."""
+    from carom.generalized.run import CoordinateRun
     from carom.run import Run
     from carom.stepping.settings import settings_of
 
-    return Run(scene, settings_of(settings, options))
+    kind = Run if scene._own is None else CoordinateRun
+    return kind(scene, settings_of(settings, options))
 
 
 class KeptRun:

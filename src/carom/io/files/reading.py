@@ -15,6 +15,8 @@ from typing import Any
 import numpy as np
 
 from carom import checks
+from carom.generalized.scene import CoordinateScene
+from carom.generalized.system import GeneralizedSystem
 from carom.io.files import raw
 from carom.io.files.checkpoint import from_index
 from carom.io.files.kept import KeptRun
@@ -27,7 +29,7 @@ from carom.io.files.layout import (
     LEDGER,
     MOTION,
 )
-from carom.io.files.scene_parts import scene_from_text
+from carom.io.files.scene_parts import OF_SYSTEM, scene_from_text, scene_to_text
 from carom.io.files.sealed import Sealed, refusal, unsealed
 from carom.io.files.settings_in_time import from_rows
 from carom.io.files.user_events import from_file
@@ -51,8 +53,12 @@ TYPES = ("<f8", "<i8", ">f8", ">i8")
 WHOLE = ("contact", "together", "wedged", "located", "feature", "impact", "joint")
 
 
-def read(path: Path, functions: Mapping[str, Callable] | None = None) -> dict[str, Any]:
+def read(
+    path: Path, functions: Mapping[str, Callable] | None = None, system: Any = None
+) -> dict[str, Any]:
     """Return the fields of a solution, and in ``cached`` its properties that were worked out already.
+
+    `system` is given for the file of a system in coordinates, which does not contain it.
 
     Raises
     ------
@@ -63,8 +69,11 @@ def read(path: Path, functions: Mapping[str, Callable] | None = None) -> dict[st
         function.
     """
     file = unsealed(path)
+    text = file.index.get("scene", "")
+    if system is not None or _is_of_system(text):
+        return _fields(file, _scene_of(system, text, path), [])
     try:
-        made, missing = scene_from_text(file.index.get("scene", ""), functions)
+        made, missing = scene_from_text(text, functions)
         scene = made._as_it_is()
     except ValueError as error:
         if str(error).startswith("functions must"):
@@ -75,6 +84,31 @@ def read(path: Path, functions: Mapping[str, Callable] | None = None) -> dict[st
     except Exception as error:  # whatever a made-up index leads to
         what = f"{type(error).__name__}: {error}"
         raise ValueError(refusal(path, f"a part of it is missing or broken ({what})")) from error
+
+
+def _is_of_system(text) -> bool:
+    """Return whether the text of a scene is that of a system in coordinates."""
+    return isinstance(text, str) and text.startswith(OF_SYSTEM)
+
+
+def _scene_of(system, text, path: Path) -> CoordinateScene:
+    """Return the scene of a system in coordinates, if it is that of the file."""
+    if system is None:
+        raise ValueError(
+            refusal(
+                path, "it is of a system in coordinates: GeneralizedSolution.load(path, system)"
+            )
+        )
+    checks.instance("system", system, (GeneralizedSystem,))
+    if not _is_of_system(text):
+        raise ValueError(refusal(path, "it is of a scene: Solution.load(path)"))
+    scene = CoordinateScene(system)
+    if scene_to_text(scene) != text:
+        raise ValueError(
+            "system must be that of the file as it was at its start, got one with another start, metric there, "
+            "scale or contacts"
+        )
+    return scene
 
 
 def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:

@@ -5,8 +5,11 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 from carom import arguments, checks
+from carom.generalized.solution import GeneralizedSolution
+from carom.generalized.system import GeneralizedSystem
 from carom.io.files.kept import KeptRun
 from carom.results.solution import Solution
 from carom.status import Status
@@ -20,10 +23,11 @@ def resume(
     *,
     until: float | None = None,
     functions: Mapping[str, Callable] | None = None,
+    system: GeneralizedSystem | None = None,
     save_seconds: float = 60.0,
     progress: bool | Callable[[float, float], None] | None = None,
     throw: bool = True,
-) -> Solution:
+) -> Any:
     """Continue a run from its file: an interrupted run to its end, or a finished run beyond its end.
 
     With the same version of carom on the same machine, the result is bit for bit that of a run without
@@ -41,12 +45,14 @@ def resume(
     functions : mapping, optional
         User-defined functions of the scene, which the file cannot contain: ``"part.field"`` (for example
         ``"motor.force"``) to function. Data that a function itself stores between calls are not restored.
+    system : GeneralizedSystem, optional
+        The system of the run, as it was at its start, for the file of a system in coordinates.
     save_seconds, progress, throw
         As for `simulate`.
 
     Returns
     -------
-    Solution
+    Solution or GeneralizedSolution
         Solution for the whole time, from the start.
 
     Raises
@@ -64,7 +70,10 @@ def resume(
 
     check_handling(progress, throw, save_seconds)
 
-    solution = Solution.load(path, functions=functions)
+    if system is None:
+        solution = Solution.load(path, functions=functions)
+    else:
+        solution = GeneralizedSolution.load(path, system)
     kept = solution._run
     assert isinstance(kept, KeptRun)
     if until is not None:

@@ -13,6 +13,8 @@ from carom.results.robot import Robot
 from carom.scene.materials import ContactLaw, checked_rule
 from carom.scene.scene import Scene
 
+#: how the text of the scene of a system in coordinates begins
+OF_SYSTEM = '{"system": '
 #: note in the file about missing functions
 NOTE = (
     "user-defined functions are not in the file: a scene read from it has placeholders, which raise an error "
@@ -23,9 +25,11 @@ NOTE = (
 def scene_to_text(scene: Scene, encoder: Encoder | None = None) -> str:
     """Return a scene as JSON: its parts in the order added, and which pairs touch."""
     encoder, pairs = encoder or Encoder(), scene._pairs
+    system = getattr(scene, "system", None)
     parts = [encoder.part(part) for part in scene._parts]
     ignored = [[scene[name] for name in pair] for pair in pairs._ignored]
     data = {
+        **({} if system is None else {"system": _of_system(system, encoder)}),
         "gravity": scene.gravity.tolist(),
         "shapes": encoder.shapes,
         "parts": parts,
@@ -41,6 +45,17 @@ def scene_to_text(scene: Scene, encoder: Encoder | None = None) -> str:
     if encoder.functions:
         data["note"] = NOTE
     return json.dumps(data, allow_nan=False)
+
+
+def _of_system(system, encoder: Encoder) -> dict:
+    """Return what tells a system in coordinates from others, beside the bodies that stand for them."""
+    names = "name", "restitution", "friction", "impact_law", "tangential_restitution"
+    contacts = [[getattr(one, name) for name in names] for one in system.contacts]
+    return {
+        "constraints": system._model.rows,
+        "scale": system.scale.tolist(),
+        "contacts": [[encoder.value(value) for value in values] for values in contacts],
+    }
 
 
 def scene_from_text(

@@ -48,7 +48,7 @@ def labelled(solution, reactions: bool = True, degrees: bool = False) -> list[Va
     names = np.array([body.name for body in scene.bodies])
     out.append(Variable("time", ("time",), solution.t, "s", "saved times"))
     out.append(Variable("body", ("body",), names, None, "bodies by name"))
-    out += _motion(solution)
+    out += _motion(solution) + _coordinates(solution)
     out += table_variables("impact", "impact", IMPACT, solution.impacts)
     out += table_variables("event", "event", EVENT, solution.events)
     out += table_variables("interval", "interval", INTERVAL, solution.contacts)
@@ -92,6 +92,17 @@ def attributes(solution) -> dict[str, Any]:
         "settings": json.dumps(solution.settings),
         "options": json.dumps(solution._run.options.as_dict()),
     }
+
+
+def _coordinates(solution) -> list[Variable]:
+    """Return the coordinates of a system of the user's own, and their rates."""
+    if solution.scene._own is None:
+        return []
+    scale, dims = solution.scene.system.scale, ("time", "coordinate")
+    return [
+        Variable("q", dims, scale * solution.position[..., 0], None, "coordinates"),
+        Variable("v", dims, scale * solution.velocity[..., 0], None, "rates of the coordinates"),
+    ]
 
 
 def _motion(solution) -> list[Variable]:

@@ -45,6 +45,7 @@ def write(path: Path, solution, checkpoint: Checkpoint | None = None, whole: boo
     OSError
         If it could not be written, with the path and the reason; an old file is unchanged.
     """
+    solution = getattr(solution, "_of_scene", solution)  # of a system in coordinates
     try:
         parts = file_of(solution, checkpoint, whole)
     except (OSError, MemoryError) as error:
