@@ -160,13 +160,6 @@ def test_interrupted_and_progress():
     assert run.t[-1] == pytest.approx(0.5)
 
 
-def test_is_not_saved():
-    with pytest.raises(
-        ValueError, match=r"save must be left out with a system in coordinates, got 'a\.nc'"
-    ):
-        carom.simulate(build(), 0.1, step=0.01, save="a.nc")
-
-
 def test_a_solution_keeps_its_system_as_it_was():
     system = build()
     a, plain = (carom.simulate(one, 0.2, step=0.05) for one in (system, build()))
