@@ -137,7 +137,74 @@ def loop(rng):
     return system
 
 
-KINDS = {"rod": rod, "table": table, "puck": puck, "row": row, "pendulum": pendulum, "loop": loop}
+def chart(rng):
+    """Return a particle in polar coordinates, outside or inside of a circle, in units of its own."""
+    q, v = symbols("r a")
+    units = 10.0 ** rng.uniform(-4.0, 4.0, 2)
+    r, a = (sp.Float(unit) * one for unit, one in zip(units.tolist(), q))
+    inside = rng.random() < 0.5
+    start = np.array(
+        [rng.uniform(0.3, 0.95) if inside else rng.uniform(1.0, 1.5), rng.uniform(-3.0, 3.0)]
+    )
+    system = carom.GeneralizedSystem.from_sympy(
+        q, v, metric=sp.diag(float(units[0]) ** 2, (float(units[1]) * r) ** 2), potential=G * r * sp.cos(a),
+        position=start / units, velocity=rng.uniform(-1.0, 1.0, 2) / units, scale=1.0 / units,
+    )  # fmt: skip
+    tangent = r * float(units[1]) * v[1]
+    system.add_contact(1 - r if inside else r - 1, tangent=tangent, **contact(rng))
+    return system
+
+
+def sled(rng):
+    """Return a sleigh on a blade, a nonholonomic row, that strikes a wall."""
+    q, v = symbols("x y a")
+    x, _, a = q
+    c = rng.uniform(-0.4, 0.4)
+    vx, vy = v[0] - c * v[2] * sp.sin(a), v[1] + c * v[2] * sp.cos(a)
+    angle, speed = rng.uniform(-1.0, 1.0), rng.uniform(0.2, 3.0)
+    system = carom.GeneralizedSystem.from_sympy(
+        q, v, kinetic_energy=(vx**2 + vy**2 + rng.uniform(0.1, 1.0) * v[2] ** 2) / 2,
+        rates=[v[1] * sp.cos(a) - v[0] * sp.sin(a)], position=[0, 0, angle],
+        velocity=[speed * np.cos(angle), speed * np.sin(angle), rng.uniform(-3.0, 3.0)],
+    )  # fmt: skip
+    # another place would be on the line of the blade, which it cannot leave sideways
+    law = contact(rng)
+    system.add_contact(sp.Float(rng.uniform(0.6, 1.5)) - x - c * sp.cos(a), tangent=vy, **law)
+    return system
+
+
+def functions(rng):
+    """Return coupled masses over stops by plain functions without derivatives, in units from 1e-3 to 1e3."""
+    n = int(rng.integers(2, 4))
+    scale = 10.0 ** rng.uniform(-3.0, 3.0, n)
+    m = 10.0 ** rng.uniform(-1.0, 1.0, n) / scale**2
+    couple = rng.uniform(-0.4, 0.4)
+
+    def metric(q):
+        M = np.diag(m)
+        M[0, 1] = M[1, 0] = couple * np.sqrt(m[0] * m[1]) * np.cos(q[0] / scale[0])
+        return M
+
+    system = carom.GeneralizedSystem(
+        metric, scale * rng.uniform(0.2, 1.0, n), scale * rng.uniform(-1.0, 1.0, n), scale=scale,
+        potential=lambda q: float(np.sum(G * m * scale * q)),
+    )  # fmt: skip
+    for k in range(n):
+        system.add_contact(lambda q, k=k: q[k], **contact(rng) | {"friction": 0.0})
+    return system
+
+
+KINDS = {
+    "rod": rod,
+    "table": table,
+    "puck": puck,
+    "row": row,
+    "pendulum": pendulum,
+    "loop": loop,
+    "chart": chart,
+    "sled": sled,
+    "functions": functions,
+}
 
 
 def case(seed: int) -> Case:
@@ -150,5 +217,6 @@ def case(seed: int) -> Case:
 
 
 def depth(s: carom.generalized.GeneralizedSolution) -> float:
-    """Return the greatest depth of a gap at a saved time."""
-    return max(0.0, *(-float(np.min(s.system.gaps(q))) for q in s.q))
+    """Return the greatest depth of a gap at a saved time, by the greatest size of a coordinate above 1."""
+    size = max(1.0, float(np.max(s.system.scale)))
+    return max(0.0, *(-float(np.min(s.system.gaps(q))) for q in s.q)) / size

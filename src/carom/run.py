@@ -396,7 +396,7 @@ class Run:
 
 def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:
     """Refuse a joint that exceeds its stop at the start."""
-    if not scene.stops:
+    if not scene.stops or scene._chart is not None:  # in coordinates gaps have sizes of their own
         return
     system = compiled.system
     gaps, first = np.zeros(len(scene.stops)), len(system.contacts) - len(scene.stops)

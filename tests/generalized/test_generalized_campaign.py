@@ -1,4 +1,4 @@
-"""The short form of benchmarks/campaigns/coordinates.py: rods, tables, pucks, rows, pendulums, closed loops."""
+"""The short form of benchmarks/campaigns/coordinates.py: rods, tables, pucks, rows, loops, charts, sleighs, units."""
 
 import pytest
 
@@ -10,7 +10,7 @@ from campaigns.case import run
 @pytest.mark.parametrize("tolerances", [False, True])
 @pytest.mark.parametrize("first", range(0, 36, 6))
 def test_systems_end_and_lose_nothing_without_a_name(first, tolerances):
-    # What 800 others met: none ends early, sinks or gains; given steps leave 2e-5 without a name at most.
+    # What 1400 others met: none ends early, sinks or gains; given steps leave 2e-5 without a name at most.
     for seed in range(first, first + 6):
         found = run(coordinates.case(seed), tolerances)
         assert found.status == "SUCCESS", seed

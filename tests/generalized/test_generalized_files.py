@@ -71,6 +71,10 @@ def test_other_systems_and_files_are_refused(tmp_path):
         carom.Solution.load(path)
     with pytest.raises(ValueError, match="with another start, metric there, scale or contacts"):
         GeneralizedSolution.load(path, rod(restitution=0.4))
+    broken = path.with_name("broken.nc")
+    broken.write_bytes(path.read_bytes()[:-200])
+    with pytest.raises(ValueError, match="path must be a file of a run"):
+        GeneralizedSolution.load(broken, rod())
     with pytest.raises(TypeError, match="system must be"):
         GeneralizedSolution.load(path, 3)
     with pytest.raises(ValueError, match=r"path must end in \.nc"):

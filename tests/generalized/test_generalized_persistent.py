@@ -306,6 +306,21 @@ def test_an_impact_has_its_history():
     )
 
 
+@pytest.mark.parametrize("size", [1e-4, 1e4])
+def test_differences_have_the_sizes_of_the_coordinates(size):
+    # As above, of plain functions: their derivatives are differences, over parts of the sizes.
+    ends = []
+    for unit in (1.0, size):
+        system = GeneralizedSystem(
+            lambda q, unit=unit: unit**2 * np.diag([1.0, 1.0, 2.0 + np.cos(unit * q[1])]),
+            np.array([0.0, 0.7, 0.4]) / unit, np.array([0.3, 0.0, 1.0]) / unit, scale=1.0 / unit,
+            potential=lambda q, unit=unit: G * np.sin(unit * q[1]),
+        )  # fmt: skip
+        system.add_contact(lambda q, unit=unit: np.sin(unit * q[1]), restitution=0.5)
+        ends.append(unit * carom.simulate(system, 1.0).q[-1])
+    np.testing.assert_allclose(ends[1], ends[0], rtol=0, atol=1e-7)
+
+
 @pytest.mark.parametrize("size", [1e-3, 1e4])
 def test_coordinates_in_other_units_move_alike(size):
     """A rod in coordinates of 1/size metres and radians, with tolerances in their sizes."""

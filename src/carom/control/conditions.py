@@ -68,7 +68,7 @@ def _condition(name: str, event, scene) -> Condition:
     if event.startswith(FIRST_IMPACT):
         words = event.removeprefix(FIRST_IMPACT)
         stops = {stop.name: stop.index for stop in scene.stops}
-        if scene._own is not None and words not in stops:
+        if scene._chart is not None and words not in stops:
             raise ValueError(
                 f'{name} must be "{FIRST_IMPACT}C" with the name of a contact, got {words!r}; the system '
                 f"has {_listed(stops) or 'none'}{checks.nearest(words, stops)}"

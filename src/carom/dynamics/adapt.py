@@ -69,8 +69,7 @@ def note_miss(system, E, h, longest, b, work):
     speed, pace = pace_of(system, E, b, work)
     if has_metric(system):  # coordinates are one system: what is at rest does not wait for ever
         for other in range(work.body.shape[0]):
-            size = system.bodies[other].extent
-            pace = max(pace, L / size * pace_of(system, E, other, work)[1])
+            pace = max(pace, pace_of(system, E, other, work)[1])
     T = min(longest, L / pace if pace > 0.0 else 0.0)
     for e in range(E.shape[0]):
         m, k = greatest_error(E[e], h, L, T, b, work), min(e, MISS_OF_OTHERS)

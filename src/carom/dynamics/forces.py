@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.dynamics.applied import BETWEEN_BODIES, added, energies
-from carom.dynamics.metric import add_loads, own_potential
+from carom.dynamics.metric import add_loads, chart_potential
 from carom.dynamics.more_forces import add_more_forces, more_energy
 from carom.geometry.rotation import cross, rotate, rotate_back
 
@@ -59,4 +59,4 @@ def potential_energy(system, state, t):
         x = state[b].x
         potential -= system.bodies[b].mass * (x[0] * g[0] + x[1] * g[1] + x[2] * g[2])
     potential = energies_between(system, state, t, potential)
-    return potential + more_energy(system, state, t) + own_potential(system, state, t)
+    return potential + more_energy(system, state, t) + chart_potential(system, state, t)

@@ -3,7 +3,7 @@
     M a = f + A^T lam,   A a = target;   K lam = target - A M^-1 f,   K = A M^-1 A^T
 
 Forces and results are the first components of wrenches and motions of the bodies that stand for the
-coordinates (`carom.model.own_coordinates`). Rows that depend on others are left out (`carom.friction.ldl`).
+coordinates (`carom.model.chart`). Rows that depend on others are left out (`carom.friction.ldl`).
 """
 
 from __future__ import annotations
@@ -15,70 +15,71 @@ from carom._compiled.units import unit
 from carom.dynamics.element_operations import row_target
 from carom.dynamics.thresholds import METRIC_PIVOT
 from carom.friction import ldl
-from carom.kinematics.own_functions import find_constraints, find_inertia, find_loads
-from carom.model.own_coordinates import ROWS_OF_ELEMENT
+from carom.kinematics.chart import find_constraints, find_inertia, find_loads
+from carom.model.chart import ROWS_OF_ELEMENT
 from carom.model.parts_of_system import has_metric
 
 
 @kernel
 def factor(system, state):
     """Factor M and K in the position of `state`, unless they are those of it; NaN if M is singular."""
-    own = system.own
-    n, known = own.n, True
+    chart = system.chart
+    n, known = chart.n, True
     for j in range(n):
-        known = known and own.pose[j] == state[j].x[0]
+        known = known and chart.pose[j] == state[j].x[0]
     if known:
         return
-    find_inertia(system.own, state, False)
+    find_inertia(system.chart, state, False)
     for i in range(n):
-        own.pose[i] = state[i].x[0]
+        chart.pose[i] = state[i].x[0]
         for j in range(n):
-            own.L[i, j] = own.M[i, j]
-    ldl.factor(n, METRIC_PIVOT, own.L)
+            chart.L[i, j] = chart.M[i, j]
+    ldl.factor(n, METRIC_PIVOT, chart.L)
     regular, total = True, 0.0
     for i in range(n):
-        regular = regular and 0.0 < own.L[i, i] < math.inf
+        regular = regular and 0.0 < chart.L[i, i] < math.inf
         for j in range(n):
-            total += own.M[i, j]
+            total += chart.M[i, j]
     if regular or math.isfinite(total):
-        own.singular[0] = 0.0 if regular else 1.0
+        chart.singular[0] = 0.0 if regular else 1.0
     if not regular:
-        own.L[0, 0] = math.nan
-    if own.rows > 0:
+        chart.L[0, 0] = math.nan
+    if chart.rows > 0:
         factor_rows(system, state)
 
 
 @kernel
 def factor_rows(system, state):
     """Write Z = M^-1 A and factor K = A Z^T."""
-    own = system.own
-    n, k = own.n, own.rows
-    find_constraints(system.own, state, False)
+    chart = system.chart
+    n, k = chart.n, chart.rows
+    find_constraints(system.chart, state, False)
     for r in range(k):
         for j in range(n):
-            own.Z[r, j] = own.A[r, j]
-        ldl.substitute(n, own.L, own.Z[r])
+            chart.Z[r, j] = chart.A[r, j]
+        ldl.substitute(n, chart.L, chart.Z[r])
         for s in range(r + 1):
             total = 0.0
             for j in range(n):
-                total += own.A[r, j] * own.Z[s, j]
-            own.K[r, s] = own.K[s, r] = total
-    ldl.factor(k, own.drop, own.K)
+                total += chart.A[r, j] * chart.Z[s, j]
+            chart.K[r, s] = chart.K[s, r] = total
+    ldl.factor(k, chart.drop, chart.K)
 
 
 @unit
 def solve_metric(system, state, biased, near, work):
     """Write the first component of the motion of all bodies, and the multipliers of the constraints."""
-    own = system.own
-    n, a = own.n, own.a
+    chart = system.chart
+    n, a = chart.n, chart.a
     if not near:
         factor(system, state)
+        find_constraints(system.chart, state, False)  # another state may have been looked at since
     for j in range(n):
         a[j] = work.body[j].wrench[0]
-    ldl.substitute(n, own.L, a)
-    if not own.L[0, 0] > 0.0:  # the metric is singular
+    ldl.substitute(n, chart.L, a)
+    if not chart.L[0, 0] > 0.0:  # the metric is singular
         a[0] = math.nan
-    if own.rows > 0:
+    if chart.rows > 0:
         react(system, state, biased, work)
     for j in range(n):
         motion = work.body[j].motion
@@ -90,8 +91,8 @@ def solve_metric(system, state, biased, near, work):
 @kernel
 def react(system, state, biased, work):
     """Add to `a` the reactions that give the rows their targets, which are 0 if not `biased`."""
-    own = system.own
-    n, k, lam = own.n, own.rows, own.multiplier
+    chart = system.chart
+    n, k, lam = chart.n, chart.rows, chart.multiplier
     for e in range(system.joints.shape[0]):
         first, target = ROWS_OF_ELEMENT * e, work.joint[e].target
         if biased:
@@ -100,11 +101,11 @@ def react(system, state, biased, work):
             lam[first + r] = target[r] if biased else 0.0
     for r in range(k):
         for j in range(n):
-            lam[r] -= own.A[r, j] * own.a[j]
-    ldl.substitute(k, own.K, lam)
+            lam[r] -= chart.A[r, j] * chart.a[j]
+    ldl.substitute(k, chart.K, lam)
     for r in range(k):
         for j in range(n):
-            own.a[j] += lam[r] * own.Z[r, j]
+            chart.a[j] += lam[r] * chart.Z[r, j]
     for e in range(system.joints.shape[0]):
         for r in range(system.joints[e].rows):
             work.joint[e].reaction[r] = lam[ROWS_OF_ELEMENT * e + r]
@@ -113,30 +114,30 @@ def react(system, state, biased, work):
 @unit(where=has_metric, otherwise=0.0)
 def metric_energy(system, state) -> float:
     """Return the kinetic energy v M v/2 [J]."""
-    own, total = system.own, 0.0
-    find_inertia(system.own, state, False)
-    for i in range(own.n):
-        for j in range(own.n):
-            total += state[i].v[0] * own.M[i, j] * state[j].v[0]
+    chart, total = system.chart, 0.0
+    find_inertia(system.chart, state, False)
+    for i in range(chart.n):
+        for j in range(chart.n):
+            total += state[i].v[0] * chart.M[i, j] * state[j].v[0]
     return 0.5 * total
 
 
 @unit(where=has_metric, otherwise=0.0)
 def add_loads(system, state, moving, work) -> float:
     """Add Q - dV and, if `moving`, -Gamma(v, v) to the wrenches; return the power Q.v."""
-    own = system.own
-    find_loads(system.own, state, work.moment[0].time)
-    for j in range(own.n):
-        work.body[j].wrench[0] += own.load[j]
+    chart = system.chart
+    find_loads(system.chart, state, work.moment[0].time)
+    for j in range(chart.n):
+        work.body[j].wrench[0] += chart.load[j]
     if moving:
-        find_inertia(system.own, state, True)
-        for j in range(own.n):
-            work.body[j].wrench[0] -= own.c[j]
-    return own.loads[own.n + 1]
+        find_inertia(system.chart, state, True)
+        for j in range(chart.n):
+            work.body[j].wrench[0] -= chart.c[j]
+    return chart.loads[chart.n + 1]
 
 
 @unit(where=has_metric, otherwise=0.0)
-def own_potential(system, state, t) -> float:
+def chart_potential(system, state, t) -> float:
     """Return the potential V [J]."""
-    find_loads(system.own, state, t)
-    return system.own.loads[0]
+    find_loads(system.chart, state, t)
+    return system.chart.loads[0]

@@ -8,51 +8,55 @@ import numpy as np
 
 from carom._compiled.decorators import entry
 from carom._compiled.record_arrays import table
-from carom.generalized.scene import OwnModel
-from carom.generalized.thresholds import ARC_ERROR, RETURN_ERROR, RETURN_GOAL, SYSTEM_DROP
-from carom.kinematics.own_functions import (
+from carom.generalized.scene import SystemFunctions
+from carom.generalized.thresholds import ARC_ERROR, RETURN_ERROR, RETURN_GOAL
+from carom.kinematics.chart import (
     find_constraints,
     find_gaps,
     find_inertia,
     find_loads,
 )
 from carom.model.arrays import STATE
-from carom.model.own_coordinates import OwnCoordinates, forget_state
+from carom.model.chart import Chart, forget_state
 
 if TYPE_CHECKING:
     from carom.generalized.system import GeneralizedSystem
 
 
 @entry
-def look(own, state, t):
+def look(chart, state, t):
     """Find all quantities at a state."""
-    find_inertia(own, state, True)
-    find_loads(own, state, t)
-    find_constraints(own, state, True)
-    find_gaps(own, state, True)
+    find_inertia(chart, state, True)
+    find_loads(chart, state, t)
+    find_constraints(chart, state, True)
+    find_gaps(chart, state, True)
 
 
 class Evaluation:
     """Compiled functions of a system and workspace to call them with."""
 
     def __init__(self, system: GeneralizedSystem):
-        self.n, self.model = (
-            system._model.n,
-            OwnModel(system._model, len(system.contacts), system.scale),
-        )
-        self.own = self.model.arrays(SYSTEM_DROP, np.ones(self.n))
+        self.n = system._model.n
+        self.model = SystemFunctions(system._model, len(system.contacts), system.scale)
+        self.chart = self.model.arrays(0.0)
         self.state = table(STATE, self.n)
 
-    def look(self, x, t: float = 0.0) -> OwnCoordinates:
-        """Return all quantities at (q, v), or at (q, 0) for q; raise the error of a user-defined function."""
-        x = np.append(x, np.zeros(2 * self.n - len(x)))
-        self.state["x"][:, 0], self.state["v"][:, 0] = np.split(x, 2)
-        forget_state(self.own)
-        look(self.own, self.state, t)
+    def look(self, x, t: float = 0.0) -> Chart:
+        """Return all quantities at (q, v), or at (q, 0) for q; raise the error of a user-defined function.
+
+        They are in the units of the user, where a run has them by the sizes of the coordinates.
+        """
+        chart, scale = self.chart, self.chart.scale
+        q, v = np.split(np.append(x, np.zeros(2 * self.n - len(x))), 2)
+        self.state["x"][:, 0], self.state["v"][:, 0] = q / scale, v / scale
+        forget_state(chart)
+        look(chart, self.state, t)
+        for covector in (chart.M, chart.M.T, chart.c, chart.load, chart.A, chart.G):
+            covector /= scale
         error, self.model.functions.failed = self.model.functions.failed, None
         if error is not None:
             raise error
-        return self.own
+        return chart
 
     def christoffel(self, q) -> np.ndarray:
         """Return Gamma^k_ij, from 4 Gamma(v, w) = Gamma(v + w, v + w) - Gamma(v - w, v - w)."""
@@ -63,20 +67,20 @@ class Evaluation:
 
         first = [[bend(a + b) - bend(a - b) for b in e] for a in e]  # (i, j, k)
         first = 0.25 * np.moveaxis(np.array(first), 2, 0).reshape(n, -1)
-        return np.linalg.solve(self.own.M, first).reshape(n, n, n)
+        return np.linalg.solve(self.chart.M, first).reshape(n, n, n)
 
     def autoparallel(self, q, v):
         """Return the end (q, v) of an autoparallel: the motion without loads, constraints and contacts."""
         from scipy.integrate import solve_ivp
 
         def rate(t, x):
-            seen = self.look(x)
-            if not np.all(np.isfinite(seen.inertia)):
+            here = self.look(x)
+            if not np.all(np.isfinite(here.inertia)):
                 raise ValueError(
                     "the autoparallel could not be integrated: the metric is not finite"
                 )
             try:
-                return np.append(x[self.n :], -np.linalg.solve(seen.M, seen.c))
+                return np.append(x[self.n :], -np.linalg.solve(here.M, here.c))
             except np.linalg.LinAlgError as error:
                 raise ValueError(
                     "the autoparallel could not be integrated: the metric is singular"
@@ -102,9 +106,9 @@ class Evaluation:
         n = self.n
 
         def surfaces(at):
-            seen = self.look(at)
-            rows = np.vstack([seen.G[contact, :1], seen.A[: len(seen.phi)]])
-            return np.append(seen.gap[contact], seen.phi), rows, np.linalg.solve(seen.M, rows.T)
+            here = self.look(at)
+            rows = np.vstack([here.G[contact, :1], here.A[: len(here.phi)]])
+            return np.append(here.gap[contact], here.phi), rows, np.linalg.solve(here.M, rows.T)
 
         def misses(unknowns):
             at, kappa = unknowns[:n], unknowns[n:]

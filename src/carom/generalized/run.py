@@ -9,7 +9,7 @@ from carom.generalized.solution import GeneralizedSolution
 from carom.generalized.state import CoordinateState
 from carom.generalized.thresholds import INSIDE
 from carom.geometry.thresholds import SMALLEST
-from carom.model.own_coordinates import OwnCoordinates
+from carom.model.chart import Chart
 from carom.run import Run
 from carom.status import Status
 
@@ -25,23 +25,22 @@ class CoordinateRun(Run):
     def check(self, scene: CoordinateScene) -> None:
         """Refuse a start that violates constraints or contacts."""
         options, system = self.options, scene.system
-        seen = system.evaluation().look(np.append(system.position, system.velocity))
-        check_constraints(system, seen, options)
-        sizes = np.abs(seen.G[:, 0]) @ np.abs(system.position)
-        for contact in np.flatnonzero(seen.gap < -INSIDE * sizes):
+        here = system.evaluation().look(np.append(system.position, system.velocity))
+        check_constraints(system, here, options)
+        sizes = np.abs(here.G[:, 0]) @ np.abs(system.position)
+        for contact in np.flatnonzero(here.gap < -INSIDE * sizes):
             name = system.contacts[contact].name
             raise ValueError(
-                f"position must not be inside a contact, got the gap {seen.gap[contact]:.6g} of {name!r}"
+                f"position must not be inside a contact, got the gap {here.gap[contact]:.6g} of {name!r}"
             )
 
     def state(self, known: dict | None = None) -> CoordinateState:
         """Return the present state, for user-defined functions."""
-        return CoordinateState(super().state(known), self.compiled.system.own.scale)
+        return CoordinateState(super().state(known), self.compiled.system.chart.scale)
 
     def solution(self, status: Status, **watched) -> GeneralizedSolution:
         """Return the solution; after a failure it ends with the last state, saved or not."""
-        own = self.compiled.system.own
-        if status in LOST and own.singular[0] == 1.0:
+        if status in LOST and self.compiled.system.chart.singular[0] == 1.0:
             status = Status.SINGULAR_METRIC
         if "state_events" in watched:
             watched["state_events"] = [
@@ -50,14 +49,14 @@ class CoordinateRun(Run):
         return GeneralizedSolution._of(super().solution(status, **watched))
 
 
-def check_constraints(system, seen: OwnCoordinates, options) -> None:
+def check_constraints(system, here: Chart, options) -> None:
     """Refuse a start beside its constraints; `Options.project_start` projects velocities."""
     q, v, tolerance = system.position, system.velocity, options.constraint_tolerance
-    rates, speeds = seen.A @ v, np.abs(seen.A) @ np.abs(v)
-    sizes = np.abs(seen.A[: len(seen.phi)]) @ np.abs(q)
-    if not np.all(np.abs(seen.phi) <= tolerance * np.maximum(sizes, 1.0)):
+    rates, speeds = here.A @ v, np.abs(here.A) @ np.abs(v)
+    sizes = np.abs(here.A[: len(here.phi)]) @ np.abs(q)
+    if not np.all(np.abs(here.phi) <= tolerance * np.maximum(sizes, 1.0)):
         raise ValueError(
-            f"position must satisfy the constraints, got phi(q) = {seen.phi.tolist()} at the start"
+            f"position must satisfy the constraints, got phi(q) = {here.phi.tolist()} at the start"
         )
     right = np.all(np.abs(rates) <= tolerance * np.maximum(speeds, SMALLEST))
     if not (right or options.project_start):

@@ -1,6 +1,6 @@
 """The scene of a system in coordinates of the user's own: a body for each coordinate, a stop for each contact.
 
-A body of the size 1 stands for a coordinate along its first axis (`carom.model.own_coordinates`). So such a
+A body of the size 1 stands for a coordinate along its first axis (`carom.model.chart`). So such a
 system has the steps, impacts, persistent contacts, records and events of all scenes.
 """
 
@@ -11,14 +11,14 @@ import numpy as np
 from carom._compiled.user_functions import Functions
 from carom.fields import keep
 from carom.generalized.stated import CoordinateContact
-from carom.model.own_coordinates import OwnCoordinates, own_coordinates
+from carom.model.chart import Chart, new_chart
 from carom.scene.bodies import GROUND, Body
 from carom.scene.coordinates import Gap
 from carom.scene.scene import Scene
 from carom.scene.stops import Stop
 
 
-class OwnModel:
+class SystemFunctions:
     """The compiled functions of a system, which all its runs share."""
 
     def __init__(self, model, contacts: int, scale: np.ndarray):
@@ -26,11 +26,10 @@ class OwnModel:
         self.addresses = model.addresses(self.functions)
         self.sizes = model.n, model.holonomic, model.rows, contacts
 
-    def arrays(self, drop: float, scale: np.ndarray | None = None) -> OwnCoordinates:
+    def arrays(self, drop: float) -> Chart:
         """Return the arrays of the system, for one run."""
         self.functions.forget()
-        scale = self.scale if scale is None else scale
-        return own_coordinates(self.sizes, np.array(scale), drop, *self.addresses)
+        return new_chart(self.sizes, np.array(self.scale), drop, *self.addresses)
 
 
 class GapContact(Stop):
@@ -60,10 +59,10 @@ class CoordinateScene(Scene):
 
     def __init__(self, system):
         made, sizes = system.evaluation(), system.scale
-        seen = made.look(np.append(system.position, system.velocity))
-        super().__init__(gravity=(0.0, scale_of_loads(seen, sizes), 0.0))
-        self.system, self._own = system._as_it_is(), made.model
-        state = zip(seen.M.diagonal(), sizes, system.position / sizes, system.velocity / sizes)
+        here = made.look(np.append(system.position, system.velocity))
+        super().__init__(gravity=(0.0, scale_of_loads(here, sizes), 0.0))
+        self.system, self._chart = system._as_it_is(), made.model
+        state = zip(here.M.diagonal(), sizes, system.position / sizes, system.velocity / sizes)
         for b, (m, size, x, v) in enumerate(state):
             mass = m * size**2
             self.add_body(
@@ -71,7 +70,7 @@ class CoordinateScene(Scene):
                 name=f"q{b}",
             )  # fmt: skip
         self._contacts = []
-        for contact, row in zip(system.contacts, np.abs(seen.G[:, 0]) * sizes):
+        for contact, row in zip(system.contacts, np.abs(here.G[:, 0]) * sizes):
             b = int(np.argmax(row))
             size = float(row[b]) if 0.0 < row[b] < np.inf else 1.0
             self._contacts.append(GapContact(contact, self.bodies[b], size))
@@ -82,11 +81,11 @@ class CoordinateScene(Scene):
         return tuple(self._contacts)
 
 
-def scale_of_loads(seen: OwnCoordinates, sizes: np.ndarray) -> float:
+def scale_of_loads(here: Chart, sizes: np.ndarray) -> float:
     """Return the greatest acceleration by loads at the start, by the sizes of the coordinates.
 
     It stands in the place of gravity, across the axis along which the bodies move: so it moves nothing, and
     gives speeds and times that count as zero their scale.
     """
-    pull = float(np.abs(np.linalg.solve(seen.M, seen.load) / sizes).max())
+    pull = float(np.abs(np.linalg.solve(here.M, here.load) / sizes).max())
     return pull if np.isfinite(pull) else 0.0

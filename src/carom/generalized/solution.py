@@ -199,9 +199,9 @@ class GeneralizedSolution(Drawn):
         """Greatest errors of the constraints at each saved time: of phi(q) (T,) and of A v (T,)."""
         position, rate = np.zeros(len(self.t)), np.zeros(len(self.t))
         for k in range(len(self.t)):
-            seen = self.system.evaluation().look(np.append(self.q[k], self.v[k]), float(self.t[k]))
-            position[k] = np.max(np.abs(seen.phi), initial=0.0)
-            rate[k] = np.max(np.abs(seen.A @ self.v[k]), initial=0.0)
+            here = self.system.evaluation().look(np.append(self.q[k], self.v[k]), float(self.t[k]))
+            position[k] = np.max(np.abs(here.phi), initial=0.0)
+            rate[k] = np.max(np.abs(here.A @ self.v[k]), initial=0.0)
         return position, rate
 
     def evaluate(self, t, side: str = "right") -> tuple[np.ndarray, np.ndarray]:

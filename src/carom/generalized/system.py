@@ -65,7 +65,7 @@ class GeneralizedSystem:
     -----
     Functions compiled by ``numba.njit`` are called directly from the compiled loop; plain functions are called
     through Python, which takes about 10 microseconds per call. The steps of the differences are
-    ``7.4e-4 max(1, |q|)``: choose units in which the functions vary on a scale of 1, or give the derivatives.
+    ``7.4e-4 max(scale, |q|)``: state a `scale` on which the functions vary, or give the derivatives.
 
     The coordinates must be regular during the whole run. If they become singular (as at the pole of a sphere),
     the run ends with `Status.SINGULAR_METRIC`.

@@ -16,10 +16,10 @@ import numpy as np
 
 from carom.collision.layout import Hulls
 from carom.collision.level_layout import Levels
+from carom.model.chart import Chart
 from carom.model.forces import Forces
 from carom.model.laws import Laws
 from carom.model.memory import Memory
-from carom.model.own_coordinates import OwnCoordinates
 from carom.scene import joints
 from carom.scene.force_definition import ENDS
 
@@ -39,7 +39,7 @@ ROLLING_SPHERE, ROLLING_DISC = KIND[joints.RollingSphere], KIND[joints.RollingDi
 #: constraints of a system in the user's coordinates
 POINT_ON_CURVE, CURVE_ON_POINT = KIND[joints.PointOnCurve], KIND[joints.CurveOnPoint]
 ON_CURVE = (POINT_ON_CURVE, CURVE_ON_POINT)
-RELATION, USER_ROWS, STIFF, INERTIA, OWN_CONSTRAINT = range(len(KIND), len(KIND) + 5)
+RELATION, USER_ROWS, STIFF, INERTIA, CHART_CONSTRAINT = range(len(KIND), len(KIND) + 5)
 OWN_ROWS = min(ON_CURVE)  # the first of these kinds
 #: coordinates that only stops limit: the word for each, and its file in `carom.kinematics.coordinates`
 LIMITED = {
@@ -48,7 +48,7 @@ LIMITED = {
     "twist": "ball",
     "length": "length",
     "strand": "strand",
-    "own": "own",
+    "gap": "gap",
 }
 OF_LIMIT = {word: number for number, word in enumerate(LIMITED, len(KIND) + 5)}
 SWING, TWIST = OF_LIMIT["swing"], OF_LIMIT["twist"]
@@ -354,4 +354,4 @@ class System(NamedTuple):
     levels: Levels  # faces of solids of one body, or of static ones, in one plane
     moving: MovingSurfaces
     solver: Solver
-    own: OwnCoordinates
+    chart: Chart

@@ -15,19 +15,19 @@ from carom.geometry.thresholds import LAST_DIGIT
 from carom.model import graph, solvers
 from carom.model.arrays import (
     BODY,
+    CHART_CONSTRAINT,
     JOINT,
     KIND,
-    OWN_CONSTRAINT,
     SCREW,
     STATE,
     MovingSurfaces,
     System,
 )
+from carom.model.chart import ROWS_OF_ELEMENT, Chart, no_chart
 from carom.model.contacts import Contacts, Surfaces, compile_contacts, more_contacts
 from carom.model.forces import Place
 from carom.model.laws import LawTable
 from carom.model.moving_surfaces import moving_surfaces
-from carom.model.own_coordinates import ROWS_OF_ELEMENT, OwnCoordinates, no_own_coordinates
 from carom.model.pieces import Pieces
 from carom.model.placement import Placement
 from carom.model.relations import Coordinates, Elements
@@ -100,7 +100,7 @@ class _Moved:
 
     def __init__(self, scene: Scene, options: Options, loops: bool, implicit: bool):
         self.scene = scene
-        self.functions = Functions() if scene._own is None else scene._own.functions
+        self.functions = Functions() if scene._chart is None else scene._chart.functions
         self.start, self.to_principal, moments = _start(scene)
         self.placement = Placement(self.start, self.to_principal)
         self.coordinates = Coordinates(self.placement)
@@ -114,14 +114,14 @@ class _Moved:
         self.forces = ForceRows(
             scene, self.placement, self.coordinates, self.functions, pieces, self.laws, implicit
         )
-        if scene._own is None:
-            self.own = no_own_coordinates()
+        if scene._chart is None:
+            self.chart = no_chart()
             self.joints, self.flipped, self.solver = _joints(
                 scene, moments, self.placement, self.elements, options, loops
             )
         else:
-            self.own = scene._own.arrays(options.drop_tolerance)
-            self.joints, self.flipped, self.solver = _constraints(self.own)
+            self.chart = scene._chart.arrays(options.drop_tolerance)
+            self.joints, self.flipped, self.solver = _constraints(self.chart)
         alone, joined = _tethered(scene)
         loaded = np.append(self.forces.loaded, alone)
         self.bodies = _bodies(scene, moments, self.joints, self.elements, loaded, joined)
@@ -134,7 +134,7 @@ class _Moved:
             bodies=self.bodies, gravity=np.array(self.scene.gravity), joints=self.joints,
             relations=relations, forces=self.forces.tables, contacts=contacts, laws=self.laws.arrays(),
             vertices=touching.vertices, solids=touching.solids, hulls=touching.hulls,
-            levels=touching.levels, solver=self.solver, moving=moving, own=self.own,
+            levels=touching.levels, solver=self.solver, moving=moving, chart=self.chart,
         )  # fmt: skip
         return Compiled(
             system=system, start=self.start, to_principal=self.to_principal, flipped=self.flipped,
@@ -267,14 +267,14 @@ def _joints(scene, moments, placement, elements, options, loops):
     return joints, flipped, solver
 
 
-def _constraints(own: OwnCoordinates):
+def _constraints(chart: Chart):
     """Return elements of the constraints of a system in coordinates of the user's own, as `_joints` does."""
-    firsts = np.arange(0, own.rows, ROWS_OF_ELEMENT)
+    firsts = np.arange(0, chart.rows, ROWS_OF_ELEMENT)
     made = table(JOINT, len(firsts))
     made.kind, made.parent, made.rows = (
-        OWN_CONSTRAINT,
+        CHART_CONSTRAINT,
         -1,
-        np.minimum(ROWS_OF_ELEMENT, own.rows - firsts),
+        np.minimum(ROWS_OF_ELEMENT, chart.rows - firsts),
     )
     return made, np.zeros(len(made), dtype=bool), solvers.metric_solver(len(made))
 
@@ -349,7 +349,7 @@ def _bodies(scene, moments, joints, elements, loaded, joined):
         isolated[touched] = 0
     ballistic = isolated.copy()
     ballistic[loaded[loaded >= 0]] = 0
-    if scene._own is not None:
+    if scene._chart is not None:
         isolated[:] = ballistic[:] = 0
     bodies["mass"] = [b.mass for b in scene.bodies]
     bodies["inertia"], bodies["extent"], bodies["ball"] = moments, _extents(elements, joints), ball

@@ -90,7 +90,7 @@ class Coordinates:
     def _of_gap(self, gap: Gap, row: int) -> np.recarray:
         """Return the row of a gap, or of a tangential speed."""
         made = table(arrays.COORDINATE, 1)
-        made.kind, made.number = arrays.OF_LIMIT["own"], 3 * gap.number + row
+        made.kind, made.number = arrays.OF_LIMIT["gap"], 3 * gap.number + row
         made.child, made.parent = gap.child.index, -1
         return made
 

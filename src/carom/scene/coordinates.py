@@ -219,13 +219,13 @@ class Gap(Length):
         return "gap", self.number
 
 
-class OwnSystem(Protocol):
+class SystemOfScene(Protocol):
     """A system in coordinates of the user's own, as the compiled scene needs it."""
 
     functions: Any
 
     def arrays(self, drop: float) -> Any:
-        """Return its arrays (`carom.model.own_coordinates`)."""
+        """Return its arrays (`carom.model.chart`)."""
 
 
 @dataclass(frozen=True, eq=False)

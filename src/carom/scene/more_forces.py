@@ -414,4 +414,4 @@ class UserForce(ForceDefinition):
 
 def has_kinks(scene) -> bool:
     """Return whether forces of a scene are functions of the user or curves: these may have kinks and jumps."""
-    return scene._own is not None or any(force.definition.has_kinks for force in scene.forces)
+    return scene._chart is not None or any(force.definition.has_kinks for force in scene.forces)

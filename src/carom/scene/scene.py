@@ -28,7 +28,7 @@ from carom.scene.values import in_scene
 
 if TYPE_CHECKING:
     from carom.results.robot import Robot
-    from carom.scene.coordinates import OwnSystem
+    from carom.scene.coordinates import SystemOfScene
 
 
 @in_scene
@@ -66,7 +66,7 @@ class Scene(
     """
 
     #: the system in coordinates of the user's own for which the bodies stand
-    _own: OwnSystem | None = None
+    _chart: SystemOfScene | None = None
 
     def __init__(self, gravity: ArrayLike = (0.0, 0.0, -9.81)):
         self._parts = Registry()

@@ -13,21 +13,21 @@ from typing import Any
 from carom._compiled.by_number import by_number
 from carom._compiled.decorators import inlined
 from carom.dynamics.elements import (
+    chart_constraints,
     inertia,
     on_curve,
-    own_constraints,
     own_rows,
     relation,
     stiff,
     user,
 )
-from carom.model.arrays import INERTIA, KIND, ON_CURVE, OWN_CONSTRAINT, RELATION, STIFF, USER_ROWS
+from carom.model.arrays import CHART_CONSTRAINT, INERTIA, KIND, ON_CURVE, RELATION, STIFF, USER_ROWS
 
 #: a joint without rows has coordinates that stops limit, and no errors
 _FILES: dict[int, Any] = {number: own_rows for joint, number in KIND.items() if joint.rows == 0}
 _FILES |= dict.fromkeys(ON_CURVE, on_curve)
 _FILES |= {RELATION: relation, USER_ROWS: user, STIFF: stiff, INERTIA: inertia}
-_FILES[OWN_CONSTRAINT] = own_constraints
+_FILES[CHART_CONSTRAINT] = chart_constraints
 
 
 def by_element(joint: Callable) -> Any:

@@ -24,7 +24,7 @@ def run_again(scene: Scene, settings: dict, options: Options):
     from carom.run import Run
     from carom.stepping.settings import settings_of
 
-    kind = Run if scene._own is None else CoordinateRun
+    kind = Run if scene._chart is None else CoordinateRun
     return kind(scene, settings_of(settings, options))
 
 

@@ -42,6 +42,7 @@ from carom.results.joint_impulses import of_joints
 from carom.results.ledger import Ledger
 from carom.results.names import Numbers
 from carom.scene.coordinates import counted
+from carom.scene.scene import Scene
 from carom.status import Status
 from carom.stepping.settings import checked_settings
 
@@ -71,19 +72,25 @@ def read(
     file = unsealed(path)
     text = file.index.get("scene", "")
     if system is not None or _is_of_system(text):
-        return _fields(file, _scene_of(system, text, path), [])
-    try:
-        made, missing = scene_from_text(text, functions)
-        scene = made._as_it_is()
-    except ValueError as error:
-        if str(error).startswith("functions must"):
-            raise
-        raise ValueError(refusal(path, f"its scene is broken: {error}")) from error
+        scene, missing = _scene_of(system, text, path), []
+    else:
+        scene, missing = _stated_scene(text, functions, path)
     try:
         return _fields(file, scene, missing)
     except Exception as error:  # whatever a made-up index leads to
         what = f"{type(error).__name__}: {error}"
         raise ValueError(refusal(path, f"a part of it is missing or broken ({what})")) from error
+
+
+def _stated_scene(text, functions, path: Path) -> tuple[Scene, list[str]]:
+    """Return the scene of a text, and the functions that are missing in it."""
+    try:
+        made, missing = scene_from_text(text, functions)
+        return made._as_it_is(), missing
+    except ValueError as error:
+        if str(error).startswith("functions must"):
+            raise
+        raise ValueError(refusal(path, f"its scene is broken: {error}")) from error
 
 
 def _is_of_system(text) -> bool:

@@ -96,7 +96,7 @@ def attributes(solution) -> dict[str, Any]:
 
 def _coordinates(solution) -> list[Variable]:
     """Return the coordinates of a system of the user's own, and their rates."""
-    if solution.scene._own is None:
+    if solution.scene._chart is None:
         return []
     scale, dims = solution.scene.system.scale, ("time", "coordinate")
     return [

@@ -95,7 +95,7 @@ def part_system(system, islands, i, solver):
         joints=own.joints, relations=own.relations, forces=own.forces,
         contacts=islands.contacts[first[1, i] : first[1, i + 1]], vertices=system.vertices,
         laws=system.laws, solids=system.solids, hulls=system.hulls, levels=system.levels,
-        moving=system.moving, solver=solver, own=system.own,
+        moving=system.moving, solver=solver, chart=system.chart,
     )  # fmt: skip
 
 

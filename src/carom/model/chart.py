@@ -15,7 +15,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 
-#: the four functions, by their place in `OwnCoordinates.functions`
+#: the four functions, by their place in `Chart.functions`
 CALL_INERTIA = 0  # M (n, n), Gamma_kij v_i v_j (n,), first kind
 CALL_LOADS = 1  # V, generalised forces Q - dV (n,), power Q.v of those that have no potential
 CALL_ROWS = 2  # phi (h,), A (k, n), (dA/dt) v (k,)
@@ -33,7 +33,7 @@ FUNCTION = [("address", "i8")]
 PART = [("address", "i8"), ("slope_address", "i8"), ("results", "i8")]
 
 
-class OwnCoordinates(NamedTuple):
+class Chart(NamedTuple):
     """A system of n coordinates with k rows of constraints and C contacts; empty for scenes of bodies."""
 
     n: int
@@ -45,7 +45,7 @@ class OwnCoordinates(NamedTuple):
     parts: np.recarray  # (P,) PART
     scale: np.ndarray  # (n,) size of each coordinate in its unit
     # workspace: what the functions returned, then views of it
-    seen: np.ndarray  # (4, 2n+1) arguments (q, v, t) of the last calls
+    arguments: np.ndarray  # (4, 2n+1) arguments (q, v, t) of the last calls
     inertia: np.ndarray
     loads: np.ndarray
     constraints: np.ndarray
@@ -75,9 +75,7 @@ class OwnCoordinates(NamedTuple):
     slope: np.ndarray  # (n, m) derivatives of m results
 
 
-def own_coordinates(
-    sizes: tuple[int, ...], scale: np.ndarray, drop: float, functions, parts
-) -> OwnCoordinates:
+def new_chart(sizes: tuple[int, ...], scale: np.ndarray, drop: float, functions, parts) -> Chart:
     """Return the arrays of a system; `sizes` are n, h, k and C, the last two rows of FUNCTION and PART."""
     n, h, k, C = sizes
     most, row, touch = max(n, k, 2) * n, h + k * n, C * (1 + 3 * n)
@@ -99,22 +97,22 @@ def own_coordinates(
         "pose": n, "singular": 1, "L": (n, n), "Z": (k, n), "K": (k, k), "a": n, "multiplier": k, "x": 2 * n,
         "point": n, "axis": n, "sample": most, "slope": n * most,
     }  # fmt: skip
-    own = {name: np.zeros(shape) for name, shape in shapes.items()}
-    made = OwnCoordinates(
+    chart = {name: np.zeros(shape) for name, shape in shapes.items()}
+    made = Chart(
         n=n, holonomic=h, rows=k, contacts=C, drop=drop, functions=called, parts=listed,
         scale=scale,
-        seen=np.zeros((4, 2 * n + 1 if n > 0 else 0)), **views, **own,
+        arguments=np.zeros((4, 2 * n + 1 if n > 0 else 0)), **views, **chart,
     )  # fmt: skip
     forget_state(made)
     return made
 
 
-def forget_state(own: OwnCoordinates) -> None:
+def forget_state(chart: Chart) -> None:
     """Forget all results: functions that Python calls may have changed."""
-    own.seen[:], own.pose[:] = np.nan, np.nan
+    chart.arguments[:], chart.pose[:] = np.nan, np.nan
 
 
 @cache
-def no_own_coordinates() -> OwnCoordinates:
+def no_chart() -> Chart:
     """Return the arrays of a scene of bodies."""
-    return own_coordinates((0, 0, 0, 0), np.zeros(0), 0.0, [], [])
+    return new_chart((0, 0, 0, 0), np.zeros(0), 0.0, [], [])

@@ -9,7 +9,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.kinematics.own_functions import find_gaps
+from carom.kinematics.chart import find_gaps
 
 
 @kernel
@@ -27,8 +27,8 @@ def along(system, c, state):
 @unit
 def value(system, c, state) -> float:
     """Return the gap, or no number where its function has no value."""
-    find_gaps(system.own, state, False)
-    gap = system.own.gap[c.number // 3]
+    find_gaps(system.chart, state, False)
+    gap = system.chart.gap[c.number // 3]
     return gap if gap < math.inf else math.nan
 
 
@@ -41,18 +41,18 @@ def rate(system, c, state) -> float:
 @unit
 def rate_in(system, c, pose, state) -> float:
     """Return G v with the positions of one state and the velocities of another."""
-    own, total = system.own, 0.0
-    find_gaps(system.own, pose, False)
-    for j in range(own.n):
-        total += own.G[c.number // 3, c.number % 3, j] * state[j].v[0]
+    chart, total = system.chart, 0.0
+    find_gaps(system.chart, pose, False)
+    for j in range(chart.n):
+        total += chart.G[c.number // 3, c.number % 3, j] * state[j].v[0]
     return total
 
 
 @unit
 def drift(system, c, state, out) -> float:
     """Return (dG/dt) v."""
-    find_gaps(system.own, state, True)
-    return system.own.G_rate[c.number // 3, c.number % 3]
+    find_gaps(system.chart, state, True)
+    return system.chart.G_rate[c.number // 3, c.number % 3]
 
 
 @kernel
@@ -70,37 +70,37 @@ def turn_within(system, c, start, end, h):
 @unit
 def push(system, c, state, force, work):
     """Add G^T force."""
-    own = system.own
-    find_gaps(system.own, state, False)
-    for j in range(own.n):
-        work.body[j].wrench[0] += force * own.G[c.number // 3, c.number % 3, j]
+    chart = system.chart
+    find_gaps(system.chart, state, False)
+    for j in range(chart.n):
+        work.body[j].wrench[0] += force * chart.G[c.number // 3, c.number % 3, j]
 
 
 @unit
 def motion_along(system, c, state, work) -> float:
     """Return G of the motions that the last solve wrote."""
-    own, total = system.own, 0.0
-    find_gaps(system.own, state, False)
-    for j in range(own.n):
-        total += own.G[c.number // 3, c.number % 3, j] * work.body[j].motion[0]
+    chart, total = system.chart, 0.0
+    find_gaps(system.chart, state, False)
+    for j in range(chart.n):
+        total += chart.G[c.number // 3, c.number % 3, j] * work.body[j].motion[0]
     return total
 
 
 @unit
 def acceleration_along(system, c, state, stage) -> float:
     """Return G of the accelerations of a stage."""
-    own, total = system.own, 0.0
-    find_gaps(system.own, state, False)
-    for j in range(own.n):
-        total += own.G[c.number // 3, c.number % 3, j] * stage[j].rate[0]
+    chart, total = system.chart, 0.0
+    find_gaps(system.chart, state, False)
+    for j in range(chart.n):
+        total += chart.G[c.number // 3, c.number % 3, j] * stage[j].rate[0]
     return total
 
 
 @unit
 def speeds_of(system, c, state) -> float:
     """Return the sum of the terms of its rate."""
-    own, total = system.own, 0.0
-    find_gaps(system.own, state, False)
-    for j in range(own.n):
-        total += abs(own.G[c.number // 3, c.number % 3, j] * state[j].v[0])
+    chart, total = system.chart, 0.0
+    find_gaps(system.chart, state, False)
+    for j in range(chart.n):
+        total += abs(chart.G[c.number // 3, c.number % 3, j] * state[j].v[0])
     return total
