@@ -1,4 +1,4 @@
-"""The short form of benchmarks/campaigns/coordinates.py: rods, tables, pucks, rows, loops, charts, sleighs, units."""
+"""The short form of benchmarks/campaigns/coordinates.py: rods, tables, pucks, rows, loops, charts, sleighs."""
 
 import pytest
 

@@ -10,8 +10,11 @@ from carom.results.event_tables import (
     JointImpulseTable,
 )
 from carom.results.ledger import Ledger
-from carom.results.named import BodyState, ConstraintView, ContactView, ForceView, JointView
 from carom.results.state import SystemState
+from carom.results.views.body import BodyState
+from carom.results.views.contact import ContactView
+from carom.results.views.force import ConstraintView, ForceView
+from carom.results.views.joint import JointView
 
 __all__ = [
     "BodyState",

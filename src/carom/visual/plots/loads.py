@@ -73,8 +73,9 @@ def forces(solution, forces=None, *, ax=None, figsize=None, style="carom"):
 def _curves(view):
     """Yield the unit and the values (T,) of each curve of a view."""
     from carom.results.exerted import unit_of
-    from carom.results.named import ConstraintView, ContactView, ForceView
     from carom.results.names import row_units
+    from carom.results.views.contact import ContactView
+    from carom.results.views.force import ConstraintView, ForceView
 
     if isinstance(view, ForceView) and unit_of(view._part):
         yield unit_of(view._part), view._value
