@@ -22,125 +22,29 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import kernel
 from carom.collision import thresholds as limits
 from carom.collision.faces import normal_of_face, vertex
-from carom.collision.features import NOBODY, OF_A, OF_B, OF_FIXED, OF_SUPPORT, face_part
+from carom.collision.features import NOBODY, OF_B, OF_SUPPORT, face_part
 from carom.collision.found import put, put_parts
-from carom.collision.frame import from_a, point_of_a, to_a
+from carom.collision.frame import from_a, point_of_a
 from carom.collision.layout import BOX, CYLINDER, HULL, POINT
+from carom.collision.profile_curve import (
+    ROWS_TOGETHER,
+    block_at,
+    curve_at,
+    is_peak,
+    is_straight,
+    part_of_place,
+    peak_in_row,
+    stretch,
+)
+from carom.collision.profile_faces import (
+    crossing,
+    faces_of,
+    on_face,
+)
 from carom.geometry.thresholds import ROUND_OFF
-from carom.geometry.vectors import dot, minus
-
-PEAK_STEPS = 60
-ROWS_TOGETHER = 16  # in a block
-FINENESS = 1 << 30  # of a place on the curve, as a part
-
-
-@inlined
-def curve_at(row, t):
-    """Return position, first and second derivative of a row of the curve at the distance t from its start."""
-    c = row.c
-    x, y, dx, dy, ex, ey = c[5, 0], c[5, 1], 0.0, 0.0, 0.0, 0.0
-    for k in range(4, -1, -1):
-        ex, ey = ex * t + 2.0 * dx, ey * t + 2.0 * dy
-        dx, dy = dx * t + x, dy * t + y
-        x, y = x * t + c[k, 0], y * t + c[k, 1]
-    return x, y, dx, dy, ex, ey
-
-
-@inlined
-def block_at(rows, first, last):
-    """Return the end of a block of rows, its middle, and how far the block is from the start of that row."""
-    end = min(first + ROWS_TOGETHER, last)
-    middle = (first + end) >> 1
-    arc = max(rows[middle].start - rows[first].start, rows[end].start - rows[middle].start)
-    return end, middle, limits.CHORD * arc
-
-
-@kernel
-def peak_in_row(row, h, mx, my, w):
-    """Return where in a row of length h the sign of (m + w c) . c' changes from + to -."""
-    low, high, t = 0.0, h, 0.5 * h
-    for _ in range(PEAK_STEPS):
-        x, y, dx, dy, ex, ey = curve_at(row, t)
-        ux, uy = mx + w * x, my + w * y
-        g, slope = ux * dx + uy * dy, w * (dx * dx + dy * dy) + ux * ex + uy * ey
-        if g > 0.0:
-            low = t
-        else:
-            high = t
-        new = t - g / slope if slope < 0.0 else low
-        if not (low < new < high):
-            new = 0.5 * (low + high)
-        step, t = abs(new - t), new
-        if not step > ROUND_OFF * h:
-            break
-    return t
-
-
-@kernel
-def place_of_part(solid, hulls, part):
-    """Return the row of the curve, and the distance from its start, that a part of a profile stands for."""
-    number = part & (FINENESS - 1)
-    if part >= OF_FIXED:  # a corner
-        return solid.first + number, 0.0
-    rows = hulls.outlines
-    s, low, high = number * (rows[solid.last].start / FINENESS), solid.first, solid.last
-    while high - low > 1:
-        middle = (low + high) >> 1
-        if rows[middle].start <= s:
-            low = middle
-        else:
-            high = middle
-    return low, s - rows[low].start
-
-
-@inlined
-def part_of_place(solid, hulls, k, t):
-    """Return the part of a profile for a place on its curve; a row of length 0 is a corner."""
-    rows = hulls.outlines
-    if rows[k + 1].start == rows[k].start:
-        return OF_FIXED + k - solid.first
-    return OF_SUPPORT + min(
-        int((rows[k].start + t) / rows[solid.last].start * FINENESS), FINENESS - 1
-    )
-
-
-@kernel
-def stretch(solid, hulls, s, length):
-    """Return the number of the stretch between hollows; a circle of radius `length` enters flatter ones.
-
-    A curve with one hollow, both sides of which may be touched, has two stretches, each a half of its length.
-    """
-    count, before, at, rows = 0, 0, 0.0, hulls.outlines
-    for k in range(solid.first_face, solid.last_face):
-        if -rows[k].c[0, 0] * length > limits.ENTERED:
-            count += 1
-            before += 1 if rows[k].start <= s else 0
-            at = rows[k].start
-    if count == 1:
-        whole = rows[solid.last].start
-        return 1 if (s - at if s >= at else s - at + whole) > 0.5 * whole else 0
-    return 0 if before == count else before
-
-
-@kernel
-def is_peak(rows, k, mx, my, w, slack):
-    """Return whether m . c + w c . c/2 has a greatest value in row k; at corners also nearly, by `slack`."""
-    a, b = rows[k].c, rows[k + 1].c
-    before = (mx + w * a[0, 0]) * a[1, 0] + (my + w * a[0, 1]) * a[1, 1]
-    after = (mx + w * b[0, 0]) * b[1, 0] + (my + w * b[0, 1]) * b[1, 1]
-    if slack > 0.0 and rows[k + 1].start == rows[k].start:
-        return before > -slack and after < slack
-    return before > 0.0 and after <= 0.0
-
-
-@inlined
-def is_straight(row, h):
-    """Return whether a row is a straight line, not a corner."""
-    c = row.c
-    return h > 0.0 and c[2, 0] == 0.0 and c[2, 1] == 0.0 and c[5, 0] == 0.0 and c[5, 1] == 0.0
 
 
 @kernel
@@ -201,134 +105,6 @@ def _feet(pair, q, r, reach, number, first):
     return kept
 
 
-@inlined
-def _faces(a):
-    """Return the number of faces of a box or a hull; 0 for others."""
-    return 6 if a.kind == BOX else a.last_face - a.first_face if a.kind == HULL else 0
-
-
-@kernel
-def _height(pair, face, q):
-    """Return the height of a point over a face of A, in axes of A."""
-    a, hulls = pair.a, pair.hulls
-    n = normal_of_face(a, hulls, face)
-    if a.kind == BOX:
-        return dot(n, q) - a.half[face // 2]
-    p = hulls.vertices[a.first + hulls.corners[hulls.faces[a.first_face + face].first]]
-    return dot(n, minus(q, p))
-
-
-@kernel
-def _shallowest(pair, q):
-    """Return the face of A along the axis over which a point, in axes of A, is highest, and its height."""
-    best, chosen = -math.inf, 0
-    for k in range(_faces(pair.a)):
-        n = normal_of_face(pair.a, pair.hulls, k)
-        height = _height(pair, k, q)
-        if height > best and abs(from_a(pair.state, n[0], n[1], n[2])[2]) < limits.FACING:
-            best, chosen = height, k
-    return chosen, best
-
-
-@kernel
-def _leaves_by(pair, face, row, q, height):
-    """Return whether no other face, towards which row k also is farthest, is nearer to a point inside A."""
-    room = ROUND_OFF * pair.a.extent
-    for k in range(_faces(pair.a)):
-        n = normal_of_face(pair.a, pair.hulls, k)
-        x, y, z = from_a(pair.state, n[0], n[1], n[2])
-        if k == face or not abs(z) < limits.FACING:
-            continue
-        other = _height(pair, k, q)
-        if other > height + room:
-            also = is_peak(pair.hulls.outlines, row, -x, -y, 0.0, limits.NEARLY_FLAT)
-            if also or other > room:
-                return False
-    return True
-
-
-@kernel
-def _crossing(pair, z, count):
-    """Add a point of the curve inside A, the deepest of the starts of rows, if there is one: a deep overlap."""
-    s, a, b, rows, found = pair.state, pair.a, pair.b, pair.hulls.outlines, pair.found
-    deepest, at = -ROUND_OFF * a.extent, -1
-    for k in range(b.first, b.last):
-        x, y = rows[k].c[0, 0] - s.p[0], rows[k].c[0, 1] - s.p[1]
-        if x * x + y * y < a.extent * a.extent:
-            height = _shallowest(pair, to_a(s, x, y, z - s.p[2]))[1]
-            if height < deepest:
-                deepest, at = height, k
-    if at < 0 or count >= len(found):
-        return count
-    x, y = rows[at].c[0, 0], rows[at].c[0, 1]
-    face, gap = _shallowest(pair, to_a(s, x - s.p[0], y - s.p[1], z - s.p[2]))
-    n = normal_of_face(a, pair.hulls, face)
-    nx, ny, nz = from_a(s, n[0], n[1], n[2])
-    on_a = (x - gap * nx, y - gap * ny, z - gap * nz)
-    name = (((1 << 14) | face) << 30) | (1 << 28)
-    put(found[count], gap - a.radius, (-nx, -ny, -nz), on_a, (x, y, z), (2 << 60) | name)
-    put_parts(found[count], OF_A, face_part(face), part_of_place(b, pair.hulls, at, 0.0))
-    return count + 1
-
-
-@kernel
-def _on_face(pair, face, z, reach, count):
-    """Add the points of the curve farthest towards a face of A, beside it; return the new count.
-
-    A point of the curve beside the face at the height h tells that the gap is at most h.
-    """
-    s, a, b, rows, found = pair.state, pair.a, pair.b, pair.hulls.outlines, pair.found
-    m = normal_of_face(a, pair.hulls, face)
-    mx, my, mz = from_a(s, m[0], m[1], m[2])
-    across = math.sqrt(mx * mx + my * my)
-    if not across > limits.FACING:  # a face across the axis
-        return count
-    low, high, room = math.inf, -math.inf, ROUND_OFF * b.extent
-    for i in range(8 if a.kind == BOX else a.last - a.first):
-        p = vertex(a, pair.hulls, i)
-        if _height(pair, face, p) > -ROUND_OFF * a.extent:
-            p = point_of_a(s, p[0], p[1], p[2])
-            along = (mx * p[1] - my * p[0]) / across
-            low, high = min(low, along), max(high, along)
-    zero = _height(pair, face, to_a(s, -s.p[0], -s.p[1], z - s.p[2]))
-    most = math.inf
-    for k in range(b.first, b.last, ROWS_TOGETHER):
-        _, at, _ = block_at(rows, k, b.last)
-        x, y = rows[at].c[0, 0], rows[at].c[0, 1]
-        height = zero + mx * x + my * y
-        if height >= 0.0 and low <= (mx * y - my * x) / across <= high:
-            most = min(most, height / across)
-    most += reach + room
-    for start in range(b.first, b.last, ROWS_TOGETHER):
-        end, at, arc = block_at(rows, start, b.last)
-        x, y = rows[at].c[0, 0], rows[at].c[0, 1]
-        along = (mx * y - my * x) / across
-        if zero + mx * x + my * y > most + arc:
-            continue
-        if not (low - room - arc <= along <= high + room + arc):
-            continue
-        for k in range(start, end):
-            if not is_peak(rows, k, -mx, -my, 0.0, limits.NEARLY_FLAT) or count >= len(found):
-                continue
-            h = rows[k + 1].start - rows[k].start
-            if is_straight(rows[k], h):  # its corners count
-                continue
-            t = peak_in_row(rows[k], h, -mx, -my, 0.0) if h > 0.0 else 0.0
-            x, y, _, _, _, _ = curve_at(rows[k], t)
-            along, q = (mx * y - my * x) / across, to_a(s, x - s.p[0], y - s.p[1], z - s.p[2])
-            gap = _height(pair, face, q)
-            if not (low - room <= along <= high + room):
-                continue
-            if gap < -room and not _leaves_by(pair, face, k, q, gap):
-                continue
-            name = (((1 << 14) | face) << 30) | stretch(b, pair.hulls, rows[k].start + t, math.inf)
-            on_a = (x - gap * mx, y - gap * my, z - gap * mz)
-            put(found[count], gap - a.radius, (-mx, -my, -mz), on_a, (x, y, z), (2 << 60) | name)
-            put_parts(found[count], OF_A, face_part(face), part_of_place(b, pair.hulls, k, t))
-            count += 1
-    return count
-
-
 @kernel
 def _beside(pair, z):
     """Write the point of a ball at a height beyond the flat sides of the profile: on a side, or on its rim."""
@@ -361,7 +137,7 @@ def axis_of(pair):
         return 2, 0.0, 0.0, 1.0
     if kind == HULL:  # a prism: the normal of a face across the axis
         x, y, z = 0.0, 0.0, 0.0
-        for k in range(_faces(pair.a)):
+        for k in range(faces_of(pair.a)):
             n = normal_of_face(pair.a, pair.hulls, k)
             nx, ny, nz = from_a(s, n[0], n[1], n[2])
             if abs(nz) > abs(z):
@@ -405,8 +181,8 @@ def _sections(pair, low, high, reach, axis):
                 continue
             f = (level - p[2]) / z
             count = _feet(pair, (p[0] + f * x, p[1] + f * y, level), r, reach, i, count)
-        for i in range(_faces(a)):
-            count = _on_face(pair, i, level, reach, count)
+        for i in range(faces_of(a)):
+            count = on_face(pair, i, level, reach, count)
         for k in range(before, count):
             pair.found[k].feature |= end << 29
     return count
@@ -444,9 +220,9 @@ def profile_pair(pair, reach):
     least = math.inf
     for k in range(count):
         least = min(least, found[k].gap)
-    if _faces(a) > 0 and least >= -a.radius:
+    if faces_of(a) > 0 and least >= -a.radius:
         before = count
-        count = _crossing(pair, 0.5 * (low + high), count)
+        count = crossing(pair, 0.5 * (low + high), count)
         least = found[before].gap if count > before else least
     kept, most = 0, least + reach + ROUND_OFF * min(a.extent, b.extent)
     for k in range(count):
@@ -508,24 +284,3 @@ def lowest_of_profile(a, hulls, seen, reach, found):
                 found[kept] = found[k]
             kept += 1
     return kept
-
-
-@kernel
-def farthest_of_curve(solid, hulls, x, y):
-    """Return the greatest x c_x + y c_y on the curve of a profile."""
-    rows, best, across = hulls.outlines, -math.inf, math.sqrt(x * x + y * y)
-    for k in range(solid.first, solid.last, ROWS_TOGETHER):
-        _, at, _ = block_at(rows, k, solid.last)
-        best = max(best, x * rows[at].c[0, 0] + y * rows[at].c[0, 1])
-    for start in range(solid.first, solid.last, ROWS_TOGETHER):
-        end, at, arc = block_at(rows, start, solid.last)
-        if x * rows[at].c[0, 0] + y * rows[at].c[0, 1] + across * arc < best:
-            continue
-        for k in range(start, end):
-            c = rows[k].c
-            best = max(best, x * c[0, 0] + y * c[0, 1])
-            if is_peak(rows, k, x, y, 0.0, 0.0) and rows[k + 1].start > rows[k].start:
-                t = peak_in_row(rows[k], rows[k + 1].start - rows[k].start, x, y, 0.0)
-                px, py, _, _, _, _ = curve_at(rows[k], t)
-                best = max(best, x * px + y * py)
-    return best

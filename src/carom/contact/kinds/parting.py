@@ -27,7 +27,7 @@ from carom._compiled.decorators import kernel
 from carom.collision.farthest import VERTICES, farthest
 from carom.collision.features import NOBODY, OF_A
 from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, PROFILE, SEGMENT
-from carom.collision.profile import farthest_of_curve
+from carom.collision.profile_curve import farthest_of_curve
 from carom.contact.kinds.partner import centre_of_other, on_half_space, pose_of
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.kinematics.flight import core_extent

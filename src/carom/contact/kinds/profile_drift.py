@@ -26,7 +26,7 @@ import numpy as np
 from carom._compiled.decorators import kernel
 from carom.collision.features import NOBODY, OF_A, OF_B, OF_FIXED
 from carom.collision.layout import CYLINDER, PROFILE, Hulls
-from carom.collision.profile import curve_at, place_of_part
+from carom.collision.profile_curve import curve_at, place_of_part
 from carom.contact.kinds.drift import motions_of, rates_of_rows
 from carom.contact.kinds.partner import pose_of
 from carom.geometry.rotation import rotate, rotate_back
