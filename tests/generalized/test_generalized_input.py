@@ -160,6 +160,14 @@ def test_interrupted_and_progress():
     assert run.t[-1] == pytest.approx(0.5)
 
 
+@pytest.mark.parametrize(
+    "scale", [0.0, -1.0, [1.0], [1.0, 0.0], [[1.0], [1.0, 2.0]], "long", None, np.nan]
+)
+def test_a_scale_is_a_size_or_one_for_each_coordinate(scale):
+    with pytest.raises((ValueError, TypeError), match="scale must"):
+        build(scale=scale)
+
+
 def test_a_solution_keeps_its_system_as_it_was():
     system = build()
     a, plain = (carom.simulate(one, 0.2, step=0.05) for one in (system, build()))

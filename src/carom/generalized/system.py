@@ -171,10 +171,11 @@ class GeneralizedSystem:
         return system
 
     def _start(self, model, q, v, scale) -> None:
-        sizes = checks.finite_array("scale", scale, () if np.ndim(scale) == 0 else (model.n,))
-        if not np.all(sizes > 0.0):
+        if isinstance(scale, (int, float, np.number)):
+            scale = np.full(model.n, checks.number("scale", scale, above=0.0))
+        self.scale = checks.finite_array("scale", scale, (model.n,))
+        if not np.all(self.scale > 0.0):
             raise ValueError(f"scale must be above 0, got {checks.shown(scale)}")
-        self.scale = np.broadcast_to(sizes, model.n)
         self._model: Any = model
         self._parts, self._made = Registry("system"), None
         self.position, self.velocity = q, v
