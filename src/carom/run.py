@@ -377,11 +377,16 @@ class Run:
         """Return the present state, for user-defined functions; `known` keeps what states share."""
         return SystemState(self, known)
 
+    def ending(self, status: Status) -> Status:
+        """Return a status with its reason, if this run knows one."""
+        return status
+
     def solution(self, status: Status, **watched) -> Any:
         """Return the solution; after a failure it ends with the last state, saved or not.
 
         `watched` are its fields that a watch for events has found.
         """
+        status = self.ending(status)
         if status is Status.SUCCESS:
             status = self.judged(status)
         else:

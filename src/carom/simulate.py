@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.control.conditions import Event, conditions
-from carom.dynamics.methods import EXPLICIT
 from carom.generalized.solution import GeneralizedSolution
 from carom.generalized.system import GeneralizedSystem
 from carom.io.run_to_end import finish
@@ -20,8 +19,8 @@ from carom.results.solution import Solution
 from carom.scene.scene import Scene
 from carom.status import Advice, MistakeWarning
 from carom.stepping.settings import (
-    LOCATIONS,
     Settings,
+    check_coordinates,
     check_handling,
     check_scene,
     checked_settings,
@@ -201,8 +200,7 @@ def simulate(
         atol=atol, options=options, scene=scene,
     )  # fmt: skip
     if isinstance(scene, GeneralizedSystem):
-        checks.choice("method of a system in coordinates", settings.method, EXPLICIT)
-        checks.choice("impact_location of a system in coordinates", impact_location, LOCATIONS[:1])
+        check_coordinates(settings)
         from carom.generalized.run import CoordinateRun as Run
         from carom.generalized.scene import CoordinateScene
 

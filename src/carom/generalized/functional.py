@@ -44,6 +44,7 @@ class FunctionalModel:
 
     def __init__(self, q: np.ndarray, v: np.ndarray, given: dict[str, Callable | None]):
         self.n, self.start, self.contacts = len(q), q, 0
+        self.names = [str(k) for k in range(self.n)]
         for name, of in (("metric_derivative", "metric"), ("potential_gradient", "potential"),
                          ("constraint_jacobian", "constraint")):  # fmt: skip
             if given[name] is not None and given[of] is None:
@@ -83,6 +84,14 @@ class FunctionalModel:
         own = {"gap": (gap, ()), "gap_gradient": (gradient, (n,)), "tangent": (tangent, shape)}
         self.given |= {f"{name} of contact {self.contacts}": one for name, one in own.items()}
         self.contacts += 1
+
+    def marks(self, mark_of: Callable) -> list[str]:
+        """Return a mark of the code of each function."""
+        return [f"{name}: {one and mark_of(one)}" for name, (one, _) in self.given.items()]
+
+    def has_tangent(self, contact: int) -> bool:
+        """Return whether a contact has a tangent."""
+        return self.given[f"tangent of contact {contact}"][0] is not None
 
     def metric_at(self, q) -> np.ndarray:
         """Return M (n, n) at numbers."""

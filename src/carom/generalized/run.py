@@ -36,12 +36,15 @@ class CoordinateRun(Run):
 
     def state(self, known: dict | None = None) -> CoordinateState:
         """Return the present state, for user-defined functions."""
-        return CoordinateState(super().state(known), self.compiled.system.chart.scale)
+        return CoordinateState._of(super().state(known), self.compiled.system.chart.scale)
+
+    def ending(self, status: Status) -> Status:
+        """Return that the metric is singular, if this is why the run ends."""
+        singular = self.compiled.system.chart.singular[0] == 1.0
+        return Status.SINGULAR_METRIC if status in LOST and singular else status
 
     def solution(self, status: Status, **watched) -> GeneralizedSolution:
         """Return the solution; after a failure it ends with the last state, saved or not."""
-        if status in LOST and self.compiled.system.chart.singular[0] == 1.0:
-            status = Status.SINGULAR_METRIC
         if "state_events" in watched:
             watched["state_events"] = [
                 [one._state for one in some] for some in watched["state_events"]

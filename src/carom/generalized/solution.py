@@ -242,7 +242,7 @@ class GeneralizedSolution(Drawn):
         found, scale = self._of_scene.state_events, self.system.scale
         if found is None:
             return None
-        return [[CoordinateState(one, scale) for one in some] for some in found]
+        return [[CoordinateState._of(one, scale) for one in some] for some in found]
 
     @property
     def _run(self):

@@ -20,11 +20,20 @@ class CoordinateState:
         Energies [J].
     """
 
-    def __init__(self, state: SystemState, scale: np.ndarray):
-        self._state, self.t = state, state.t
-        self.q, self.v = scale * state.position[:, 0], scale * state.velocity[:, 0]
+    _state: SystemState  # of the bodies of the run
+
+    def __init__(self, t: float, q: np.ndarray, v: np.ndarray, kinetic: float, potential: float):
+        self.t, self.q, self.v = t, q.copy(), v.copy()
         self.q.flags.writeable = self.v.flags.writeable = False
-        self.kinetic_energy, self.potential_energy = state.kinetic_energy, state.potential_energy
+        self.kinetic_energy, self.potential_energy = kinetic, potential
+
+    @classmethod
+    def _of(cls, state: SystemState, scale: np.ndarray) -> CoordinateState:
+        """Return the coordinates of the bodies that stand for them."""
+        q, v = scale * state.position[:, 0], scale * state.velocity[:, 0]
+        made = cls(state.t, q, v, state.kinetic_energy, state.potential_energy)
+        made._state = state
+        return made
 
     def __repr__(self) -> str:
         return f"<CoordinateState: {len(self.q)} coordinates at t = {self.t:g} s>"

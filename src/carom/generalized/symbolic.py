@@ -5,7 +5,7 @@ Its code is written by `carom.scene.expressions`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,18 +14,24 @@ from carom import checks
 from carom.generalized.thresholds import ZERO_EXPRESSION
 from carom.scene import expressions
 
+TERMS = ("inertia", "loads", "row_terms", "contact_terms")  # of the compiled functions
+
 
 class SymbolicModel:
     """Expressions of a system, in symbols of its own: coordinates q, velocities v, time t."""
 
     kind = "expression"
 
+    @property
+    def sp(self) -> Any:
+        """SymPy, which pickles cannot have."""
+        return checks.need("sympy", "GeneralizedSystem.from_sympy", "sympy")
+
     def __init__(
         self, coordinates, velocities, kinetic_energy, metric, potential, forces, constraints, rates,
         parameters, time,
     ):  # fmt: skip
-        sp: Any = checks.need("sympy", "GeneralizedSystem.from_sympy", "sympy")
-        self.sp = sp
+        sp = self.sp
         self.coordinates = self.symbols("coordinates", coordinates)
         n = self.n = len(self.coordinates)
         if n == 0:
@@ -49,6 +55,7 @@ class SymbolicModel:
             checks.number(f"parameters[{symbol}]", value)
         if not (time is None or isinstance(time, sp.Symbol)):
             raise ValueError(f"time must be a symbol, got {checks.shown(time)}")
+        self.names = [one.func.__name__ if functions else str(one) for one in self.coordinates]
         self.time = time if time is not None or not functions else self.coordinates[0].args[0]
         self.q = sp.symbols(f"q:{n}", real=True, cls=sp.Dummy)
         self.v = sp.symbols(f"v:{n}", real=True, cls=sp.Dummy)
@@ -73,6 +80,7 @@ class SymbolicModel:
         self.A = [*map(self.gradient, self.phi), *speeds]
         self.holonomic, self.rows = len(self.phi), len(self.A)
         self.contacts: list[tuple[Any, list]] = []
+        self._codes: list[tuple[Callable | None, int]] = []
 
     def take(self, name: str, expression, allowed: str):
         """Return an expression in the symbols of this model; only those in `allowed` may occur (of t, q, v)."""
@@ -162,6 +170,19 @@ class SymbolicModel:
             raise ValueError(f"gap must depend on the coordinates, got {checks.shown(gap)}")
         empty = [[self.sp.Integer(0)] * self.n] * (2 - len(rows))
         self.contacts.append((rho, [normal, *rows, *empty]))
+        self._codes = []
+
+    def marks(self, mark_of: Callable) -> list[str]:
+        """Return a mark of the code of each function."""
+        return [f"{name}: {code and mark_of(code)}" for name, (code, _) in zip(TERMS, self.codes())]
+
+    def __getstate__(self) -> dict:
+        """Return what a pickle has; code is written again."""
+        return {**vars(self), "_codes": []}
+
+    def has_tangent(self, contact: int) -> bool:
+        """Return whether a contact has a tangent."""
+        return any(one != 0 for row in self.contacts[contact][1][1:] for one in row)
 
     def metric_at(self, q) -> np.ndarray:
         """Return M (n, n) at numbers."""
@@ -201,12 +222,21 @@ class SymbolicModel:
         """Return the derivatives of an expression by the coordinates."""
         return [self.sp.diff(expression, q) for q in self.q]
 
+    def codes(self) -> list[tuple[Callable | None, int]]:
+        """Return the four functions, None without results, and the number of their results."""
+        if not self._codes:
+            x, found = [*self.q, *self.v], []
+            for name in TERMS:
+                terms = getattr(self, name)()
+                code = expressions.written(name, terms, x, self.t) if terms else None
+                found.append((code, len(terms)))
+            self._codes = found  # all at once: another thread may ask
+        return self._codes
+
     def addresses(self, functions) -> tuple[list[int], list]:
         """Return the addresses of the four compiled functions, which have no parts."""
-        result, x = [], [*self.q, *self.v]
-        for name in ("inertia", "loads", "row_terms", "contact_terms"):
-            terms = getattr(self, name)()
-            given = (2 * self.n,), (len(terms),), f"an expression ({name})"
-            code = expressions.written(name, terms, x, self.t) if terms else None
-            result.append(functions.written(code, *given) if terms else 0)
+        result = []
+        for name, (code, count) in zip(TERMS, self.codes()):
+            given = (2 * self.n,), (count,), f"an expression ({name})"
+            result.append(functions.written(code, *given) if code else 0)
         return result, []

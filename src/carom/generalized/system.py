@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from copy import copy
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -193,8 +193,54 @@ class GeneralizedSystem:
 
     def _as_it_is(self) -> GeneralizedSystem:
         """Return a copy that does not change when this system gets a contact or another state."""
-        made = copy(self)
-        made._parts = self._parts.copied()
+        made = object.__new__(type(self))
+        vars(made).update(vars(self), _parts=self._parts.copied())
+        return made
+
+    def _changed(self, state: dict, laws: dict[str, dict]) -> GeneralizedSystem:
+        """Return a copy with another `position` or `velocity`, and other fields of contacts by their names."""
+        made = self._as_it_is()
+        made.set_state(**{"position": self.position, "velocity": self.velocity, **state})
+        made._parts = Registry("system")
+        for contact in self.contacts:
+            other = replace(contact, **laws.get(contact.name, {}))
+            self._check_friction(other, self._model.has_tangent(other.index))
+            made._parts.add(other)
+        return made
+
+    @staticmethod
+    def _check_friction(contact: CoordinateContact, tangent: bool) -> None:
+        """Refuse friction without a tangent."""
+        if bound_of(contact.friction) > 0.0 and not tangent:
+            raise ValueError(
+                f"friction needs a tangent, got friction {checks.shown(contact.friction)} without one"
+            )
+
+    def __getitem__(self, name: str) -> CoordinateContact:
+        """Return the contact with this name.
+
+        Raises
+        ------
+        KeyError
+            If there is none.
+        """
+        found: Any = self._parts[name]
+        return found
+
+    def __getstate__(self) -> dict:
+        """Return what a pickle has; compiled functions are made again."""
+        return {**vars(self), "_made": None}
+
+    @property
+    def coordinate_names(self) -> tuple[str, ...]:
+        """Names of the coordinates: of their symbols, or ``"0"``, ``"1"``, ... in a system of functions."""
+        return tuple(self._model.names)
+
+    def _apart(self) -> GeneralizedSystem:
+        """Return a copy with compiled functions of its own, for another thread; its own copies share them."""
+        made = self._as_it_is()
+        made._made = None
+        made.evaluation()
         return made
 
     @property
@@ -254,10 +300,7 @@ class GeneralizedSystem:
         contact = CoordinateContact(
             name, restitution, friction, impact_law, tangential_restitution, index
         )
-        if bound_of(contact.friction) > 0.0 and tangent is None:
-            raise ValueError(
-                f"friction needs a tangent, got friction {checks.shown(friction)} without one"
-            )
+        self._check_friction(contact, tangent is not None)
         self._model.add_contact(gap, gap_gradient, tangent)
         self._made = None
         return self._parts.add(contact)

@@ -147,7 +147,7 @@ class Registry:
         for part in self._parts.values():
             if isinstance(part, Contact) and name == f"{part.other.name}-{part.body.name}":
                 return part
-        raise KeyError(f"the scene has no part {self._called(name)}")
+        raise KeyError(f"the {self.whole} has no part {self._called(name)}")
 
     def get(self, name: str) -> Any:
         """Return the part with exactly this name, or None."""

@@ -201,6 +201,14 @@ def check_method(scene: Scene, method: str) -> None:
         )
 
 
+def check_coordinates(settings: Settings) -> None:
+    """Refuse settings that a system in coordinates does not take."""
+    checks.choice("method of a system in coordinates", settings.method, EXPLICIT)
+    checks.choice(
+        "impact_location of a system in coordinates", settings.impact_location, LOCATIONS[:1]
+    )
+
+
 def either(names) -> str:
     """Return names as `"a", "b" or "c"`."""
     *first, last = (f'"{name}"' for name in names)

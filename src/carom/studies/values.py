@@ -1,7 +1,8 @@
 """Values of a scene by name: `part.field`, `gravity`, one component of them, and the law of all contacts.
 
 A field is one of the part, of its definition (a joint, a force, a motor) or of its shape. The names are the
-same in `carom.ensemble`, `carom.sensitivities` and `carom.identify`.
+same in `carom.ensemble`, `carom.sensitivities` and `carom.identify`. A system in coordinates has `position` and
+`velocity` in the place of gravity, and the fields of its contacts.
 """
 
 from __future__ import annotations
@@ -12,12 +13,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from difflib import get_close_matches
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from carom import checks
 from carom.fields import REQUIRED, Value, keep
+from carom.generalized.stated import CoordinateContact
+from carom.generalized.system import GeneralizedSystem
 from carom.geometry.thresholds import ROUND_OFF, UNIT_ERROR
 from carom.scene.bodies import Body
 from carom.scene.contacts import Contact, check_overlap, far, place
@@ -35,10 +38,25 @@ AXES, SCALAR_FIRST = ("x", "y", "z"), ("w", "x", "y", "z")
 MOMENTS = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
 ENDS = ("anchor_parent", "anchor_child")
 FOLLOWERS = ("inertia", "friction_held", "rest_length")
+#: values of a scene and of a system in coordinates that are of no part
+OF_SCENE, OF_SYSTEM = ("gravity",), ("position", "velocity")
+Whole: TypeAlias = Scene | GeneralizedSystem
+
+
+def own_fields(scene: Whole) -> tuple[str, ...]:
+    """Return the names of the values of no part."""
+    return OF_SYSTEM if isinstance(scene, GeneralizedSystem) else OF_SCENE
+
+
+def common_fields(scene: Whole) -> tuple[str, ...]:
+    """Return the names of values that all contacts may get together."""
+    if isinstance(scene, GeneralizedSystem):
+        return tuple(name for name in LAW_FIELDS if name in vars_of(CoordinateContact))
+    return LAW_FIELDS
 
 
 class Found(NamedTuple):
-    """A field of a part, of its definition or of its shape."""
+    """A field of a part, of its definition or of its shape; or of the whole, which stands for the part then."""
 
     part: Any
     inside: str  # name of the attribute that has the field, "" for the part
@@ -87,8 +105,10 @@ def fields_of(part) -> Iterator[Found]:
                     yield Found(part, inside, field)
 
 
-def find(scene: Scene, name: str) -> Found | None:
-    """Return the field of a part with this name; None if the scene has none."""
+def find(scene: Whole, name: str) -> Found | None:
+    """Return the field of a part, or of the whole, with this name; None if there is none."""
+    if name in own_fields(scene):
+        return Found(scene, "", name)
     part, _, field = name.rpartition(".")
     try:
         found = scene[part]
@@ -97,8 +117,11 @@ def find(scene: Scene, name: str) -> Found | None:
     return next((one for one in fields_of(found) if one.field == field), None)
 
 
-def components(value) -> dict[str, Any]:
-    """Return the places of components by name: of an array, a law, or the spin of a surface."""
+def components(found: Found) -> dict[str, Any]:
+    """Return the places of components by name: of an array, a law, coordinates, or the spin of a surface."""
+    value = found.value
+    if isinstance(found.part, GeneralizedSystem):
+        return {name: k for k, name in enumerate(found.part.coordinate_names)}
     if isinstance(value, SpeedLaw):
         return {name: name for name in vars(value) if isinstance(getattr(value, name), float)}
     if isinstance(value, tuple):
@@ -108,7 +131,7 @@ def components(value) -> dict[str, Any]:
     return MOMENTS if shape == (3, 3) else dict(zip(labels, range(4)))
 
 
-def split(scene: Scene, name: str, argument: str = "vary") -> tuple[str, str]:
+def split(scene: Whole, name: str, argument: str = "vary") -> tuple[str, str]:
     """Return a name without the component at its end, and this component or nothing.
 
     Raises
@@ -116,17 +139,16 @@ def split(scene: Scene, name: str, argument: str = "vary") -> tuple[str, str]:
     ValueError
         If the scene has no value with the name.
     """
-    if name in ("gravity", *LAW_FIELDS) or find(scene, name):
+    if name in common_fields(scene) or find(scene, name):
         return name, ""
     stem, _, label = name.rpartition(".")
-    found = None if stem == "gravity" else find(scene, stem)
-    if stem == "gravity" or found:
-        if label in components(found.value if found else scene.gravity):
-            return stem, label
+    found = find(scene, stem)
+    if found and label in components(found):
+        return stem, label
     raise ValueError(_unknown(scene, name, argument))
 
 
-def whole(scene: Scene, inputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def whole(scene: Whole, inputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Return rows for whole fields: components within the values of the scene, a law for each contact."""
     parts = {name: split(scene, name) for name in inputs}
     made = {name: rows for name, rows in inputs.items() if not parts[name][1]}
@@ -136,7 +158,8 @@ def whole(scene: Scene, inputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
             continue
         rows = _shaped(name, inputs[name], ())
         found = find(scene, stem)
-        value = scene.gravity if found is None else found.value
+        assert found is not None
+        value = found.value
         if stem in inputs:
             raise ValueError(f"vary must have {stem!r} or its components, got it and {name!r}")
         if isinstance(value, tuple):
@@ -146,7 +169,7 @@ def whole(scene: Scene, inputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
             continue
         if stem not in made:
             made[stem] = np.repeat(np.asarray(value)[None], len(rows), axis=0)
-        at = components(value)[label]
+        at = components(found)[label]
         if isinstance(value, SpeedLaw):
             laws.setdefault(stem, {})[label] = rows
             continue
@@ -154,10 +177,11 @@ def whole(scene: Scene, inputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
             made[stem][(slice(None), *one)] = rows
     made |= {stem: _laws(stem, made[stem], numbers) for stem, numbers in laws.items()}
     for field in [name for name in made if name in LAW_FIELDS]:
-        if scene.contact_default is not None or not scene.contacts:
+        default = getattr(scene, "contact_default", None) is not None
+        if default or not scene.contacts:
             raise ValueError(
-                f"vary[{field!r}] is the value of all contacts of add_contact, got a scene with "
-                + ("set_contact_default" if scene.contact_default is not None else "none")
+                f"vary[{field!r}] is the value of all contacts of add_contact, got a {scene._parts.whole} with "
+                + ("set_contact_default" if default else "none")
             )
         rows = made.pop(field)
         for contact in scene.contacts:
@@ -188,18 +212,18 @@ class Target:
     light: bool  # whether the compiled scene can be used again
 
 
-def find_targets(scene: Scene, inputs: dict[str, np.ndarray]) -> list[Target]:
+def find_targets(scene: Whole, inputs: dict[str, np.ndarray]) -> list[Target]:
     """Return the destination of each whole field; refuse values that are not allowed."""
     return [_find(scene, name, values) for name, values in inputs.items()]
 
 
-def _find(scene: Scene, name: str, values: np.ndarray) -> Target:
-    if name == "gravity":
-        _shaped(name, values, (3,))
-        return Target(name, "", name, -1, False)
+def _find(scene: Whole, name: str, values: np.ndarray) -> Target:
     found = find(scene, name)
     assert found is not None
     part, field = found.part, found.field
+    if part is scene:
+        _shaped(name, values, found.value.shape)
+        return Target(name, "", name, -1, False)
     light = _light(scene, found)
     if values.dtype.kind == "U" or isinstance(found.value, str) or not (light or field == "mass"):
         _check_each(name, found, values)
@@ -232,7 +256,7 @@ def _check_each(name: str, found: Found, values: np.ndarray) -> None:
                 raise ValueError(f"vary[{name!r}] in run {k}: {error}") from None
 
 
-def _light(scene: Scene, found: Found) -> bool:
+def _light(scene: Whole, found: Found) -> bool:
     """Return whether a field is only a number in the arrays of the compiled scene.
 
     Joints and forces are placed in the world at the start: if poses vary, they have to be placed again.
@@ -241,30 +265,37 @@ def _light(scene: Scene, found: Found) -> bool:
         return found.field in LAW_FIELDS and not isinstance(found.value, SpeedLaw)
     if not isinstance(found.part, Body) or found.field not in STATE_FIELDS:
         return False
+    assert isinstance(scene, Scene)  # a system has no bodies
     return found.field not in POSES or not (scene.joints or scene.forces or scene.constraints)
 
 
-def _unknown(scene: Scene, name: str, argument: str) -> str:
+def _unknown(scene: Whole, name: str, argument: str) -> str:
     known = [f"{part.name}.{one.field}" for part in scene._parts for one in fields_of(part)]
+    own = own_fields(scene)
+    example = next(iter(known), "die.position" if isinstance(scene, Scene) else "wall.friction")
     return (
-        f"names in {argument} must be 'gravity', or a part of the scene with one of its fields, like "
-        f"{next(iter(known), 'die.position')!r}, got {name!r}{_hint(scene, name, known)}"
+        f"names in {argument} must be {', '.join(map(repr, own))}, or a part of the {scene._parts.whole} with "
+        f"one of its fields, like {example!r}, got {name!r}{_hint(scene, name, [*own, *known])}"
     )
 
 
-def _hint(scene: Scene, name: str, known: list[str]) -> str:
+def _hint(scene: Whole, name: str, known: list[str]) -> str:
     """Return the end of a message: the nearest name, or the fields of the part that `name` names."""
     part, _, field = name.rpartition(".")
     try:
         own = [one.field for one in fields_of(scene[part])]
     except KeyError:
         own = []
+    if part in own_fields(scene) and not own:
+        known = [f"{part}.{one}" for one in components(Found(scene, "", part))]
     near = get_close_matches(field, own, n=1) if own else get_close_matches(name, known, n=1)
     if near:
         meant = f"{part}.{near[0]}" if own else near[0]
         return f"; did you mean {meant!r}?"
     if own:
         return f"; {part!r} has {', '.join(own)}"
+    if not isinstance(scene, Scene):
+        return ""
     pairs = product(scene.bodies, (*scene.fixed, *scene.bodies))
     default = next(((a, b) for a, b in pairs if part == f"{a.name}-{b.name}"), None)
     if field in LAW_FIELDS and default is not None:
@@ -289,6 +320,18 @@ def _all(name: str, good: np.ndarray, values: np.ndarray, allowed: str) -> None:
         raise ValueError(f"vary[{name!r}] must be {allowed}, got {values[k]} in run {k}")
 
 
+def changed_system(
+    system: GeneralizedSystem, targets: list[Target], values: dict[str, np.ndarray]
+) -> GeneralizedSystem:
+    """Return a copy of a system in coordinates with the values of one run."""
+    laws: dict[str, dict] = {}
+    for target in targets:
+        value = np.array(values[target.name])
+        laws.setdefault(target.part, {})[target.field] = value if value.ndim else value.item()
+    state = laws.pop("", {})
+    return system._changed(state, laws)
+
+
 def changed(scene: Scene, targets: list[Target], values: dict[str, np.ndarray]) -> Scene:
     """Return a copy of a scene with the values of one run.
 
@@ -302,10 +345,10 @@ def changed(scene: Scene, targets: list[Target], values: dict[str, np.ndarray]) 
         value = np.array(values[target.name])
         value = value if value.ndim else value.item()
         found = find(scene, target.name)
-        if found is None and target.name != "gravity":
-            continue  # coordinates of a model, to which a run is moved
         if found is None:
-            scene._gravity = np.array(value)
+            continue  # coordinates of a model, to which a run is moved
+        if found.part is scene:
+            scene._gravity = value
             continue
         follow = {one for one in FOLLOWERS if f"{target.part}.{one}" not in named}
         keep(found.part, **(_inside if found.inside else _direct)(found, value, follow))

@@ -19,7 +19,7 @@ from carom.run import Run
 from carom.scene.scene import Scene
 from carom.stepping.settings import Settings
 from carom.studies.ensembles.robots import PLACED, put
-from carom.studies.values import Target, changed, check_places, may_overlap, units
+from carom.studies.values import Target, check_places, may_overlap, units
 
 STATES = {"position": "x", "orientation": "Q", "velocity": "v", "angular_velocity": "w"}
 TURNING = ("rolling_friction", "pivoting_friction")
@@ -29,14 +29,10 @@ class Again:
     """A `Run` with values that differ from one start to the next."""
 
     def __init__(self, scene: Scene, settings: Settings, targets: list[Target]):
-        self.scene, self.settings, self.targets = scene, settings, targets
-        # each run has its own projected start
-        projected = settings.options.project_start and len(scene.joints) > 0
-        self.light = all(target.light for target in targets) and not projected
+        self.scene, self.targets = scene, targets
         self.values: dict[str, np.ndarray] = {}
-        if self.light:
-            self.run = Run(scene, settings)
-            self.first = Snapshot(self.run)
+        self.run = Run(scene, settings)
+        self.first = Snapshot(self.run)
 
     def start(self, values: dict[str, np.ndarray], k: int) -> Run:
         """Return the run, prepared to start with the values of row k of each name.
@@ -46,19 +42,15 @@ class Again:
         ValueError
             If bodies penetrate each other at the start, or the start violates a joint.
         """
-        if not self.light:
-            run = Run(changed(self.scene, self.targets, _row(values, k)), self.settings)
-            put(run, self.targets, _row(values, k))
-            return run
         self.first.put_back()
         if values is not self.values:
             self.take(values)
         if self.near[k]:
-            check_places(self.scene, self.targets, _row(values, k))
+            check_places(self.scene, self.targets, row(values, k))
         for there, rows in self.written:
             there[...] = rows[k]
         run = self.run
-        put(run, self.targets, _row(values, k))
+        put(run, self.targets, row(values, k))
         run.clock["saved"] = 0
         run.compiled.functions.forget()  # the error of a user-defined function in the last run
         run.check(run.scene)
@@ -100,5 +92,6 @@ class Again:
             yield column[law : law + 1]
 
 
-def _row(values: dict[str, np.ndarray], k: int) -> dict[str, np.ndarray]:
+def row(values: dict[str, np.ndarray], k: int) -> dict[str, np.ndarray]:
+    """Return the values of one run."""
     return {name: rows[k, ...] for name, rows in values.items()}

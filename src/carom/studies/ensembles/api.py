@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom import arguments, checks
+from carom.generalized.system import GeneralizedSystem
 from carom.io.models.model import Model
 from carom.io.progress import Bar, reporter
 from carom.io.run_to_end import interruption
@@ -36,7 +37,7 @@ NEVER = 10**15  # `save_every` of runs that save only the first and the last sta
 
 @arguments.known
 def ensemble(
-    scene: Scene | Model | Callable[..., Scene],
+    scene: Scene | Model | GeneralizedSystem | Callable[..., Scene | GeneralizedSystem],
     duration: float,
     *,
     step: float | str = "auto",
@@ -63,9 +64,10 @@ def ensemble(
 
     Parameters
     ----------
-    scene : Scene, models.Model, or function
-        A scene, or that of a model, whose values are varied; or a function that takes the names in `vary` as
-        keyword arguments and returns the `Scene` of a run. All scenes must have the same number of bodies.
+    scene : Scene, models.Model, GeneralizedSystem, or function
+        A scene, or that of a model, or a system in coordinates, whose values are varied; or a function that
+        takes the names in `vary` as keyword arguments and returns the `Scene` or `GeneralizedSystem` of a run.
+        All must have the same number of bodies or coordinates.
     duration : float
         Duration of each run [s].
     step, method, rtol, atol, options
@@ -85,6 +87,9 @@ def ensemble(
         Orientations may also be a SciPy Rotation or matrices.
         Of a model of `load_model` also ``"qpos"`` (runs, nq), ``"qvel"`` (runs, nv) and ``"ctrl"`` (runs, nu),
         as in MuJoCo, and ``"elbow.coordinate"`` and ``"elbow.rate"`` of a hinge or slide with the name "elbow".
+        Of a system in coordinates ``"position"`` and ``"velocity"`` (runs, n), or one of them by its name,
+        ``"position.theta"`` (`GeneralizedSystem.coordinate_names`), and ``"wall.friction"``, ``restitution``,
+        ... of its contacts.
     runs : int, optional
         Number of runs; not needed if `vary` has an array or a grid. A grid has all combinations of its values.
     seed : int or numpy.random.Generator
@@ -142,9 +147,10 @@ def ensemble(
     ((8, 1, 3), True)
     """
     scene = scene.scene if isinstance(scene, Model) else scene
-    if not isinstance(scene, Scene) and not callable(scene):
+    if not isinstance(scene, (Scene, GeneralizedSystem)) and not callable(scene):
         raise TypeError(
-            f"scene must be a carom.Scene, a Model or a function that returns one, got {type(scene).__name__}"
+            "scene must be a carom.Scene, a Model, a GeneralizedSystem or a function that returns one, got "
+            f"{type(scene).__name__}"
         )
     vary = as_mapping(vary)
     if not isinstance(vary, Mapping) or not vary:
@@ -198,7 +204,7 @@ def ensemble(
     if store is not None:
         whole, about = store.read(), store.about
     else:
-        whole, about = join(parts, count, len(plan.bodies)), facts(plan)
+        whole, about = join(parts, count, plan.varied.layout), facts(plan)
     found = Ensemble(inputs, whole.outcomes, whole.observed, whole.failures, about, plan)
     if stopped is not None:
         more = "; call again with the same arguments to continue" if store is not None else ""
@@ -224,7 +230,7 @@ def _store(save, plan, inputs, chunk):
                 "remove it"
             )
         return store
-    return Store.make(save, inputs, len(plan.bodies), chunk, {"digest": mark, **facts(plan)})
+    return Store.make(save, inputs, plan.varied.layout, chunk, {"digest": mark, **facts(plan)})
 
 
 def _go(plan, values, done, chunk, executor, workers, store, parts, report) -> None:

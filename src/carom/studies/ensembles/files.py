@@ -18,16 +18,16 @@ from carom.io.files.disk import put, replace_folder
 from carom.io.files.layout import Variable
 from carom.io.files.sealed import agrees, with_digest
 from carom.io.files.writing import hdf5
-from carom.studies.ensembles.outcome import no_outcomes
+from carom.studies.ensembles.outcome import Layout, no_outcomes
 from carom.studies.ensembles.store import Store, from_file, in_file, is_begun
 from carom.studies.ensembles.table import (
     AXES,
     WORDS,
-    body_names,
     columns,
     from_columns,
-    layout,
+    layout_of,
     messages,
+    shapes,
 )  # fmt: skip
 
 if TYPE_CHECKING:
@@ -39,20 +39,21 @@ OLDER = "carom ensemble in one file 1"  # the same without a digest
 DIGEST = b"\ncarom ensemble, sha256 "
 DAMAGED = "it is damaged: its digest does not agree with its {}"
 FILES = (*RUN, ".parquet", ".csv")
-FACTS = ("carom", "settings", "body_names", "grid")  # of `Ensemble.about`, in all files
+FACTS = ("carom", "settings", "grid")  # of `Ensemble.about`, in all files
 UNITS = {
     "t": "s", "rest_time": "s", "first_impact": "s", "position": "m", "velocity": "m/s",
     "angular_velocity": "rad/s", "kinetic_energy": "J", "impact_loss": "J",
     "friction_loss": "J", "bounce_loss": "J", "load_work": "J",
 }  # fmt: skip
 DIMS = {3: ("axis", AXES[(3,)]), 4: ("quaternion", AXES[(4,)])}
+PARTS = {"bodies": "body", "coordinates": "coordinate"}  # dimensions of states
 PREFIXES = {"input:": "inputs", "observed:": "observed"}
 
 
 def facts_of(ensemble: Ensemble) -> dict[str, str]:
     """Return the attributes of the ensemble, as texts."""
     found = {name: ensemble.about[name] for name in FACTS if name in ensemble.about}
-    return {**found, "body_names": json.dumps(body_names(ensemble))}
+    return {**found, **layout_of(ensemble).fact}
 
 
 def labelled(ensemble: Ensemble) -> list[Variable]:
@@ -67,14 +68,16 @@ def labelled(ensemble: Ensemble) -> list[Variable]:
 
     found = [Variable(in_file(n), (in_file(n),), values, None, n) for n, values in grid.items()]
     found.append(one("run", np.arange(len(ensemble)), text="number of the run"))
-    found.append(
-        Variable("body", ("body",), np.array(body_names(ensemble), object), None, "bodies")
-    )
+    layout = layout_of(ensemble)
+    part = PARTS[layout.of]
+    found.append(Variable(part, (part,), np.array(layout.names, object), None, layout.of))
+    state = {name: (part, *(DIMS[n][0] for n in shape)) for name, shape in layout.fields.items()}
     for dim, labels in DIMS.values():
-        found.append(Variable(dim, (dim,), np.array(labels, object), None, "components"))
+        if any(dim in dims for dims in state.values()):
+            found.append(Variable(dim, (dim,), np.array(labels, object), None, "components"))
     for name in ensemble.outcomes.dtype.names or ():
         values = ensemble.outcomes[name]
-        dims = ("body", DIMS[values.shape[-1]][0]) if values.ndim == 3 else ()
+        dims = state.get(name, ())
         text = (
             "; ".join(f"{code} {word}" for code, word in WORDS.items()) if name == "status" else ""
         )
@@ -124,7 +127,7 @@ def save(path: Path, ensemble: Ensemble) -> None:
         if kind == ".csv":
             put(path, [csv_of(frame)])
             return
-        known = {"format": FORMAT, "about": facts_of(ensemble), "layout": layout(ensemble)}
+        known = {"format": FORMAT, "about": facts_of(ensemble), "layout": shapes(ensemble)}
         known["digest"] = _digest_of(vars(ensemble))
         frame.attrs = {"carom": json.dumps(known)}
         out = io.BytesIO()
@@ -171,9 +174,8 @@ def _save_zarr(path: Path, ensemble: Ensemble) -> None:
         about["digest"] = digest(ensemble._plan, ensemble.inputs)
     elif "digest" in ensemble.about:
         about["digest"] = ensemble.about["digest"]
-    bodies = ensemble.outcomes.dtype["position"].shape[0]
     chunk = 64
-    store = Store.make(new, ensemble.inputs, bodies, chunk, about)
+    store = Store.make(new, ensemble.inputs, layout_of(ensemble), chunk, about)
     for first in range(0, len(ensemble), chunk):
         rows = slice(first, first + chunk)
         said = {k: text for k, text in ensemble.failures.items() if first <= k < first + chunk}
@@ -218,13 +220,15 @@ def _load_netcdf(path: Path) -> dict[str, Any]:
     rows = {
         name: values.reshape(runs, *values.shape[len(lead) :]) if name not in lead else values
         for name, values in arrays.items()
-        if name not in ("body", "axis", "quaternion")
+        if name not in (*PARTS.values(), "axis", "quaternion")
     }
-    bodies = arrays["body"].tolist()
-    about["body_names"] = json.dumps(bodies)
+    layout = next(
+        Layout(tuple(arrays[part].tolist()), of) for of, part in PARTS.items() if part in arrays
+    )
+    about |= layout.fact
     if lead != ("run",):
         about["grid"] = json.dumps({from_file(name): arrays[name].tolist() for name in lead})
-    outcomes = no_outcomes(runs, len(bodies))
+    outcomes = no_outcomes(runs, layout)
     for name in outcomes.dtype.names or ():
         outcomes[name] = rows[name]
     said = enumerate(rows["message"].tolist())
@@ -286,7 +290,7 @@ def _digest_of(fields: dict[str, Any]) -> str:
             else:
                 found.update(np.ascontiguousarray(values).tobytes())
     said = [one.about.get(name, "") for name in ("carom", "settings")]
-    words = [said, body_names(one), json.loads(one.about.get("grid", "{}"))]
+    words = [said, list(layout_of(one).names), json.loads(one.about.get("grid", "{}"))]
     words.append(sorted((int(k), str(text)) for k, text in one.failures.items()))
     found.update(json.dumps(words).encode())
     return found.hexdigest()

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 
 from carom._compiled.cache_key import stamp
+from carom.generalized.scene import CoordinateScene
+from carom.generalized.system import GeneralizedSystem
 from carom.io.files.scene_data import Encoder
 from carom.io.files.scene_parts import scene_to_text
 from carom.scene.scene import Scene
@@ -21,11 +23,18 @@ def digest(plan: Plan, inputs: dict[str, np.ndarray]) -> str:
     found = hashlib.sha256(repr(plan.settings).encode())
     for name, values in sorted(inputs.items()):
         found.update(name.encode() + np.ascontiguousarray(values).tobytes())
-    if isinstance(plan.scene, Scene):
-        found.update(scene_to_text(plan.scene, _Marker()).encode())
-    else:
-        found.update(mark_of(plan.scene).encode())
+    found.update(text_of(plan.varied.source).encode())
     return found.hexdigest()
+
+
+def text_of(source) -> str:
+    """Return a text that differs for another scene, system or function."""
+    if isinstance(source, Scene):
+        return scene_to_text(source, _Marker())
+    if isinstance(source, GeneralizedSystem):
+        scene = CoordinateScene(source._apart())
+        return "; ".join([*source._model.marks(mark_of), scene_to_text(scene, _Marker())])
+    return mark_of(source)
 
 
 class _Marker(Encoder):

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from carom._compiled.record_arrays import table
+from carom.generalized.scene import CoordinateScene
 from carom.model import records as r
 from carom.model.arrays import STATE
 from carom.results.accuracy import energy_error, inaccurate, sentences
@@ -22,8 +25,48 @@ from carom.stepping.energy_balance import WATCH
 PENDING, REFUSED = -1, -2
 
 
-def outcome_type(bodies: int) -> np.dtype:
-    """Return the data type of a row, for scenes with this number of bodies."""
+#: the state at the end of a run, by what it is of: fields of each, and their components
+STATES = {
+    "bodies": {"position": (3,), "orientation": (4,), "velocity": (3,), "angular_velocity": (3,)},
+    "coordinates": {"q": (), "v": ()},
+}
+
+
+class Layout(NamedTuple):
+    """What the state at the end of a run is of."""
+
+    names: tuple[str, ...]
+    of: str = "bodies"
+
+    @property
+    def fields(self) -> dict[str, tuple[int, ...]]:
+        """The fields of the state of one body or coordinate, with their shapes."""
+        return STATES[self.of]
+
+    @property
+    def fact(self) -> dict[str, str]:
+        """The names, as files have them."""
+        return {FACTS[self.of]: json.dumps(self.names)}
+
+    @classmethod
+    def of_facts(cls, about: Mapping, bodies: int = 0) -> Layout:
+        """Return what files have; those without names are of `bodies` with numbers."""
+        for of, fact in FACTS.items():
+            if fact in about:
+                return cls(tuple(json.loads(about[fact])), of)
+        return cls(tuple(f"body{k + 1}" for k in range(bodies)))
+
+    def __str__(self) -> str:
+        return f"{len(self.names)} {self.of}"
+
+
+#: names in files of the names of bodies or coordinates
+FACTS = {"bodies": "body_names", "coordinates": "coordinate_names"}
+
+
+def outcome_type(layout: Layout) -> np.dtype:
+    """Return the data type of a row."""
+    count = len(layout.names)
     return np.dtype(
         [
             ("status", "i8"),  # a `Status`, or PENDING, or REFUSED
@@ -37,17 +80,14 @@ def outcome_type(bodies: int) -> np.dtype:
             ("bounce_loss", "f8"),
             ("load_work", "f8"),
             ("energy_error", "f8"),  # greatest energy error, relative to the energy exchanged
-            ("position", "f8", (bodies, 3)),
-            ("orientation", "f8", (bodies, 4)),
-            ("velocity", "f8", (bodies, 3)),
-            ("angular_velocity", "f8", (bodies, 3)),
+            *((name, "f8", (count, *shape)) for name, shape in layout.fields.items()),
         ]
     )
 
 
-def no_outcomes(runs: int, bodies: int) -> np.ndarray:
+def no_outcomes(runs: int, layout: Layout) -> np.ndarray:
     """Return rows for runs that have not been made."""
-    rows = np.zeros(runs, dtype=outcome_type(bodies))
+    rows = np.zeros(runs, dtype=outcome_type(layout))
     rows["status"] = PENDING
     for name in rows.dtype.names or ():
         if rows.dtype[name].base.kind == "f":
@@ -75,7 +115,7 @@ def end_of(run: Run, status: Status) -> End:
     struck = run.clock["struck"][0]
     times = run.records.impact["time"][:struck]
     return End(
-        status, np.minimum.reduce(times) if struck else np.nan,
+        run.ending(status), np.minimum.reduce(times) if struck else np.nan,
         run.now.tobytes(), run.clock.tobytes(), run.watch.tobytes(),
         run.to_principal, run.scene, run.pairs, run.compiled.functions.reason, run.how.finer,
     )  # fmt: skip
@@ -103,16 +143,26 @@ def write(ends: dict[int, End], rows: np.ndarray) -> dict[int, str]:
         "bounce_loss": -clock["bounces"],
         "load_work": clock["loads"],
         "energy_error": energy_error(watch),
-        "position": now["x"],
-        "orientation": to_scene_axes(now["Q"], to_principal),
-        "velocity": now["v"],
-        "angular_velocity": now["w"],
+        **_states(found[0].scene, now, to_principal),
     }
     for name, values in columns.items():
         rows[name][at] = values
     return {
         at[i]: _message(Status(status[i]), found[i], clock["now"][i], watch[i])
         for i in np.flatnonzero(status != Status.SUCCESS)
+    }
+
+
+def _states(scene: Scene, now: np.ndarray, to_principal: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the states at the ends of runs by name."""
+    if isinstance(scene, CoordinateScene):
+        scale = scene.system.scale
+        return {"q": scale * now["x"][..., 0], "v": scale * now["v"][..., 0]}
+    return {
+        "position": now["x"],
+        "orientation": to_scene_axes(now["Q"], to_principal),
+        "velocity": now["v"],
+        "angular_velocity": now["w"],
     }
 
 

@@ -7,56 +7,45 @@ import threading
 import uuid
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 import carom
 from carom import checks
 from carom.run import Run
-from carom.scene.scene import Scene
 from carom.status import Status
-from carom.stepping.settings import Settings, check_scene
-from carom.studies.ensembles.again import Again
-from carom.studies.ensembles.outcome import REFUSED, End, end_of, no_outcomes, write
-from carom.studies.ensembles.robots import PLACED, of_scene, targets_of
-from carom.studies.values import Target, find_targets, whole
+from carom.stepping.settings import Settings
+from carom.studies.ensembles.outcome import REFUSED, End, Layout, end_of, no_outcomes, write
+from carom.studies.ensembles.varied import Varied, varied_of
 
 
 @dataclass(frozen=True)
 class Plan:
-    """The plan of an ensemble: its scene, or the function that makes the scene of a run, and its settings."""
+    """The plan of an ensemble: what is varied, and the settings of its runs."""
 
-    scene: Scene | Callable[..., Scene]
+    varied: Varied
     settings: Settings
-    targets: list[Target]
-    bodies: list[str]  # names
     grid: dict[str, np.ndarray]  # its axes by name; empty if there is none
     observe: Callable | None
     token: str = field(default_factory=lambda: uuid.uuid4().hex)
 
+    def one(self, inputs: dict[str, np.ndarray], run: int) -> tuple[Varied, dict[str, np.ndarray]]:
+        """Return what is varied, and the values of a single run."""
+        rows = {name: array[run : run + 1] for name, array in inputs.items()}
+        return varied_of(self.varied.source, self.settings, rows)
 
-def plan_of(scene, settings: Settings, inputs: dict[str, np.ndarray], grid, observe):
+
+def plan_of(source, settings: Settings, inputs: dict[str, np.ndarray], grid, observe):
     """Return the plan, and the values of the runs as it takes them."""
-    if isinstance(scene, Scene):
-        check_scene(scene, settings)
-        scene = scene._as_it_is()
-        given = of_scene(scene, inputs)
-        placed = {name: given[name] for name in PLACED if name in given}
-        values = whole(scene, {name: one for name, one in given.items() if name not in placed})
-        names = [body.name for body in scene.bodies]
-        targets = [*find_targets(scene, values), *targets_of(placed)]
-        return Plan(scene, settings, targets, names, grid, observe), values | placed
-    first = checks.call("scene", lambda: scene(**plain(inputs, 0)))
-    checks.instance("the result of the function scene", first, (Scene,))
-    names = [body.name for body in first.bodies]
-    return Plan(scene, settings, [], names, grid, observe), inputs
+    varied, values = varied_of(source, settings, inputs)
+    return Plan(varied, settings, grid, observe), values
 
 
 def facts(plan: Plan) -> dict[str, str]:
     """Return version, settings, names and grid, for `Ensemble.about`."""
     found = {"carom": carom.__version__, "settings": repr(plan.settings)}
-    found["body_names"] = json.dumps(plan.bodies)
+    found |= plan.varied.layout.fact
     if plan.grid:
         found["grid"] = json.dumps({name: axis.tolist() for name, axis in plan.grid.items()})
     return found
@@ -82,7 +71,7 @@ def do(plan: Plan, first: int, values: dict[str, np.ndarray]) -> Part:
     After an interruption the remaining runs of the part are pending.
     """
     runs = len(next(iter(values.values())))
-    part, ends, failures = Part(first, no_outcomes(runs, len(plan.bodies)), {}, {}), {}, {}
+    part, ends, failures = Part(first, no_outcomes(runs, plan.varied.layout), {}, {}), {}, {}
     for k in range(runs):
         try:
             found = one(plan, values, k, part)
@@ -165,9 +154,9 @@ def column(runs: int, value: np.ndarray) -> np.ndarray:
     return np.full((runs, *value.shape), empty, value.dtype)
 
 
-def join(parts: Iterable[Part], runs: int, bodies: int) -> Part:
+def join(parts: Iterable[Part], runs: int, layout: Layout) -> Part:
     """Return the parts of an ensemble as one, in the order of its runs; rows of other runs are pending."""
-    whole = Part(0, no_outcomes(runs, bodies), {}, {})
+    whole = Part(0, no_outcomes(runs, layout), {}, {})
     for part in sorted(parts, key=lambda part: part.first):
         rows = slice(part.first, part.first + len(part.outcomes))
         whole.outcomes[rows] = part.outcomes
@@ -182,22 +171,6 @@ def join(parts: Iterable[Part], runs: int, bodies: int) -> Part:
 
 def begin(plan: Plan, values: dict[str, np.ndarray], k: int) -> Run:
     """Return a run that is ready to start with the values of run k of a part."""
-    if not isinstance(plan.scene, Scene):
-        scene = plan.scene(**plain(values, k))
-        if not isinstance(scene, Scene):
-            raise TypeError(f"scene must return a carom.Scene, got {type(scene).__name__}")
-        if len(scene.bodies) != len(plan.bodies):
-            raise ValueError(
-                f"scene must have {len(plan.bodies)} bodies, as in run 0, got {len(scene.bodies)}"
-            )
-        check_scene(scene, plan.settings)
-        return Run(scene, plan.settings)
     if getattr(_here, "token", None) != plan.token:
-        _here.again, _here.token = Again(plan.scene, plan.settings, plan.targets), plan.token
-    return _here.again.start(values, k)
-
-
-def plain(values: dict[str, np.ndarray], k: int) -> dict[str, Any]:
-    """Return the values of run k, as a function that makes its scene gets them."""
-    one = {name: np.array(rows[k]) for name, rows in values.items()}
-    return {name: value if value.ndim else value.item() for name, value in one.items()}
+        _here.starter, _here.token = plan.varied.starter(plan.settings), plan.token
+    return _here.starter.start(values, k)

@@ -21,13 +21,16 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+    from carom.generalized.state import CoordinateState
     from carom.results.state import SystemState
     from carom.studies.ensembles.plan import Plan
 
 
 @dataclass(frozen=True, eq=False)
 class Ensemble(Shown):
-    """The results of R runs of a scene with N bodies. Each outcome is an attribute with one row for each run.
+    """The results of R runs of a scene with N bodies, or of a system in n coordinates.
+
+    Each outcome is an attribute with one row for each run.
 
     Attributes
     ----------
@@ -50,7 +53,8 @@ class Ensemble(Shown):
     NaN; `impacts`, the number of impacts; `first_impact`, the time of the first impact [s]; `kinetic_energy` at
     the end, `impact_loss`, `friction_loss`, `bounce_loss`, `load_work` [J]; `energy_error`, the largest energy
     error as a fraction of the largest energy exchanged until then (see `Options.energy_tolerance`); and the
-    state at the end: `position` (R, N, 3), `orientation` (R, N, 4), `velocity`, `angular_velocity` (R, N, 3).
+    state at the end: `position` (R, N, 3), `orientation` (R, N, 4), `velocity`, `angular_velocity` (R, N, 3),
+    or `q`, `v` (R, n) of a system in coordinates.
     """
 
     inputs: dict[str, np.ndarray]
@@ -123,15 +127,21 @@ class Ensemble(Shown):
 
     @property
     def bodies(self) -> list[str]:
-        """Names of the bodies, in the order of the outcomes."""
+        """Names of the bodies, in the order of the outcomes; empty for systems in coordinates."""
         return list(json.loads(self.about.get("body_names", "[]")))
+
+    @property
+    def coordinates(self) -> list[str]:
+        """Names of the coordinates of a system, in the order of the outcomes; empty for scenes."""
+        return list(json.loads(self.about.get("coordinate_names", "[]")))
 
     def __getitem__(self, name: Any) -> Any:
         """Return what all runs have of one thing, with one row for each run.
 
         The name of a body, or the body: its state at the end, ``runs["die"].position`` (R, 3). The name of
-        a joint: its coordinate and rate at the end, ``runs["hinge"].coordinate`` (R,), with angles from -pi to
-        pi. Otherwise the name of an input, of what was observed, or of an outcome: an array (R, ...).
+        a joint, or of a coordinate of a system: its coordinate and rate at the end,
+        ``runs["hinge"].coordinate`` (R,), of a joint with angles from -pi to pi. Otherwise the name of an
+        input, of what was observed, or of an outcome: an array (R, ...).
 
         Raises
         ------
@@ -142,7 +152,7 @@ class Ensemble(Shown):
 
         return view(self, name)
 
-    def state(self, run: int) -> SystemState:
+    def state(self, run: int) -> SystemState | CoordinateState:
         """Return the state at the end of a run, such as for ``model.qpos(runs.state(3))``.
 
         Raises
@@ -162,34 +172,9 @@ class Ensemble(Shown):
         ValueError
             If the ensemble was loaded from disk and so has no scene, or there is no run with this number.
         """
-        from carom.io.run_to_end import finish
-        from carom.run import Run
-        from carom.scene.scene import Scene
-        from carom.simulate import simulate
-        from carom.studies.ensembles.plan import plain, plan_of
-        from carom.studies.ensembles.robots import PLACED, put
-        from carom.studies.values import changed
+        from carom.studies.ensembles.views import solution_of
 
-        run = checks.integer("run", run, least=0, most=len(self) - 1)
-        plan = self._plan
-        if plan is None:
-            raise ValueError(
-                "solution needs the scene, but an ensemble from disk has none; call carom.ensemble with the "
-                "same arguments and the same save"
-            )
-        how = plan.settings._replace(save_every=1)
-        if isinstance(plan.scene, Scene):
-            one = {name: array[run : run + 1] for name, array in self.inputs.items()}
-            rows = plan_of(plan.scene, plan.settings, one, {}, None)[1]
-            values = {name: array[0, ...] for name, array in rows.items()}
-            scene = changed(plan.scene, plan.targets, values)
-            if any(name in values for name in PLACED):
-                moved = Run(scene, how)
-                put(moved, plan.targets, values)
-                return finish(moved, None, None, False)
-        else:
-            scene = plan.scene(**plain(self.inputs, run))
-        return simulate(scene, **how.as_dict(), options=how.options, throw=False)
+        return solution_of(self, checks.integer("run", run, least=0, most=len(self) - 1))
 
     def save(self, path: str | os.PathLike) -> None:
         """Write the ensemble to a file, as the ending says; `load` reads all but the last.

@@ -18,7 +18,7 @@ import numpy as np
 
 from carom import checks
 from carom.io.files.disk import put, sync
-from carom.studies.ensembles.outcome import PENDING, outcome_type
+from carom.studies.ensembles.outcome import PENDING, Layout, outcome_type
 from carom.studies.ensembles.plan import Part, join
 
 FORMAT = "carom ensemble 2"
@@ -46,7 +46,7 @@ class Store:
         self.path, self.group = Path(path), group
 
     @classmethod
-    def make(cls, path, inputs: dict[str, np.ndarray], bodies: int, chunk: int, about: dict):
+    def make(cls, path, inputs: dict[str, np.ndarray], layout: Layout, chunk: int, about: dict):
         """Return a new store without any runs."""
         zarr = _zarr()
         path = Path(path)
@@ -55,7 +55,7 @@ class Store:
         for name in OWN:
             _remove(path / name)
         runs = len(next(iter(inputs.values())))
-        group = zarr.create_group(str(path), attributes={**about, "chunk": chunk, "bodies": bodies})
+        group = zarr.create_group(str(path), attributes={**about, **layout.fact, "chunk": chunk})
         for name in ("inputs", "outcomes", "observed", MARKS):
             group.create_group(name)
         words = {
@@ -70,7 +70,7 @@ class Store:
                 values = np.searchsorted(words[name], values)
             _array(group, f"inputs/{in_file(name)}", values.shape, values.dtype, chunk)[:] = values
         group.attrs["words"], group.attrs["names"] = words, list(inputs)
-        kind = outcome_type(bodies)
+        kind = outcome_type(layout)
         for name in kind.names or ():
             base, shape = kind[name].base, kind[name].shape
             fill = PENDING if name == "status" else (0 if base.kind == "i" else np.nan)
@@ -111,6 +111,11 @@ class Store:
     def about(self) -> dict:
         """The facts that were stored when the store was created."""
         return dict(self.group.attrs)
+
+    @property
+    def layout(self) -> Layout:
+        """What the states at the ends of the runs are of."""
+        return Layout.of_facts(self.about, int(self.group.attrs.get("bodies", 0)))
 
     @property
     def runs(self) -> int:
@@ -199,7 +204,7 @@ class Store:
                         f"{self.path} is damaged: {folder}/{name} has {array.shape[0]} rows, "
                         f"and outcomes/status {runs}"
                     )
-        whole = join(self._parts(), runs, int(self.group.attrs["bodies"]))
+        whole = join(self._parts(), runs, self.layout)
         return whole._replace(failures=dict(sorted(whole.failures.items())))
 
     def _parts(self) -> Iterator[Part]:
@@ -207,7 +212,7 @@ class Store:
         columns = {name: self._column(f"outcomes/{name}") for name in self.group["outcomes"]}
         names = self.group["observed"]
         observed = {from_file(name): self._column(f"observed/{name}") for name in names}
-        kind = outcome_type(int(self.group.attrs["bodies"]))
+        kind = outcome_type(self.layout)
         for first in range(0, self.runs, self.chunk):
             file = self.path / MARKS / f"{first}.json"
             if not file.exists():

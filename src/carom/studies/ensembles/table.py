@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +9,8 @@ import numpy as np
 
 from carom.io.files.convert import BODY
 from carom.status import Status
-from carom.studies.ensembles.outcome import PENDING, REFUSED, no_outcomes
+from carom.studies.ensembles.outcome import PENDING, REFUSED, Layout, no_outcomes
+from carom.studies.values import OF_SYSTEM
 
 if TYPE_CHECKING:
     from carom.studies.ensembles.result import Ensemble
@@ -21,55 +21,61 @@ AXES: dict[tuple[int, ...], tuple[str, ...]] = {(3,): ("x", "y", "z"), (4,): ("w
 FOLDERS = ("inputs", "observed")
 
 
-def body_names(ensemble: Ensemble | SimpleNamespace) -> list[str]:
-    """Return the names of the bodies; those of a file without them are numbered."""
-    count = ensemble.outcomes.dtype["position"].shape[0]
-    given = ensemble.about.get("body_names")
-    return json.loads(given) if given else [f"body{k + 1}" for k in range(count)]
+def layout_of(ensemble: Ensemble | SimpleNamespace) -> Layout:
+    """Return what the states at the ends are of."""
+    names = ensemble.outcomes.dtype.names or ()
+    count = ensemble.outcomes.dtype["position"].shape[0] if "position" in names else 0
+    return Layout.of_facts(ensemble.about, count)
 
 
-def flat(name: str, shape: tuple[int, ...]) -> list[str]:
+def flat(name: str, shape: tuple[int, ...], layout: Layout) -> list[str]:
     """Return names of the columns of an array with this shape for each run."""
     if not shape:
         return [name]
     ends = AXES.get(shape) or [".".join(map(str, place)) for place in np.ndindex(shape)]
+    if layout.of == "coordinates" and name in OF_SYSTEM:
+        ends = layout.names
     return [f"{name}.{end}" for end in ends]
 
 
-def outcome_columns(bodies: list[str]) -> dict[str, tuple[str, Any]]:
+def outcome_columns(layout: Layout) -> dict[str, tuple[str, Any]]:
     """Return for each column of outcomes the outcome, and the place in it of each run."""
-    found = {}
-    for name in no_outcomes(0, len(bodies)).dtype.names or ():
-        if name not in BODY:
+    found: dict[str, tuple[str, Any]] = {}
+    for name in no_outcomes(0, layout).dtype.names or ():
+        if name not in layout.fields:
             found[name] = name, ()
-    for k, body in enumerate(bodies):
-        for name, ends in BODY.items():
-            found |= {f"{body}.{end}": (name, (k, i)) for i, end in enumerate(ends)}
+    for k, one in enumerate(layout.names):
+        for field, shape in layout.fields.items():
+            if shape:
+                found |= {f"{one}.{end}": (field, (k, i)) for i, end in enumerate(BODY[field])}
+            else:
+                found[f"{field}.{one}"] = field, (k,)
     return found
 
 
 def stems(ensemble: Ensemble) -> dict[str, dict[str, str]]:
     """Return names of inputs and of what is observed in the columns: their own, unless an outcome has it."""
-    taken = {*outcome_columns(body_names(ensemble)), "message"}
+    layout = layout_of(ensemble)
+    taken = {*outcome_columns(layout), "message"}
     found: dict[str, dict[str, str]] = {}
     for folder in FOLDERS:
         found[folder] = {}
         for name, values in getattr(ensemble, folder).items():
-            clear = not taken.intersection(flat(name, values.shape[1:]))
+            clear = not taken.intersection(flat(name, values.shape[1:], layout))
             found[folder][name] = name if clear else f"{folder}:{name}"
-            taken.update(flat(found[folder][name], values.shape[1:]))
+            taken.update(flat(found[folder][name], values.shape[1:], layout))
     return found
 
 
 def columns(ensemble: Ensemble) -> dict[str, np.ndarray]:
     """Return all numbers and words of the runs by name, each (R,)."""
-    found = {}
+    found, layout = {}, layout_of(ensemble)
     for folder, names in stems(ensemble).items():
         for name, stem in names.items():
             values = getattr(ensemble, folder)[name]
             rows = values.reshape(len(values), -1)
-            found |= dict(zip(flat(stem, values.shape[1:]), rows.T))
-    for column, (name, place) in outcome_columns(body_names(ensemble)).items():
+            found |= dict(zip(flat(stem, values.shape[1:], layout), rows.T))
+    for column, (name, place) in outcome_columns(layout).items():
         found[column] = ensemble.outcomes[name][(slice(None), *place)]
     found["status"] = np.array([WORDS[code] for code in found["status"].tolist()], dtype=object)
     found["message"] = messages(ensemble)
@@ -84,7 +90,7 @@ def messages(ensemble: Ensemble) -> np.ndarray:
     return found
 
 
-def layout(ensemble: Ensemble) -> dict[str, dict[str, list]]:
+def shapes(ensemble: Ensemble) -> dict[str, dict[str, list]]:
     """Return what `from_columns` needs: column, shape and type of inputs and of what is observed."""
     return {
         folder: {
@@ -98,16 +104,17 @@ def layout(ensemble: Ensemble) -> dict[str, dict[str, list]]:
 def from_columns(found: dict[str, np.ndarray], shapes: dict, about: dict) -> dict[str, Any]:
     """Return the fields of an `Ensemble` from its columns."""
     fields: dict[str, Any] = {"about": about}
-    runs = len(found["status"])
+    runs, layout = len(found["status"]), Layout.of_facts(about)
     for folder in FOLDERS:
         fields[folder] = {}
         for name, (stem, shape, kind) in shapes[folder].items():
-            rows = [found[column] for column in flat(stem, tuple(shape))] or [np.zeros((runs, 0))]
+            rows = [found[column] for column in flat(stem, tuple(shape), layout)] or [
+                np.zeros((runs, 0))
+            ]
             fields[folder][name] = np.stack(rows, axis=-1).reshape(runs, *shape).astype(kind)
-    bodies = json.loads(about["body_names"])
-    rows = no_outcomes(runs, len(bodies))
+    rows = no_outcomes(runs, layout)
     codes = {word: code for code, word in WORDS.items()}
-    for column, (name, place) in outcome_columns(bodies).items():
+    for column, (name, place) in outcome_columns(layout).items():
         values = found[column]
         if column == "status":
             values = [codes[word] for word in values]

@@ -1,4 +1,4 @@
-"""What an ensemble has of one body or joint: a row for each run."""
+"""What an ensemble has of one body, joint or coordinate, a row for each run; and of one run."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from carom import checks
+from carom.generalized.state import CoordinateState
+from carom.generalized.system import GeneralizedSystem
+from carom.io.run_to_end import finish
 from carom.results.state import SystemState
-from carom.scene.scene import Scene
-from carom.studies.ensembles.plan import plain, plan_of
-from carom.studies.values import changed
-
-STATES = ("position", "orientation", "velocity", "angular_velocity")
+from carom.studies.ensembles.plan import Plan
+from carom.studies.ensembles.table import layout_of
 
 
 class BodyEnds(NamedTuple):
@@ -25,7 +25,7 @@ class BodyEnds(NamedTuple):
 
 
 class Ends(NamedTuple):
-    """Coordinates and rates of a joint at the ends of all runs, (R,), or (R, n) of a joint with several."""
+    """Coordinates and rates at the ends of all runs, (R,), or (R, n) of a joint with several."""
 
     coordinate: np.ndarray  #: angles are from -pi to pi [rad], others in [m]
     rate: np.ndarray
@@ -33,10 +33,11 @@ class Ends(NamedTuple):
 
 def view(ensemble, key) -> Any:
     """Return the results of one thing, given by name or as a part."""
-    name = getattr(key, "name", key)
-    if name in ensemble.bodies:
-        at = ensemble.bodies.index(name)
-        return BodyEnds(*(ensemble.outcomes[field][:, at] for field in STATES))
+    name, layout = getattr(key, "name", key), layout_of(ensemble)
+    if name in layout.names:
+        at = layout.names.index(name)
+        kind = {"bodies": BodyEnds, "coordinates": Ends}[layout.of]
+        return kind(*(ensemble.outcomes[field][:, at] for field in layout.fields))
     for found in (ensemble.inputs, ensemble.observed):
         if name in found:
             return found[name]
@@ -45,47 +46,49 @@ def view(ensemble, key) -> Any:
     joints = _joints(ensemble)
     if name in joints:
         return _ends(ensemble, name)
-    known = [*ensemble.bodies, *joints, *ensemble.inputs, *ensemble.observed]
+    known = [*layout.names, *joints, *ensemble.inputs, *ensemble.observed]
     known += ensemble.outcomes.dtype.names or ()
     near = checks.nearest(str(name), known) or f"; it has {', '.join(map(repr, known[:12]))}"
     raise KeyError(f"the ensemble has no {checks.shown(name)}{near}")
 
 
-def state_of(ensemble, run: int) -> SystemState:
-    """Return the state at the end of a run, of the scene of this run."""
-    row = ensemble.outcomes[run]
-    energies = float(row["kinetic_energy"]), float("nan")
-    motion = tuple(row[field] for field in STATES)
-    return SystemState._of_file(_scene(ensemble, run), float(row["t"]), *energies, motion)
+def state_of(ensemble, run: int) -> Any:
+    """Return the state at the end of a run, of the scene or system of this run."""
+    at = ensemble.outcomes[run]
+    varied, values = known_plan(ensemble, "a state").one(ensemble.inputs, run)
+    system, energy = varied.stated(values, 0), float(at["kinetic_energy"])
+    motion = tuple(at[field] for field in varied.layout.fields)
+    if isinstance(system, GeneralizedSystem):
+        q, v = motion
+        return CoordinateState(float(at["t"]), q, v, energy, float("nan"))
+    return SystemState._of_file(system, float(at["t"]), energy, float("nan"), motion)
+
+
+def solution_of(ensemble, run: int) -> Any:
+    """Return the whole solution of a run, which is made again."""
+    plan = known_plan(ensemble, "solution")
+    varied, values = plan.one(ensemble.inputs, run)
+    how = plan.settings._replace(save_every=1)
+    return finish(varied.new_run(how, values, 0), None, None, False)
+
+
+def known_plan(ensemble, what: str) -> Plan:
+    """Return the plan, which an ensemble from disk does not have."""
+    if ensemble._plan is None:
+        raise ValueError(
+            f"{what} needs the scene, but an ensemble from disk has none; call carom.ensemble with the same "
+            "arguments and the same save"
+        )
+    return ensemble._plan
 
 
 def _joints(ensemble) -> list[str]:
     plan = ensemble._plan
-    if plan is None or not isinstance(plan.scene, Scene):
-        return []
-    return [joint.name for joint in plan.scene.joints]
+    joints = () if plan is None else getattr(plan.varied.source, "joints", ())
+    return [joint.name for joint in joints]
 
 
 def _ends(ensemble, name: str) -> Ends:
     states = [state_of(ensemble, k) for k in range(len(ensemble))]
     pairs = [(state[name].coordinate, state[name].rate) for state in states]
     return Ends(*(np.array(column) for column in zip(*pairs)))
-
-
-def _scene(ensemble, run: int) -> Scene:
-    """Return the scene of a run."""
-    plan = ensemble._plan
-    if plan is None:
-        raise ValueError(
-            "a state needs the scene, but an ensemble from disk has none; call carom.ensemble with the same "
-            "arguments and the same save"
-        )
-    if not isinstance(plan.scene, Scene):
-        return plan.scene(**plain(ensemble.inputs, run))
-    if all(
-        target.light and target.field not in ("position", "orientation") for target in plan.targets
-    ):
-        return plan.scene
-    one = {name: array[run : run + 1] for name, array in ensemble.inputs.items()}
-    values = plan_of(plan.scene, plan.settings, one, {}, None)[1]
-    return changed(plan.scene, plan.targets, {name: rows[0] for name, rows in values.items()})

@@ -105,25 +105,24 @@ def _bounds(name: str, given: Mapping, scene: Scene | None) -> tuple[float, floa
         return KNOWN[checks.choice("a name in parameters", name, KNOWN)]
     stem, component = split(scene, name, "parameters")
     found = find(scene, stem)
-    value: Any = None if found is None else found.value
-    if not component and (
-        found is None or np.ndim(value) > 0 or isinstance(value, (str, SpeedLaw))
-    ):
-        label = next(iter(components(value)), "x")
+    assert found is not None
+    value: Any = found.value
+    if not component and (np.ndim(value) > 0 or isinstance(value, (str, SpeedLaw))):
+        label = next(iter(components(found)), "x")
         raise ValueError(
             f"parameters must be numbers, got {name!r}, which is none; of a vector give components, like "
             f"{f'{name}.{label}'!r}"
         )
-    if found is not None and isinstance(found.value, SpeedLaw):  # a number of a law
+    if isinstance(value, SpeedLaw):  # a number of a law
         low, high = Found(found.owner, found.field, component).bounds
-        if isinstance(law := found.value, Friction):  # 0 is none of its numbers
+        if isinstance(law := value, Friction):  # 0 is none of its numbers
             low = max(low, LEAST_PART * getattr(law, component))
             if component == "kinetic" and f"{stem}.static" not in given:
                 high = law.static
             elif component == "static" and f"{stem}.kinetic" not in given:
                 low = law.kinetic
         return low, high, 0.0
-    if component or found is None:
+    if component:
         return -np.inf, np.inf, 0.0
     return (*found.bounds, 0.0)
 
