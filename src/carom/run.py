@@ -242,7 +242,9 @@ class Run:
             points = max(
                 ROOM_AT_FIRST, 2 * len(self.multiple.contact), 2 * int(self.work.hit["closed"][0])
             )
-            self.multiple = new_multiple(min(len(self.group.mu), points), self.multiple.settings)
+            self.multiple = new_multiple(
+                min(len(self.group.problem.mu), points), self.multiple.settings
+            )
         elif what == r.NEW_PAIRS:
             noted = self.islands.pair[0, : self.islands.plan[0].noted]
             self.add_pairs(noted[np.lexsort(noted.T[::-1])])

@@ -39,7 +39,7 @@ def as_one(system, k, state, group, work):
         place(contact, core, state, point)
     inverse_masses(system, 1, work.struck, state, work, hit.W)
     hit.u[0], hit.u[1], hit.u[2] = contact_velocity(system, point, state)
-    return k == 1 or move_alike(k, group.u, group.W, hit, 10.0 * slow(contact, state))
+    return k == 1 or move_alike(k, group.u, group.problem.W, hit, 10.0 * slow(contact, state))
 
 
 @kernel

@@ -98,7 +98,7 @@ def write_share(data, contact, i, k):
     given = multiple.contact[i]
     if given.restitution > 0.0:
         phases |= result.summary[0].marks & (layout.AT_ONCE | layout.PLASTIC)
-    copy_block(group.W, n, records.impact[clock.struck].W)
+    copy_block(group.problem.W, n, records.impact[clock.struck].W)
     blow = Blow(
         together=k, before=three(group.u, n), after=three(result.velocity, n),
         impulse=three(result.impulse, n), compression=taken, restitution=returned, friction=loss,

@@ -93,7 +93,7 @@ def strike(model, data, method, c):
     if approach < 0.0 or jams:
         hit.closed = max(k, 2) if jams else k  # after a jam active points are always decided again
         if k > 1:
-            inverse_masses(system, k, group.points[0], state, work, group.W)
+            inverse_masses(system, k, group.points[0], state, work, group.problem.W)
             velocities(system, k, group.points[0], state, group.u)
         single = as_one(system, k, state, group, work)
         if not single and data.multiple.contact.shape[0] < k:

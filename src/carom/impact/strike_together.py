@@ -29,7 +29,7 @@ HERTZ, LINEAR = 1.5, 1.0
 @unit
 def resolve_group(k, laws, group, multiple) -> int:
     """Solve the impact of k points; return its code."""
-    contacts = by_reference(CornerContacts(multiple.contact, group.W, group.u))
+    contacts = by_reference(CornerContacts(multiple.contact, group.problem.W, group.u))
     given, exponent = multiple.settings, exponent_of(k, multiple)
     if exponent == HERTZ and all_round(k, multiple):
         stiffen(k, multiple)
@@ -108,7 +108,7 @@ def strike_together(model, data, c, k):
         contact = system.contacts[group.closed[i].contact]
         if abs(u[3 * i]) <= slow(contact, state):
             u[3 * i] = 0.0  # touching, not striking
-        if u[3 * i] < 0.0 and blocked(system, group.points[0][i], group.W[3 * i, 3 * i]):
+        if u[3 * i] < 0.0 and blocked(system, group.points[0][i], group.problem.W[3 * i, 3 * i]):
             hit.code = BLOCKED
             return
         j, contact_state = group.closed[i].active, active.contact_states[group.closed[i].contact]

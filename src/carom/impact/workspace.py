@@ -66,32 +66,31 @@ class Equations(NamedTuple):
     iterations: np.ndarray
 
 
-class Group(NamedTuple):
-    """Workspace for up to K points of N bodies.
+class Bodies(NamedTuple):
+    """The bodies of a group."""
 
-    Vectors (3K,) and matrices (3K, 3K) have rows n, t1, t2 for each point.
+    member: np.ndarray  # (N,)
+    base: np.recarray  # (N,) STATE of an implicit stage, without its own term
+    free: np.recarray  # (N,) STATE with velocities of a stage without forces of points
+
+
+class Group(NamedTuple):
+    """The closed points of a group, up to K, with its bodies, contact problem and equations.
+
+    Vectors (3K,) have rows n, t1, t2 for each point.
     """
 
     closed: np.recarray  # (K,) CLOSED_POINT
     count: np.ndarray  # (1,) those that `contact.closed_points` has listed
     points: np.recarray  # (2, K) POINT: of the present state; of the end of a step
     u: np.ndarray  # (3K,) velocities [m/s]
-    c: np.ndarray  # (3K,) velocities [m/s] or accelerations [m/s^2] without the unknown p
     p: np.ndarray  # (3K,) impulses [N s] or forces [N]
     a: np.ndarray  # (3K,) accelerations with them [m/s^2]
-    back: (
-        np.ndarray
-    )  # (3K,) errors of positions [m] or velocities, then the impulses that remove them
-    W: np.ndarray  # (3K, 3K) inverse mass [1/kg]
+    back: np.ndarray  # (3K,) errors of positions [m] or velocities, then impulses that remove them
     idle: np.ndarray  # (2, K, K) the projector to normal forces that move nothing, and its square
-    mu: np.ndarray  # (K,)
-    kind: np.ndarray  # (K,) of `carom.friction`
-    heading: np.ndarray  # (K, 2)
-    member: np.ndarray  # (N,) bodies of the group
-    base: np.recarray  # (N,) STATE of an implicit stage, without its own term
-    free: np.recarray  # (N,) STATE with velocities of a stage without forces of points
+    bodies: Bodies
     equations: Equations
-    problem: ContactProblem  # of these W, c, mu, kind and heading
+    problem: ContactProblem  # its W, c, mu, kind and heading; c are velocities or accelerations without p
     cone: ContactWork
 
 
@@ -125,18 +124,16 @@ def capacity(system: System, more: bool) -> int:
 def new_group(system: System, more: bool = False) -> Group:
     """Return the workspace for the largest group of `system`; with `more` contacts may be added."""
     n, k = system.bodies.size, capacity(system, more)
-    u, c, p, a, back = np.zeros((5, 3 * k))
+    u, p, a, back = np.zeros((4, 3 * k))
     problem = ContactProblem(
-        W=np.zeros((3 * k, 3 * k)), c=c, mu=np.zeros(k), kind=np.zeros(k, dtype=np.int64),
+        W=np.zeros((3 * k, 3 * k)), c=np.zeros(3 * k), mu=np.zeros(k), kind=np.zeros(k, dtype=np.int64),
         heading=np.zeros((k, 2)),
     )  # fmt: skip
+    bodies = Bodies(member=np.zeros(n, dtype=np.int64), base=table(STATE, n), free=table(STATE, n))
     return Group(
-        closed=table(CLOSED_POINT, k), count=np.zeros(1, dtype=np.int64),
-        points=table(POINT, 2, k), u=u, c=c, p=p, a=a, back=back,
-        W=problem.W, idle=np.zeros((2, k, k)), mu=problem.mu, kind=problem.kind,
-        heading=problem.heading, problem=problem, member=np.zeros(n, dtype=np.int64),
-        base=table(STATE, n), free=table(STATE, n),
-        equations=new_equations(3 * k), cone=new_contact_work(k),
+        closed=table(CLOSED_POINT, k), count=np.zeros(1, dtype=np.int64), points=table(POINT, 2, k),
+        u=u, p=p, a=a, back=back, idle=np.zeros((2, k, k)), bodies=bodies,
+        equations=new_equations(3 * k), problem=problem, cone=new_contact_work(k),
     )  # fmt: skip
 
 

@@ -79,7 +79,7 @@ def activate_group(model, data, k, label, horizon):
     active, state, group, work = data.active, data.state, data.group, data.work
     clock, records = data.clocks[0], data.records
     rows = add_frictions(system, label, state, k, group, work)
-    inverse_masses(system, rows, group.points[0], state, work, group.W)
+    inverse_masses(system, rows, group.points[0], state, work, group.problem.W)
     pose_forces(model, data, rows, label)
     for row in range(3 * rows):  # a first guess: those of another group, or of other points
         group.p[row] = 0.0
@@ -115,12 +115,12 @@ def pose_forces(model, data, k, label):
     work.moment[0].start = data.clocks[0].now
     accelerate_start(model, data, label)
     write_motion(system, k, data.state, work.stages[0], group, work)
-    still = controls.rest * greatest(3 * k, group.c) * controls.step
+    still = controls.rest * greatest(3 * k, group.problem.c) * controls.step
     for i in range(k):
         d1, d2, _ = slip_of(system, data, i, still)
-        group.kind[i] = SLIDING if d1 != 0.0 or d2 != 0.0 else CONE
-        group.heading[i, 0], group.heading[i, 1] = d1, d2
-        set_friction(system, i, group.kind[i] == SLIDING, group)
+        group.problem.kind[i] = SLIDING if d1 != 0.0 or d2 != 0.0 else CONE
+        group.problem.heading[i, 0], group.problem.heading[i, 1] = d1, d2
+        set_friction(system, i, group.problem.kind[i] == SLIDING, group)
 
 
 @kernel
@@ -136,7 +136,7 @@ def decide_active(model, data, k, rows, horizon):
         closed_point = group.closed[i]
         leaves = abs(group.u[3 * i]) > slow(system.contacts[closed_point.contact], state)
         closed_point.stays, closed_point.bounces = 0 if leaves else 1, 0.0
-    push = greatest(3 * k, group.c)
+    push = greatest(3 * k, group.problem.c)
     for turn in range(k + 1):
         solve_among(system, k, rows, group)
         more = False
@@ -148,7 +148,9 @@ def decide_active(model, data, k, rows, horizon):
                 if bounces_end(system, contact, u, -a, slow(contact, state), end):
                     group.closed[i].stays, more = 1, True
                     group.closed[i].bounces = time_without_torque(system, contact, u, -a, state)
-            elif turn == 0 and a > max(LEAVING_PART * push, group.p[3 * i] * group.W[3 * i, 3 * i]):
+            elif turn == 0 and a > max(
+                LEAVING_PART * push, group.p[3 * i] * group.problem.W[3 * i, 3 * i]
+            ):
                 group.closed[i].stays = 0  # it has no force
         if not more:
             break
@@ -275,7 +277,7 @@ def lay_down(model, data, k, label):
         return
     kinetic, potential, _ = energies(system, state, clock.now)
     active, work = data.active, data.work
-    count = members(work, label, group.member)
+    count = members(work, label, group.bodies.member)
     for c in range(system.contacts.shape[0]):
         outside = concerns(system.contacts[c], label, work) and not inside(system, c, state, work)
         active.contact_states[c].visited = 1 if outside else 0

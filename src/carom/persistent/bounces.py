@@ -112,17 +112,17 @@ def end_bounces(model, data, k, label, horizon):
     """
     system, controls = model.system, model.controls
     state, group, work, clock = data.state, data.group, data.work, data.clocks[0]
-    count = members(work, label, group.member)
-    speed = greatest_speed(system, state, count, group.member)
+    count = members(work, label, group.bodies.member)
+    speed = greatest_speed(system, state, count, group.bodies.member)
     still = ROUND_OFF * speed
     for i in range(3 * k):
-        still = max(still, controls.rest * controls.step * abs(group.c[i]))
+        still = max(still, controls.rest * controls.step * abs(group.problem.c[i]))
     still = min(still, REST_SHARE * speed)
     for i in range(k):
         contact = system.contacts[group.closed[i].contact]
-        end = horizon_of(system, contact, controls, -group.c[3 * i], horizon)
+        end = horizon_of(system, contact, controls, -group.problem.c[3 * i], horizon)
         if not time_to_stop(i, group) > end:  # friction ends with the slip
-            group.heading[i, 0], group.heading[i, 1] = 0.0, 0.0
+            group.problem.heading[i, 0], group.problem.heading[i, 1] = 0.0, 0.0
     find_pull(k, 1, SUM_ERROR * speed, group)
     normal, tangential = work_of_pull(k, group)
     if normal > 0.0 or not normal + tangential <= spare(
@@ -136,10 +136,10 @@ def end_bounces(model, data, k, label, horizon):
         clock.loads += power_of_surface(group.points[0][i], state, x[3 * i : 3 * i + 3])
     if give(system, k, count, state, group, work):
         clock.loads += driven_power(system, state, work)  # of an impulse: its work
-    slow_enough = greatest_speed(system, state, count, group.member) <= still
+    slow_enough = greatest_speed(system, state, count, group.bodies.member) <= still
     if slow_enough and not on_drive(k, group.points[0]):
         for m in range(count):
-            b = group.member[m]
+            b = group.bodies.member[m]
             for r in range(3):
                 state[b].v[r], state[b].w[r] = 0.0, 0.0
 
@@ -165,16 +165,18 @@ def find_pull(k, friction, tiny, group):
     x = group.back
     for i in range(k):  # the normal of a point that stays is removed, and its tangents if it sticks
         closed_point = group.closed[i]
-        closed_point.rows = 0 if closed_point.stays == 0 else 3 if group.kind[i] == CONE else 1
+        closed_point.rows = (
+            0 if closed_point.stays == 0 else 3 if group.problem.kind[i] == CONE else 1
+        )
     for with_friction in range(friction, -1, -1):
         n = factor_given(k, with_friction == 1, group)
         for i in range(3 * k):
             x[i] = group.u[i]
         left = solve_rows(k, n, tiny, group, x)
         for i in range(k if with_friction == 1 else 0):
-            if group.closed[i].rows == 1 and group.kind[i] == SLIDING:
+            if group.closed[i].rows == 1 and group.problem.kind[i] == SLIDING:
                 for r in range(2):
-                    x[3 * i + 1 + r] = -group.mu[i] * group.heading[i, r] * x[3 * i]
+                    x[3 * i + 1 + r] = -group.problem.mu[i] * group.problem.heading[i, r] * x[3 * i]
         if left <= max(tiny, REMAINDER * greatest(3 * k, group.u)):
             return
 
@@ -182,4 +184,4 @@ def find_pull(k, friction, tiny, group):
 @kernel
 def velocity_after(q, k, group):
     """Return the velocity of row q after the impulses in RETURN."""
-    return add_product(group.u[q], 3 * k, group.W[q], group.back)
+    return add_product(group.u[q], 3 * k, group.problem.W[q], group.back)

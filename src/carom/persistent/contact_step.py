@@ -101,8 +101,8 @@ def step_group(model, data, method, label, h):
     lets_go = order > 0 and opens(data, label)
     if lets_go:
         note_errors(model, data, method.closing_E, label, 0, h)
-    for m in range(members(work, label, group.member)):
-        miss, b = work.body[group.member[m]].miss, group.member[m]
+    for m in range(members(work, label, group.bodies.member)):
+        miss, b = work.body[group.bodies.member[m]].miss, group.bodies.member[m]
         bound_accelerations_of(work, b, 2)
         miss[0], miss[1], miss[2] = max(miss[0], 0.5 * h * h * push), 0.0, 0.0
     note_unnamed(model, data, label, friction + applied, h, push)
@@ -149,7 +149,7 @@ def opens(data, label):
 @kernel
 def closing_size(model, data, label):
     """Return the displacement by friction [m] that a closing step may neglect."""
-    controls, member, least = model.controls, data.group.member, math.inf
+    controls, member, least = model.controls, data.group.bodies.member, math.inf
     for m in range(members(data.work, label, member)):
         size = model.system.bodies[member[m]].extent
         least = min(least, ERROR_SHARE * allowed_error(controls.rtol, controls.atol, size, 0.0))
@@ -163,8 +163,8 @@ def note_errors(model, data, E, label, k, h):
     Slip of k points that has passed its stop, under friction of its old direction, is an error of velocity.
     """
     system, controls, group, work = model.system, model.controls, data.group, data.work
-    for m in range(members(work, label, group.member)):
-        b, longest = group.member[m], math.inf
+    for m in range(members(work, label, group.bodies.member)):
+        b, longest = group.bodies.member[m], math.inf
         work.body[b].bound[:3] = 0.0
         bound_accelerations_of(work, b, E.shape[1])
         if controls.order > 0:

@@ -56,8 +56,12 @@ def solve_forces(k, group):
     Slip goes on along the headings that are known. Return whether there is a solution.
     """
     for i in range(k):
-        if group.kind[i] == SLIDING and group.heading[i, 0] == 0.0 and group.heading[i, 1] == 0.0:
-            group.kind[i] = CONE
+        if (
+            group.problem.kind[i] == SLIDING
+            and group.problem.heading[i, 0] == 0.0
+            and group.problem.heading[i, 1] == 0.0
+        ):
+            group.problem.kind[i] = CONE
     found = solve_stage(k, 0.0, group)
     note_accelerations(k, group)
     return found
@@ -71,7 +75,10 @@ def change_loads(k, turn, group):
         return True
     for i in range(k):
         if closed[i].motion == MOTION_POINT and closed[i].presses == 0 and closed[i].weight > 0.0:
-            if dot(3 * k, group.W[3 * i], p) + group.c[3 * i] < -limits.SETTLED_SHARE * push:
+            if (
+                dot(3 * k, group.problem.W[3 * i], p) + group.problem.c[3 * i]
+                < -limits.SETTLED_SHARE * push
+            ):
                 closed[i].presses = 1
                 return True
     return False
@@ -83,9 +90,9 @@ def largest(k, group):
     push = 0.0
     for i in range(k):
         if group.closed[i].motion == MOTION_POINT:
-            push = max(push, abs(group.c[3 * i]))
+            push = max(push, abs(group.problem.c[3 * i]))
         elif group.closed[i].parent == CONSTANT:
-            push = max(push, group.mu[i] * group.W[3 * i + 1, 3 * i + 1])
+            push = max(push, group.problem.mu[i] * group.problem.W[3 * i + 1, 3 * i + 1])
     return push
 
 
@@ -100,13 +107,15 @@ def list_unknowns(k, group):
         bound = parent == CONSTANT or group.closed[parent].presses == 1
         for a in range(3):
             row = 3 * i + a
-            if bound and a >= first and moves(group, row) and (a == 0 or group.mu[i] > 0.0):
+            if bound and a >= first and moves(group, row) and (a == 0 or group.problem.mu[i] > 0.0):
                 rows[n], n = row, n + 1
             else:
                 group.p[row] = 0.0
         if is_driven(group, i):
             u = group.u[3 * i + 1]
-            group.p[3 * i + 1] = -group.mu[i] if u > 0.0 else group.mu[i] if u < 0.0 else 0.0
+            group.p[3 * i + 1] = (
+                -group.problem.mu[i] if u > 0.0 else group.problem.mu[i] if u < 0.0 else 0.0
+            )
     return n
 
 
@@ -173,8 +182,8 @@ def write_equations(k, n, hg, idle, group):
 def write_normal(k, n, i, idle, group):
     """Write the equation of the normal force of one point, unknown i."""
     rows, errors, A = group.equations.rows, group.equations.r, group.equations.A
-    W, p, row = group.W[rows[i]], group.p, rows[i]
-    errors[i] = group.c[row] + dot(3 * k, W, p)
+    W, p, row = group.problem.W[rows[i]], group.p, rows[i]
+    errors[i] = group.problem.c[row] + dot(3 * k, W, p)
     for j in range(n):
         A[i, j] = W[rows[j]]
         if idle > 0.0 and rows[j] % 3 == 0:
@@ -187,20 +196,20 @@ def write_normal(k, n, i, idle, group):
 def write_disc(k, n, i, width, hg, group):
     """Write the equations of the friction of one point: unknowns i and, if `width` is 2, i + 1."""
     rows, errors, A = group.equations.rows, group.equations.r, group.equations.A
-    W, p = group.W, group.p
+    W, p = group.problem.W, group.p
     a, b, unit = rows[i], rows[i + width - 1], rows[i] // 3
     closed_point = group.closed[unit]
     normal = 3 * closed_point.parent  # of the force that bounds the friction; below 0 if none does
     scale = 0.5 * (W[a, a] + W[b, b])
-    known = closed_point.passes == 1 if hg > 0.0 else group.kind[unit] == SLIDING
-    first = group.c[a] if hg == 0.0 else group.u[a] / hg
-    second = group.c[b] if hg == 0.0 else group.u[b] / hg
+    known = closed_point.passes == 1 if hg > 0.0 else group.problem.kind[unit] == SLIDING
+    first = group.problem.c[a] if hg == 0.0 else group.u[a] / hg
+    second = group.problem.c[b] if hg == 0.0 else group.u[b] / hg
     ga = first + dot(3 * k, W[a], p)
     gb = second + dot(3 * k, W[b], p) if width == 2 else 0.0
     za, zb = p[a] - ga / scale, p[b] - gb / scale if width == 2 else 0.0
     z, radius = math.sqrt(za * za + zb * zb), radius_of(group, unit)
     if known:
-        za, zb, z = -group.heading[unit, 0], -group.heading[unit, 1], 1.0
+        za, zb, z = -group.problem.heading[unit, 0], -group.problem.heading[unit, 1], 1.0
     if not known and z <= radius:
         for r in range(width):
             for j in range(n):
@@ -211,7 +220,7 @@ def write_disc(k, n, i, width, hg, group):
     errors[i] = scale * (p[a] - radius * ea)
     if width == 2:
         errors[i + 1] = scale * (p[b] - radius * eb)
-    grows = group.mu[unit] if normal >= 0 and p[normal] > 0.0 else 0.0
+    grows = group.problem.mu[unit] if normal >= 0 and p[normal] > 0.0 else 0.0
     for j in range(n):
         row = rows[j]
         da, db = -W[a, row] / scale, -W[b, row] / scale if width == 2 else 0.0

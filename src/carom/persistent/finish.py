@@ -86,7 +86,7 @@ def write_end(model, data, label, k) -> bool:
 def copy_to_stage(count, state, group, work):
     """Copy the bodies of a group to `work.stage`."""
     for m in range(count):
-        copy_state(state[group.member[m]], work.stage[group.member[m]])
+        copy_state(state[group.bodies.member[m]], work.stage[group.bodies.member[m]])
 
 
 @kernel
@@ -97,7 +97,7 @@ def note_modes(model, data, k, h):
     friction could have stopped in the step goes on, whatever round-off has left of its force in a short step.
     """
     active, group, controls = data.active, data.group, model.controls
-    still = controls.rest * greatest(3 * k, group.c) * controls.step
+    still = controls.rest * greatest(3 * k, group.problem.c) * controls.step
     for i in range(k):
         closed_point, u, p = group.closed[i], group.u, group.p
         slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
@@ -107,21 +107,21 @@ def note_modes(model, data, k, h):
         free = bare or not force < FRICTION_LIMIT * radius_of(group, i)
         full = slip > still and (free or slip > 2.0 * braked(i, h, group))
         full = full or turns_back(i, h, group)
-        group.kind[i] = SLIDING if group.mu[i] == 0.0 or full else CONE
+        group.problem.kind[i] = SLIDING if group.problem.mu[i] == 0.0 or full else CONE
         if closed_point.listed == 0:
             continue
-        slides = group.kind[i] == SLIDING and slip > 0.0
+        slides = group.problem.kind[i] == SLIDING and slip > 0.0
         d1, d2 = u[3 * i + 1] / slip if slides else 0.0, u[3 * i + 2] / slip if slides else 0.0
         store_slip(model.system, active, closed_point, d1, d2, slip if slides else 0.0)
-        if not is_torque(closed_point) and group.mu[i] > 0.0:
-            next_mode = MODE_SLIP if group.kind[i] == SLIDING else MODE_STICK
+        if not is_torque(closed_point) and group.problem.mu[i] > 0.0:
+            next_mode = MODE_SLIP if group.problem.kind[i] == SLIDING else MODE_STICK
             memory_of(model.system, active, closed_point).next = next_mode
 
 
 @kernel
 def braked(i, h, group):
     """Return the greatest change of the slip of a point, or of the rate of a joint, by friction in a time h."""
-    W, q = group.W, 3 * i
+    W, q = group.problem.W, 3 * i
     return h * radius_of(group, i) * max(W[q + 1, q + 1], W[q + 2, q + 2])
 
 
@@ -138,7 +138,7 @@ def turns_back(i, h, group):
 def any_friction(k, group):
     """Return whether any of k points has friction."""
     for i in range(k):
-        if group.mu[i] > 0.0 and group.closed[i].motion == MOTION_POINT:
+        if group.problem.mu[i] > 0.0 and group.closed[i].motion == MOTION_POINT:
             return True
     return False
 
@@ -154,10 +154,10 @@ def check_end(model, data, label, s, h, given) -> bool:
     end, group, work = data.work.trial, data.group, data.work
     count, loaded = bodies_of(model, data, label)
     for m in range(count):
-        note_velocity(work.stage[group.member[m]], work.stages[s, group.member[m]])
+        note_velocity(work.stage[group.bodies.member[m]], work.stages[s, group.bodies.member[m]])
     accelerate_freely(model, data, loaded, count, s)
     k = write_rows(model, data, label, s)
-    push = greatest(3 * k, group.c)
+    push = greatest(3 * k, group.problem.c)
     directions = set_modes(system, active, k, group)
     if given:
         if directions < (PASSED if locates(model, data) else SAME):
@@ -192,9 +192,9 @@ def check_end(model, data, label, s, h, given) -> bool:
         take_forces(active_point, i, group)
         if closed_point.motion != MOTION_POINT:
             continue
-        if not lasts and group.kind[i] == CONE and active_point.next == MODE_SLIP:
+        if not lasts and group.problem.kind[i] == CONE and active_point.next == MODE_SLIP:
             active_point.next = MODE_STICK
-        smooth = adapts and group.mu[i] == 0.0
+        smooth = adapts and group.problem.mu[i] == 0.0
         if slips and active_point.next == MODE_STICK:
             waits = eager and not smooth and (located > 0.0 or law or exact)
             if not (waits or smooth) and work.search[0].active == 0:
@@ -280,7 +280,7 @@ def solve_end(model, data, label, k, s, h):
 @kernel
 def rest_of(model, data, k, h):
     """Return the speed below which the bodies of k points are at rest at the end of a step of length h."""
-    push = greatest(3 * k, data.group.c)
+    push = greatest(3 * k, data.group.problem.c)
     return rest_speed(model.controls, h * push, data.work.search[0].residual, k, FEW_REST)
 
 
@@ -320,7 +320,7 @@ def within_cones(k, group):
     for i in range(k):
         most = max(most, p[3 * i])
     for i in range(k):
-        if group.kind[i] == SLIDING:
+        if group.problem.kind[i] == SLIDING:
             continue
         force = math.hypot(p[3 * i + 1], p[3 * i + 2])
         if force > radius_of(group, i) * (1.0 + DISC_ERROR) + EQUATION_ERROR * most:
@@ -340,7 +340,11 @@ def stick_where_slip_ends(model, data, k, h):
     for i in range(k):
         closed_point = group.closed[i]
         closed_point.stays = 0
-        if group.kind[i] != SLIDING or group.mu[i] == 0.0 or closed_point.listed == 0:
+        if (
+            group.problem.kind[i] != SLIDING
+            or group.problem.mu[i] == 0.0
+            or closed_point.listed == 0
+        ):
             continue
         if turns_back(i, h, group):
             continue
@@ -358,7 +362,7 @@ def stick_where_slip_ends(model, data, k, h):
             closed_point = group.closed[i]
             closed_point.presses = 1 if closed_point.weight > 0.0 else 0
             if closed_point.stays == 1:
-                group.kind[i] = CONE if sticks == 1 else SLIDING
+                group.problem.kind[i] = CONE if sticks == 1 else SLIDING
                 set_friction(model.system, i, sticks == 0, group)
         if solve_springs(k, group) and (sticks == 0 or within_cones(k, group)):
             break
@@ -381,7 +385,7 @@ def note_residual(active, k, group, work):
         if not presses or has_passed(active, i, group):
             continue
         worst = max(worst, abs(group.u[3 * i]))
-        if group.kind[i] == CONE:
+        if group.problem.kind[i] == CONE:
             worst = max(worst, math.hypot(group.u[3 * i + 1], group.u[3 * i + 2]))
     work.search[0].residual = max(work.search[0].residual, worst)
 
@@ -392,7 +396,7 @@ def come_to_rest(system, data, tolerance, count):
 
     Return whether they were at rest at the start too; then they also have not moved.
     """
-    start, end, member = data.state, data.work.trial, data.group.member
+    start, end, member = data.state, data.work.trial, data.group.bodies.member
     if not greatest_speed(system, end, count, member) <= tolerance:
         return False
     rested = greatest_speed(system, start, count, member) == 0.0

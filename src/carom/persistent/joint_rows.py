@@ -111,7 +111,7 @@ def is_driven(group, i):
     """Return whether entry i is a coordinate to which joints and motors leave no freedom."""
     closed_point = group.closed[i]
     return closed_point.motion == MOTION_JOINT and not (
-        group.W[3 * i + 1, 3 * i + 1] > closed_point.spring
+        group.problem.W[3 * i + 1, 3 * i + 1] > closed_point.spring
     )
 
 
@@ -125,4 +125,8 @@ def rounding_of_rate(system, i, state):
 def radius_of(group, i):
     """Return the greatest friction of an entry: mu times the force in `p` that bounds it, or a constant."""
     parent = group.closed[i].parent
-    return group.mu[i] if parent == CONSTANT else group.mu[i] * max(0.0, group.p[3 * parent])
+    return (
+        group.problem.mu[i]
+        if parent == CONSTANT
+        else group.problem.mu[i] * max(0.0, group.p[3 * parent])
+    )

@@ -43,16 +43,16 @@ def greatest_push(k, group):
         for j in range(i if a.motion == MOTION_POINT and group.points[0][i].b != -1 else 0):
             if group.closed[j].contact == a.contact and group.closed[j].motion == MOTION_POINT:
                 return 0.0
-    return greatest(3 * k, group.c)
+    return greatest(3 * k, group.problem.c)
 
 
 @kernel
 def time_to_stop(i, group):
     """Return the time until slip of point i stops at its present deceleration."""
-    d1, d2 = group.heading[i, 0], group.heading[i, 1]
+    d1, d2 = group.problem.heading[i, 0], group.problem.heading[i, 1]
     speed = group.u[3 * i + 1] * d1 + group.u[3 * i + 2] * d2
     rate = group.a[3 * i + 1] * d1 + group.a[3 * i + 2] * d2
-    return speed / -rate if group.kind[i] == SLIDING and rate < 0.0 else math.inf
+    return speed / -rate if group.problem.kind[i] == SLIDING and rate < 0.0 else math.inf
 
 
 @kernel
@@ -68,7 +68,7 @@ def take_forces(active_point, i, group):
         # a contact problem without a solution leaves forces that pull: no contact has them
         active_point.force[r] = group.p[3 * i + r] if group.p[3 * i] > 0.0 else 0.0
         for j in range(3):
-            active_point.W[r, j] = group.W[3 * i + r, 3 * i + j]
+            active_point.W[r, j] = group.problem.W[3 * i + r, 3 * i + j]
 
 
 @kernel
@@ -77,7 +77,7 @@ def set_margins(active_point, i, push, group):
     active_point.lift, active_point.grip = 1.0, 1.0
     if not push > 0.0:
         return
-    q, W, p, a = 3 * i, group.W, group.p, group.a
+    q, W, p, a = 3 * i, group.problem.W, group.p, group.a
     if active_point.next == MODE_OPEN:
         active_point.lift = -max(a[q] / push, 2.0 * EVENT_ERROR)
         return
@@ -94,14 +94,14 @@ def set_margins(active_point, i, push, group):
 @kernel
 def set_grip(active_point, i, push, group):
     """Write the grip of point i, which sticks at the start of the step."""
-    q, W, p, a = 3 * i, group.W, group.p, group.a
+    q, W, p, a = 3 * i, group.problem.W, group.p, group.a
     gain = math.sqrt(a[q + 1] ** 2 + a[q + 2] ** 2) / push
     if active_point.next == MODE_SLIP:
         active_point.grip = -max(gain, 2.0 * EVENT_ERROR)
     elif gain > NO_MARGIN:
         active_point.grip = -gain
     else:
-        left = group.mu[i] * p[q] - math.sqrt(p[q + 1] ** 2 + p[q + 2] ** 2)
+        left = group.problem.mu[i] * p[q] - math.sqrt(p[q + 1] ** 2 + p[q + 2] ** 2)
         grip = left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push
         active_point.grip = grip if active_point.shares == 0 else max(grip, EVENT_MARGIN)
 

@@ -72,7 +72,7 @@ def explicit_member(model, data, method, label, h, powers):
     least = PASSED if locates(model, data) else SAME
     for s in range(1, stages_within(method)):
         for m in range(count):
-            b = group.member[m]
+            b = group.bodies.member[m]
             combine_body(method.A[s, :s], h, start[b], work.stages, b, work.stage[b])
             note_velocity(work.stage[b], work.stages[s, b])
         moment.time = moment.start + h * node(method.A[s, :s])
@@ -85,7 +85,7 @@ def explicit_member(model, data, method, label, h, powers):
         friction += h * method.b[s] * rubbed
     weights = method.b[: stages_within(method)]
     for m in range(count):
-        b = group.member[m]
+        b = group.bodies.member[m]
         combine_body(weights, h, start[b], work.stages, b, end[b])
     moment.time = moment.start + h
     return k, applied, friction
@@ -106,8 +106,8 @@ def implicit_member(model, data, method, label, h, powers):
     count, _ = bodies_of(model, data, label)
     for s in range(1, stages):
         for m in range(count):
-            b = group.member[m]
-            add_stages(A[s, :s], h, start[b], work.stages, b, group.base[b])
+            b = group.bodies.member[m]
+            add_stages(A[s, :s], h, start[b], work.stages, b, group.bodies.base[b])
             for r in range(6):
                 work.stages[s, b].rate[r] = work.stages[s - 1, b].rate[r]
         moment.time = moment.start + h * node(A[s, : s + 1])
@@ -117,14 +117,14 @@ def implicit_member(model, data, method, label, h, powers):
         applied += h * A[stages - 1, s] * power
         friction += h * A[stages - 1, s] * rubbed
     for m in range(count):
-        b = group.member[m]
+        b = group.bodies.member[m]
         copy_state(work.stage[b], end[b])
     return k, applied, friction
 
 
 @kernel
 def implicit_stage(model, data, label, s, hg, closes):
-    """Solve for stage s in `work.stage`, from `group.base` without it.
+    """Solve for stage s in `work.stage`, from `group.bodies.base` without it.
 
     Return the number of points, -1 if there is no solution, and the powers of loads and of friction.
     """
@@ -135,13 +135,13 @@ def implicit_stage(model, data, label, s, hg, closes):
     if laws:
         first_modes(model.system, data, label)
     for m in range(count):
-        copy_state(group.base[group.member[m]], work.stage[group.member[m]])
+        copy_state(group.bodies.base[group.bodies.member[m]], work.stage[group.bodies.member[m]])
     for turn in range(FIXED_POINT):
         last, change, size = change, 0.0, 0.0
         for m in range(count):
-            b = group.member[m]
+            b = group.bodies.member[m]
             length, stage = model.system.bodies[b].extent, work.stages[s, b]
-            own = move_stage(group.base[b], hg, length, stage, work.stage[b])
+            own = move_stage(group.bodies.base[b], hg, length, stage, work.stage[b])
             change, size = max(change, own[0]), max(size, own[1])
         if change > 0.0:  # a body that stops has errors of the others
             change = change / size if size > 0.0 else math.inf
@@ -152,10 +152,12 @@ def implicit_stage(model, data, label, s, hg, closes):
         before = k
         k = write_rows(model, data, label, s)
         for m in range(count):
-            b = group.member[m]
-            copy_state(work.stage[b], group.free[b])  # its place: a surface may turn beneath it
-            add_velocity(group.base[b], hg, work.stages[s, b], group.free[b])
-        velocities(model.system, k, group.points[0], group.free, group.u)
+            b = group.bodies.member[m]
+            copy_state(
+                work.stage[b], group.bodies.free[b]
+            )  # its place: a surface may turn beneath it
+            add_velocity(group.bodies.base[b], hg, work.stages[s, b], group.bodies.free[b])
+        velocities(model.system, k, group.points[0], group.bodies.free, group.u)
         if k != before:
             for row in range(3 * k):
                 group.p[row] = 0.0
@@ -171,7 +173,7 @@ def implicit_stage(model, data, label, s, hg, closes):
         if laws:
             turned = renew_modes(model, data.active, k, hg, turn, group)
         for i in range(k):  # the work of friction of all points: what sticks has no velocity
-            group.kind[i] = SLIDING
+            group.problem.kind[i] = SLIDING
         velocities(model.system, k, group.points[0], work.stage, group.u)
         driven, rubbed = push_bodies(model, data, loaded, k, count, s)
         power = applied + driven
@@ -233,14 +235,14 @@ def solve_impulses(model, data, k, h):
     count = group.cone.count
     for i in range(3 * k):
         p[i] = 0.0
-        group.c[i] = group.u[i]
+        group.problem.c[i] = group.u[i]
     turning = False
     for i in range(k):
-        group.kind[i] = CONE
+        group.problem.kind[i] = CONE
         if group.closed[i].parent == CONSTANT:
-            group.kind[i], group.heading[i, 0] = DISC, h * group.mu[i]
+            group.problem.kind[i], group.problem.heading[i, 0] = DISC, h * group.problem.mu[i]
         elif group.closed[i].motion != MOTION_POINT:
-            group.mu[i], turning = 1.0, True
+            group.problem.mu[i], turning = 1.0, True
     group.cone.mismatch[ENOUGH], count[BUDGET] = 0.0, budget(k)
     for _ in range(50 if turning else 1):
         change = bound_turning(model.system, k, group)
@@ -250,6 +252,6 @@ def solve_impulses(model, data, k, h):
             break
     for i in range(k):
         if is_torque(group.closed[i]):
-            group.mu[i] = bound_per_force(model.system, group.points[0][i], group.closed[i])
+            group.problem.mu[i] = bound_per_force(model.system, group.points[0][i], group.closed[i])
     for i in range(3 * k):
         p[i] /= h

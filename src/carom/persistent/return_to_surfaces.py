@@ -52,7 +52,7 @@ def mark_rows(system, active, k, group):
             friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
             contact = system.contacts[active_point.contact]
             core = contact.radius == 0.0 and active_point.fixed == 1
-            inside = friction < (1.0 - REMAINDER) * group.mu[i] * p[q]
+            inside = friction < (1.0 - REMAINDER) * group.problem.mu[i] * p[q]
             sticks = active_point.mode == MODE_STICK and inside
             # where it sticks to a surface that moves, its velocity alone is returned
             moves = group.points[0][i].moves == 1
@@ -66,7 +66,7 @@ def factor_given(k, rubs, group):
 
     If it `rubs`, an impulse along the normal of a point that slips has its friction.
     """
-    n, equations, W = list_given(k, group), group.equations, group.W
+    n, equations, W = list_given(k, group), group.equations, group.problem.W
     rows, A, L = equations.rows, equations.A, equations.factor
     for i in range(n):
         for j in range(n):
@@ -107,9 +107,9 @@ def onto_surfaces(system, data, k, count, state):
             break
         n = factor_given(k, False, group) if n < 0 else n
         solve_rows(k, n, round_off(system.contacts[group.closed[0].contact], state), group, x)
-        spread_all(system, group.points[0, :k], x, group.member[:count], state, work)
+        spread_all(system, group.points[0, :k], x, group.bodies.member[:count], state, work)
         for m in range(count):
-            shift(work.body[group.member[m]].motion, 1.0, state[group.member[m]])
+            shift(work.body[group.bodies.member[m]].motion, 1.0, state[group.bodies.member[m]])
         if system.joints.shape[0] > 0:
             project_position(system, state, False, JOINT_ERROR, work)
         place_closed(system, k, state, group, points, work)
@@ -119,7 +119,7 @@ def onto_surfaces(system, data, k, count, state):
 def mark_tangents(active, k, group):
     """Write how many rows keep each point on its surface, and at its place if it sticks."""
     for i in range(k):
-        closed_point, sticks = group.closed[i], group.kind[i] != SLIDING
+        closed_point, sticks = group.closed[i], group.problem.kind[i] != SLIDING
         closed_point.rows = 0
         if closed_point.parent == CONSTANT:
             closed_point.rows = 1 if sticks and not is_driven(group, i) else 0
@@ -133,7 +133,7 @@ def onto_tangents(system, data, k, count):
     state, group, work = data.work.trial, data.group, data.work
     mark_tangents(data.active, k, group)
     n, x = factor_given(k, False, group), group.back
-    tiny = SUM_ERROR * greatest_speed(system, state, count, group.member)
+    tiny = SUM_ERROR * greatest_speed(system, state, count, group.bodies.member)
     for _ in range(2):  # W is that of the last stage
         velocities(system, k, group.points[0], state, x)
         solve_rows(k, n, tiny, group, x)
@@ -155,7 +155,7 @@ def greatest_speed(system, state, count, member):
 @kernel
 def give(system, k, count, state, group, work):
     """Change velocities of a group by the impulses in RETURN; return whether joints pass them on."""
-    p, member = group.back, group.member
+    p, member = group.back, group.bodies.member
     joined = spread_all(system, group.points[0, :k], p, member[:count], state, work)
     for m in range(count):
         gain(work.body[member[m]].motion, state[member[m]])

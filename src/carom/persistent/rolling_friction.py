@@ -24,13 +24,13 @@ def bound_turning(system, k, group):
         closed_point = group.closed[i]
         if not is_torque(closed_point):
             continue
-        q, W = 3 * i, group.W
+        q, W = 3 * i, group.problem.W
         d = arm_of_torque(system.laws, system.contacts[closed_point.contact], closed_point.motion)
         bound = d / group.points[0][i].length * max(0.0, group.p[3 * closed_point.parent])
         W[q, q] = 0.5 * (W[q + 1, q + 1] + W[q + 2, q + 2])
-        change = max(change, abs(group.c[q] + W[q, q] * bound))
+        change = max(change, abs(group.problem.c[q] + W[q, q] * bound))
         largest = max(largest, W[q, q] * bound)
-        group.c[q] = -W[q, q] * bound
+        group.problem.c[q] = -W[q, q] * bound
     return change / largest if largest > 0.0 else 0.0
 
 

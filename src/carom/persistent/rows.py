@@ -44,9 +44,9 @@ TURNED, PASSED, SAME = range(3)  # what became of directions of slip within a st
 @kernel
 def bodies_of(model, data, label):
     """List the bodies of a group; return their number, and whether one has joints or loads."""
-    count, loaded = members(data.work, label, data.group.member), False
+    count, loaded = members(data.work, label, data.group.bodies.member), False
     for m in range(count):
-        loaded = loaded or model.system.bodies[data.group.member[m]].ballistic == 0
+        loaded = loaded or model.system.bodies[data.group.bodies.member[m]].ballistic == 0
     return count, loaded
 
 
@@ -60,7 +60,7 @@ def accelerate_freely(model, data, loaded, count, s):
     if loaded:
         return acceleration(system, work.stage, work, work.stages[s])
     for m in range(count):
-        b = data.group.member[m]
+        b = data.group.bodies.member[m]
         free_rates(system.bodies[b], system.gravity, work.stage[b], work.stages[s, b].rate)
     return 0.0
 
@@ -75,7 +75,7 @@ def write_rows(model, data, label, s) -> int:
     points, state = group.points[0], work.stage
     set_surfaces(system, work.moment[0].time)
     k = find_points(system, data, label)
-    inverse_masses(system, k, points, state, work, group.W)
+    inverse_masses(system, k, points, state, work, group.problem.W)
     write_motion(system, k, state, work.stages[s], group, work)
     if any_depends_on_speed(system.laws):
         follow_laws(system, data.active, k, group)
@@ -87,21 +87,23 @@ def write_motion(system, k, state, rates, group, work):
     """Write u, c and the friction of k points of a group in a state with given accelerations."""
     points = group.points[0]
     velocities(system, k, points, state, group.u)
-    accelerations(system, k, points, state, rates, group.c)
+    accelerations(system, k, points, state, rates, group.problem.c)
     for i in range(k):
         closed_point = group.closed[i]
         if is_torque(closed_point):
-            group.mu[i] = bound_per_force(system, points[i], closed_point)
+            group.problem.mu[i] = bound_per_force(system, points[i], closed_point)
             continue
-        group.mu[i] = bound_of_stick(system.laws, law_of(system, closed_point))
+        group.problem.mu[i] = bound_of_stick(system.laws, law_of(system, closed_point))
         if closed_point.motion == MOTION_JOINT:
-            group.c[3 * i + 1] += drift_of_coordinate(system, closed_point.active, state, work)
+            group.problem.c[3 * i + 1] += drift_of_coordinate(
+                system, closed_point.active, state, work
+            )
             continue
         contact = system.contacts[closed_point.contact]
         if not is_fixed(contact):
             d = drift_of_row(system, contact, closed_point.feature, points[i], state, work)
             for r in range(3):
-                group.c[3 * i + r] += d[r]
+                group.problem.c[3 * i + r] += d[r]
 
 
 @kernel
@@ -124,14 +126,14 @@ def set_modes(system, active, k, group):
         if closed_point.listed == 0 and closed_point.motion == MOTION_POINT:
             slips = slip > REMAINDER * fastest
         closed_point.presses = 1 if closed_point.weight > 0.0 else 0
-        group.kind[i] = SLIDING if slips or group.mu[i] == 0.0 else CONE
-        group.heading[i, 0], group.heading[i, 1] = d1, d2
+        group.problem.kind[i] = SLIDING if slips or group.problem.mu[i] == 0.0 else CONE
+        group.problem.heading[i, 0], group.problem.heading[i, 1] = d1, d2
         if is_driven(group, i):
-            group.kind[i] = SLIDING
+            group.problem.kind[i] = SLIDING
             speed = group.u[3 * i + 1]
-            group.heading[i, 0] = 1.0 if speed > 0.0 else -1.0 if speed < 0.0 else 0.0
+            group.problem.heading[i, 0] = 1.0 if speed > 0.0 else -1.0 if speed < 0.0 else 0.0
             continue
-        if not slips or group.mu[i] == 0.0:
+        if not slips or group.problem.mu[i] == 0.0:
             continue
         if closed_point.listed == 1 and not slip > STOPPED_SLIP * speed:
             continue
@@ -141,7 +143,7 @@ def set_modes(system, active, k, group):
         if closed_point.listed == 1 and not u1 * d1 + u2 * d2 > SLIP_COSINE * slip:
             directions = TURNED
         if slip > 0.0:
-            group.heading[i, 0], group.heading[i, 1] = u1 / slip, u2 / slip
+            group.problem.heading[i, 0], group.problem.heading[i, 1] = u1 / slip, u2 / slip
     return directions
 
 
@@ -176,14 +178,14 @@ def push_bodies(model, data, loaded, k, count, s) -> tuple[float, float]:
     """Add the accelerations by the forces in `p` to stage s; return the powers of drives and friction."""
     system, group, work = model.system, data.group, data.work
     u, p, power, driven = group.u, group.p, 0.0, 0.0
-    spread_all(system, group.points[0, :k], p, group.member[:count], work.stage, work)
+    spread_all(system, group.points[0, :k], p, group.bodies.member[:count], work.stage, work)
     if loaded:
         driven = driven_power(system, work.stage, work)
     for m in range(count):
-        b = group.member[m]
+        b = group.bodies.member[m]
         accelerate(work.body[b].motion, work.stages[s, b].rate)
     for i in range(k):
         driven += power_of_surface(group.points[0][i], work.stage, p[3 * i : 3 * i + 3])
-        if group.kind[i] == SLIDING:
+        if group.problem.kind[i] == SLIDING:
             power += p[3 * i + 1] * u[3 * i + 1] + p[3 * i + 2] * u[3 * i + 2]
     return driven, power

@@ -29,7 +29,7 @@ def find_idle(k, group):
 
     ((W + eps S)^-1 eps S)^m, for the normal rows of what presses, has it for a limit.
     """
-    equations, closed, W, n, size = group.equations, group.closed, group.W, 0, 0.0
+    equations, closed, W, n, size = group.equations, group.closed, group.problem.W, 0, 0.0
     rows, x, Y, Z = equations.chosen, equations.x, group.idle[0], group.idle[1]
     for i in range(k):
         if closed[i].motion == MOTION_POINT and closed[i].presses == 1:
@@ -67,7 +67,7 @@ def share(k, n, group):
     Else forces that are not unique would depend on those of the last stage, and change with each iteration of
     its pose: normal ones, and what sticks where others already hold it (a floor, and a hand that pushes).
     """
-    equations, p, W, m = group.equations, group.p, group.W, 0
+    equations, p, W, m = group.equations, group.p, group.problem.W, 0
     rows, chosen, x, r = equations.rows, equations.chosen, equations.x, equations.r
     for i in range(n):
         whole = sticks(group, rows[i] // 3)

@@ -38,9 +38,9 @@ def set_friction(system, i, slips, group):
         return
     laws, law = system.laws, law_of(system, closed_point)
     if not slips:
-        group.mu[i] = bound_of_stick(laws, law)
+        group.problem.mu[i] = bound_of_stick(laws, law)
     else:
-        group.mu[i] = in_slip(laws, law, math.hypot(u[3 * i + 1], u[3 * i + 2]))
+        group.problem.mu[i] = in_slip(laws, law, math.hypot(u[3 * i + 1], u[3 * i + 2]))
 
 
 @kernel
@@ -78,7 +78,7 @@ def breaks_away(i, push, group):
 @kernel
 def grip_by_law(i, push, group):
     """Return the margin of an entry that sticks: of its force, or its gain, as accelerations by `push`."""
-    a, p, W, q = group.a, group.p, group.W, 3 * i
+    a, p, W, q = group.a, group.p, group.problem.W, 3 * i
     if not push > 0.0:
         return 1.0
     if breaks_away(i, push, group):
@@ -124,8 +124,8 @@ def renew_modes(model, active, k, hg, turn, group):
         closed_point, q = group.closed[i], 3 * i
         if closed_point.listed == 0 or not has_law(system, closed_point):
             continue
-        u1 = group.u[q + 1] + hg * dot(3 * k, group.W[q + 1], p)
-        u2 = group.u[q + 2] + hg * dot(3 * k, group.W[q + 2], p)
+        u1 = group.u[q + 1] + hg * dot(3 * k, group.problem.W[q + 1], p)
+        u2 = group.u[q + 2] + hg * dot(3 * k, group.problem.W[q + 2], p)
         full = not math.hypot(p[q + 1], p[q + 2]) < FRICTION_LIMIT * radius_of(group, i)
         slips = slips_by_mode(system, active, closed_point)
         back = turn < TURNS_BACK and goes_back(system, active, closed_point, u1, u2)

@@ -53,7 +53,7 @@ def solve_springs(k, group) -> bool:
     `c` has the accelerations without forces. `kind` is SLIDING for points that slide along `heading`, and
     `presses` is 1 for those that press at first.
     """
-    push, rounds = greatest(3 * k, group.c), 0
+    push, rounds = greatest(3 * k, group.problem.c), 0
     soften(k, group)
     for turn in range(3 * k + 4):
         for i in range(k):
@@ -78,15 +78,15 @@ def rows_of(k, i, group):
     """
     closed_point = group.closed[i]
     if closed_point.parent == CONSTANT:
-        return 0 if group.kind[i] == SLIDING else 1
+        return 0 if group.problem.kind[i] == SLIDING else 1
     if closed_point.motion == MOTION_POINT:
-        return 0 if closed_point.presses == 0 else 1 if group.kind[i] == SLIDING else 3
-    if group.kind[i] == SLIDING or group.closed[closed_point.parent].presses == 0:
+        return 0 if closed_point.presses == 0 else 1 if group.problem.kind[i] == SLIDING else 3
+    if group.problem.kind[i] == SLIDING or group.closed[closed_point.parent].presses == 0:
         return 0
     press, stick = 0, 0
     for j in range(k):
         if group.closed[j].motion == MOTION_POINT and group.closed[j].presses == 1:
-            press, stick = press + 1, stick + (0 if group.kind[j] == SLIDING else 1)
+            press, stick = press + 1, stick + (0 if group.problem.kind[j] == SLIDING else 1)
     if closed_point.motion == MOTION_ROLL:
         return 0 if press > 2 else 2
     return 0 if stick > 1 else 1
@@ -145,7 +145,7 @@ def compliance_of(group, row):
     """Return the compliance of a row: that of its point, or of its torque, which is as soft as stick."""
     closed_point = group.closed[row // 3]
     if closed_point.motion != MOTION_POINT:
-        return closed_point.stick * group.W[row, row]
+        return closed_point.stick * group.problem.W[row, row]
     return closed_point.hold if row % 3 > 0 else closed_point.spring
 
 
@@ -163,14 +163,14 @@ def grip(k, group):
     for i in range(k):
         if closed[i].motion == MOTION_POINT and closed[i].rows == 3 and closed[i].presses == 1:
             count += 1
-            bound = group.mu[i] * group.p[3 * i]
+            bound = group.problem.mu[i] * group.p[3 * i]
             if bound > most:
                 most, base = bound, closed[i].stick
     if count < 2:
         return False
     for i in range(k):
         if closed[i].motion == MOTION_POINT and closed[i].rows == 3 and closed[i].presses == 1:
-            bound = group.mu[i] * group.p[3 * i]
+            bound = group.problem.mu[i] * group.p[3 * i]
             hold = base * most / max(bound, LOADED_PART * most)
             changed = changed or abs(hold - closed[i].hold) > REMAINDER * hold
             closed[i].hold = hold
@@ -180,7 +180,7 @@ def grip(k, group):
 @kernel
 def moves(group, row):
     """Return whether a force along a row moves its point; if not, its W is round-off (planar motion)."""
-    n, W = row - row % 3, group.W
+    n, W = row - row % 3, group.problem.W
     if group.closed[row // 3].parent == CONSTANT:
         return row % 3 == 1 and not is_driven(group, row // 3)
     return W[row, row] > ROUND_OFF * (W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2])
@@ -189,17 +189,17 @@ def moves(group, row):
 @kernel
 def response(k, group, a, row):
     """Return the acceleration in row a by a unit force along a given row, with its friction."""
-    W, i = group.W, row // 3
+    W, i = group.problem.W, row // 3
     total = W[a, row]
     if row % 3 > 0:
         return total
-    if group.kind[i] == SLIDING:
-        d = group.heading[i]
-        total -= group.mu[i] * (d[0] * W[a, row + 1] + d[1] * W[a, row + 2])
+    if group.problem.kind[i] == SLIDING:
+        d = group.problem.heading[i]
+        total -= group.problem.mu[i] * (d[0] * W[a, row + 1] + d[1] * W[a, row + 2])
     for j in range(i + 1, k):
         if turns_with(group, j, i):
-            d = group.heading[j]
-            total -= group.mu[j] * (d[0] * W[a, 3 * j + 1] + d[1] * W[a, 3 * j + 2])
+            d = group.problem.heading[j]
+            total -= group.problem.mu[j] * (d[0] * W[a, 3 * j + 1] + d[1] * W[a, 3 * j + 2])
     return total
 
 
@@ -208,7 +208,7 @@ def turns_with(group, j, i):
     """Return whether entry j is a torque of rotation that the normal force of point i bounds."""
     closed_point = group.closed[j]
     torque = closed_point.motion != MOTION_POINT
-    return torque and closed_point.parent == i and group.kind[j] == SLIDING
+    return torque and closed_point.parent == i and group.problem.kind[j] == SLIDING
 
 
 @kernel
@@ -219,8 +219,8 @@ def first_forces(k, n, turn, push, group):
     for row in range(3 * k):
         p[row] = 0.0
     for i in range(k):
-        if closed[i].parent == CONSTANT and group.kind[i] == SLIDING:
-            p[3 * i + 1] = -group.mu[i] * group.heading[i, 0]
+        if closed[i].parent == CONSTANT and group.problem.kind[i] == SLIDING:
+            p[3 * i + 1] = -group.problem.mu[i] * group.problem.heading[i, 0]
     for i in range(n):
         x[i] = -acceleration_of(k, rows[i], group)
     lu.substitute(equations.factor, n, equations.pivot, x)
@@ -283,7 +283,7 @@ def load(k, n, push, group):
             for j in range(n):
                 soft = limits.PROXIMAL_SPRING * response(k, group, row, rows[j])
                 a -= soft * equations.x[j]
-            if a < -max(ROUND_OFF * push, LAST_DIGIT * force * group.W[row, row]):
+            if a < -max(ROUND_OFF * push, LAST_DIGIT * force * group.problem.W[row, row]):
                 closed[i].presses, count = 1, count + 1
                 # its force is small at first: with the stick of others it would be torn open again
                 closed[i].hold = closed[i].stick / LOADED_PART
@@ -311,7 +311,7 @@ def unload(k, together, group):
 @kernel
 def acceleration_of(k, row, group):
     """Return the acceleration in a row under the forces in `p`."""
-    return add_product(group.c[row], 3 * k, group.W[row], group.p)
+    return add_product(group.problem.c[row], 3 * k, group.problem.W[row], group.p)
 
 
 @kernel
@@ -328,10 +328,10 @@ def add_force(k, group, row, x):
     p[row] += x
     if row % 3 > 0:
         return
-    if group.kind[i] == SLIDING:
+    if group.problem.kind[i] == SLIDING:
         for r in range(2):
-            p[row + 1 + r] -= group.mu[i] * group.heading[i, r] * x
+            p[row + 1 + r] -= group.problem.mu[i] * group.problem.heading[i, r] * x
     for j in range(i + 1, k):
         if turns_with(group, j, i):
             for r in range(2):
-                p[3 * j + 1 + r] -= group.mu[j] * group.heading[j, r] * x
+                p[3 * j + 1 + r] -= group.problem.mu[j] * group.problem.heading[j, r] * x

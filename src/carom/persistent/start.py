@@ -53,7 +53,7 @@ def accelerate_start(model, data, label):
         copy_state(start[b], work.stage[b])
     count, loaded = bodies_of(model, data, label)
     for m in range(count):
-        note_velocity(work.stage[group.member[m]], work.stages[0, group.member[m]])
+        note_velocity(work.stage[group.bodies.member[m]], work.stages[0, group.bodies.member[m]])
     work.moment[0].time = work.moment[0].start
     return count, loaded, accelerate_freely(model, data, loaded, count, 0)
 
@@ -69,7 +69,7 @@ def first_stage(model, data, label):
     count, loaded, power = accelerate_start(model, data, label)
     first_modes(system, data, label)
     k = write_rows(model, data, label, 0)
-    push = greatest(3 * k, group.c)
+    push = greatest(3 * k, group.problem.c)
     known = True
     for i in range(k):
         known = find_slip(model, data, i, controls.rest * push * controls.step) and known
@@ -103,8 +103,8 @@ def note_break_away(system, data, k, push):
     group, none, broke = data.group, True, False
     for i in range(k):
         closed_point = group.closed[i]
-        smooth = group.mu[i] == 0.0
-        if (group.kind[i] == SLIDING and not smooth) or closed_point.listed == 0:
+        smooth = group.problem.mu[i] == 0.0
+        if (group.problem.kind[i] == SLIDING and not smooth) or closed_point.listed == 0:
             continue
         if not gains(i, push, group):
             continue
@@ -138,7 +138,7 @@ def find_slip(model, data, i, still):
         return d1 != 0.0 or one.mode == MODE_STICK
     active_point, moves = active.points[closed_point.active], d1 != 0.0 or d2 != 0.0
     if closed_point.listed == 0:
-        return moves or active_point.next != MODE_SLIP or group.mu[i] == 0.0
+        return moves or active_point.next != MODE_SLIP or group.problem.mu[i] == 0.0
     if closed_point.motion != MOTION_POINT:
         store_slip(system, active, closed_point, d1, d2, speed if moves else 0.0)
         return True
@@ -146,12 +146,12 @@ def find_slip(model, data, i, still):
         active_point.next = MODE_SLIP  # a corner that has come since: the velocity decides
         set_friction(system, i, True, group)
     slips = active_point.next == MODE_SLIP
-    if slips and not moves and group.mu[i] > 0.0:  # it has stopped
+    if slips and not moves and group.problem.mu[i] > 0.0:  # it has stopped
         active_point.next = MODE_STICK
     active_point.began = speed
     note_normal(group.points[0][i], active_point)
     store_slip(system, active, closed_point, d1 if slips else 0.0, d2 if slips else 0.0, speed)
-    return moves or not slips or group.mu[i] == 0.0
+    return moves or not slips or group.problem.mu[i] == 0.0
 
 
 @kernel
@@ -160,17 +160,17 @@ def rates(k, group):
 
     Of a joint it is at least that of its coordinate: it bounds the steps of order 1.
     """
-    rate, most, W = 0.0, 0.0, group.W
+    rate, most, W = 0.0, 0.0, group.problem.W
     for i in range(k):
         q = 3 * i
         force = math.hypot(group.p[q + 1], group.p[q + 2])
-        if group.kind[i] != SLIDING:
+        if group.problem.kind[i] != SLIDING:
             force = max(force, radius_of(group, i))
         braked = force * max(W[q + 1, q + 1], W[q + 2, q + 2])
         most = max(most, braked)
         if group.closed[i].parent == CONSTANT:  # where W vanishes it turns back by itself
-            most = max(most, abs(group.c[q + 1]))
+            most = max(most, abs(group.problem.c[q + 1]))
         speed = math.hypot(group.u[q + 1], group.u[q + 2])
-        if group.kind[i] == SLIDING and group.mu[i] > 0.0 and braked > 0.0:
+        if group.problem.kind[i] == SLIDING and group.problem.mu[i] > 0.0 and braked > 0.0:
             rate = max(rate, braked / speed if speed > 0.0 else math.inf)
     return rate, most

@@ -46,7 +46,7 @@ def note_unnamed(model, data, label, named, h, push):
     h, also loses m (h a)^2/2 by an acceleration a. That is at most the sum of a at the start, what friction
     changes, at most `push`, and gravity: more is an impact, of a normal that jumps.
     """
-    system, start, end, member = model.system, data.state, data.work.trial, data.group.member
+    system, start, end, member = model.system, data.state, data.work.trial, data.group.bodies.member
     (count, loaded), lost, may, by_euler = bodies_of(model, data, label), named, 0.0, 0.0
     if loaded:
         return
@@ -77,7 +77,7 @@ def lost_in_stop(model, data, label, named):
     no other loss, so that friction has taken this, also where slip jams and only an impulse stops it. A normal
     that jumps, of several touches of two bodies, is an impact.
     """
-    system, active, member, stops = model.system, data.active, data.group.member, False
+    system, active, member, stops = model.system, data.active, data.group.bodies.member, False
     count, loaded = bodies_of(model, data, label)
     if loaded or count != 1:
         return 0.0

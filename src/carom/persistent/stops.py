@@ -30,7 +30,7 @@ def note_left(model, data, k):
     if not locates(model, data):
         return
     system, active, group = model.system, data.active, data.group
-    still = 0.5 * model.controls.rest * greatest(3 * k, group.c) * model.controls.step
+    still = 0.5 * model.controls.rest * greatest(3 * k, group.problem.c) * model.controls.step
     for i in range(k):
         closed_point, u = group.closed[i], group.u
         slips, d1, d2, speed = slip_at_start(system, active, closed_point)
@@ -69,9 +69,9 @@ def pass_stops(model, data, k, hg):
         moves = slips and speed > 0.0 and (d1 != 0.0 or d2 != 0.0)
         if closed_point.listed == 0 or closed_point.passes == 1 or not moves:
             continue
-        u1 = group.u[q + 1] + hg * dot(3 * k, group.W[q + 1], p)
-        u2 = group.u[q + 2] + hg * dot(3 * k, group.W[q + 2], p)
+        u1 = group.u[q + 1] + hg * dot(3 * k, group.problem.W[q + 1], p)
+        u2 = group.u[q + 2] + hg * dot(3 * k, group.problem.W[q + 2], p)
         if not u1 * d1 + u2 * d2 > 0.0:
             closed_point.passes, more = 1, True
-            group.heading[i, 0], group.heading[i, 1] = d1, d2
+            group.problem.heading[i, 0], group.problem.heading[i, 1] = d1, d2
     return more
