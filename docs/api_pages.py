@@ -19,7 +19,7 @@ CALLED = {
     "InsideSphere", "InsideCylinder", "InsideCone", "InsideTorus", "HeightField", "Surface",
     "Gear", "Coupling", "Driver", "Rows",
     "Spring", "Force", "Torque", "Bushing", "JointSpring", "JointForce", "Actuator", "JointFriction",
-    "JointInertia", "CurveSpring", "UserForce", "Drag", "Wind", "Magnus", "Buoyancy",
+    "Drive",    "JointInertia", "CurveSpring", "UserForce", "Drag", "Wind", "Magnus", "Buoyancy",
 }  # fmt: skip
 
 #: of classes with many members: topics in the order of the page

@@ -10,6 +10,7 @@ from campaigns import (
     cams,
     coordinates,
     crowds,
+    drives,
     forced,
     frictions,
     grains,
@@ -43,5 +44,5 @@ FAMILIES = {
     "terrains": terrains.case, "cams": cams.case,
     "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "grains by slip": grains.by_slip,
     "rough": rough.case, "plays": plays.case, "tethers": tethers.case, "ropes": ropes.case,
-    "coordinates": coordinates.case,
+    "coordinates": coordinates.case, "drives": drives.case,
 }  # fmt: skip

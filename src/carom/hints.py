@@ -304,6 +304,7 @@ MEMBERS = {
         "JointForce": "Motor JointTorque JointActuator",
         "Actuator": "Servo PositionServo PositionActuator Position",
         "JointFriction": "DryFriction CoulombFriction",
+        "Drive": "Clutch SlipClutch TorqueLimiter Brake LimitedMotor VelocityServo SpeedServo VelocityMotor",
         "JointInertia": "Armature Rotor ReflectedInertia",
         "Bushing": "Mount",
         "an elastic rope is CurveSpring, whose tension is 0 up to its length, a stiff one carom.joints.Tether":

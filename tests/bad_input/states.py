@@ -276,6 +276,12 @@ def stated():
             control_range=(-1.0, 1.0), force_range=(-5.0, 5.0), coordinate=0,
         ),
         "forces.JointFriction": with_part(forces.JointFriction, joint="@hinge", bound=1.0, coordinate=0),
+        "forces.Drive": with_part(
+            forces.Drive, joint="@hinge", bound=1.0, coordinate=0, rate=1.0, motion=None
+        ),
+        "forces.Drive of a motion": with_part(
+            forces.Drive, joint="@hinge", bound=1.0, coordinate=0, rate=None, motion=of_nothing
+        ),
         "forces.JointInertia": with_part(forces.JointInertia, joint="@hinge", inertia=1.0, coordinate=0),
         "forces.UserForce": lambda: (
             forces.UserForce, dict(bodies=[parts().ball], function=of_nothing, potential=of_nothing),
@@ -291,10 +297,10 @@ def stated():
         "constraints.Coupling": lambda: (constraints.Coupling, dict(factors={parts().hinge: 1.0})),
         "constraints.Gear": with_part(constraints.Gear, first="@hinge", second="@slide", ratio=2.0),
         "constraints.Driver": with_part(
-            constraints.Driver, joint="@hinge", rate=1.0, motion=None, coordinate=0
+            constraints.Driver, joint="@hinge", rate=1.0, motion=None, coordinate=0, limit=2.0
         ),
         "constraints.Driver of a motion": with_part(
-            constraints.Driver, joint="@hinge", rate=None, motion=of_nothing, coordinate=0
+            constraints.Driver, joint="@hinge", rate=None, motion=of_nothing, coordinate=0, limit=None
         ),
         "constraints.Rows": lambda: (
             constraints.Rows, dict(bodies=[parts().ball], function=of_nothing, rows=1, position=of_nothing),

@@ -308,8 +308,8 @@ def test_changes_of_a_scene():
     ("given", "message"),
     [
         (({"axle 0": 1.0, "axle 1": 2.0}, 0.1, 0.1), "lower must be below upper, got 0.1 and 0.1"),
-        (({"axle 0": 0.0}, -0.1, 0.1), r"factors\['axle 0'\] must not be 0"),
-        (({}, -0.1, 0.1), "factors must be a mapping from joints to numbers"),
+        (({"axle 0": 0.0}, -0.1, 0.1), r"joint\['axle 0'\] must not be 0"),
+        (({}, -0.1, 0.1), "joint must be a mapping from joints to numbers"),
         (({"axel 0": 1.0}, -0.1, 0.1), "each joint must be .*axle 0"),
         (({("axle 0", 3): 1.0}, -0.1, 0.1), "coordinate must be below 1"),
         ((["axle 0"], -0.1, 0.1), "joint must be"),

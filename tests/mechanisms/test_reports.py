@@ -51,6 +51,8 @@ ALONG = {
     "function": lambda j, k: forces.JointForce(j, lambda t, q, u: 0.5 - 0.3 * q - u + t, k),
     "friction": lambda j, k: forces.JointFriction(j, 0.05, k),
     "law": lambda j, k: forces.JointFriction(j, carom.Friction(0.08, 0.05, 0.3), k),
+    "drive": lambda j, k: forces.Drive(j, 0.05, k, rate=0.4),
+    "drive by a motion": lambda j, k: forces.Drive(j, 0.05, k, motion=lambda t: (t, 1.0 + t, 1.0)),
     "inertia": lambda j, k: forces.JointInertia(j, 0.02, k),
 }
 

@@ -98,6 +98,7 @@ BY_NAME = {
     "JointForce": lambda: carom.forces.JointForce("left hinge", 1.0),
     "JointSpring": lambda: carom.forces.JointSpring("left hinge", 1.0),
     "JointFriction": lambda: carom.forces.JointFriction("left hinge", 1.0),
+    "Drive": lambda: carom.forces.Drive("left hinge", 1.0, rate=2.0),
     "JointInertia": lambda: carom.forces.JointInertia("left hinge", 1.0),
     "UserForce": lambda: carom.forces.UserForce("left", lambda t, x: [[0] * 6]),
     "Driver": lambda: carom.constraints.Driver("left hinge", rate=0.0),

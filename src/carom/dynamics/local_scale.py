@@ -14,11 +14,15 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
+from carom.dynamics.elements.relation import prescribed
 from carom.dynamics.energy import kinetic_energy
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.solve import solve
 from carom.dynamics.thresholds import LOAD_STEP
 from carom.geometry.rotation import norm, rotate_back
+from carom.geometry.thresholds import SUM_ERROR
+from carom.kinematics.combination import push, rate
+from carom.law.friction import bound_of_stick
 from carom.model.controls import Controls
 
 
@@ -29,10 +33,13 @@ def note_scale(system, controls, state, work):
     step.scale, step.pull, step.able = controls.step, controls.pull, 0.0
     step.longest = math.inf
     if controls.order == 0 or system.contacts.shape[0] == 0:
+        if step.begin == 0.0:  # where loads and friction hold each other, the round-off of energies
+            pull_of(system, 0.0, SUM_ERROR, state, work)
         return
     size = least_size(system)
     length = 8.0 * (controls.atol + controls.rtol * size)
-    step.scale, step.pull = controls.interval, pull_of(system, controls, state, work)
+    step.scale = controls.interval
+    step.pull = pull_of(system, controls.atol, controls.rtol, state, work)
     if step.pull > 0.0:
         step.scale = math.sqrt(length / step.pull)
         if step.able > 0.0:
@@ -67,17 +74,17 @@ def least_size(system):
 
 
 @kernel
-def pull_of(system, controls, state, work):
+def pull_of(system, atol, rtol, state, work):
     """Return the greatest acceleration of the bodies by gravity and applied forces [m/s^2]."""
     pull = norm(system.gravity)
     for b in range(state.shape[0]):
         if system.bodies[b].ballistic == 0:
-            return max(pull, greatest_pull(system, controls, state, work))
+            return max(pull, greatest_pull(system, atol, rtol, state, work))
     return pull
 
 
 @unit
-def greatest_pull(system, controls, state, work) -> float:
+def greatest_pull(system, atol, rtol, state, work) -> float:
     """Return the greatest acceleration that applied forces give to a body, also of points by its rotation.
 
     The work that these forces could do over the allowed errors of the positions is `step.able`: their sizes
@@ -87,9 +94,10 @@ def greatest_pull(system, controls, state, work) -> float:
     step, pull = work.step[0], 0.0
     work.moment[0].time = step.begin
     applied_wrenches(system, state, False, work)
+    push_by_drives(system, state, work)
     for b in range(state.shape[0]):
         body, f = system.bodies[b], work.body[b].wrench
-        error = controls.atol + controls.rtol * body.extent
+        error = atol + rtol * body.extent
         step.able += error * (norm(f[:3]) + norm(f[3:]) / body.extent)
     solve(system, state, False, work)
     for b in range(state.shape[0]):
@@ -99,6 +107,19 @@ def greatest_pull(system, controls, state, work) -> float:
         turning *= body.extent / max(J[0], max(J[1], J[2]))  # a turn about a thin axis moves little
         pull = max(pull, norm(a[:3]) + turning)
     return pull
+
+
+@kernel
+def push_by_drives(system, state, work):
+    """Add the greatest forces of drives with a limit, towards their rates."""
+    relations = system.relations
+    for i in range(relations.frictions.shape[0]):
+        one = relations.frictions[i]
+        if one.drives == 1:
+            c = relations.coordinates[one.coordinate]
+            goal = prescribed(relations, one, work.moment[0].time)[1]
+            limit = bound_of_stick(system.laws, one.law)
+            push(system, c, state, math.copysign(limit, goal - rate(system, c, state)), work)
 
 
 @kernel

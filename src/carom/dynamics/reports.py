@@ -13,6 +13,7 @@ from carom._compiled.decorators import entry, kernel
 from carom.dynamics.applied import acts_at, add
 from carom.dynamics.applied.push import acts_along
 from carom.dynamics.contact_impulse import clear_wrench, clear_wrenches
+from carom.dynamics.elements.relation import prescribed
 from carom.dynamics.reactions import expect_turn, follow_turns, settle_turn
 from carom.geometry.rotation import cross, log
 from carom.kinematics.combination import first_of, push, rate
@@ -72,7 +73,10 @@ def add_reported(system, one, values, state, work, row):
         c = system.relations.coordinates[friction.coordinate]
         row.value = values[one.last]
         if math.isnan(row.value):
-            row.value = force_of_slip(system.laws, friction.law, rate(system, c, state))
+            slip = rate(system, c, state)
+            if friction.drives == 1:
+                slip -= prescribed(system.relations, friction, work.moment[0].time)[1]
+            row.value = force_of_slip(system.laws, friction.law, slip)
         push(system, c, state, row.value, work)
         return acts_along(first_of(system, c), state)
     for i in range(one.first, one.last):

@@ -91,6 +91,8 @@ def own_field(point, state, i):
     The surface moves in itself: the normal component counts for nothing.
     """
     s, w, x, r = point.field[i], point.field[i + 1], state[point.a].x, point.arm_a
+    if point.motion > MOTION_PIVOT:  # the rate of a drive
+        return 0.0, s[0], 0.0
     if point.motion != MOTION_POINT:
         return turning_rows(point, w[0], w[1], w[2])
     vx, vy, vz = cross(w[0], w[1], w[2], x[0] + r[0], x[1] + r[1], x[2] + r[2])
@@ -129,7 +131,7 @@ def power_of_surface(point, state, p):
 def contact_velocity(system, point, state):
     """Return u = G v, in contact axes; relative to a surface that moves in itself."""
     if point.motion > MOTION_PIVOT:
-        return rate_in_row(system, point, state)
+        return on_surface(point, state, 0, rate_in_row(system, point, state))
     if point.motion != MOTION_POINT:
         w, z = state[point.a].w, (0.0, 0.0, 0.0)
         if point.b >= 0:
@@ -175,7 +177,7 @@ def contact_acceleration(system, point, state, stage):
     the accelerations.
     """
     if point.motion > MOTION_PIVOT:
-        return acceleration_in_row(system, point, state, stage)
+        return on_surface(point, state, 2, acceleration_in_row(system, point, state, stage))
     if point.motion != MOTION_POINT:
         m, z = stage[point.a].rate, (0.0, 0.0, 0.0)
         if point.b >= 0:

@@ -131,15 +131,20 @@ CURVE = [
 #: a piece of a curve: a polynomial of degree 5 in s - start, in axes of the body of the curve
 CURVE_PIECE = [("start", "f8"), ("c", "f8", (6, 3)), ("normal", "f8", 3)]  # normal: about across it
 
-#: a relation: sum of factor times coordinate = f(t)
-RELATION_ROW = [
-    ("first", "i8"),  # range of its terms
-    ("last", "i8"),
+#: a prescribed motion f(t)
+PRESCRIBED = [
     ("constant", "f8"),  # f = constant + rate t
     ("rate", "f8"),
     ("address", "i8"),  # or f is a function of the user's: t -> (f, f', f'')
     ("piece", "i8"),  # or f is a range of pieces of a polynomial
     ("last_piece", "i8"),
+]
+
+#: a relation: sum of factor times coordinate = f(t)
+RELATION_ROW = [
+    ("first", "i8"),  # range of its terms
+    ("last", "i8"),
+    *PRESCRIBED,
     ("scale", "f8"),  # of its error: 1 for angles, a length for displacements
 ]
 
@@ -170,10 +175,13 @@ STIFF_SPRING = [
     ("parent_side", "i8"),
 ]
 
-#: dry friction along a coordinate of a joint: |force| <= bound
+#: dry friction along a coordinate of a joint: |force| <= bound, against its rate, or against that beside the
+#: rate of a drive
 FRICTION = [
     ("coordinate", "i8"),
     ("law", "i8"),  # by number: its friction is a force [N] or a moment [N m]
+    ("drives", "i8"),  # 1 if it is a drive with a limit, whose rate is that of a motion
+    *PRESCRIBED,
 ]
 
 #: inertia along a coordinate of a joint

@@ -7,8 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from carom import checks
-from carom._compiled.composed import is_compiled, joined, once
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
 from carom.geometry.frames import triad
@@ -17,7 +15,7 @@ from carom.model.actions import MODE_STICK
 from carom.model.curves import Curves
 from carom.model.pieces import PIECE, Pieces
 from carom.model.placement import Placement
-from carom.model.stated_forces import ForceRows
+from carom.model.stated_forces import ForceRows, write_motion
 from carom.scene.constraints import Coupling, Rows
 from carom.scene.coordinates import Combination, Gap, Length, Strand, coordinate_kind, counted
 from carom.scene.forces import Spring
@@ -232,15 +230,8 @@ class Elements:
         self.terms.append(terms)
 
     def _motion(self, constraint, made, functions):
-        d = constraint.definition
-        if d.rate is not None:
-            made.rate = d.rate
-            return
-        if checks.is_polynomial(d.motion):
-            made.piece, made.last_piece = self.pieces.add(d.motion)
-        else:
-            name = f"the motion of {constraint.name!r}"
-            made.address = functions.address(of_time(d.motion), (1,), (3,), name)
+        name = f"the motion of {constraint.name!r}"
+        write_motion(constraint.definition, name, made, functions.address, self.pieces.add)
 
     def arrays(self, solver, more: ForceRows) -> arrays.Relations:
         """Return the tables, with the sides that `solver` gave to the bodies."""
@@ -329,20 +320,6 @@ def no_relations() -> arrays.Relations:
 
 def _joined(fields, rows) -> np.recarray:
     return np.concatenate([table(fields, 0), *rows]).view(Columns)
-
-
-@once
-def of_time(function):
-    """Return a function of (t, x) from a function of t."""
-    if not is_compiled(function):
-        return lambda t, x: function(float(t))
-
-    def call(t, x):
-        out = np.empty(3)
-        out[0], out[1], out[2] = function(t)
-        return out
-
-    return joined(call, function)
 
 
 def is_inertia(joints: np.recarray) -> np.ndarray:

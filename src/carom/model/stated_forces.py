@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from carom import checks
 from carom._compiled.composed import is_compiled, joined, once
 from carom._compiled.record_arrays import table
 from carom._compiled.user_functions import Functions
@@ -17,7 +18,7 @@ from carom.model.placement import Placement
 from carom.scene.force_definition import ForceTable
 from carom.scene.forces import TABLES
 from carom.scene.friction import bound_of
-from carom.scene.more_forces import JointFriction, Law
+from carom.scene.more_forces import Drive, JointFriction, Law
 
 
 class ForceRows:
@@ -41,6 +42,11 @@ class ForceRows:
                 self._place(force, kind, rows[kind], d._rows(force, self))
             elif isinstance(d, JointFriction) and bound_of(d.bound) > 0.0:
                 made = _friction(d, coordinates, friction_laws)
+                if isinstance(d, Drive) and not d.holds:
+                    made.drives = 1
+                    name = f"the motion of {force.name!r}"
+                    write_motion(d, name, made, functions.address, pieces.add)
+                    self.width = max(self.width, 3)
                 self._place(force, FRICTIONS, self.frictions, [made])
         self.tables = Forces(*map(_filled, TABLES, rows))
 
@@ -92,6 +98,30 @@ def _friction(d, coordinates, friction_laws: LawTable):
         friction_laws.add(d.bound),
     )
     return made
+
+
+def write_motion(d, name: str, made, address, piece) -> None:
+    """Write a prescribed motion, or its constant rate, to the columns `PRESCRIBED` of a row."""
+    if d.rate is not None:
+        made.rate = d.rate
+    elif checks.is_polynomial(d.motion):
+        made.piece, made.last_piece = piece(d.motion)
+    else:
+        made.address = address(of_time(d.motion), (1,), (3,), name)
+
+
+@once
+def of_time(function):
+    """Return a function of (t, x) from a function of t."""
+    if not is_compiled(function):
+        return lambda t, x: function(float(t))
+
+    def call(t, x):
+        out = np.empty(3)
+        out[0], out[1], out[2] = function(t)
+        return out
+
+    return joined(call, function)
 
 
 @once

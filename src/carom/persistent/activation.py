@@ -37,12 +37,11 @@ from carom.persistent.bounces import (
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.finish import add_forces_of_corners
 from carom.persistent.jam import jams_among, note_jam
-from carom.persistent.joint_rows import add_frictions
+from carom.persistent.joint_rows import add_frictions, greatest_load
 from carom.persistent.margins import take_forces
 from carom.persistent.points import weigh
 from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.rows import slip_of, write_motion
-from carom.persistent.settle import greatest
 from carom.persistent.slip_law import set_friction
 from carom.persistent.springs import FACTORED, count_factors
 from carom.persistent.start import accelerate_start, first_stage
@@ -78,6 +77,7 @@ def activate_group(model, data, k, label, horizon):
     system = model.system
     active, state, group, work = data.active, data.state, data.group, data.work
     clock, records = data.clocks[0], data.records
+    work.moment[0].time = clock.now
     rows = add_frictions(system, label, state, k, group, work)
     inverse_masses(system, rows, group.points[0], state, work, group.problem.W)
     pose_forces(model, data, rows, label)
@@ -115,7 +115,7 @@ def pose_forces(model, data, k, label):
     work.moment[0].start = data.clocks[0].now
     accelerate_start(model, data, label)
     write_motion(system, k, data.state, work.stages[0], group, work)
-    still = controls.rest * greatest(3 * k, group.problem.c) * controls.step
+    still = controls.rest * greatest_load(k, group) * controls.step
     for i in range(k):
         d1, d2, _ = slip_of(system, data, i, still)
         group.problem.kind[i] = SLIDING if d1 != 0.0 or d2 != 0.0 else CONE
@@ -136,7 +136,7 @@ def decide_active(model, data, k, rows, horizon):
         closed_point = group.closed[i]
         leaves = abs(group.u[3 * i]) > slow(system.contacts[closed_point.contact], state)
         closed_point.stays, closed_point.bounces = 0 if leaves else 1, 0.0
-    push = greatest(3 * k, group.problem.c)
+    push = greatest_load(k, group)
     for turn in range(k + 1):
         solve_among(system, k, rows, group)
         more = False

@@ -78,7 +78,11 @@ def step_group(model, data, method, label, h):
     if h * rate <= STIFF_SLIP and not (search.stiff == 1 and search.again == 1):
         k, applied, friction = explicit_member(model, data, method, label, h, powers)
         s = stages_within(method)
-        if k > 0 and write_end(model, data, label, k) and check_end(model, data, label, s, h, True):
+        closes, driven = write_end(model, data, label, k) if k > 0 else (False, 0.0)
+        applied += driven
+        lasts, driven = check_end(model, data, label, s, h, True) if closes else (False, 0.0)
+        applied += driven
+        if lasts:
             note_errors(model, data, method.E, label, k, h)
             note_unnamed(model, data, label, friction + applied, 0.0, push)
             return applied, friction, 0
@@ -125,10 +129,12 @@ def end_implicitly(model, data, method, label, h, powers):
     if not closes:
         note_left(model, data, k)
     note_modes(model, data, k, h)
-    if not write_end(model, data, label, k):
+    joined, driven = write_end(model, data, label, k)
+    applied += driven
+    if not joined:
         return False, applied, friction
-    check_end(model, data, label, A.shape[0], h, False)
-    return True, applied, friction
+    _, driven = check_end(model, data, label, A.shape[0], h, False)
+    return True, applied + driven, friction
 
 
 @kernel

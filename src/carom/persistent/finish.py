@@ -22,7 +22,7 @@ from carom.model.workspace import CONSTANT, MOTION_JOINT, MOTION_POINT
 from carom.persistent.active_set import clear
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.jam import jams_among
-from carom.persistent.joint_rows import radius_of
+from carom.persistent.joint_rows import greatest_load, place_drives, radius_of
 from carom.persistent.margins import (
     greatest_push,
     set_grip,
@@ -41,7 +41,6 @@ from carom.persistent.rows import (
     set_modes,
     write_rows,
 )
-from carom.persistent.settle import greatest
 from carom.persistent.slip_law import (
     breaks_away,
     grip_by_law,
@@ -63,23 +62,27 @@ from carom.persistent.thresholds import (
 
 
 @unit
-def write_end(model, data, label, k) -> bool:
-    """Bring bodies back to joints and surfaces, velocities to the tangents; return whether the joints close."""
+def write_end(model, data, label, k) -> tuple[bool, float]:
+    """Bring bodies back to joints and surfaces, velocities to the tangents.
+
+    Return whether the joints close, and the work of the drives of surfaces.
+    """
     system, group, work, end = model.system, data.group, data.work, data.work.trial
     count, loaded = bodies_of(model, data, label)
     if loaded and not (project_position(system, end, True, JOINT_ERROR, work) <= RESOLUTION):
-        return False
+        return False, 0.0
     copy_to_stage(count, end, group, work)
     set_surfaces(system, work.moment[0].time)
     place_closed(system, k, end, group, group.points[0], work)
+    place_drives(system, k, work.moment[0].time, group)
     note_passed(system, data.active, k, group, data.state, end)
     onto_surfaces(system, data, k, count, end)
     if loaded:
         project_velocity(system, end, False, work)
     copy_to_stage(count, end, group, work)
-    onto_tangents(system, data, k, count)
+    driven = onto_tangents(system, data, k, count)
     copy_to_stage(count, end, group, work)
-    return True
+    return True, driven
 
 
 @kernel
@@ -97,7 +100,7 @@ def note_modes(model, data, k, h):
     friction could have stopped in the step goes on, whatever round-off has left of its force in a short step.
     """
     active, group, controls = data.active, data.group, model.controls
-    still = controls.rest * greatest(3 * k, group.problem.c) * controls.step
+    still = controls.rest * greatest_load(k, group) * controls.step
     for i in range(k):
         closed_point, u, p = group.closed[i], group.u, group.p
         slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
@@ -144,11 +147,12 @@ def any_friction(k, group):
 
 
 @unit
-def check_end(model, data, label, s, h, given) -> bool:
-    """Write forces, margins and modes at the end of a step, in `work.stage`; return whether given modes lasted.
+def check_end(model, data, label, s, h, given) -> tuple[bool, float]:
+    """Write forces, margins and modes at the end of a step, in `work.stage`.
 
-    The accelerations there are those of stage s. With `given` modes, slip must not have turned back, and what
-    sticks must be within its cones, or slip begins at an event that is located.
+    Return whether given modes lasted, and the work of the drives of surfaces. The accelerations there are those
+    of stage s. With `given` modes, slip must not have turned back, and what sticks must be within its cones, or
+    slip begins at an event that is located.
     """
     system, active = model.system, data.active
     end, group, work = data.work.trial, data.group, data.work
@@ -157,14 +161,14 @@ def check_end(model, data, label, s, h, given) -> bool:
         note_velocity(work.stage[group.bodies.member[m]], work.stages[s, group.bodies.member[m]])
     accelerate_freely(model, data, loaded, count, s)
     k = write_rows(model, data, label, s)
-    push = greatest(3 * k, group.problem.c)
+    push = greatest_load(k, group)
     directions = set_modes(system, active, k, group)
     if given:
         if directions < (PASSED if locates(model, data) else SAME):
-            return False
+            return False, 0.0
         note_left(model, data, k)
     tolerance = rest_of(model, data, k, h)
-    lasts, found = solve_end(model, data, label, k, s, h)
+    lasts, found, driven = solve_end(model, data, label, k, s, h)
     exact, eager = locates(model, data), work.search[0].eager == 1
     # what is shared by several points has a kink where one opens or slips, which ends a step with tolerances
     # (without friction its forces are continuous there)
@@ -186,7 +190,7 @@ def check_end(model, data, label, s, h, given) -> bool:
         )
         if closed_point.motion == MOTION_JOINT:
             if not end_joint(model, data, i, push, (law, exact, slips)):
-                return False
+                return False, 0.0
             continue
         active_point = active.points[closed_point.active]
         take_forces(active_point, i, group)
@@ -198,7 +202,7 @@ def check_end(model, data, label, s, h, given) -> bool:
         if slips and active_point.next == MODE_STICK:
             waits = eager and not smooth and (located > 0.0 or law or exact)
             if not (waits or smooth) and work.search[0].active == 0:
-                return False
+                return False, 0.0
             if not waits:
                 active_point.next = MODE_SLIP
         rounding = 10.0 * slow(system.contacts[closed_point.contact], end)
@@ -210,7 +214,7 @@ def check_end(model, data, label, s, h, given) -> bool:
         active_point.jams = jams_among(i, found, group)
     add_forces_of_corners(active, k, group)
     note_residual(active, k, group, work)
-    return True
+    return True, driven
 
 
 @kernel
@@ -255,32 +259,33 @@ def slip_at_end(i, group):
 
 @kernel
 def solve_end(model, data, label, k, s, h):
-    """Write the forces at the end of a step of length h; return whether its modes last, and there are any.
+    """Write the forces at the end of a step of length h.
 
-    Stage s has the accelerations before modes change, those that the estimate of the error needs.
+    Return whether its modes last, whether there are any, and the work of the drives of surfaces. Stage s has
+    the accelerations before modes change, those that the estimate of the error needs.
     """
     group, work, (count, loaded) = data.group, data.work, bodies_of(model, data, label)
-    solved = solve_springs(k, group)
+    solved, driven = solve_springs(k, group), 0.0
     if solved:
         push_bodies(model, data, loaded, k, count, s)
         lasts = within_cones(k, group)
         if stick_where_slip_ends(model, data, k, h):
-            onto_tangents(model.system, data, k, count)
+            driven = onto_tangents(model.system, data, k, count)
             velocities(model.system, k, group.points[0], work.trial, group.u)
             copy_to_stage(count, work.trial, group, work)
             lasts = True
         if lasts:
-            return True, True
+            return True, True, driven
     found = solve_forces(k, group)
     if not solved:
         push_bodies(model, data, loaded, k, count, s)
-    return False, found
+    return False, found, driven
 
 
 @kernel
 def rest_of(model, data, k, h):
     """Return the speed below which the bodies of k points are at rest at the end of a step of length h."""
-    push = greatest(3 * k, data.group.problem.c)
+    push = greatest_load(k, data.group)
     return rest_speed(model.controls, h * push, data.work.search[0].residual, k, FEW_REST)
 
 

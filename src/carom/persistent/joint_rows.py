@@ -10,6 +10,7 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.point_lists import write_closed
 from carom.dynamics.contact_impulse import clear_wrenches
+from carom.dynamics.elements.relation import prescribed
 from carom.dynamics.solve import free_body
 from carom.geometry.thresholds import ROUND_OFF
 from carom.kinematics.combination import (
@@ -24,6 +25,7 @@ from carom.kinematics.combination import (
 )
 from carom.kinematics.coordinate import slides
 from carom.model.workspace import CONSTANT, MOTION_JOINT, MOTION_PIVOT
+from carom.persistent.settle import greatest
 from carom.persistent.thresholds import MOTOR_COMPLIANCE
 
 
@@ -46,7 +48,7 @@ def _add_frictions(system, state, k, group, work) -> int:
         write_closed(-1, 0, point.core, CONSTANT, closed_point)
         closed_point.motion, closed_point.active = MOTION_JOINT, i
         closed_point.listed, closed_point.weight = 1, 1.0
-        place_coordinate(system, i, point)
+        place_coordinate(system, i, work.moment[0].time, point)
         alone = response_alone(system, coordinate_of(system, i), state, work)
         closed_point.spring = MOTOR_COMPLIANCE * alone
         k += 1
@@ -61,13 +63,39 @@ def coordinate_of(system, i):
 
 
 @kernel
-def place_coordinate(system, i, point):
-    """Write the coordinate of friction i as a point: its row is the second of the point."""
-    c = coordinate_of(system, i)
+def place_coordinate(system, i, t, point):
+    """Write the coordinate of friction i as a point at a time: its row is the second of the point.
+
+    A drive with a limit is friction on what moves at its rate.
+    """
+    c, one = coordinate_of(system, i), system.relations.frictions[i]
     point.a, point.b = (c.child, c.parent) if c.child >= 0 else (c.parent, -1)
     point.core[0], point.core[1], point.core[2] = 0.0, 0.0, 0.0
-    point.gap, point.length, point.moves, point.motion = 0.0, 1.0, 0, MOTION_JOINT
-    point.coordinate = system.relations.frictions[i].coordinate
+    point.gap, point.length, point.moves, point.motion = 0.0, 1.0, one.drives, MOTION_JOINT
+    point.coordinate = one.coordinate
+    if one.drives == 1:
+        _, point.field[0, 0], point.field[2, 0] = prescribed(system.relations, one, t)
+
+
+@kernel
+def greatest_load(k, group):
+    """Return the greatest acceleration of the k points by all but their forces, and by drives that may slip.
+
+    It is the scale of accelerations and of what moves in a step; in a clutch nothing else may push.
+    """
+    load = greatest(3 * k, group.problem.c)
+    for i in range(k):
+        if group.closed[i].motion == MOTION_JOINT and group.points[0][i].moves == 1:
+            load = max(load, group.problem.mu[i] * group.problem.W[3 * i + 1, 3 * i + 1])
+    return load
+
+
+@kernel
+def place_drives(system, k, t, group):
+    """Write the rates of drives with limits at a time."""
+    for i in range(k):
+        if group.closed[i].motion == MOTION_JOINT and group.points[0][i].moves == 1:
+            place_coordinate(system, group.closed[i].active, t, group.points[0][i])
 
 
 @kernel

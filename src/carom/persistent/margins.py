@@ -26,8 +26,8 @@ from carom.model.actions import (
     MODE_STICK,
 )
 from carom.model.workspace import MOTION_POINT, MOTION_ROLL
+from carom.persistent.joint_rows import greatest_load
 from carom.persistent.rolling_friction import take_torque
-from carom.persistent.settle import greatest
 from carom.persistent.thresholds import EVENT_ERROR, EVENT_MARGIN, NO_MARGIN
 
 
@@ -43,7 +43,7 @@ def greatest_push(k, group):
         for j in range(i if a.motion == MOTION_POINT and group.points[0][i].b != -1 else 0):
             if group.closed[j].contact == a.contact and group.closed[j].motion == MOTION_POINT:
                 return 0.0
-    return greatest(3 * k, group.problem.c)
+    return greatest_load(k, group)
 
 
 @kernel

@@ -23,7 +23,7 @@ from carom.dynamics.thresholds import JOINT_ERROR
 from carom.friction import lu
 from carom.friction.layout import SLIDING
 from carom.geometry.thresholds import REMAINDER, ROUND_OFF, SUM_ERROR
-from carom.kinematics.contact_point import in_axes
+from carom.kinematics.contact_point import in_axes, power_of_surface
 from carom.model.actions import MODE_STICK
 from carom.model.workspace import CONSTANT, MOTION_POINT
 from carom.persistent.joint_rows import is_driven
@@ -129,15 +129,21 @@ def mark_tangents(active, k, group):
 
 @kernel
 def onto_tangents(system, data, k, count):
-    """Remove the velocities of the bodies of the group that leave surfaces, or places that stick."""
+    """Remove the velocities of the bodies of the group that leave surfaces, or places that stick.
+
+    Return the work of the drives of surfaces by these impulses.
+    """
     state, group, work = data.work.trial, data.group, data.work
     mark_tangents(data.active, k, group)
     n, x = factor_given(k, False, group), group.back
-    tiny = SUM_ERROR * greatest_speed(system, state, count, group.bodies.member)
+    tiny, driven = SUM_ERROR * greatest_speed(system, state, count, group.bodies.member), 0.0
     for _ in range(2):  # W is that of the last stage
         velocities(system, k, group.points[0], state, x)
         solve_rows(k, n, tiny, group, x)
         give(system, k, count, state, group, work)
+        for i in range(k):
+            driven += power_of_surface(group.points[0][i], state, x[3 * i : 3 * i + 3])
+    return driven
 
 
 @kernel

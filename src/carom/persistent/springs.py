@@ -32,7 +32,7 @@ from carom.law.turning import arm_of_torque
 from carom.model.allowance import COUNT_FACTORS
 from carom.model.workspace import CONSTANT, MOTION_POINT, MOTION_ROLL
 from carom.persistent import thresholds as limits
-from carom.persistent.joint_rows import is_driven
+from carom.persistent.joint_rows import greatest_load, is_driven
 from carom.persistent.settle import add_product, greatest, settle
 
 SHARES = 6  # rounds until the compliances of stick are found
@@ -53,7 +53,7 @@ def solve_springs(k, group) -> bool:
     `c` has the accelerations without forces. `kind` is SLIDING for points that slide along `heading`, and
     `presses` is 1 for those that press at first.
     """
-    push, rounds = greatest(3 * k, group.problem.c), 0
+    push, rounds = greatest_load(k, group), 0
     soften(k, group)
     for turn in range(3 * k + 4):
         for i in range(k):

@@ -16,7 +16,7 @@ from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.model.workspace import CONSTANT, MOTION_JOINT, MOTION_POINT
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.finish import gains, within_cones
-from carom.persistent.joint_rows import radius_of
+from carom.persistent.joint_rows import greatest_load, radius_of
 from carom.persistent.memory import is_torque, memory_of, store_slip
 from carom.persistent.rows import (
     accelerate_freely,
@@ -26,7 +26,6 @@ from carom.persistent.rows import (
     slip_of,
     write_rows,
 )
-from carom.persistent.settle import greatest
 from carom.persistent.slip_law import follow_laws, has_law, set_friction
 from carom.persistent.springs import solve_springs
 
@@ -69,7 +68,7 @@ def first_stage(model, data, label):
     count, loaded, power = accelerate_start(model, data, label)
     first_modes(system, data, label)
     k = write_rows(model, data, label, 0)
-    push = greatest(3 * k, group.problem.c)
+    push = greatest_load(k, group)
     known = True
     for i in range(k):
         known = find_slip(model, data, i, controls.rest * push * controls.step) and known

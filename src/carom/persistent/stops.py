@@ -13,9 +13,10 @@ tolerances the error of a step beyond a stop does this (`rows.beyond_stop`).
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
+from carom.persistent.joint_rows import greatest_load
 from carom.persistent.memory import memory_of, slip_at_start
 from carom.persistent.rows import slip_of
-from carom.persistent.settle import dot, greatest
+from carom.persistent.settle import dot
 
 
 @kernel
@@ -30,7 +31,7 @@ def note_left(model, data, k):
     if not locates(model, data):
         return
     system, active, group = model.system, data.active, data.group
-    still = 0.5 * model.controls.rest * greatest(3 * k, group.problem.c) * model.controls.step
+    still = 0.5 * model.controls.rest * greatest_load(k, group) * model.controls.step
     for i in range(k):
         closed_point, u = group.closed[i], group.u
         slips, d1, d2, speed = slip_at_start(system, active, closed_point)

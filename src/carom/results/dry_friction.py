@@ -20,7 +20,7 @@ from carom.results.exerted import bodies_of, rubs
 from carom.scene.constraints import Coupling, Driver
 from carom.scene.coordinates import Combination, coordinate_kind, kind_of, terms_of
 from carom.scene.friction import bound_of
-from carom.scene.more_forces import JointFriction
+from carom.scene.more_forces import Drive, JointFriction
 
 STILL = 1e-9  # of the speeds of the joint: below it the rate is round-off, and the joint sticks
 ABOVE = 1.0 + 1e-9  # of the bound: a force up to this sticks
@@ -43,6 +43,7 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
     laws: list[Any] = [force.definition for force in dry]
     read = [states._reports.motion(d.joint, saved, d.coordinate) for d in laws]
     q, rate = (np.hstack([one[name] for one in read]) for name in ("value", "rate"))
+    rate = rate - np.column_stack([_goal(d, saved.series["t"]) for d in laws])
     turns = np.round(q / TURN)
     sticks = np.abs(rate) <= STILL * np.array([_speed(d, saved.state) for d in laws])
     most = np.array([bound_of(d.bound) for d in laws])
@@ -73,10 +74,17 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
         sticks = sticks & ~beyond
 
 
+def _goal(d: JointFriction, t: np.ndarray) -> np.ndarray:
+    """Return the rate (T,) against which friction acts: that of a drive, else 0."""
+    return d.rates(t) if isinstance(d, Drive) else np.zeros(len(t))
+
+
 def _held(d: JointFriction) -> Driver | Coupling:
-    """Return the motor at rest in the place of a friction."""
+    """Return the motor in the place of a friction: at rest, or with the accelerations of a drive."""
     if isinstance(d.joint, Combination):
         return Coupling({(joint.name, k): factor for joint, k, factor in d.joint.terms})
+    if isinstance(d, Drive) and d.motion is not None:
+        return Driver(d.joint.name, motion=d.motion, coordinate=d.coordinate)
     return Driver(d.joint.name, rate=0.0, coordinate=d.coordinate)
 
 

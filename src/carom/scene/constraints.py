@@ -105,12 +105,17 @@ class Driver:
         `PchipInterpolator`, ...). q is measured from the initial position of the joint, so q(0) must be 0.
     coordinate : int, default 0
         Index of the driven coordinate of the joint.
+    limit : float, optional
+        Greatest force [N] or torque [N m] of the motor, above 0: where the rate needs more, the limit acts
+        towards it, and the joint lags. Such a driver is a force, a `carom.forces.Drive`, which
+        `Scene.add_constraint` adds and returns. Default: no limit.
     """
 
     joint: OneJoint = Value(joint_or_name)
     rate: NumberOrNone = Value(_constant, None)
     motion: FunctionOrNone = fields.function(None)
     coordinate: Integer = fields.integer(0, least=0)
+    limit: NumberOrNone = fields.number(None, above=0.0)
 
     def __post_init__(self):
         acts_along(self.joint, self.coordinate)
@@ -222,7 +227,7 @@ class SceneConstraints(MethodsOfScene):
     @arguments.known
     def add_constraint(
         self, definition: ConstraintDefinition, *, name: str | None = None, replace: bool = False
-    ) -> Constraint:
+    ) -> Any:
         """Add a constraint beyond joints: a gear, a motor, or user-defined rows.
 
         Parameters
@@ -235,8 +240,19 @@ class SceneConstraints(MethodsOfScene):
         replace : bool
             True: a constraint that has this name is replaced, and what refers to it then refers to the new one.
             Default False: a name that is taken is refused.
+
+        Returns
+        -------
+        Constraint
+            The constraint; of a `Driver` with a limit the force, an `AppliedForce`.
         """
         checks.instance("definition", definition, CONSTRAINTS)
+        if isinstance(definition, Driver) and definition.limit is not None:
+            from carom.scene.more_forces import Drive
+
+            d = definition
+            drive = Drive(d.joint, d.limit, d.coordinate, rate=d.rate, motion=d.motion)
+            return self.add_force(drive, name=name, replace=replace)  # pyright: ignore
         definition = with_parts(definition, self._parts.member)
         return self._parts.make(Constraint, "constraint", name, replace, definition=definition)
 

@@ -152,7 +152,8 @@ def watch_step(system, data):
         total += line - watch.lowest[i]
         compare(i, line - watch.lowest[i], clock.now, watch)
     compare(ALL, total, clock.now, watch)
-    watch.speed = max(watch.speed, greatest_speed(system, now) + norm(system.gravity) * step.length)
+    fastest = greatest_speed(system, now) + norm(system.gravity) * step.length
+    watch.speed = max(watch.speed, max(fastest, speed_of_stillness(system, step.length)))
     if not clock.residual <= watch.unsolved and watch.unsolved == watch.unsolved:
         watch.unsolved, watch.unsolved_at = clock.residual, clock.now
 
@@ -167,6 +168,15 @@ def size_of_stillness(system, h):
     for b in range(system.bodies.shape[0]):
         size += system.bodies[b].mass * (system.bodies[b].extent / h) ** 2
     return limits.ENERGY_ROUND_OFF * size
+
+
+@kernel
+def speed_of_stillness(system, h):
+    """Return the speed of moving by the round-off of the greatest size in a step [m/s]."""
+    size = 0.0
+    for b in range(system.bodies.shape[0]):
+        size = max(size, system.bodies[b].extent)
+    return limits.ENERGY_ROUND_OFF * size / h
 
 
 @kernel

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.dynamics.contact_impulse import gain
+from carom.dynamics.elements.relation import prescribed
 from carom.dynamics.explicit import copy_state, rubs
 from carom.dynamics.forces import applied_wrenches, difference_of_loads
 from carom.dynamics.project import shift
@@ -73,13 +74,16 @@ def halfway(start, end, out):
 
 
 @kernel
-def friction_power(system, state):
-    """Return the power of friction in joints, with the forces of the last contact step."""
-    relations, power = system.relations, 0.0
+def friction_powers(system, state, t):
+    """Return the powers of drives with limits and of friction in joints, by the last forces in contact."""
+    relations, driven, power = system.relations, 0.0, 0.0
     for i in range(relations.frictions.shape[0]):
-        speed = rate(system, relations.coordinates[relations.frictions[i].coordinate], state)
-        power += relations.memory.frictions[i].force[1] * speed
-    return power
+        one, force = relations.frictions[i], relations.memory.frictions[i].force[1]
+        goal = prescribed(relations, one, t)[1] if one.drives == 1 else 0.0
+        speed = rate(system, relations.coordinates[one.coordinate], state)
+        driven += force * goal
+        power += force * (speed - goal)
+    return driven, power
 
 
 @kernel
@@ -92,13 +96,19 @@ def power_of_path(system, h, start, end, middle, work):
     for b in range(start.shape[0]):
         halfway(start[b], end[b], middle[b])
     moment.time = begin
-    loads, friction = applied_wrenches(system, start, False, work), friction_power(system, start)
+    loads, (driven, friction) = (
+        applied_wrenches(system, start, False, work),
+        friction_powers(system, start, moment.time),
+    )
+    loads += driven
     moment.time = begin + 0.5 * h
-    loads += 4.0 * applied_wrenches(system, middle, False, work)
-    friction += 4.0 * friction_power(system, middle)
+    driven, slip = friction_powers(system, middle, moment.time)
+    loads += 4.0 * (applied_wrenches(system, middle, False, work) + driven)
+    friction += 4.0 * slip
     moment.time = begin + h
-    loads += applied_wrenches(system, end, False, work)
-    return loads, friction + friction_power(system, end)
+    driven, slip = friction_powers(system, end, moment.time)
+    loads += applied_wrenches(system, end, False, work) + driven
+    return loads, friction + slip
 
 
 @kernel
