@@ -93,8 +93,26 @@ def acts_along(
 def joint_or_combination(name: str, joint) -> Any:
     """Return a joint, its name, or the combination that a mapping from joints to factors states."""
     if isinstance(joint, Mapping):
-        return Combination(joint, name)
+        return Combination._of(_terms(name, joint))
     return joint if isinstance(joint, Combination) else joint_or_name(name, joint)
+
+
+def _terms(name: str, factors: Factors) -> tuple[tuple[Joint, int, float], ...]:
+    """Return the terms of a sum, checked."""
+    if not isinstance(factors, Mapping) or not factors:
+        raise ValueError(
+            f"{name} must be a mapping from joints to numbers, got {checks.shown(factors)}"
+        )
+    terms = []
+    for key, factor in factors.items():
+        pair = key if isinstance(key, tuple) and len(key) == 2 else (key, 0)
+        joint, coordinate = pair
+        acts_along(joint, coordinate, f"each key of {name}")
+        factor = checks.number(f"{name}[{joint!r}]", factor)
+        if factor == 0.0:
+            raise ValueError(f"{name}[{joint!r}] must not be 0, got {factor!r}")
+        terms.append((joint, coordinate, factor))
+    return tuple(terms)
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -103,21 +121,8 @@ class Combination:
 
     terms: tuple[tuple[Joint, int, float], ...]  #: joint, number of its coordinate, factor
 
-    def __init__(self, factors: Factors, name: str = "factors"):
-        if not isinstance(factors, Mapping) or not factors:
-            raise ValueError(
-                f"{name} must be a mapping from joints to numbers, got {checks.shown(factors)}"
-            )
-        terms = []
-        for key, factor in factors.items():
-            pair = key if isinstance(key, tuple) and len(key) == 2 else (key, 0)
-            joint, coordinate = pair
-            acts_along(joint, coordinate, f"each key of {name}")
-            factor = checks.number(f"{name}[{joint!r}]", factor)
-            if factor == 0.0:
-                raise ValueError(f"{name}[{joint!r}] must not be 0, got {factor!r}")
-            terms.append((joint, coordinate, factor))
-        keep(self, terms=tuple(terms))
+    def __init__(self, factors: Factors):
+        keep(self, terms=_terms("factors", factors))
 
     @classmethod
     def _of(cls, terms) -> Combination:
