@@ -233,7 +233,11 @@ def stated():
                  gradient=lambda x, y, z: (-0.2 * x, 0.0, 1.0),
                  hessian=lambda x, y, z: np.diag([-0.2, 0.0, 0.0])),
         ),
-        "joints.Distance": lambda: (joints.Distance, dict(anchor_parent=three, anchor_child=(0, 0, 0.0))),
+        "joints.Distance": lambda: (
+            joints.Distance,
+            dict(anchor_parent=three, anchor_child=(0, 0, 0.0), lower=0.5, upper=2.0, restitution=0.5,
+                 impact_law="poisson"),
+        ),
         "joints.Tether": lambda: (
             joints.Tether,
             dict(length=1.0, anchor_parent=three, anchor_child=three, restitution=0.5, impact_law="newton"),

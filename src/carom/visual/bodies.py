@@ -302,7 +302,7 @@ def _anchor(joint: Joint, body) -> np.ndarray:
 
 
 def links_of(scene) -> list[Link]:
-    """Return springs, massless rods and cords."""
+    """Return springs, massless rods and cords; a rod with two limits is one."""
     out = []
     for one in (*scene.forces, *scene.joints):
         d = one.definition
@@ -311,13 +311,16 @@ def links_of(scene) -> list[Link]:
             start, end = (_in_body(part, a) for part, a in pair)
             kind = "rod" if isinstance(d, Distance) else "spring"
             out.append(Link(one.parent.index, one.child.index, start, end, kind))
+    rods = {id(stop.joint) for stop in scene.stops if stop.upper is None}
     for stop in scene.stops:
         for of, _, _ in terms_of(stop.joint, stop.coordinate):
-            if isinstance(of, Length):
+            if isinstance(of, Length) and (stop.upper is None or id(stop.joint) not in rods):
                 ends = _in_body(of.parent, of.ends[0]), _in_body(of.child, of.ends[1])
                 pair = of.parent.index, of.child.index
                 if isinstance(of, Strand):
                     out.append(Link(*pair, *ends, "cord", 0.0, of.radii, of.axis))
+                elif stop.upper is None:
+                    out.append(Link(*pair, *ends, "rod"))
                 else:
                     out.append(Link(*pair, *ends, "cord", stop.end))
     return out

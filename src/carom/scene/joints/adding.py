@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, overload
+from itertools import count
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.scene.bodies import Body, Ground
 from carom.scene.coordinates import Length
-from carom.scene.joints import JOINTS, Joint, JointDefinition, Tether
+from carom.scene.joints import JOINTS, Distance, Joint, JointDefinition, Tether
 from carom.scene.stops import Stop
 from carom.scene.values import MethodsOfScene
 
 if TYPE_CHECKING:
     from carom.geometry.attitude import Orientation
+
+
+class Rod(NamedTuple):
+    """The stops of a rod with two limits."""
+
+    lower: Stop
+    upper: Stop
 
 
 class SceneJoints(MethodsOfScene):
@@ -31,6 +39,19 @@ class SceneJoints(MethodsOfScene):
         name: str | None = None,
         replace: bool = False,
     ) -> Stop: ...
+
+    @overload
+    def add_joint(
+        self,
+        definition: Distance,
+        parent: Body | Ground | str | None = None,
+        child: Body | str | None = None,
+        *,
+        parent_frame: tuple[ArrayLike, Orientation] | None = None,
+        child_frame: tuple[ArrayLike, Orientation] | None = None,
+        name: str | None = None,
+        replace: bool = False,
+    ) -> Any: ...
 
     @overload
     def add_joint(
@@ -56,14 +77,15 @@ class SceneJoints(MethodsOfScene):
         child_frame: tuple[ArrayLike, Orientation] | None = None,
         name: str | None = None,
         replace: bool = False,
-    ) -> Joint | Stop:
+    ) -> Any:
         """Join two bodies, or a body and the ground.
 
         Parameters
         ----------
         definition
-            A joint of `carom.joints`; of a `carom.joints.Tether` a `Stop` is made. Its points and axes are in
-            the world at the start; with frames, they are in a frame that is fixed in both bodies.
+            A joint of `carom.joints`; of a `carom.joints.Tether`, and of a `carom.joints.Distance` with limits,
+            stops are made. Its points and axes are in the world at the start; with frames, they are in a frame
+            that is fixed in both bodies.
         parent
             A body or its name, or `carom.GROUND`.
         child
@@ -80,6 +102,12 @@ class SceneJoints(MethodsOfScene):
             True: a joint that has this name is replaced, and what refers to it then refers to the new one.
             Default False: a name that is taken is refused.
 
+        Returns
+        -------
+        Joint
+            The joint; of a tether, or a distance with one limit, a `Stop`; of a distance with a lower and an
+            upper limit a pair of them, with the names ``"<name>.lower"`` and ``"<name>.upper"``.
+
         Examples
         --------
         >>> scene = carom.Scene()
@@ -88,10 +116,11 @@ class SceneJoints(MethodsOfScene):
         >>> scene.add_joint(hinge, carom.GROUND, rod, name="hinge")
         Joint('hinge', Revolute, 'GROUND' -> 'rod')
         """
-        if isinstance(definition, Tether):
-            return self._add_tether(
-                definition, parent, child, name, replace, (parent_frame, child_frame)
-            )
+        if isinstance(definition, Tether) or (
+            isinstance(definition, Distance) and definition.limits_of_length
+        ):
+            placed = parent_frame is not None or child_frame is not None
+            return self._add_length(definition, parent, child, name, replace, placed)
         order = "; the order is add_joint(definition, parent, child)"
         checks.instance("definition", definition, JOINTS, order if _is_side(definition) else "")
         if parent is None or child is None:
@@ -106,33 +135,54 @@ class SceneJoints(MethodsOfScene):
             frames=(parent_frame, child_frame),
         )  # fmt: skip
 
-    def _add_tether(self, tether: Tether, parent, child, name, replace: bool, frames) -> Stop:
-        """Make the stop of a tether."""
-        if frames != (None, None):
+    def _add_length(
+        self, d: Tether | Distance, parent, child, name, replace: bool, placed: bool
+    ) -> Any:
+        """Make the stops of a distance: one, or of a lower and an upper limit a pair."""
+        if placed:
             raise ValueError(
-                "parent_frame and child_frame must be left out of a Tether, which has anchors"
+                f"parent_frame and child_frame must be left out of a {type(d).__name__}, which has anchors"
             )
         if parent is None or child is None:
-            raise TypeError("parent and child must be given: add_joint(Tether(...), parent, child)")
-        parent, child = self._parts.pair(parent, child)
-        if isinstance(parent, Ground) and tether.anchor_parent is None:
-            raise ValueError("anchor_parent must be given for a point of the ground, got None")
-        of = Length(parent, child, tether.anchor_parent, tether.anchor_child)
-        distance = math.dist(*of.ends)
-        if tether.length is None and distance == 0.0:
-            raise ValueError(
-                "length must be given if both points are the same at the start, got None"
+            raise TypeError(
+                f"parent and child must be given: add_joint({type(d).__name__}(...), parent, child)"
             )
+        parent, child = self._parts.pair(parent, child)
+        if isinstance(parent, Ground) and d.anchor_parent is None:
+            raise ValueError("anchor_parent must be given for a point of the ground, got None")
+        of = Length(parent, child, d.anchor_parent, d.anchor_child)
+        if isinstance(d, Tether):
+            return self._add_limit(d, of, "tether", name, replace, upper=_length(d, of))
+        ends = d.limits_of_length
+        if len(ends) == 1:
+            return self._add_limit(d, of, "rod", name, replace, **ends)
+        if name is None:
+            own = {stop.name for stop in self._parts.parts(Stop)}
+            name = next(f"rod{k}" for k in count(1) if f"rod{k}.lower" not in own)
+        made = [
+            self._add_limit(d, of, "rod", f"{name}.{side}", replace, **{side: end})
+            for side, end in ends.items()
+        ]
+        return Rod(*made)
+
+    def _add_limit(self, d, of: Length, default: str, name, replace: bool, **end: float) -> Stop:
         return self._parts.make(
-            Stop, "tether", name, replace, joint=of, coordinate=0,
-            upper=distance if tether.length is None else tether.length, restitution=tether.restitution,
-            impact_law=tether.impact_law,
+            Stop, default, name, replace, joint=of, coordinate=0, restitution=d.restitution,
+            impact_law=d.impact_law, **end,
         )  # fmt: skip
 
     @property
     def joints(self) -> tuple[Joint, ...]:
         """Joints, in the order in which they were added."""
         return self._parts.parts(Joint)
+
+
+def _length(tether: Tether, of: Length) -> float:
+    """Return the length of a tether: by default the distance of its ends at the start."""
+    distance = math.dist(*of.ends)
+    if tether.length is None and distance == 0.0:
+        raise ValueError("length must be given if both points are the same at the start, got None")
+    return distance if tether.length is None else tether.length
 
 
 def _is_side(part) -> bool:

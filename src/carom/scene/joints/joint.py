@@ -12,6 +12,7 @@ from carom.geometry.attitude import attitude
 from carom.scene.bodies import Body, Ground
 from carom.scene.joints.definition import JointDefinition
 from carom.scene.joints.rolling import KnifeEdge, RollingDisc, RollingSphere
+from carom.scene.joints.special import Distance
 from carom.scene.values import PartOfScene, in_scene
 
 
@@ -39,6 +40,11 @@ class Joint(PartOfScene):
         if isinstance(self.definition, KnifeEdge) and not isinstance(self.parent, Ground):
             raise ValueError(
                 f"parent of a KnifeEdge must be carom.GROUND, got {shown(self.parent)}"
+            )
+        if isinstance(self.definition, Distance) and self.definition.limits_of_length:
+            raise ValueError(
+                "lower and upper must be left out of a rod that is rigid, got "
+                f"{shown(self.definition.limits_of_length)}; remove it, and add one with limits"
             )
         parent, child = self.frames or (None, None)
         if (parent is None) != (child is None):

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from carom import arguments, fields
 from carom.checks import number, unit_vector
-from carom.fields import Value, Vector, keep
+from carom.fields import NumberOrNone, Value, Vector, Word, keep
 from carom.scene.joints.definition import JointDefinition
+from carom.scene.materials import IMPACT_LAWS
+from carom.scene.restitution import restitution
 from carom.scene.values import apart, shown
 
 ACROSS = 1e-9  # cosine of an angle below which directions count as perpendicular
@@ -20,7 +23,21 @@ ACROSS = 1e-9  # cosine of an angle below which directions count as perpendicula
 class Distance(JointDefinition):
     """A massless rod between a point of the parent and one of the child, each (3,).
 
-    Its `length` [m] is the distance of the two points at the start, which must not be 0.
+    Its `length` [m] is the distance of the two points at the start, which must not be 0. With limits it is a
+    telescope, which pushes at its lower and pulls at its upper end and leaves both bodies free between: then
+    `Scene.add_joint` makes stops, with located impacts and persistent contact, in the place of a joint.
+
+    Parameters
+    ----------
+    anchor_parent, anchor_child : (3,)
+        The points, in the world at the start [m].
+    lower, upper : float, optional
+        Least and greatest distance of the points [m], at least 0; `lower` below `upper`. Default: the rod is
+        rigid.
+    restitution : float or Restitution
+        Of the impacts at the limits, from 0 (default) to 1, or its law: a function of the speed [m/s].
+    impact_law : str
+        As for `Scene.add_stop`.
     """
 
     guide, turn = "own", "own"
@@ -28,10 +45,23 @@ class Distance(JointDefinition):
 
     anchor_parent: Vector = fields.vector()
     anchor_child: Vector = fields.vector()
+    lower: NumberOrNone = fields.number(None, least=0.0)
+    upper: NumberOrNone = fields.number(None, above=0.0)
+    restitution: Value[Any, Any] = restitution(0.0)
+    impact_law: Word = fields.word(IMPACT_LAWS, "newton")
     length: float = field(init=False)  #: distance of the two points at the start [m]
 
     def __post_init__(self):
         keep(self, length=apart(self, "; for a shared point use Spherical"))
+        low, high = self.lower, self.upper
+        if low is not None and high is not None and not low < high:
+            raise ValueError(f"lower must be below upper, got {low:g} and {high:g}")
+
+    @property
+    def limits_of_length(self) -> dict[str, float]:
+        """Its limits by their names; empty if it is rigid."""
+        pairs = {"lower": self.lower, "upper": self.upper}
+        return {name: end for name, end in pairs.items() if end is not None}
 
     def anchors(self, anchor, child) -> tuple[np.ndarray, np.ndarray]:
         """Return both ends of the rod."""
