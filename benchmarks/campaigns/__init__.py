@@ -8,6 +8,7 @@ from campaigns import (
     bearings,
     belts,
     cams,
+    clearances,
     coordinates,
     crowds,
     drives,
@@ -44,5 +45,5 @@ FAMILIES = {
     "terrains": terrains.case, "cams": cams.case,
     "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "grains by slip": grains.by_slip,
     "rough": rough.case, "plays": plays.case, "tethers": tethers.case, "ropes": ropes.case,
-    "coordinates": coordinates.case, "drives": drives.case,
+    "coordinates": coordinates.case, "drives": drives.case, "clearances": clearances.case,
 }  # fmt: skip

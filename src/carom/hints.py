@@ -102,8 +102,7 @@ ARGUMENTS = {
         "a spring or a damper of a joint is a force: "
         "scene.add_force(carom.forces.JointSpring(joint, stiffness=, damping=))":
             "damping stiffness spring spring_constant damping_coefficient viscous_friction compliance",
-        "clearance is no joint, but a contact: give the pin and its bearing shapes, such as a Cylinder in a "
-        "Compound, without a joint, and scene.add_contact": "clearance gap tolerance",
+        "a joint with clearance is carom.joints.Clearance(anchor, axis, radial=)": "clearance gap tolerance",
         "play between joints is scene.add_play({joint: factor, ...}, lower, upper, restitution=)":
             "backlash play",
         "a motor is scene.add_constraint(carom.constraints.Driver(joint, rate=)) or "

@@ -238,6 +238,11 @@ def stated():
             dict(anchor_parent=three, anchor_child=(0, 0, 0.0), lower=0.5, upper=2.0, restitution=0.5,
                  impact_law="poisson"),
         ),
+        "joints.Clearance": lambda: (
+            joints.Clearance,
+            dict(anchor=three, axis=(0, 1, 0.0), radial=1e-3, axial=1e-3, length=0.1, radius=0.01, friction=0.1,
+                 restitution=0.5, impact_law="poisson"),
+        ),
         "joints.Tether": lambda: (
             joints.Tether,
             dict(length=1.0, anchor_parent=three, anchor_child=three, restitution=0.5, impact_law="newton"),

@@ -86,6 +86,7 @@ def test_workers_and_their_order_change_no_bit(thrown):
     assert np.array_equal(threads.v, thrown.v)
 
 
+@pytest.mark.bits
 def test_processes_get_functions_and_expressions(thrown):
     sent = {"runs": 12, "vary": VARY, "executor": "processes", "workers": 1}
     assert np.array_equal(carom.ensemble(rubbed(), 1.0, **sent).q, thrown.q)

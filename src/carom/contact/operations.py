@@ -82,6 +82,12 @@ def closing_speed(system, contact, state, work):
     return s + math.sqrt(v0 * v0 + v1 * v1 + v2 * v2)
 
 
+@by_kind("contact")
+def turning_radius(system, contact):
+    """Return the way across its normal over which a contact turns round [m]; inf where a body turns it."""
+    return math.inf
+
+
 # which points
 
 

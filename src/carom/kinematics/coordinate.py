@@ -73,6 +73,29 @@ def counts_turns(c):
 
 
 @by_coordinate
+def turns_with_place(c):
+    """Return whether a displacement turns its direction: a distance from a point or a line."""
+    return False
+
+
+@by_coordinate
+def has_face(system, c):
+    """Return whether what limits a coordinate touches at a point, which has friction: rails, pins in bushes."""
+    return False
+
+
+@by_coordinate
+def place_face(system, contact, c, state, point):
+    """Write this point, its axes and its gap."""
+
+
+@by_coordinate
+def face_drift(system, c, state):
+    """Return (d/dt G) v of this point."""
+    return 0.0, 0.0, 0.0
+
+
+@by_coordinate
 def turn_within(system, c, start, end, h):
     """Return a bound of the angle of a step of length h, for which whole turns and feet must be known."""
     return h * max(abs(rate(system, c, start)), abs(rate(system, c, end)))

@@ -48,6 +48,7 @@ LIMITED = {
     "twist": "ball",
     "length": "length",
     "strand": "strand",
+    "bush": "bush",
     "gap": "gap",
 }
 OF_LIMIT = {word: number for number, word in enumerate(LIMITED, len(KIND) + 5)}

@@ -17,7 +17,16 @@ from carom.model.pieces import PIECE, Pieces
 from carom.model.placement import Placement
 from carom.model.stated_forces import ForceRows, write_motion
 from carom.scene.constraints import Coupling, Rows
-from carom.scene.coordinates import Combination, Gap, Length, Strand, coordinate_kind, counted
+from carom.scene.coordinates import (
+    Axial,
+    Bush,
+    Combination,
+    Gap,
+    Length,
+    Strand,
+    coordinate_kind,
+    counted,
+)
 from carom.scene.forces import Spring
 from carom.scene.joints import Joint
 from carom.scene.more_forces import Actuator, JointInertia, JointSpring
@@ -100,6 +109,12 @@ class Coordinates:
             made.kind, made.length = arrays.OF_LIMIT["strand"], length.radii[0] - length.radii[1]
             made.parent_frame[0] = triad(length.axis)
             made.begin = length.start
+        if isinstance(length, (Bush, Axial)):
+            frame = triad(length.axis)
+            made.kind = arrays.PRISMATIC if isinstance(length, Axial) else arrays.OF_LIMIT["bush"]
+            made.length = 0.0 if isinstance(length, Axial) else length.radius
+            made.parent_frame[0] = self.placement.axes(length.parent, frame)
+            made.child_frame[0] = self.placement.axes(length.child, frame)
         made.parent, made.child = length.parent.index, length.child.index
         made.parent_anchor[0] = place(length.parent, length.ends[0])
         made.child_anchor[0] = place(length.child, length.ends[1])

@@ -27,8 +27,8 @@ from carom.model.relations import is_inertia
 from carom.results.dense_output import curves
 from carom.results.event_tables import JointImpulse, JointImpulseTable
 from carom.results.reports import at_once
-from carom.scene.bodies import HalfSpace
-from carom.scene.coordinates import Length, kind_of, terms_of
+from carom.scene.bodies import Body, HalfSpace
+from carom.scene.coordinates import Bush, Length, kind_of, terms_of
 from carom.scene.more_forces import JointInertia
 from carom.scene.surfaces import SurfaceDefinition
 
@@ -46,6 +46,12 @@ def world_impulses(solution) -> np.ndarray:
         )
     for k in np.flatnonzero(impacts.contact >= len(pairs.body)):
         joint = solution.scene.stops[impacts.contact[k] - len(pairs.body)].joint
+        if isinstance(joint, Bush):
+            n, a, parent = impacts.normal[k], joint.axis, joint.parent
+            if isinstance(parent, Body):
+                now = solution.evaluate(impacts.time[k])[1][parent.index]
+                a = quaternion.rotate(now, quaternion.rotate_back(parent.orientation, a))
+            out[k] = impacts.impulse[k] @ (n, np.cross(a, n), a)
         if joint.can_be_left:
             n, reports = impacts.normal[k], solution._reports
             x, Q, v, w = solution.evaluate(impacts.time[k])
@@ -183,6 +189,9 @@ class _Mechanism:
             if stop.joint.can_be_left:
                 self.take(stop.joint, self.push[i], state, rest)
                 return
+            if isinstance(stop.joint, Bush):
+                self.take_at(i, stop.joint.child.index, stop.joint.parent.index, state, rest)
+                return
             along = stop.side * impacts.impulse[i, 0]
             for one, k, factor in terms_of(stop.joint, stop.coordinate):
                 if isinstance(one, Length):
@@ -190,9 +199,13 @@ class _Mechanism:
                 else:
                     self.take_along(one, k, factor * along, state, rest)
             return
-        for b, sign in ((pairs.body[number], -1.0), (pairs.other[number], 1.0)):
+        self.take_at(i, pairs.body[number], pairs.other[number], state, rest)
+
+    def take_at(self, i: int, body: int, other: int, state: np.recarray, rest: np.ndarray) -> None:
+        """Take the impulse of impact i at its point from both bodies, -1 for the ground."""
+        for b, sign in ((body, -1.0), (other, 1.0)):
             if b >= 0:
-                arm = impacts.point[i] - state["x"][b]
+                arm = self.solution.impacts.point[i] - state["x"][b]
                 rest[b] += sign * np.append(self.push[i], np.cross(arm, self.push[i]))
 
     def take_between(self, length: Length, amount: float, state: np.recarray, rest: np.ndarray):

@@ -257,6 +257,48 @@ class Strand(Length):
         return (*super().index, *self.axis.tolist(), *self.radii.tolist(), self.start)
 
 
+@dataclass(frozen=True, eq=False)
+class Bush(Length):
+    """The distance of the centre of a pin, a point of the child, from the axis of its bush, in the parent.
+
+    Attributes
+    ----------
+    axis : (3,)
+        Axis of the bush, in the world at the start.
+    radius : float
+        Radius of the pin [m].
+    friction : float or Friction
+        Friction of the pin in its bush.
+    """
+
+    axis: np.ndarray
+    radius: float = 0.0
+    friction: Any = 0.0
+
+    @property
+    def index(self) -> tuple:
+        """What tells it from other coordinates."""
+        return (*super().index, "across", *self.axis.tolist(), self.radius)
+
+
+@dataclass(frozen=True, eq=False)
+class Axial(Length):
+    """The displacement of a point of the child along an axis of the parent, in a joint with clearance.
+
+    Attributes
+    ----------
+    axis : (3,)
+        The axis, in the world at the start.
+    """
+
+    axis: np.ndarray
+
+    @property
+    def index(self) -> tuple:
+        """What tells it from other coordinates."""
+        return (*super().index, "along", *self.axis.tolist())
+
+
 def terms_of(joint: Joint | Combination | Length, coordinate: int | str):
     """Return joints, coordinates and factors of a combination, or the one coordinate of a joint, once."""
     return joint.terms if isinstance(joint, Combination) else ((joint, coordinate, 1.0),)

@@ -95,8 +95,8 @@ class Stop(PartOfScene):
 
     @property
     def friction(self) -> Any:
-        """Friction of its face: none."""
-        return 0.0
+        """Friction of its face: that of a pin in its bush, else none."""
+        return getattr(self.joint, "friction", 0.0)
 
     @property
     def tangential_restitution(self) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.scene.bodies import Body
-from carom.scene.coordinates import Length, Strand, terms_of
+from carom.scene.coordinates import Axial, Bush, Length, Strand, terms_of
 from carom.scene.curves import Curve
 from carom.scene.forces import Spring
 from carom.scene.joints import CurveOnPoint, Distance, Joint, RollingDisc, RollingSphere
@@ -314,7 +314,10 @@ def links_of(scene) -> list[Link]:
     rods = {id(stop.joint) for stop in scene.stops if stop.upper is None}
     for stop in scene.stops:
         for of, _, _ in terms_of(stop.joint, stop.coordinate):
-            if isinstance(of, Length) and (stop.upper is None or id(stop.joint) not in rods):
+            hidden = isinstance(of, (Bush, Axial)) or (
+                stop.upper is not None and id(stop.joint) in rods
+            )
+            if isinstance(of, Length) and not hidden:
                 ends = _in_body(of.parent, of.ends[0]), _in_body(of.child, of.ends[1])
                 pair = of.parent.index, of.child.index
                 if isinstance(of, Strand):

@@ -16,17 +16,22 @@ from carom.contact.continuous_detection import BELOW, CLEAR, UNSURE, cubic_clear
 from carom.contact.gap import round_off, slow
 from carom.contact.point_axes import tangents
 from carom.contact.point_lists import is_active, write_closed
-from carom.geometry.rotation import cross
 from carom.geometry.thresholds import RESOLUTION
 from carom.kinematics.combination import drift as rate_of_slope
 from carom.kinematics.combination import first_of, rate, value
 from carom.kinematics.contact_point import contact_velocity
-from carom.kinematics.coordinate import along, slides
-from carom.kinematics.curve import can_be_left, find_foot, foot_of, is_on_curve, rail_drift
+from carom.kinematics.coordinate import (
+    along,
+    face_drift,
+    has_face,
+    place_face,
+    slides,
+    turns_with_place,
+)
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.model.actions import NOTHING, PERSIST, STRIKE
 from carom.model.parts_of_system import has_metric
-from carom.model.workspace import MOTION_POINT, MOTION_STOP, MOTION_THREE
+from carom.model.workspace import MOTION_STOP, MOTION_THREE
 from carom.status import FUNCTION_FAILED
 
 located_within, rounding = gaps.located_within, round_off
@@ -37,10 +42,10 @@ def place_stop(system, contact, state, point):
     """Write the point, axes and gap of a stop."""
     of_stop = system.relations.coordinates[contact.solid]
     c = first_of(system, of_stop)  # its axis and arms are for records alone
-    nx, ny, nz = along(system, c, state)
-    if is_rail(system, c):
-        place_on_rail(contact, c, foot_of(system, c), state, point)
+    if has_face(system, c):
+        place_face(system, contact, c, state, point)
         return
+    nx, ny, nz = along(system, c, state)
     # the normal is that of the child relative to the parent; its sign changes if the child is the ground
     s = 1.0 if (contact.side > 0.0) == (contact.body == c.child) else -1.0
     point.a, point.b = contact.body, contact.other
@@ -59,29 +64,11 @@ def place_stop(system, contact, state, point):
     point.moves = 0
 
 
-@kernel
-def is_rail(system, c):
-    """Return whether a coordinate is that of a rail that can be left, whose contact is its stop."""
-    return is_on_curve(c) and can_be_left(system.relations.curves[c.number])
-
-
-@kernel
-def place_on_rail(contact, c, foot, state, point):
-    """Write the contact point of a rail, at the last foot: normal, tangent, and across the plane."""
-    n, across, r, s = foot.normal[1], foot.normal[0], child_arm(c, state), parent_arm(c, state)
-    t = cross(across[0], across[1], across[2], n[0], n[1], n[2])
-    point.a, point.b, point.gap = contact.body, contact.other, foot.gap[1]
-    point.motion, point.length, point.moves = MOTION_POINT, 1.0, 0
-    for k in range(3):
-        point.core[k], point.arm_a[k], point.arm_b[k] = 0.0, r[k], s[k]
-        point.axes[0, k], point.axes[1, k], point.axes[2, k] = n[k], t[k], across[k]
-
-
 @unit
 def stop_gap(system, contact, state, work) -> tuple[float, float]:
     """Return the gap of a stop and its rate."""
     c = system.relations.coordinates[contact.solid]
-    if is_rail(system, c):
+    if has_face(system, c):
         place_stop(system, contact, state, work.placed[0])
         return work.placed[0].gap, contact_velocity(system, work.placed[0], state)[0]
     return contact.side * value(system, c, state) - contact.offset, contact.side * rate(
@@ -93,9 +80,8 @@ def stop_gap(system, contact, state, work) -> tuple[float, float]:
 def drift(system, contact, feature, point, state, work) -> tuple[float, float, float]:
     """Return (d/dt G) v of a stop."""
     c = system.relations.coordinates[contact.solid]
-    if is_rail(system, c):
-        find_foot(system, c, state)
-        return rail_drift(c, foot_of(system, c), state)
+    if has_face(system, c):
+        return face_drift(system, c, state)
     out, k = work.joint[0].target, contact.solid
     n = contact.side * rate_of_slope(system, c, state, out)
     if not has_metric(system):
@@ -138,6 +124,13 @@ def lost_gap(contact):
 def closing_speed(system, contact, state, work):
     """Return the speed of a stop, which is nearly constant within a step."""
     return abs(stop_gap(system, contact, state, work)[1])
+
+
+@kernel
+def turning_radius(system, contact):
+    """Return the distance at the limit, for a distance from a point or a line."""
+    c = first_of(system, system.relations.coordinates[contact.solid])
+    return abs(contact.offset) if turns_with_place(c) else math.inf
 
 
 @kernel

@@ -35,7 +35,7 @@ from carom.results.sensors import Frame, Sensor
 from carom.scene.bodies import FIXED, GROUND, Body, Ground
 from carom.scene.constraints import CONSTRAINTS, Constraint, Gear
 from carom.scene.contacts import Contact
-from carom.scene.coordinates import Combination, Length, Strand
+from carom.scene.coordinates import Axial, Bush, Combination, Length, Strand
 from carom.scene.curves import CURVES
 from carom.scene.forces import FORCES, AppliedForce
 from carom.scene.joints import JOINTS, Joint
@@ -65,6 +65,8 @@ TYPES: dict[str, type[Any]] = {
         Combination,
         Length,
         Strand,
+        Bush,
+        Axial,
         Gear,
         ContactLaw,
         Material,

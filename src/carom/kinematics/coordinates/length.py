@@ -49,6 +49,12 @@ def drift(system, c, state, out):
 
 
 @kernel
+def turns_with_place(c):
+    """Return True."""
+    return True
+
+
+@kernel
 def counts_turns(c):
     """Return False."""
     return False

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
+from carom.geometry.rotation import cross
 from carom.kinematics.curve import (
     can_be_left,
     find_foot,
     foot_of,
     is_upright,
+    rail_drift,
     relative_bias,
     speed_beside,
 )
-from carom.kinematics.joints import anchor_speed
+from carom.kinematics.joints import anchor_speed, child_arm, parent_arm
 from carom.kinematics.thresholds import RAIL_TRAVEL, TURN_OF_STEP
+from carom.model.workspace import MOTION_POINT
 
 
 @kernel
@@ -71,3 +74,30 @@ def turn_within(system, c, start, end, h):
         far = travel < foot.gap[1] and not is_upright(system.relations.curve_pieces[one.first])
         turn = 0.0 if far else TURN_OF_STEP / RAIL_TRAVEL * travel
     return turn * one.sharpest
+
+
+@kernel
+def has_face(system, c):
+    """Return whether it is that of a rail that can be left, whose contact is its stop."""
+    return can_be_left(system.relations.curves[c.number])
+
+
+@kernel
+def place_face(system, contact, c, state, point):
+    """Write the contact point of a rail at the foot: normal, tangent, and across the plane."""
+    find_foot(system, c, state)
+    foot = foot_of(system, c)
+    n, across, r, s = foot.normal[1], foot.normal[0], child_arm(c, state), parent_arm(c, state)
+    t = cross(across[0], across[1], across[2], n[0], n[1], n[2])
+    point.a, point.b, point.gap = contact.body, contact.other, foot.gap[1]
+    point.motion, point.length, point.moves = MOTION_POINT, 1.0, 0
+    for k in range(3):
+        point.core[k], point.arm_a[k], point.arm_b[k] = 0.0, r[k], s[k]
+        point.axes[0, k], point.axes[1, k], point.axes[2, k] = n[k], t[k], across[k]
+
+
+@kernel
+def face_drift(system, c, state):
+    """Return (d/dt G) v of this point."""
+    find_foot(system, c, state)
+    return rail_drift(c, foot_of(system, c), state)

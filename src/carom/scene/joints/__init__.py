@@ -30,14 +30,15 @@ from carom.scene.joints.on_curve import PointOnCurve as PointOnCurve
 from carom.scene.joints.on_curve import CurveOnPoint as CurveOnPoint
 # isort: on
 
+from carom.scene.joints.clearance import Clearance as Clearance
 from carom.scene.joints.definition import JointDefinition as JointDefinition
 from carom.scene.joints.joint import Joint as Joint
 from carom.scene.joints.tether import Tether as Tether
 
 JOINTS = subclasses_in(globals(), JointDefinition)
 
-__getattr__ = members_of("carom.joints", [joint.__name__ for joint in (*JOINTS, Tether)])
+__getattr__ = members_of("carom.joints", [joint.__name__ for joint in (*JOINTS, Tether, Clearance)])
 
 
 def __dir__() -> list[str]:
-    return ["Joint", "JointDefinition", *(joint.__name__ for joint in (*JOINTS, Tether))]
+    return ["Joint", "JointDefinition", *(joint.__name__ for joint in (*JOINTS, Tether, Clearance))]

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 from itertools import count
-from typing import TYPE_CHECKING, Any, NamedTuple, overload
+from typing import TYPE_CHECKING, Any, NamedTuple, cast, overload
 
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
 from carom.scene.bodies import Body, Ground
-from carom.scene.coordinates import Length
-from carom.scene.joints import JOINTS, Distance, Joint, JointDefinition, Tether
+from carom.scene.coordinates import Axial, Bush, Length
+from carom.scene.joints import JOINTS, Clearance, Distance, Joint, JointDefinition, Tether
 from carom.scene.stops import Stop
 from carom.scene.values import MethodsOfScene
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from carom.geometry.attitude import Orientation
 
 
@@ -43,7 +45,7 @@ class SceneJoints(MethodsOfScene):
     @overload
     def add_joint(
         self,
-        definition: Distance,
+        definition: Distance | Clearance,
         parent: Body | Ground | str | None = None,
         child: Body | str | None = None,
         *,
@@ -69,7 +71,7 @@ class SceneJoints(MethodsOfScene):
     @arguments.known
     def add_joint(
         self,
-        definition: JointDefinition | Tether,
+        definition: JointDefinition | Tether | Clearance,
         parent: Body | Ground | str | None = None,
         child: Body | str | None = None,
         *,
@@ -116,7 +118,7 @@ class SceneJoints(MethodsOfScene):
         >>> scene.add_joint(hinge, carom.GROUND, rod, name="hinge")
         Joint('hinge', Revolute, 'GROUND' -> 'rod')
         """
-        if isinstance(definition, Tether) or (
+        if isinstance(definition, (Tether, Clearance)) or (
             isinstance(definition, Distance) and definition.limits_of_length
         ):
             placed = parent_frame is not None or child_frame is not None
@@ -136,7 +138,7 @@ class SceneJoints(MethodsOfScene):
         )  # fmt: skip
 
     def _add_length(
-        self, d: Tether | Distance, parent, child, name, replace: bool, placed: bool
+        self, d: Tether | Distance | Clearance, parent, child, name, replace: bool, placed: bool
     ) -> Any:
         """Make the stops of a distance: one, or of a lower and an upper limit a pair."""
         if placed:
@@ -148,6 +150,8 @@ class SceneJoints(MethodsOfScene):
                 f"parent and child must be given: add_joint({type(d).__name__}(...), parent, child)"
             )
         parent, child = self._parts.pair(parent, child)
+        if isinstance(d, Clearance):
+            return self._add_clearance(d, parent, child, name, replace)
         if isinstance(parent, Ground) and d.anchor_parent is None:
             raise ValueError("anchor_parent must be given for a point of the ground, got None")
         of = Length(parent, child, d.anchor_parent, d.anchor_child)
@@ -164,6 +168,31 @@ class SceneJoints(MethodsOfScene):
             for side, end in ends.items()
         ]
         return Rod(*made)
+
+    def _add_clearance(self, d: Clearance, parent, child, name, replace: bool) -> Any:
+        """Make the stops of a pin in its bush: one, or all of them in a tuple."""
+        limits: dict[str, tuple[Length, dict[str, float]]] = {}
+        axis = cast("np.ndarray", d.axis)  # None without any of the places
+        if d.axis is None:
+            limits[""] = Length(parent, child, d.anchor, d.anchor), {"upper": d.radial}
+        for end, at in d.places.items():
+            bush = Bush(parent, child, d.anchor, at, axis, d.radius, d.friction)
+            limits[end] = bush, {"upper": d.radial}
+        if d.axial is not None:
+            along = Axial(parent, child, d.anchor, d.anchor, axis)
+            limits |= {
+                ".lower": (along, {"lower": -d.axial}),
+                ".upper": (along, {"upper": d.axial}),
+            }
+        if name is None:
+            own = {stop.name for stop in self._parts.parts(Stop)}
+            first = next(iter(limits))
+            name = next(f"pin{k}" for k in count(1) if f"pin{k}{first}" not in own)
+        made = [
+            self._add_limit(d, of, "pin", f"{name}{end}", replace, **ends)
+            for end, (of, ends) in limits.items()
+        ]
+        return made[0] if len(made) == 1 else tuple(made)
 
     def _add_limit(self, d, of: Length, default: str, name, replace: bool, **end: float) -> Stop:
         return self._parts.make(

@@ -17,12 +17,14 @@ import math
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.depth import deepest
+from carom.contact.operations import turning_radius
 from carom.contact.thresholds import SAFE_DISPLACEMENT
 from carom.dynamics.explicit import CONSTRAINTS_LOST, copy_state
 from carom.dynamics.more_forces import note_turns
 from carom.dynamics.project import project_velocity
 from carom.geometry.rotation import norm
 from carom.geometry.thresholds import RESOLUTION
+from carom.geometry.vectors import dot, minus
 from carom.law.restitution import restitution_at
 from carom.model import records as r
 from carom.model.allowance import COUNT_BLOCKS, left
@@ -115,7 +117,25 @@ def piece(system, now, controls, left):
             distance += turn * body.ball
             far = max(limits.THIN_PART * far, min(far, SAFE_DISPLACEMENT * thickness(body)))
         parts = max(parts, math.ceil(distance / far))
+    for i in range(system.contacts.shape[0]):  # a pin must not pass through its bush within a piece
+        contact = system.contacts[i]
+        far = SAFE_DISPLACEMENT * turning_radius(system, contact)
+        if far < math.inf:
+            speed = relative_speed(contact, now) + g * left
+            parts = max(parts, speed * left / far)
     return min(left, max(left / parts, SHORTEST_CUT * step))
+
+
+@kernel
+def relative_speed(contact, state):
+    """Return a bound of the speed of any points of two bodies beside each other."""
+    a, b = state[contact.body], contact.other
+    v, speed = (a.v[0], a.v[1], a.v[2]), contact.extent * norm(a.w)
+    if b >= 0:
+        o = state[b]
+        v = minus(v, (o.v[0], o.v[1], o.v[2]))
+        speed += contact.other_extent * norm(o.w)
+    return math.sqrt(dot(v, v)) + speed
 
 
 @kernel
