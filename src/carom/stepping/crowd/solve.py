@@ -11,7 +11,6 @@ from __future__ import annotations
 from carom._compiled.decorators import by_reference, kernel
 from carom.friction import layout as o
 from carom.friction.alternating import alternate
-from carom.friction.layout import ContactWork
 from carom.friction.newton import copy, step
 from carom.friction.residual import residual
 from carom.friction.solve import scale_vectors
@@ -19,7 +18,9 @@ from carom.friction.thresholds import CHORD_GAIN, PROXIMAL, RESIDUAL
 from carom.model.allowance import COUNT_BLOCKS
 from carom.persistent.thresholds import CROWD_REST
 from carom.stepping import thresholds as limits
+from carom.stepping.crowd.central_path import follow_path
 from carom.stepping.crowd.graph import find_order
+from carom.stepping.crowd.present import of_present_size
 from carom.stepping.crowd.sweeps import sweep_until
 
 FIRST, BETWEEN, ALLOWED = 40, 30, 150  # sweeps: at first; after a step; allowed for all
@@ -47,6 +48,9 @@ def solve(system, data, k, tolerance, left):
     good = max(goal, limits.SLOW_RESIDUAL * speed, CROWD_REST * tolerance / gamma)
     spent, least, turn, idle = done * k, r, 0, 0
     p, kept = work.vector[o.ITERATE], work.vector[o.START_BEST]
+    if not least <= enough:
+        least, more = follow_path(system, crowd, k, n, enough)
+        spent += more
     copy(k, p, kept)
     while not least <= enough and spent < most and idle < 2 * IDLE_TURNS:
         before = least
@@ -112,15 +116,3 @@ def newton_step(crowd, k, n, eps):
     work, updates = by_reference(of_present_size(crowd, n)), crowd.graph.count[2]
     step(work, k, eps)
     return updates + 4 * k
-
-
-@kernel
-def of_present_size(crowd, n):
-    """Return the problem with arrays cut to the present numbers of bodies and blocks."""
-    work, pairs, updates = crowd.problem, crowd.graph.count[3], crowd.graph.count[2]
-    return ContactWork(
-        kind=work.kind, contact=work.contact, vector=work.vector, count=work.count, mismatch=work.mismatch,
-        W=work.W, matrix=work.matrix, pivot=work.pivot, active=work.active, link=work.link, other=work.other,
-        body=work.body[:n], place=work.place[:n], later=work.later[:pairs], target=work.target[:updates],
-        block=work.block[: n + 2 * pairs],
-    )  # fmt: skip

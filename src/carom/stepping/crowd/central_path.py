@@ -1,0 +1,47 @@
+"""The contact problem of a crowd along the central path (`carom.friction.interior`)."""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import by_reference, kernel
+from carom.friction import layout as o
+from carom.friction.interior import damped, enter_path, step_along
+from carom.friction.newton import copy
+from carom.friction.residual import residual
+from carom.friction.thresholds import PATH_END, PATH_PROXIMAL
+from carom.stepping.crowd.graph import find_order
+from carom.stepping.crowd.present import of_present_size
+from carom.stepping.crowd.sweeps import bound_torques
+
+MOST_STEPS = 100
+IDLE_STEPS = 30  # steps that together do not halve the residual: the last
+
+
+@kernel
+def follow_path(system, crowd, k, n, enough):
+    """Follow the path while it leads on; return the residual of the best impulses, and the products with blocks.
+
+    It begins from nothing: what is known of the last step lies at the edges of the cones. One step takes as many
+    products as the factor, and about six for each contact.
+    """
+    work, p, best = crowd.problem, crowd.problem.vector[o.ITERATE], crowd.problem.vector[o.BEST]
+    least, goal, _ = residual(work, k)
+    copy(k, p, best)
+    if not find_order(n, k, crowd):
+        return least, 0
+    ordered = by_reference(of_present_size(crowd, n))
+    enter_path(ordered, k)
+    eps, reached, idle, steps, gap = PATH_PROXIMAL, least, 0, 0, 1.0
+    while not least <= max(enough, goal) and steps < MOST_STEPS and idle < IDLE_STEPS and gap > PATH_END:
+        bound_torques(system, crowd, k)
+        gap, t = step_along(ordered, k, eps)
+        eps, steps = damped(eps, t), steps + 1
+        r, goal, _ = residual(work, k)
+        if r < least:
+            least = r
+            copy(k, p, best)
+        idle = 0 if r < 0.5 * reached or steps == 1 else idle + 1
+        reached = r if idle == 0 else reached
+        if not r < 1e300:
+            break
+    copy(k, best, p)
+    return least, steps * (crowd.graph.count[2] + 6 * k)
