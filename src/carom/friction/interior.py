@@ -23,7 +23,7 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.friction import layout as o
 from carom.friction import thresholds as limits
-from carom.friction.cone_pair import aim, scale, to_edge, turn_back
+from carom.friction.cone_pair import aim, inside, scale, to_edge, turn_back
 from carom.friction.island import add_rates, factor_links, solve_motion, write_motion
 from carom.friction.layout import DISC
 
@@ -31,25 +31,41 @@ EDGE = 0.99  # part of the way to the edge of a cone
 
 
 @unit
-def enter_path(work, k):
-    """Write a first point inside all cones, with impulses and velocities of the scaled size 1."""
-    p, w = work.vector[o.ITERATE], work.vector[o.RESULTING]
+def enter_path(work, k, gap):
+    """Write a first point inside all cones near the present impulses, with products of about `gap`."""
+    p, w, least = work.vector[o.ITERATE], work.vector[o.RESULTING], math.sqrt(gap)
+    # the impulses, moved away from the edges
     for i in range(k):
         contact, n = work.contact[i], 3 * i
-        z = work.path[i].z
-        z[0], z[1], z[2] = 1.0, 0.0, 0.0
-        p[n], p[n + 1], p[n + 2] = (contact.h1 if contact.kind == DISC else 1.0), 0.0, 0.0
+        z, mu = work.path[i].z, contact.mu
+        z[0] = (contact.h1 if contact.kind == DISC else max(0.0, p[n])) + least
+        size = math.hypot(p[n + 1], p[n + 2])
+        f = min(1.0 / mu, EDGE * z[0] / size) if mu > 0.0 and size > 0.0 else 0.0
+        z[1], z[2] = f * p[n + 1], f * p[n + 2]
+        write_impulse(contact, z, p[n : n + 3])
     write_motion(work, k, p)
     for b in range(work.body.shape[0]):
         body = work.body[b]
         for j in range(6):
             body.reached[j], body.lack[j] = body.motion[j], 0.0
     write_rates(work, k)
+    # the velocities: the inverses of the impulses, in the cone, times the gap, and slip where it is greater
     for i in range(k):
         row, n, mu = work.path[i], 3 * i, work.contact[i].mu
-        row.x = max(1.0, w[n])
-        row.y[0] = max(1.0, 2.0 * mu * math.hypot(w[n + 1], w[n + 2]))
-        row.y[1], row.y[2] = 0.0, 0.0
+        y, z = row.y, row.z
+        row.x = max(gap / z[0], w[n])
+        f = gap / inside(z)
+        y[0], y[1], y[2] = f * z[0], -f * z[1], -f * z[2]
+        slip = mu * math.hypot(w[n + 1], w[n + 2])
+        if slip > y[0]:
+            y[0], y[1], y[2] = y[0] + slip, y[1] + mu * w[n + 1], y[2] + mu * w[n + 2]
+
+
+@kernel
+def write_impulse(contact, z, p):
+    """Write the impulse of a contact; that of a disc has its radius as the normal part."""
+    p[0] = contact.h1 if contact.kind == DISC else z[0]
+    p[1], p[2] = contact.mu * z[1], contact.mu * z[2]
 
 
 @unit
@@ -146,8 +162,7 @@ def advance(work, k, t):
         for j in range(3):
             row.y[j] += t * row.dy[j]
             row.z[j] += t * row.dz[j]
-        p[n] = contact.h1 if contact.kind == DISC else row.z[0]
-        p[n + 1], p[n + 2] = contact.mu * row.z[1], contact.mu * row.z[2]
+        write_impulse(contact, row.z, p[n : n + 3])
     for b in range(work.body.shape[0]):
         body = work.body[b]
         for j in range(6):

@@ -12,16 +12,16 @@ from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.present import of_present_size
 from carom.stepping.crowd.sweeps import bound_torques
 
-MOST_STEPS = 100
-IDLE_STEPS = 30  # steps that together do not halve the residual: the last
+MOST_STEPS = 40
+IDLE_STEPS = 12  # steps that together do not halve the residual: the last
 
 
 @kernel
 def follow_path(system, crowd, k, n, enough):
     """Follow the path while it leads on; return the residual of the best impulses, and the products with blocks.
 
-    It begins from nothing: what is known of the last step lies at the edges of the cones. One step takes as many
-    products as the factor, and about six for each contact.
+    It begins near the present impulses, with products that belong to their residual. A step takes the products of
+    its factor, and about six for each contact.
     """
     work, p, best = crowd.problem, crowd.problem.vector[o.ITERATE], crowd.problem.vector[o.BEST]
     least, goal, _ = residual(work, k)
@@ -29,7 +29,8 @@ def follow_path(system, crowd, k, n, enough):
     if not find_order(n, k, crowd):
         return least, 0
     ordered = by_reference(of_present_size(crowd, n))
-    enter_path(ordered, k)
+    bound_torques(system, crowd, k)
+    enter_path(ordered, k, min(1.0, least * least))
     eps, reached, idle, steps, gap = PATH_PROXIMAL, least, 0, 0, 1.0
     while not least <= max(enough, goal) and steps < MOST_STEPS and idle < IDLE_STEPS and gap > PATH_END:
         bound_torques(system, crowd, k)

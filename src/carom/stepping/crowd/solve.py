@@ -68,14 +68,6 @@ def solve(system, data, k, tolerance, left):
             break
         idle = 0 if least < 0.5 * before else idle + 1
     copy(k, kept, p)
-    if not least <= good and not has_discs(work, k) and find_order(n, k, crowd):
-        wrong = not least <= max(limits.WRONG_RESIDUAL * speed, CROWD_REST * tolerance / gamma)
-        at_least = LONG_SPLIT if wrong else SPLIT
-        allowed = LONG_SPLIT if wrong or spent < left else SPLIT
-        ordered = by_reference(of_present_size(crowd, n))
-        least, more = alternate(ordered, k, limits.RHO, enough, at_least, allowed)
-        done, spent = done + more, spent + more * k
-        copy(k, p, kept)
     if goal < least <= good:  # one more step for the last digits
         spent += newton_step(crowd, k, n, PROXIMAL)
         r, _, _ = residual(work, k)
