@@ -12,8 +12,8 @@ from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.present import of_present_size
 from carom.stepping.crowd.sweeps import bound_torques
 
-MOST_STEPS = 40
-IDLE_STEPS = 12  # steps that together do not halve the residual: the last
+# products with blocks for each contact: in all, and in steps that together do not halve the residual
+MOST_WORK, IDLE_WORK = 800, 160
 
 
 @kernel
@@ -31,18 +31,19 @@ def follow_path(system, crowd, k, n, enough):
     ordered = by_reference(of_present_size(crowd, n))
     bound_torques(system, crowd, k)
     enter_path(ordered, k, min(1.0, least * least))
-    eps, reached, idle, steps, gap = PATH_PROXIMAL, least, 0, 0, 1.0
-    while not least <= max(enough, goal) and steps < MOST_STEPS and idle < IDLE_STEPS and gap > PATH_END:
+    price = 6 + crowd.graph.count[2] // k
+    eps, reached, idle, spent, gap = PATH_PROXIMAL, least, 0, 0, 1.0
+    while not least <= max(enough, goal) and spent < MOST_WORK and idle < IDLE_WORK and gap > PATH_END:
         bound_torques(system, crowd, k)
         gap, t = step_along(ordered, k, eps)
-        eps, steps = damped(eps, t), steps + 1
+        eps, spent = damped(eps, t), spent + price
         r, goal, _ = residual(work, k)
         if r < least:
             least = r
             copy(k, p, best)
-        idle = 0 if r < 0.5 * reached or steps == 1 else idle + 1
+        idle = 0 if r < 0.5 * reached or spent == price else idle + price
         reached = r if idle == 0 else reached
         if not r < 1e300:
             break
     copy(k, best, p)
-    return least, steps * (crowd.graph.count[2] + 6 * k)
+    return least, spent * k

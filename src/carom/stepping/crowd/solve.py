@@ -24,6 +24,7 @@ from carom.stepping.crowd.present import of_present_size
 from carom.stepping.crowd.sweeps import sweep_until
 
 FIRST, BETWEEN, ALLOWED = 40, 30, 150  # sweeps: at first; after a step; allowed for all
+PATHS = 3  # turns that begin along the central path
 IDLE_TURNS = 4  # turns that do not halve the residual until a start from 0, and again until the end
 MORE_WORK = 4  # factor of the allowed work if the step can afford it
 # iterations of alternating directions: usual, and most if the step can afford them
@@ -48,9 +49,6 @@ def solve(system, data, k, tolerance, left):
     good = max(goal, limits.SLOW_RESIDUAL * speed, CROWD_REST * tolerance / gamma)
     spent, least, turn, idle = done * k, r, 0, 0
     p, kept = work.vector[o.ITERATE], work.vector[o.START_BEST]
-    if not least <= enough:
-        least, more = follow_path(system, crowd, k, n, enough)
-        spent += more
     copy(k, p, kept)
     while not least <= enough and spent < most and idle < 2 * IDLE_TURNS:
         before = least
@@ -58,6 +56,14 @@ def solve(system, data, k, tolerance, left):
         if idle == IDLE_TURNS and n > 1:
             for i in range(3 * k):
                 p[i] = 0.0
+        if turn < PATHS:
+            r, more = follow_path(system, crowd, k, n, enough)
+            spent += more
+            if r < least:
+                least = r
+                copy(k, p, kept)
+            if least <= enough:
+                break
         spent += newton_step(crowd, k, n, limits.PROXIMAL_TURNS[turn % 3])
         r, _, more = sweep_until(system, crowd, k, enough, BETWEEN)
         done, spent, turn = done + more, spent + more * k, turn + 1
@@ -68,6 +74,12 @@ def solve(system, data, k, tolerance, left):
             break
         idle = 0 if least < 0.5 * before else idle + 1
     copy(k, kept, p)
+    wrong = least > max(limits.RESIDUAL_LIMIT * speed, CROWD_REST * tolerance / gamma)
+    if wrong and not has_discs(work, k) and find_order(n, k, crowd):
+        ordered = by_reference(of_present_size(crowd, n))
+        least, more = alternate(ordered, k, limits.RHO, enough, SPLIT, SPLIT)
+        done, spent = done + more, spent + more * k
+        copy(k, p, kept)
     if goal < least <= good:  # one more step for the last digits
         spent += newton_step(crowd, k, n, PROXIMAL)
         r, _, _ = residual(work, k)
