@@ -22,7 +22,7 @@ from carom.friction.thresholds import LEAST_INSIDE
 
 @kernel
 def scale(row, contact, w, K, eps):
-    """Write the scaling, the errors of the slacks, and K of dp = a - K dw; return the products of both pairs."""
+    """Write the scaling, the errors of the slacks, and K of dp = a - K dw; return both products."""
     x, y, z, l, mu = row.x, row.y, row.z, row.l, contact.mu
     row.error[0], row.error[1], row.error[2] = w[0] - x, mu * w[1] - y[1], mu * w[2] - y[2]
     for i in range(3):
@@ -89,7 +89,9 @@ def aim(row, contact, eps, wanted, corrects):
     r[0] = (l[0] * c0 - l[1] * c1 - l[2] * c2) / inside(l)
     r[1], r[2] = (c1 - r[0] * l[1]) / l[0], (c2 - r[0] * l[2]) / l[0]
     # in the axes of the disc
-    row.along = (row.s * r[0] + row.c * r[1]) / (row.beta * row.D) - row.kd * (d[0] * e[1] + d[1] * e[2])
+    row.along = (row.s * r[0] + row.c * r[1]) / (row.beta * row.D) - row.kd * (
+        d[0] * e[1] + d[1] * e[2]
+    )
     row.across = r[2] / row.beta - row.kp * (d[0] * e[2] - d[1] * e[1])
     along, across = row.hd * (row.along - row.turn * normal), row.hp * row.across
     return normal, mu * (d[0] * along - d[1] * across), mu * (d[1] * along + d[0] * across)

@@ -5,14 +5,15 @@ radius is given by the present normal impulse,
 
     0 <= w_n _|_ p_n >= 0,     (sigma, mu w_t) _|_ (p_n, p_t/mu),  both in the cone of Lorentz,
 
-with w = W p + c. sigma is free, and mu |w_t| in a solution. So nothing is nonlinear but the two products: on the
-central path they are t, and t goes to 0. (De Saxce's one product has |w_t| in the velocity: it stalls on piles of
-boxes; see decisions/many_bodies.md.) A direction is dp = a - K dw for each contact (`cone_pair`), so
+with w = W p + c. sigma is free, and mu |w_t| in a solution. So nothing is nonlinear but the two products: they
+are t on the central path, and t goes to 0. (With de Saxce's one product, |w_t| is in the velocity, and steps on
+piles of boxes become short: decisions/many_bodies.md.) A direction is dp = a - K dw for each contact, so
 
     (I + P G^T K G) dy = P G^T p - y + P G^T a
 
-for the motion y of the bodies, whose error counts as one of the equations: what round-off of a stiff K leaves is
-made good in the next step. A predictor is followed by the corrector of Mehrotra (1992).
+for the motion y of the bodies, which has an equation of its own: what round-off of a stiff K leaves is made
+good in the next step. A predictor is followed by the corrector of Mehrotra (1992). Where friction makes the
+matrix almost singular, and steps short, the proximal term of `cone_pair` is made stronger.
 """
 
 from __future__ import annotations
@@ -76,7 +77,9 @@ def step_along(work, k, eps) -> tuple[float, float]:
     w, gap, count = work.vector[o.RESULTING], 0.0, 0
     for i in range(k):
         contact = work.contact[i]
-        normal, disc = scale(work.path[i], contact, w[3 * i : 3 * i + 3], work.link[i].stiffness, eps)
+        normal, disc = scale(
+            work.path[i], contact, w[3 * i : 3 * i + 3], work.link[i].stiffness, eps
+        )
         gap += normal + disc
         count += (0 if contact.kind == DISC else 1) + (1 if contact.mu > 0.0 else 0)
     gap /= max(1, count)
@@ -176,7 +179,7 @@ def advance(work, k, t):
 
 @kernel
 def damped(eps, t):
-    """Return the weight of the proximal term for the next step: greater after a short step, less after a long one."""
+    """Return the weight of the proximal term for the next step: greater after a short step, else less."""
     if t < limits.SHORT_STEP:
         return min(limits.PATH_DAMPING, max(10.0 * eps, limits.LEAST_DAMPING))
     return max(limits.PATH_PROXIMAL, 0.1 * eps) if t > 0.5 else eps

@@ -118,7 +118,11 @@ PATH = [
 ISLAND_BODY = [
     ("motion", "f8", 6),
     ("pivot", "i8", 6),
-    ("reached", "f8", 6),  # motion at a point of the central path, and what it lacks of that of the impulses
+    (
+        "reached",
+        "f8",
+        6,
+    ),  # motion at a point of the central path, and what it lacks of that of the impulses
     ("lack", "f8", 6),
 ]
 
@@ -171,6 +175,7 @@ def new_contact_work(capacity: int) -> ContactWork:
     return ContactWork(
         kind=DENSE, contact=table(CONTACT, contacts), vector=np.zeros((VECTORS, n)), count=whole(3),
         mismatch=np.zeros(2), W=np.zeros((n, n)), matrix=np.zeros((n, n)), pivot=whole(n),
-        active=whole(n), link=table(LINK, 0), path=table(PATH, 0), other=table(OTHER, 0), body=table(ISLAND_BODY, 0),
-        place=table(PLACE, 0), later=whole(0), target=whole((0, 3)), block=np.zeros((0, 6, 6)),
+        active=whole(n), link=table(LINK, 0), path=table(PATH, 0), other=table(OTHER, 0),
+        body=table(ISLAND_BODY, 0), place=table(PLACE, 0), later=whole(0), target=whole((0, 3)),
+        block=np.zeros((0, 6, 6)),
     )  # fmt: skip

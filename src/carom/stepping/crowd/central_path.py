@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from carom._compiled.decorators import by_reference, kernel
 from carom.friction import layout as o
 from carom.friction.interior import damped, enter_path, step_along
@@ -12,28 +14,27 @@ from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.present import of_present_size
 from carom.stepping.crowd.sweeps import bound_torques
 
-# products with blocks for each contact: in all, and in steps that together do not halve the residual
+OWN_WORK = 6  # products with blocks of a step for each contact, besides those of its factor
+# products for each contact: in all; and of steps that together do not halve the residual
 MOST_WORK, IDLE_WORK = 800, 160
 
 
 @kernel
 def follow_path(system, crowd, k, n, enough):
-    """Follow the path while it leads on; return the residual of the best impulses, and the products with blocks.
+    """Follow the path while it leads on; write the best impulses, return their residual, and the products.
 
-    It begins near the present impulses, with products that belong to their residual. A step takes the products of
-    its factor, and about six for each contact.
+    It begins near the present impulses, with products of velocities and impulses that belong to their residual.
     """
     work, p, best = crowd.problem, crowd.problem.vector[o.ITERATE], crowd.problem.vector[o.BEST]
     least, goal, _ = residual(work, k)
     copy(k, p, best)
     if not find_order(n, k, crowd):
         return least, 0
-    ordered = by_reference(of_present_size(crowd, n))
+    ordered, price = by_reference(of_present_size(crowd, n)), OWN_WORK + crowd.graph.count[2] // k
+    eps, reached, idle, spent, gap = PATH_PROXIMAL, math.inf, 0, 0, 1.0
     bound_torques(system, crowd, k)
     enter_path(ordered, k, min(1.0, least * least))
-    price = 6 + crowd.graph.count[2] // k
-    eps, reached, idle, spent, gap = PATH_PROXIMAL, least, 0, 0, 1.0
-    while not least <= max(enough, goal) and spent < MOST_WORK and idle < IDLE_WORK and gap > PATH_END:
+    while spent < MOST_WORK and idle < IDLE_WORK and gap > PATH_END:
         bound_torques(system, crowd, k)
         gap, t = step_along(ordered, k, eps)
         eps, spent = damped(eps, t), spent + price
@@ -41,9 +42,9 @@ def follow_path(system, crowd, k, n, enough):
         if r < least:
             least = r
             copy(k, p, best)
-        idle = 0 if r < 0.5 * reached or spent == price else idle + price
-        reached = r if idle == 0 else reached
-        if not r < 1e300:
+        if least <= max(enough, goal) or not r < math.inf:
             break
+        idle = 0 if r < 0.5 * reached else idle + price
+        reached = r if idle == 0 else reached
     copy(k, best, p)
     return least, spent * k

@@ -12,7 +12,7 @@ def of_present_size(crowd, n):
     work, pairs, updates = crowd.problem, crowd.graph.count[3], crowd.graph.count[2]
     return ContactWork(
         kind=work.kind, contact=work.contact, vector=work.vector, count=work.count, mismatch=work.mismatch,
-        W=work.W, matrix=work.matrix, pivot=work.pivot, active=work.active, link=work.link, path=work.path, other=work.other,
-        body=work.body[:n], place=work.place[:n], later=work.later[:pairs], target=work.target[:updates],
-        block=work.block[: n + 2 * pairs],
+        W=work.W, matrix=work.matrix, pivot=work.pivot, active=work.active, link=work.link, path=work.path,
+        other=work.other, body=work.body[:n], place=work.place[:n], later=work.later[:pairs],
+        target=work.target[:updates], block=work.block[: n + 2 * pairs],
     )  # fmt: skip

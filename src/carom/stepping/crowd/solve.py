@@ -1,9 +1,11 @@
-"""The contact problem of a crowd: mixed sweeps, and steps of Newton's method on the graph of the bodies.
+"""The contact problem of a crowd: mixed sweeps, the central path, and steps of Newton's method.
 
-Sweeps from the impulses of the last step converge well if bodies move about, but slowly if they stand on each
-other (a tower of twenty boxes: 1e-2 of g h after 200 sweeps, and it falls). A step of Newton's method
-distributes the residual over all bodies at once, for the present modes of the contacts; the sweeps after it
-correct the modes. Both alternate until the problem is solved or the allowed work is done.
+Sweeps from the impulses of the last step are enough if bodies move about, but converge slowly if they stand on
+each other (a tower of twenty boxes: 1e-2 of g h after 200 sweeps, and it falls). Then the central path
+(`carom.friction.interior`) comes near a solution, with one factor of the graph of bodies a step. A step of
+Newton's method for the modes that it has found, and sweeps that correct them, solve the problem from there; where
+the path has ended far from a solution, it begins again from what they have reached. If all this fails (many
+balls that roll on each other), alternating directions leave less than the others.
 """
 
 from __future__ import annotations
@@ -23,12 +25,15 @@ from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.present import of_present_size
 from carom.stepping.crowd.sweeps import sweep_until
 
-FIRST, BETWEEN, ALLOWED = 40, 30, 150  # sweeps: at first; after a step; allowed for all
+FIRST, BETWEEN, ALLOWED = (
+    40,
+    30,
+    150,
+)  # sweeps: at first; after a step; allowed for all turns but one
 PATHS = 3  # turns that begin along the central path
 IDLE_TURNS = 4  # turns that do not halve the residual until a start from 0, and again until the end
 MORE_WORK = 4  # factor of the allowed work if the step can afford it
-# iterations of alternating directions: usual, and most if the step can afford them
-SPLIT, LONG_SPLIT = 100, 1000
+SPLIT = 100  # iterations of alternating directions
 
 
 @kernel
