@@ -2,10 +2,10 @@
 
 Sweeps from the impulses of the last step are enough if bodies move about, but converge slowly if they stand on
 each other (a tower of twenty boxes: 1e-2 of g h after 200 sweeps, and it falls). Then the central path
-(`carom.friction.interior`) comes near a solution, with one factor of the graph of bodies a step. A step of
-Newton's method for the modes that it has found, and sweeps that correct them, solve the problem from there; where
-the path has ended far from a solution, it begins again from what they have reached. If all this fails (many
-balls that roll on each other), alternating directions leave less than the others.
+(`carom.friction.interior`) comes near a solution, with one factor of the graph of bodies a step. From there a
+step of Newton's method, and sweeps that correct the modes, solve the problem; where the path has ended far from
+a solution, it begins again from what they have reached. If all this fails (many balls that roll on each other),
+alternating directions leave less than the others.
 """
 
 from __future__ import annotations
