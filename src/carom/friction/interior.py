@@ -28,8 +28,6 @@ from carom.friction.cone_pair import aim, inside, scale, to_edge, turn_back
 from carom.friction.island import add_rates, factor_links, solve_motion, write_motion
 from carom.friction.layout import DISC
 
-EDGE = 0.99  # part of the way to the edge of a cone
-
 
 @unit
 def enter_path(work, k, gap):
@@ -41,7 +39,7 @@ def enter_path(work, k, gap):
         z, mu = work.path[i].z, contact.mu
         z[0] = (contact.h1 if contact.kind == DISC else max(0.0, p[n])) + least
         size = math.hypot(p[n + 1], p[n + 2])
-        f = min(1.0 / mu, EDGE * z[0] / size) if mu > 0.0 and size > 0.0 else 0.0
+        f = min(1.0 / mu, limits.EDGE * z[0] / size) if mu > 0.0 and size > 0.0 else 0.0
         z[1], z[2] = f * p[n + 1], f * p[n + 2]
         write_impulse(contact, z, p[n : n + 3])
     write_motion(work, k, p)
@@ -89,7 +87,7 @@ def step_along(work, k, eps) -> tuple[float, float]:
     t = longest(work, k, 1.0)
     part = min(1.0, max(0.0, products(work, k, t) / (count * gap)))
     direct(work, k, eps, part * part * part * gap, True)
-    t = longest(work, k, EDGE)
+    t = longest(work, k, limits.EDGE)
     advance(work, k, t)
     return gap, t
 

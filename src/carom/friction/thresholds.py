@@ -29,5 +29,6 @@ LEAST_INSIDE = 1e-300  #: square of a scaled speed or impulse: least x_0^2 - |x_
 PATH_PROXIMAL = 1e-9  #: diagonal of W: weight of the proximal term on the central path: bounds round-off
 LEAST_DAMPING = 1e-3  #: diagonal of W: its weight after a step that is too short, and up to
 PATH_DAMPING = 0.1  #: diagonal of W: its greatest weight, where friction makes the matrix almost singular
+EDGE = 0.99  #: way to the edge of a cone: part that a step goes (.9 to .995: Nocedal and Wright 2006)
 SHORT_STEP = 0.1  #: step to the edge of a cone: a shorter one is damped
 PATH_END = 1e-17  #: greatest velocity times impulse, scaled: mean product that is round-off

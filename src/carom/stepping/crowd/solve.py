@@ -30,7 +30,7 @@ FIRST, BETWEEN, ALLOWED = (
     30,
     150,
 )  # sweeps: at first; after a step; allowed for all turns but one
-PATHS = 3  # turns that begin along the central path
+PATH_TURNS = 3  # turns that begin along the central path
 IDLE_TURNS = 4  # turns that do not halve the residual until a start from 0, and again until the end
 MORE_WORK = 4  # factor of the allowed work if the step can afford it
 SPLIT = 100  # iterations of alternating directions
@@ -61,7 +61,7 @@ def solve(system, data, k, tolerance, left):
         if idle == IDLE_TURNS and n > 1:
             for i in range(3 * k):
                 p[i] = 0.0
-        if turn < PATHS:
+        if turn < PATH_TURNS:
             r, more = follow_path(system, crowd, k, n, enough)
             spent += more
             if r < least:
