@@ -156,7 +156,10 @@ def test_a_solution_says_what_it_has(run, ask, words):
             lambda: carom.joints.Prismatic((0, 0, 1), limits=(0, 1)),
             r"scene\.add_stop\(joint, lower=",
         ),
-        (lambda: carom.joints.Revolute((0, 0, 0), (0, 0, 1), clearance=1), r"carom\.joints\.Clearance"),
+        (
+            lambda: carom.joints.Revolute((0, 0, 0), (0, 0, 1), clearance=1),
+            r"carom\.joints\.Clearance",
+        ),
         (
             lambda: carom.film(resolution=(9, 9)),
             r"width and height in pixels are size=\(1280, 720\)",

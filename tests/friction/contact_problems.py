@@ -129,6 +129,25 @@ def pile(layers, radius=0.05):
     )  # fmt: skip
 
 
+def random_island(seed):
+    """Bodies of unequal mass with contacts of random place and normal: some are cages that jam."""
+    random = np.random.default_rng(seed)
+    bodies, k = random.integers(1, 8), random.integers(4, 25)
+    isle = stack(1, towers=1)
+    body = np.stack([random.integers(0, bodies, k), random.integers(-1, bodies, k)], axis=1)
+    body[body[:, 0] == body[:, 1], 1] = -1
+    rows = random.normal(size=(k, 2, 3, 6))
+    mass = 10.0 ** random.uniform(-2, 2, size=bodies)
+    inverse = np.eye(6) / mass[:, None, None]
+    free, c = random.normal(size=(bodies, 6)), np.zeros((k, 3))
+    for i, ends in enumerate(body):
+        for side, b in enumerate(ends):
+            if b >= 0:
+                c[i] += rows[i, side] @ free[b]
+    motion = np.zeros((2, bodies, 6))
+    return isle._replace(body=body, rows=rows, inverse_mass=inverse, c=c.ravel(), motion=motion)
+
+
 def dense(isle):
     """Return W and c of an island."""
     k, bodies = len(isle.body), len(isle.inverse_mass)

@@ -24,11 +24,7 @@ from carom.friction.local import solve_prepared
 def multiply(work, k, x, out):
     """Add W x to `out`."""
     write_motion(work, k, x)
-    for i in range(k):
-        u0, u1, u2 = _pull(work, i)
-        out[3 * i] += u0
-        out[3 * i + 1] += u1
-        out[3 * i + 2] += u2
+    add_rates(work, k, out)
 
 
 @unit
@@ -147,6 +143,36 @@ def factor_shifted(work, k, sigma):
                 C[r, j] = K[r, j] = 1.0 / sigma if r == j else 0.0
     _assemble(work, k)
     factor_blocks(work)
+
+
+@unit
+def factor_links(work, k):
+    """Factor I + P G^T K G for the K that the contacts have."""
+    _assemble(work, k)
+    factor_blocks(work)
+
+
+@unit
+def solve_motion(work, k):
+    """Write the motion y of (I + P G^T K G) y = lack + P G^T x for the right-hand side x."""
+    x = work.vector[o.RHS]
+    for b in range(work.body.shape[0]):
+        body = work.body[b]
+        for j in range(6):
+            body.motion[j] = body.lack[j]
+    for i in range(k):
+        _push(work, i, x[3 * i], x[3 * i + 1], x[3 * i + 2])
+    substitute_blocks(work)
+
+
+@kernel
+def add_rates(work, k, out):
+    """Add the velocities of the contacts in the present motion to `out`."""
+    for i in range(k):
+        u0, u1, u2 = _pull(work, i)
+        out[3 * i] += u0
+        out[3 * i + 1] += u1
+        out[3 * i + 2] += u2
 
 
 @unit

@@ -86,7 +86,45 @@ LINK = [
 #: a body that an impulse moves through joints
 OTHER = [("body", "i8"), ("corner", "i8", 2), ("rows", "f8", (3, 6)), ("response", "f8", (6, 3))]
 
-ISLAND_BODY = [("motion", "f8", 6), ("pivot", "i8", 6)]
+#: a contact on the central path (`carom.friction.cone_pair`): of the normal, and of the disc of friction
+PATH = [
+    ("x", "f8"),  # normal velocity, positive
+    ("y", "f8", 3),  # sigma and the slip times mu, inside the cone
+    ("z", "f8", 3),  # normal impulse, and the tangential one over mu, inside the cone
+    ("dx", "f8"),
+    ("dy", "f8", 3),
+    ("dz", "f8", 3),
+    ("error", "f8", 3),  # velocities minus x and y
+    ("c", "f8"),  # the scaling: c, s, beta, D, its axis d, and l = S z
+    ("s", "f8"),
+    ("beta", "f8"),
+    ("D", "f8"),
+    ("d", "f8", 2),
+    ("l", "f8", 3),
+    ("k", "f8"),  # effect of the velocities on the impulses: normal, along d, across
+    ("kd", "f8"),
+    ("kp", "f8"),
+    ("hd", "f8"),  # parts that the proximal term leaves of these two
+    ("hp", "f8"),
+    ("turn", "f8"),  # effect of the normal impulse along d
+    ("normal", "f8"),  # right-hand sides: normal, scaled, along d, across
+    ("r", "f8", 3),
+    ("along", "f8"),
+    ("across", "f8"),
+    ("sy", "f8", 3),  # the direction in scaled space
+    ("sz", "f8", 3),
+]
+
+ISLAND_BODY = [
+    ("motion", "f8", 6),
+    ("pivot", "i8", 6),
+    (
+        "reached",
+        "f8",
+        6,
+    ),  # motion at a point of the central path, and what it lacks of that of the impulses
+    ("lack", "f8", 6),
+]
 
 
 #: the Delassus operator W is stored as a full matrix; or by bodies, as G and P G^T, without W itself
@@ -119,6 +157,7 @@ class ContactWork(NamedTuple):
     active: np.ndarray  # (3K,) int64, rows of `matrix`
     # BY_BODIES
     link: np.recarray  # (K,) LINK
+    path: np.recarray  # (K,) PATH
     other: np.recarray  # (R,) OTHER
     body: np.recarray  # (N,) ISLAND_BODY
     place: np.recarray  # (N,) PLACE
@@ -136,6 +175,7 @@ def new_contact_work(capacity: int) -> ContactWork:
     return ContactWork(
         kind=DENSE, contact=table(CONTACT, contacts), vector=np.zeros((VECTORS, n)), count=whole(3),
         mismatch=np.zeros(2), W=np.zeros((n, n)), matrix=np.zeros((n, n)), pivot=whole(n),
-        active=whole(n), link=table(LINK, 0), other=table(OTHER, 0), body=table(ISLAND_BODY, 0),
-        place=table(PLACE, 0), later=whole(0), target=whole((0, 3)), block=np.zeros((0, 6, 6)),
+        active=whole(n), link=table(LINK, 0), path=table(PATH, 0), other=table(OTHER, 0),
+        body=table(ISLAND_BODY, 0), place=table(PLACE, 0), later=whole(0), target=whole((0, 3)),
+        block=np.zeros((0, 6, 6)),
     )  # fmt: skip

@@ -22,7 +22,7 @@ from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import is_driven, radius_of
 from carom.persistent.settle import dot, greatest, settle
 from carom.persistent.sharing import find_idle, share
-from carom.persistent.springs import factor, moves, note_accelerations, unload
+from carom.persistent.springs import factor, moves, moves_freely, note_accelerations, unload
 
 STAGE_ITERATIONS, HALVES, TOGETHER = 40, 6, 3
 
@@ -37,6 +37,10 @@ def solve_stage(k, hg, group):
     closed = group.closed
     for i in range(k):
         closed[i].presses = 1 if closed[i].weight > 0.0 else 0
+    if moves_freely(k, group) and (hg == 0.0 or greatest(3 * k, group.u) == 0.0):
+        for row in range(3 * k):
+            group.p[row] = 0.0
+        return True
     for turn in range(2 * k + 2):
         share(k, list_unknowns(k, group), group)
         idle = find_idle(k, group)

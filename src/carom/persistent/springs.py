@@ -54,6 +54,10 @@ def solve_springs(k, group) -> bool:
     `presses` is 1 for those that press at first.
     """
     push, rounds = greatest_load(k, group), 0
+    if push == 0.0 and moves_freely(k, group):
+        for row in range(3 * k):
+            group.p[row], group.a[row] = 0.0, 0.0
+        return True
     soften(k, group)
     for turn in range(3 * k + 4):
         for i in range(k):
@@ -67,6 +71,18 @@ def solve_springs(k, group) -> bool:
             if rounds > SHARES or not grip(k, group):
                 return True
     return False
+
+
+@kernel
+def moves_freely(k, group):
+    """Return whether nothing presses the points together: they have no acceleration without forces.
+
+    Sixty balls that fall as they touch have 133 points, and a factor of their rows takes 10 ms.
+    """
+    for i in range(k):
+        if group.closed[i].motion != MOTION_POINT:
+            return False
+    return greatest(3 * k, group.problem.c) == 0.0
 
 
 @kernel

@@ -91,6 +91,7 @@ def new_crowd(bodies: int, active: int, points: int, joined: int = 0) -> Crowd:
     whole = partial(np.zeros, dtype=np.int64)
     problem = friction.new_contact_work(0)._replace(
         kind=friction.BY_BODIES, contact=table(friction.CONTACT, points), link=table(friction.LINK, points),
+        path=table(friction.PATH, points),
         other=table(friction.OTHER, others), vector=np.zeros((friction.VECTORS, 3 * points)),
         body=table(friction.ISLAND_BODY, bodies), place=table(friction.PLACE, bodies), later=whole(pairs),
         target=whole((updates, 3)), block=np.zeros((bodies + 2 * pairs, 6, 6)),

@@ -1,9 +1,11 @@
-"""The contact problem of a crowd: mixed sweeps, and steps of Newton's method on the graph of the bodies.
+"""The contact problem of a crowd: mixed sweeps, the central path, and steps of Newton's method.
 
-Sweeps from the impulses of the last step converge well if bodies move about, but slowly if they stand on each
-other (a tower of twenty boxes: 1e-2 of g h after 200 sweeps, and it falls). A step of Newton's method
-distributes the residual over all bodies at once, for the present modes of the contacts; the sweeps after it
-correct the modes. Both alternate until the problem is solved or the allowed work is done.
+Sweeps from the impulses of the last step are enough if bodies move about, but converge slowly if they stand on
+each other (a tower of twenty boxes: 1e-2 of g h after 200 sweeps, and it falls). Then the central path
+(`carom.friction.interior`) comes near a solution, with one factor of the graph of bodies a step. From there a
+step of Newton's method, and sweeps that correct the modes, solve the problem; where the path has ended far from
+a solution, it begins again from what they have reached. If all this fails (many balls that roll on each other),
+alternating directions leave less than the others.
 """
 
 from __future__ import annotations
@@ -11,7 +13,6 @@ from __future__ import annotations
 from carom._compiled.decorators import by_reference, kernel
 from carom.friction import layout as o
 from carom.friction.alternating import alternate
-from carom.friction.layout import ContactWork
 from carom.friction.newton import copy, step
 from carom.friction.residual import residual
 from carom.friction.solve import scale_vectors
@@ -19,14 +20,20 @@ from carom.friction.thresholds import CHORD_GAIN, PROXIMAL, RESIDUAL
 from carom.model.allowance import COUNT_BLOCKS
 from carom.persistent.thresholds import CROWD_REST
 from carom.stepping import thresholds as limits
+from carom.stepping.crowd.central_path import follow_path
 from carom.stepping.crowd.graph import find_order
+from carom.stepping.crowd.present import of_present_size
 from carom.stepping.crowd.sweeps import sweep_until
 
-FIRST, BETWEEN, ALLOWED = 40, 30, 150  # sweeps: at first; after a step; allowed for all
+FIRST, BETWEEN, ALLOWED = (
+    40,
+    30,
+    150,
+)  # sweeps: at first; after a step; allowed for all turns but one
+PATH_TURNS = 3  # turns that begin along the central path
 IDLE_TURNS = 4  # turns that do not halve the residual until a start from 0, and again until the end
 MORE_WORK = 4  # factor of the allowed work if the step can afford it
-# iterations of alternating directions: usual, and most if the step can afford them
-SPLIT, LONG_SPLIT = 100, 1000
+SPLIT = 100  # iterations of alternating directions
 
 
 @kernel
@@ -54,6 +61,14 @@ def solve(system, data, k, tolerance, left):
         if idle == IDLE_TURNS and n > 1:
             for i in range(3 * k):
                 p[i] = 0.0
+        if turn < PATH_TURNS:
+            r, more = follow_path(system, crowd, k, n, enough)
+            spent += more
+            if r < least:
+                least = r
+                copy(k, p, kept)
+            if least <= enough:
+                break
         spent += newton_step(crowd, k, n, limits.PROXIMAL_TURNS[turn % 3])
         r, _, more = sweep_until(system, crowd, k, enough, BETWEEN)
         done, spent, turn = done + more, spent + more * k, turn + 1
@@ -64,12 +79,10 @@ def solve(system, data, k, tolerance, left):
             break
         idle = 0 if least < 0.5 * before else idle + 1
     copy(k, kept, p)
-    if not least <= good and not has_discs(work, k) and find_order(n, k, crowd):
-        wrong = not least <= max(limits.WRONG_RESIDUAL * speed, CROWD_REST * tolerance / gamma)
-        at_least = LONG_SPLIT if wrong else SPLIT
-        allowed = LONG_SPLIT if wrong or spent < left else SPLIT
+    wrong = least > max(limits.RESIDUAL_LIMIT * speed, CROWD_REST * tolerance / gamma)
+    if wrong and not has_discs(work, k) and find_order(n, k, crowd):
         ordered = by_reference(of_present_size(crowd, n))
-        least, more = alternate(ordered, k, limits.RHO, enough, at_least, allowed)
+        least, more = alternate(ordered, k, limits.RHO, enough, SPLIT, SPLIT)
         done, spent = done + more, spent + more * k
         copy(k, p, kept)
     if goal < least <= good:  # one more step for the last digits
@@ -112,15 +125,3 @@ def newton_step(crowd, k, n, eps):
     work, updates = by_reference(of_present_size(crowd, n)), crowd.graph.count[2]
     step(work, k, eps)
     return updates + 4 * k
-
-
-@kernel
-def of_present_size(crowd, n):
-    """Return the problem with arrays cut to the present numbers of bodies and blocks."""
-    work, pairs, updates = crowd.problem, crowd.graph.count[3], crowd.graph.count[2]
-    return ContactWork(
-        kind=work.kind, contact=work.contact, vector=work.vector, count=work.count, mismatch=work.mismatch,
-        W=work.W, matrix=work.matrix, pivot=work.pivot, active=work.active, link=work.link, other=work.other,
-        body=work.body[:n], place=work.place[:n], later=work.later[:pairs], target=work.target[:updates],
-        block=work.block[: n + 2 * pairs],
-    )  # fmt: skip
