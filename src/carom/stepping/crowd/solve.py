@@ -18,6 +18,7 @@ from carom.friction.residual import residual
 from carom.friction.solve import scale_vectors
 from carom.friction.thresholds import CHORD_GAIN, PROXIMAL, RESIDUAL
 from carom.model.allowance import COUNT_BLOCKS
+from carom.model.workspace import MOTION_POINT
 from carom.persistent.thresholds import CROWD_REST
 from carom.stepping import thresholds as limits
 from carom.stepping.crowd.central_path import follow_path
@@ -25,15 +26,28 @@ from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.present import of_present_size
 from carom.stepping.crowd.sweeps import sweep_until
 
-FIRST, BETWEEN, ALLOWED = (
-    40,
-    30,
-    150,
-)  # sweeps: at first; after a step; allowed for all turns but one
+# sweeps: at first; after a step; allowed for all turns but one
+FIRST, BETWEEN, ALLOWED = 40, 30, 150
 PATH_TURNS = 3  # turns that begin along the central path
+FACE_POINTS = 3  # points of a pair of bodies that lie on each other by faces
 IDLE_TURNS = 4  # turns that do not halve the residual until a start from 0, and again until the end
 MORE_WORK = 4  # factor of the allowed work if the step can afford it
 SPLIT = 100  # iterations of alternating directions
+
+
+@kernel
+def has_faces(crowd, k):
+    """Return whether a pair touches at several points, of which some are redundant: balls need no path."""
+    count = 0
+    for i in range(k):
+        one = crowd.closed[i]
+        if crowd.points[0][i].motion != MOTION_POINT:
+            continue
+        same = count > 0 and one.contact == crowd.closed[i - 1].contact
+        count = count + 1 if same else 1
+        if count == FACE_POINTS:
+            return True
+    return False
 
 
 @kernel
@@ -52,7 +66,7 @@ def solve(system, data, k, tolerance, left):
     r, goal, done = sweep_until(system, crowd, k, max(tolerance / gamma, RESIDUAL * speed), FIRST)
     enough = max(tolerance / gamma, goal, RESIDUAL * speed)
     good = max(goal, limits.SLOW_RESIDUAL * speed, CROWD_REST * tolerance / gamma)
-    spent, least, turn, idle = done * k, r, 0, 0
+    spent, least, turn, idle, faces = done * k, r, 0, 0, has_faces(crowd, k)
     p, kept = work.vector[o.ITERATE], work.vector[o.START_BEST]
     copy(k, p, kept)
     while not least <= enough and spent < most and idle < 2 * IDLE_TURNS:
@@ -61,7 +75,7 @@ def solve(system, data, k, tolerance, left):
         if idle == IDLE_TURNS and n > 1:
             for i in range(3 * k):
                 p[i] = 0.0
-        if turn < PATH_TURNS:
+        if turn < PATH_TURNS and faces:
             r, more = follow_path(system, crowd, k, n, enough)
             spent += more
             if r < least:
