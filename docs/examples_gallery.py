@@ -54,6 +54,7 @@ PLOTTED = {
     "heap",
     "ladder",
     "load_a_model",
+    "loose_pin",
     "off_a_sphere",
     "one_bounce",
     "own_force",
