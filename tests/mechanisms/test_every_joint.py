@@ -19,8 +19,8 @@ ARGUMENTS = {
     "direction": (1, 0, 0), "axis_parent": (1, 0, 0), "axis_child": (0, 1, 0), "pitch": 0.3, "radius": 1.0,
     "curve": carom.curves.Curve(lambda u: (u, 0.3 * math.sin(u), 1.2 - 0.2 * math.cos(u)), -4, 4),
 }  # fmt: skip
-#: of rails that can be left, which lose energy where they strike
-LOOSE = {"start", "side", "restitution", "friction", "impact_law"}
+#: of rails that can be left and of rods with limits, which lose energy where they strike
+LOOSE = {"start", "side", "restitution", "friction", "impact_law", "lower", "upper"}
 
 
 def joined(kind):
