@@ -29,10 +29,12 @@ from carom.stepping.crowd.sweeps import sweep_until
 # sweeps: at first; after a step; allowed for all turns but one
 FIRST, BETWEEN, ALLOWED = 40, 30, 150
 PATH_TURNS = 3  # turns that begin along the central path
+FEW_BODIES = 8  # what Newton's steps solve without the path
 FACE_POINTS = 3  # points of a pair of bodies that lie on each other by faces
 IDLE_TURNS = 4  # turns that do not halve the residual until a start from 0, and again until the end
 MORE_WORK = 4  # factor of the allowed work if the step can afford it
-SPLIT = 100  # iterations of alternating directions
+# iterations of alternating directions: usual, and most without the path if the step can afford them
+SPLIT, LONG_SPLIT = 100, 1000
 
 
 @kernel
@@ -66,7 +68,7 @@ def solve(system, data, k, tolerance, left):
     r, goal, done = sweep_until(system, crowd, k, max(tolerance / gamma, RESIDUAL * speed), FIRST)
     enough = max(tolerance / gamma, goal, RESIDUAL * speed)
     good = max(goal, limits.SLOW_RESIDUAL * speed, CROWD_REST * tolerance / gamma)
-    spent, least, turn, idle, faces = done * k, r, 0, 0, has_faces(crowd, k)
+    spent, least, turn, idle, faces = done * k, r, 0, 0, n > FEW_BODIES and has_faces(crowd, k)
     p, kept = work.vector[o.ITERATE], work.vector[o.START_BEST]
     copy(k, p, kept)
     while not least <= enough and spent < most and idle < 2 * IDLE_TURNS:
@@ -93,10 +95,13 @@ def solve(system, data, k, tolerance, left):
             break
         idle = 0 if least < 0.5 * before else idle + 1
     copy(k, kept, p)
-    wrong = least > max(limits.RESIDUAL_LIMIT * speed, CROWD_REST * tolerance / gamma)
-    if wrong and not has_discs(work, k) and find_order(n, k, crowd):
+    wrong = least > max(limits.WRONG_RESIDUAL * speed, CROWD_REST * tolerance / gamma)
+    needed = least > max(good, limits.RESIDUAL_LIMIT * speed) if faces else not least <= good
+    if needed and not has_discs(work, k) and find_order(n, k, crowd):
+        at_least = LONG_SPLIT if wrong and not faces else SPLIT
+        allowed = LONG_SPLIT if not faces and (wrong or spent < left) else SPLIT
         ordered = by_reference(of_present_size(crowd, n))
-        least, more = alternate(ordered, k, limits.RHO, enough, SPLIT, SPLIT)
+        least, more = alternate(ordered, k, limits.RHO, enough, at_least, allowed)
         done, spent = done + more, spent + more * k
         copy(k, p, kept)
     if goal < least <= good:  # one more step for the last digits
