@@ -118,11 +118,8 @@ PATH = [
 ISLAND_BODY = [
     ("motion", "f8", 6),
     ("pivot", "i8", 6),
-    (
-        "reached",
-        "f8",
-        6,
-    ),  # motion at a point of the central path, and what it lacks of that of the impulses
+    # motion at a point of the central path, and what it lacks of that of the impulses
+    ("reached", "f8", 6),
     ("lack", "f8", 6),
 ]
 

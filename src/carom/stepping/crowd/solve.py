@@ -5,7 +5,7 @@ each other (a tower of twenty boxes: 1e-2 of g h after 200 sweeps, and it falls)
 (`carom.friction.interior`) comes near a solution, with one factor of the graph of bodies a step. From there a
 step of Newton's method, and sweeps that correct the modes, solve the problem; where the path has ended far from
 a solution, it begins again from what they have reached. If all this fails (many balls that roll on each other),
-alternating directions leave less than the others.
+alternating directions leave less than the others. Few bodies, and balls, are solved without the path.
 """
 
 from __future__ import annotations
@@ -95,9 +95,9 @@ def solve(system, data, k, tolerance, left):
             break
         idle = 0 if least < 0.5 * before else idle + 1
     copy(k, kept, p)
-    wrong = least > max(limits.WRONG_RESIDUAL * speed, CROWD_REST * tolerance / gamma)
-    needed = least > max(good, limits.RESIDUAL_LIMIT * speed) if faces else not least <= good
-    if needed and not has_discs(work, k) and find_order(n, k, crowd):
+    wrong = not least <= max(limits.WRONG_RESIDUAL * speed, CROWD_REST * tolerance / gamma)
+    allowed_residual = max(good, limits.RESIDUAL_LIMIT * speed) if faces else good
+    if not least <= allowed_residual and not has_discs(work, k) and find_order(n, k, crowd):
         at_least = LONG_SPLIT if wrong and not faces else SPLIT
         allowed = LONG_SPLIT if not faces and (wrong or spent < left) else SPLIT
         ordered = by_reference(of_present_size(crowd, n))

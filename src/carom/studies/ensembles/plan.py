@@ -31,7 +31,7 @@ class Plan:
     token: str = field(default_factory=lambda: uuid.uuid4().hex)
 
     def one(self, inputs: dict[str, np.ndarray], run: int) -> tuple[Varied, dict[str, np.ndarray]]:
-        """Return what is varied, and the values of a single run."""
+        """Return the varied scene, system or function, and the values of a single run."""
         rows = {name: array[run : run + 1] for name, array in inputs.items()}
         return varied_of(self.varied.source, self.settings, rows)
 

@@ -62,7 +62,7 @@ class Varied(Protocol):
 
 
 def varied_of(source, settings: Settings, inputs: Values) -> tuple[Varied, Values]:
-    """Return what is varied, and the inputs as its runs take them; refuse values that are not allowed."""
+    """Return the varied scene, system or function, and its values; refuse those that are not allowed."""
     if isinstance(source, Scene):
         check_scene(source, settings)
         source = source._as_it_is()
