@@ -17,6 +17,7 @@ from campaigns import (
     grains,
     grounds,
     laws,
+    loads,
     loose_rails,
     mechanisms,
     piles,
@@ -46,4 +47,5 @@ FAMILIES = {
     "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "grains by slip": grains.by_slip,
     "rough": rough.case, "plays": plays.case, "tethers": tethers.case, "ropes": ropes.case,
     "coordinates": coordinates.case, "drives": drives.case, "clearances": clearances.case,
+    "loads": loads.case,
 }  # fmt: skip

@@ -12,6 +12,7 @@ import math
 from carom._compiled.decorators import entry, kernel
 from carom.dynamics.applied import acts_at, add
 from carom.dynamics.applied.push import acts_along
+from carom.dynamics.bearing_load import load_of, take_thread_out, write_vectors
 from carom.dynamics.contact_impulse import clear_wrench, clear_wrenches
 from carom.dynamics.elements.relation import prescribed
 from carom.dynamics.reactions import expect_turn, follow_turns, settle_turn
@@ -76,12 +77,26 @@ def add_reported(system, one, values, state, work, row):
             slip = rate(system, c, state)
             if friction.drives == 1:
                 slip -= prescribed(system.relations, friction, work.moment[0].time)[1]
-            row.value = force_of_slip(system.laws, friction.law, slip)
+            row.value = force_of_slip(system.laws, friction.law, friction.arm * slip)
         push(system, c, state, row.value, work)
         return acts_along(first_of(system, c), state)
     for i in range(one.first, one.last):
         _, row.value, row.length, row.stretching = add(one.kind, system, i, state, 0.0, work)
     return acts_at(one.kind, system, one.first, state)
+
+
+@entry
+def write_loads(system, saved, number, reactions, values, out):
+    """Write the loads (T,) of friction `number` at saved states.
+
+    `reactions` are those of its joint, (T, 6), on the child of the scene, `values` (T,) the friction itself.
+    """
+    one, vectors = system.relations.frictions[number], system.relations.memory.write
+    for k in range(saved.state.shape[0]):
+        state, w = saved.state[k], reactions[k]
+        write_vectors(system, one, (w[0], w[1], w[2]), (w[3], w[4], w[5]), state, vectors)
+        take_thread_out(system, one, values[k], state, vectors)
+        out[k] = load_of(vectors)
 
 
 @kernel

@@ -46,6 +46,10 @@ CLOSED_POINT = [
     ("motion", "i8"),
     # the entry whose normal force bounds its friction: of a torque its point, of a point itself; or CONSTANT
     ("parent", "i8"),
+    # of friction in a joint by load: number of the load, -1 for none; its value, and the coefficient
+    ("load", "i8"),
+    ("bears", "f8"),
+    ("coefficient", "f8"),
 ]
 
 
@@ -88,6 +92,13 @@ class Group(NamedTuple):
     a: np.ndarray  # (3K,) accelerations with them [m/s^2]
     back: np.ndarray  # (3K,) errors of positions [m] or velocities, then impulses that remove them
     idle: np.ndarray  # (2, K, K) the projector to normal forces that move nothing, and its square
+    loads: (
+        np.ndarray
+    )  # (L, 1 + 3K, 9) vectors of loads: constant, and by unit forces (`persistent.joint_load`)
+    vectors: np.ndarray  # (9,) those of a load under all forces
+    secant: (
+        np.ndarray
+    )  # (5 + L, L) errors of loads, their last step, and the inverse of their derivative
     bodies: Bodies
     equations: Equations
     problem: ContactProblem  # its W, c, mu, kind and heading; c are velocities or accelerations without p
@@ -129,10 +140,13 @@ def new_group(system: System, more: bool = False) -> Group:
         W=np.zeros((3 * k, 3 * k)), c=np.zeros(3 * k), mu=np.zeros(k), kind=np.zeros(k, dtype=np.int64),
         heading=np.zeros((k, 2)),
     )  # fmt: skip
+    by_load = int((system.relations.frictions["load"] >= 0).sum())
+    loads, secant = np.zeros((by_load, 1 + 3 * k, 9)), np.zeros((5 + by_load, by_load))
     bodies = Bodies(member=np.zeros(n, dtype=np.int64), base=table(STATE, n), free=table(STATE, n))
     return Group(
         closed=table(CLOSED_POINT, k), count=np.zeros(1, dtype=np.int64), points=table(POINT, 2, k),
-        u=u, p=p, a=a, back=back, idle=np.zeros((2, k, k)), bodies=bodies,
+        u=u, p=p, a=a, back=back, idle=np.zeros((2, k, k)), loads=loads,
+        vectors=np.zeros(9), secant=secant, bodies=bodies,
         equations=new_equations(3 * k), problem=problem, cone=new_contact_work(k),
     )  # fmt: skip
 

@@ -176,12 +176,29 @@ STIFF_SPRING = [
     ("parent_side", "i8"),
 ]
 
+#: what bounds the dry friction of a joint: with a load its own reaction (`persistent.joint_load`)
+LOAD = [
+    ("load", "i8"),  # number of its load; -1 if its bound does not depend on a load
+    ("joint", "i8"),  # whose reaction is the load, among all elements
+    ("flipped", "i8"),  # 1 if parent and child of this joint were exchanged
+    ("length", "f8"),  # distance of two bearings [m], 0 for one
+    ("torsion", "f8"),  # load by a moment about the axis [1/m]
+    ("shoulder", "f8"),  # load of two bearings by a force along the axis
+    ("thread", "f8"),  # sine of the lead of a thread, 0 for none; 1 over its cosine
+    ("steep", "f8"),
+]
+
 #: dry friction along a coordinate of a joint: |force| <= bound, against its rate, or against that beside the
 #: rate of a drive
 FRICTION = [
     ("coordinate", "i8"),
-    ("law", "i8"),  # by number: its friction is a force [N] or a moment [N m]
+    (
+        "law",
+        "i8",
+    ),  # by number: its friction is a force [N] or a moment [N m]; by load a coefficient
     ("drives", "i8"),  # 1 if it is a drive with a limit, whose rate is that of a motion
+    ("arm", "f8"),  # by load, of an angle: distance [m] at which surfaces slide; else 1
+    *LOAD,
     *PRESCRIBED,
 ]
 

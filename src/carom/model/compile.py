@@ -122,6 +122,7 @@ class _Moved:
         else:
             self.chart = scene._chart.arrays(options.drop_tolerance)
             self.joints, self.flipped, self.solver = _constraints(self.chart)
+        self.forces.turn(self.flipped)
         alone, joined = _tethered(scene)
         loaded = np.append(self.forces.loaded, alone)
         self.bodies = _bodies(scene, moments, self.joints, self.elements, loaded, joined)

@@ -163,7 +163,7 @@ class Elements:
                 self._rotor(force.definition)
         self.terms: list[list[tuple[int, float]]] = []
         self.pieces = pieces
-        self.width = 8
+        self.width = 9
         for constraint in scene.constraints:
             d = constraint.definition
             if isinstance(d, Rows):

@@ -18,7 +18,8 @@ from carom.model.placement import Placement
 from carom.scene.force_definition import ForceTable
 from carom.scene.forces import TABLES
 from carom.scene.friction import bound_of
-from carom.scene.more_forces import Drive, JointFriction, Law
+from carom.scene.joint_friction import Drive, DryFriction
+from carom.scene.more_forces import Law
 
 
 class ForceRows:
@@ -31,7 +32,7 @@ class ForceRows:
         self.point, self.axes, self.curve = placement.point, placement.axes, pieces.add
         self.function = functions.address
         self.coordinates, self.implicit = coordinates, implicit
-        self.frictions, self.named, self.width = [], [], 0
+        self.frictions, self.named, self.width, self.loads = [], [], 0, 0
         self.laws: dict[int, Law] = {}  # of actuators, by the index of the force
         self.places: dict[int, Place] = {}
         rows, numbers = [[] for _ in TABLES], {kind.name: k for k, kind in enumerate(TABLES)}
@@ -40,8 +41,10 @@ class ForceRows:
             if d.table is not None:
                 kind = numbers[d.table.name]
                 self._place(force, kind, rows[kind], d._rows(force, self))
-            elif isinstance(d, JointFriction) and bound_of(d.bound) > 0.0:
+            elif isinstance(d, DryFriction) and bound_of(d.law) > 0.0:
                 made = _friction(d, coordinates, friction_laws)
+                made.load = self.loads if d.by_load else -1
+                self.loads += d.by_load
                 if isinstance(d, Drive) and not d.holds:
                     made.drives = 1
                     name = f"the motion of {force.name!r}"
@@ -49,6 +52,12 @@ class ForceRows:
                     self.width = max(self.width, 3)
                 self._place(force, FRICTIONS, self.frictions, [made])
         self.tables = Forces(*map(_filled, TABLES, rows))
+
+    def turn(self, flipped: np.ndarray) -> None:
+        """Note which joints, whose reactions are loads, were turned round in the tree."""
+        for one in self.frictions:
+            if one.joint[0] >= 0:
+                one.flipped = flipped[int(one.joint[0])]
 
     def _place(self, force, kind: int, rows: list, made: list) -> None:
         if made:
@@ -95,8 +104,11 @@ def _friction(d, coordinates, friction_laws: LawTable):
     made = table(FRICTION, 1)
     made.coordinate, made.law = (
         coordinates.number(d.joint, d.coordinate),
-        friction_laws.add(d.bound),
+        friction_laws.add(d.law),
     )
+    for name, value in d.load.items():
+        made[name] = value
+    made.joint = d.joint.index if d.by_load else -1
     return made
 
 

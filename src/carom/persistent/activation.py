@@ -37,6 +37,7 @@ from carom.persistent.bounces import (
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.finish import add_forces_of_corners
 from carom.persistent.jam import jams_among, note_jam
+from carom.persistent.joint_load import has_loads, note_responses
 from carom.persistent.joint_rows import add_frictions, greatest_load
 from carom.persistent.margins import take_forces
 from carom.persistent.points import weigh
@@ -80,6 +81,8 @@ def activate_group(model, data, k, label, horizon):
     work.moment[0].time = clock.now
     rows = add_frictions(system, label, state, k, group, work)
     inverse_masses(system, rows, group.points[0], state, work, group.problem.W)
+    if has_loads(group):
+        note_responses(system, rows, state, work, group)
     pose_forces(model, data, rows, label)
     for row in range(3 * rows):  # a first guess: those of another group, or of other points
         group.p[row] = 0.0

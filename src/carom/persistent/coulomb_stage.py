@@ -19,6 +19,7 @@ from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import LAST_DIGIT
 from carom.model.workspace import CONSTANT, MOTION_POINT
 from carom.persistent import thresholds as limits
+from carom.persistent.joint_load import LOAD_ROUNDS, any_locks, begin_loads, renew_loads
 from carom.persistent.joint_rows import is_driven, radius_of
 from carom.persistent.settle import dot, greatest, settle
 from carom.persistent.sharing import find_idle, share
@@ -34,6 +35,19 @@ def solve_stage(k, hg, group):
     `u` has u~, `c` the accelerations without forces. With hg = 0 the law is that of accelerations: slip goes on
     along `heading`, what has no velocity slips the way it accelerates.
     """
+    for turn in range(LOAD_ROUNDS):
+        if not forces_of_stage(k, hg, group):
+            return False
+        if not renew_loads(k, 1.0, False, turn, group):
+            return hg == 0.0 or not any_locks(k, hg, group)
+    begin_loads(k, group)  # of slip that locks itself no friction is right: this one is small
+    forces_of_stage(k, hg, group)
+    return False
+
+
+@kernel
+def forces_of_stage(k, hg, group):
+    """Write the forces of a stage under given loads of joints, as `solve_stage` does."""
     closed = group.closed
     for i in range(k):
         closed[i].presses = 1 if closed[i].weight > 0.0 else 0

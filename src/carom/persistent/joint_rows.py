@@ -47,10 +47,11 @@ def _add_frictions(system, state, k, group, work) -> int:
         closed_point, point = group.closed[k], group.points[0][k]
         write_closed(-1, 0, point.core, CONSTANT, closed_point)
         closed_point.motion, closed_point.active = MOTION_JOINT, i
+        closed_point.load = relations.frictions[i].load
         closed_point.listed, closed_point.weight = 1, 1.0
         place_coordinate(system, i, work.moment[0].time, point)
         alone = response_alone(system, coordinate_of(system, i), state, work)
-        closed_point.spring = MOTOR_COMPLIANCE * alone
+        closed_point.spring = MOTOR_COMPLIANCE * point.length * point.length * alone
         k += 1
     return k
 
@@ -71,7 +72,7 @@ def place_coordinate(system, i, t, point):
     c, one = coordinate_of(system, i), system.relations.frictions[i]
     point.a, point.b = (c.child, c.parent) if c.child >= 0 else (c.parent, -1)
     point.core[0], point.core[1], point.core[2] = 0.0, 0.0, 0.0
-    point.gap, point.length, point.moves, point.motion = 0.0, 1.0, one.drives, MOTION_JOINT
+    point.gap, point.length, point.moves, point.motion = 0.0, one.arm, one.drives, MOTION_JOINT
     point.coordinate = one.coordinate
     if one.drives == 1:
         _, point.field[0, 0], point.field[2, 0] = prescribed(system.relations, one, t)
@@ -107,6 +108,30 @@ def is_angle(system, point):
 
 
 @kernel
+def size_of_slip(system, point):
+    """Return the displacement of its body by a unit of the slip of an entry: of an angle that at its size."""
+    if not is_angle(system, point):
+        return 1.0
+    size = system.bodies[point.a].extent
+    return size / point.length if point.motion == MOTION_JOINT else size
+
+
+@kernel
+def set_bound(i, coefficient, group):
+    """Write the friction of an entry: a coefficient, a bound, or a coefficient times the load of a joint."""
+    group.problem.mu[i] = coefficient
+    if is_by_load(i, group):
+        group.closed[i].coefficient = coefficient
+        group.problem.mu[i] *= group.closed[i].bears
+
+
+@kernel
+def is_by_load(i, group):
+    """Return whether an entry is friction in a joint that is bounded by its load."""
+    return group.closed[i].motion == MOTION_JOINT and group.closed[i].load >= 0
+
+
+@kernel
 def response_alone(system, c, state, work):
     """Return the acceleration of a coordinate by a unit force along it, of its bodies without joints."""
     clear_wrenches(work)
@@ -130,8 +155,9 @@ def free_ends(system, c, state, work):
 
 @kernel
 def drift_of_coordinate(system, i, state, work):
-    """Return q'' of the coordinate of friction i for bodies without acceleration."""
-    return drift(system, coordinate_of(system, i), state, work.joint[0].target)
+    """Return q'' of the coordinate of friction i, at its arm, for bodies without acceleration."""
+    along = drift(system, coordinate_of(system, i), state, work.joint[0].target)
+    return system.relations.frictions[i].arm * along
 
 
 @kernel
@@ -145,8 +171,9 @@ def is_driven(group, i):
 
 @kernel
 def rounding_of_rate(system, i, state):
-    """Return the round-off of the rate of the coordinate of friction i."""
-    return ROUND_OFF * speeds_of(system, coordinate_of(system, i), state)
+    """Return the round-off of the rate of the coordinate of friction i, at its arm."""
+    one = system.relations.frictions[i]
+    return ROUND_OFF * one.arm * speeds_of(system, coordinate_of(system, i), state)
 
 
 @kernel

@@ -40,7 +40,9 @@ from carom.geometry.thresholds import ROUND_OFF
 from carom.law.piecewise import any_depends_on_speed
 from carom.model.workspace import CONSTANT, MOTION_POINT
 from carom.persistent.coulomb_stage import solve_stage
-from carom.persistent.memory import is_torque
+from carom.persistent.joint_load import has_loads, hold, renew_loads
+from carom.persistent.joint_rows import is_by_load
+from carom.persistent.memory import is_torque, slip_at_start
 from carom.persistent.rolling_friction import bound_turning
 from carom.persistent.rows import (
     PASSED,
@@ -161,13 +163,14 @@ def implicit_stage(model, data, label, s, hg, closes):
         if k != before:
             for row in range(3 * k):
                 group.p[row] = 0.0
-        lost = iterations[0]
+        lost, struck = iterations[0], False
         for i in range(k):
             group.closed[i].passes = 0
         if (closes and lost >= budget(k)) or not solve_beyond(model, data, k, hg, closes):
             if not closes:
                 return -1, 0.0, 0.0
             solve_impulses(model, data, k, hg)
+            struck = True
         else:
             iterations[0] = lost
         if laws:
@@ -176,6 +179,7 @@ def implicit_stage(model, data, label, s, hg, closes):
             group.problem.kind[i] = SLIDING
         velocities(model.system, k, group.points[0], work.stage, group.u)
         driven, rubbed = push_bodies(model, data, loaded, k, count, s)
+        rubbed += power_of_locks(model.system, data.active, k, group) if struck else 0.0
         power = applied + driven
     if model.controls.order > 0 and not closes and not change <= STAGE_CHANGE:
         return -1, 0.0, 0.0
@@ -229,6 +233,28 @@ def move_stage(base, hg, length, stage, out):
 
 
 @kernel
+def power_of_locks(system, active, k, group):
+    """Return what friction by load takes beside its power at the end, where impulses end its slip.
+
+    The work of an impulse is that at the mean of the velocities before and after it.
+    """
+    power = 0.0
+    for i in range(k if has_loads(group) else 0):
+        if is_by_load(i, group):
+            _, d, _, speed = slip_at_start(system, active, group.closed[i])
+            power += 0.5 * group.p[3 * i + 1] * (d * speed - group.u[3 * i + 1])
+    return power
+
+
+@kernel
+def bound_joints(k, h, group):
+    """Write the greatest impulses in a time h of dry friction in joints."""
+    for i in range(k):
+        if group.closed[i].parent == CONSTANT:
+            group.problem.heading[i, 0] = h * group.problem.mu[i]
+
+
+@kernel
 def solve_impulses(model, data, k, h):
     """Write forces `p` under which Coulomb's law holds with the velocities h W p + u."""
     group, p = data.group, data.group.p
@@ -240,15 +266,19 @@ def solve_impulses(model, data, k, h):
     for i in range(k):
         group.problem.kind[i] = CONE
         if group.closed[i].parent == CONSTANT:
-            group.problem.kind[i], group.problem.heading[i, 0] = DISC, h * group.problem.mu[i]
+            group.problem.kind[i] = DISC
         elif group.closed[i].motion != MOTION_POINT:
             group.problem.mu[i], turning = 1.0, True
     group.cone.mismatch[ENOUGH], count[BUDGET] = 0.0, budget(k)
-    for _ in range(50 if turning else 1):
+    hold(k, h, group)
+    bound_joints(k, h, group)
+    for turn in range(50 if turning or has_loads(group) else 1):
         change = bound_turning(model.system, k, group)
         solve_cones(k, group.problem, p, group.cone)
         group.equations.iterations[0] += count[ITERATIONS]
-        if turning and not change > LAST_CHANGE:
+        renewed = renew_loads(k, 1.0 / h, False, turn, group)
+        bound_joints(k, h, group)
+        if not (turning and change > LAST_CHANGE) and not renewed:
             break
     for i in range(k):
         if is_torque(group.closed[i]):

@@ -26,11 +26,13 @@ from carom.kinematics.moving_surfaces import set_surfaces
 from carom.law.friction import bound_of_stick
 from carom.law.piecewise import any_depends_on_speed
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT
+from carom.persistent.joint_load import begin_loads, has_loads, note_reactions, note_responses
 from carom.persistent.joint_rows import (
     drift_of_coordinate,
-    is_angle,
     is_driven,
     rounding_of_rate,
+    set_bound,
+    size_of_slip,
 )
 from carom.persistent.memory import is_torque, law_of, slip_at_start
 from carom.persistent.points import find_points
@@ -58,7 +60,10 @@ def accelerate_freely(model, data, loaded, count, s):
     """
     system, work = model.system, data.work
     if loaded:
-        return acceleration(system, work.stage, work, work.stages[s])
+        power = acceleration(system, work.stage, work, work.stages[s])
+        if has_loads(data.group):
+            note_reactions(system, work.stage, 0, work, data.group)
+        return power
     for m in range(count):
         b = data.group.bodies.member[m]
         free_rates(system.bodies[b], system.gravity, work.stage[b], work.stages[s, b].rate)
@@ -76,6 +81,8 @@ def write_rows(model, data, label, s) -> int:
     set_surfaces(system, work.moment[0].time)
     k = find_points(system, data, label)
     inverse_masses(system, k, points, state, work, group.problem.W)
+    if has_loads(group):
+        note_responses(system, k, state, work, group)
     write_motion(system, k, state, work.stages[s], group, work)
     if any_depends_on_speed(system.laws):
         follow_laws(system, data.active, k, group)
@@ -88,12 +95,13 @@ def write_motion(system, k, state, rates, group, work):
     points = group.points[0]
     velocities(system, k, points, state, group.u)
     accelerations(system, k, points, state, rates, group.problem.c)
+    begin_loads(k, group)
     for i in range(k):
         closed_point = group.closed[i]
         if is_torque(closed_point):
             group.problem.mu[i] = bound_per_force(system, points[i], closed_point)
             continue
-        group.problem.mu[i] = bound_of_stick(system.laws, law_of(system, closed_point))
+        set_bound(i, bound_of_stick(system.laws, law_of(system, closed_point)), group)
         if closed_point.motion == MOTION_JOINT:
             group.problem.c[3 * i + 1] += drift_of_coordinate(
                 system, closed_point.active, state, work
@@ -155,7 +163,7 @@ def beyond_stop(system, active, i, group):
     speed = -(u[3 * i + 1] * d1 + u[3 * i + 2] * d2)
     if not (slips and speed > 0.0):
         return 0.0
-    return speed * (system.bodies[point.a].extent if is_angle(system, point) else 1.0)
+    return speed * size_of_slip(system, point)
 
 
 @kernel

@@ -14,7 +14,7 @@ from carom.geometry.thresholds import REMAINDER
 from carom.law.friction import bound_of_stick, depends_on_slip, in_slip, margin_of_slip
 from carom.law.piecewise import any_depends_on_speed
 from carom.model.actions import MODE_SLIP, MODE_STICK
-from carom.persistent.joint_rows import radius_of
+from carom.persistent.joint_rows import radius_of, set_bound
 from carom.persistent.memory import is_torque, law_of, memory_of
 from carom.persistent.settle import dot
 from carom.persistent.thresholds import BREAK_AWAY, FRICTION_LIMIT, LEAST_GRIP
@@ -38,9 +38,9 @@ def set_friction(system, i, slips, group):
         return
     laws, law = system.laws, law_of(system, closed_point)
     if not slips:
-        group.problem.mu[i] = bound_of_stick(laws, law)
+        set_bound(i, bound_of_stick(laws, law), group)
     else:
-        group.problem.mu[i] = in_slip(laws, law, math.hypot(u[3 * i + 1], u[3 * i + 2]))
+        set_bound(i, in_slip(laws, law, math.hypot(u[3 * i + 1], u[3 * i + 2])), group)
 
 
 @kernel

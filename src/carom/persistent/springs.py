@@ -32,6 +32,7 @@ from carom.law.turning import arm_of_torque
 from carom.model.allowance import COUNT_FACTORS
 from carom.model.workspace import CONSTANT, MOTION_POINT, MOTION_ROLL
 from carom.persistent import thresholds as limits
+from carom.persistent.joint_load import LOAD_ROUNDS, renew_loads
 from carom.persistent.joint_rows import greatest_load, is_driven
 from carom.persistent.settle import add_product, greatest, settle
 
@@ -53,6 +54,17 @@ def solve_springs(k, group) -> bool:
     `c` has the accelerations without forces. `kind` is SLIDING for points that slide along `heading`, and
     `presses` is 1 for those that press at first.
     """
+    for turn in range(LOAD_ROUNDS):
+        if not forces_of_springs(k, group):
+            return False
+        if not renew_loads(k, 1.0, True, turn, group):
+            return True
+    return False
+
+
+@kernel
+def forces_of_springs(k, group):
+    """Write the forces of given modes under given loads of joints, as `solve_springs` does."""
     push, rounds = greatest_load(k, group), 0
     if push == 0.0 and moves_freely(k, group):
         for row in range(3 * k):

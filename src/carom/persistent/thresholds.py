@@ -6,6 +6,10 @@ DEPENDENT_ERROR = 1e-3  #: accelerations without forces: greatest error of rows 
 LINEAR_SHARE = 1e-6  #: error: that of the linear equations of a round
 LINEAR_ERROR = 0.01  #: error that a round may leave: that of its linear equations
 SETTLED_SHARE = 1e-9  #: error: the same for an error that no iteration makes less
+LOAD_ERROR = 1e-13  #: load: error of a round that is the last
+#: speed that forces give in a stage: a joint slides, and does not just give way
+SLIDE_OF_FORCES = 3.0
+LOAD_LEFT = 1e-9  #: load: the same for an error that more rounds do not make less
 LAST_CHANGE = 1e-14  #: velocities: change by an iteration that is the last
 STAGE_CHANGE = 1e-10  #: velocities: after all iterations: a stage that changes by more has no solution
 FRICTION_LIMIT = 1.0 - 1e-6  #: greatest friction: less is within the cone; a stage leaves 3e-9 of a line

@@ -2,7 +2,7 @@
 
 While a joint slips, the force is its bound against the motion, by a law that at its rate. While it sticks, the
 force is that of a motor at rest in the place of the friction; where this exceeds the bound of stick, the joint
-is about to slip, and has the force of slip.
+is about to slip, and has the force of slip. A bound by load follows the reactions.
 """
 
 from __future__ import annotations
@@ -20,14 +20,17 @@ from carom.results.exerted import bodies_of, rubs
 from carom.scene.constraints import Coupling, Driver
 from carom.scene.coordinates import Combination, coordinate_kind, kind_of, terms_of
 from carom.scene.friction import bound_of
-from carom.scene.more_forces import Drive, JointFriction
+from carom.scene.joint_friction import Drive, DryFriction
 
 STILL = 1e-9  # of the speeds of the joint: below it the rate is round-off, and the joint sticks
 ABOVE = 1.0 + 1e-9  # of the bound: a force up to this sticks
+LOAD_ROUNDS, LOAD_ERROR = 100, 1e-13  # until friction by load and its loads agree
 
 
 def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, np.ndarray]]:
     """Return the reactions (T, E, 6), on the children, and the values (T,) of dry frictions by index.
+
+    Friction by load and the reactions that are its load follow each other in rounds, as in a step.
 
     Parameters
     ----------
@@ -36,50 +39,95 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
     touch : active points at these times
     solve : ``solve(compiled, touch)`` returns reactions on the children
     """
-    scene, saved = run.scene, states._saved
-    dry = [force for force in scene.forces if rubs(force)]
+    dry = [force for force in run.scene.forces if rubs(force)]
     if not dry:
         return solve(run.compiled, touch), {}
-    laws: list[Any] = [force.definition for force in dry]
-    read = [states._reports.motion(d.joint, saved, d.coordinate) for d in laws]
-    q, rate = (np.hstack([one[name] for one in read]) for name in ("value", "rate"))
-    rate = rate - np.column_stack([_goal(d, saved.series["t"]) for d in laws])
-    turns = np.round(q / TURN)
-    sticks = np.abs(rate) <= STILL * np.array([_speed(d, saved.state) for d in laws])
-    most = np.array([bound_of(d.bound) for d in laws])
-    rows = np.cumsum([0] + [len(bodies_of(force)) for force in dry])[:-1]  # the first of each
-    slip = states._reports.exerted(dry, saved, ((0, len(q)),), {}).value[:, rows]
-    bound, value = np.abs(slip), np.where(sticks, 0.0, slip)
-    while True:
-        values = {force.index: value[:, k] for k, force in enumerate(dry)}
-        full = with_forces(states, values, touch)
-        out = solve(run.compiled, full)
-        alike = np.hstack([sticks, np.where(sticks, turns, 0.0)])
-        for each in np.unique(alike[np.any(sticks, axis=1)], axis=0):
-            held = each[: len(laws)] == 1.0
-            made = scene.copy()
+    joints = _DryJoints(run, states, touch, solve, dry)
+    bears = joints.loads(None, None)
+    for _ in range(LOAD_ROUNDS):
+        out, value = joints.solve_under(bears)
+        before, bears = bears, joints.loads(out, value)
+        if np.all(np.abs(bears - before) <= LOAD_ERROR * bears):
+            break
+    return out, {force.index: value[:, k] for k, force in enumerate(dry)}
+
+
+class _DryJoints:
+    """The n dry frictions of a run at T saved states."""
+
+    def __init__(self, run, states, touch, solve, dry: list):
+        self.run, self.states, self.touch, self.solve, self.dry = run, states, touch, solve, dry
+        saved, reports = states._saved, states._reports
+        self.laws: list[Any] = [force.definition for force in dry]
+        read = [reports.motion(d.joint, saved, d.coordinate) for d in self.laws]
+        q, rate = (np.hstack([one[name] for one in read]) for name in ("value", "rate"))
+        rate = rate - np.column_stack([_goal(d, saved.series["t"]) for d in self.laws])
+        self.turns = np.round(q / TURN)
+        self.sticks = np.abs(rate) <= STILL * np.array([_speed(d, saved.state) for d in self.laws])
+        self.arm = np.array([d.load["arm"] for d in self.laws])
+        self.most = self.arm * np.array([bound_of(d.law) for d in self.laws])
+        rows = np.cumsum([0] + [len(bodies_of(force)) for force in dry])[:-1]  # the first of each
+        found = reports.exerted(dry, saved, ((0, len(q)),), {}).value[:, rows]
+        self.slip = self.arm * found  # under a load of 1
+        self.made: dict[bytes, Any] = {}  # scenes in which some joints are held
+
+    def loads(self, out: np.ndarray | None, value: np.ndarray | None) -> np.ndarray:
+        """Return what bears on each friction (T, n): 1, or the load by the reactions and values found."""
+        bears = np.ones(self.slip.shape)
+        by_load = [k for k, d in enumerate(self.laws) if d.by_load]
+        if out is None or value is None:
+            bears[:, by_load] = 0.0
+        elif by_load:
+            found = self.states._reports.loads(self.states._saved, out, self.dry, value / self.arm)
+            bears[:, by_load] = found[:, by_load]
+        return bears
+
+    def solve_under(self, bears: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return reactions (T, E, 6) and values (T, n) of frictions under what bears on them."""
+        sticks, slip, most = self.sticks, self.slip * bears, self.most * bears
+        value = np.where(sticks, 0.0, slip)
+        while True:
+            values = {force.index: value[:, k] for k, force in enumerate(self.dry)}
+            full = with_forces(self.states, values, self.touch)
+            out = self.solve(self.run.compiled, full)
+            alike = np.hstack([sticks, np.where(sticks, self.turns, 0.0)])
+            for each in np.unique(alike[np.any(sticks, axis=1)], axis=0):
+                held, first = each[: len(self.dry)] == 1.0, self.rows_before
+                rows = np.flatnonzero(np.all(alike == each, axis=1))
+                found = self.solve(self.held(each), full)[rows]
+                out[rows, :first] = found[:, :first]
+                value[np.ix_(rows, np.flatnonzero(held))] = found[:, first : first + held.sum(), 0]
+            beyond = sticks & (np.abs(value) > ABOVE * most)
+            if not beyond.any():
+                return out, value
+            about = np.abs(slip) * np.sign(value)
+            value = np.where(sticks & ~beyond, 0.0, np.where(beyond, about, value))
+            sticks = sticks & ~beyond
+
+    @property
+    def rows_before(self) -> int:
+        """Number of joints and constraints of the scene, before those that hold joints."""
+        return len(self.run.scene.joints) + len(self.run.scene.constraints)
+
+    def held(self, each: np.ndarray):
+        """Return the compiled scene in which motors hold joints, with their whole turns."""
+        count, key = len(self.dry), each.tobytes()
+        held = each[:count] == 1.0
+        if key not in self.made:
+            made = self.run.scene.copy()
             for k in np.flatnonzero(held):
-                made.add_constraint(_held(laws[k]))
-            rows = np.flatnonzero(np.all(alike == each, axis=1))
-            first = len(scene.joints) + len(scene.constraints)
-            compiled = compile_scene(made, run.options)
-            _turned(compiled.system, TURN * each[len(laws) :][held])
-            found = solve(compiled, full)[rows]
-            out[rows, :first] = found[:, :first]
-            value[np.ix_(rows, np.flatnonzero(held))] = found[:, first : first + held.sum(), 0]
-        beyond = sticks & (np.abs(value) > ABOVE * most)
-        if not beyond.any():
-            return out, {force.index: value[:, k] for k, force in enumerate(dry)}
-        value = np.where(sticks & ~beyond, 0.0, np.where(beyond, bound * np.sign(value), value))
-        sticks = sticks & ~beyond
+                made.add_constraint(_held(self.laws[k]))
+            self.made[key] = compile_scene(made, self.run.options)
+        _turned(self.made[key].system, TURN * each[count:][held])
+        return self.made[key]
 
 
-def _goal(d: JointFriction, t: np.ndarray) -> np.ndarray:
+def _goal(d: DryFriction, t: np.ndarray) -> np.ndarray:
     """Return the rate (T,) against which friction acts: that of a drive, else 0."""
     return d.rates(t) if isinstance(d, Drive) else np.zeros(len(t))
 
 
-def _held(d: JointFriction) -> Driver | Coupling:
+def _held(d: DryFriction) -> Driver | Coupling:
     """Return the motor in the place of a friction: at rest, or with the accelerations of a drive."""
     if isinstance(d.joint, Combination):
         return Coupling({(joint.name, k): factor for joint, k, factor in d.joint.terms})
@@ -94,7 +142,7 @@ def _turned(system, angles: np.ndarray) -> None:
     system.relations.relations["constant"][np.sort(own)[-len(angles) :]] = angles
 
 
-def _speed(d: JointFriction, states) -> float:
+def _speed(d: DryFriction, states) -> float:
     """Return the greatest speed of the child [rad/s or m/s], or if greater what the friction gives it.
 
     The work of the bound over a radian, or over the radius of gyration r, is about that of the speed.
@@ -102,7 +150,7 @@ def _speed(d: JointFriction, states) -> float:
     child, turns = d.joint.child, kind_of(d.joint, d.coordinate) == "turn"
     moves = states["w" if turns else "v"]
     moment = float(np.trace(child.inertia))  # about m r^2
-    bound = bound_of(d.bound)
+    bound = 0.0 if d.by_load else bound_of(d.bound)  # a load is that of the motion
     given = bound / moment if turns else bound * np.sqrt(moment / child.mass) / child.mass
     return max(np.sqrt(given), np.max(np.linalg.norm(moves[:, child.index], axis=-1)))
 

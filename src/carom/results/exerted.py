@@ -7,7 +7,8 @@ from typing import NamedTuple
 from carom.scene.bodies import Body
 from carom.scene.coordinates import Combination
 from carom.scene.forces import AppliedForce
-from carom.scene.more_forces import JointFriction, UserForce
+from carom.scene.joint_friction import DryFriction
+from carom.scene.more_forces import UserForce
 
 #: numbers of a row in results: force and torque on the body, world axes; value along a coordinate or a line;
 #: power
@@ -45,4 +46,4 @@ def unit_of(force: AppliedForce) -> str:
 
 def rubs(force: AppliedForce) -> bool:
     """Return whether a force is dry friction, whose value follows from the reactions of joints."""
-    return isinstance(force.definition, JointFriction)
+    return isinstance(force.definition, DryFriction)

@@ -18,6 +18,7 @@ from carom.dynamics.reports import (
     REPORTED,
     write_coordinates,
     write_exerted,
+    write_loads,
 )
 from carom.model import records as r
 from carom.model.compile import compile_for_reports
@@ -101,6 +102,26 @@ class Reports:
         if self.compiled.functions.failed is not None:
             raise self.compiled.functions.failed
         return out
+
+    def loads(self, states: r.Records, reactions, forces, values) -> np.ndarray:
+        """Return the loads (T, n) of joints that bound n frictions, 1 for constant bounds.
+
+        Parameters
+        ----------
+        states : series, state and turn
+        reactions : (T, E, 6) of elements on their children
+        forces : the frictions
+        values : (T, n) of them, along their surfaces
+        """
+        found = np.ones(np.shape(values))
+        for k, force in enumerate(forces):
+            place = self.compiled.places.get(force.index)
+            if place is not None and force.definition.by_load:
+                own, load = reactions[:, force.definition.joint.index], np.zeros(len(found))
+                given = np.ascontiguousarray(own), np.ascontiguousarray(values[:, k])
+                write_loads(self.compiled.system, states, place.first, *given, load)
+                found[:, k] = load
+        return found
 
     def set(self, given: dict[int, Any]) -> None:
         """Let forces have values that were set, by index; others those that the scene states."""

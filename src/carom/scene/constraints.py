@@ -248,7 +248,7 @@ class SceneConstraints(MethodsOfScene):
         """
         checks.instance("definition", definition, CONSTRAINTS)
         if isinstance(definition, Driver) and definition.limit is not None:
-            from carom.scene.more_forces import Drive
+            from carom.scene.joint_friction import Drive
 
             d = definition
             drive = Drive(d.joint, d.limit, d.coordinate, rate=d.rate, motion=d.motion)

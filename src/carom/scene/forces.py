@@ -24,8 +24,8 @@ from carom.scene.body_forces import Bushing as Bushing
 from carom.scene.more_forces import JointSpring as JointSpring
 from carom.scene.more_forces import JointForce as JointForce
 from carom.scene.more_forces import Actuator as Actuator
-from carom.scene.more_forces import JointFriction as JointFriction
-from carom.scene.more_forces import Drive as Drive
+from carom.scene.joint_friction import JointFriction as JointFriction
+from carom.scene.joint_friction import Drive as Drive
 from carom.scene.more_forces import JointInertia as JointInertia
 from carom.scene.more_forces import CurveSpring as CurveSpring
 from carom.scene.more_forces import UserForce as UserForce

@@ -14,7 +14,6 @@ from carom.fields import (
     FunctionOrNone,
     Integer,
     Number,
-    NumberOrNone,
     Value,
     Vector,
     VectorOrNone,
@@ -22,16 +21,12 @@ from carom.fields import (
 from carom.scene.body_forces import SPRING, both_ends
 from carom.scene.constraints import Bodies, distinct_bodies
 from carom.scene.coordinates import (
-    Along,
     OneJoint,
     acts_along,
-    joint_or_combination,
     joint_or_name,
     kind_of,
 )
 from carom.scene.force_definition import ForceDefinition, ForceTable
-from carom.scene.friction import friction
-from carom.scene.joints import Joint
 from carom.scene.values import apart
 
 #: a spring, damper and force along a coordinate of a joint
@@ -279,89 +274,6 @@ class Law:
         """Return the force along the coordinate."""
         total = self.rest + self.gear * (self.of_length * q + self.of_rate * rate)
         return self.gear * min(max(total, self.low), self.high)
-
-
-@arguments.known
-@dataclass(frozen=True, eq=False)
-class JointFriction(AlongJoint):
-    """Dry (Coulomb) friction along a joint coordinate: a force `bound` against the motion.
-
-    A joint without motion sticks exactly while the force that keeps it at rest is at most `bound`. Changes
-    between slip and stick are located within the step. The work of the friction is in `ledger.friction`.
-
-    Parameters
-    ----------
-    joint : Joint, str or mapping
-        The joint, or its name; or a mapping from joints to factors, which states a sum of their coordinates: on
-        joint k the friction is factor_k times that of the sum (`Scene.add_play`).
-    bound : float or Friction
-        Friction force [N] along a displacement or torque [N m] about an angle, at least 0; or a law of it,
-        whose coefficients are forces or torques, and whose speed is that of the coordinate [m/s or rad/s].
-    coordinate : int
-        Index of the coordinate of the joint. Default 0.
-    """
-
-    joint: Along = Value(joint_or_combination)
-    bound: Value[Any, Any] = friction(axis=False)
-    coordinate: Integer = fields.integer(0, least=0)
-
-
-@arguments.known
-@dataclass(frozen=True, eq=False)
-class Drive(JointFriction):
-    """A motor that drives a joint coordinate at a rate, as far as its force or torque is at most a limit.
-
-    It is a motor that runs at the rate whatever happens, behind a clutch that slips at the limit: the joint has
-    the rate exactly while less is needed for it, and else the limit acts towards the rate. Both changes are
-    located within the step. The force times the rate is the power of the motor, in `ledger.loads`; what slip
-    takes of it is heat, in `ledger.friction`. With ``rate=0`` it is a brake. `Scene.add_constraint` makes one
-    of a `carom.constraints.Driver` with a `limit`.
-
-    Parameters
-    ----------
-    joint : Joint, str or mapping
-        The joint, or its name; or a mapping from joints to factors, which states a sum of their coordinates.
-    bound : float or Friction
-        The limit: a force [N] along a displacement or a torque [N m] about an angle, at least 0; or a law of it
-        by the speed of slip (a torque-speed line).
-    coordinate : int
-        Index of the coordinate of the joint. Default 0.
-    rate : float, optional
-        Constant rate [rad/s or m/s].
-    motion : callable or scipy.interpolate.PPoly, optional
-        Instead of `rate`, a motion as of a `carom.constraints.Driver`, of which the rate is taken: what slip
-        has left behind is not caught up.
-    """
-
-    rate: NumberOrNone = fields.number(None)
-    motion: FunctionOrNone = fields.function(None)
-
-    def __post_init__(self):
-        super().__post_init__()
-        if (self.rate is None) == (self.motion is None):
-            raise ValueError(
-                f"rate or motion must be given, and not both, got {self.rate} and {self.motion}"
-            )
-        if self.motion is not None and not isinstance(self.joint, (Joint, str)):
-            raise ValueError(f"motion must be left out with a sum of joints, got {self.motion}")
-
-    @property
-    def has_kinks(self) -> bool:
-        """Whether its rate is a function."""
-        return self.motion is not None
-
-    @property
-    def holds(self) -> bool:
-        """Whether it is a brake."""
-        return self.rate == 0.0
-
-    def rates(self, t: np.ndarray) -> np.ndarray:
-        """Return its rate at times (T,)."""
-        if self.motion is None:
-            return np.full(len(t), self.rate)
-        if checks.is_polynomial(self.motion):
-            return np.asarray(self.motion.derivative()(t))  # pyright: ignore
-        return np.array([self.motion(float(one))[1] for one in t])
 
 
 @arguments.known

@@ -9,8 +9,8 @@ from carom import arguments, checks
 from carom.scene.coordinates import Factors
 from carom.scene.forces import AppliedForce, SceneForces
 from carom.scene.friction import FrictionLaw, bound_of, isotropic
+from carom.scene.joint_friction import JointFriction
 from carom.scene.joints import Joint
-from carom.scene.more_forces import JointFriction
 from carom.scene.restitution import Restitution
 from carom.scene.rope import SceneRope
 from carom.scene.stops import Stop

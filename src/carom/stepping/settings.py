@@ -10,7 +10,8 @@ from carom import checks
 from carom.dynamics.methods import ADAPTIVE, CARRIES, EXPLICIT, METHODS
 from carom.dynamics.thresholds import RTOL
 from carom.options import Options
-from carom.scene.more_forces import JointFriction, JointInertia, has_kinks
+from carom.scene.joint_friction import DryFriction
+from carom.scene.more_forces import JointInertia, has_kinks
 from carom.scene.remarks import check_location, remarks
 from carom.scene.scene import Scene
 from carom.stepping.thresholds import LEAST_RTOL, MOST_STEPS, SMOOTH_RTOL, TIGHT_RTOL
@@ -139,7 +140,7 @@ def default_method(h: float | None, rtol: float, scene) -> str:
 def is_smooth(scene) -> bool:
     """Return whether nothing in the scene strikes, and no dry friction sticks."""
     if isinstance(scene, Scene):
-        sticks = any(isinstance(f.definition, JointFriction) for f in scene.forces)
+        sticks = any(isinstance(f.definition, DryFriction) for f in scene.forces)
         return not (scene.contacts or scene.contact_default or scene.stops or sticks)
     # of a system in coordinates; of a function that makes scenes it is not known
     return not getattr(scene, "contacts", True)
@@ -188,9 +189,7 @@ def mistakes(scene, settings: Settings) -> tuple[str, ...]:
 
 def check_method(scene: Scene, method: str) -> None:
     """Refuse dry friction and inertia in joints for methods that do not support them."""
-    if method not in EXPLICIT and any(
-        isinstance(f.definition, JointFriction) for f in scene.forces
-    ):
+    if method not in EXPLICIT and any(isinstance(f.definition, DryFriction) for f in scene.forces):
         raise ValueError(
             f"method must be {either(EXPLICIT)} if joints have dry friction, got {method!r}"
         )

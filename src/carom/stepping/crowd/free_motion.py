@@ -78,7 +78,8 @@ def friction_powers(system, state, t):
     """Return the powers of drives with limits and of friction in joints, by the last forces in contact."""
     relations, driven, power = system.relations, 0.0, 0.0
     for i in range(relations.frictions.shape[0]):
-        one, force = relations.frictions[i], relations.memory.frictions[i].force[1]
+        one = relations.frictions[i]
+        force = one.arm * relations.memory.frictions[i].force[1]
         goal = prescribed(relations, one, t)[1] if one.drives == 1 else 0.0
         speed = rate(system, relations.coordinates[one.coordinate], state)
         driven += force * goal
