@@ -308,3 +308,75 @@ def test_efficiency_of_a_screw():
     assert_allclose(angle, a * 0.5**2 / 2.0, rtol=1e-9)
     heat = moment * angle - MASS * G * h * angle - 0.5 * (MOMENT + MASS * h * h) * (a * 0.5) ** 2
     assert_allclose(-solution.ledger.friction[-1], heat, rtol=1e-8)
+
+
+def test_a_joint_locks_where_friction_adds_to_its_own_load():
+    # J a = -p r with p = mu m e a: for mu m e r > J no slip is possible, and the wheel stops at once
+    e, spin = 0.05, 20.0
+    made = scene()
+    made.add_body(
+        mass=MASS, inertia=(1e-5,) * 3, position=(e, 0.0, 0.0), velocity=(0.0, spin * e, 0.0),
+        angular_velocity=(0.0, 0.0, spin), name="wheel",
+    )  # fmt: skip
+    pin = made.add_joint(joints.Revolute((0.0, 0.0, 0.0), (0.0, 0.0, 1.0)), carom.GROUND, "wheel")
+    made.add_force(forces.JointFriction(pin, mu=1.2, radius=0.045))
+    solution = carom.simulate(made, 0.1)
+    assert solution.success
+    assert solution.warnings == ()
+    energy = 0.5 * (1e-5 + MASS * e**2) * spin**2
+    assert solution["wheel"].angular_velocity[1, 2] == pytest.approx(0.0, abs=1e-12)
+    # measured: 1e-16 rad, 1e-7 of the energy
+    assert abs(solution[pin].coordinate[-1]) < 1e-6
+    assert_allclose(solution.ledger.friction[-1], -energy, rtol=1e-5)
+
+
+def test_laws_of_a_pin_are_by_the_speed_of_its_surfaces():
+    # a wheel of weight m g, mu = mu_s + (mu_k - mu_s)(1 - exp(-v/v_s)) by v = r w
+    law = carom.Friction(0.4, 0.1, speed=0.5)
+    made = scene(G)
+    made.add_body(mass=MASS, inertia=(MOMENT,) * 3, angular_velocity=(0.0, 0.0, 40.0), name="wheel")
+    pin = made.add_joint(joints.Revolute((0.0, 0.0, 0.0), (0.0, 0.0, 1.0)), carom.GROUND, "wheel")
+    made.add_force(forces.JointFriction(pin, mu=law, radius=RADIUS), name="friction")
+    solution = simulated(made, 0.6, rtol=1e-10)
+
+    def slows(_, w):
+        return -law(RADIUS * w) * MASS * G * RADIUS / MOMENT
+
+    own = solve_ivp(slows, (0.0, 0.6), [40.0], "DOP853", rtol=1e-12, atol=1e-12, dense_output=True)
+    assert_allclose(solution["wheel"].angular_velocity[:, 2], own.sol(solution.t)[0], atol=1e-7)
+
+
+def test_friction_by_load_is_saved_varied_and_goes_on(tmp_path):
+    made = pendulum()
+    half = carom.simulate(made, 1.0)
+    half.save(tmp_path / "half.nc")
+    loaded = carom.Solution.load(tmp_path / "half.nc")
+    whole, again = carom.simulate(made, 2.0), loaded.simulate(1.0)
+    assert_allclose(again["rod"].position[-1], whole["rod"].position[-1], atol=1e-6)
+    assert_allclose(loaded["friction"].torque, half["friction"].torque, rtol=1e-12)
+    runs = carom.ensemble(
+        made, vary={"friction.mu": [0.1, MU], "friction.radius": [0.01, RADIUS]}, duration=1.0
+    )
+    assert_allclose(runs["rod"].position[1], half["rod"].position[-1], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({}, "bound .* or mu .* must be given"),
+        ({"bound": 1.0, "mu": 0.1}, "bound .* or mu .* must be given"),
+        ({"bound": 1.0, "radius": 0.1}, "radius must be left out with bound"),
+        ({"mu": 0.1}, "radius must be given with mu for an angle"),
+    ],
+)
+def test_what_is_refused(given, message):
+    with pytest.raises(ValueError, match=message):
+        pendulum().add_force(forces.JointFriction("pin", **given))
+
+
+def test_lengths_that_joints_do_not_have_are_refused():
+    made = screw(0.2, 0.0)
+    with pytest.raises(ValueError, match="length must be left out"):
+        made.add_force(forces.JointFriction("thread", mu=0.1, radius=0.1, length=0.1))
+    with pytest.raises(ValueError, match="coordinate of a screw must be 0"):
+        made.add_force(forces.JointFriction("thread", mu=0.1, radius=0.1, coordinate=1))

@@ -27,7 +27,7 @@ from carom.persistent.joint_rows import is_by_load
 from carom.persistent.thresholds import LOAD_ERROR, LOAD_LEFT, SLIDE_OF_FORCES
 
 LOAD_ROUNDS = 40  # in which bounds follow the forces
-LESS = 0.999  # part of a friction, for the derivative of its load
+LESS = 1e-3  # part of the force that holds a joint, for the derivative of its load
 ERROR, BEFORE, STEP, MAPPED, ROW, WORK = range(6)  # rows of `Group.secant`; from the last one on H
 
 
@@ -175,16 +175,19 @@ def begin_loads(k, group):
 def any_locks(k, hg, group):
     """Return whether a joint that slides is held by a load of its own friction: its slip ends in an impulse.
 
-    Its friction adds to its own load by more than itself, and the slip is more than forces give in hg.
+    Its friction adds to its own load by more than itself, and the slip is more than forces give in hg. (Then a
+    slip without any force is a solution, too, where nothing else loads the joint: an unstable one.)
     """
     for i in range(k if has_loads(group) else 0):
         q, one = 3 * i + 1, group.closed[i]
-        moves = SLIDE_OF_FORCES * hg * abs(group.problem.c[q]) < abs(group.u[q])
-        if is_by_load(i, group) and moves and abs(group.p[q]) < group.problem.mu[i]:
-            p = group.p[q]
-            group.p[q] = LESS * p
-            gain = one.coefficient * (one.bears - load_under(k, 1.0, one.load, group))
+        if not is_by_load(i, group) or not group.problem.W[q, q] > one.spring:
+            continue
+        if SLIDE_OF_FORCES * hg * abs(group.problem.c[q]) < abs(group.u[q]):
+            p, held = group.p[q], -group.u[q] / (hg * group.problem.W[q, q])
+            before = load_under(k, 1.0, one.load, group)
+            group.p[q] += LESS * held
+            more = one.coefficient * (load_under(k, 1.0, one.load, group) - before)
             group.p[q] = p
-            if gain >= (1.0 - LESS) * abs(p):
+            if more >= abs(LESS * held):
                 return True
     return False
