@@ -19,7 +19,8 @@ CALLED = {
     "RollingDisc",
     "InsideSphere", "InsideCylinder", "InsideCone", "InsideTorus", "HeightField", "Surface",
     "Gear", "Coupling", "Driver", "Rows",
-    "Spring", "Force", "Torque", "Bushing", "JointSpring", "JointForce", "Actuator", "JointFriction",
+    "Spring", "Force", "Torque", "Bushing", "JointSpring", "JointForce", "Actuator", "PositionServo",
+    "VelocityServo", "JointFriction",
     "Drive",    "JointInertia", "CurveSpring", "UserForce", "Drag", "Wind", "Magnus", "Buoyancy",
 }  # fmt: skip
 

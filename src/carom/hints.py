@@ -301,9 +301,11 @@ MEMBERS = {
         "Force": "Constant ConstantForce Thruster Load PointForce",
         "Torque": "Moment Couple",
         "JointForce": "Motor JointTorque JointActuator",
-        "Actuator": "Servo PositionServo PositionActuator Position",
+        "Actuator": "GeneralActuator ForceActuator",
+        "PositionServo": "Servo PositionActuator Position PDController PDServo",
         "JointFriction": "DryFriction CoulombFriction",
-        "Drive": "Clutch SlipClutch TorqueLimiter Brake LimitedMotor VelocityServo SpeedServo VelocityMotor",
+        "Drive": "Clutch SlipClutch TorqueLimiter Brake LimitedMotor SpeedServo VelocityMotor",
+        "VelocityServo": "VelocityActuator Velocity",
         "JointInertia": "Armature Rotor ReflectedInertia",
         "Bushing": "Mount",
         "an elastic rope is CurveSpring, whose tension is 0 up to its length, a stiff one carom.joints.Tether":

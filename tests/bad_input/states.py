@@ -284,7 +284,19 @@ def stated():
             forces.Actuator, joint="@hinge", gain=2.0, bias=(0.1, -1.0, -0.1), gear=3.0, control=0.2,
             control_range=(-1.0, 1.0), force_range=(-5.0, 5.0), coordinate=0,
         ),
-        "forces.JointFriction": with_part(forces.JointFriction, joint="@hinge", bound=1.0, coordinate=0),
+        "forces.PositionServo": with_part(
+            forces.PositionServo, joint="@hinge", kp=2.0, kd=0.1, limit=3.0, target=0.2, no_load=5.0,
+            coordinate=0,
+        ),
+        "forces.VelocityServo": with_part(
+            forces.VelocityServo, joint="@hinge", kv=2.0, limit=3.0, target=0.2, no_load=5.0, coordinate=0,
+        ),
+        "forces.JointFriction": with_part(
+            forces.JointFriction, joint="@hinge", bound=1.0, coordinate=0, mu=None, radius=None, length=None
+        ),
+        "forces.JointFriction by load": with_part(
+            forces.JointFriction, joint="@hinge", bound=None, coordinate=0, mu=0.2, radius=0.1, length=0.3
+        ),
         "forces.Drive": with_part(
             forces.Drive, joint="@hinge", bound=1.0, coordinate=0, rate=1.0, motion=None
         ),

@@ -46,6 +46,12 @@ FREE = {
 ALONG = {
     "spring": lambda j, k: forces.JointSpring(j, 4.0, 0.1, 0.2, k),
     "servo": lambda j, k: forces.Actuator(j, **SERVO, coordinate=k),
+    "position servo": lambda j, k: forces.PositionServo(
+        j, 3.0, 0.2, limit=0.4, target=1.0, coordinate=k
+    ),
+    "velocity servo": lambda j, k: forces.VelocityServo(
+        j, 0.4, limit=0.4, target=1.0, no_load=9.0, coordinate=k
+    ),
     "saturated": lambda j, k: forces.Actuator(j, **SERVO, force_range=(-0.1, 0.5), coordinate=k),
     "number": lambda j, k: forces.JointForce(j, 0.7, k),
     "function": lambda j, k: forces.JointForce(j, lambda t, q, u: 0.5 - 0.3 * q - u + t, k),

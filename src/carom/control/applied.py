@@ -53,6 +53,6 @@ class Applied:
         self.given = {**self.given, index: value}
         if index in self._column:
             self.ctrl[self._column[index]] = value
-        put(compiled.system, compiled.laws.get(index), place, value)
+        put(compiled.system, place, value)
         if self.run.islands.joined.body.size:  # a second time, for the island of loaded bodies
-            put(self.run.islands.joined, None, place, value)
+            put(self.run.islands.joined, place, value)

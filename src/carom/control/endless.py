@@ -188,8 +188,6 @@ class Start:
         self.place.put_back()
         run.grid, run.controls = run.make_grid(), self.controls
         run.compiled.functions.forget()
-        for law in run.compiled.laws.values():
-            law.set(law.actuator.control)
         run.clock["saved"] = 0
         run.save_now()
         return run

@@ -38,7 +38,7 @@ from carom.model.user_surfaces import add_functions
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, joined_tables, some_pairs
 from carom.scene.coordinates import Combination, Length, terms_of
-from carom.scene.more_forces import JointInertia, Law
+from carom.scene.more_forces import JointInertia
 from carom.scene.scene import Scene
 
 
@@ -53,7 +53,6 @@ class Compiled(NamedTuple):
     pairs: PairTable  # the two sides of each contact, by its number
     surfaces: Surfaces  # data from which rows of contacts are made
     later: Defaults | None  # pairs of bodies that get rows when they come near each other
-    laws: dict[int, Law]  # of actuators that are functions, by the index of the force
     numbers: dict[
         tuple[Any, int | str], int
     ]  # of coordinates, by the index of the joint and their own
@@ -140,7 +139,7 @@ class _Moved:
         return Compiled(
             system=system, start=self.start, to_principal=self.to_principal, flipped=self.flipped,
             functions=self.functions, pairs=touching.pairs, surfaces=touching.surfaces,
-            later=touching.later, laws=self.forces.laws, numbers=self.coordinates.numbers,
+            later=touching.later, numbers=self.coordinates.numbers,
             places=self.forces.places,
         )  # fmt: skip
 

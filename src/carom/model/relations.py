@@ -16,6 +16,7 @@ from carom.model.curves import Curves
 from carom.model.pieces import PIECE, Pieces
 from carom.model.placement import Placement
 from carom.model.stated_forces import ForceRows, write_motion
+from carom.scene.actuators import Controlled
 from carom.scene.constraints import Coupling, Rows
 from carom.scene.coordinates import (
     Axial,
@@ -29,7 +30,7 @@ from carom.scene.coordinates import (
 )
 from carom.scene.forces import Spring
 from carom.scene.joints import Joint
-from carom.scene.more_forces import Actuator, JointInertia, JointSpring
+from carom.scene.more_forces import JointInertia, JointSpring
 
 
 class Coordinates:
@@ -182,13 +183,13 @@ class Elements:
         for force in scene.forces:
             d = force.definition
             made = table(arrays.STIFF_SPRING, 1)
-            if isinstance(d, Actuator) and d.is_damped_spring:
+            if isinstance(d, Controlled) and d.is_damped_spring:
                 made.stiffness, made.damping = d.spring
             elif isinstance(d, (Spring, JointSpring)) and d.stiffness + d.damping > 0.0:
                 made.stiffness, made.damping = d.stiffness, d.damping
             else:
                 continue
-            if isinstance(d, (Actuator, JointSpring)):
+            if isinstance(d, (Controlled, JointSpring)):
                 made.coordinate = self.coordinates.number(d.joint, d.coordinate)
                 made.rest = getattr(d, "rest", 0.0)
                 row = self.coordinates.rows[int(made.coordinate[0])]

@@ -19,7 +19,6 @@ from carom.scene.force_definition import ForceTable
 from carom.scene.forces import TABLES
 from carom.scene.friction import bound_of
 from carom.scene.joint_friction import Drive, DryFriction
-from carom.scene.more_forces import Law
 
 
 class ForceRows:
@@ -33,7 +32,6 @@ class ForceRows:
         self.function = functions.address
         self.coordinates, self.implicit = coordinates, implicit
         self.frictions, self.named, self.width, self.loads = [], [], 0, 0
-        self.laws: dict[int, Law] = {}  # of actuators, by the index of the force
         self.places: dict[int, Place] = {}
         rows, numbers = [[] for _ in TABLES], {kind.name: k for k, kind in enumerate(TABLES)}
         for force in scene.forces:

@@ -23,12 +23,11 @@ from carom.dynamics.tree import joint_wrenches
 from carom.friction.layout import SLIDING
 from carom.model.arrays import FOREST
 from carom.model.parts_of_system import has_relations
+from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import is_by_load
-from carom.persistent.thresholds import LOAD_ERROR, LOAD_LEFT, SLIDE_OF_FORCES
 
 LOAD_ROUNDS = 40  # in which bounds follow the forces
-LESS = 1e-3  # part of the force that holds a joint, for the derivative of its load
-ERROR, BEFORE, STEP, MAPPED, ROW, WORK = range(6)  # rows of `Group.secant`; from the last one on H
+ROW_ERROR, ROW_BEFORE, ROW_STEP, ROW_MAPPED, ROW_LEFT, ROW_INVERSE = range(6)  # of `Group.secant`
 
 
 @unit(where=has_relations)
@@ -103,20 +102,20 @@ def follow_loads(k, share, slides, turn, group) -> bool:
         if is_by_load(i, group):
             one = group.closed[i]
             found = load_under(k, share, one.load, group)
-            secant[ERROR, one.load] = found - one.bears
+            secant[ROW_ERROR, one.load] = found - one.bears
             if not slides or group.problem.kind[i] == SLIDING:
                 most, left = max(most, found), max(left, abs(found - one.bears))
-    late = turn > LOAD_ROUNDS // 2 and left <= LOAD_LEFT * most
-    fits = left <= LOAD_ERROR * most or late
+    late = turn > LOAD_ROUNDS // 2 and left <= limits.LOAD_LEFT * most
+    fits = left <= limits.LOAD_ERROR * most or late
     if not fits:
         improve(turn, secant)
     for i in range(k):
         if is_by_load(i, group):
             one = group.closed[i]
-            step, error = secant[STEP, one.load], secant[ERROR, one.load]
+            step, error = secant[ROW_STEP, one.load], secant[ROW_ERROR, one.load]
             if fits or not (step * error >= 0.0 and one.bears + step >= 0.0):
-                secant[STEP, one.load] = error
-            one.bears += secant[STEP, one.load]
+                secant[ROW_STEP, one.load] = error
+            one.bears += secant[ROW_STEP, one.load]
             group.problem.mu[i] = one.coefficient * one.bears
     return fits
 
@@ -128,26 +127,26 @@ def improve(turn, secant):
     After a step s that has changed the errors by -y:  H += (s - H y) s^T H/(s^T H y)  (Broyden).
     """
     n = secant.shape[1]
-    H = secant[WORK:]
+    H = secant[ROW_INVERSE:]
     for i in range(n if turn == 0 else 0):
         for j in range(n):
             H[i, j] = 1.0 if i == j else 0.0
     total = 0.0
     for i in range(n if turn > 0 else 0):
-        secant[MAPPED, i], secant[ROW, i] = 0.0, 0.0
+        secant[ROW_MAPPED, i], secant[ROW_LEFT, i] = 0.0, 0.0
         for j in range(n):
-            secant[MAPPED, i] += H[i, j] * (secant[BEFORE, j] - secant[ERROR, j])
-            secant[ROW, i] += secant[STEP, j] * H[j, i]
-        total += secant[STEP, i] * secant[MAPPED, i]
+            secant[ROW_MAPPED, i] += H[i, j] * (secant[ROW_BEFORE, j] - secant[ROW_ERROR, j])
+            secant[ROW_LEFT, i] += secant[ROW_STEP, j] * H[j, i]
+        total += secant[ROW_STEP, i] * secant[ROW_MAPPED, i]
     for i in range(n if total != 0.0 else 0):
-        part = (secant[STEP, i] - secant[MAPPED, i]) / total
+        part = (secant[ROW_STEP, i] - secant[ROW_MAPPED, i]) / total
         for j in range(n):
-            H[i, j] += part * secant[ROW, j]
+            H[i, j] += part * secant[ROW_LEFT, j]
     for i in range(n):
-        secant[BEFORE, i] = secant[ERROR, i]
-        secant[STEP, i] = 0.0
+        secant[ROW_BEFORE, i] = secant[ROW_ERROR, i]
+        secant[ROW_STEP, i] = 0.0
         for j in range(n):
-            secant[STEP, i] += H[i, j] * secant[ERROR, j]
+            secant[ROW_STEP, i] += H[i, j] * secant[ROW_ERROR, j]
 
 
 @kernel
@@ -182,12 +181,12 @@ def any_locks(k, hg, group):
         q, one = 3 * i + 1, group.closed[i]
         if not is_by_load(i, group) or not group.problem.W[q, q] > one.spring:
             continue
-        if SLIDE_OF_FORCES * hg * abs(group.problem.c[q]) < abs(group.u[q]):
+        if limits.SLIDE_OF_FORCES * hg * abs(group.problem.c[q]) < abs(group.u[q]):
             p, held = group.p[q], -group.u[q] / (hg * group.problem.W[q, q])
             before = load_under(k, 1.0, one.load, group)
-            group.p[q] += LESS * held
+            group.p[q] += limits.LOAD_PROBE * held
             more = one.coefficient * (load_under(k, 1.0, one.load, group) - before)
             group.p[q] = p
-            if more >= abs(LESS * held):
+            if more >= abs(limits.LOAD_PROBE * held):
                 return True
     return False

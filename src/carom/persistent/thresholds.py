@@ -7,6 +7,7 @@ LINEAR_SHARE = 1e-6  #: error: that of the linear equations of a round
 LINEAR_ERROR = 0.01  #: error that a round may leave: that of its linear equations
 SETTLED_SHARE = 1e-9  #: error: the same for an error that no iteration makes less
 LOAD_ERROR = 1e-13  #: load: error of a round that is the last
+LOAD_PROBE = 1e-3  #: friction that holds a joint: a part of it, for the derivative of its load
 #: speed that forces give in a stage: a joint slides, and does not just give way
 SLIDE_OF_FORCES = 3.0
 LOAD_LEFT = 1e-9  #: load: the same for an error that more rounds do not make less

@@ -24,7 +24,7 @@ from carom.scene.joint_friction import Drive, DryFriction
 
 STILL = 1e-9  # of the speeds of the joint: below it the rate is round-off, and the joint sticks
 ABOVE = 1.0 + 1e-9  # of the bound: a force up to this sticks
-LOAD_ROUNDS, LOAD_ERROR = 100, 1e-13  # until friction by load and its loads agree
+LOAD_TURNS, CHANGE = 100, 1e-13  # until friction by load and its loads agree
 
 
 def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, np.ndarray]]:
@@ -44,10 +44,10 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
         return solve(run.compiled, touch), {}
     joints = _DryJoints(run, states, touch, solve, dry)
     bears = joints.loads(None, None)
-    for _ in range(LOAD_ROUNDS):
+    for _ in range(LOAD_TURNS):
         out, value = joints.solve_under(bears)
         before, bears = bears, joints.loads(out, value)
-        if np.all(np.abs(bears - before) <= LOAD_ERROR * bears):
+        if np.all(np.abs(bears - before) <= CHANGE * bears):
             break
     return out, {force.index: value[:, k] for k, force in enumerate(dry)}
 

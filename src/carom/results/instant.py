@@ -25,7 +25,6 @@ class Instant:
         if known.get("given") is not given:  # it is replaced where a force is set
             known["given"], known["loads"] = given, tuple(map(np.array, settable(system.forces)))
         self.loads = known["loads"]
-        self.laws = {index: law.rest for index, law in run.compiled.laws.items()}
 
     def solved(self, state) -> tuple[np.ndarray, dict[int, np.ndarray]]:
         """Return reactions of joints on their children, multipliers of constraints (1, E, 6); dry frictions."""
@@ -54,21 +53,16 @@ class Instant:
         states[:], series["t"] = self.states, self.t
         out = np.zeros((2, system.joints.size, 6))
         kept = Kept((system,))  # the run may go on
-        present = {index: law.rest for index, law in compiled.laws.items()}
         reference = system.relations.memory.coordinates["reference"]
         for coordinate, number in self.numbers.items():
             reference[compiled.numbers[coordinate]] = self.turns[number]
         for there, was in zip(settable(system.forces), self.loads):
             there[:] = was
-        for index, rest in self.laws.items():
-            compiled.laws[index].rest = rest
         work = new_work(system, run.method.b.size)
         turn = table(TURN, 2, 0)  # those that are known are in the system
         saved = run.records._replace(series=series, state=states, turn=turn, touch=touch)
         reactions(system, run.options.augmentation, saved, (1, 2), work, out)
         kept.restore()
-        for index, rest in present.items():
-            compiled.laws[index].rest = rest
         return on_children(compiled, states[1:], out[1:]), np.array(work.body["motion"])
 
 

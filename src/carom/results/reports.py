@@ -127,7 +127,7 @@ class Reports:
         """Let forces have values that were set, by index; others those that the scene states."""
         for index, place in self.set_forces.items():
             value = given[index] if index in given else stated(self.scene, index)
-            put(self.compiled.system, self.compiled.laws.get(index), place, value)
+            put(self.compiled.system, place, value)
 
 
 def at_once(rows: np.ndarray, t: float, turns: np.ndarray | None = None) -> r.Records:

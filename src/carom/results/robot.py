@@ -21,11 +21,11 @@ from carom import arguments, checks, fields
 from carom.fields import Integer, Number, Value, Vector, keep
 from carom.geometry import quaternion
 from carom.results.forward_kinematics import Motion, put_ball, put_child, relative, sides_of
+from carom.scene.actuators import Controlled
 from carom.scene.bodies import Body, Ground
 from carom.scene.coordinates import counted
 from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
-from carom.scene.more_forces import Actuator
 
 
 def _array(name: str, value) -> np.ndarray:
@@ -161,9 +161,9 @@ def checked(solution):
     return solution
 
 
-def _actuator(motor: Motor) -> Actuator:
+def _actuator(motor: Motor) -> Controlled:
     d = motor.parts[0].definition
-    assert isinstance(d, Actuator)
+    assert isinstance(d, Controlled)
     return d
 
 
@@ -173,7 +173,7 @@ def commands(scene) -> list[Motor]:
     known = {part.index for one in own for part in one.parts}
     for force in scene.forces:
         d = force.definition
-        if isinstance(d, Actuator) and force.index not in known:
+        if isinstance(d, Controlled) and force.index not in known:
             along = Coordinate(force.name, d.joint, d.coordinate, 1.0, 0.0, -1, 0, 0)
             own.append(Motor(force.name, (force,), ((along, d.gear),), d.force_range))
     return own

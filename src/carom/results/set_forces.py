@@ -9,8 +9,9 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.model.compile import Compiled, attitudes
+from carom.scene.actuators import Controlled
 from carom.scene.forces import Force, Torque
-from carom.scene.more_forces import Actuator, JointForce, Law
+from carom.scene.more_forces import JointForce
 
 #: rows that were saved before, index of the force, and the value: what was set as a run went
 History = list[tuple[int, int, Any]]
@@ -23,14 +24,11 @@ class Place(NamedTuple):
     column: str
     rows: tuple[int, ...]
     frame: np.ndarray | None = None  # of the body at the start, where the vector turns with it
-    actuator: Actuator | None = None  # whose control is set
+    actuator: Controlled | None = None  # whose control is set
 
 
-def put(system, law: Law | None, place: Place, value) -> None:
-    """Write the value of a force where kernels find it, or a control into its law."""
-    if law is not None:
-        law.set(value)
-        return
+def put(system, place: Place, value) -> None:
+    """Write the value of a force, or what a control gives, where kernels find it."""
     if place.actuator is not None:
         value = place.actuator.constant(value)
     if place.frame is not None:
@@ -52,7 +50,7 @@ def places(scene, compiled: Compiled) -> dict[int, Place]:
             turn = compiled.to_principal[[force.child.index]]
             frame = attitudes(force.child.orientation[None], turn)[0] if d.follow else None
             out[force.index] = Place(at.kind, type(d).__name__.lower(), rows, frame)
-        elif isinstance(d, Actuator):
+        elif isinstance(d, Controlled):
             out[force.index] = Place(at.kind, "force", rows, actuator=d)
         elif isinstance(d, JointForce) and not callable(d.force):
             out[force.index] = Place(at.kind, "force", rows)
@@ -65,12 +63,12 @@ def rows_of_forces(
     """Go through ranges of saved rows in which forces stay as they are; write them into the compiled scene."""
     first, at = 0, places(scene, compiled)
     for index in {index for _, index, _ in history}:
-        put(compiled.system, compiled.laws.get(index), at[index], stated(scene, index))
+        put(compiled.system, at[index], stated(scene, index))
     for row, index, value in history:
         if min(row, saved) > first:
             yield first, min(row, saved)
             first = min(row, saved)
-        put(compiled.system, compiled.laws.get(index), at[index], value)
+        put(compiled.system, at[index], value)
     if saved > first:
         yield first, saved
 
@@ -78,4 +76,6 @@ def rows_of_forces(
 def stated(scene, index: int):
     """Return the value of a force, or the control of an actuator, until it is set."""
     d = scene.forces[index].definition
-    return getattr(d, {Actuator: "control", JointForce: "force"}.get(type(d), "vector"))
+    if isinstance(d, Controlled):
+        return d.control
+    return d.force if isinstance(d, JointForce) else d.vector

@@ -23,7 +23,7 @@ from carom.scene.body_forces import Force as Force
 from carom.scene.body_forces import Bushing as Bushing
 from carom.scene.more_forces import JointSpring as JointSpring
 from carom.scene.more_forces import JointForce as JointForce
-from carom.scene.more_forces import Actuator as Actuator
+from carom.scene.actuators import Actuator as Actuator
 from carom.scene.joint_friction import JointFriction as JointFriction
 from carom.scene.joint_friction import Drive as Drive
 from carom.scene.more_forces import JointInertia as JointInertia
@@ -33,6 +33,8 @@ from carom.scene.fluids import Drag as Drag
 from carom.scene.fluids import Wind as Wind
 from carom.scene.fluids import Magnus as Magnus
 from carom.scene.fluids import Buoyancy as Buoyancy
+from carom.scene.actuators import PositionServo as PositionServo
+from carom.scene.actuators import VelocityServo as VelocityServo
 # isort: on
 
 FORCES = subclasses_in(globals(), ForceDefinition)

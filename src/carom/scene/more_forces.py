@@ -16,7 +16,6 @@ from carom.fields import (
     Number,
     Value,
     Vector,
-    VectorOrNone,
 )
 from carom.scene.body_forces import SPRING, both_ends
 from carom.scene.constraints import Bodies, distinct_bodies
@@ -39,6 +38,10 @@ PUSH = ForceTable(
         ("rest", "f8"),
         ("force", "f8"),  # constant
         ("address", "i8"),  # of a function of the user's: t, (q, q') -> force; 0 for none
+        ("limited", "i8"),  # 1 if the sum is at most `high` and at least `low`
+        ("low", "f8"),
+        ("high", "f8"),
+        ("no_load", "f8"),  # rate at which these have fallen to 0, 0 for constant ones
     ],
     settable=("force",),
 )
@@ -149,131 +152,6 @@ class JointForce(AlongJoint):
         if not callable(self.force):
             return [{"coordinate": number, "force": self.force}]
         return [{"coordinate": number, "address": arrays.along_joint(self.force, force)}]
-
-
-def _range(name: str, value) -> np.ndarray:
-    low, high = checks.finite_array(name, value, (2,))
-    if not low <= high:
-        raise ValueError(f"{name} must be (least, greatest), got {checks.shown(value)}")
-    return np.array([low, high])
-
-
-@arguments.known
-@dataclass(frozen=True, eq=False)
-class Actuator(AlongJoint):
-    """A motor along a joint coordinate with a control u, which `Run.ctrl` sets.
-
-    Its force is affine in the control, in the length ``l = gear q`` and in the rate l':
-
-        F = gain u + bias[0] + bias[1] l + bias[2] l',
-
-    and acts along the coordinate as gear F on the child, its opposite on the parent. A position servo with
-    stiffness k and damping c has gain k and bias (0, -k, -c), a velocity servo gain c and bias (0, 0, -c). The
-    law is that of MuJoCo's ``general``. ``bias[1] l`` has a potential; the work of all else is in
-    `ledger.loads`.
-
-    Parameters
-    ----------
-    joint : Joint
-    gain : float
-        Force by control. Default 1: the control is the force.
-    bias : (3,)
-        Default 0.
-    gear : float
-        Default 1.
-    control : float
-        u until it is set, and in `simulate`. Default 0.
-    control_range, force_range : (2,), optional
-        Least and greatest u and F: others are replaced by the nearest of these. A law that depends on q or q'
-        and has a `force_range` is called as a Python function, which takes 3 microseconds.
-    coordinate : int
-        Index of the coordinate of the joint. Default 0.
-    """
-
-    gain: Number = fields.number(1.0)
-    bias: Vector = fields.vector((0.0, 0.0, 0.0))
-    gear: Number = fields.number(1.0)
-    control: Number = fields.number(0.0)
-    control_range: VectorOrNone = Value(_range, None)
-    force_range: VectorOrNone = Value(_range, None)
-    coordinate: Integer = fields.integer(0, least=0)
-
-    table = PUSH
-
-    def _rows(self, force, arrays) -> list[dict[str, Any]]:
-        number = arrays.coordinate(self.joint, self.coordinate)
-        row: dict[str, Any] = {"coordinate": number, "force": self.constant(self.control)}
-        if self.law:
-            arrays.laws[force.index] = law = Law(self)
-            row["address"] = arrays.along_joint(law, force)
-        elif not (arrays.implicit and self.is_damped_spring):
-            row["stiffness"], row["damping"] = self.spring
-        return [row]
-
-    @property
-    def is_damped_spring(self) -> bool:
-        """Whether it has a spring and damper that an implicit step may take as a row."""
-        return not self.law and min(self.spring) >= 0.0 and max(self.spring) > 0.0
-
-    @property
-    def law(self) -> bool:
-        """Whether it is a function of q and q' that is not affine."""
-        return self.force_range is not None and bool(self.bias[1:].any())
-
-    @property
-    def spring(self) -> tuple[float, float]:
-        """Stiffness and damping of its force along the coordinate."""
-        return -self.gear * self.gear * float(self.bias[1]), -self.gear * self.gear * float(
-            self.bias[2]
-        )
-
-    def clipped(self, control: float) -> float:
-        """Return the control that acts."""
-        return _clipped(self.control_range, control)
-
-    def affine(self, control, length, rate):
-        """Return F, without its range, for the control that acts; numbers or arrays."""
-        return self.gain * control + self.bias[0] + self.bias[1] * length + self.bias[2] * rate
-
-    def force_at(self, control, q, rate):
-        """Return the force along the coordinate, for a control that is not clipped; numbers or arrays."""
-        if self.control_range is not None:
-            control = np.clip(control, *self.control_range)
-        force = self.affine(control, self.gear * q, self.gear * rate)
-        return self.gear * (
-            force if self.force_range is None else np.clip(force, *self.force_range)
-        )
-
-    def constant(self, control: float) -> float:
-        """Return the part of the force along the coordinate that does not depend on it; of a law, 0."""
-        force = self.gain * self.clipped(control) + float(self.bias[0])
-        return 0.0 if self.law else self.gear * _clipped(self.force_range, force)
-
-
-def _clipped(bounds: np.ndarray | None, value: float) -> float:
-    return value if bounds is None else min(max(value, float(bounds[0])), float(bounds[1]))
-
-
-class Law:
-    """The force of an `Actuator` with a range, as a function of time, coordinate and rate."""
-
-    def __init__(self, actuator: Actuator):
-        d = self.actuator = actuator
-        assert d.force_range is not None
-        self.low, self.high = d.force_range.tolist()
-        self.gear, (_, self.of_length, self.of_rate) = d.gear, d.bias.tolist()
-        self.set(d.control)
-
-    def set(self, control: float) -> None:
-        """Let this control act."""
-        self.rest = self.actuator.gain * self.actuator.clipped(control) + float(
-            self.actuator.bias[0]
-        )
-
-    def __call__(self, t: float, q: float, rate: float) -> float:
-        """Return the force along the coordinate."""
-        total = self.rest + self.gear * (self.of_length * q + self.of_rate * rate)
-        return self.gear * min(max(total, self.low), self.high)
 
 
 @arguments.known

@@ -1,6 +1,9 @@
-"""Springs, dampers and forces along coordinates of joints.
+"""Springs, dampers, forces and motors along coordinates of joints.
 
 Q = -k (q - rest) - c q' + F,       U = k (q - rest)^2 / 2
+
+A motor with limits has the nearest value of low (1 + q'/n) <= Q <= high (1 - q'/n), n its rate without a load,
+and no potential.
 """
 
 from __future__ import annotations
@@ -22,7 +25,12 @@ def push_force(relations, one, q, speed, t):
         relations.memory.read[0], relations.memory.read[1] = q, speed
         call_function(one.address, t, relations.memory.read, relations.memory.write)
         free += relations.memory.write[0]
-    return free - one.stiffness * (q - one.rest), free
+    force = free - one.stiffness * (q - one.rest)
+    if one.limited == 1:
+        fallen = speed / one.no_load if one.no_load > 0.0 else 0.0
+        force = min(max(force, one.low * (1.0 + fallen)), one.high * (1.0 - fallen))
+        return force, force
+    return force, free
 
 
 @kernel
@@ -53,7 +61,9 @@ def acts_at(system, one, state):
 
 @kernel
 def energy(system, one, state, t):
-    """Return the energy of a spring along a coordinate [J]."""
+    """Return the energy of a spring along a coordinate [J]; a motor with limits has none."""
+    if one.limited == 1:
+        return 0.0
     stretch = value(system, system.relations.coordinates[one.coordinate], state) - one.rest
     return 0.5 * one.stiffness * stretch * stretch
 
