@@ -19,6 +19,7 @@ from campaigns import (
     laws,
     loads,
     loose_rails,
+    magnets,
     mechanisms,
     piles,
     plays,
@@ -47,5 +48,5 @@ FAMILIES = {
     "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "grains by slip": grains.by_slip,
     "rough": rough.case, "plays": plays.case, "tethers": tethers.case, "ropes": ropes.case,
     "coordinates": coordinates.case, "drives": drives.case, "clearances": clearances.case,
-    "loads": loads.case,
+    "loads": loads.case, "magnets": magnets.case,
 }  # fmt: skip

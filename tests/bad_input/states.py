@@ -171,7 +171,8 @@ def stated():
             impact_law="newton", name="new",
         ),
         "Scene.add_contact": of_scene(
-            "add_contact", body="@box", other="@floor", **number, **words, name="new", replace=True
+            "add_contact", body="@box", other="@floor", **number, **words, adhesion=0.5, name="new",
+            replace=True,
         ),
         "Scene.set_contact_default": of_scene(
             "set_contact_default", **number, **words, combine="average", all_pairs=True

@@ -46,6 +46,7 @@ CLOSED_POINT = [
     ("motion", "i8"),
     # the entry whose normal force bounds its friction: of a torque its point, of a point itself; or CONSTANT
     ("parent", "i8"),
+    ("pull", "f8"),  # its part of an adhesion [N]
     # of friction in a joint by load: number of the load, -1 for none; its value, and the coefficient
     ("load", "i8"),
     ("bears", "f8"),

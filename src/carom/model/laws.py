@@ -30,6 +30,7 @@ LAW = [
     ("impact_law", "i8"),  # of `carom.law.impact_laws`
     ("multiple", "i8"),  # 1: its pair has impacts of its own, one after another
     ("stiffness", "f8"),  # of the boundary layer, relative to others
+    ("adhesion", "f8"),  # force that holds the pair together [N]
 ]
 
 
@@ -69,7 +70,7 @@ class LawTable:
         e = np.nan if isinstance(restitution, SpeedLaw) else restitution
         row = {
             "turning": (0.0, 0.0), "tangential_restitution": 0.0, "impact_law": 0, "multiple": 0,
-            "stiffness": 1.0, **other,
+            "stiffness": 1.0, "adhesion": 0.0, **other,
         }  # fmt: skip
         self.rows.append((bound_of(friction), e, *zip(slip, approach), *row.values()))
         return len(self.rows) - 1
@@ -80,7 +81,7 @@ class LawTable:
             "turning": (law.rolling_friction, law.pivoting_friction),
             "tangential_restitution": law.tangential_restitution,
             "impact_law": IMPACT_LAWS.index(law.impact_law), "multiple": MULTIPLE.index(law.multiple),
-            "stiffness": law.stiffness,
+            "stiffness": law.stiffness, "adhesion": law.adhesion,
         }  # fmt: skip
         first = self.add(law.friction, law.restitution, **other)
         self.add(law.friction_held, law.restitution, **other)

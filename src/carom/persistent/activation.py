@@ -83,6 +83,7 @@ def activate_group(model, data, k, label, horizon):
     inverse_masses(system, rows, group.points[0], state, work, group.problem.W)
     if has_loads(group):
         note_responses(system, rows, state, work, group)
+    weigh(system, rows, group)
     pose_forces(model, data, rows, label)
     for row in range(3 * rows):  # a first guess: those of another group, or of other points
         group.p[row] = 0.0

@@ -40,6 +40,7 @@ def begin_point(active_point, contact, c, feature, mode):
 def clear(active_point):
     """Take force, margins and stops from an active point."""
     active_point.stop, active_point.jams, active_point.comes_to_rest = math.inf, 0, 0
+    active_point.pull = 0.0
     active_point.lift, active_point.grip = 1.0, 1.0
     active_point.kink[0], active_point.kink[1] = 1.0, 1.0
     active_point.turn_stop[0], active_point.turn_stop[1] = math.inf, math.inf
@@ -162,7 +163,7 @@ def refresh_pairs(system, controls, data) -> bool:
                 changed = add_riding(system, controls, data, i) or changed
             i += 1
             continue
-        mode, f = active_point.mode, active_point.force
+        mode, f, pull = active_point.mode, active_point.force, active_point.pull
         force = (f[0], f[1], f[2])
         deactivate(active, i)
         before = active.count[0]
@@ -172,6 +173,7 @@ def refresh_pairs(system, controls, data) -> bool:
             if related(system, c, d):
                 replace_points(system, controls, data, d, mode, d != c and is_of_moving(contact))
         for j in range(before, active.count[0]):  # they share its force, until the next step
+            active.points[j].pull = pull / (active.count[0] - before)
             for r in range(3):
                 active.points[j].force[r] = force[r] / (active.count[0] - before)
     return changed

@@ -306,9 +306,10 @@ def add_forces_of_corners(active, k, group):
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.listed == 0 and closed_point.motion == MOTION_POINT:
-            force = active.points[closed_point.active].force
+            active_point = active.points[closed_point.active]
+            active_point.pull += closed_point.pull
             for r in range(3):
-                force[r] += group.p[3 * i + r]
+                active_point.force[r] += group.p[3 * i + r]
 
 
 @kernel

@@ -76,7 +76,8 @@ def load_under(k, share, n, group):
     for r in range(NUMBERS):
         total[r] = loads[0, r]
         for m in range(3 * k):
-            total[r] += share * loads[1 + m, r] * p[m]
+            pull = group.closed[m // 3].pull if m % 3 == 0 else 0.0
+            total[r] += loads[1 + m, r] * (share * p[m] - pull)
     return load_of(total)
 
 

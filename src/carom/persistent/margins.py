@@ -63,7 +63,7 @@ def take_forces(active_point, i, group):
         active_point.turn_stop[motion - MOTION_ROLL] = time_to_stop(i, group)
         take_torque(active_point, i, group)
         return
-    active_point.stop = time_to_stop(i, group)
+    active_point.stop, active_point.pull = time_to_stop(i, group), group.closed[i].pull
     for r in range(3):
         # a contact problem without a solution leaves forces that pull: no contact has them
         active_point.force[r] = group.p[3 * i + r] if group.p[3 * i] > 0.0 else 0.0

@@ -39,6 +39,7 @@ from carom.geometry.rotation import multiply, normalize
 from carom.geometry.thresholds import ROUND_OFF
 from carom.law.piecewise import any_depends_on_speed
 from carom.model.workspace import CONSTANT, MOTION_POINT
+from carom.persistent.adhesion import pull_rows
 from carom.persistent.coulomb_stage import solve_stage
 from carom.persistent.joint_load import has_loads, hold, renew_loads
 from carom.persistent.joint_rows import is_by_load
@@ -160,6 +161,7 @@ def implicit_stage(model, data, label, s, hg, closes):
             )  # its place: a surface may turn beneath it
             add_velocity(group.bodies.base[b], hg, work.stages[s, b], group.bodies.free[b])
         velocities(model.system, k, group.points[0], group.bodies.free, group.u)
+        pull_rows(k, hg, group, group.u)
         if k != before:
             for row in range(3 * k):
                 group.p[row] = 0.0

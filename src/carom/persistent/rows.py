@@ -26,6 +26,7 @@ from carom.kinematics.moving_surfaces import set_surfaces
 from carom.law.friction import bound_of_stick
 from carom.law.piecewise import any_depends_on_speed
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT
+from carom.persistent.adhesion import pull_rows, take_pulls, write_pulls
 from carom.persistent.joint_load import begin_loads, has_loads, note_reactions, note_responses
 from carom.persistent.joint_rows import (
     drift_of_coordinate,
@@ -95,6 +96,8 @@ def write_motion(system, k, state, rates, group, work):
     points = group.points[0]
     velocities(system, k, points, state, group.u)
     accelerations(system, k, points, state, rates, group.problem.c)
+    write_pulls(system, k, state, group)
+    pull_rows(k, 1.0, group, group.problem.c)
     begin_loads(k, group)
     for i in range(k):
         closed_point = group.closed[i]
@@ -186,7 +189,9 @@ def push_bodies(model, data, loaded, k, count, s) -> tuple[float, float]:
     """Add the accelerations by the forces in `p` to stage s; return the powers of drives and friction."""
     system, group, work = model.system, data.group, data.work
     u, p, power, driven = group.u, group.p, 0.0, 0.0
+    take_pulls(k, 1.0, group)
     spread_all(system, group.points[0, :k], p, group.bodies.member[:count], work.stage, work)
+    take_pulls(k, -1.0, group)
     if loaded:
         driven = driven_power(system, work.stage, work)
     for m in range(count):

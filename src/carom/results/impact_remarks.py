@@ -7,7 +7,7 @@ import numpy as np
 from carom.impact.layout import AT_END, PHASE_JAM, PLASTIC
 from carom.law import impact_laws
 from carom.model import records as r
-from carom.model.laws import law_of
+from carom.model.laws import PERSISTENT, law_of
 from carom.results.names import arms, contact_name, restitution_of
 from carom.scene.restitution import Restitution
 from carom.status import Remark
@@ -26,6 +26,8 @@ def remarks(rows, events, run) -> tuple[str, ...]:
         said += _of_laws(rows, run)
     if marks & AT_END:
         said += _without_slip(rows, run)
+    if run.clock["whole"][0] > 0:
+        said += _without_adhesion(run)
     if not (jams.any() or marks & (PHASE_JAM | PLASTIC)):
         return tuple(map(Remark, said))
     jams = events[jams]
@@ -92,6 +94,17 @@ def _without_slip(rows, run) -> list[str]:
     return [
         f"{len(np.unique(found['time']))} impacts in time-stepping steps were without the tangential "
         f"restitution of their contacts, the first {_place(found[0], run)}."
+    ]
+
+
+def _without_adhesion(run) -> list[str]:
+    """Return a sentence about time-stepping steps of a scene with adhesion, which these steps do not have."""
+    system = run.compiled.system
+    if not law_of(system, system.contacts, PERSISTENT)["adhesion"].any():
+        return []
+    return [
+        f"{int(run.clock['whole'][0])} time-stepping steps were without the adhesion of contacts, which may "
+        "have come apart: take a smaller step, or lower rtol."
     ]
 
 

@@ -69,6 +69,8 @@ class ContactLaw:
     multiple : {"simultaneous", "sequential"}
         Impact of the pair while other contacts are closed: simultaneous with theirs (default), or an impact of
         its own, one after another.
+    adhesion : float
+        Force [N] with which the pair holds together while it touches, at least 0. Default 0.
     of_materials : tuple of str
         Names of the values that come from materials, if a part of a `Compound` has a material of its own: each
         two parts then have their own values, and those of the law are for the materials of the bodies.
@@ -83,6 +85,7 @@ class ContactLaw:
     pivoting_friction: Number = number(0.0, least=0)
     tangential_restitution: Number = number(0.0, least=-1, most=1)
     multiple: Word = word(MULTIPLE, "simultaneous")
+    adhesion: Number = number(0.0, least=0)
     of_materials: Value[tuple[str, ...], Iterable[str]] = Value(_of_materials, ())
 
     def __post_init__(self):

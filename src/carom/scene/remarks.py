@@ -78,6 +78,8 @@ def _of_gravity(scene: Scene) -> list[str]:
     planes, gravity = scene.half_spaces, scene.gravity
     if not planes or scene.statics or scene.joints or scene.constraints or scene.forces:
         return []
+    if any(contact.adhesion > 0.0 for contact in scene.contacts):
+        return []  # it hangs
     much, normals = 0.5 * length(gravity), [plane.normal for plane in planes]
     if not all(normal @ gravity > much for normal in normals):
         return []

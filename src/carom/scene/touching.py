@@ -39,6 +39,7 @@ class SceneContacts(MethodsOfScene):
         pivoting_friction: float | None = None,
         tangential_restitution: float | None = None,
         multiple: str | None = None,
+        adhesion: float | None = None,
         name: str | None = None,
         replace: bool = False,
     ) -> Contact:
@@ -80,6 +81,11 @@ class SceneContacts(MethodsOfScene):
             Multiple impact, if other contacts of these bodies are closed too: all contacts simultaneously
             (default), or this pair in an impact of its own, one impact after another, as in a row of balls with
             small gaps. See `Options.multiple`.
+        adhesion
+            Force [N] with which the two hold together while they touch, at least 0: that of a magnet or a
+            latch. They come apart where more is needed, and friction has the normal force and this as its load.
+            The points of a face share it. It has no range: it does not act across a gap, and does not change
+            impacts. Time-stepping steps are without it, and say so. Default 0.
         name
             Name in the scene. Default: the names of both, such as ``"die-ground"``.
         replace : bool
@@ -108,7 +114,7 @@ class SceneContacts(MethodsOfScene):
             "restitution": restitution, "friction": friction, "friction_held": friction_held,
             "impact_law": impact_law, "stiffness": stiffness, "rolling_friction": rolling_friction,
             "pivoting_friction": pivoting_friction, "tangential_restitution": tangential_restitution,
-            "multiple": multiple,
+            "multiple": multiple, "adhesion": adhesion,
         }  # fmt: skip
         law = self._pairs.law(body, other, given)
         contact = Contact(index=index, name=name, body=body, other=other, **vars(law))

@@ -95,7 +95,8 @@ def save_contacts(model, data, k):
         if point.motion == MOTION_STOP:
             save_stop(model, data, k, i)
             continue
-        E, arm, other, f = point.axes, point.arm_a, point.arm_b, active_point.force
+        E, arm, other = point.axes, point.arm_a, point.arm_b
+        f = active_point.force[0] - active_point.pull, active_point.force[1], active_point.force[2]
         touch.saved, touch.contact, touch.feature = k, contact.number, active_point.feature
         touch.mode, touch.body = active_point.mode, system.bodies[active_point.body].number
         pair = active_point.other >= 0

@@ -1,0 +1,48 @@
+"""Adhesion: a contact that holds together while it is closed, with a force A (theory, X.1).
+
+The set of its forces is the cone of friction shifted by A: N >= -A, |T| <= mu (N + A). With N + A for N it is
+the cone itself, so all solvers stay as they are, beside a given force -A along the normal. The points of a
+contact share A by the weights of their springs.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.contact.gap import slow
+from carom.model.laws import PERSISTENT
+from carom.model.workspace import MOTION_POINT
+
+
+@kernel
+def write_pulls(system, k, state, group):
+    """Write the parts of adhesion of k entries of a group; a point that leaves has none."""
+    for i in range(k):
+        one, whole = group.closed[i], 0.0
+        one.pull = 0.0
+        if one.motion != MOTION_POINT:
+            continue
+        contact = system.contacts[one.contact]
+        adhesion = system.laws.table[contact.law[PERSISTENT]].adhesion
+        if adhesion == 0.0 or (one.active < 0 and group.u[3 * i] > slow(contact, state)):
+            continue
+        for j in range(k):
+            other = group.closed[j]
+            if other.motion == MOTION_POINT and other.contact == one.contact:
+                whole += other.weight
+        one.pull = adhesion * one.weight / whole if whole > 0.0 else 0.0
+
+
+@kernel
+def pull_rows(k, share, group, out):
+    """Subtract the effect of adhesion in all rows, times `share`: W times the pulls."""
+    for i in range(k):
+        pull = group.closed[i].pull
+        for row in range(3 * k if pull > 0.0 else 0):
+            out[row] -= share * group.problem.W[row, 3 * i] * pull
+
+
+@kernel
+def take_pulls(k, share, group):
+    """Take `share` of the pulls from the forces in `p`."""
+    for i in range(k):
+        group.p[3 * i] -= share * group.closed[i].pull
