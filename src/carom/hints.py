@@ -16,6 +16,7 @@ VALUES = {
     "restitution": "e eps cor bounce bounciness elasticity restitution_coefficient",
     "rolling_friction": "mu_r rollingFriction",
     "pivoting_friction": "spinningFriction torsional_friction",
+    "adhesion": "adhesive_force cohesion stickiness suction",
     "impact_law": "law model",
     "stiffness": "k ke spring_constant",
     "damping": "c d kd damping_coefficient viscosity",

@@ -115,7 +115,9 @@ def stated():
             carom.Restitution.table, dict(speeds=(0.1, 1.0), values=(0.9, 0.5)),
         ),
         "Restitution.slope": lambda: (carom.Restitution.power(0.5).slope, dict(speed=1.0)),
-        "ContactLaw": lambda: (carom.scene.ContactLaw, {**number, **words, "of_materials": ("friction",)}),
+        "ContactLaw": lambda: (
+            carom.scene.ContactLaw, {**number, **words, "adhesion": 0.5, "of_materials": ("friction",)}
+        ),
         "Options": lambda: (
             carom.Options, carom.Options(layer_width=1e-6, max_step=0.1, corner_exponent=1.5).as_dict()
         ),

@@ -79,7 +79,7 @@ TYPES: dict[str, type[Any]] = {
 LATER: dict[str, Any] = {
     "color": None, "material": None, "of_materials": {"tuple": []}, "tangential_restitution": 0.0,
     "surface_velocity": None, "surface_spin": None, "axis": None, "along": None, "across": None, "of": "body",
-    "look": None, "adhesion": 0.0,
+    "look": None, "adhesion": 0.0, "mu": None, "radius": None, "length": None,
 }  # fmt: skip
 ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 
