@@ -79,8 +79,12 @@ TYPES: dict[str, type[Any]] = {
 LATER: dict[str, Any] = {
     "color": None, "material": None, "of_materials": {"tuple": []}, "tangential_restitution": 0.0,
     "surface_velocity": None, "surface_spin": None, "axis": None, "along": None, "across": None, "of": "body",
-    "look": None, "adhesion": 0.0, "mu": None, "radius": None, "length": None,
+    "look": None, "adhesion": 0.0,
 }  # fmt: skip
+#: the same of fields whose names mean something else in other classes
+LATER_OF: dict[str, dict[str, Any]] = {
+    "JointFriction": {"mu": None, "radius": None, "length": None},
+}
 ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 
 
@@ -182,7 +186,7 @@ class Decoder:
         if "type" in data:
             kind = TYPES[data["type"]]
             record = object.__new__(kind)
-            data = LATER | data
+            data = LATER | LATER_OF.get(data["type"], {}) | data
             keep(record, **{f.name: self.value(data[f.name]) for f in fields(kind)})
             if not isinstance(record, PARTS):
                 check_record(record)
