@@ -52,6 +52,7 @@ PLOTTED = {
     "draw_shot",
     "gear_rattle",
     "heap",
+    "jams_and_locks",
     "ladder",
     "load_a_model",
     "loose_pin",
