@@ -22,7 +22,15 @@ from carom.persistent import thresholds as limits
 from carom.persistent.joint_rows import is_driven, radius_of
 from carom.persistent.settle import dot, greatest, settle
 from carom.persistent.sharing import find_idle, share
-from carom.persistent.springs import factor, moves, moves_freely, note_accelerations, unload
+from carom.persistent.springs import (
+    FACTORED,
+    PASS,
+    factor,
+    moves,
+    moves_freely,
+    note_accelerations,
+    unload,
+)
 
 STAGE_ITERATIONS, HALVES, TOGETHER = 40, 6, 3
 
@@ -179,6 +187,7 @@ def write_equations(k, n, hg, idle, group):
             width = 2 if i + 1 < n and rows[i + 1] // 3 == rows[i] // 3 else 1
             write_disc(k, n, i, width, hg, group)
         i += width
+    group.equations.iterations[FACTORED] += n * n // PASS
     return greatest(n, group.equations.r)
 
 
