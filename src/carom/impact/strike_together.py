@@ -24,6 +24,7 @@ from carom.status import BLOCKED, IMPACT_FAILED
 
 #: exponents of the normal force: if all points are on round bodies, and otherwise
 HERTZ, LINEAR = 1.5, 1.0
+PRODUCTS = 8  # of W with vectors, at most, in a step through an impact
 
 
 @unit
@@ -126,9 +127,9 @@ def strike_together(model, data, c, k):
         given.pair = pair_of(i, system, group.closed, all_by_pairs)
     passage = multiple.workspace.work.clock[0]
     if model.controls.retry == 1:  # the group can take a time-stepping step instead
-        passage.left = int(max(0.0, left(model.controls, step, COUNT_FACTORS)) / k**3)
+        passage.left = int(max(0.0, left(model.controls, step, COUNT_FACTORS)) / work_of_step(k))
     code = resolve_group(k, system.laws, group, multiple)
-    step.counts[COUNT_FACTORS] += k**3 * multiple.result.summary[0].steps
+    step.counts[COUNT_FACTORS] += work_of_step(k) * multiple.result.summary[0].steps
     step.since += k * multiple.result.summary[0].steps
     if code != OK or passage.left < 0:
         hit.code = IMPACT_FAILED
@@ -146,6 +147,12 @@ def strike_together(model, data, c, k):
     for i in range(k):
         stop_round_off(system, group.points[0][i].a, most, state)
         stop_round_off(system, group.points[0][i].b, most, state)
+
+
+@kernel
+def work_of_step(k):
+    """Return the work of a step through an impact of k points: many of them are products with W."""
+    return min(k**3, PRODUCTS * k**2)
 
 
 @kernel

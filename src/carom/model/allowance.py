@@ -15,9 +15,10 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 
-#: trial steps; searches for nearest points of two solids; factors of W of persistent contact, and steps through
-#: impacts of several points, each times the cube of the number of points; products with blocks of 3x6 or 6x6
-#: numbers in contact problems of a crowd: of a sweep one for each point
+#: trial steps; searches for nearest points of two solids; products of factors of W of persistent contact, in
+#: units of which a full one has the cube of the number of points, with the passes over W around them, and steps
+#: through impacts of several points; products with blocks of 3x6 or 6x6 numbers in contact problems of a crowd:
+#: of a sweep one for each point
 COUNT_TRIALS, COUNT_SEARCHES, COUNT_FACTORS, COUNT_BLOCKS = range(4)
 COUNTS = 4
 #: bound of each kind in a part of a run, and that of trial steps of given length

@@ -80,8 +80,10 @@ def step_group(model, data, method, label, h):
         s = stages_within(method)
         closes, driven = write_end(model, data, label, k) if k > 0 else (False, 0.0)
         applied += driven
-        lasts, driven = check_end(model, data, label, s, h, True) if closes else (False, 0.0)
-        applied += driven
+        lasts, driven, rubbed = False, 0.0, 0.0
+        if closes:
+            lasts, driven, rubbed = check_end(model, data, label, s, h, True)
+        applied, friction = applied + driven, friction + rubbed
         if lasts:
             note_errors(model, data, method.E, label, k, h)
             note_unnamed(model, data, label, friction + applied, 0.0, push)
@@ -133,8 +135,8 @@ def end_implicitly(model, data, method, label, h, powers):
     applied += driven
     if not joined:
         return False, applied, friction
-    _, driven = check_end(model, data, label, A.shape[0], h, False)
-    return True, applied + driven, friction
+    _, driven, rubbed = check_end(model, data, label, A.shape[0], h, False)
+    return True, applied + driven, friction + rubbed
 
 
 @kernel

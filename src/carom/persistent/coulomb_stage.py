@@ -23,7 +23,15 @@ from carom.persistent.joint_load import LOAD_ROUNDS, any_locks, begin_loads, ren
 from carom.persistent.joint_rows import is_driven, radius_of
 from carom.persistent.settle import dot, greatest, settle
 from carom.persistent.sharing import find_idle, share
-from carom.persistent.springs import factor, moves, moves_freely, note_accelerations, unload
+from carom.persistent.springs import (
+    FACTORED,
+    PASS,
+    factor,
+    moves,
+    moves_freely,
+    note_accelerations,
+    unload,
+)
 
 STAGE_ITERATIONS, HALVES, TOGETHER = 40, 6, 3
 
@@ -193,6 +201,7 @@ def write_equations(k, n, hg, idle, group):
             width = 2 if i + 1 < n and rows[i + 1] // 3 == rows[i] // 3 else 1
             write_disc(k, n, i, width, hg, group)
         i += width
+    group.equations.iterations[FACTORED] += n * n // PASS
     return greatest(n, group.equations.r)
 
 

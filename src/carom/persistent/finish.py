@@ -31,7 +31,12 @@ from carom.persistent.margins import (
     time_to_stop,
 )
 from carom.persistent.memory import first_stop, is_torque, memory_of, store_slip
-from carom.persistent.return_to_surfaces import greatest_speed, onto_surfaces, onto_tangents
+from carom.persistent.return_to_surfaces import (
+    greatest_speed,
+    onto_sticking,
+    onto_surfaces,
+    onto_tangents,
+)
 from carom.persistent.rows import (
     PASSED,
     SAME,
@@ -147,12 +152,12 @@ def any_friction(k, group):
 
 
 @unit
-def check_end(model, data, label, s, h, given) -> tuple[bool, float]:
+def check_end(model, data, label, s, h, given) -> tuple[bool, float, float]:
     """Write forces, margins and modes at the end of a step, in `work.stage`.
 
-    Return whether given modes lasted, and the work of the drives of surfaces. The accelerations there are those
-    of stage s. With `given` modes, slip must not have turned back, and what sticks must be within its cones, or
-    slip begins at an event that is located.
+    Return whether given modes lasted, and the works of the drives of surfaces and of the friction of slip that
+    ends. The accelerations there are those of stage s. With `given` modes, slip must not have turned back, and
+    what sticks must be within its cones, or slip begins at an event that is located.
     """
     system, active = model.system, data.active
     end, group, work = data.work.trial, data.group, data.work
@@ -165,10 +170,10 @@ def check_end(model, data, label, s, h, given) -> tuple[bool, float]:
     directions = set_modes(system, active, k, group)
     if given:
         if directions < (PASSED if locates(model, data) else SAME):
-            return False, 0.0
+            return False, 0.0, 0.0
         note_left(model, data, k)
     tolerance = rest_of(model, data, k, h)
-    lasts, found, driven = solve_end(model, data, label, k, s, h)
+    lasts, found, driven, rubbed = solve_end(model, data, label, k, s, h)
     exact, eager = locates(model, data), work.search[0].eager == 1
     # what is shared by several points has a kink where one opens or slips, which ends a step with tolerances
     # (without friction its forces are continuous there)
@@ -190,7 +195,7 @@ def check_end(model, data, label, s, h, given) -> tuple[bool, float]:
         )
         if closed_point.motion == MOTION_JOINT:
             if not end_joint(model, data, i, push, (law, exact, slips)):
-                return False, 0.0
+                return False, 0.0, 0.0
             continue
         active_point = active.points[closed_point.active]
         take_forces(active_point, i, group)
@@ -202,7 +207,7 @@ def check_end(model, data, label, s, h, given) -> tuple[bool, float]:
         if slips and active_point.next == MODE_STICK:
             waits = eager and not smooth and (located > 0.0 or law or exact)
             if not (waits or smooth) and work.search[0].active == 0:
-                return False, 0.0
+                return False, 0.0, 0.0
             if not waits:
                 active_point.next = MODE_SLIP
         rounding = 10.0 * slow(system.contacts[closed_point.contact], end)
@@ -214,7 +219,7 @@ def check_end(model, data, label, s, h, given) -> tuple[bool, float]:
         active_point.jams = jams_among(i, found, group)
     add_forces_of_corners(active, k, group)
     note_residual(active, k, group, work)
-    return True, driven
+    return True, driven, rubbed
 
 
 @kernel
@@ -261,25 +266,28 @@ def slip_at_end(i, group):
 def solve_end(model, data, label, k, s, h):
     """Write the forces at the end of a step of length h.
 
-    Return whether its modes last, whether there are any, and the work of the drives of surfaces. Stage s has
-    the accelerations before modes change, those that the estimate of the error needs.
+    Return whether its modes last, whether there are any, and the works of the drives of surfaces and of
+    friction. Stage s has the accelerations before modes change, those that the estimate of the error needs.
     """
     group, work, (count, loaded) = data.group, data.work, bodies_of(model, data, label)
-    solved, driven = solve_springs(k, group), 0.0
+    solved, driven, rubbed = solve_springs(k, group), 0.0, 0.0
     if solved:
         push_bodies(model, data, loaded, k, count, s)
         lasts = within_cones(k, group)
-        if stick_where_slip_ends(model, data, k, h):
-            driven = onto_tangents(model.system, data, k, count)
+        for row in range(3 * k):
+            group.back[row] = group.p[row]
+        sticks, after = stick_where_slip_ends(model, data, k, h)
+        if sticks:
+            driven, rubbed = onto_sticking(model.system, data, k, count, after)
             velocities(model.system, k, group.points[0], work.trial, group.u)
             copy_to_stage(count, work.trial, group, work)
             lasts = True
         if lasts:
-            return True, True, driven
+            return True, True, driven, rubbed
     found = solve_forces(k, group)
     if not solved:
         push_bodies(model, data, loaded, k, count, s)
-    return False, found, driven
+    return False, found, driven, rubbed
 
 
 @kernel
@@ -336,12 +344,14 @@ def within_cones(k, group):
 
 @kernel
 def stick_where_slip_ends(model, data, k, h):
-    """Let points stick whose slip ends within a part of the tolerance; return whether friction holds them.
+    """Let points stick whose slip ends within a part of the tolerance.
 
-    A step of length h has gone to the stop that was predicted at its start, or the slip is that of rest.
-    Forces and accelerations are those of stick then.
+    Return whether friction holds them, and the time in which the fastest of them stops. A step of length h has
+    gone to the stop that was predicted at its start, or the slip is that of rest. Forces and accelerations are
+    those of stick then.
     """
     controls, group, active, found = model.controls, data.group, data.active, False
+    fastest, after = 0.0, 0.0
     still = rest_of(model, data, k, h) * controls.step / h
     for i in range(k):
         closed_point = group.closed[i]
@@ -361,8 +371,10 @@ def stick_where_slip_ends(model, data, k, h):
         ends = ends and h >= (1.0 - REMAINDER) * first_stop(model.system, active, closed_point)
         if ends or speed <= still:
             closed_point.stays, found = 1, True
+            if ends and speed > fastest:
+                fastest, after = speed, time_to_stop(i, group)
     if not found:
-        return False
+        return False, 0.0
     for sticks in range(1, -1, -1):
         for i in range(k):
             closed_point = group.closed[i]
@@ -373,13 +385,13 @@ def stick_where_slip_ends(model, data, k, h):
         if solve_springs(k, group) and (sticks == 0 or within_cones(k, group)):
             break
     if sticks == 0:
-        return False
+        return False, 0.0
     for i in range(k):
         if group.closed[i].stays == 1:
             store_slip(model.system, active, group.closed[i], 0.0, 0.0, 0.0)
             if not is_torque(group.closed[i]):
                 memory_of(model.system, active, group.closed[i]).next = MODE_STICK
-    return True
+    return True, after
 
 
 @kernel

@@ -147,6 +147,28 @@ def onto_tangents(system, data, k, count):
 
 
 @kernel
+def onto_sticking(system, data, k, count, after):
+    """Remove the slip of points that have begun to stick; return the works of drives and of friction.
+
+    The slip ends `after` this time, or before if it is negative, in which bodies have the forces of slip, in
+    RETURN, and not those of stick, in `p`: their difference is an impulse, also at points that slip on or open.
+    """
+    state, group, work, rubbed = data.work.trial, data.group, data.work, 0.0
+    x, u = group.back, group.u
+    velocities(system, k, group.points[0], state, u)
+    for i in range(k):
+        for row in range(3 * i, 3 * i + 3):
+            x[row] = after * (x[row] - group.p[row])
+            if row > 3 * i and group.problem.kind[i] == SLIDING:
+                rubbed += x[row] * u[row]
+    give(system, k, count, state, group, work)
+    driven = 0.0
+    for i in range(k):
+        driven += power_of_surface(group.points[0][i], state, x[3 * i : 3 * i + 3])
+    return driven + onto_tangents(system, data, k, count), rubbed
+
+
+@kernel
 def greatest_speed(system, state, count, member):
     """Return the greatest speed of the bodies, including that of their rotation at their size."""
     speed = 0.0

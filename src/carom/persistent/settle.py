@@ -39,8 +39,7 @@ def settle(n, held, enough, small, force, equations):
         z, q = Z[2 * (turn - first)], Z[2 * (turn - first) + 1]
         correct(n, equations, z)
         part[turn - first] = 1.0
-        for i in range(n):
-            q[i] = dot(n, A[i], z)
+        multiply(n, A, z, q)
         for j in range(turn - first):
             c = dot(n, Z[2 * j + 1], q)
             part[turn - first] -= c * part[j]
@@ -70,6 +69,21 @@ def correct(n, equations, z):
     for i in range(n):
         z[i] = equations.r[i]
     lu.substitute(equations.factor, n, equations.pivot, z)
+
+
+@kernel
+def multiply(n, A, z, q):
+    """Write q = A z, four rows at a time: a sum waits for its last term, four do not wait for each other."""
+    whole = n - n % 4
+    for i in range(0, whole, 4):
+        a0, a1, a2, a3 = A[i], A[i + 1], A[i + 2], A[i + 3]
+        s0, s1, s2, s3 = 0.0, 0.0, 0.0, 0.0
+        for j in range(n):
+            s0, s1 = s0 + a0[j] * z[j], s1 + a1[j] * z[j]
+            s2, s3 = s2 + a2[j] * z[j], s3 + a3[j] * z[j]
+        q[i], q[i + 1], q[i + 2], q[i + 3] = s0, s1, s2, s3
+    for i in range(whole, n):
+        q[i] = dot(n, A[i], z)
 
 
 @kernel

@@ -30,7 +30,7 @@ def find_idle(k, group):
     ((W + eps S)^-1 eps S)^m, for the normal rows of what presses, has it for a limit.
     """
     equations, closed, W, n, size = group.equations, group.closed, group.problem.W, 0, 0.0
-    rows, x, Y, Z = equations.chosen, equations.x, group.idle[0], group.idle[1]
+    rows, Y, Z = equations.chosen, group.idle[0], group.idle[1]
     for i in range(k):
         if closed[i].motion == MOTION_POINT and closed[i].presses == 1:
             rows[n], n, size = 3 * i, n + 1, max(size, closed[i].spring)
@@ -38,26 +38,44 @@ def find_idle(k, group):
         for j in range(n):
             equations.A[i, j] = W[rows[i], rows[j]]
     factor(n, rows, group)
-    for j in range(n):
-        for i in range(n):
-            x[i] = PROXIMAL_SPRING * closed[rows[j] // 3].spring if i == j else 0.0
-        lu.substitute(equations.factor, n, equations.pivot, x)
-        for i in range(n):
-            Y[rows[i] // 3, rows[j] // 3] = x[i]
+    for i in range(n):
+        for j in range(n):
+            Y[i, j] = PROXIMAL_SPRING * closed[rows[j] // 3].spring if i == j else 0.0
+    lu.substitute_all(equations.factor, n, equations.pivot, Y)
+    if not trace(n, Y) > 0.5:  # it falls with each square
+        return 0.0
     for _ in range(SQUARES):
-        for i in range(n):
-            for j in range(n):
-                total = 0.0
-                for m in range(n):
-                    total += Y[rows[i] // 3, rows[m] // 3] * Y[rows[m] // 3, rows[j] // 3]
-                Z[i, j] = total
-        for i in range(n):
-            for j in range(n):
-                Y[rows[i] // 3, rows[j] // 3] = Z[i, j]
+        square(n, Y, Z)
+        Y, Z = Z, Y
+    total = trace(n, Y)
+    idle = group.idle[0]
+    for i in range(
+        n - 1, -1, -1
+    ):  # from the last, which no other has taken: points are not below rows
+        for j in range(n - 1, -1, -1):
+            idle[rows[i] // 3, rows[j] // 3] = Y[i, j]
+    return size if total > 0.5 and abs(total - round(total)) < FREEDOM_ERROR else 0.0
+
+
+@kernel
+def trace(n, Y):
+    """Return the sum of the diagonal of Y[:n, :n]."""
     total = 0.0
     for i in range(n):
-        total += Y[rows[i] // 3, rows[i] // 3]
-    return size if total > 0.5 and abs(total - round(total)) < FREEDOM_ERROR else 0.0
+        total += Y[i, i]
+    return total
+
+
+@kernel
+def square(n, Y, Z):
+    """Write Z = Y Y."""
+    for i in range(n):
+        for j in range(n):
+            Z[i, j] = 0.0
+        for m in range(n):
+            part, row = Y[i, m], Y[m]
+            for j in range(n):
+                Z[i, j] += part * row[j]
 
 
 @kernel
