@@ -39,15 +39,19 @@ def settle(n, held, enough, small, force, equations):
         z, q = Z[2 * (turn - first)], Z[2 * (turn - first) + 1]
         correct(n, equations, z)
         part[turn - first] = 1.0
-        for i in range(n):
-            q[i] = dot(n, A[i], z)
+        multiply(n, A, z, q)
         for j in range(turn - first):
             c = dot(n, Z[2 * j + 1], q)
             part[turn - first] -= c * part[j]
             for i in range(n):
                 z[i], q[i] = z[i] - c * Z[2 * j, i], q[i] - c * Z[2 * j + 1, i]
-        length, whole = math.sqrt(dot(n, q, q)), dot(n, r, r)
-        along = dot(n, q, r) / length if length > 0.0 else 0.0
+        square, whole, along = 0.0, 0.0, 0.0
+        for i in range(n):
+            square += q[i] * q[i]
+            whole += r[i] * r[i]
+            along += q[i] * r[i]
+        length = math.sqrt(square)
+        along = along / length if length > 0.0 else 0.0
         removes = along * along > REMOVED * REMOVED * whole and abs(along) <= MULTIPLE * length
         removes = removes and not (size <= small and abs(along) * greatest(n, z) > length * force)
         if not removes:
@@ -70,6 +74,24 @@ def correct(n, equations, z):
     for i in range(n):
         z[i] = equations.r[i]
     lu.substitute(equations.factor, n, equations.pivot, z)
+
+
+@kernel
+def multiply(n, A, z, q):
+    """Write q = A z, four sums at a time, each in its own order."""
+    whole = n - n % 4
+    for i in range(0, whole, 4):
+        a, b, c, d = A[i], A[i + 1], A[i + 2], A[i + 3]
+        s, t, u, v = 0.0, 0.0, 0.0, 0.0
+        for j in range(n):
+            y = z[j]
+            s += a[j] * y
+            t += b[j] * y
+            u += c[j] * y
+            v += d[j] * y
+        q[i], q[i + 1], q[i + 2], q[i + 3] = s, t, u, v
+    for i in range(whole, n):
+        q[i] = dot(n, A[i], z)
 
 
 @kernel

@@ -18,7 +18,7 @@ from carom.geometry.thresholds import REMAINDER
 from carom.model.workspace import MOTION_POINT
 from carom.persistent.joint_rows import radius_of
 from carom.persistent.springs import SHARES, factor, grip, soften
-from carom.persistent.thresholds import FREEDOM_ERROR, PROXIMAL_SPRING
+from carom.persistent.thresholds import FREEDOM_ERROR, IDLE_PIVOT, PROXIMAL_SPRING
 
 SQUARES = 3  # of the projector
 
@@ -38,6 +38,8 @@ def find_idle(k, group):
         for j in range(n):
             equations.A[i, j] = W[rows[i], rows[j]]
     factor(n, rows, group)
+    if independent(n, equations):
+        return 0.0
     for j in range(n):
         for i in range(n):
             x[i] = PROXIMAL_SPRING * closed[rows[j] // 3].spring if i == j else 0.0
@@ -58,6 +60,18 @@ def find_idle(k, group):
     for i in range(n):
         total += Y[rows[i] // 3, rows[i] // 3]
     return size if total > 0.5 and abs(total - round(total)) < FREEDOM_ERROR else 0.0
+
+
+@kernel
+def independent(n, equations):
+    """Return whether no pivot of the factor is small: nothing moves nothing then."""
+    A, L, most = equations.A, equations.factor, 0.0
+    for i in range(n):
+        most = max(most, A[i, i])
+    for i in range(n):
+        if not abs(L[i, i]) > IDLE_PIVOT * most:
+            return False
+    return True
 
 
 @kernel
