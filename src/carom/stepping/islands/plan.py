@@ -22,7 +22,14 @@ from carom.model import records as r
 from carom.model.workspace import FREE, RESTS
 from carom.stepping.islands.layout import ASLEEP, FLIES, IN_ISLAND
 from carom.stepping.islands.order import sort_contacts, sort_pairs
-from carom.stepping.thresholds import BALL_SLACK, MEETING_STEPS, NEAR_REACH, SPEED_UP, START_ROOM
+from carom.stepping.thresholds import (
+    BALL_SLACK,
+    LONG_PART,
+    MEETING_STEPS,
+    NEAR_REACH,
+    SPEED_UP,
+    START_ROOM,
+)
 
 READY = -1  # no array must grow
 
@@ -156,7 +163,7 @@ def stay_apart(system, now, length, work, islands, p):
     """Return whether the bodies of pair p are farther from each other than their points move in the step."""
     i, j, bodies, need = islands.pair[0, p, 0], islands.pair[0, p, 1], system.bodies, 0.0
     q = first_contact(islands, i, j)
-    if q < 0:
+    if q < 0 or not (is_long(bodies[i]) or is_long(bodies[j])):
         return False
     for b in (i, j):
         reach = reach_of(system, b, length, islands)
@@ -170,6 +177,12 @@ def stay_apart(system, now, length, work, islands, p):
     for b in (i, j):
         work.body[b].reach = reach_of(system, b, length, islands)
     return True
+
+
+@kernel
+def is_long(body):
+    """Return whether a body is long: its ball is far larger than it about one of its axes."""
+    return min(body.arm[0], min(body.arm[1], body.arm[2])) < LONG_PART * body.ball
 
 
 @kernel
