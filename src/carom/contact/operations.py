@@ -56,6 +56,12 @@ def room(system, contact, state, pieces):
     return math.sqrt(dot(d, d)) - radii
 
 
+@by_kind("contact")
+def distance(system, contact, state, work):
+    """Return a lower bound of the gap [m], by the nearest points where they are known to be that."""
+    return room(system, contact, state, False)
+
+
 @kernel
 def apart(system, contact, state, near):
     """Return whether the room around both bodies, or around two pieces of them, is larger than `near`."""

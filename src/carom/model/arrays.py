@@ -92,6 +92,7 @@ BODY = [
     ("number", "i8"),  # among all bodies of the scene
     ("axes", "f8", 4),  # quaternion from the principal axes to those of the scene
     ("ball", "f8"),  # radius of the ball around its centre that contains its shapes
+    ("arm", "f8", 3),  # bound of the distance of its points from each principal axis
 ]
 
 JOINT = [

@@ -25,6 +25,7 @@ from carom.model.arrays import (
 )
 from carom.model.chart import ROWS_OF_ELEMENT, Chart, no_chart
 from carom.model.contacts import Contacts, Surfaces, compile_contacts, more_contacts
+from carom.model.cores import arms_of
 from carom.model.forces import Place
 from carom.model.laws import LawTable
 from carom.model.moving_surfaces import moving_surfaces
@@ -126,6 +127,10 @@ class _Moved:
         loaded = np.append(self.forces.loaded, alone)
         self.bodies = _bodies(scene, moments, self.joints, self.elements, loaded, joined)
         self.bodies["axes"] = self.to_principal
+        if len(scene.bodies) > 1:
+            turns = map(tuple, self.to_principal.tolist())
+            own = [(b.shape, q) for b, q in zip(scene.bodies, turns)]
+            self.bodies["arm"] = [(0.0,) * 3 if s is None else arms_of(s, q) for s, q in own]
 
     def compiled(self, touching: Contacts, contacts: np.recarray, moving) -> Compiled:
         """Return the whole, with contacts and surfaces that move."""

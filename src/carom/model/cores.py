@@ -84,6 +84,23 @@ class CoresOfShape(NamedTuple):
 
 
 @lru_cache(maxsize=64)
+def arms_of(shape: Shape, to_principal: tuple[float, ...]) -> np.ndarray:
+    """Return bounds (3,) of the distance of a point of a shape from each principal axis through its centre."""
+    arms = np.zeros(3)
+    for piece in shape.pieces:
+        if piece.corners is not None:
+            box = np.abs(quaternion.rotate_back(np.array(to_principal), piece.corners)).max(axis=0)
+        else:
+            o = quaternion.rotate_back(np.array(to_principal), piece.position)
+            axes = quaternion.rotate(piece.orientation, np.eye(3))  # rows: the axes of the piece
+            axes = np.abs(quaternion.rotate_back(np.array(to_principal), axes))
+            box = np.abs(o) + (piece.extent if piece.kind == "profile" else piece.half @ axes)
+        across = np.sqrt(np.maximum((box * box).sum() - box * box, 0.0)) + piece.radius
+        arms = np.maximum(arms, across)
+    return np.minimum(arms, shape.size)
+
+
+@lru_cache(maxsize=64)
 def _cores_of(shape: Shape, split, to_principal: tuple[float, ...]) -> CoresOfShape:
     """Return the groups of one shape; they are cached, because simulations often share shapes."""
     pieces = shape.pieces

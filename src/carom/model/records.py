@@ -176,7 +176,7 @@ def new_work(system: System, stages: int) -> workspace.Work:
     stage, trial, part, middle, iterate, mean, beside, origin = table(STATE, 8, n)
     struck, placed = table(w.POINT, 2, 1)
     body = table(w.BODY_WORK, n)
-    body["room"] = np.inf
+    body["room"] = body["reach"] = np.inf
     return w.Work(
         body=body, joint=table(w.JOINT_WORK, max(1, system.joints.size)),  # stops use the first
         stages=table(w.STAGE, max(stages, len(KENNEDY_CARPENTER.b)) + 1, n), known=table(w.KNOWN, n),

@@ -89,6 +89,7 @@ BODY_WORK = [
     ("inverse", "f8", 6),  # inverse inertia, world axes
     ("label", "i8"),  # bodies with the same label move each other, by joints or active contacts
     ("n_active", "i8"),  # of the body with the number of a label: active points of the group
+    ("sought", "i8"),  # of the same: 1 if the search for an event concerns the group
     ("status", "i8"),  # FREE, HELD or RESTS
     ("push", "f8", 6),  # change of momentum (linear, angular about the centre) in a step
     ("spin", "f8", 3),  # angular velocity that belongs to `momentum`, in the three-field step
@@ -102,6 +103,11 @@ BODY_WORK = [
     ("whole_for", "i8"),  # number of such steps at the last decision
     ("home", "f8", 3),  # centre at the start of the step
     ("room", "f8"),  # largest distance of the centre from it in this step
+    ("facing", "f8", 4),  # attitude at the start of the step
+    (
+        "reach",
+        "f8",
+    ),  # largest displacement of a point of the body; infinite if the room alone counts
 ]
 
 JOINT_WORK = [
@@ -159,6 +165,11 @@ SEARCH = [
     ("kind", "i8"),
     ("contact", "i8"),
     ("side", "i8"),  # which end of the bracket moved last
+    ("above", "f8"),  # values at the ends of the bracket, 0 before they are known
+    ("below", "f8"),
+    ("flat", "i8"),  # trials in a row that have found the value of an end once more
+    ("tried", "i8"),  # trials
+    ("many", "i8"),  # 1 if the search concerns several bodies in contact with each other
     ("low", "f8"),
     ("high", "f8"),
     ("f_low", "f8"),
@@ -170,6 +181,7 @@ SEARCH = [
     ("f_before", "f8"),
     ("rate_before", "f8"),
     ("width", "f8"),
+    ("part", "i8"),  # 1 while its trial steps are made only for the groups that it concerns
     ("tolerance", "f8"),
     ("eager", "i8"),  # 0 if events of several points wait for the end of the step
     ("pending", "i8"),  # an action that waits until arrays have grown

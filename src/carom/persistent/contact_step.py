@@ -17,14 +17,22 @@ from carom.contact.groups import members
 from carom.dynamics.adapt import allowed_error, note_miss
 from carom.dynamics.explicit import CONSTRAINTS_LOST, bound_accelerations_of, rubs, stages_within
 from carom.dynamics.thresholds import ERROR_SHARE
-from carom.model.actions import MODE_OPEN
+from carom.model.actions import (
+    EVENT_CONE,
+    EVENT_GAP,
+    EVENT_JAM,
+    EVENT_KINK,
+    EVENT_SEPARATE,
+    EVENT_STOP,
+    MODE_OPEN,
+)
 from carom.persistent.finish import check_end, note_modes, write_end
 from carom.persistent.members import explicit_member, implicit_member
 from carom.persistent.rows import beyond_stop
 from carom.persistent.springs import FACTORED, count_factors
 from carom.persistent.start import first_modes, first_stage
 from carom.persistent.step_control import lost_in_stop, note_unnamed
-from carom.persistent.stops import note_left
+from carom.persistent.stops import concerned, is_sought, note_left
 from carom.persistent.thresholds import FALLS, STIFF_SLIP
 
 STIFF_ORDER, CLOSING_ORDER = 4, 2
@@ -34,8 +42,8 @@ STIFF_ORDER, CLOSING_ORDER = 4, 2
 def contact_step(model, data, method, h) -> tuple[float, float, int]:
     """Write the end of a step of all groups that are in persistent contact and do not rest to `work.trial`.
 
-    The forces at the end are written to the active points. Return the work of loads and of friction, and a
-    status.
+    In a search for an event that concerns a part of the groups only this part is moved. The forces at the end
+    are written to the active points. Return the work of loads and of friction, and a status.
     """
     active, work, n = data.active, data.work, data.state.shape[0]
     data.group.equations.iterations[FACTORED] = 0
@@ -45,6 +53,8 @@ def contact_step(model, data, method, h) -> tuple[float, float, int]:
     for i in range(active.count[0]):
         label = work.body[active.points[i].body].label
         joined = joined and label != n
+        if not is_sought(label, work):
+            continue
         if active.points[i].rest == 0 and not was_visited(active, i, label, work):
             own = step_group(model, data, method, label, h)
             applied, friction, code = applied + own[0], friction + own[1], max(code, own[2])
@@ -53,6 +63,47 @@ def contact_step(model, data, method, h) -> tuple[float, float, int]:
         applied, friction, code = applied + own[0], friction + own[1], max(code, own[2])
     count_factors(data.group, work.step[0])
     return applied, friction, code
+
+
+@kernel
+def seek_in_groups(system, active, work):
+    """Note which groups the search for an event concerns: of the bodies that meet, of the points that stop.
+
+    Each trial of the search then moves these groups only; where the event is found, all go there together.
+    """
+    search = work.search[0]
+    search.part, search.many = 0, 0
+    for b in range(work.body.shape[0]):
+        work.body[b].sought = 0
+    if search.kind == EVENT_GAP:
+        contact = system.contacts[search.contact]
+        seek_in(contact.body, work)
+        if contact.other >= 0:
+            seek_in(contact.other, work)
+            search.many = 1
+    elif search.kind in (EVENT_SEPARATE, EVENT_CONE, EVENT_JAM, EVENT_KINK):
+        seek_in(active.points[search.contact].body, work)
+    elif search.kind == EVENT_STOP:
+        for i in range(active.count[0]):
+            if active.points[i].rest == 0 and active.points[i].left < 0.0:
+                seek_in(active.points[i].body, work)
+    else:
+        return
+    for i in range(active.count[0]):
+        if active.points[i].rest == 0 and not concerned(
+            work.body[active.points[i].body].label, work
+        ):
+            search.part = 1
+        if active.points[i].other >= 0 and concerned(work.body[active.points[i].body].label, work):
+            search.many = 1
+
+
+@kernel
+def seek_in(b, work):
+    """Note that the search for an event concerns the group of body b."""
+    label = work.body[b].label
+    if label < work.body.shape[0]:
+        work.body[label].sought = 1
 
 
 @kernel

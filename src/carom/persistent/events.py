@@ -74,6 +74,6 @@ def find_contact_event(system, active, work):
     for i in range(active.count[0] if any_depends_on_speed(system.laws) else 0):
         if active.points[i].kink[1] < 0.0:
             return EVENT_KINK, i
-    if least_left(system, active) < 0.0:
+    if least_left(system, active, work) < 0.0:
         return EVENT_STOP, 0
     return EVENT_GAP, -1

@@ -45,8 +45,13 @@ def settle(n, held, enough, small, force, equations):
             part[turn - first] -= c * part[j]
             for i in range(n):
                 z[i], q[i] = z[i] - c * Z[2 * j, i], q[i] - c * Z[2 * j + 1, i]
-        length, whole = math.sqrt(dot(n, q, q)), dot(n, r, r)
-        along = dot(n, q, r) / length if length > 0.0 else 0.0
+        square, whole, along = 0.0, 0.0, 0.0
+        for i in range(n):
+            square += q[i] * q[i]
+            whole += r[i] * r[i]
+            along += q[i] * r[i]
+        length = math.sqrt(square)
+        along = along / length if length > 0.0 else 0.0
         removes = along * along > REMOVED * REMOVED * whole and abs(along) <= MULTIPLE * length
         removes = removes and not (size <= small and abs(along) * greatest(n, z) > length * force)
         if not removes:

@@ -18,7 +18,7 @@ from carom.geometry.thresholds import REMAINDER
 from carom.model.workspace import MOTION_POINT
 from carom.persistent.joint_rows import radius_of
 from carom.persistent.springs import SHARES, factor, grip, soften
-from carom.persistent.thresholds import FREEDOM_ERROR, PROXIMAL_SPRING
+from carom.persistent.thresholds import FREEDOM_ERROR, IDLE_PIVOT, PROXIMAL_SPRING
 
 SQUARES = 3  # of the projector
 
@@ -38,6 +38,8 @@ def find_idle(k, group):
         for j in range(n):
             equations.A[i, j] = W[rows[i], rows[j]]
     factor(n, rows, group)
+    if independent(n, equations):
+        return 0.0
     for i in range(n):
         for j in range(n):
             Y[i, j] = PROXIMAL_SPRING * closed[rows[j] // 3].spring if i == j else 0.0
@@ -76,6 +78,18 @@ def square(n, Y, Z):
             part, row = Y[i, m], Y[m]
             for j in range(n):
                 Z[i, j] += part * row[j]
+
+
+@kernel
+def independent(n, equations):
+    """Return whether no pivot of the factor is small: nothing moves nothing then."""
+    A, L, most = equations.A, equations.factor, 0.0
+    for i in range(n):
+        most = max(most, A[i, i])
+    for i in range(n):
+        if not abs(L[i, i]) > IDLE_PIVOT * most:
+            return False
+    return True
 
 
 @kernel

@@ -46,11 +46,24 @@ def note_left(model, data, k):
 
 
 @kernel
-def least_left(system, active):
-    """Return the least part of a slip that is left at the end of the trial step."""
+def concerned(label, work):
+    """Return whether the search for an event concerns a group; joined and loaded bodies always take part."""
+    return label == work.body.shape[0] or work.body[label].sought == 1
+
+
+@kernel
+def is_sought(label, work):
+    """Return whether the trial step moves a group: in a search only those that it concerns."""
+    search = work.search[0]
+    return search.active == 0 or search.part != 1 or concerned(label, work)
+
+
+@kernel
+def least_left(system, active, work):
+    """Return the least part of a slip that is left at the end of a trial step, of the groups that it moves."""
     least, frictions = 1.0, system.relations.memory.frictions
     for i in range(active.count[0]):
-        if active.points[i].rest == 0:
+        if active.points[i].rest == 0 and is_sought(work.body[active.points[i].body].label, work):
             least = min(least, active.points[i].left)
     for i in range(frictions.shape[0]):
         least = min(least, frictions[i].left)

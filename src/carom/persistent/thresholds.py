@@ -39,6 +39,7 @@ MULTIPLE = 1e4  #: correction: greatest multiple: 1e6 kg on 1 kg take 140
 REMOVED = 1e-3  #: error: a correction that removes less leaves that of rows that depend on others
 REST_SHARE = 1e-4  #: speed: what may be taken for round-off of rest
 FREEDOM_ERROR = 1e-6  #: 1: of a trace, which counts freedoms: with masses far apart it is no whole number
+IDLE_PIVOT = 0.01  #: greatest diagonal: with no smaller pivot of normal rows nothing is undetermined
 PROXIMAL_SPRING = 1e-5  #: compliance of a spring: proximal term of the forces of springs of contacts
 STICK_COMPLIANCE = 1e4  #: compliance of pressing: what others hold already needs no friction
 #: compliance of pressing times ratio of masses: where one is more than ten times another it is less, because

@@ -5,9 +5,14 @@ it is inside the bracket (this is exact for a falling ball), otherwise Newton's 
 least root of the cubics of the vertices that are inside at the end: the lowest at the start may be another. For
 persistent contacts: regula falsi with the Illinois rule. Every trial is a step of the method from the start of
 the step, so an event is as accurate as the method.
+
+The margins of several bodies jump where another of their points opens or slips: values on both sides of a jump
+stay what they are. Then the bracket is halved until its length does not matter.
 """
 
 from __future__ import annotations
+
+import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom.contact.continuous_detection import BELOW, CLEAR, FLAT_RIM, UNSURE, cubic_root
@@ -23,13 +28,17 @@ from carom.model.actions import (
     EVENT_JAM,
     EVENT_KINK,
     EVENT_KINK_OF_JOINT,
+    EVENT_SEPARATE,
     EVENT_STOP,
 )
 from carom.model.laws import PERSISTENT
 from carom.persistent.events import contact_event_value, find_contact_event
 from carom.persistent.stops import least_left
 from carom.persistent.thresholds import BREAK_AWAY, EVENT_ERROR, EVENT_MARGIN, JUMP_ERROR
-from carom.stepping.thresholds import EVENT_VALUE
+from carom.stepping.thresholds import EVENT_VALUE, FLAT_PART
+
+CREEPS = 6  # after so many regula falsi is slow
+FLAT_TRIALS = 3  # trials in a row without another value, after which an event function jumps
 
 
 @inlined
@@ -73,7 +82,7 @@ def event_value(model, data):
         return system.relations.memory.frictions[search.contact].grip, 0.0
     if search.kind == EVENT_STOP:
         search.tolerance = 0.0  # what is round-off of a stop is zero
-        return least_left(system, active), 0.0
+        return least_left(system, active, work), 0.0
     if search.kind in (EVENT_KINK, EVENT_KINK_OF_JOINT):
         search.tolerance = KINK_ERROR
         return kink_of(system, active, search)[1], 0.0
@@ -103,6 +112,7 @@ def begin_search(search, kind, contact, low, high):
     search.low, search.high, search.width = low, high, high
     search.f_low, search.side, search.tolerance = 1.0 if kind == EVENT_STOP else -1.0, 0, -1.0
     search.t, search.f, search.rate = 0.0, 0.0, 0.0
+    search.above, search.below, search.flat, search.tried = 0.0, 0.0, 0, 0
 
 
 @kernel
@@ -118,6 +128,9 @@ def update_bracket(search, t, f, rate):
         return 1
     if only_sign(search) and f < 0.0 and -f * (t - search.low) <= JUMP_ERROR * search.width:
         return 1  # where it jumps, as what is shared does, its time is known to what that changes
+    if jumps(search) and f < 0.0 and is_short(search, t):
+        return 1
+    note_flat(search, f)
     if f < 0.0:
         search.high, search.f_high = t, f
         if search.side == 1:
@@ -134,9 +147,51 @@ def update_bracket(search, t, f, rate):
 
 
 @kernel
+def note_flat(search, f):
+    """Store the value f of an end of the bracket, and whether it is what it was before."""
+    before = search.below if f < 0.0 else search.above
+    known = search.above > 0.0 and search.below < 0.0
+    same = abs(f - before) <= FLAT_PART * (search.above - search.below)
+    search.flat = search.flat + 1 if known and same else 0
+    search.tried += 1
+    if f < 0.0:
+        search.below = f
+    else:
+        search.above = f
+
+
+@kernel
+def jumps(search):
+    """Return whether the event function of several bodies is taken to jump in the bracket."""
+    event = search.kind in (EVENT_CONE, EVENT_SEPARATE, EVENT_STOP)
+    return event and search.many == 1 and search.flat >= FLAT_TRIALS
+
+
+@kernel
+def is_short(search, t):
+    """Return whether the time from the low end to t, at which a margin has jumped, does not matter."""
+    most = 1.0 if search.kind == EVENT_STOP else -search.below
+    return most * (t - search.low) <= JUMP_ERROR * search.width
+
+
+@kernel
 def only_sign(search):
     """Return whether only the sign of the event function is known before the event."""
     return search.tolerance == EVENT_ERROR and search.f_low <= EVENT_MARGIN
+
+
+@kernel
+def by_secant(search):
+    """Return the root of the line through the last two values on one side of the event; inf if they are not.
+
+    Margins of several bodies may have another slope on the other side, where regula falsi is slow.
+    """
+    slow = search.many == 1 and search.tried > CREEPS
+    same = slow and search.f * search.f_before > 0.0
+    slope = search.f - search.f_before
+    if not same or slope == 0.0:
+        return math.inf
+    return search.t - search.f * (search.t - search.before) / slope
 
 
 @kernel
@@ -148,8 +203,17 @@ def next_trial(search):
         )
         if not (search.low < t < search.high):
             t = search.t - search.f / search.rate
+        if not t > 0.0 and search.low == 0.0 and search.many == 1:  # it is inside at the start
+            return 0.5 * LAST_DIGIT * search.width
     else:
         low, high = search.low, search.high
+        if jumps(search) and is_short(search, high):
+            return high
+        if jumps(search):
+            return 0.5 * (low + high)
+        t = by_secant(search)
+        if low < t < high:
+            return t
         if only_sign(search):
             return 0.5 * (low + high)
         t = (low * search.f_high - high * search.f_low) / (search.f_high - search.f_low)

@@ -16,9 +16,10 @@ from carom.contact.operations import due, is_fixed
 from carom.dynamics.energy import kinetic_energy
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.more_forces import note_turns
-from carom.geometry.rotation import norm
+from carom.geometry.rotation import multiply, norm
 from carom.impact.strike import strike
 from carom.kinematics.contact_point import contact_velocity
+from carom.kinematics.reach import way_of_turn
 from carom.law.restitution import depends_on_approach
 from carom.model import records as r
 from carom.model.actions import EVENT_GAP, EVENT_STOP, NOTHING, PERSIST, PUSHED_IN, STRIKE
@@ -222,6 +223,7 @@ def left_ball(system, now, dt, work):
     """Return whether a body may have left its ball of this step.
 
     It has not left it if both ends of the step are inside by the distance that a fall in this time can add.
+    Of a body that has neighbours in its ball the displacement of all its points counts.
     """
     fall = norm(system.gravity)
     for b in range(now.shape[0]):
@@ -232,8 +234,15 @@ def left_ball(system, now, dt, work):
             continue
         for k in range(3):
             d += (now[b].x[k] - memory.home[k]) ** 2
-        if not math.sqrt(d) + bulge <= memory.room:
+        way = math.sqrt(d) + bulge
+        if not way <= memory.room:
             return True
+        if memory.reach < math.inf:
+            q = memory.facing
+            _, x, y, z = multiply((q[0], -q[1], -q[2], -q[3]), now[b].Q)
+            way += 2.0 * way_of_turn(system.bodies[b], (x, y, z))
+            if not way <= memory.reach:
+                return True
     return False
 
 

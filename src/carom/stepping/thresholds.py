@@ -16,6 +16,9 @@ ACTIVE_SHARE = 10.0  #: `STEP_SHARE`: with active points, because the order is l
 LIMIT_GROWTH = 4.0  #: limit: by which it grows if the shortest step exceeds it
 START_ROOM = 1e-3  #: size of the body: room of a body that starts from rest: doubled with each repetition
 BALL_SLACK = 1e-6  #: radius: growth of balls, so that balls in contact overlap
+SPEED_UP = 2.0  #: greatest speed of bodies that may meet: greatest speed of one of them in the step
+NEAR_REACH = 1.5  #: greatest speed of points of near bodies: their mean speed: a ball begins to roll with 1.43
+LONG_PART = 0.5  #: ball of the body: arm about an axis: bodies with a shorter one are long
 MEETING_STEPS = 8.0  #: steps: contacts are made for bodies that may meet so soon, near their balls
 THIN_PART = 1.0 / 32.0  #: ball of the body: displacement in a piece that is allowed, however thin the body
 SEARCH_GROWTH = 4.0  #: search distance: after points were missed
@@ -38,5 +41,6 @@ RETURN_GAIN = 0.01  #: depth: that a pass leaves: gaps are not linear, so less i
 #: mean of the diagonal of W: least W_nn of a point that returns: with the normal through the axis of a
 #: hinge W_nn is round-off, and 1e-7 m would turn a gear by many teeth
 IMMOBILITY = 1e-6
+FLAT_PART = 0.1  #: difference of the values of an event function around its zero: change that is none
 EVENT_VALUE = 1e-13  #: first value of the function of an event: that counts as its zero
 LEAST_RTOL = 1e-13  #: 1: least tolerance of a run that may be asked for

@@ -25,7 +25,7 @@ from carom.model.actions import (
 )
 from carom.model.allowance import COUNT_SEARCHES, COUNT_TRIALS, mark_count, overdone
 from carom.model.controls import LOCATE
-from carom.persistent.contact_step import contact_step
+from carom.persistent.contact_step import contact_step, seek_in_groups
 from carom.persistent.events import note_first_stops
 from carom.persistent.margins import note_due
 from carom.persistent.slip_law import share_before_kink
@@ -46,6 +46,7 @@ from carom.stepping.record import finite
 from carom.stepping.thresholds import SHORTEST_STEP
 
 ONCE_MORE = -1  # another trial step is needed
+EVERYWHERE = 2  # `part` of a search: its last trial step is made again, for all groups
 EVENTS_AT_NOW = 20  # events in no time: after so many they wait for the end of a step
 
 
@@ -68,7 +69,7 @@ def propose_step(model, data):
     if search.sure < dt:
         dt = search.sure
         search.sure *= 2.0
-    search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
+    search.dt, search.cuts, search.again, search.active, search.part = dt, 0, 0, 0, 0
     data.work.search[0].stiff = 0
     mark_count(data.work)
     search.eager = 1 if clock.in_moment < EVENTS_AT_NOW else 0
@@ -125,7 +126,10 @@ def first_event(model, data, method):
             code = fits(model, data)
         if code == 0 and search.active == 1:
             code = is_root(model, data)
-        if code == 0:
+        if code == 0 and search.active == 1 and search.part == 1:
+            search.part = EVERYWHERE  # the event is known: all groups go there
+            code = ONCE_MORE
+        elif code == 0:
             code = event_within(model, data)
         if code != ONCE_MORE:
             return code
@@ -143,8 +147,11 @@ def trial_step(model, data, method):
     work.moment[0].start, search.order = clock.now, controls.order
     applied, code = step(model, data, method, search.dt)
     search.applied, search.friction, search.code = applied, 0.0, code
-    clock.trials += 1
-    own.counts[COUNT_TRIALS] += 1.0
+    if search.part == EVERYWHERE:
+        search.part = 0
+    else:
+        clock.trials += 1
+        own.counts[COUNT_TRIALS] += 1.0
     own.counts[COUNT_SEARCHES] += work.pair.state[0].searches
     work.pair.state[0].searches = 0
     own.since += 1.0 + now.shape[0] + active.contact_states.shape[0]
@@ -205,6 +212,7 @@ def is_root(model, data):
         # as a force falls to zero its cone does, so slip may come first: beyond the opening nothing shows it
         if data.active.points[search.contact].grip < 0.0:
             begin_search(search, EVENT_CONE, search.contact, 0.0, search.dt)
+            seek_in_groups(system, data.active, work)
             return bracket(model, data)
     if state == 0:
         search.dt = next_trial(search)
@@ -250,6 +258,7 @@ def event_within(model, data):
     if verdict == UNSURE:
         return halve(model, data, False)
     begin_search(search, kind, other, low, search.dt)
+    seek_in_groups(system, active, work)
     return bracket(model, data)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.collision.layout import BOX, HULL
 from carom.contact.kinds import parting
+from carom.contact.kinds.found_points import list_on_solid, nearest_touch
 
 beside_face, stays_beside_face = parting.beside_face, parting.stays_beside_face
 
@@ -15,3 +16,10 @@ def are_sharp(system, contact):
     a, b = system.solids[contact.solid], system.solids[contact.other_solid]
     flat = (a.kind == BOX or a.kind == HULL) and (b.kind == BOX or b.kind == HULL)
     return flat and a.radius == 0.0 and b.radius == 0.0
+
+
+@kernel
+def distance(system, contact, state, work):
+    """Return the gap of two convex solids."""
+    list_on_solid(system, contact, contact.other_solid, state, 0.0, work)
+    return nearest_touch(work).gap

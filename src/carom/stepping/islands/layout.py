@@ -40,7 +40,8 @@ MEMBER = [
     ("parent", "i8"),  # in the union-find; the root is the lowest body of its set
     ("awake", "i8"),  # of a root: 1 if a body of the set moves
     ("bodies", "i8"),  # of a root: number of bodies in the set
-    ("speed", "f8"),  # of a root: greatest speed in the set
+    ("speed", "f8"),  # of a root: greatest speed in the set,
+    ("swing", "f8"),  # and greatest speed of a point of its bodies
     ("island", "i8"),  # of a root: number of the island, -1 for none
     ("kind", "i8"),
     ("place", "i8"),  # slot of the body
@@ -96,6 +97,8 @@ class Islands(NamedTuple):
     # (2, P) other body and contact, sorted, body by body; contact -1 if the two never touch
     partner: np.ndarray
     partner_first: np.ndarray  # (N + 1,)
+    gap: np.ndarray  # (P,) lower bound of the distance of these bodies at the start of the step
+    known: np.ndarray  # (P,) 1 if it is known
     plane: np.ndarray  # (Q,) contacts with half-spaces, body by body
     plane_first: np.ndarray  # (N + 1,)
 
@@ -165,6 +168,8 @@ def with_partners(islands: Islands, system: System, later: Defaults) -> Islands:
     return islands._replace(
         partner=np.stack([high, rows]),
         partner_first=np.searchsorted(low, np.arange(system.bodies.size + 1)),
+        gap=np.zeros(len(rows)),
+        known=np.zeros(len(rows), dtype=np.int64),
     )
 
 
@@ -198,6 +203,7 @@ def _islands(n: int, partners: tuple, grounded: tuple, room: int, points: int) -
         clock=table(CLOCK, 1), centre=np.zeros((n, 3)), radius=np.zeros(n),
         pair=whole((2, 8 * n + 64, 2)), pair_first=whole(n + 1), sweep=new_sweep_work(n),
         partner=np.stack([high, pairs]), partner_first=np.searchsorted(low, numbers),
+        gap=np.zeros(len(pairs)), known=whole(len(pairs)),
         plane=planes, plane_first=np.searchsorted(body, numbers),
     )  # fmt: skip
 

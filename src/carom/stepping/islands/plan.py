@@ -4,19 +4,32 @@ As long as a body meets nothing, it moves at most v h + g h^2 in a step h, where
 its points. In a set of bodies that meet, none moves faster than twice the greatest speed, unless a heavy body
 throws a light one: then a body leaves its ball, which is detected, and the step is repeated with more room. So
 islands are exact: bodies of different islands have not met.
+
+Balls around long bodies overlap where the bodies are far from each other. So two convex solids are an island
+only if they are nearer than their points can move: the reach of both, which counts their rotation, too.
 """
 
 from __future__ import annotations
 
+import math
+
 from carom._compiled.decorators import kernel
 from carom.collision.sweep import sweep
-from carom.contact.operations import room
-from carom.geometry.rotation import norm
+from carom.contact.operations import distance, room
+from carom.geometry.rotation import norm, rotate_back
+from carom.kinematics.reach import way_of_turn
 from carom.model import records as r
 from carom.model.workspace import FREE, RESTS
 from carom.stepping.islands.layout import ASLEEP, FLIES, IN_ISLAND
 from carom.stepping.islands.order import sort_contacts, sort_pairs
-from carom.stepping.thresholds import BALL_SLACK, MEETING_STEPS, START_ROOM
+from carom.stepping.thresholds import (
+    BALL_SLACK,
+    LONG_PART,
+    MEETING_STEPS,
+    NEAR_REACH,
+    SPEED_UP,
+    START_ROOM,
+)
 
 READY = -1  # no array must grow
 
@@ -41,6 +54,7 @@ def join(member, a, b):
     member[a].bodies += member[b].bodies
     member[a].awake = max(member[a].awake, member[b].awake)
     member[a].speed = max(member[a].speed, member[b].speed)
+    member[a].swing = max(member[a].swing, member[b].swing)
     return True
 
 
@@ -48,10 +62,12 @@ def join(member, a, b):
 def seek(system, active, now, length, work, islands):
     """Find the sets of bodies that may meet; return `READY`, or the arrays that must grow first."""
     member, plan, fall = islands.member, islands.plan[0], norm(system.gravity)
+    islands.known[:] = 0
     for b in range(system.bodies.shape[0]):
         v, w, memory, m = now[b].v, now[b].w, work.body[b], member[b]
         m.parent, m.bodies, m.awake = b, 1, 0 if memory.status == RESTS else 1
         m.speed = norm(v) + norm(w) * system.bodies[b].ball
+        m.swing = norm(v) + way_of_turn(system.bodies[b], rotate_back(now[b].Q, w))
         if system.bodies[b].ballistic == 0:  # it never sleeps; `bound` is of the last step
             m.awake, m.speed = 1, m.speed + memory.bound[0] * length
         memory.room = m.awake * plan.widen * (m.speed + fall * length) * length
@@ -60,6 +76,8 @@ def seek(system, active, now, length, work, islands):
         for k in range(3):
             memory.home[k] = now[b].x[k]
             islands.centre[b, k] = now[b].x[k]
+        for k in range(4):
+            memory.facing[k] = now[b].Q[k]
     for k in range(1, islands.joined.body.shape[0]):
         join(member, islands.joined.body[0], islands.joined.body[k])
     for i in range(active.count[0]):
@@ -68,14 +86,15 @@ def seek(system, active, now, length, work, islands):
     for turn in range(20):
         for b in range(system.bodies.shape[0]):
             whole, memory, ball = member[root(member, b)], work.body[b], system.bodies[b].ball
+            memory.reach = math.inf
             if turn > 0 and whole.awake == 1 and whole.bodies > 1:
-                room = 2.0 * plan.widen * (whole.speed + fall * length) * length
+                room = SPEED_UP * plan.widen * (whole.speed + fall * length) * length
                 memory.room = max(memory.room, room)
             islands.radius[b] = (1.0 + BALL_SLACK) * ball + memory.room if ball > 0.0 else -1.0
         plan.pairs = sweep(islands.centre, islands.radius, islands.pair[0], islands.sweep)
         if plan.pairs > islands.pair.shape[1]:
             return r.FULL_PAIRS
-        if not join_pairs(islands) and turn > 0:
+        if not join_pairs(system, now, length, work, islands) and turn > 0:
             break
     if plan.open == 1 and any_new(islands):
         return note_new(system, work, islands)
@@ -123,7 +142,7 @@ def note_new(system, work, islands):
 
 
 @kernel
-def join_pairs(islands):
+def join_pairs(system, now, length, work, islands):
     """Join the sets of all pairs that may touch, unless both are asleep; return whether any set was joined."""
     member, any_joined, more = islands.member, False, True
     while more:
@@ -131,9 +150,59 @@ def join_pairs(islands):
         for p in range(islands.plan[0].pairs):
             i, j = islands.pair[0, p, 0], islands.pair[0, p, 1]
             awake = member[root(member, i)].awake + member[root(member, j)].awake
-            if awake > 0 and may_touch(islands, i, j) and join(member, i, j):
+            if awake == 0 or root(member, i) == root(member, j) or not may_touch(islands, i, j):
+                continue
+            if not stay_apart(system, now, length, work, islands, p):
+                join(member, i, j)
                 more, any_joined = True, True
     return any_joined
+
+
+@kernel
+def stay_apart(system, now, length, work, islands, p):
+    """Return whether the bodies of pair p are farther from each other than their points move in the step."""
+    i, j, bodies, need = islands.pair[0, p, 0], islands.pair[0, p, 1], system.bodies, 0.0
+    q = first_contact(islands, i, j)
+    if q < 0 or not (is_long(bodies[i]) or is_long(bodies[j])):
+        return False
+    for b in (i, j):
+        reach = reach_of(system, b, length, islands)
+        if bodies[b].ballistic == 0 or not reach < bodies[b].ball:  # it may turn round
+            return False
+        need += reach + BALL_SLACK * bodies[b].ball
+    if islands.known[q] == 0:
+        islands.known[q], islands.gap[q] = 1, least_distance(system, now, work, islands, i, q)
+    if not islands.gap[q] > need:
+        return False
+    for b in (i, j):
+        work.body[b].reach = reach_of(system, b, length, islands)
+    return True
+
+
+@kernel
+def is_long(body):
+    """Return whether a body is long: its ball is far larger than it about one of its axes."""
+    return min(body.arm[0], min(body.arm[1], body.arm[2])) < LONG_PART * body.ball
+
+
+@kernel
+def reach_of(system, b, length, islands):
+    """Return how far points of a body may move in the step, or it is repeated with more room."""
+    whole = islands.member[root(islands.member, b)]
+    speed = whole.swing + norm(system.gravity) * length
+    return whole.awake * NEAR_REACH * islands.plan[0].widen * speed * length
+
+
+@kernel
+def least_distance(system, now, work, islands, i, first):
+    """Return a lower bound of the distance of body i and a partner, whose contacts begin at place `first`."""
+    least, other, q = math.inf, islands.partner[0, first], first
+    while q < islands.partner_first[i + 1] and islands.partner[0, q] == other:
+        gap = distance(system, system.contacts[islands.partner[1, q]], now, work)
+        if not gap > 0.0:  # NaN counts as touch
+            return 0.0
+        least, q = min(least, gap), q + 1
+    return least
 
 
 @kernel
