@@ -33,7 +33,8 @@ def case(seed: int) -> Case:
         late = s.t > 0.75 * s.t[-1]
         speeds = np.abs(s.velocity[late]).max(), np.abs(s.angular_velocity[late]).max()
         work = float(np.ptp(s.ledger.loads[late]))
-        return work / (WORK * exchanged(s, 1e-3)) if max(speeds) < REST else 0.0
+        moves = s.velocity.any() or s.angular_velocity.any()  # else it is round-off of round-off
+        return work / (WORK * exchanged(s, 1e-3)) if moves and max(speeds) < REST else 0.0
 
     return Case(scene, 3.0, 2e-3, {"kind": "floor" if floor else "stops"}, off)
 

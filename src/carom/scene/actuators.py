@@ -203,7 +203,7 @@ class Servo(Controlled):
 class PositionServo(Servo):
     """A motor that holds a joint coordinate near a target, as a spring and damper with a limit.
 
-        F = kp (target - q) - kd q',    |F| <= limit,
+        F = kp (target - q) - kd q',    -limit <= F <= limit,
 
     and with `no_load` a limit that falls with the speed, as of a motor on a battery:
     from -limit (1 + q'/no_load) to limit (1 - q'/no_load). `Run.ctrl` sets the target. Without a limit a servo
@@ -251,7 +251,7 @@ class PositionServo(Servo):
 class VelocityServo(Servo):
     """A motor that holds the rate of a joint coordinate near a target, with a limit.
 
-        F = kv (target - q'),    |F| <= limit,
+        F = kv (target - q'),    -limit <= F <= limit,
 
     with `no_load`, `Run.ctrl` and the ledger as of `PositionServo`.
 

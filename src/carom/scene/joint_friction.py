@@ -54,18 +54,18 @@ class JointFriction(DryFriction):
     A joint without motion sticks exactly while the force that keeps it at rest is at most the bound. Changes
     between slip and stick are located within the step. The work of the friction is in `ledger.friction`.
 
-    With `mu` the bound follows the reaction of the joint, force F and moment M at the middle of the bearing;
+    With `mu` the bound follows the reaction of the joint, sizes F of its force and M of its moment in the bearing;
     friction and reaction are found together at each moment:
 
     ====================================  ===================================================================
-    pin (an angle)                        torque mu radius |F|; with `length`, two bearings at its ends carry
+    pin (an angle)                        torque mu radius F; with `length`, two bearings at its ends carry
                                           F across the axis and M, and a shoulder F along it
-    slide                                 force mu |F|; with `length`, mu times what two guides at its ends
+    slide                                 force mu F; with `length`, mu times what two guides at its ends
                                           carry, so that a drawer jams that is pulled beside its middle; with
-                                          `radius` also |M| about the axis over it
+                                          `radius` also M about the axis over it
     screw                                 mu times the force of the thread, along the helix at `radius`: it
                                           locks itself where the tangent of its lead is less than mu
-    rail (`joints.PointOnCurve`)          force mu |F|
+    rail (`joints.PointOnCurve`)          force mu F
     ====================================  ===================================================================
 
     Parameters
