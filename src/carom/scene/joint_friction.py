@@ -54,8 +54,8 @@ class JointFriction(DryFriction):
     A joint without motion sticks exactly while the force that keeps it at rest is at most the bound. Changes
     between slip and stick are located within the step. The work of the friction is in `ledger.friction`.
 
-    With `mu` the bound follows the reaction of the joint, sizes F of its force and M of its moment in the bearing;
-    friction and reaction are found together at each moment:
+    With `mu` the bound follows the reaction of the joint, with a force of the size F and a moment of the size M
+    in the bearing; friction and reaction are found together at each moment:
 
     ====================================  ===================================================================
     pin (an angle)                        torque mu radius F; with `length`, two bearings at its ends carry
