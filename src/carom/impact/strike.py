@@ -90,6 +90,7 @@ def strike(model, data, method, c):
         u = contact_velocity(system, group.points[0][i], state)[0]
         if u < -slow(system.contacts[closed_point.contact], state):
             approach = min(approach, u)
+            active.contact_states[closed_point.contact].broken = 0
     if approach < 0.0 or jams:
         hit.closed = max(k, 2) if jams else k  # after a jam active points are always decided again
         if k > 1:

@@ -18,6 +18,10 @@ CONTACT_STATE = [
     ("near", "i8"),
     ("jams", "i8"),  # 1 if an active point of it jams: an impact without collision must follow
     ("leaving", "i8"),  # 1 if the body lifts off without speed: it may touch at the start
+    (
+        "broken",
+        "i8",
+    ),  # 1 since a point of it has opened: it has no adhesion until it is pressed or struck anew
     ("blows", "i8"),  # impacts in a row, after low bounces
     ("struck", "f8"),  # time of the last
     ("step", "i8"),  # last step in which the two were near each other, plus 1
@@ -167,9 +171,9 @@ SEARCH = [
     ("side", "i8"),  # which end of the bracket moved last
     ("above", "f8"),  # values at the ends of the bracket, 0 before they are known
     ("below", "f8"),
-    ("flat", "i8"),  # trials in a row that have found the value of an end once more
+    ("alike", "i8"),  # trials in a row that have found the value of an end once more
     ("tried", "i8"),  # trials
-    ("many", "i8"),  # 1 if the search concerns several bodies in contact with each other
+    ("many", "i8"),  # 1 if the search concerns several free bodies in contact with each other
     ("low", "f8"),
     ("high", "f8"),
     ("f_low", "f8"),

@@ -26,6 +26,7 @@ from carom.model.event_rows import begin_event, end_event
 from carom.model.records import PERSISTS
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.active_set import activate, regroup, set_anchor, switch, unite_loaded
+from carom.persistent.adhesion import write_pulls
 from carom.persistent.bounces import (
     bounces_end,
     end_bounces,
@@ -118,6 +119,7 @@ def pose_forces(model, data, k, label):
     system, controls, group, work = model.system, model.controls, data.group, data.work
     work.moment[0].start = data.clocks[0].now
     accelerate_start(model, data, label)
+    write_pulls(system, data.active, k, data.state, group)
     write_motion(system, k, data.state, work.stages[0], group, work)
     still = controls.rest * greatest_load(k, group) * controls.step
     for i in range(k):

@@ -56,6 +56,7 @@ def activate(system, data, closed_point):
     active.count[0] = i + 1
     active_point, contact = active.points[i], system.contacts[closed_point.contact]
     begin_point(active_point, contact, closed_point.contact, closed_point.feature, MODE_STICK)
+    active.contact_states[closed_point.contact].broken = 0
     active_point.shares = 0
     for k in range(3):
         active_point.point[k] = closed_point.point[k]
@@ -97,6 +98,7 @@ def switch(system, data, i, mode):
         set_anchor(system, active_point, state, data.work)
     elif mode == MODE_OPEN:
         deactivate(active, i)
+        active.contact_states[c].broken = 1
     kind = OPENS if mode == MODE_OPEN else STICKS if mode == MODE_STICK else SLIPS
     end_event(system, c, kind, state, clock, records)
 

@@ -2,28 +2,31 @@
 
 The set of its forces is the cone of friction shifted by A: N >= -A, |T| <= mu (N + A). With N + A for N it is
 the cone itself, so all solvers stay as they are, beside a given force -A along the normal. The points of a
-contact share A by the weights of their springs.
+contact share A by the weights of their springs. Once one of them has let go, the others hold no more until
+the contact is pressed together or struck anew: else what is left of A would hold with the share of all, and at
+N = -A round-off would close again what it has opened.
 """
 
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
+from carom.kinematics.contact_point import contact_velocity
 from carom.model.laws import PERSISTENT
 from carom.model.workspace import MOTION_POINT
 
 
 @kernel
-def write_pulls(system, k, state, group):
+def write_pulls(system, active, k, state, group):
     """Write the parts of adhesion of k entries of a group; a point that leaves has none."""
     for i in range(k):
         one, whole = group.closed[i], 0.0
         one.pull = 0.0
-        if one.motion != MOTION_POINT:
+        if one.motion != MOTION_POINT or active.contact_states[one.contact].broken == 1:
             continue
         contact = system.contacts[one.contact]
         adhesion = system.laws.table[contact.law[PERSISTENT]].adhesion
-        if adhesion == 0.0 or (one.active < 0 and group.u[3 * i] > slow(contact, state)):
+        if adhesion == 0.0 or (one.active < 0 and leaves(system, contact, i, state, group)):
             continue
         for j in range(k):
             other = group.closed[j]
@@ -33,12 +36,24 @@ def write_pulls(system, k, state, group):
 
 
 @kernel
+def leaves(system, contact, i, state, group):
+    """Return whether closed point i parts with a speed."""
+    return contact_velocity(system, group.points[0][i], state)[0] > slow(contact, state)
+
+
+@kernel
 def pull_rows(k, share, group, out):
     """Subtract the effect of adhesion in all rows, times `share`: W times the pulls."""
     for i in range(k):
         pull = group.closed[i].pull
         for row in range(3 * k if pull > 0.0 else 0):
             out[row] -= share * group.problem.W[row, 3 * i] * pull
+
+
+@kernel
+def pulled(i, group):
+    """Return the acceleration of entry i by its part of an adhesion: what cancels it leaves its round-off."""
+    return group.closed[i].pull * group.problem.W[3 * i, 3 * i]
 
 
 @kernel

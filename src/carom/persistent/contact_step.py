@@ -80,7 +80,7 @@ def seek_in_groups(system, active, work):
         seek_in(contact.body, work)
         if contact.other >= 0:
             seek_in(contact.other, work)
-            search.many = 1
+            search.many = 1 if work.body[contact.body].label < work.body.shape[0] else 0
     elif search.kind in (EVENT_SEPARATE, EVENT_CONE, EVENT_JAM, EVENT_KINK):
         seek_in(active.points[search.contact].body, work)
     elif search.kind == EVENT_STOP:
@@ -90,11 +90,10 @@ def seek_in_groups(system, active, work):
     else:
         return
     for i in range(active.count[0]):
-        if active.points[i].rest == 0 and not concerned(
-            work.body[active.points[i].body].label, work
-        ):
+        point, label = active.points[i], work.body[active.points[i].body].label
+        if point.rest == 0 and not concerned(label, work):
             search.part = 1
-        if active.points[i].other >= 0 and concerned(work.body[active.points[i].body].label, work):
+        if point.other >= 0 and label < work.body.shape[0] and work.body[label].sought == 1:
             search.many = 1
 
 

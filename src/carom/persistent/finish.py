@@ -20,6 +20,7 @@ from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
 from carom.model.workspace import CONSTANT, MOTION_JOINT, MOTION_POINT
 from carom.persistent.active_set import clear
+from carom.persistent.adhesion import pulled
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.jam import jams_among
 from carom.persistent.joint_rows import greatest_load, place_drives, radius_of
@@ -324,7 +325,7 @@ def add_forces_of_corners(active, k, group):
 def gains(i, push, group):
     """Return whether a point accelerates along its surface."""
     a = group.a
-    return math.hypot(a[3 * i + 1], a[3 * i + 2]) > NO_MARGIN * push
+    return math.hypot(a[3 * i + 1], a[3 * i + 2]) > NO_MARGIN * (push + pulled(i, group))
 
 
 @kernel

@@ -26,6 +26,7 @@ from carom.model.actions import (
     MODE_STICK,
 )
 from carom.model.workspace import MOTION_POINT, MOTION_ROLL
+from carom.persistent.adhesion import pulled
 from carom.persistent.joint_rows import greatest_load
 from carom.persistent.rolling_friction import take_torque
 from carom.persistent.thresholds import EVENT_ERROR, EVENT_MARGIN, NO_MARGIN
@@ -95,7 +96,7 @@ def set_margins(active_point, i, push, group):
 def set_grip(active_point, i, push, group):
     """Write the grip of point i, which sticks at the start of the step."""
     q, W, p, a = 3 * i, group.problem.W, group.p, group.a
-    gain = math.sqrt(a[q + 1] ** 2 + a[q + 2] ** 2) / push
+    gain = math.sqrt(a[q + 1] ** 2 + a[q + 2] ** 2) / (push + pulled(i, group))
     if active_point.next == MODE_SLIP:
         active_point.grip = -max(gain, 2.0 * EVENT_ERROR)
     elif gain > NO_MARGIN:

@@ -84,6 +84,7 @@ def write_rows(model, data, label, s) -> int:
     inverse_masses(system, k, points, state, work, group.problem.W)
     if has_loads(group):
         note_responses(system, k, state, work, group)
+    write_pulls(system, data.active, k, state, group)
     write_motion(system, k, state, work.stages[s], group, work)
     if any_depends_on_speed(system.laws):
         follow_laws(system, data.active, k, group)
@@ -96,7 +97,6 @@ def write_motion(system, k, state, rates, group, work):
     points = group.points[0]
     velocities(system, k, points, state, group.u)
     accelerations(system, k, points, state, rates, group.problem.c)
-    write_pulls(system, k, state, group)
     pull_rows(k, 1.0, group, group.problem.c)
     begin_loads(k, group)
     for i in range(k):

@@ -195,7 +195,7 @@ def grip(k, group):
             bound = group.problem.mu[i] * group.p[3 * i]
             if bound > most:
                 most, base = bound, closed[i].stick
-    if count < 2:
+    if count < 2 or not LOADED_PART * most > 0.0:
         return False
     for i in range(k):
         if closed[i].motion == MOTION_POINT and closed[i].rows == 3 and closed[i].presses == 1:

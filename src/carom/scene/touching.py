@@ -84,7 +84,8 @@ class SceneContacts(MethodsOfScene):
         adhesion
             Force [N] with which the two hold together while they touch, at least 0: that of a magnet or a
             latch. They come apart where more is needed, and friction has the normal force and this as its load.
-            The points of a face share it. It has no range: it does not act across a gap, and does not change
+            The points of a face share it, and once one lets go the others hold no more, until the two are
+            pressed together or strike anew. It has no range: it does not act across a gap, and does not change
             impacts. Time-stepping steps are without it, and say so. Default 0.
         name
             Name in the scene. Default: the names of both, such as ``"die-ground"``.

@@ -112,7 +112,7 @@ def begin_search(search, kind, contact, low, high):
     search.low, search.high, search.width = low, high, high
     search.f_low, search.side, search.tolerance = 1.0 if kind == EVENT_STOP else -1.0, 0, -1.0
     search.t, search.f, search.rate = 0.0, 0.0, 0.0
-    search.above, search.below, search.flat, search.tried = 0.0, 0.0, 0, 0
+    search.above, search.below, search.alike, search.tried = 0.0, 0.0, 0, 0
 
 
 @kernel
@@ -152,7 +152,7 @@ def note_flat(search, f):
     before = search.below if f < 0.0 else search.above
     known = search.above > 0.0 and search.below < 0.0
     same = abs(f - before) <= FLAT_PART * (search.above - search.below)
-    search.flat = search.flat + 1 if known and same else 0
+    search.alike = search.alike + 1 if known and same else 0
     search.tried += 1
     if f < 0.0:
         search.below = f
@@ -164,7 +164,7 @@ def note_flat(search, f):
 def jumps(search):
     """Return whether the event function of several bodies is taken to jump in the bracket."""
     event = search.kind in (EVENT_CONE, EVENT_SEPARATE, EVENT_STOP)
-    return event and search.many == 1 and search.flat >= FLAT_TRIALS
+    return event and search.many == 1 and search.alike >= FLAT_TRIALS
 
 
 @kernel
