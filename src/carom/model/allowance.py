@@ -22,7 +22,7 @@ from carom._compiled.decorators import kernel
 COUNT_TRIALS, COUNT_SEARCHES, COUNT_FACTORS, COUNT_BLOCKS = range(4)
 COUNTS = 4
 #: bound of each kind in a part of a run, and that of trial steps of given length
-PART, OF_STEP = (500.0, 4000.0, 1e6, 4e4), 150.0
+PART, OF_STEP = (500.0, 4000.0, 3e6, 4e4), 150.0
 PARTS, SAVED = 200.0, 20.0  # least number of parts of a run; parts that may be saved
 # part of the work of an accepted step without an event, of the length that a tolerance permits, that counts
 SMOOTH = 0.1
