@@ -238,7 +238,7 @@ def test_the_room_of_arrays_changes_nothing():
 
 
 def test_what_hardly_moves_costs_few_steps():
-    # A row of 15 boxes that touch, or nearly: 1 227 to 74 271 trial steps in three runs that differ by round-off,
+    # A row of 15 boxes that touch, or nearly: 1 227 to 74 271 trial steps in runs that differ by round-off,
     # at most those of the allowance of an island, 500 in each of 220 parts of the run. While pairs of which
     # another corner is the nearest at the end were unsure, it took 199 143.
     one = crowds.case(950041)
