@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 
-FEW_COLUMNS = (
-    4  # one column in so many has numbers in the rows that are subtracted: they are listed
-)
+#: columns with numbers in the rows that are subtracted are listed where they are fewer than one in so many
+FEW_COLUMNS = 4
 MANY_ROWS = 64  # rows: from here on sums of four are made at once
 
 
@@ -30,16 +29,16 @@ def factor(A, n, pivot, least):
             inverse = 1.0 / a[k]
             for i in range(k + 1, n):
                 b = A[i]
-                if b[k] != 0.0:
-                    b[k] *= inverse
-                    for j in range(k + 1, last):
-                        b[j] -= b[k] * a[j]
+                if b[k] == 0.0:
+                    continue
+                b[k] *= inverse
+                for j in range(k + 1, last):
+                    b[j] -= b[k] * a[j]
         for k in range(first, last):
             for i in range(k + 1, last):
                 a, b, m = A[k], A[i], A[i, k]
-                if m != 0.0:
-                    for j in range(last, n):
-                        b[j] -= m * a[j]
+                for j in range(last, n if m != 0.0 else last):
+                    b[j] -= m * a[j]
         if last == first + 4:
             products += eliminate(A, first, n, pivot)
     return replaced, products

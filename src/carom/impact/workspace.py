@@ -93,13 +93,11 @@ class Group(NamedTuple):
     a: np.ndarray  # (3K,) accelerations with them [m/s^2]
     back: np.ndarray  # (3K,) errors of positions [m] or velocities, then impulses that remove them
     idle: np.ndarray  # (2, K, K) the projector to normal forces that move nothing, and its square
-    loads: (
-        np.ndarray
-    )  # (L, 1 + 3K, 9) vectors of loads: constant, and by unit forces (`persistent.joint_load`)
+    #: (L, 1 + 3K, 9) vectors of loads: constant, and by unit forces (`persistent.joint_load`)
+    loads: np.ndarray
     vectors: np.ndarray  # (9,) those of a load under all forces
-    secant: (
-        np.ndarray
-    )  # (5 + L, L) errors of loads, their last step, and the inverse of their derivative
+    #: (5 + L, L) errors of loads, their last step, and the inverse of their derivative
+    secant: np.ndarray
     bodies: Bodies
     equations: Equations
     problem: ContactProblem  # its W, c, mu, kind and heading; c are velocities or accelerations without p

@@ -193,10 +193,8 @@ LOAD = [
 #: rate of a drive
 FRICTION = [
     ("coordinate", "i8"),
-    (
-        "law",
-        "i8",
-    ),  # by number: its friction is a force [N] or a moment [N m]; by load a coefficient
+    # by number: its friction is a force [N] or a moment [N m]; by load a coefficient
+    ("law", "i8"),
     ("drives", "i8"),  # 1 if it is a drive with a limit, whose rate is that of a motion
     ("arm", "f8"),  # by load, of an angle: distance [m] at which surfaces slide; else 1
     *LOAD,

@@ -22,12 +22,9 @@ ACTIVE_POINT = [
     ("jams", "i8"),  # 1 if it slips and no finite force keeps it closed
     ("point", "f8", 3),  # point of the core that carries the contact, body axes
     ("anchor", "f8", 3),  # its position in the world since it sticks
-    (
-        "force",
-        "f8",
-        3,
-    ),  # of the last solve, contact axes; the normal one with its part of an adhesion
-    ("pull", "f8"),  # this part
+    # of the last solve, contact axes; the normal one with its part of an adhesion, and this part
+    ("force", "f8", 3),
+    ("pull", "f8"),
     ("heading", "f8", 2),  # direction of slip at the start of the step, or of starting slip
     ("speed", "f8"),  # of slip at the start of the step
     # of rolling and pivoting: direction and speed at the start of the step

@@ -18,10 +18,8 @@ CONTACT_STATE = [
     ("near", "i8"),
     ("jams", "i8"),  # 1 if an active point of it jams: an impact without collision must follow
     ("leaving", "i8"),  # 1 if the body lifts off without speed: it may touch at the start
-    (
-        "broken",
-        "i8",
-    ),  # 1 since a point of it has opened: it has no adhesion until it is pressed or struck anew
+    # 1 since a point of it has opened: it has no adhesion until it is pressed or struck anew
+    ("broken", "i8"),
     ("blows", "i8"),  # impacts in a row, after low bounces
     ("struck", "f8"),  # time of the last
     ("step", "i8"),  # last step in which the two were near each other, plus 1
@@ -108,10 +106,8 @@ BODY_WORK = [
     ("home", "f8", 3),  # centre at the start of the step
     ("room", "f8"),  # largest distance of the centre from it in this step
     ("facing", "f8", 4),  # attitude at the start of the step
-    (
-        "reach",
-        "f8",
-    ),  # largest displacement of a point of the body; infinite if the room alone counts
+    # largest displacement of a point of the body; infinite if the room alone counts
+    ("reach", "f8"),
 ]
 
 JOINT_WORK = [

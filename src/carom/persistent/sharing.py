@@ -51,9 +51,8 @@ def find_idle(k, group):
         Y, Z = Z, Y
     total = trace(n, Y)
     idle = group.idle[0]
-    for i in range(
-        n - 1, -1, -1
-    ):  # from the last, which no other has taken: points are not below rows
+    # from the last, whose place no other has taken: the number of a point is at least that of its row
+    for i in range(n - 1, -1, -1):
         for j in range(n - 1, -1, -1):
             idle[rows[i] // 3, rows[j] // 3] = Y[i, j]
     return size if total > 0.5 and abs(total - round(total)) < FREEDOM_ERROR else 0.0

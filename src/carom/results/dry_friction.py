@@ -43,12 +43,22 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
     if not dry:
         return solve(run.compiled, touch), {}
     joints = _DryJoints(run, states, touch, solve, dry)
-    bears = joints.loads(None, None)
-    for _ in range(LOAD_TURNS):
+    bears, step, before = joints.loads(None, None), np.zeros(1), np.zeros(1)
+    for turn in range(LOAD_TURNS):
         out, value = joints.solve_under(bears)
-        before, bears = bears, joints.loads(out, value)
-        if np.all(np.abs(bears - before) <= CHANGE * bears):
+        found = joints.loads(out, value)
+        error = found - bears
+        if np.all(np.abs(error) <= CHANGE * found):
             break
+        # by the secant of each, since friction may lower its own load by more than itself (`joint_load`)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            part = step / (before - error) if turn > 0 else np.ones(error.shape)
+        part = np.where(np.isfinite(part) & (part > 0.0) & (bears + part * error >= 0.0), part, 1.0)
+        step, before = part * error, error
+        bears = bears + step
+    else:  # times at which they do not agree have no values
+        lost = np.any(~(np.abs(error) <= STILL * found), axis=1)
+        out[lost], value[lost] = np.nan, np.nan
     return out, {force.index: value[:, k] for k, force in enumerate(dry)}
 
 

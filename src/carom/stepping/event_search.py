@@ -148,7 +148,7 @@ def update_bracket(search, t, f, rate):
 
 @kernel
 def note_flat(search, f):
-    """Store the value f of an end of the bracket, and whether it is what it was before."""
+    """Store the value at the end of the bracket that moves; count the trials that have left it as it was."""
     before = search.below if f < 0.0 else search.above
     known = search.above > 0.0 and search.below < 0.0
     same = abs(f - before) <= FLAT_PART * (search.above - search.below)
