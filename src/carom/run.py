@@ -22,11 +22,12 @@ from carom.impact.workspace import new_group, new_multiple, no_multiple
 from carom.kinematics.thresholds import END_MARGIN
 from carom.model import records as r
 from carom.model.arrays import ON_CURVE
-from carom.model.compile import compiled_once, uses_functions, with_pairs
+from carom.model.compile import Compiled, compiled_once, uses_functions, with_pairs
 from carom.model.controls import LOCATE, PROJECT, WORK, Controls
 from carom.model.data import Data, Model
 from carom.model.kept import Snapshot
 from carom.model.method import IMPLICIT, THREE_FIELD
+from carom.model.switched import NOTHING_SWITCHED, Stands, first_stand, go_on_from, stands_of
 from carom.model.user_results import check_results
 from carom.options import Options
 from carom.results.accuracy import inaccurate
@@ -37,6 +38,7 @@ from carom.scene.all_pairs import PairTable
 from carom.scene.joints import Joint
 from carom.scene.more_forces import has_kinks
 from carom.scene.scene import Scene
+from carom.scene.switches import is_off
 from carom.status import Status
 from carom.stepping import record, time_loop
 from carom.stepping.crowd.layout import SPOTS, new_crowd, no_crowd, roomier_crowd
@@ -48,6 +50,7 @@ from carom.stepping.grid import (
     longest_step,
     planned_grid,
     step_at,
+    with_end,
 )
 from carom.stepping.islands.layout import (
     has_events,
@@ -83,7 +86,8 @@ class Run:
         else:
             self.make(scene, settings)
             check_results(scene)
-            self.check(scene)
+            if scene._off is None:  # else the start of another run
+                self.check(self.stands.view(scene))
             if not uses_functions(self.compiled):
                 shared = together(), self.crowd, self.multiple, self.method
                 template = Template(tuple(vars(self).values()), shared) if again else None
@@ -99,8 +103,9 @@ class Run:
         options, definition = settings.options, METHODS[settings.method]
         kind, adapts = definition.kind, settings.adapts
         self.apart = settings.impact_location == "locate" and kind != THREE_FIELD
-        ways = kind == THREE_FIELD, kind == IMPLICIT, self.apart
-        self.compiled = compiled_once(scene, options, *ways)
+        self.ways = kind == THREE_FIELD, kind == IMPLICIT, self.apart
+        self.stands, self.switched = first_stand(scene), NOTHING_SWITCHED
+        self.compiled = compiled_once(self.stands.view(scene), options, *self.ways)
         system = self.compiled.system
         kinks = adapts and has_kinks(scene)
         self.method = make_method(settings.method, options, adapts, kinks)
@@ -141,15 +146,9 @@ class Run:
 
     def make_arrays(self) -> None:
         """Make all arrays that the run changes, except the records."""
-        options, system, later = self.options, self.compiled.system, self.compiled.later
-        self.now, self.active = self.compiled.start, r.new_active_set(system)
-        self.work = r.new_work(system, self.method.b.size)
-        of = system, self.active
-        self.islands = new_islands(*of, later) if self.apart else no_islands(*of)
-        self.group = new_group(system, later is not None)
-        again = self.apart and options.hold and has_events(system, later is not None)
-        self.controls = self.controls._replace(retry=int(again))
-        self.crowd = no_crowd()  # made when there is one
+        options, system = self.options, self.compiled.system
+        self.now = self.compiled.start
+        self.make_workspace()
         self.multiple = no_multiple(multiple_settings(options))  # and this
         self.clock = r.new_clock()
         share = STEP_SHARE * options.energy_tolerance if self.how.method in EXPLICIT else np.inf
@@ -158,6 +157,44 @@ class Run:
         self.work.body["ahead"] = np.where(flies, 1.0, FIRST_STEP) * self.grid.interval
         self.project()
         self.work.body["label"] = np.where(flies, system.bodies["component"], system.bodies.size)
+
+    def make_workspace(self) -> None:
+        """Make the arrays that depend on which joints, forces and contacts there are."""
+        system, later = self.compiled.system, self.compiled.later
+        self.active = r.new_active_set(system)
+        self.work = r.new_work(system, self.method.b.size)
+        of = system, self.active
+        self.islands = new_islands(*of, later) if self.apart else no_islands(*of)
+        self.group = new_group(system, later is not None)
+        again = self.apart and self.options.hold and has_events(system, later is not None)
+        self.controls = self.controls._replace(retry=int(again))
+        self.crowd = no_crowd()  # made when there is one
+
+    def stand_as(self, stands: Stands) -> None:
+        """Go on from the present state with other parts than before: those that are not off."""
+        old, active, ahead = self.compiled, self.active, self.work.body["ahead"]
+        self.stands = stands
+        self.compiled = compiled_once(stands.view(self.scene), self.options, *self.ways)
+        self.make_workspace()
+        system, bodies = self.compiled.system, self.work.body
+        bodies["ahead"] = np.minimum(ahead, FIRST_STEP * self.grid.interval)
+        flies = system.bodies["ballistic"] == 1
+        bodies["label"] = np.where(flies, system.bodies["component"], system.bodies.size)
+        self.work.step["begin"], self.clock["still"] = self.clock["now"], np.inf
+        go_on_from(old, active, self.compiled, self.active)
+
+    def stand_at_end_of(self, switched: np.ndarray) -> None:
+        """Go on with the parts that there are after all of this was switched in another run of the scene."""
+        if len(switched):
+            self.switched = switched
+            self.stand_as(stands_of(self.scene, switched)[-1][1])
+
+    def divide(self, t: float) -> bool:
+        """Let a step end at a time t to come, and its state be saved; return whether there is one step more."""
+        last = self.grid.last
+        self.grid = with_end(self.grid, t, self.controls.duration)
+        self.records = r.with_room(self.records, int(self.clock["saved"][0]), self.grid.rows)
+        return self.grid.last > last
 
     def project(self) -> None:
         """Move the bodies into positions that satisfy the joints, where `Options.project_start` says so."""
@@ -293,6 +330,12 @@ class Run:
         return self.compiled.to_principal
 
     @property
+    def everything(self) -> Compiled:
+        """The compiled scene with all its contacts, also those that are switched off."""
+        scene = self.scene
+        return compiled_once(scene, self.options, *self.ways) if scene.switches else self.compiled
+
+    @property
     def functions(self) -> Functions:
         """The user-defined functions."""
         return self.compiled.functions
@@ -403,13 +446,14 @@ class Run:
 
 def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:
     """Refuse a joint that exceeds its stop at the start."""
-    if not scene.stops or scene._chart is not None:  # in coordinates gaps have sizes of their own
+    stops = [stop for stop in scene.stops if not is_off(scene, stop)]
+    if not stops or scene._chart is not None:  # in coordinates gaps have sizes of their own
         return
     system = compiled.system
-    gaps, first = np.zeros(len(scene.stops)), len(system.contacts) - len(scene.stops)
+    gaps, first = np.zeros(len(stops)), len(system.contacts) - len(stops)
     write_least_gaps(system, start, first, work, gaps)
-    for stop, gap in zip(scene.stops, gaps):
-        extent = system.contacts.extent[first + stop.index]
+    for row, (stop, gap) in enumerate(zip(stops, gaps), start=first):
+        extent = system.contacts.extent[row]
         if not gap >= -options.constraint_tolerance * extent:
             if stop.joint.can_be_left:
                 raise ValueError(
@@ -418,7 +462,7 @@ def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:
                 )
             side = "lower" if stop.side > 0.0 else "upper"
             unit = "rad" if stop.turns else "m"
-            place = round(stop.end + gap / system.contacts.side[first + stop.index], 9)
+            place = round(stop.end + gap / system.contacts.side[row], 9)
             raise ValueError(
                 f"stop {stop.name!r} of {stop.joint.name!r} must not be exceeded at the start, where the "
                 f"coordinate is {place + 0.0:g}, got {side}={stop.end:g} {unit}"

@@ -10,7 +10,7 @@ from typing import overload
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
-from carom.control.conditions import Event, conditions
+from carom.watch.conditions import Event, conditions
 from carom.generalized.solution import GeneralizedSolution
 from carom.generalized.system import GeneralizedSystem
 from carom.io.run_to_end import finish
@@ -216,16 +216,15 @@ def simulate(
             "save must be left out with events, because such a run cannot be resumed, got "
             f"{checks.shown(save)}; save the solution at its end: solution.save(path)"
         )
-    run = Run(moved, settings)
-    if found is not None:
-        from carom.control.watched import Watched
-
-        run = Watched(run, found)
-    keeper = None
+    run, keeper = Run(moved, settings), None
     if save is not None:
         from carom.io.files.keeper import Keeper
 
         keeper = Keeper(run, save, save_seconds)
+    if found is not None or moved.switches:
+        from carom.watch.watched import watched
+
+        run = watched(run, found)
     for mistake in mistakes(scene, settings):
         warnings.warn(mistake, MistakeWarning, stacklevel=3)
     solution = finish(run, progress, keeper, throw)

@@ -51,6 +51,7 @@ class Endless(Run):
         if kept.found is not None:
             self.add_pairs(kept.found[: checkpoint.found["pairs"]])
         self.records = r.with_room(self.records, 1, len(kept.records.series))
+        self.stand_at_end_of(kept.switched)
         restore(self, checkpoint, kept.records)
         self.asked, self.base, self.before = self.how.save_every, self.reached, self.steps_done
         if self.how.step is None:
@@ -76,6 +77,9 @@ class Endless(Run):
         for name in GOES_ON:
             mine[name] = before[name]
         self.work.step["begin"] = mine.now
+        if old.stands.count:
+            self.switched = old.switched
+            self.stand_as(old.stands)
         if self.tolerances is not None:
             self.work.body["ahead"] = FIRST_STEP * self.controls.interval
         place()
@@ -88,6 +92,12 @@ class Endless(Run):
         given = mine.kinetic + mine.potential - before.kinetic - before.potential
         mine.loads += given
         self.records.series["loads"][mine.saved - 1] += given
+
+    def divide(self, t: float) -> bool:
+        """Let a step end at a time t to come; the steps after it have numbers greater by one."""
+        divided = super().divide(t)
+        self.before += divided
+        return divided
 
     def go_on(self, until: int) -> Status:
         """Go on to step number `until`, or to a failure: in parts, for which room is made."""

@@ -25,6 +25,7 @@ from carom.results.solution import Solution
 from carom.results.state import SystemState
 from carom.scene.forces import AppliedForce
 from carom.scene.scene import Scene
+from carom.scene.switches import check_on
 from carom.status import MistakeWarning, SimulationError, Status
 from carom.stepping.settings import (
     Settings,
@@ -33,6 +34,8 @@ from carom.stepping.settings import (
     mistakes,
     settings_of,
 )
+from carom.watch.switching import switch
+from carom.watch.watched import watched
 
 
 @arguments.attributes()
@@ -127,6 +130,7 @@ class Run:
     def _stand(self, run: Endless, history: History | None = None) -> None:
         """Be this run, whose forces were set so."""
         self._run, self._applied = run, Applied(run, history)
+        self._watched: Any = watched(run)
         self._status, self._known = Status.SUCCESS, {}
 
     def _take_on(self, solution: Solution) -> None:
@@ -192,6 +196,36 @@ class Run:
             If it is no such force of the scene, or the value is not finite.
         """
         self._applied.set(force, value)
+
+    @arguments.known
+    def switch(self, part, *, off: bool = True) -> None:
+        """Take a part out of the motion now, or put it into it, as a switch of the scene does.
+
+        Parameters
+        ----------
+        part
+            A joint, force, constraint, stop or contact of a switch (`Scene.switch`), its name, or a tuple of
+            them.
+        off : bool
+            True (default): the part is taken out. False: it is put in.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If no switch of the scene has this part.
+        """
+        scene, off = self._run.scene, checks.flag("off", off)
+        named = {one.name: one for switch in scene.switches for one in switch.parts}
+        for given in part if isinstance(part, tuple) else (part,):
+            one = scene._parts.named("part", given)
+            if one.name not in named:
+                raise ValueError(
+                    f"part must be that of a switch, got {one.name!r}; state one: scene.switch({one.name!r})"
+                )
+            if not off:
+                check_on(one)
+            switch(self._run, one, not off)
+        self._watched, self._known = watched(self._run), {}
 
     @arguments.known
     def reset(
@@ -302,8 +336,10 @@ class Run:
         run = self._run
         if self._status is Status.SUCCESS:
             until = run.ask(duration)
+            if run is not self._watched:  # which counts the steps that were planned
+                until -= self._watched.more
             try:
-                self._status = run.go_on(until)
+                self._status = self._watched.go_on(until)
             except KeyboardInterrupt:
                 run.go_back()
                 raise
@@ -361,4 +397,5 @@ def solution_of(run: Endless, status: Status, history: History) -> Solution:
     run.clock[:] = clock
     known = run.scene, settings, run.options, records, capture(run), [], past, run.found
     kept = KeptRun(*known, list(history))
+    kept.switched = run.switched
     return replace(made, settings=settings, _run=kept)

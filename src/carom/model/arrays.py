@@ -54,6 +54,7 @@ LIMITED = {
 OF_LIMIT = {word: number for number, word in enumerate(LIMITED, len(KIND) + 5)}
 SWING, TWIST = OF_LIMIT["swing"], OF_LIMIT["twist"]
 COMBINATION = len(KIND) + 5 + len(LIMITED)  # sum of factors times coordinates of joints
+ABSENT = COMBINATION + 1  # an element that a switch has taken away: it has no rows
 
 
 def _kinds(chosen) -> tuple[int, ...]:

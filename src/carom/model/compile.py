@@ -14,6 +14,7 @@ from carom.geometry import quaternion
 from carom.geometry.thresholds import LAST_DIGIT
 from carom.model import graph, solvers
 from carom.model.arrays import (
+    ABSENT,
     BODY,
     CHART_CONSTRAINT,
     JOINT,
@@ -30,7 +31,7 @@ from carom.model.forces import Place
 from carom.model.laws import LawTable
 from carom.model.moving_surfaces import moving_surfaces
 from carom.model.pieces import Pieces
-from carom.model.placement import Placement
+from carom.model.placement import Placement, put_in
 from carom.model.relations import Coordinates, Elements
 from carom.model.stated_forces import ForceRows
 from carom.model.stops import with_stops
@@ -41,6 +42,7 @@ from carom.scene.all_pairs import Defaults, PairTable, joined_tables, some_pairs
 from carom.scene.coordinates import Combination, Length, terms_of
 from carom.scene.more_forces import JointInertia
 from carom.scene.scene import Scene
+from carom.scene.switches import is_off
 
 
 class Compiled(NamedTuple):
@@ -71,10 +73,14 @@ def compile_scene(
     """
     made = _Moved(scene, options, loops, implicit)
     # stops have the numbers after those of all pairs, so no pair may be added later
-    may_come = apart and bool(made.bodies["ballistic"].any()) and not scene.stops
+    may_come = apart and bool(made.bodies["ballistic"].any())
+    may_come = may_come and not scene.stops and not scene.switches
     touching = compile_contacts(scene, made.to_principal, options, made.laws, may_come)
     add_functions(scene, touching, made.functions)
     contacts = with_stops(scene, touching.rows, made.elements, options, made.laws)
+    if scene._off:
+        off = [one.index for one in scene.contacts if is_off(scene, one)]
+        contacts = contacts[~np.isin(contacts["number"], off)].view(Columns)
     return made.compiled(touching, contacts, moving_surfaces(scene, made.functions))
 
 
@@ -102,9 +108,9 @@ class _Moved:
         self.scene = scene
         self.functions = Functions() if scene._chart is None else scene._chart.functions
         self.start, self.to_principal, moments = _start(scene)
-        self.placement = Placement(self.start, self.to_principal)
+        self.placement = Placement(self.start, self.to_principal, scene._placed)
         self.coordinates = Coordinates(self.placement)
-        self.coordinates.count(scene.joints)
+        self.coordinates.count(scene)
         pieces, self.laws = Pieces(), LawTable()
         self.elements = Elements(
             scene, self.coordinates, self.functions, pieces, start_sizes(scene)
@@ -217,15 +223,20 @@ def _joints(scene, moments, placement, elements, options, loops):
     if not defined and not elements.kinds:
         return table(JOINT, 0), np.zeros(0, dtype=bool), solvers.no_joints()
     count, number = len(scene.bodies), len(defined)
+    off = np.array([is_off(scene, j) for j in defined], dtype=bool)
     kind = np.array([KIND[type(j.definition)] for j in defined], dtype=np.int64)
     parent = np.array([j.parent.index for j in defined], dtype=np.int64)
     child = np.array([j.child.index for j in defined], dtype=np.int64)
+    parent[off], child[off], there = -1, -1, np.flatnonzero(~off)
     flipped = np.zeros(number, dtype=bool)
-    forest = not loops and not elements.kinds and graph.is_forest(count, kind, parent, child)
+    forest = not loops and not elements.present
+    forest = forest and graph.is_forest(count, kind[there], parent[there], child[there])
     rotor = np.zeros((number, 6))
     order, carrier = np.arange(count), np.full(count, -1)
     if forest:
-        order, carrier, turned = graph.forest_order(count, parent, child)
+        order, carried, walked = graph.forest_order(count, parent[there], child[there])
+        turned, carrier = np.zeros(number, dtype=bool), np.append(there, -1)[carried]
+        turned[there] = walked
         rotor, along = rotors_in_tree(scene, kind, turned)
         forest = along and not np.any(turned & graph.cannot_flip(kind))
     if forest:
@@ -235,8 +246,8 @@ def _joints(scene, moments, placement, elements, options, loops):
         elements.add_rotors()
     joints = table(JOINT, number + len(elements.kinds))
     joints.parent[:number], joints.child[:number] = parent, child
-    joints.kind = [*kind, *elements.kinds]
-    joints.rows = [*(j.definition.rows for j in defined), *elements.rows]
+    joints.kind = [*np.where(off, ABSENT, kind), *elements.kinds]
+    joints.rows = [*(0 if is_off(scene, j) else j.definition.rows for j in defined), *elements.rows]
     for j, joint in enumerate(defined):
         definition = joint.definition
         first, second = definition.anchors(joint.anchor(), joint.child.position)
@@ -246,12 +257,14 @@ def _joints(scene, moments, placement, elements, options, loops):
         joints.parent_anchor[j], joints.child_anchor[j] = p.point(a), c.point(b)
         joints.parent_frame[j], joints.child_frame[j] = p.axes(world), c.axes(world)
         joints.length[j] = definition.scale()
-        if definition.guide == "curve":
+        if joint.name in scene._placed:
+            put_in(joint, scene._placed[joint.name], joints[j])
+        if definition.guide == "curve" and not off[j]:
             joints.number[j] = elements.coordinates.number(joint, 0)
     touching = [[b for b in (c, p) if b >= 0] for p, c in zip(parent.tolist(), child.tolist())]
     for j, bodies in enumerate(elements.touching, start=number):
         joints.number[j] = elements.numbers[j - number]
-        joints.child[j], joints.parent[j] = bodies[0], -1
+        joints.child[j], joints.parent[j] = bodies[0] if bodies else -1, -1
     touching += elements.touching
     if forest:
         solver = solvers.tree_solver(joints, order, carrier, rotor)
@@ -266,7 +279,7 @@ def _joints(scene, moments, placement, elements, options, loops):
                 f"got {ratio:.3g} times"
             )
         solver = solvers.loop_solver(
-            touching, options.drop_tolerance, 0 if elements.touching else count,
+            touching, options.drop_tolerance, 0 if elements.present else count,
             count if ratio > MASS_RATIO else 0,
         )  # fmt: skip
     return joints, flipped, solver
@@ -293,7 +306,7 @@ def rotors_in_tree(scene, kind, flipped) -> tuple[np.ndarray, bool]:
     out = np.zeros((len(kind), 6))
     for force in scene.forces:
         d = force.definition
-        if not isinstance(d, JointInertia):
+        if not isinstance(d, JointInertia) or is_off(scene, force):
             continue
         j, names = d.joint.index, d.joint.definition.coordinates
         turns, slides = names.count("turn"), names.count("slide")
@@ -338,7 +351,7 @@ def _tethered(scene) -> tuple[np.ndarray, np.ndarray]:
     alone, joined = [], []
     for stop in scene.stops:
         for one, _, _ in terms_of(stop.joint, stop.coordinate):
-            if isinstance(one, Length):
+            if isinstance(one, Length) and not is_off(scene, stop):
                 ends = joined if isinstance(stop.joint, Combination) else alone
                 ends += [one.parent.index, one.child.index]
     return np.array(alone, dtype=np.int64), np.array(joined, dtype=np.int64)
@@ -350,7 +363,7 @@ def _bodies(scene, moments, joints, elements, loaded, joined):
     isolated = np.ones(len(bodies), dtype=np.int64)
     for side in ("parent", "child") if len(joints) else ():
         isolated[joints[side][joints[side] >= 0]] = 0
-    for touched in (*elements.touching, joined[joined >= 0]):
+    for touched in (*elements.present, joined[joined >= 0]):
         isolated[touched] = 0
     ballistic = isolated.copy()
     ballistic[loaded[loaded >= 0]] = 0

@@ -55,10 +55,12 @@ class Snapshot:
     def put_back(self) -> None:
         """Put the run back to where it stood."""
         run = self.run
-        run.compiled, run.now, run.active, run.islands = self.parts
+        run.compiled, run.now, run.active, run.islands, *more = self.parts
+        run.work, run.group, run.stands, run.switched = more
         self.kept.restore()
 
     def present(self) -> tuple:
-        """Return the parts of the run that are replaced when they grow."""
+        """Return the parts of the run that are replaced when they grow, or by a switch."""
         run = self.run
-        return run.compiled, run.now, run.active, run.islands
+        own = run.compiled, run.now, run.active, run.islands
+        return *own, run.work, run.group, run.stands, run.switched

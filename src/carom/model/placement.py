@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from carom.geometry import quaternion
@@ -15,10 +17,12 @@ class Placement:
     start : (N,) STATE
     to_principal : (N, 4)
         From principal axes to the scene's body axes.
+    placed : mapping
+        How joints stand that switches have put in, by name (`pose_of_child`).
     """
 
-    def __init__(self, start: np.recarray, to_principal: np.ndarray):
-        self.start, self.to_principal = start, to_principal
+    def __init__(self, start: np.recarray, to_principal: np.ndarray, placed: Mapping):
+        self.start, self.to_principal, self.placed = start, to_principal, placed
 
     def point(self, body, point) -> np.ndarray:
         """Return a world point in the axes of a body, from its centre."""
@@ -68,3 +72,34 @@ class Side:
         if b < 0:
             return np.array(vector, dtype=float)
         return quaternion.rotate_back(self.placement.to_principal[b], vector)
+
+
+def pose_of_child(joint, states: np.recarray) -> np.ndarray:
+    """Return position and attitude (7,) of the child of a joint from its parent, of their principal axes."""
+    child = states[joint.child.index]
+    if joint.parent.index < 0:
+        return np.append(child["x"], child["Q"])
+    parent = states[joint.parent.index]
+    away = quaternion.rotate_back(parent["Q"], child["x"] - parent["x"])
+    return np.append(away, quaternion.multiply(quaternion.conjugate(parent["Q"]), child["Q"]))
+
+
+def put_in(joint, pose: np.ndarray, row) -> None:
+    """Let a joint, or a coordinate of it, take its child as it stands: its place in the parent stays.
+
+    So both anchors are one point, and both frames one, from then on; a rod has the length between its anchors.
+
+    Parameters
+    ----------
+    joint : the joint
+    pose : (7,) of `pose_of_child`
+    row : a record of JOINT or COORDINATE, whose parent may be the child of the joint
+    """
+    (far, near) = ("parent", "child") if row["child"] == joint.child.index else ("child", "parent")
+    if row["length"] > 0.0 and joint.kind == "Distance":
+        there = pose[:3] + quaternion.rotate(pose[3:], row[f"{near}_anchor"])
+        row["length"] = np.linalg.norm(there - row[f"{far}_anchor"])
+        return
+    row[f"{near}_anchor"] = quaternion.rotate_back(pose[3:], row[f"{far}_anchor"] - pose[:3])
+    row[f"{near}_frame"] = quaternion.rotate_back(pose[3:], row[f"{far}_frame"].T).T
+    row["begin"] = 0.0

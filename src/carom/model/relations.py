@@ -14,7 +14,7 @@ from carom.model import arrays, memory
 from carom.model.actions import MODE_STICK
 from carom.model.curves import Curves
 from carom.model.pieces import PIECE, Pieces
-from carom.model.placement import Placement
+from carom.model.placement import Placement, put_in
 from carom.model.stated_forces import ForceRows, write_motion
 from carom.scene.actuators import Controlled
 from carom.scene.constraints import Coupling, Rows
@@ -31,6 +31,7 @@ from carom.scene.coordinates import (
 from carom.scene.forces import Spring
 from carom.scene.joints import Joint
 from carom.scene.more_forces import JointInertia, JointSpring
+from carom.scene.switches import is_off
 
 
 class Coordinates:
@@ -44,10 +45,15 @@ class Coordinates:
         self.curves = Curves()
         self.counted, self.used = 0, False
 
-    def count(self, joints) -> None:
-        """Add all angles, and places on closed curves, of joints: a run counts their turns, used or not."""
-        for j, k in counted(joints):
-            self.number(joints[j], k)
+    def count(self, scene) -> None:
+        """Add all angles, and places on closed curves, of joints: a run counts their turns, used or not.
+
+        Those of a joint that is off have no bodies: these may move in islands of their own.
+        """
+        for j, k in counted(scene.joints):
+            row = self.rows[self.number(scene.joints[j], k)]
+            if is_off(scene, scene.joints[j]):
+                row.kind, row.child, row.parent = arrays.REVOLUTE, -1, -1
         self.counted, self.used = len(self.rows), False
 
     def report(self, joints, stops) -> None:
@@ -67,6 +73,8 @@ class Coordinates:
         if key not in self.numbers:
             self.numbers[key] = len(self.rows)
             self.rows.append(self._row(joint, coordinate))
+            if isinstance(joint, Joint) and joint.name in self.placement.placed:
+                put_in(joint, self.placement.placed[joint.name], self.rows[-1][0])
         return self.numbers[key]
 
     def _of_terms(self, combination: Combination) -> int:
@@ -160,17 +168,27 @@ class Elements:
         self.kinds, self.rows, self.numbers, self.touching = [], [], [], []
         self.relations, self.user, self.stiff, self.rotors = [], [], [], []
         for force in scene.forces:
-            if isinstance(force.definition, JointInertia) and force.definition.inertia > 0.0:
-                self._rotor(force.definition)
+            d = force.definition
+            if isinstance(d, JointInertia) and d.inertia > 0.0 and not is_off(scene, force):
+                self._rotor(d)
         self.terms: list[list[tuple[int, float]]] = []
         self.pieces = pieces
         self.width = 9
         for constraint in scene.constraints:
             d = constraint.definition
-            if isinstance(d, Rows):
+            if is_off(scene, constraint):
+                self._add(arrays.ABSENT, 0, 0, [])
+            elif isinstance(d, Rows):
                 self._user(constraint, functions)
             else:
                 self._relation(constraint, functions, sizes)
+                if constraint.name in scene._placed:
+                    self.relations[-1].constant = scene._placed[constraint.name][0]
+
+    @property
+    def present(self) -> list[list[int]]:
+        """The bodies of each element, without elements that are off."""
+        return [bodies for bodies in self.touching if bodies]
 
     def _add(self, kind, rows, number, bodies):
         self.kinds.append(kind)
@@ -182,6 +200,8 @@ class Elements:
         """Add the springs of a scene, between points and along coordinates, as rows for the implicit step."""
         for force in scene.forces:
             d = force.definition
+            if is_off(scene, force):
+                continue
             made = table(arrays.STIFF_SPRING, 1)
             if isinstance(d, Controlled) and d.is_damped_spring:
                 made.stiffness, made.damping = d.spring
@@ -251,16 +271,18 @@ class Elements:
 
     def arrays(self, solver, more: ForceRows) -> arrays.Relations:
         """Return the tables, with the sides that `solver` gave to the bodies."""
-        if not (self.kinds or self.coordinates.rows or more.any_apart):
+        if not (self.present or self.coordinates.rows or more.any_apart):
             return no_relations()._replace(pieces=self.pieces.rows)
-        there = 1 if self.kinds or self.coordinates.used or more.any_apart else 0
+        there = 1 if self.present or self.coordinates.used or more.any_apart else 0
         terms = []
         relation = iter(range(len(self.relations)))
         inertias = (float(rotor.inertia[0]) for rotor in self.rotors)
-        first_side = solver.rows.first[-len(self.kinds) :] if self.kinds else []
+        first_side = solver.rows.first[-len(self.kinds) :] if self.present else []
         rows = self.coordinates.table()
-        own = zip(first_side, self.kinds, self.touching, self.numbers, strict=True)
+        own = zip(first_side, self.kinds, self.touching, self.numbers)
         for j, (first, kind, bodies, number) in enumerate(own, len(solver.rows) - len(self.kinds)):
+            if kind == arrays.ABSENT:
+                continue
             if kind == arrays.USER_ROWS:
                 self.user[number].first, self.user[number].last = first, first + len(bodies)
                 continue

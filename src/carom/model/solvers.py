@@ -74,9 +74,9 @@ def spread(touching: list[list[int]], mass, moments, extent) -> tuple[float, int
     bodies. The two bodies are the lightest and the heaviest of that mechanism.
     """
     mechanisms = Sets(len(mass))
-    for first, *others in touching:
-        for b in others:
-            mechanisms.join(first, b)
+    for bodies in touching:
+        for b in bodies[1:]:
+            mechanisms.join(bodies[0], b)
     inertia = np.column_stack([mass, moments / extent[:, None] ** 2])
     least, most = inertia.min(axis=1), inertia.max(axis=1)
     own: dict[int, list[int]] = {}

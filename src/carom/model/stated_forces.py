@@ -19,6 +19,7 @@ from carom.scene.force_definition import ForceTable
 from carom.scene.forces import TABLES
 from carom.scene.friction import bound_of
 from carom.scene.joint_friction import Drive, DryFriction
+from carom.scene.switches import is_off
 
 
 class ForceRows:
@@ -36,6 +37,8 @@ class ForceRows:
         rows, numbers = [[] for _ in TABLES], {kind.name: k for k, kind in enumerate(TABLES)}
         for force in scene.forces:
             d = force.definition
+            if is_off(scene, force):
+                continue
             if d.table is not None:
                 kind = numbers[d.table.name]
                 self._place(force, kind, rows[kind], d._rows(force, self))

@@ -12,6 +12,7 @@ from carom.model.relations import Elements
 from carom.model.thresholds import DIRECTION, LAYER_WIDTH, STILL_SPEED
 from carom.scene.coordinates import Combination, Gap
 from carom.scene.materials import IMPACT_LAWS
+from carom.scene.switches import is_off
 
 
 def with_stops(scene, contacts: np.recarray, elements: Elements, options, laws: LawTable):
@@ -19,8 +20,9 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, laws: 
     if not scene.stops:
         return contacts
     _check_twists(scene)
-    rows, first = table(CONTACT, len(scene.stops)), int(contacts.number.max(initial=-1)) + 1
-    for row, stop in zip(rows, scene.stops):
+    stops = [stop for stop in scene.stops if not is_off(scene, stop)]
+    rows, first = table(CONTACT, len(stops)), int(contacts.number.max(initial=-1)) + 1
+    for row, stop in zip(rows, stops):
         number = elements.coordinates.number(stop.joint, stop.coordinate)
         if isinstance(stop.joint, Gap):  # its tangents follow
             for r in (1, 2):
@@ -41,7 +43,7 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, laws: 
             curve = stop.joint.definition.curve  # pyright: ignore[reportAttributeAccessIssue]
             row.extent = row.other_extent = max(size, np.ptp(curve.ends[:, 0], axis=0).max())
     rows.still = STILL_SPEED * np.sqrt(np.linalg.norm(scene.gravity) * rows.extent)
-    for row, stop in zip(rows, scene.stops):
+    for row, stop in zip(rows, stops):
         if stop.joint.can_be_left:  # its direction is that of the table of the curve
             fall = np.linalg.norm(scene.gravity) * stop.joint.definition.curve.length
             row.still = DIRECTION * (np.sqrt(fall) + np.linalg.norm(stop.joint.child.velocity))

@@ -33,6 +33,7 @@ from carom.results.tipped_profiles import tipped
 from carom.scene.forces import AppliedForce
 from carom.scene.materials import IMPACT_LAWS
 from carom.scene.restitution import Restitution
+from carom.scene.switches import is_off
 from carom.status import Status
 
 #: attributes of contacts, and of their laws, that tables show (an ensemble changes them from run to run)
@@ -88,7 +89,7 @@ def assemble(run, status: Status) -> dict:
         "_touch": copied(rec.touch),
         "_written": Written(
             np.array(state["Q"]), copied(series), impact, event,
-            _columns(run.compiled.system), run.scene.forces,
+            _columns(run.everything.system), run.scene.forces,
         ),
     }  # fmt: skip
 
@@ -336,5 +337,8 @@ def constraint_errors(solution) -> tuple[np.ndarray, np.ndarray]:
         row_errors(system, rec, work, position, velocity)
     counts = [len(row_units(part.definition)) for part in constrained(run.scene)]
     rows = np.arange(6) < np.array(counts, dtype=np.int64).reshape(-1, 1)
+    for k, part in enumerate(constrained(run.scene)):
+        if is_off(run.scene, part):
+            position[:, k] = velocity[:, k] = np.nan
     position, velocity = (np.abs(e[:, : len(counts)][:, rows]) for e in (position, velocity))
     return position, velocity

@@ -21,6 +21,7 @@ from carom.scene.constraints import Coupling, Driver
 from carom.scene.coordinates import Combination, coordinate_kind, kind_of, terms_of
 from carom.scene.friction import bound_of
 from carom.scene.joint_friction import Drive, DryFriction
+from carom.scene.switches import is_off
 
 STILL = 1e-9  # of the speeds of the joint: below it the rate is round-off, and the joint sticks
 ABOVE = 1.0 + 1e-9  # of the bound: a force up to this sticks
@@ -39,7 +40,7 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
     touch : active points at these times
     solve : ``solve(compiled, touch)`` returns reactions on the children
     """
-    dry = [force for force in run.scene.forces if rubs(force)]
+    dry = dry_of(run.scene)
     if not dry:
         return solve(run.compiled, touch), {}
     joints = _DryJoints(run, states, touch, solve, dry)
@@ -60,6 +61,11 @@ def with_dry_friction(run, states, touch, solve) -> tuple[np.ndarray, dict[int, 
         lost = np.any(~(np.abs(error) <= STILL * found), axis=1)
         out[lost], value[lost] = np.nan, np.nan
     return out, {force.index: value[:, k] for k, force in enumerate(dry)}
+
+
+def dry_of(scene) -> list[Any]:
+    """Return the dry frictions of a scene that are not switched off."""
+    return [force for force in scene.forces if rubs(force) and not is_off(scene, force)]
 
 
 class _DryJoints:
@@ -167,7 +173,7 @@ def _speed(d: DryFriction, states) -> float:
 
 def with_forces(states, values: dict[int, np.ndarray], touch) -> np.recarray:
     """Return active points, and the values (T,) of dry frictions as such points, in the order of time."""
-    dry = [force for force in states._scene.forces if rubs(force)]
+    dry = dry_of(states._scene)
     points = [
         _touches(joint, k, factor * values[force.index], states)
         for force in dry

@@ -18,6 +18,7 @@ class Instant:
 
     def __init__(self, run, states: np.ndarray, t: float, given: dict, known: dict):
         self.run, self.states, self.t, self.given, self.pairs = run, states, t, given, run.pairs
+        self.scene, self.compiled, self.options = run.stands.view(run.scene), run.compiled, run.options
         system = run.compiled.system
         self.touch = touches(run)
         self.turns = system.relations.memory.coordinates["reference"].copy()
@@ -30,14 +31,14 @@ class Instant:
         """Return reactions of joints on their children, multipliers of constraints (1, E, 6); dry frictions."""
         from carom.results.dry_friction import with_dry_friction
 
-        return with_dry_friction(self.run, state, self.touch, lambda *given: self.solve(*given)[0])
+        return with_dry_friction(self, state, self.touch, lambda *given: self.solve(*given)[0])
 
     def accelerations(self, state) -> np.ndarray:
         """Return the accelerations (N, 6) of all bodies, linear and angular, world axes."""
         from carom.results.dry_friction import with_forces
 
         forced = with_forces(state, state._solved[1], self.touch)
-        return self.solve(self.run.compiled, forced)[1]
+        return self.solve(self.compiled, forced)[1]
 
     def solve(self, compiled, touch) -> tuple[np.ndarray, np.ndarray]:
         """Return reactions on children (1, E, 6) and accelerations under forces at active points."""

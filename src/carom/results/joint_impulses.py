@@ -11,6 +11,7 @@ those of least norm, where each row is weighted by its diagonal entry of A M^-1 
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -24,16 +25,37 @@ from carom.model import records as r
 from carom.model.arrays import CURVE_ON_POINT, STATE
 from carom.model.compile import attitudes, compile_scene
 from carom.model.relations import is_inertia
+from carom.model.switched import stands_of
 from carom.results.dense_output import curves
 from carom.results.event_tables import JointImpulse, JointImpulseTable
 from carom.results.reports import at_once
 from carom.scene.bodies import Body, HalfSpace
 from carom.scene.coordinates import Bush, Length, kind_of, terms_of
 from carom.scene.more_forces import JointInertia
+from carom.scene.stops import Stop
 from carom.scene.surfaces import SurfaceDefinition
+from carom.scene.switches import is_off
+from carom.status import Status
 
 TIMES_AT_ONCE = 256  # times at which states are computed in one go
 SMALLEST = 1e-10  # singular value, relative to the greatest, below which rows depend on each other
+
+
+def impulses_of(run, struck: int, part) -> tuple[np.ndarray, np.ndarray]:
+    """Return times and sizes of the impulses of a joint, or of a stop, in the impacts from `struck` on."""
+    rows = run.records.impact[struck : int(run.clock["struck"][0])]
+    if isinstance(part, Stop):
+        rows = rows[rows["contact"] == len(run.pairs.body) + part.index]
+        order = np.argsort(rows["time"], kind="stable")
+        return rows["time"][order], np.abs(rows["impulse"][order, 0])
+    from carom.results.solution import Solution
+
+    solution = Solution._from_run(run, Status.SUCCESS)
+    within = np.nextafter(rows["time"].min(), -math.inf), math.inf
+    view = run.stands.view(run.scene)
+    found = [row for row in _Mechanism(solution, view, within).rows() if row[2] == part.index]
+    times, sizes = np.array([row[0] for row in found]), [np.linalg.norm(row[3]) for row in found]
+    return times, np.array(sizes)
 
 
 def world_impulses(solution) -> np.ndarray:
@@ -76,7 +98,12 @@ def joint_impulses(solution) -> JointImpulseTable:
     """Return the table of a solution."""
     scene, rows = solution.scene, []
     if scene.joints and len(solution.impacts):
-        rows = list(_Mechanism(solution).rows())
+        known = solution._run
+        stands = stands_of(scene, known.switched)
+        ends = [*(float(solution.t[row - 1]) for row, _ in stands[1:]), math.inf]
+        begins = [-math.inf, *ends[:-1]]
+        for (_, stand), begin, end in zip(stands, begins, ends):
+            rows += _Mechanism(solution, stand.view(scene), (begin, end)).rows()
     shapes = {"impulse": (-1, 3), "angular_impulse": (-1, 3)}
     columns = {
         name: np.array([row[k] for row in rows], np.int64 if name in ("impact", "joint") else float)
@@ -116,16 +143,17 @@ class _Rows(NamedTuple):
 class _Mechanism:
     """The joints and constraints of a scene, and the impacts of a run."""
 
-    def __init__(self, solution):
+    def __init__(self, solution, scene, within: tuple[float, float]):
         run = solution._run
-        self.solution, self.scene, self.push = solution, solution.scene, world_impulses(solution)
-        compiled = compile_scene(solution.scene, run.options, loops=True)  # no joint is flipped
+        self.solution, self.scene, self.push = solution, scene, world_impulses(solution)
+        self.within = within  # times after the first, up to the second
+        compiled = compile_scene(scene, run.options, loops=True)  # no joint is flipped
         self.system, self.work = compiled.system, r.new_work(compiled.system, 1)
         self.functions, self.reports = compiled.functions, solution._reports
         self.children = [joint.child.index for joint in self.scene.joints]
         self.rotors = [
             force.definition for force in self.scene.forces
-            if isinstance(force.definition, JointInertia)
+            if isinstance(force.definition, JointInertia) and not is_off(scene, force)
         ]  # fmt: skip
         self.mass, self.records = mass_matrix(self.system), r.trimmed(run.records, run.clock)
         self.label, self.known = _components(self.system), {}
@@ -136,7 +164,9 @@ class _Mechanism:
         shots = shots[np.isin(event["kind"], (r.IMPACT, r.JAMS))[shots["event"]]]
         at = event["time"][shots["event"]]
         shots, at = shots[np.argsort(at, kind="stable")], np.sort(at)
-        located = np.flatnonzero(impacts.located == 1)
+        begin, end = self.within
+        inside = (impacts.time > begin) & (impacts.time <= end)
+        located = np.flatnonzero((impacts.located == 1) & inside)
         times, first = np.unique(impacts.time[located], return_index=True)
         ends = np.append(first, len(located)).tolist()
         low, high = (np.searchsorted(at, times, side=side).tolist() for side in ("left", "right"))

@@ -26,6 +26,7 @@ from carom.results.exerted import bodies_of, rubs
 from carom.results.set_forces import places, put, stated
 from carom.scene.coordinates import Combination
 from carom.scene.forces import AppliedForce
+from carom.scene.switches import is_off
 
 
 class Reports:
@@ -50,6 +51,8 @@ class Reports:
                 self.compiled.system.relations.coordinates["child"][chosen] != joint.child.index
             )
             out["along"][:, turned] *= -1.0
+        if is_off(self.scene, joint):
+            numbers(out)[:] = np.nan
         return out
 
     def _sum(self, combination: Combination, states: r.Records) -> np.recarray:
@@ -78,7 +81,7 @@ class Reports:
         bodies, listed, values, still = [], [], [], []
         for force in forces:
             own, place = bodies_of(force), self.compiled.places.get(force.index)
-            if place is None and rubs(force):  # its bound is 0
+            if place is None and (rubs(force) or is_off(self.scene, force)):  # its bound is 0
                 still.append(row)
             if place is not None:
                 if rubs(force):

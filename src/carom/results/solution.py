@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom import arguments, checks
+from carom._compiled.record_arrays import Columns
 from carom.geometry import quaternion
 from carom.model.laws import law_of, with_slip
 from carom.results.dense_output import curves, flights
@@ -28,6 +29,7 @@ from carom.results.ledger import Ledger
 from carom.results.named import Source
 from carom.results.names import ConstraintRows, Numbers, constraint_rows
 from carom.results.portable import Portable
+from carom.results.spans import InSpans
 from carom.status import Status
 from carom.stepping.settings import settings_of
 
@@ -44,7 +46,7 @@ SIDES = ("right", "left")
 
 @arguments.attributes()
 @dataclass(frozen=True, eq=False)
-class Solution(Portable, Drawn, Source):
+class Solution(Portable, Drawn, Source, InSpans):
     """The motion of N bodies at T saved times, with K impacts.
 
     ``solution["name"]`` has the results of one part: a body, a joint, a force, a contact.
@@ -230,6 +232,8 @@ class Solution(Portable, Drawn, Source):
 
     def _report(self, forces) -> np.recarray:
         """Return what some forces exert (T, R), as `Reports.exerted` does."""
+        if self._spans:
+            return self._by_span(lambda part: part._report(forces)).view(Columns)
         ranges = self._assemble.ranges_of(self._run, self._reports.compiled, len(self.t))
         frictions = self._solved[1] if any(map(rubs, forces)) else {}
         return self._reports.exerted(forces, self._saved, ranges, frictions)
@@ -277,10 +281,21 @@ class Solution(Portable, Drawn, Source):
 
     @cached_property
     def _accelerations(self) -> np.ndarray:
+        if self._spans:
+            return self._by_span(lambda part: part._accelerations)
         return self._assemble.accelerations(self)
 
     @cached_property
     def _solved(self) -> tuple[np.ndarray, dict[int, np.ndarray]]:
+        if self._spans:
+            dry = [force.index for force in self.scene.forces if rubs(force)]
+            values = {
+                index: self._by_span(
+                    lambda part, k=index: part._solved[1].get(k, np.zeros(len(part.t)))
+                )
+                for index in dry
+            }
+            return self._by_span(lambda part: part._solved[0]), values
         return self._assemble.element_reactions(self)
 
     @cached_property
@@ -349,6 +364,12 @@ class Solution(Portable, Drawn, Source):
             If `joint` is not a joint, or belongs to another scene.
         """
         joint = of_scene(self.scene, joint)
+        if self._spans:
+            read = [
+                self._by_span(lambda part, k=k: part.joint_coordinates(joint, degrees=degrees)[k])
+                for k in range(2)
+            ]
+            return read[0], read[1]
         motion = self._reports.motion(joint, self._saved)
         read = motion.value.copy(), motion.rate.copy()
         return in_degrees(joint, *read) if checks.flag("degrees", degrees) else read
@@ -358,8 +379,11 @@ class Solution(Portable, Drawn, Source):
         """Errors of joints and constraints at saved times: of position and of velocity, (T, R) each.
 
         They are absolute errors of the R rows in `constraint_rows`, which has the names and units of the rows
-        (units of velocity errors: the same per second). Errors of angles do not include whole turns.
+        (units of velocity errors: the same per second). Errors of angles do not include whole turns. While a
+        part is switched off, they are NaN.
         """
+        if self._spans:
+            return tuple(self._by_span(lambda part, k=k: part.constraint_errors[k]) for k in range(2))
         return self._assemble.constraint_errors(self)
 
     @cached_property
@@ -404,12 +428,16 @@ class Solution(Portable, Drawn, Source):
 
         checks.choice("side", side, SIDES)
         times = checks.times("t", t, self.t[0], self.t[-1])
+        if self._spans:
+            return self._by_time(t, side, lambda part, now: part.evaluate(now, side))
         *states, cubic = curves(self, times, side)
         evaluate(self, times, cubic, *states)
         return self._seen(t, *states)
 
     def _curve(self, t, side: str = "right"):
         """Return the result of `evaluate`, but with cubics where there is no closed form, for pictures."""
+        if self._spans:
+            return self._by_time(t, side, lambda part, now: part._curve(now, side))
         return self._seen(t, *curves(self, np.atleast_1d(np.asarray(t, dtype=float)), side)[:4])
 
     def _seen(self, t, x, Q, v, w):
@@ -506,7 +534,7 @@ class Solution(Portable, Drawn, Source):
                 f"impact {k} is part of a multiple impact ({record.together} closed points) and has no "
                 "boundary layer of its own; choose an impact with impacts.together == 1"
             )
-        system = self._run.compiled.system
+        system = self._span_at(float(record.time))._run.compiled.system
         contacts = system.contacts
         row = contacts[int(np.searchsorted(contacts.number, record.contact))]
         law = law_of(system, row)

@@ -42,7 +42,8 @@ class SystemState(Source):
         self._known = {} if known is None else known  # joints prepared so far, names of contacts
         clock, rows = run.clock, run.now.view(np.ndarray).copy()
         rows.flags.writeable = False
-        self._rows, self._scene, self._to_principal = rows, run.scene, run.to_principal
+        self._rows, self._to_principal = rows, run.to_principal
+        self._scene = run.stands.view(run.scene)
         self.t = float(clock["now"][0])
         self.kinetic_energy = float(clock["kinetic"][0])
         self.potential_energy = float(clock["potential"][0])

@@ -21,6 +21,7 @@ from carom.scene.forces import FORCES, AppliedForce
 from carom.scene.joints import JOINTS, Joint
 from carom.scene.shapes.mesh import shape_given
 from carom.scene.stops import Stop
+from carom.scene.switch import Switch
 
 
 class Kind(NamedTuple):
@@ -41,12 +42,13 @@ KINDS: dict[type[Any], Kind] = {
     Constraint: Kind("constraint", "definition"),
     Stop: Kind("stop", "restitution", ("joint",)),
     Contact: Kind("contact", "friction", ("body", "other")),
+    Switch: Kind("switch", "time", ("parts",)),
 }
 _RANKS = {kind: k for k, kind in enumerate(KINDS)}
-LEAVES = (AppliedForce, Constraint, Stop, Contact)  # to which no part refers
+LEAVES = (Switch,)  # to which no part refers
 REFERRING = (*FORCES, *CONSTRAINTS, Combination, Length)  # definitions that may contain parts
 #: fields of parts and definitions that say which part it is, or to which it refers
-_FIXED = {"index", "name", "body", "other", "parent", "child", "frames", "joint", "bodies", "terms"}
+_FIXED = {"index", "name", "body", "other", "parent", "child", "frames", "joint", "bodies", "terms", "parts"}
 
 
 def _rank(part) -> int:

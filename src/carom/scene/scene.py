@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
@@ -23,6 +25,7 @@ from carom.scene.shapes import Shape
 from carom.scene.shown import Shown
 from carom.scene.solids import SceneSolids
 from carom.scene.summary import counts, summary
+from carom.scene.switch import Switch
 from carom.scene.touching import SceneContacts
 from carom.scene.values import in_scene
 
@@ -67,6 +70,9 @@ class Scene(
 
     #: the system in coordinates of the user's own for which the bodies stand
     _chart: SystemOfScene | None = None
+    #: parts that a run is without, by name, and where it has put others in; None: what the scene states
+    _off: frozenset[str] | None = None
+    _placed: Mapping[str, np.ndarray] = MappingProxyType({})
 
     def __init__(self, gravity: ArrayLike = (0.0, 0.0, -9.81)):
         self._parts = Registry()
@@ -123,7 +129,7 @@ class Scene(
     def remove(self, part, *, dependents: bool = False) -> tuple:
         """Remove a part, and return all parts that were removed.
 
-        Contacts of a body, half-space or static body are removed with it. Bodies of a joint that is removed may
+        Contacts of a body, half-space or static body, and switches of a part, are removed with it. Bodies of a joint that is removed may
         touch again by `set_contact_default`.
 
         Parameters
@@ -142,7 +148,7 @@ class Scene(
         """
         part = self._parts.named("part", part)
         found = list(dependents_of(self._parts, part))
-        others = [one for one in found if not isinstance(one, Contact)]
+        others = [one for one in found if not isinstance(one, (Contact, Switch))]
         if others and not checks.flag("dependents", dependents):
             raise ValueError(
                 f"dependents must be True to remove {part.name!r} together with what refers to it: "

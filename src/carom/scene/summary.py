@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-KINDS = ("bodies", "half_spaces", "statics", "contacts", "joints", "constraints", "stops", "forces")
-ONE = {"bodies": "body", "half_spaces": "half-space", "statics": "static body"}
+KINDS = ("bodies", "half_spaces", "statics", "contacts", "joints", "constraints", "stops", "forces", "switches")
+ONE = {"bodies": "body", "half_spaces": "half-space", "statics": "static body", "switches": "switch"}
 MANY = {"statics": "static bodies"}
 
 
 def counts(scene) -> str:
     """Return the number of parts of each kind, in one line."""
-    rare = ("statics", "constraints", "stops")
+    rare = ("statics", "constraints", "stops", "switches")
     shown = [kind for kind in KINDS if kind not in rare or getattr(scene, kind)]
     return ", ".join(_count(kind, len(getattr(scene, kind))) for kind in shown)
 

@@ -116,6 +116,23 @@ def cut_grid(grid: Grid, step: int, end: float) -> Grid:
     return grid._replace(last=step, ends=ends, saves=saves)
 
 
+def with_end(grid: Grid, t: float, duration: float) -> Grid:
+    """Return the steps of a run that ends at `duration`, of which one ends at time t; its state is saved."""
+    ends, saves = grid.ends, grid.saves
+    if not len(ends):
+        steps = np.arange(grid.last + 1)
+        ends = np.append(steps[:-1] * grid.interval, duration)
+        saves = np.where((steps % grid.save_every == 0) | (steps == grid.last), 1, 0)
+    k = int(np.searchsorted(ends, t))
+    near = [i for i in (k - 1, k) if 0 < i < len(ends) and abs(ends[i] - t) <= ROUND_OFF * t]
+    if near:
+        saves = saves.copy()
+        saves[near[0]] = 1
+    else:
+        ends, saves = np.insert(ends, k, t), np.insert(saves, k, 1)
+    return grid._replace(last=len(ends) - 1, ends=ends, saves=saves.astype(np.int64))
+
+
 def step_at(grid: Grid, end: float) -> int:
     """Return the number of the step, from 1 on, in which a run reaches this time."""
     if len(grid.ends):

@@ -21,13 +21,13 @@ from carom.dynamics.elements import (
     stiff,
     user,
 )
-from carom.model.arrays import CHART_CONSTRAINT, INERTIA, KIND, ON_CURVE, RELATION, STIFF, USER_ROWS
+from carom.model.arrays import ABSENT, CHART_CONSTRAINT, INERTIA, KIND, ON_CURVE, RELATION, STIFF, USER_ROWS
 
 #: a joint without rows has coordinates that stops limit, and no errors
 _FILES: dict[int, Any] = {number: own_rows for joint, number in KIND.items() if joint.rows == 0}
 _FILES |= dict.fromkeys(ON_CURVE, on_curve)
 _FILES |= {RELATION: relation, USER_ROWS: user, STIFF: stiff, INERTIA: inertia}
-_FILES[CHART_CONSTRAINT] = chart_constraints
+_FILES |= {CHART_CONSTRAINT: chart_constraints, ABSENT: own_rows}
 
 
 def by_element(joint: Callable) -> Any:

@@ -12,6 +12,7 @@ from carom.model import records as r
 from carom.model.compile import Compiled, with_pairs
 from carom.model.contact_rows import first_pairs, touching_pairs
 from carom.model.method import IMPLICIT, THREE_FIELD
+from carom.model.switched import NOTHING_SWITCHED
 from carom.options import Options
 from carom.results.set_forces import History, rows_of_forces
 from carom.scene.all_pairs import PairTable, joined_tables, may_touch, some_pairs
@@ -34,9 +35,9 @@ class KeptRun:
     def __init__(
         self, scene: Scene, settings: dict, options: Options, records: r.Records,
         checkpoint: Checkpoint | None, missing: list[str], attributes: dict, found: np.ndarray | None,
-        history: History | None = None,
+        history: History | None = None, switched: np.ndarray = NOTHING_SWITCHED,
     ):  # fmt: skip
-        self.attributes, self.found = attributes, found
+        self.attributes, self.found, self.switched = attributes, found, switched
         self.history = history  # of a `carom.Run`: what its forces were set to
         self.scene, self.settings, self.options = scene, settings, options
         self.records, self.checkpoint, self.missing = records, checkpoint, missing
@@ -62,6 +63,7 @@ class KeptRun:
             known = self.checkpoint.found["pairs"] if self.checkpoint and stand else None
             run.add_pairs(self.found[:known])
         if self.checkpoint is not None and stand:
+            run.stand_at_end_of(self.switched)
             restore(run, self.checkpoint, self.records)
         return run
 

@@ -67,6 +67,7 @@ def resume(
     from carom.io.files.keeper import Keeper
     from carom.io.run_to_end import finish
     from carom.stepping.settings import check_handling
+    from carom.watch.watched import watched
 
     check_handling(progress, throw, save_seconds)
 
@@ -105,7 +106,7 @@ def resume(
     now = float(run.clock["now"][0])
     if until is not None and not until > now:  # the last state is not always a saved one
         raise ValueError(f"until must be above {now:.17g} s, where the run stands, got {until!r}")
-    return finish(run, progress, Keeper(run, Path(path), save_seconds), throw)
+    return finish(watched(run), progress, Keeper(run, Path(path), save_seconds), throw)
 
 
 def go_on(solution, duration: float, progress, throw: bool):
@@ -113,6 +114,7 @@ def go_on(solution, duration: float, progress, throw: bool):
     from carom.io.files.checkpoint import state_at_end
     from carom.io.run_to_end import finish
     from carom.stepping.settings import check_handling
+    from carom.watch.watched import watched
 
     check_handling(progress, throw, 60.0)
     before, most = solution.settings["duration"], longest(solution.settings)
@@ -131,9 +133,9 @@ def go_on(solution, duration: float, progress, throw: bool):
         )
     if not isinstance(kept, KeptRun):
         given = kept.scene, solution.settings, kept.options, kept.records, checkpoint
-        kept = KeptRun(*given, missing=[], attributes={}, found=kept.found)
+        kept = KeptRun(*given, missing=[], attributes={}, found=kept.found, switched=kept.switched)
     kept.need_functions("by Solution.load to continue")
-    return finish(kept.revived(before + duration), progress, None, throw)
+    return finish(watched(kept.revived(before + duration)), progress, None, throw)
 
 
 def longest(settings: Mapping) -> float:

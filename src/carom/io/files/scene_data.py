@@ -46,10 +46,11 @@ from carom.scene.pieces import Piece
 from carom.scene.shapes import SHAPES
 from carom.scene.stops import Stop
 from carom.scene.surfaces import SURFACES
+from carom.scene.switch import Switch
 from carom.scene.user_surface import Surface
 
 #: parts that have a name in the scene
-PARTS = (*FIXED, Body, Joint, AppliedForce, Constraint, Stop, Contact)
+PARTS = (*FIXED, Body, Joint, AppliedForce, Constraint, Stop, Contact, Switch)
 ROBOT = (Robot, Coordinate, Ball, FreeBody, Keyframe, Motor, Frame, Sensor)
 TYPES: dict[str, type[Any]] = {
     kind.__name__: kind

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from itertools import count
 from typing import TYPE_CHECKING, Any, NamedTuple, cast, overload
 
@@ -13,7 +14,7 @@ from carom.scene.bodies import Body, Ground
 from carom.scene.coordinates import Axial, Bush, Length
 from carom.scene.joints import JOINTS, Clearance, Distance, Joint, JointDefinition, Tether
 from carom.scene.stops import Stop
-from carom.scene.values import MethodsOfScene
+from carom.scene.switches import SceneSwitches
 
 if TYPE_CHECKING:
     import numpy as np
@@ -28,8 +29,8 @@ class Rod(NamedTuple):
     upper: Stop
 
 
-class SceneJoints(MethodsOfScene):
-    """The methods of `Scene` for joints."""
+class SceneJoints(SceneSwitches):
+    """The methods of `Scene` for joints, of which some may break."""
 
     @overload
     def add_joint(
@@ -38,6 +39,7 @@ class SceneJoints(MethodsOfScene):
         parent: Body | Ground | str | None = None,
         child: Body | str | None = None,
         *,
+        breaks_at: float | Mapping[str, float] | None = None,
         name: str | None = None,
         replace: bool = False,
     ) -> Stop: ...
@@ -51,6 +53,7 @@ class SceneJoints(MethodsOfScene):
         *,
         parent_frame: tuple[ArrayLike, Orientation] | None = None,
         child_frame: tuple[ArrayLike, Orientation] | None = None,
+        breaks_at: float | Mapping[str, float] | None = None,
         name: str | None = None,
         replace: bool = False,
     ) -> Any: ...
@@ -64,6 +67,7 @@ class SceneJoints(MethodsOfScene):
         *,
         parent_frame: tuple[ArrayLike, Orientation] | None = None,
         child_frame: tuple[ArrayLike, Orientation] | None = None,
+        breaks_at: float | Mapping[str, float] | None = None,
         name: str | None = None,
         replace: bool = False,
     ) -> Joint: ...
@@ -77,6 +81,7 @@ class SceneJoints(MethodsOfScene):
         *,
         parent_frame: tuple[ArrayLike, Orientation] | None = None,
         child_frame: tuple[ArrayLike, Orientation] | None = None,
+        breaks_at: float | Mapping[str, float] | None = None,
         name: str | None = None,
         replace: bool = False,
     ) -> Any:
@@ -98,6 +103,10 @@ class SceneJoints(MethodsOfScene):
             world. The coordinates of the joint are 0 where the two frames agree. If the initial positions
             do not fit the joint, `Options(project_start=True)` moves the bodies so that they do; otherwise
             `simulate` refuses them. Default None: the definition is in the world.
+        breaks_at
+            Force [N] beyond which the joint breaks: from then on the bodies move without it. A mapping has some
+            of ``"force"`` [N], ``"torque"`` [N m] (about the anchor) and ``"impulse"`` [N s] (in an impact). It
+            makes a switch, ``"<name>.breaks"``: see `switch`. Default None: it never breaks.
         name
             Name in the scene. Default ``"joint1"``, ``"joint2"``, ...
         replace : bool
@@ -122,7 +131,8 @@ class SceneJoints(MethodsOfScene):
             isinstance(definition, Distance) and definition.limits_of_length
         ):
             placed = parent_frame is not None or child_frame is not None
-            return self._add_length(definition, parent, child, name, replace, placed)
+            made = self._add_length(definition, parent, child, name, replace, placed)
+            return self._breaks(made, breaks_at)
         order = "; the order is add_joint(definition, parent, child)"
         checks.instance("definition", definition, JOINTS, order if _is_side(definition) else "")
         if parent is None or child is None:
@@ -132,10 +142,11 @@ class SceneJoints(MethodsOfScene):
                 f"{checks.shown(parent)} and {checks.shown(child)}"
             )
         parent, child = self._parts.pair(parent, child)
-        return self._parts.make(
+        made = self._parts.make(
             Joint, "joint", name, replace, definition=definition, parent=parent, child=child,
             frames=(parent_frame, child_frame),
         )  # fmt: skip
+        return self._breaks(made, breaks_at)
 
     def _add_length(
         self, d: Tether | Distance | Clearance, parent, child, name, replace: bool, placed: bool

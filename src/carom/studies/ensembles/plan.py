@@ -18,6 +18,7 @@ from carom.status import Status
 from carom.stepping.settings import Settings
 from carom.studies.ensembles.outcome import REFUSED, End, Layout, end_of, no_outcomes, write
 from carom.studies.ensembles.varied import Varied, varied_of
+from carom.watch.watched import watched
 
 
 @dataclass(frozen=True)
@@ -106,7 +107,8 @@ def one(plan: Plan, values: dict[str, np.ndarray], k: int, part: Part) -> End:
         raise KeyboardInterrupt
     run = begin(plan, values, k)
     run.to_stop = lambda: plan.token in STOPPED
-    status = run.go_on(run.steps)
+    moves = watched(run)
+    status = moves.go_on(moves.steps)
     if status is Status.INTERRUPTED:
         raise KeyboardInterrupt
     end = end_of(run, status)

@@ -38,6 +38,9 @@ class Condition(NamedTuple):
     #: its time, from what was written down
     when: Callable[[Observed], float | None] = lambda look: None
     rest: bool = False  # whether it must still be so a step later
+    switch: Any = None  # a `Switch` that acts then
+    #: whether its value follows from forces: it may be above 0 at once, after something else has happened
+    breaks: bool = False
 
 
 def conditions(events, scene) -> list[Condition]:
@@ -54,10 +57,11 @@ def conditions(events, scene) -> list[Condition]:
         raise TypeError(
             f"events must be one or a list of these: {ALLOWED}; got {checks.shown(given)}"
         )
-    return [_condition(f"events[{i}]", one, scene) for i, one in enumerate(given)]
+    return [condition_of(f"events[{i}]", one, scene) for i, one in enumerate(given)]
 
 
-def _condition(name: str, event, scene) -> Condition:
+def condition_of(name: str, event, scene) -> Condition:
+    """Return the condition that an event stands for, checked."""
     if callable(event):
         return _of_function(name, event)
     if not isinstance(event, str):

@@ -1,4 +1,4 @@
-"""A run that is watched for events: after each step, and again within a step in which one happened.
+"""A run that is watched for events and switches: after each step, and again within one in which they happened.
 
 Where a value has changed its sign the run is put back to the start of the step, and steps from there to trial
 times, which Brent's method chooses: so the state at the event is one of the motion itself. Then the step is
@@ -13,14 +13,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from carom._compiled.user_functions import raised
-from carom.control.conditions import Condition, Observed
+from carom.watch.conditions import Condition, Observed
+from carom.watch.switching import changes, switch, switches_of
 from carom.model.kept import Snapshot
 from carom.model.records import with_room
 from carom.results.solution import Solution
 from carom.results.state import SystemState
 from carom.run import Run
 from carom.status import Status
-from carom.stepping.grid import cut_grid
+from carom.stepping.grid import cut_grid, step_at
 
 ROUND_OFF = 4.0 * float(np.finfo(float).eps)  # of a time: no interval is halved that is shorter
 LEAST = 1e-300  # stands for a value of exactly 0, which counts as changed
@@ -30,7 +31,8 @@ class Happened(NamedTuple):
     """An event, and the state at its time."""
 
     condition: int
-    state: SystemState
+    t: float
+    state: SystemState | None  # None of a switch at a time
 
 
 class _Failed(Exception):
@@ -44,27 +46,44 @@ class _Failed(Exception):
 class Watched:
     """A `Run` with conditions: what takes a run to its end takes this one."""
 
-    def __init__(self, run: Run, conditions: list[Condition]):
-        self.run, self.conditions = run, conditions
+    def __init__(self, run: Run, events: list[Condition] | None = None):
+        self.run, self.events = run, events
+        self.conditions = conditions = [*(events or ()), *switches_of(run.scene)]
+        self.more = 0  # steps by which switches have divided those of the run
+        for t in dict.fromkeys(run.switched["time"].tolist()):  # of a run that goes on
+            self.divide(t)
         self.before = Snapshot(run)
         self.grids = run.grid, run.controls
         self.happened: list[Happened] = []
-        self.times = [0] * len(conditions)  # how often each has happened
+        self.times = [self.has_acted(c) for c in conditions]  # how often each has happened
         self.stopped_by, self.joints = "", {}
         self.began, self.struck = 0.0, 0
-        look = self.look()
         self.asked, self.at = "", 0.0  # the condition that was evaluated last, and its time
-        # it is yet to rest
-        self.values = [1.0 if c.rest else self.value(c, look) for c in conditions]
+        self.timed = all(c.switch is not None and c.switch.time is not None for c in conditions)
+        self.values = self.evaluated()
+        self.break_at_once()
 
     def __getattr__(self, name: str) -> Any:
-        # what the watch does not change: `steps`, `failure`, `go_back`, ...
+        # what the watch does not change: `failure`, `go_back`, ...
         return getattr(self.run, name)
+
+    @property
+    def steps(self) -> int:
+        """Number of steps to the end, as planned."""
+        return self.run.steps - self.more
+
+    @property
+    def steps_done(self) -> int:
+        """Number of finished steps of those that were planned."""
+        return self.run.steps_done - self.more
 
     def go_on(self, until: int) -> Status:
         """Go on to step number `until`, to an event that ends the run, or to a failure."""
         run, status = self.run, Status.SUCCESS
-        while status is Status.SUCCESS and run.steps_done < until:
+        while status is Status.SUCCESS and self.steps_done < until:
+            if self.timed and (quiet := self.steps_before_switch(until)) > run.steps_done:
+                status = run.go_on(quiet)
+                continue
             self.began, self.struck = run.reached, int(run.clock["struck"][0])
             self.before.take()
             status = run.go_on(run.steps_done + 1)
@@ -72,14 +91,43 @@ class Watched:
                 status = self.check()
         return status
 
+    def steps_before_switch(self, until: int) -> int:
+        """Return the number of the step before that in which a switch acts, where all have times."""
+        run = self.run
+        left = [c.switch.time for c in self.conditions if c.switch.time > run.reached]
+        last = until + self.more
+        return min(last, step_at(run.grid, min(left)) - 1) if left else last
+
+    def has_acted(self, condition: Condition) -> int:
+        """Return how often a switch has acted in a run that goes on."""
+        if condition.switch is None:
+            return 0
+        own = self.run.switched["time"][self.run.switched["switch"] == condition.switch.index]
+        return len(np.unique(own))
+
+    def evaluated(self) -> list[float]:
+        """Return the values of all conditions now; what is to rest is yet to."""
+        look = self.look()
+        self.asked, self.at = "", look.state.t
+        return [
+            1.0 if c.rest and c.switch is None else self.value(i, look)
+            for i, c in enumerate(self.conditions)
+        ]
+
+    def divide(self, t: float) -> None:
+        """Let a step end at time t."""
+        self.more += self.run.divide(t)
+
     def solution(self, status: Status) -> Solution:
         """Return the solution, with the events that happened."""
         if status is Status.STOPPED:
             judged = self.run.judged(Status.SUCCESS)
             status = status if judged is Status.SUCCESS else judged
+        if self.events is None:
+            return self.run.solution(status)
         own = [
             [one.state for one in self.happened if one.condition == i]
-            for i in range(len(self.times))
+            for i in range(len(self.events))
         ]
         return self.run.solution(
             status, t_events=[np.array([state.t for state in states]) for states in own],
@@ -90,8 +138,12 @@ class Watched:
         """Return the run as conditions see it."""
         return Observed(self.run, self.run.state(self.joints), self.struck)
 
-    def value(self, condition: Condition, look: Observed) -> float:
-        """Return the value of a condition."""
+    def value(self, i: int, look: Observed) -> float:
+        """Return the value of condition i; NaN of a switch that would change nothing, or has had its event."""
+        condition, one = self.conditions[i], self.conditions[i].switch
+        if one is not None:
+            if not changes(self.run, one) or (one.event is not None and self.times[i] > 0):
+                return math.nan
         self.asked, self.at = condition.name, look.state.t
         return condition.value(look)
 
@@ -115,7 +167,7 @@ class Watched:
     def find(self) -> Status:
         """Find the events of the last step, and stop at the first that ends the run."""
         look, step = self.look(), self.run.steps_done
-        old, self.values = self.values, [self.value(c, look) for c in self.conditions]
+        old, self.values = self.values, [self.value(i, look) for i in range(len(self.conditions))]
         changed = [i for i, c in enumerate(self.conditions) if crosses(c, old[i], self.values[i])]
         if not changed:
             return Status.SUCCESS
@@ -125,15 +177,57 @@ class Watched:
             if self.conditions[i].rest and not self.still_rests(step, look.state.t):
                 self.values[i] = 1.0
                 continue
-            found.append(Happened(i, self.locate(i, step, old[i], look.state, guess)))
-        found.sort(key=lambda one: one.state.t)
+            one = self.conditions[i].switch
+            if one is not None and one.time is not None:
+                found.append(Happened(i, one.time, None))
+                continue
+            state = self.locate(i, step, old[i], look.state, guess)
+            found.append(Happened(i, state.t, state))
+        found.sort(key=lambda one: one.t)
         for one in found:
+            condition = self.conditions[one.condition]
+            if condition.switch is not None:
+                return self.act(found, one.t, step)
             self.happened.append(one)
             self.times[one.condition] += 1
-            if self.times[one.condition] == self.conditions[one.condition].terminal:
-                return self.stop(self.conditions[one.condition], step, one.state.t)
+            if self.times[one.condition] == condition.terminal:
+                return self.stop(condition, step, one.t)
         self.put_back()
         return self.run.go_on(step)
+
+    def act(self, found: list[Happened], t: float, step: int) -> Status:
+        """Let the switches act that have been found at time t, within the last step; the run stands there."""
+        self.put_back()
+        self.divide(t)
+        self.grids, status = (self.run.grid, self.run.controls), Status.SUCCESS
+        if t > self.began * (1.0 + ROUND_OFF):
+            status = self.run.go_on(step)
+        for one in found:
+            condition = self.conditions[one.condition]
+            if abs(one.t - t) > ROUND_OFF * t or status is not Status.SUCCESS:
+                break
+            if condition.switch is not None:
+                self.times[one.condition] += 1
+                self.apply(condition.switch)
+        self.values = self.evaluated()
+        self.break_at_once()
+        return status
+
+    def apply(self, one: Any) -> None:
+        """Switch the parts of a switch."""
+        for part in changes(self.run, one):
+            switch(self.run, part, not one.off, one.index)
+        self.joints = {}
+
+    def break_at_once(self) -> None:
+        """Break what exceeds its limit in the present state, until nothing does."""
+        while True:
+            beyond = [c for c, value in zip(self.conditions, self.values) if c.breaks and value > 0.0]
+            if not beyond:
+                return
+            for condition in beyond:
+                self.apply(condition.switch)
+            self.values = self.evaluated()
 
     def locate(
         self, i: int, step: int, first: float, end: SystemState, guess: float | None
@@ -150,7 +244,7 @@ class Watched:
                 self.put_back()
                 self.go_to(step, t)
                 look = self.look()
-                known[t] = self.value(condition, look) or -side * LEAST
+                known[t] = self.value(i, look) or -side * LEAST
                 if known[t] * side < 0.0 and t < best.t:
                     best = look.state
             return known[t]
@@ -200,3 +294,8 @@ def crosses(condition: Condition, old: float, new: float) -> bool:
     """Return whether a value has come to zero, or past it, in the direction that counts."""
     rises, falls = old < 0.0 <= new, old > 0.0 >= new
     return (rises and condition.direction >= 0.0) or (falls and condition.direction <= 0.0)
+
+
+def watched(run, events: list[Condition] | None = None) -> Any:
+    """Return a run that is watched for events and for what switches its scene has; itself if there are none."""
+    return Watched(run, events) if events is not None or switches_of(run.scene) else run

@@ -1,0 +1,1 @@
+"""Events and switches: conditions, and a run that is watched for them."""

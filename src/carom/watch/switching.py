@@ -1,0 +1,137 @@
+"""Switches in a run: when they act, and what they do.
+
+A switch acts between two steps, of which one ends at its time. From then on the run moves the same bodies with
+the arrays of the scene without its parts, or with them (`carom.model.switched`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from carom.watch.conditions import Condition, Observed, condition_of
+from carom.dynamics.project import project_start
+from carom.dynamics.reactions import start_errors
+from carom.model.placement import pose_of_child
+from carom.model.switched import SWITCHED
+from carom.results.joint_impulses import impulses_of
+from carom.scene.constraints import Constraint
+from carom.scene.joints import Joint
+from carom.scene.stops import Stop
+from carom.scene.switch import Switch
+
+
+def switches_of(scene) -> list[Condition]:
+    """Return the conditions at which the switches of a scene act."""
+    return [_condition(switch, scene) for switch in scene.switches if switch.at is not None]
+
+
+def _condition(switch: Switch, scene) -> Condition:
+    name = f"switch {switch.name!r}"
+    if switch.limits:
+        return Condition(name, _Breaks(switch, scene), 0, 1.0, switch=switch, breaks=True)
+    if switch.time is not None:
+        time = switch.time
+        return Condition(
+            name, lambda look: look.state.t - time, 0, 1.0, lambda look: time, switch=switch
+        )
+    event = switch.event if switch.when is None else switch.when
+    return condition_of(name, event, scene)._replace(terminal=0, switch=switch)
+
+
+def changes(run, switch: Switch) -> list[Any]:
+    """Return the parts that a switch would change now."""
+    return [part for part in switch.parts if (part.name in run.stands.off) != switch.off]
+
+
+class _Breaks:
+    """Above 0 where a force, a torque or an impulse of a joint exceeds its limit, relative to this."""
+
+    def __init__(self, switch: Switch, scene):
+        self.part, self.limits = switch.parts[0], switch.limits
+
+    def __call__(self, look: Observed) -> float:
+        most = -1.0
+        for name, limit in self.limits.items():
+            if name != "impulse":
+                most = max(most, self.size(name, look.state) / limit - 1.0)
+            elif self.when(look) is not None:
+                most = max(most, 1.0)
+        return most
+
+    def size(self, name: str, state) -> float:
+        """Return the size of the force or torque in a state."""
+        part = self.part
+        if isinstance(part, Stop):
+            rows = state._touch["contact"] == len(state._instant.pairs.body) + part.index
+            return float(np.abs(np.sum(state._touch["force"][rows, 0])))
+        reaction = state.joint_reactions[part.index]
+        return float(np.linalg.norm(reaction[3:] if name == "torque" else reaction[:3]))
+
+    def when(self, look: Observed) -> float | None:
+        """Return the time of the first impact in the step whose impulse exceeds the limit, or None."""
+        limit = self.limits.get("impulse", math.inf)
+        run = look.run
+        if math.isinf(limit) or look.struck == int(run.clock["struck"][0]):
+            return None
+        times, sizes = impulses_of(run, look.struck, self.part)
+        return next((t for t, size in zip(times, sizes) if size > limit), None)
+
+
+def switch(run, part, on: bool, number: int = -1) -> bool:
+    """Put a part into the motion, or take it out; return whether that changes anything.
+
+    A joint takes its child as it stands, and a relation its coordinates; the velocities that they forbid vanish
+    by the impulse that is the least in the kinetic metric. The state of the present time is saved anew.
+    """
+    if (part.name in run.stands.off) != on:
+        return False
+    placed, before = np.zeros(7), run.clock[0].copy()
+    if on and isinstance(part, Joint):
+        placed = pose_of_child(part, run.now)
+    run.stand_as(run.stands.after(part.name, on, placed))
+    if on and isinstance(part, (Joint, Constraint)):
+        enter(run, part, placed)
+    save_again(run, before)
+    names = [one.name for one in run.scene]
+    row = np.zeros(1, SWITCHED)
+    row["row"], row["time"] = run.clock["saved"], run.clock["now"]
+    row["switch"], row["part"], row["on"] = number, names.index(part.name), on
+    after = run.clock[0]
+    row["energy"] = after.kinetic + after.potential - before["kinetic"] - before["potential"]
+    row["placed"] = placed
+    run.switched = np.append(run.switched, row)
+    return True
+
+
+def enter(run, part, placed: np.ndarray) -> None:
+    """Let a joint or relation that was put in begin as the bodies stand, and take away what it forbids."""
+    system = run.compiled.system
+    run.work.moment[0].time = run.reached
+    if isinstance(part, Joint):
+        for (joint, _), k in run.compiled.numbers.items():
+            if joint == part.index:
+                system.relations.memory.coordinates["reference"][k] = 0.0
+    else:
+        element = len(run.scene.joints) + part.index
+        errors = np.zeros((2, len(system.joints), 6))
+        start_errors(system, run.now, run.work, *errors)
+        relation = system.relations.relations[system.joints["number"][element]]
+        relation.constant = placed[0] = relation.constant + errors[0, element, 0]
+        run.stands = run.stands.after(part.name, True, placed)._replace(count=run.stands.count)
+    project_start(system, run.now, run.work)
+
+
+def save_again(run, before) -> None:
+    """Save the present state in the place of the same time, with what a switch has changed in the ledger."""
+    clock, records = run.clock[0], run.records
+    if records.series["t"][clock.saved - 1] == clock.now:
+        clock.saved -= 1
+        clock.touched = np.searchsorted(records.touch["saved"][: clock.touched], clock.saved)
+    run.save_now()
+    struck, stored = clock.kinetic - before["kinetic"], clock.potential - before["potential"]
+    for line, given in (("impacts", struck), ("loads", stored)):
+        clock[line] += given
+        run.records.series[line][clock.saved - 1] += given
