@@ -189,6 +189,14 @@ class Run:
             self.switched = switched
             self.stand_as(stands_of(self.scene, switched)[-1][1])
 
+    def divide_as_before(self) -> int:
+        """Let steps end where parts were switched before this run goes on; return how many more there are."""
+        return sum(self.divide(t) for t in dict.fromkeys(self.switched["time"].tolist()))
+
+    def step_at(self, t: float) -> int:
+        """Return the number of the step in which the run reaches a time."""
+        return step_at(self.grid, t)
+
     def divide(self, t: float) -> bool:
         """Let a step end at a time t to come, and its state be saved; return whether there is one step more."""
         last = self.grid.last

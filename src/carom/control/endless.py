@@ -16,7 +16,7 @@ from carom.model import records as r
 from carom.model.kept import Snapshot
 from carom.run import Run
 from carom.status import Status
-from carom.stepping.grid import Grid, count, longest_step
+from carom.stepping.grid import Grid, count, longest_step, step_at, with_end
 from carom.stepping.thresholds import MOST_STEPS
 
 BLOCK = 1024  # steps for which there is room at first
@@ -93,10 +93,30 @@ class Endless(Run):
         mine.loads += given
         self.records.series["loads"][mine.saved - 1] += given
 
+    def divide_as_before(self) -> int:
+        """Return 0: the steps of this run begin where it stands."""
+        return 0
+
+    def step_at(self, t: float) -> int:
+        """Return the number of the step in which the run reaches a time; one more than are known for later."""
+        return step_at(self.known_grid(), t)
+
+    def known_grid(self) -> Grid:
+        """Return the steps that have been asked for."""
+        grid = self.grid
+        if not len(grid.ends):
+            return grid
+        last = int(np.argmax(grid.ends))
+        return grid._replace(last=last, ends=grid.ends[: last + 1], saves=grid.saves[: last + 1])
+
     def divide(self, t: float) -> bool:
         """Let a step end at a time t to come; the steps after it have numbers greater by one."""
-        divided = super().divide(t)
+        grid, room = self.known_grid(), len(self.grid.ends)
+        self.grid = with_end(grid, t, self.controls.duration)
+        divided = self.grid.last > grid.last
         self.before += divided
+        self.make_ends(max(room, self.grid.last))
+        self.records = r.with_room(self.records, int(self.clock["saved"][0]))
         return divided
 
     def go_on(self, until: int) -> Status:

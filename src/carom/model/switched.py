@@ -45,8 +45,8 @@ class Stands(NamedTuple):
 
 
 def first_stand(scene) -> Stands:
-    """Return which parts a run of a scene begins without."""
-    return Stands(off_at_start(scene)) if scene.switches else Stands()
+    """Return which parts a run of a scene begins without; a view of one stays as it is."""
+    return Stands() if scene._off is not None else Stands(off_at_start(scene))
 
 
 def stands_of(scene, switched: np.ndarray) -> list[tuple[int, Stands]]:

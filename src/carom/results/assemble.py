@@ -17,7 +17,13 @@ from carom.results.accuracy import sentences
 from carom.results.beyond_bounds import beyond_bounds
 from carom.results.costs import busiest
 from carom.results.dry_friction import with_dry_friction, with_forces
-from carom.results.event_tables import ContactTable, EventTable, ImpactTable, contact_table
+from carom.results.event_tables import (
+    ContactTable,
+    EventTable,
+    ImpactTable,
+    SwitchTable,
+    contact_table,
+)
 from carom.results.impact_remarks import remarks
 from carom.results.locks import locked
 from carom.results.names import (
@@ -125,6 +131,17 @@ def intervals(solution) -> ContactTable:
     written = solution._written
     end = float(solution.t[-1])
     return contact_table(written.event, r.EVENTS, first_vertices(written.contacts), end)
+
+
+def switch_table(solution) -> SwitchTable:
+    """Return what was switched in a run."""
+    rows, scene = solution._run.switched, solution.scene
+    parts = np.array([part.name for part in scene], dtype=str)
+    names = np.array([*(one.name for one in scene.switches), ""], dtype=str)
+    return SwitchTable(
+        time=np.array(rows["time"]), part=parts[rows["part"]], on=rows["on"] == 1,
+        energy=np.array(rows["energy"]), switch=names[rows["switch"]],
+    )  # fmt: skip
 
 
 def to_scene_axes(Q: np.ndarray, to_principal: np.ndarray) -> np.ndarray:

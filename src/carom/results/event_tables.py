@@ -157,6 +157,17 @@ class EventTable(Table[dict]):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class SwitchTable(Table[dict]):
+    """Parts that were switched in a run, in the order of time."""
+
+    time: np.ndarray  #: (S,) time [s]
+    part: np.ndarray  #: (S,) name of the part
+    on: np.ndarray  #: (S,) whether it was put into the motion, or taken out
+    energy: np.ndarray  #: (S,) change of the energy of the system by this [J]
+    switch: np.ndarray  #: (S,) name of the switch; "" if `carom.Run.switch` did it
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class ContactTable(Table[dict]):
     """Intervals of persistent contact, in the order of their starts.
 

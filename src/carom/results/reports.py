@@ -52,7 +52,7 @@ class Reports:
             )
             out["along"][:, turned] *= -1.0
         if is_off(self.scene, joint):
-            numbers(out)[:] = np.nan
+            out["value"] = out["rate"] = np.nan
         return out
 
     def _sum(self, combination: Combination, states: r.Records) -> np.recarray:

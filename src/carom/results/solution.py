@@ -21,6 +21,7 @@ from carom.results.event_tables import (
     ForceTable,
     ImpactTable,
     JointImpulseTable,
+    SwitchTable,
     force_table,
 )
 from carom.results.exerted import COLUMNS_EACH, rows_of, rubs
@@ -198,6 +199,11 @@ class Solution(Portable, Drawn, Source, InSpans):
     def contacts(self) -> ContactTable:
         """Intervals of persistent contact."""
         return self._assemble.intervals(self)._by_name(self._numbers)
+
+    @cached_property
+    def switches(self) -> SwitchTable:
+        """Parts that were switched off or on, or that broke, in the order of time."""
+        return self._assemble.switch_table(self)
 
     @cached_property
     def ledger(self) -> Ledger:

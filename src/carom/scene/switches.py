@@ -19,7 +19,7 @@ from carom.scene.switch import LIMITS, Switch
 from carom.scene.values import MethodsOfScene
 
 #: kinds of parts that a switch may take out of a motion
-SWITCHED = (Joint, AppliedForce, Constraint, Stop, Contact)
+SWITCHABLE = (Joint, AppliedForce, Constraint, Stop, Contact)
 
 
 class SceneSwitches(MethodsOfScene):
@@ -91,7 +91,7 @@ class SceneSwitches(MethodsOfScene):
 
     def _switched(self, part) -> Any:
         found = self._parts.named("part", part)
-        checks.instance("part", found, SWITCHED)
+        checks.instance("part", found, SWITCHABLE)
         if isinstance(found, AppliedForce) and isinstance(found.definition, JointInertia):
             raise ValueError(f"part must not be an inertia, got {found.name!r}")
         return found
@@ -178,7 +178,7 @@ def view_of(scene, off: frozenset[str], placed: Mapping[str, Any] = MappingProxy
     found = set(off)
     for name in off:
         others = dependents(scene._parts, scene._parts[name])
-        found |= {one.name for one in others if isinstance(one, SWITCHED)}
+        found |= {one.name for one in others if isinstance(one, SWITCHABLE)}
     made = scene.copy()
     made._parts.changes()
     made._off, made._placed = frozenset(found), placed

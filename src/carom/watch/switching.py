@@ -12,12 +12,15 @@ from typing import Any
 import numpy as np
 
 from carom.watch.conditions import Condition, Observed, condition_of
+from carom.contact.depth import write_least_gaps
 from carom.dynamics.project import project_start
 from carom.dynamics.reactions import start_errors
 from carom.model.placement import pose_of_child
+from carom.model.records import OPENS, longer
 from carom.model.switched import SWITCHED
 from carom.results.joint_impulses import impulses_of
 from carom.scene.constraints import Constraint
+from carom.scene.contacts import Contact
 from carom.scene.joints import Joint
 from carom.scene.stops import Stop
 from carom.scene.switch import Switch
@@ -31,7 +34,8 @@ def switches_of(scene) -> list[Condition]:
 def _condition(switch: Switch, scene) -> Condition:
     name = f"switch {switch.name!r}"
     if switch.limits:
-        return Condition(name, _Breaks(switch, scene), 0, 1.0, switch=switch, breaks=True)
+        breaks = _Breaks(switch)
+        return Condition(name, breaks, 0, 1.0, breaks.when, switch=switch, breaks=True)
     if switch.time is not None:
         time = switch.time
         return Condition(
@@ -49,7 +53,7 @@ def changes(run, switch: Switch) -> list[Any]:
 class _Breaks:
     """Above 0 where a force, a torque or an impulse of a joint exceeds its limit, relative to this."""
 
-    def __init__(self, switch: Switch, scene):
+    def __init__(self, switch: Switch):
         self.part, self.limits = switch.parts[0], switch.limits
 
     def __call__(self, look: Observed) -> float:
@@ -91,7 +95,12 @@ def switch(run, part, on: bool, number: int = -1) -> bool:
     placed, before = np.zeros(7), run.clock[0].copy()
     if on and isinstance(part, Joint):
         placed = pose_of_child(part, run.now)
+    points = run.active.points[: run.active.count[0]].copy()
+    points["contact"] = run.compiled.system.contacts["number"][points["contact"]]
     run.stand_as(run.stands.after(part.name, on, placed))
+    note_opened(run, points)
+    if on and isinstance(part, (Contact, Stop)):
+        refuse_inside(run, part)
     if on and isinstance(part, (Joint, Constraint)):
         enter(run, part, placed)
     save_again(run, before)
@@ -122,6 +131,33 @@ def enter(run, part, placed: np.ndarray) -> None:
         relation.constant = placed[0] = relation.constant + errors[0, element, 0]
         run.stands = run.stands.after(part.name, True, placed)._replace(count=run.stands.count)
     project_start(system, run.now, run.work)
+
+
+def note_opened(run, points: np.ndarray) -> None:
+    """Write to the events that the active points of contacts that are off have opened."""
+    gone = points[~np.isin(points["contact"], run.compiled.system.contacts["number"])]
+    if run.clock["event"][0] + len(gone) > len(run.records.event):
+        run.records = longer(run.records, run.clock)
+    clock = run.clock[0]
+    for point in gone:
+        row = run.records.event[clock.event]
+        row.time, row.kind, row.contact = clock.now, OPENS, point["contact"]
+        row.feature, row.saved, row.first, row.mode = point["feature"], clock.saved, clock.snapped, 0
+        clock.event += 1
+
+
+def refuse_inside(run, part: Contact | Stop) -> None:
+    """Refuse to put in a contact or a stop that is exceeded in the present state."""
+    contacts, count = run.compiled.system.contacts, len(run.compiled.system.contacts)
+    number = part.index if isinstance(part, Contact) else len(run.pairs.body) + part.index
+    gaps = np.zeros(count)
+    write_least_gaps(run.compiled.system, run.now, 0, run.work, gaps)
+    for row in np.flatnonzero(contacts["number"] == number):
+        if not gaps[row] >= -run.options.constraint_tolerance * contacts["extent"][row]:
+            raise ValueError(
+                f"{part.name!r} cannot be put into the motion where its bodies are in each other, by "
+                f"{-gaps[row]:.6g} m"
+            )
 
 
 def save_again(run, before) -> None:

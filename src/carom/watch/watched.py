@@ -21,9 +21,10 @@ from carom.results.solution import Solution
 from carom.results.state import SystemState
 from carom.run import Run
 from carom.status import Status
-from carom.stepping.grid import cut_grid, step_at
+from carom.stepping.grid import cut_grid
 
 ROUND_OFF = 4.0 * float(np.finfo(float).eps)  # of a time: no interval is halved that is shorter
+NO_STEP = 4e-12  # of a time: a step of this length is none, but not divided from the one before by its end
 LEAST = 1e-300  # stands for a value of exactly 0, which counts as changed
 
 
@@ -49,15 +50,14 @@ class Watched:
     def __init__(self, run: Run, events: list[Condition] | None = None):
         self.run, self.events = run, events
         self.conditions = conditions = [*(events or ()), *switches_of(run.scene)]
-        self.more = 0  # steps by which switches have divided those of the run
-        for t in dict.fromkeys(run.switched["time"].tolist()):  # of a run that goes on
-            self.divide(t)
-        self.before = Snapshot(run)
-        self.grids = run.grid, run.controls
+        # steps by which switches have divided those of the run, here of a run that goes on
+        self.more = run.divide_as_before()
+        self.before, self.grids = Snapshot(run), (run.grid, run.controls)
         self.happened: list[Happened] = []
         self.times = [self.has_acted(c) for c in conditions]  # how often each has happened
         self.stopped_by, self.joints = "", {}
         self.began, self.struck = 0.0, 0
+        self.last: tuple[float, list[float]] | None = None  # time and values before the last step
         self.asked, self.at = "", 0.0  # the condition that was evaluated last, and its time
         self.timed = all(c.switch is not None and c.switch.time is not None for c in conditions)
         self.values = self.evaluated()
@@ -80,6 +80,7 @@ class Watched:
     def go_on(self, until: int) -> Status:
         """Go on to step number `until`, to an event that ends the run, or to a failure."""
         run, status = self.run, Status.SUCCESS
+        self.grids = run.grid, run.controls
         while status is Status.SUCCESS and self.steps_done < until:
             if self.timed and (quiet := self.steps_before_switch(until)) > run.steps_done:
                 status = run.go_on(quiet)
@@ -96,7 +97,7 @@ class Watched:
         run = self.run
         left = [c.switch.time for c in self.conditions if c.switch.time > run.reached]
         last = until + self.more
-        return min(last, step_at(run.grid, min(left)) - 1) if left else last
+        return min(last, run.step_at(min(left)) - 1) if left else last
 
     def has_acted(self, condition: Condition) -> int:
         """Return how often a switch has acted in a run that goes on."""
@@ -168,10 +169,12 @@ class Watched:
         """Find the events of the last step, and stop at the first that ends the run."""
         look, step = self.look(), self.run.steps_done
         old, self.values = self.values, [self.value(i, look) for i in range(len(self.conditions))]
+        ends = [look] * len(old)
+        self.end_at_peaks(old, ends, step)
         changed = [i for i, c in enumerate(self.conditions) if crosses(c, old[i], self.values[i])]
         if not changed:
             return Status.SUCCESS
-        near = [self.conditions[i].when(look) for i in changed]
+        near = [self.conditions[i].when(ends[i]) for i in changed]
         found = []
         for i, guess in zip(changed, near):
             if self.conditions[i].rest and not self.still_rests(step, look.state.t):
@@ -181,7 +184,7 @@ class Watched:
             if one is not None and one.time is not None:
                 found.append(Happened(i, one.time, None))
                 continue
-            state = self.locate(i, step, old[i], look.state, guess)
+            state = self.locate(i, step, old[i], ends[i].state, guess)
             found.append(Happened(i, state.t, state))
         found.sort(key=lambda one: one.t)
         for one in found:
@@ -195,21 +198,49 @@ class Watched:
         self.put_back()
         return self.run.go_on(step)
 
+    def end_at_peaks(self, old: list[float], ends: list[Observed], step: int) -> None:
+        """Let a load that has passed its limit within the step, and come back, end where it is greatest.
+
+        The parabola through the values at the ends of the last two steps says where that is, and whether the
+        load may exceed its limit there.
+        """
+        last, self.last = self.last, (self.began, old)
+        moved = False
+        for i, condition in enumerate(self.conditions if last is not None else ()):
+            if not condition.breaks or not max(old[i], self.values[i]) < 0.0:
+                continue
+            assert last is not None
+            t, most = peak((last[0], self.began, ends[i].state.t), (last[1][i], old[i], self.values[i]))
+            if most > 0.0 and self.began < t < ends[i].state.t:
+                self.put_back()
+                self.go_to(step, t)
+                moved, there = True, self.look()
+                if (value := self.value(i, there)) > 0.0:
+                    self.values[i], ends[i] = value, there
+        if moved:
+            self.put_back()
+            status = self.run.go_on(step)
+            if status is not Status.SUCCESS:
+                raise _Failed(status)
+
     def act(self, found: list[Happened], t: float, step: int) -> Status:
         """Let the switches act that have been found at time t, within the last step; the run stands there."""
         self.put_back()
-        self.divide(t)
-        self.grids, status = (self.run.grid, self.run.controls), Status.SUCCESS
-        if t > self.began * (1.0 + ROUND_OFF):
+        status, within = Status.SUCCESS, t * (1.0 + ROUND_OFF)
+        if self.run.step_at(t) == step:
+            # an impact at the start of the step is to be behind
+            t = max(t, self.began * (1.0 + NO_STEP))
+            self.divide(t)
+            self.grids = self.run.grid, self.run.controls
             status = self.run.go_on(step)
         for one in found:
             condition = self.conditions[one.condition]
-            if abs(one.t - t) > ROUND_OFF * t or status is not Status.SUCCESS:
+            if one.t > within or status is not Status.SUCCESS:
                 break
             if condition.switch is not None:
                 self.times[one.condition] += 1
                 self.apply(condition.switch)
-        self.values = self.evaluated()
+        self.values, self.last = self.evaluated(), None
         self.break_at_once()
         return status
 
@@ -296,6 +327,17 @@ def crosses(condition: Condition, old: float, new: float) -> bool:
     return (rises and condition.direction >= 0.0) or (falls and condition.direction <= 0.0)
 
 
+def peak(t: tuple[float, float, float], f: tuple[float, float, float]) -> tuple[float, float]:
+    """Return where the parabola through three points is greatest, and its value there; NaN if it has none."""
+    a, b = (f[1] - f[0]) / (t[1] - t[0]), (f[2] - f[1]) / (t[2] - t[1])
+    bend = (b - a) / (t[2] - t[0])
+    if not bend < 0.0:
+        return math.nan, math.nan
+    top = 0.5 * (t[0] + t[1] - a / bend)  # f' = a + bend (2 t - t0 - t1) = 0
+    return top, f[0] + (top - t[0]) * (a + bend * (top - t[1]))
+
+
 def watched(run, events: list[Condition] | None = None) -> Any:
     """Return a run that is watched for events and for what switches its scene has; itself if there are none."""
-    return Watched(run, events) if events is not None or switches_of(run.scene) else run
+    acts = events is not None or any(one.at is not None for one in run.scene.switches)
+    return Watched(run, events) if acts else run

@@ -31,7 +31,7 @@ from carom.io.files.layout import (
 )
 from carom.io.files.scene_parts import OF_SYSTEM, scene_from_text, scene_to_text
 from carom.io.files.sealed import Sealed, refusal, unsealed
-from carom.io.files.settings_in_time import from_rows
+from carom.io.files.settings_in_time import from_rows, switched_from
 from carom.io.files.user_events import from_file
 from carom.model import records as r
 from carom.options import Options
@@ -129,7 +129,8 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
     checkpoint = None if note is None else from_index(note, file.data)
     found = _found(arrays, index["found"], len(scene.stops))
     history = from_rows(file.data, index.get("history"), scene)
-    known = records, checkpoint, missing, attributes, found, history
+    switched = switched_from(file.data, index.get("switched"), scene)
+    known = records, checkpoint, missing, attributes, found, history, switched
     run = KeptRun(scene, settings, options, *known)
     check_numbers(records, len(run.pairs.body) + len(scene.stops))
     if records.turn.shape[1] not in (0, turning := len(counted(scene.joints))):

@@ -28,7 +28,7 @@ from carom.scene.shapes.convex import Convex
 from carom.scene.shapes.mesh import Mesh
 from carom.scene.shapes.profile import Profile
 from carom.scene.switch import Switch
-from carom.scene.switches import SWITCHED
+from carom.scene.switches import SWITCHABLE
 from carom.scene.user_surface import Surface
 
 ROUNDING = 1e-9  # of what is worked out once more: of unit vectors, lengths, inertias
@@ -106,7 +106,7 @@ def _made(parts, part: Any) -> Any:
                 parts.member("joint", one, (joints.Joint,))
     if isinstance(part, Switch):
         for one in part.parts:
-            parts.member("parts", one, SWITCHED)
+            parts.member("parts", one, SWITCHABLE)
     if isinstance(part, contacts.Contact):
         parts.member("body", part.body, (bodies.Body,))
         parts.member("other", part.other, KINDS)

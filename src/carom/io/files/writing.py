@@ -83,6 +83,7 @@ def file_of(solution, checkpoint: Checkpoint | None = None, whole: bool = True) 
         "user_events": index_of(solution),
         "found": None if run.found is None else len(run.found),
         "history": None if history is None else [len(history), add(history.tobytes())],
+        "switched": [len(run.switched), add(run.switched.tobytes())] if len(run.switched) else None,
         "checkpoint": None if checkpoint is None else packed(checkpoint, add),
     }  # fmt: skip
     return seal(parts, index)
