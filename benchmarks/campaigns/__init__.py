@@ -32,6 +32,7 @@ from campaigns import (
     slides,
     strikes,
     surfaces,
+    switches,
     teeth,
     terrains,
     tethers,
@@ -48,5 +49,5 @@ FAMILIES = {
     "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "grains by slip": grains.by_slip,
     "rough": rough.case, "plays": plays.case, "tethers": tethers.case, "ropes": ropes.case,
     "coordinates": coordinates.case, "drives": drives.case, "clearances": clearances.case,
-    "loads": loads.case, "magnets": magnets.case,
+    "loads": loads.case, "magnets": magnets.case, "switches": switches.case,
 }  # fmt: skip

@@ -64,6 +64,14 @@ def stands_of(scene, switched: np.ndarray) -> list[tuple[int, Stands]]:
     return found
 
 
+def rows_with(run, part, count: int) -> np.ndarray:
+    """Return at which of the saved rows (count,) of a run a part was there."""
+    there = np.ones(count, dtype=bool)
+    for first, stand in stands_of(run.scene, run.switched) if run.scene.switches else ():
+        there[first:] = part.name not in (stand.view(run.scene)._off or ())
+    return there
+
+
 def go_on_from(old, active, new, entered) -> None:
     """Take over the turns of joints, friction in them, and active points, of what is still there.
 

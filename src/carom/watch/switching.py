@@ -19,11 +19,12 @@ from carom.model.placement import pose_of_child
 from carom.model.records import OPENS, longer
 from carom.model.switched import SWITCHED
 from carom.results.joint_impulses import impulses_of
+from carom.results.names import contact_names
 from carom.scene.constraints import Constraint
-from carom.scene.contacts import Contact
 from carom.scene.joints import Joint
 from carom.scene.stops import Stop
 from carom.scene.switch import Switch
+from carom.scene.switches import check_on, is_off
 
 
 def switches_of(scene) -> list[Condition]:
@@ -92,45 +93,61 @@ def switch(run, part, on: bool, number: int = -1) -> bool:
     """
     if (part.name in run.stands.off) != on:
         return False
-    placed, before = np.zeros(7), run.clock[0].copy()
-    if on and isinstance(part, Joint):
-        placed = pose_of_child(part, run.now)
+    before, known = run.clock[0].copy(), run.compiled.system.contacts["number"]
     points = run.active.points[: run.active.count[0]].copy()
-    points["contact"] = run.compiled.system.contacts["number"][points["contact"]]
+    points["contact"] = known[points["contact"]]
+    absent = [one for one in run.scene.constraints if is_off(run.stands.view(run.scene), one)]
+    placed = pose_of_child(part, run.now) if on and isinstance(part, Joint) else np.zeros(7)
     run.stand_as(run.stands.after(part.name, on, placed))
     note_opened(run, points)
-    if on and isinstance(part, (Contact, Stop)):
-        refuse_inside(run, part)
-    if on and isinstance(part, (Joint, Constraint)):
-        enter(run, part, placed)
+    entered = [(part, placed)]
+    if on:
+        view = run.stands.view(run.scene)
+        entered += enter(run, part, [one for one in absent if not is_off(view, one)])
+        refuse_inside(run, known)
     save_again(run, before)
-    names = [one.name for one in run.scene]
-    row = np.zeros(1, SWITCHED)
-    row["row"], row["time"] = run.clock["saved"], run.clock["now"]
-    row["switch"], row["part"], row["on"] = number, names.index(part.name), on
+    for one, where in dict(entered).items():
+        note_switched(run, one, on, number, where)
     after = run.clock[0]
-    row["energy"] = after.kinetic + after.potential - before["kinetic"] - before["potential"]
-    row["placed"] = placed
-    run.switched = np.append(run.switched, row)
+    given = after.kinetic + after.potential - before["kinetic"] - before["potential"]
+    run.switched["energy"][-len(dict(entered))] = given
     return True
 
 
-def enter(run, part, placed: np.ndarray) -> None:
-    """Let a joint or relation that was put in begin as the bodies stand, and take away what it forbids."""
-    system = run.compiled.system
+def note_switched(run, part, on: bool, number: int, placed: np.ndarray) -> None:
+    """Write that a part was switched."""
+    row = np.zeros(1, SWITCHED)
+    row["row"], row["time"] = run.clock["saved"], run.clock["now"]
+    row["switch"], row["on"], row["placed"] = number, on, placed
+    row["part"] = [one.name for one in run.scene].index(part.name)
+    run.switched = np.append(run.switched, row)
+
+
+def enter(run, part, relations: list[Constraint]) -> list[tuple[Constraint, np.ndarray]]:
+    """Let a joint and relations that were put in begin as the bodies stand; take away what they forbid.
+
+    Return the relations, and the constants with which they begin.
+    """
+    system, placed = run.compiled.system, []
     run.work.moment[0].time = run.reached
-    if isinstance(part, Joint):
-        for (joint, _), k in run.compiled.numbers.items():
-            if joint == part.index:
-                system.relations.memory.coordinates["reference"][k] = 0.0
-    else:
-        element = len(run.scene.joints) + part.index
-        errors = np.zeros((2, len(system.joints), 6))
+    for (joint, _), k in run.compiled.numbers.items():
+        if isinstance(part, Joint) and joint == part.index:
+            system.relations.memory.coordinates["reference"][k] = 0.0
+    errors = np.zeros((2, len(system.joints), 6))
+    if relations:
         start_errors(system, run.now, run.work, *errors)
+    for one in relations:
+        check_on(one)
+        element = len(run.scene.joints) + one.index
         relation = system.relations.relations[system.joints["number"][element]]
-        relation.constant = placed[0] = relation.constant + errors[0, element, 0]
-        run.stands = run.stands.after(part.name, True, placed)._replace(count=run.stands.count)
-    project_start(system, run.now, run.work)
+        relation.constant += errors[0, element, 0]
+        constant = np.zeros(7)
+        constant[0] = relation.constant
+        placed.append((one, constant))
+        run.stands = run.stands.after(one.name, True, constant)
+    if isinstance(part, Joint) or relations:
+        project_start(system, run.now, run.work)
+    return placed
 
 
 def note_opened(run, points: np.ndarray) -> None:
@@ -146,16 +163,17 @@ def note_opened(run, points: np.ndarray) -> None:
         clock.event += 1
 
 
-def refuse_inside(run, part: Contact | Stop) -> None:
-    """Refuse to put in a contact or a stop that is exceeded in the present state."""
-    contacts, count = run.compiled.system.contacts, len(run.compiled.system.contacts)
-    number = part.index if isinstance(part, Contact) else len(run.pairs.body) + part.index
-    gaps = np.zeros(count)
+def refuse_inside(run, known: np.ndarray) -> None:
+    """Refuse to put in what is exceeded in the present state: contacts and stops beside those that are known."""
+    contacts, stops = run.compiled.system.contacts, len(run.pairs.body)
+    gaps, names = np.zeros(len(contacts)), contact_names(run.scene, run.pairs).name
     write_least_gaps(run.compiled.system, run.now, 0, run.work, gaps)
-    for row in np.flatnonzero(contacts["number"] == number):
+    for row in np.flatnonzero(~np.isin(contacts["number"], known)):
         if not gaps[row] >= -run.options.constraint_tolerance * contacts["extent"][row]:
+            number = int(contacts["number"][row])
             raise ValueError(
-                f"{part.name!r} cannot be put into the motion where its bodies are in each other, by "
+                f"{str(names[number])!r} cannot be put into the motion where "
+                f"{'it is exceeded' if number >= stops else 'its bodies are in each other'}, by "
                 f"{-gaps[row]:.6g} m"
             )
 

@@ -159,10 +159,10 @@ class Watched:
             self.put_back()
             raise
         except Exception as error:  # of a function of the user's
+            self.put_back()
             self.run.compiled.functions.fail(
                 error, f"{self.asked} {raised(error)} at t = {self.at:.9g} s"
             )
-            self.put_back()
             return Status.FUNCTION_FAILED
 
     def find(self) -> Status:
@@ -246,6 +246,7 @@ class Watched:
 
     def apply(self, one: Any) -> None:
         """Switch the parts of a switch."""
+        self.asked, self.at = f"switch {one.name!r}", self.run.reached
         for part in changes(self.run, one):
             switch(self.run, part, not one.off, one.index)
         self.joints = {}
