@@ -39,7 +39,12 @@ def case(seed: int) -> Case:
     name = str(rng.choice(list(BASES)))
     base = BASES[name].case(seed)
     scene, parts = base.scene, []
-    for part in (*base.scene.joints, *base.scene.forces, *base.scene.constraints, *base.scene.stops):
+    for part in (
+        *base.scene.joints,
+        *base.scene.forces,
+        *base.scene.constraints,
+        *base.scene.stops,
+    ):
         if not isinstance(getattr(part, "definition", None), JointInertia):
             parts.append(part)
     parts += scene.contacts
@@ -53,7 +58,10 @@ def case(seed: int) -> Case:
 
 def _add(scene, part, rng, duration: float) -> None:
     """Add a switch of a part, and perhaps another one that puts it back."""
-    kind, time = str(rng.choice(["time", "begins off", "force", "event"])), duration * rng.uniform(0.1, 0.8)
+    kind, time = (
+        str(rng.choice(["time", "begins off", "force", "event"])),
+        duration * rng.uniform(0.1, 0.8),
+    )
     if kind == "force" and isinstance(part, Joint):
         limits = {"force": 10.0 ** rng.uniform(0, 2.5), "torque": 10.0 ** rng.uniform(-1, 2)}
         if rng.random() < 0.3:

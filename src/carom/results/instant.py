@@ -18,7 +18,11 @@ class Instant:
 
     def __init__(self, run, states: np.ndarray, t: float, given: dict, known: dict):
         self.run, self.states, self.t, self.given, self.pairs = run, states, t, given, run.pairs
-        self.scene, self.compiled, self.options = run.stands.view(run.scene), run.compiled, run.options
+        self.scene, self.compiled, self.options = (
+            run.stands.view(run.scene),
+            run.compiled,
+            run.options,
+        )
         system = run.compiled.system
         self.touch = touches(run)
         self.turns = system.relations.memory.coordinates["reference"].copy()

@@ -62,7 +62,9 @@ def spans(solution: Solution) -> list[Solution]:
     stands = stands_of(solution.scene, run.switched)
     ends = [*(row for row, _ in stands[1:]), len(solution.t)]
     rows = [(max(first - 1, 0), end) for (first, _), end in zip(stands, ends)]
-    made = [_part(solution, stand.view(solution.scene), *own) for (_, stand), own in zip(stands, rows)]
+    made = [
+        _part(solution, stand.view(solution.scene), *own) for (_, stand), own in zip(stands, rows)
+    ]
     return [part for part in made if len(part.t)]
 
 

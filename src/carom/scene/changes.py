@@ -48,7 +48,19 @@ _RANKS = {kind: k for k, kind in enumerate(KINDS)}
 LEAVES = (Switch,)  # to which no part refers
 REFERRING = (*FORCES, *CONSTRAINTS, Combination, Length)  # definitions that may contain parts
 #: fields of parts and definitions that say which part it is, or to which it refers
-_FIXED = {"index", "name", "body", "other", "parent", "child", "frames", "joint", "bodies", "terms", "parts"}
+_FIXED = {
+    "index",
+    "name",
+    "body",
+    "other",
+    "parent",
+    "child",
+    "frames",
+    "joint",
+    "bodies",
+    "terms",
+    "parts",
+}
 
 
 def _rank(part) -> int:

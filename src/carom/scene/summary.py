@@ -2,8 +2,23 @@
 
 from __future__ import annotations
 
-KINDS = ("bodies", "half_spaces", "statics", "contacts", "joints", "constraints", "stops", "forces", "switches")
-ONE = {"bodies": "body", "half_spaces": "half-space", "statics": "static body", "switches": "switch"}
+KINDS = (
+    "bodies",
+    "half_spaces",
+    "statics",
+    "contacts",
+    "joints",
+    "constraints",
+    "stops",
+    "forces",
+    "switches",
+)
+ONE = {
+    "bodies": "body",
+    "half_spaces": "half-space",
+    "statics": "static body",
+    "switches": "switch",
+}
 MANY = {"statics": "static bodies"}
 
 

@@ -55,7 +55,9 @@ class Switch(PartOfScene):
 
     def __repr__(self) -> str:
         names = ", ".join(repr(part.name) for part in self.parts)
-        limits = ", ".join(f"{name} > {limit:g} {LIMITS[name]}" for name, limit in self.limits.items())
+        limits = ", ".join(
+            f"{name} > {limit:g} {LIMITS[name]}" for name, limit in self.limits.items()
+        )
         at = f"{self.time:g} s" if self.time is not None else self.event or limits or None
         shown = getattr(self.when, "__name__", "a function") if self.when is not None else at
         return f"Switch({self.name!r}, {names}, {'off' if self.off else 'on'} at {shown})"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,12 +21,17 @@ ALLOWED = (
 )
 
 
-class Observed(NamedTuple):
-    """A run between two steps, or at the end of a trial."""
+class Observed:
+    """A run between two steps, or at the end of a trial; its state is made when it is first asked for."""
 
-    run: Any
-    state: SystemState
-    struck: int  # impacts before the step
+    def __init__(self, run: Any, known: dict, struck: int):
+        self.run, self.known, self.struck = run, known, struck  # impacts before the step
+        self.t = run.reached
+
+    @cached_property
+    def state(self) -> SystemState:
+        """The state of the system; the run must still stand there."""
+        return self.run.state(self.known)
 
 
 class Condition(NamedTuple):

@@ -12,12 +12,19 @@ from typing import Any
 import numpy as np
 
 from carom.watch.conditions import Condition, Observed, condition_of
+from carom._compiled.record_arrays import table
 from carom.contact.depth import write_least_gaps
 from carom.dynamics.project import project_start
-from carom.dynamics.reactions import start_errors
+from carom.dynamics.reactions import reactions, start_errors
+from carom.model.arrays import STATE
+from carom.model.compile import compiled_once
+from carom.model.forces import settable
 from carom.model.placement import pose_of_child
-from carom.model.records import OPENS, longer
+from carom.model.records import OPENS, SERIES, TURN, longer, new_work
 from carom.model.switched import SWITCHED
+from carom.results.assemble import on_children
+from carom.results.dry_friction import dry_of
+from carom.results.instant import touches
 from carom.results.joint_impulses import impulses_of
 from carom.results.names import contact_names
 from carom.scene.constraints import Constraint
@@ -39,9 +46,7 @@ def _condition(switch: Switch, scene) -> Condition:
         return Condition(name, breaks, 0, 1.0, breaks.when, switch=switch, breaks=True)
     if switch.time is not None:
         time = switch.time
-        return Condition(
-            name, lambda look: look.state.t - time, 0, 1.0, lambda look: time, switch=switch
-        )
+        return Condition(name, lambda look: look.t - time, 0, 1.0, lambda look: time, switch=switch)
     event = switch.event if switch.when is None else switch.when
     return condition_of(name, event, scene)._replace(terminal=0, switch=switch)
 
@@ -58,22 +63,24 @@ class _Breaks:
         self.part, self.limits = switch.parts[0], switch.limits
 
     def __call__(self, look: Observed) -> float:
-        most = -1.0
-        for name, limit in self.limits.items():
-            if name != "impulse":
-                most = max(most, self.size(name, look.state) / limit - 1.0)
-            elif self.when(look) is not None:
-                most = max(most, 1.0)
+        most = -1.0 if self.when(look) is None else 1.0
+        sizes = self.sizes(look)
+        for name, size in sizes.items():
+            if name in self.limits:
+                most = max(most, size / self.limits[name] - 1.0)
         return most
 
-    def size(self, name: str, state) -> float:
-        """Return the size of the force or torque in a state."""
+    def sizes(self, look: Observed) -> dict[str, float]:
+        """Return the sizes of force and torque."""
         part = self.part
         if isinstance(part, Stop):
-            rows = state._touch["contact"] == len(state._instant.pairs.body) + part.index
-            return float(np.abs(np.sum(state._touch["force"][rows, 0])))
-        reaction = state.joint_reactions[part.index]
-        return float(np.linalg.norm(reaction[3:] if name == "torque" else reaction[:3]))
+            touch = touches(look.run)
+            rows = touch["contact"] == len(look.run.pairs.body) + part.index
+            return {"force": float(np.abs(np.sum(touch["force"][rows, 0])))}
+        if Loads not in look.known:
+            look.known[Loads] = Loads(look.run)
+        force, torque = look.known[Loads].of(part, look)
+        return {"force": float(np.linalg.norm(force)), "torque": float(np.linalg.norm(torque))}
 
     def when(self, look: Observed) -> float | None:
         """Return the time of the first impact in the step whose impulse exceeds the limit, or None."""
@@ -83,6 +90,46 @@ class _Breaks:
             return None
         times, sizes = impulses_of(run, look.struck, self.part)
         return next((t for t, size in zip(times, sizes) if size > limit), None)
+
+
+class Loads:
+    """Reactions of joints in a run that stands between two steps, in arrays of their own."""
+
+    def __init__(self, run):
+        view = run.stands.view(run.scene)
+        self.solves = bool(dry_of(view))  # then they follow from those of a state
+        self.compiled = compiled_once(view, run.options, *run.ways)
+        system, self.turns = self.compiled.system, table(TURN, 2, 0)
+        self.states, self.series = table(STATE, 2, len(run.now)), table(SERIES, 2)
+        self.out = np.zeros((2, system.joints.size, 6))
+        self.work = new_work(system, run.method.b.size)
+        self.time = np.nan
+
+    def of(self, joint: Joint, look: Observed) -> tuple[np.ndarray, np.ndarray]:
+        """Return force and torque of a joint on its child."""
+        if self.solves:
+            reaction = look.state.joint_reactions[joint.index]
+            return reaction[:3], reaction[3:]
+        if look.t != self.time:
+            self.solve(look.run)
+            self.time = look.t
+        reaction = self.found[0, joint.index]
+        return reaction[:3], reaction[3:]
+
+    def solve(self, run) -> None:
+        """Find all reactions as the run stands."""
+        system, here = self.compiled.system, run.compiled.system
+        touch = touches(run)
+        touch["saved"], self.states[:], self.series["t"] = 1, run.now, run.reached
+        memory = system.relations.memory.coordinates
+        memory["reference"] = here.relations.memory.coordinates["reference"]
+        for there, now in zip(settable(system.forces), settable(here.forces)):
+            there[:] = now
+        saved = run.records._replace(
+            series=self.series, state=self.states, turn=self.turns, touch=touch
+        )
+        reactions(system, run.options.augmentation, saved, (1, 2), self.work, self.out)
+        self.found = on_children(self.compiled, self.states[1:], self.out[1:])
 
 
 def switch(run, part, on: bool, number: int = -1) -> bool:
@@ -159,7 +206,12 @@ def note_opened(run, points: np.ndarray) -> None:
     for point in gone:
         row = run.records.event[clock.event]
         row.time, row.kind, row.contact = clock.now, OPENS, point["contact"]
-        row.feature, row.saved, row.first, row.mode = point["feature"], clock.saved, clock.snapped, 0
+        row.feature, row.saved, row.first, row.mode = (
+            point["feature"],
+            clock.saved,
+            clock.snapped,
+            0,
+        )
         clock.event += 1
 
 

@@ -33,7 +33,7 @@ class Happened(NamedTuple):
 
     condition: int
     t: float
-    state: SystemState | None  # None of a switch at a time
+    state: SystemState | None  # None of a switch
 
 
 class _Failed(Exception):
@@ -109,7 +109,7 @@ class Watched:
     def evaluated(self) -> list[float]:
         """Return the values of all conditions now; what is to rest is yet to."""
         look = self.look()
-        self.asked, self.at = "", look.state.t
+        self.asked, self.at = "", look.t
         return [
             1.0 if c.rest and c.switch is None else self.value(i, look)
             for i, c in enumerate(self.conditions)
@@ -137,7 +137,10 @@ class Watched:
 
     def look(self) -> Observed:
         """Return the run as conditions see it."""
-        return Observed(self.run, self.run.state(self.joints), self.struck)
+        look = Observed(self.run, self.joints, self.struck)
+        if self.events:
+            look.state  # noqa: B018 - of the events that may be found
+        return look
 
     def value(self, i: int, look: Observed) -> float:
         """Return the value of condition i; NaN of a switch that would change nothing, or has had its event."""
@@ -145,7 +148,7 @@ class Watched:
         if one is not None:
             if not changes(self.run, one) or (one.event is not None and self.times[i] > 0):
                 return math.nan
-        self.asked, self.at = condition.name, look.state.t
+        self.asked, self.at = condition.name, look.t
         return condition.value(look)
 
     def check(self) -> Status:
@@ -177,15 +180,15 @@ class Watched:
         near = [self.conditions[i].when(ends[i]) for i in changed]
         found = []
         for i, guess in zip(changed, near):
-            if self.conditions[i].rest and not self.still_rests(step, look.state.t):
+            if self.conditions[i].rest and not self.still_rests(step, look.t):
                 self.values[i] = 1.0
                 continue
             one = self.conditions[i].switch
             if one is not None and one.time is not None:
                 found.append(Happened(i, one.time, None))
                 continue
-            state = self.locate(i, step, old[i], ends[i].state, guess)
-            found.append(Happened(i, state.t, state))
+            there = self.locate(i, step, old[i], ends[i], guess)
+            found.append(Happened(i, there.t, there.state if one is None else None))
         found.sort(key=lambda one: one.t)
         for one in found:
             condition = self.conditions[one.condition]
@@ -210,8 +213,8 @@ class Watched:
             if not condition.breaks or not max(old[i], self.values[i]) < 0.0:
                 continue
             assert last is not None
-            t, most = peak((last[0], self.began, ends[i].state.t), (last[1][i], old[i], self.values[i]))
-            if most > 0.0 and self.began < t < ends[i].state.t:
+            t, most = peak((last[0], self.began, ends[i].t), (last[1][i], old[i], self.values[i]))
+            if most > 0.0 and self.began < t < ends[i].t:
                 self.put_back()
                 self.go_to(step, t)
                 moved, there = True, self.look()
@@ -254,7 +257,9 @@ class Watched:
     def break_at_once(self) -> None:
         """Break what exceeds its limit in the present state, until nothing does."""
         while True:
-            beyond = [c for c, value in zip(self.conditions, self.values) if c.breaks and value > 0.0]
+            beyond = [
+                c for c, value in zip(self.conditions, self.values) if c.breaks and value > 0.0
+            ]
             if not beyond:
                 return
             for condition in beyond:
@@ -262,9 +267,9 @@ class Watched:
             self.values = self.evaluated()
 
     def locate(
-        self, i: int, step: int, first: float, end: SystemState, guess: float | None
-    ) -> SystemState:
-        """Return the first state at which condition i has another sign than at the start of the step."""
+        self, i: int, step: int, first: float, end: Observed, guess: float | None
+    ) -> Observed:
+        """Return the first time at which condition i has another sign than at the start of the step."""
         from scipy.optimize import brentq
 
         condition, side, best = self.conditions[i], math.copysign(1.0, first), end
@@ -278,7 +283,7 @@ class Watched:
                 look = self.look()
                 known[t] = self.value(i, look) or -side * LEAST
                 if known[t] * side < 0.0 and t < best.t:
-                    best = look.state
+                    best = look
             return known[t]
 
         low, high, shortest = self.began, end.t, ROUND_OFF * end.t

@@ -21,7 +21,16 @@ from carom.dynamics.elements import (
     stiff,
     user,
 )
-from carom.model.arrays import ABSENT, CHART_CONSTRAINT, INERTIA, KIND, ON_CURVE, RELATION, STIFF, USER_ROWS
+from carom.model.arrays import (
+    ABSENT,
+    CHART_CONSTRAINT,
+    INERTIA,
+    KIND,
+    ON_CURVE,
+    RELATION,
+    STIFF,
+    USER_ROWS,
+)
 
 #: a joint without rows has coordinates that stops limit, and no errors
 _FILES: dict[int, Any] = {number: own_rows for joint, number in KIND.items() if joint.rows == 0}
