@@ -10,7 +10,6 @@ from typing import overload
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
-from carom.watch.conditions import Event, conditions
 from carom.generalized.solution import GeneralizedSolution
 from carom.generalized.system import GeneralizedSystem
 from carom.io.run_to_end import finish
@@ -26,6 +25,7 @@ from carom.stepping.settings import (
     checked_settings,
     mistakes,
 )
+from carom.watch.conditions import Event, conditions
 
 
 @overload

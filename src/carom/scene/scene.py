@@ -129,8 +129,8 @@ class Scene(
     def remove(self, part, *, dependents: bool = False) -> tuple:
         """Remove a part, and return all parts that were removed.
 
-        Contacts of a body, half-space or static body, and switches of a part, are removed with it. Bodies of a joint that is removed may
-        touch again by `set_contact_default`.
+        Contacts of a body, half-space or static body, and switches of a part, are removed with it. Bodies of a
+        joint that is removed may touch again by `set_contact_default`.
 
         Parameters
         ----------

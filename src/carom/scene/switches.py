@@ -8,7 +8,7 @@ from typing import Any
 
 from carom import arguments, checks
 from carom.scene.changes import dependents
-from carom.scene.constraints import Constraint, Coupling, Rows
+from carom.scene.constraints import Constraint, Driver, Rows
 from carom.scene.contacts import Contact
 from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
@@ -151,7 +151,7 @@ def check_on(part) -> None:
         why = f"a {part.kind}, whose place is stated at the start"
     elif isinstance(d, Rows):
         why = "rows of your own, whose error only you know"
-    elif isinstance(part, Constraint) and not isinstance(d, Coupling) and d.rate is None:
+    elif isinstance(part, Constraint) and isinstance(d, Driver) and d.rate is None:
         why = "a motion that is a function of time; give rate=, or a forces.PositionServo"
     else:
         return
@@ -159,7 +159,7 @@ def check_on(part) -> None:
 
 
 def off_at_start(scene) -> frozenset[str]:
-    """Return the names of the parts that a run begins without: whose first switch puts them in, or acts at 0."""
+    """Return the names of parts that a run begins without: their first switch puts them in, or acts at 0."""
     on: dict[str, bool] = {}
     for switch in scene.switches:
         for part in switch.parts:
@@ -172,8 +172,8 @@ def off_at_start(scene) -> frozenset[str]:
 def view_of(scene, off: frozenset[str], placed: Mapping[str, Any] = MappingProxyType({})):
     """Return a scene as a run sees it that is without some parts, and what refers to them.
 
-    It has all parts, with their numbers. `placed` has, by name, how joints stand that were put in (7,): position
-    and attitude of the child from the parent, of principal axes, and the constant (1,) of such a relation.
+    It has all parts, with their numbers. `placed` has by name (7,) how joints stand that were put in (position
+    and attitude of the child from the parent, of principal axes), and the constant of such a relation.
     """
     found = set(off)
     for name in off:

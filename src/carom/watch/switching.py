@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from carom.watch.conditions import Condition, Observed, condition_of
 from carom._compiled.record_arrays import table
 from carom.contact.depth import write_least_gaps
 from carom.dynamics.project import project_start
@@ -32,6 +31,7 @@ from carom.scene.joints import Joint
 from carom.scene.stops import Stop
 from carom.scene.switch import Switch
 from carom.scene.switches import check_on, is_off
+from carom.watch.conditions import Condition, Observed, condition_of
 
 
 def switches_of(scene) -> list[Condition]:

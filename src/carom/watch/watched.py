@@ -13,8 +13,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from carom._compiled.user_functions import raised
-from carom.watch.conditions import Condition, Observed
-from carom.watch.switching import changes, switch, switches_of
 from carom.model.kept import Snapshot
 from carom.model.records import with_room
 from carom.results.solution import Solution
@@ -22,6 +20,8 @@ from carom.results.state import SystemState
 from carom.run import Run
 from carom.status import Status
 from carom.stepping.grid import cut_grid
+from carom.watch.conditions import Condition, Observed
+from carom.watch.switching import changes, switch, switches_of
 
 ROUND_OFF = 4.0 * float(np.finfo(float).eps)  # of a time: no interval is halved that is shorter
 NO_STEP = 4e-12  # of a time: a step of this length is none, but not divided from the one before by its end
