@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -27,7 +27,7 @@ class InSpans:
     @cached_property
     def _spans(self) -> list[Any]:
         """The parts between switches; none if nothing was switched."""
-        return spans(self)
+        return spans(self)  # pyright: ignore[reportArgumentType]
 
     def _by_span(self, read: Callable[[Any], np.ndarray]) -> np.ndarray:
         """Return what is read from each part between switches, one after another (T, ...)."""
@@ -38,7 +38,7 @@ class InSpans:
         """Return the part between switches that moves on from a time; itself if nothing was switched."""
         return [self, *(part for part in self._spans if part.t[0] <= t)][-1]
 
-    def _by_time(self, t, side: str, read: Callable[[Any, np.ndarray], tuple]) -> tuple:
+    def _by_time(self, t, side: Any, read: Callable[[Any, np.ndarray], tuple]) -> tuple:
         """Return states at times, each read from the part between switches that it is in."""
         times, begins = np.atleast_1d(np.asarray(t, dtype=float)), [one.t[0] for one in self._spans]
         which = np.maximum(np.searchsorted(begins, times, side=side) - 1, 0)
@@ -94,7 +94,7 @@ def _part(solution: Solution, view, first: int, end: int) -> Solution:
         t=solution.t[rows], position=solution.position[rows], velocity=solution.velocity[rows],
         angular_velocity=solution.angular_velocity[rows], held_residual=solution.held_residual[rows],
         status=Status.SUCCESS, stats=solution.stats, scene=view, pairs=solution.pairs,
-        settings=solution.settings, _run=kept, _touch=records.touch,
+        settings=solution.settings, _run=cast(Any, kept), _touch=records.touch,
         _written=Written(
             np.array(records.state["Q"]), records.series, whole.impact, event, {}, view.forces
         ),

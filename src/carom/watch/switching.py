@@ -204,19 +204,13 @@ def note_opened(run, points: np.ndarray) -> None:
         run.records = longer(run.records, run.clock)
     clock = run.clock[0]
     for point in gone:
-        row = run.records.event[clock.event]
-        row.time, row.kind, row.contact = clock.now, OPENS, point["contact"]
-        row.feature, row.saved, row.first, row.mode = (
-            point["feature"],
-            clock.saved,
-            clock.snapped,
-            0,
-        )
+        own = point["contact"], point["feature"]
+        run.records.event[clock.event] = (clock.now, OPENS, *own, clock.saved, clock.snapped, 0)
         clock.event += 1
 
 
 def refuse_inside(run, known: np.ndarray) -> None:
-    """Refuse to put in what is exceeded in the present state: contacts and stops beside those that are known."""
+    """Refuse to put in contacts and stops, beside those that are known, that are exceeded in this state."""
     contacts, stops = run.compiled.system.contacts, len(run.pairs.body)
     gaps, names = np.zeros(len(contacts)), contact_names(run.scene, run.pairs).name
     write_least_gaps(run.compiled.system, run.now, 0, run.work, gaps)

@@ -127,7 +127,7 @@ class Watched:
         if self.events is None:
             return self.run.solution(status)
         own = [
-            [one.state for one in self.happened if one.condition == i]
+            [one.state for one in self.happened if one.condition == i and one.state is not None]
             for i in range(len(self.events))
         ]
         return self.run.solution(
@@ -272,7 +272,7 @@ class Watched:
         """Return the first time at which condition i has another sign than at the start of the step."""
         from scipy.optimize import brentq
 
-        condition, side, best = self.conditions[i], math.copysign(1.0, first), end
+        side, best = math.copysign(1.0, first), end
         known = {self.began: first, end.t: self.values[i] or -side * LEAST}
 
         def value(t: float) -> float:
