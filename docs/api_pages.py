@@ -36,7 +36,8 @@ TOPICS = {
             "contact_default", "pairs_by_default",
         ),
         "Joints and constraints": (
-            "add_joint", "add_stop", "add_play", "add_rope", "add_constraint", "joints", "stops", "constraints",
+            "add_joint", "add_stop", "add_play", "add_rope", "add_constraint", "switch", "joints", "stops",
+            "constraints", "switches",
         ),
         "Forces": ("add_force", "forces"),
         "Changes": ("replace", "remove", "copy"),
@@ -46,7 +47,7 @@ TOPICS = {
     "Solution": {
         "Motion": ("t", "position", "orientation", "velocity", "angular_velocity", "evaluate"),
         "Parts by name": ("body", "joint", "force", "constraint", "contact"),
-        "Impacts": ("impacts", "joint_impulses", "impact_history", "events"),
+        "Impacts": ("impacts", "joint_impulses", "impact_history", "events", "switches"),
         "Contact that stays": (
             "contacts", "contact_mode", "contact_force", "forces", "surface_power", "held_residual", "pairs",
         ),

@@ -103,6 +103,8 @@ ARGUMENTS = {
         "a spring or a damper of a joint is a force: "
         "scene.add_force(carom.forces.JointSpring(joint, stiffness=, damping=))":
             "damping stiffness spring spring_constant damping_coefficient viscous_friction compliance",
+        "a joint that breaks is scene.add_joint(..., breaks_at=), one that is released scene.switch(joint, at=)":
+            "break_force break_torque breaking_force breakable max_force release detach",
         "a joint with clearance is carom.joints.Clearance(anchor, axis, radial=)": "clearance gap tolerance",
         "play between joints is scene.add_play({joint: factor, ...}, lower, upper, restitution=)":
             "backlash play",
@@ -171,6 +173,9 @@ _OF_SCENE = {
         "add_cable add_string add_tether add_chain",
     "a conveyor is a fixed part whose surface moves: add_half_space(..., surface_velocity=), or add_static":
         "add_conveyor add_belt add_conveyor_belt add_treadmill",
+    "a joint that is switched on is stated by add_joint and switch(joint, at=, off=False); "
+    "in a loop of your own by carom.Run.switch": "weld attach grasp add_weld",
+    "switch(joint, at=) takes a joint out of the motion": "detach release break_joint add_switch disable",
     "a turntable is a fixed part whose surface turns: add_half_space(..., surface_spin=), or add_static":
         "add_turntable",
     "stairs are made of static boxes by add_static": "add_stairs add_steps",

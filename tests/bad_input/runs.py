@@ -94,6 +94,7 @@ def run(folder):
                  options=carom.Options()),
         ),
         "Run.advance": lambda: (carom.Run(thrown(), step=0.01).advance, dict(duration=0.02)),
+        "Run.switch": lambda: (things.switched().switch, dict(part="push", off=True)),
         "Run.set_force": lambda: (things.pushed().set_force, dict(force="push", value=(0.0, 0.0, 1.0))),
         "Run.reset": lambda: (
             carom.Run(things.model()).reset,

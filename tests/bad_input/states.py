@@ -152,8 +152,8 @@ def stated():
         "surfaces.InsideTorus": lambda: (carom.surfaces.InsideTorus, dict(radius=2.0, tube_radius=1.0)),
         "Scene.add_joint": of_scene(
             "add_joint", definition=joints.Spherical((0, 0, 0)), parent="@ball", child="@box",
-            parent_frame=(three, (1.0, 0, 0, 0)), child_frame=(three, (1.0, 0, 0, 0)), name="new",
-            replace=True,
+            parent_frame=(three, (1.0, 0, 0, 0)), child_frame=(three, (1.0, 0, 0, 0)), breaks_at=5.0,
+            name="new", replace=True,
         ),
         "Scene.add_force": of_scene(
             "add_force", definition=forces.Torque(three), parent="@ball", child="@box", name="new",
@@ -168,6 +168,7 @@ def stated():
             "add_play", joint="@hinge", lower=-1.0, upper=1.0, restitution=0.5, friction=0.1,
             impact_law="newton", coordinate=0, name="new",
         ),
+        "Scene.switch": of_scene("switch", part="@hinge", at=0.5, off=True, name="new"),
         "Scene.add_rope": of_scene(
             "add_rope", over=["ball", "box"], length=100.0, stiffness=None, restitution=0.5,
             impact_law="newton", name="new",

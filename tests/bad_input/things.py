@@ -57,6 +57,16 @@ def pushed():
     return run
 
 
+def switched():
+    """A run of the ball with a force that may be switched off."""
+    scene = thrown()
+    scene.add_force(carom.forces.Force((0, 0, 1)), "ball", name="push")
+    scene.switch("push")
+    run = carom.Run(scene, step=0.01)
+    run.advance()
+    return run
+
+
 @functools.cache
 def solution():
     return carom.simulate(thrown(), 0.15, step=0.01)

@@ -8,6 +8,7 @@ from carom.results.event_tables import (
     ImpactTable,
     JointImpulse,
     JointImpulseTable,
+    SwitchTable,
 )
 from carom.results.ledger import Ledger
 from carom.results.state import SystemState
@@ -30,6 +31,7 @@ __all__ = [
     "JointImpulseTable",
     "JointView",
     "Ledger",
+    "SwitchTable",
     "SystemState",
 ]
 

@@ -389,9 +389,8 @@ class Solution(Portable, Drawn, Source, InSpans):
         part is switched off, they are NaN.
         """
         if self._spans:
-            return tuple(
-                self._by_span(lambda part, k=k: part.constraint_errors[k]) for k in range(2)
-            )
+            x, v = (self._by_span(lambda part, k=k: part.constraint_errors[k]) for k in range(2))
+            return x, v
         return self._assemble.constraint_errors(self)
 
     @cached_property

@@ -99,6 +99,10 @@ def sensitivities(
             f'solution must be of a scene of free bodies for by="saltation", got one with {parts[0]!r}; use '
             'by="differences"'
         )
+    if scene.switches:
+        raise ValueError(
+            f"solution must be of a scene without switches, got one with {scene.switches[0]!r}"
+        )
     if scene.statics:
         raise ValueError(
             f"solution must be of a scene without static bodies, got one with {scene.statics[0]!r}"
