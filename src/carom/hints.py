@@ -103,7 +103,7 @@ ARGUMENTS = {
         "a spring or a damper of a joint is a force: "
         "scene.add_force(carom.forces.JointSpring(joint, stiffness=, damping=))":
             "damping stiffness spring spring_constant damping_coefficient viscous_friction compliance",
-        "a joint that breaks is scene.add_joint(..., breaks_at=), one that is released scene.switch(joint, at=)":
+        "a joint breaks by add_joint(..., breaks_at=), and is released by scene.switch(joint, at=)":
             "break_force break_torque breaking_force breakable max_force release detach",
         "a joint with clearance is carom.joints.Clearance(anchor, axis, radial=)": "clearance gap tolerance",
         "play between joints is scene.add_play({joint: factor, ...}, lower, upper, restitution=)":

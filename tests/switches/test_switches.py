@@ -139,7 +139,7 @@ def boxes():
 def momenta(solution):
     """Return linear and angular momentum (T, 6) of a solution."""
     out = np.zeros((len(solution.t), 6))
-    for k, body in enumerate(solution.scene.bodies):
+    for body in solution.scene.bodies:
         view = solution[body.name]
         spin = [
             R @ body.inertia @ R.T @ w
@@ -223,7 +223,8 @@ def test_a_contact_that_is_off_lets_its_bodies_pass():
     solution = carom.simulate(scene, 1.0)
     assert solution["box"].position[-1, 2] == pytest.approx(0.1 - G / 8, abs=1e-12)
     assert np.all(solution.contacts.end == 0.5)
-    assert solution.success and not solution.warnings
+    assert solution.success
+    assert not solution.warnings
 
 
 def test_what_is_exceeded_cannot_be_put_in():
@@ -234,14 +235,14 @@ def test_what_is_exceeded_cannot_be_put_in():
     scene.switch(contact, at=0.3)
     scene.switch(contact, at=0.6, off=False)
     with pytest.raises(
-        SimulationError, match="'switch2'.*'box-floor' cannot be put into the motion"
+        SimulationError, match=r"'switch2'.*'box-floor' cannot be put into the motion"
     ):
         carom.simulate(scene, 1.0)
     solution = carom.simulate(scene, 1.0, throw=False)
     assert 0.58 < solution.t[-1] <= 0.6
 
 
-@pytest.mark.parametrize("how", ({}, {"step": 0.01}), ids=("tolerances", "step"))
+@pytest.mark.parametrize("how", [{}, {"step": 0.01}], ids=("tolerances", "step"))
 def test_a_motor_and_a_gear_that_come_back_take_the_coordinates_as_they_stand(how):
     scene = carom.Scene(gravity=(0, 0, 0))
     for k in range(2):
