@@ -17,8 +17,8 @@ ROOT = Path(carom.__file__).parent
 ORDER = (
     "_compiled", "hints", "arguments", "checks", "fields", "options", "status", "geometry", "scene",
     "collision", "model", "law", "kinematics", "contact", "friction", "dynamics", "impact", "persistent",
-    "stepping", "results", "run", "generalized", "io", "control", "simulate", "studies", "visual",
-    "baselines", "paper", "bench", "cli",
+    "stepping", "results", "run", "generalized", "watch", "io", "control", "simulate", "studies",
+    "visual", "baselines", "paper", "bench", "cli",
 )  # fmt: skip
 #: methods of what users hold in their hands that need a floor above, imported where they are called
 DOORS = {
@@ -29,6 +29,7 @@ DOORS = {
     ("results.portable", "io.files.convert"),
     ("results.portable", "io.files.resume"),
     ("results.replay", "run"),
+    ("results.spans", "io.files.kept"),
     ("scene.shown", "visual.notebook"),
     ("scene.shown", "visual.plots"),
     ("results.drawn", "visual.plots"),

@@ -174,7 +174,7 @@ _OF_SCENE = {
     "a conveyor is a fixed part whose surface moves: add_half_space(..., surface_velocity=), or add_static":
         "add_conveyor add_belt add_conveyor_belt add_treadmill",
     "a joint that is switched on is stated by add_joint and switch(joint, at=, off=False); "
-    "in a loop of your own by carom.Run.switch": "weld attach grasp add_weld",
+    "in a loop of your own by carom.Run.switch": "attach grasp",
     "switch(joint, at=) takes a joint out of the motion": "detach release break_joint add_switch disable",
     "a turntable is a fixed part whose surface turns: add_half_space(..., surface_spin=), or add_static":
         "add_turntable",
