@@ -50,7 +50,7 @@ HANDED_BACK = {
     "generalized.CoordinateContact", "generalized.GeneralizedSolution",
     "generalized.CoordinateImpactTable", "generalized.CoordinateImpact", "generalized.CoordinateState",
     "dynamics.mobility.Mobility", "results.ImpactTable", "results.ImpactRecord",
-    "results.EventTable", "results.ContactTable",
+    "results.EventTable", "results.SwitchTable", "results.ContactTable",
     "results.ForceTable", "all_pairs.PairTable", "results.Ledger",
     "results.SystemState", "results.BodyState", "results.JointImpulse", "results.JointImpulseTable",
     "results.JointView", "results.ForceView", "results.ConstraintView", "results.ContactView",
@@ -67,7 +67,7 @@ HANDED_BACK = {
     "studies.identify.Uncertainty", "baselines.LayerRun", "baselines.MoreauJeanRun",
     "joints.Joint", "joints.Joint.anchor", "forces.AppliedForce", "constraints.Constraint",
     "Options.as_dict", "studies.identify.Curvature",
-    "Body", "HalfSpace", "Ground", "Contact", "Constraint", "AppliedForce", "stops.Stop",
+    "Body", "HalfSpace", "Ground", "Contact", "Constraint", "AppliedForce", "stops.Stop", "switch.Switch",
     "joints.JointDefinition",
 }  # fmt: skip
 

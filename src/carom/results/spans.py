@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from carom._compiled.record_arrays import Columns, copied
-from carom.model import records as r
-from carom.model.switched import stands_of
 from carom.status import Status
 
 if TYPE_CHECKING:
@@ -56,6 +54,8 @@ def spans(solution: Solution) -> list[Solution]:
     Each begins with the row of the switch before, whose forces are those of the part before: the state at this
     time is that after the switch.
     """
+    from carom.model.switched import stands_of
+
     run = solution._run
     if not len(run.switched):
         return []
@@ -70,6 +70,7 @@ def spans(solution: Solution) -> list[Solution]:
 
 def _part(solution: Solution, view, first: int, end: int) -> Solution:
     from carom.io.files.kept import KeptRun
+    from carom.model import records as r
     from carom.results.assemble import Written
     from carom.results.solution import Solution
 

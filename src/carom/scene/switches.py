@@ -20,6 +20,8 @@ from carom.scene.values import MethodsOfScene
 
 #: kinds of parts that a switch may take out of a motion
 SWITCHABLE = (Joint, AppliedForce, Constraint, Stop, Contact)
+#: how the names of events begin, as of `simulate`
+EVENTS = "at rest", "first impact of "
 
 
 class SceneSwitches(MethodsOfScene):
@@ -138,6 +140,11 @@ def _moment(at) -> dict[str, Any]:
     if at is None:
         return {}
     if isinstance(at, str):
+        if at != EVENTS[0] and not at.startswith(EVENTS[1]):
+            raise ValueError(
+                f'at must be a time [s], "{EVENTS[0]}", "{EVENTS[1]}A and B" or a function f(t, state), got '
+                f"{checks.shown(at)}"
+            )
         return {"event": at}
     if callable(at):
         return {"when": at}

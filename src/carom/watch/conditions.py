@@ -12,9 +12,10 @@ import numpy as np
 from carom import checks
 from carom.results.state import SystemState
 from carom.scene.bodies import Body, HalfSpace, StaticBody
+from carom.scene.switches import EVENTS
 
 Event = str | Callable[[float, SystemState], float]
-AT_REST, FIRST_IMPACT = "at rest", "first impact of "
+AT_REST, FIRST_IMPACT = EVENTS
 ALLOWED = (
     f'a function f(t, state), "{AT_REST}", "{FIRST_IMPACT}A and B" with the names of two parts, or '
     f'"{FIRST_IMPACT}S" with that of a stop'
