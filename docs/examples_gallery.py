@@ -22,7 +22,8 @@ FIRST = (  # of each section; the others follow by name
     "bouncing_sphere", "die", "watch", "own_force", "restitution_laws", "newtons_cradle", "counting_pi",
     "draw_shot", "ladder", "off_a_sphere", "plank_on_rollers", "stick_slip", "ball_in_a_bowl", "rocking_block",
     "overhang", "arch", "heap", "rattleback",
-    "trammel", "planetary_gear", "falling_chain", "heavy_top", "rolling_disc", "sleigh", "striking_four_bar",
+    "trammel",
+    "trebuchet", "planetary_gear", "falling_chain", "heavy_top", "rolling_disc", "sleigh", "striking_four_bar",
     "load_a_model", "dice_study",
 )  # fmt: skip
 SIDE = 400  # of a thumbnail [pixels]
@@ -67,6 +68,7 @@ PLOTTED = {
     "stick_slip",
     "tippe_top",
     "trammel",
+    "trebuchet",
     "vibrating_table",
     "watch",
 }

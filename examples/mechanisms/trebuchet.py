@@ -58,13 +58,13 @@ def main(out="out/examples"):
             ranges.append(stone[-1, 0])
             x, _, v, _ = (one[2] for one in solution.evaluate(t))
             if round(math.degrees(angle)) % 10 == 5:
-                left.plot(*stone[:, ::2].T, lw=0.9, label=f"{math.degrees(angle):.0f} degrees")
+                left.plot(*stone[:, ::2].T, lw=0.9, label=f"{math.degrees(angle):.0f}°")
             # from there on a parabola: z + vz s - g s^2/2 = r
             z, vx, vz = x[2], v[0], v[2]
             flight = (vz + math.sqrt(vz**2 + 2 * G * (z - 0.06))) / G
             np.testing.assert_allclose(stone[-1, 0], x[0] + vx * flight, rtol=1e-9)
-        left.set(xlabel="x / m", ylabel="height / m", aspect="equal")
-        left.legend()
+        left.set(xlabel="x / m", ylabel="height / m", aspect="equal", ylim=(-2, 92))
+        left.legend(ncols=2, loc="upper right")
         right.plot(np.degrees(shots), ranges, "o-", ms=3.5, lw=0.9)
         right.set(xlabel="let go at / degrees", ylabel="range / m")
     best = int(np.argmax(ranges))
