@@ -166,7 +166,14 @@ def run(folder):
             dict(scene=thrown(), body="ball", point=(0, 0, 0.05), normal=(0, 0, 1.0), other=None),
         ),
         "resolve_impact": lambda: (
-            carom.resolve_impact, dict(**blow, law="newton", tangential_restitution=0.5),
+            carom.resolve_impact,
+            dict(**blow, law="newton", tangential_restitution=0.5, stiffness=carom.Stiffness(1e6)),
+        ),
+        "Impact.force": lambda: (
+            carom.resolve_impact(**blow).force, dict(stiffness=carom.Stiffness(1e6)),
+        ),
+        "impact.ImpactForce.evaluate": lambda: (
+            carom.resolve_impact(**blow).force(carom.Stiffness(1e6)).evaluate, dict(t=0.0),
         ),
         "studies.gradient.impact_derivative": lambda: (gradient.impact_derivative, dict(**blow, law="newton")),
         "impact_layer": lambda: (

@@ -83,7 +83,9 @@ def stated():
     found |= {
         "euler": lambda: (carom.euler, dict(axes="zyx", angles=(90.0, 0.0, 30.0))),
         "axis_angle": lambda: (carom.axis_angle, dict(axis=three, angle=90.0)),
-        "Material": lambda: (carom.Material, number),
+        "Material": lambda: (carom.Material, dict(**number, young=1e9, poisson=0.3)),
+        "Stiffness": lambda: (carom.Stiffness, dict(k=1e6, exponent=1.5)),
+        "Hertz": lambda: (carom.Hertz, dict(young=1e9, poisson=0.3, radius=0.1)),
         "Friction": lambda: (
             carom.Friction, dict(
                 static=0.5, kinetic=0.3, speed=0.1, exponent=1.0, axis=None, along=None, across=None, of="body"

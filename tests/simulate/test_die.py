@@ -139,7 +139,7 @@ def test_the_layer_does_not_change_the_motion(option):
     a = carom.simulate(die(SPACE, 0.2), 0.197, step=1e-3)
     b = carom.simulate(die(SPACE, 0.2), 0.197, step=1e-3, options=carom.Options(**option))
     np.testing.assert_array_equal(a.velocity, b.velocity)
-    assert b.impacts.duration[0] > a.impacts.duration[0]
+    assert b.impacts.layer_duration[0] > a.impacts.layer_duration[0]
 
 
 def test_layer_time_on_the_clock():
@@ -149,7 +149,7 @@ def test_layer_time_on_the_clock():
     b = carom.simulate(ball(0.8), 0.9, step=1e-2)
     assert a.impacts.time[0] == b.impacts.time[0]
     late = a.impacts.time[1] - b.impacts.time[1]
-    assert late == pytest.approx(a.impacts.duration[0], rel=1e-9)
+    assert late == pytest.approx(a.impacts.layer_duration[0], rel=1e-9)
 
 
 @pytest.mark.parametrize("how", [{}, {"save_at": 2.0}, {"step": 1e-3}])

@@ -1,6 +1,7 @@
 """One frictional impact: the boundary layer, slip and stick, laws of restitution, the impact solver."""
 
 from carom.impact.api import Impact, resolve_impact
+from carom.impact.force import ImpactForce
 from carom.impact.geometry import NormalMotion, diagonal_form
 from carom.impact.history import LayerHistory, impact_layer
 from carom.impact.slip_directions import (
@@ -11,6 +12,7 @@ from carom.impact.slip_directions import (
 
 __all__ = [
     "Impact",
+    "ImpactForce",
     "InvariantDirections",
     "LayerHistory",
     "NormalMotion",

@@ -11,6 +11,7 @@ from carom import arguments, checks
 from carom.friction.checks import semidefinite
 from carom.scene.shown import Shown, hodograph_of
 from carom.scene.speed_law import SpeedLaw
+from carom.scene.stiffness import ABSOLUTE, Hertz, Stiffness
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,47 @@ class Impact(Shown):
     #: what was stated, by the names of an `ImpactRecord`
     _stated: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
+    def _force(self) -> Any:
+        if self._stated.get("stiffness") is None:
+            return None
+        if "force" not in self._stated:
+            self._stated["force"] = self.force()
+        return self._stated["force"]
+
+    @property
+    def peak_force(self) -> Any:
+        """Greatest normal force [N], of several impacts an array; NaN without a stiffness."""
+        from carom.impact.force import peak_force
+
+        stiffness = self._stated.get("stiffness")
+        none = np.full(np.shape(self.compression_work), np.nan)
+        peak = none if stiffness is None else peak_force(self.compression_work, *stiffness.of(None))
+        return float(peak) if np.ndim(peak) == 0 else peak
+
+    @property
+    def duration(self) -> float:
+        """Duration [s] of a single impact; NaN without a stiffness."""
+        force = self._force()
+        return np.nan if force is None else force.duration
+
+    def force(self, stiffness: Stiffness | Hertz | None = None) -> Any:
+        """Return the force of a single impact in time.
+
+        Parameters
+        ----------
+        stiffness : Stiffness or Hertz, optional
+            Default: that which was stated.
+
+        Returns
+        -------
+        carom.impact.force.ImpactForce
+        """
+        from carom.impact.force import of_stated
+
+        return of_stated(
+            self._stated, self._stated.get("stiffness") if stiffness is None else stiffness
+        )
+
     def plot(self, **options):
         """Draw the hodograph of the impact, `carom.plots.hodograph`, and return its axes.
 
@@ -77,6 +119,7 @@ def resolve_impact(
     law: str = "newton",
     *,
     tangential_restitution: float = 0.0,
+    stiffness: Stiffness | Hertz | None = None,
 ) -> Impact:
     """Solve one impact with Coulomb friction to round-off (Darboux-Keller equation).
 
@@ -102,6 +145,9 @@ def resolve_impact(
         Coefficient e_t in [-1, 1]. Where the impact ends in stick the slip becomes ``-e_t`` times that before,
         as far as the cone of friction and the energy that friction has taken allow, without a gain. 1 is a
         super ball; below 0 slip keeps its direction, and -1 is a smooth surface. Default 0.
+    stiffness : Stiffness or Hertz, optional
+        Stiffness of the contact, from which `Impact.peak_force`, `.duration` and `.force()` follow. A `Hertz`
+        needs its radius. It changes nothing else. Default None.
 
     Returns
     -------
@@ -141,10 +187,15 @@ def resolve_impact(
     from carom.impact.tangential import return_slip
 
     given = inverse_mass, velocity, friction, restitution, law
+    if stiffness is not None:
+        checks.instance("stiffness", stiffness, ABSOLUTE)
+        stiffness.of(None)
     if _are_many(*given, tangential_restitution):
         from carom.impact.many import resolve_many
 
-        return resolve_many(*given, tangential_restitution)
+        many = resolve_many(*given, tangential_restitution)
+        many._stated["stiffness"] = stiffness
+        return many
     W, u, mu, e, number = checked_impact(inverse_mass, velocity, friction, restitution, law)
     e_t = checked_tangential(tangential_restitution)
     out = np.zeros(o.SIZE)
@@ -153,6 +204,7 @@ def resolve_impact(
         return_slip(W, u, mu, e_t, out)
     stated = {
         "inverse_mass": W, "relative_velocity_before": u, "friction": mu, "restitution": e, "law": law,
+        "stiffness": stiffness,
     }  # fmt: skip
     return Impact(
         velocity_after=out[o.VELOCITY : o.VELOCITY + 3].copy(),

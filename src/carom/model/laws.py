@@ -81,7 +81,7 @@ class LawTable:
             "turning": (law.rolling_friction, law.pivoting_friction),
             "tangential_restitution": law.tangential_restitution,
             "impact_law": IMPACT_LAWS.index(law.impact_law), "multiple": MULTIPLE.index(law.multiple),
-            "stiffness": law.stiffness, "adhesion": law.adhesion,
+            "stiffness": law.relative_stiffness, "adhesion": law.adhesion,
         }  # fmt: skip
         first = self.add(law.friction, law.restitution, **other)
         self.add(law.friction_held, law.restitution, **other)

@@ -137,7 +137,7 @@ def _laws_of_statics(scene: Scene, pairs: PairTable) -> list[tuple[tuple, tuple]
             found[other - count][1].append(
                 (
                     body, *_sortable(one.friction), *_sortable(one.friction_held), *_sortable(one.restitution),
-                    one.tangential_restitution, one.stiffness, one.adhesion,
+                    one.tangential_restitution, one.relative_stiffness, one.adhesion,
                     one.rolling_friction, one.pivoting_friction, str(one.impact_law), str(one.multiple),
                     other if scene.statics[other - count].moves or anisotropy_of(one.friction) else -1,
                 )

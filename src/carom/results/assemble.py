@@ -35,6 +35,7 @@ from carom.results.names import (
     row_units,
 )
 from carom.results.ropes import tipped_strands
+from carom.results.stiff_impacts import stiff_impacts
 from carom.results.tipped_profiles import tipped
 from carom.scene.forces import AppliedForce
 from carom.scene.materials import IMPACT_LAWS
@@ -169,22 +170,28 @@ def impact_table(solution) -> ImpactTable:
     c = first[place]
     arm = arms(contacts)[c]
     e = _restitutions(rows, contacts["restitution"][c], arm, solution)
+    mu = np.where(_not_one_mu(contacts, first)[place], np.nan, contacts["friction"][c])
+    law = np.array(IMPACT_LAWS)[contacts["impact_law"][c]]
+    peak, duration = stiff_impacts(solution, rows, mu, e, law)
     return ImpactTable(
         relative_velocity_before=rows.before / arm[:, None],
         relative_velocity_after=rows.after / arm[:, None],
         penetration=contacts["penetration"][c] * contacts["width"][c] / arm,
-        law=np.array(IMPACT_LAWS)[contacts["impact_law"][c]],
+        law=law,
+        peak_force=peak,
+        duration=duration,
+        layer_duration=np.array(rows.duration),
         inverse_mass=rows.W / arm[:, None, None] ** 2,
         impulse=rows.impulse * arm[:, None],
         restitution=np.where(_differs(contacts["restitution"], first)[place], np.nan, e),
-        friction=np.where(_not_one_mu(contacts, first)[place], np.nan, contacts["friction"][c]),
+        friction=mu,
         wedged=(rows.phases & WEDGED) // WEDGED,
         located=1 - (rows.phases & AT_END) // AT_END,
         **named(rows.contact, solution.scene, solution.pairs),
         **{
             name: np.array(rows[name])
             for name in (
-                "time", "contact", "point", "normal", "energy_change", "duration",
+                "time", "contact", "point", "normal", "energy_change",
                 "compression_work", "restitution_work", "friction_loss", "together",
             )
         },

@@ -39,7 +39,7 @@ class ImpactRecord(NamedTuple):
         float  #: change of energy of the system [J]; in a multiple impact the share of the point
     )
     penetration: float  #: greatest penetration of the boundary layer, delta b [m]
-    duration: float  #: duration in the boundary layer [s]
+    duration: float  #: duration [s] by the stiffness of the contact; NaN where none is stated
     law: str  #: law of restitution
     inverse_mass: np.ndarray  #: (3, 3) Delassus operator W of the contact [1/kg]
     #: e of the contact; NaN where parts of a body have materials with different ones
@@ -53,6 +53,8 @@ class ImpactRecord(NamedTuple):
     located: (
         int  #: 1 if the time was located; 0 in a time-stepping (Moreau) step: its end is the time
     )
+    peak_force: float  #: greatest normal force [N]; NaN where no stiffness is stated
+    layer_duration: float  #: duration in the boundary layer [s], which its width decides
     name: str  #: name of the contact or stop; ``body-other`` for a default pair
     body: str  #: name of the body on which the impulse acts; for a stop the child of its joint
     other: (
@@ -69,6 +71,27 @@ class ImpactRecord(NamedTuple):
             Other arguments of that function, for example ``panel="slip"`` and ``ax``.
         """
         return hodograph_of(self, options)
+
+    def force(self, stiffness=None):
+        """Return the force of the impact in time.
+
+        Parameters
+        ----------
+        stiffness : Stiffness or Hertz
+            Stiffness of the contact; of a `Hertz` with its radius.
+
+        Returns
+        -------
+        carom.impact.force.ImpactForce
+
+        Raises
+        ------
+        ValueError
+            If the impact is part of a multiple impact, or its friction is a law or anisotropic.
+        """
+        from carom.impact.force import of_record
+
+        return of_record(self, stiffness)
 
     def _repr_html_(self) -> str:
         return html_of(self)

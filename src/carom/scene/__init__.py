@@ -33,3 +33,5 @@ from carom.scene.shapes import Part as Part
 from carom.scene.shapes import Profile as Profile
 from carom.scene.shapes import Shape as Shape
 from carom.scene.shapes import Sphere as Sphere
+from carom.scene.stiffness import Hertz as Hertz
+from carom.scene.stiffness import Stiffness as Stiffness

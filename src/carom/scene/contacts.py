@@ -11,6 +11,7 @@ from carom.geometry import quaternion
 from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.materials import IMPACT_LAWS, ContactLaw
 from carom.scene.profile_pairs import check_profiles
+from carom.scene.stiffness import ABSOLUTE, Hertz, curvature_of
 from carom.scene.surfaces import SurfaceDefinition
 from carom.scene.user_surface import Surface, check_at, evaluator
 from carom.scene.values import PartOfScene, in_scene
@@ -31,6 +32,16 @@ def check_curvature(body: Body, other: HalfSpace | StaticBody | Body) -> None:
             raise ValueError(
                 f"body {body.name!r}, {body.shape!r}, cannot touch {other.name!r}, {surface!r}: {why}"
             )
+
+
+def check_hertz(stiffness, body: Body, other) -> None:
+    """Refuse Hertz's law without a radius for shapes that do not tell one."""
+    if isinstance(stiffness, Hertz) and stiffness.radius is None and not curvature_of(body, other):
+        raise ValueError(
+            f"stiffness of {body.name!r} on {other.name!r} must have a radius, which only two balls, or a ball "
+            "and a plane, have by themselves: carom.Hertz(young, poisson, radius=), with 1/radius the sum of "
+            "the curvatures where they touch; an edge or a face has none, give carom.Stiffness(k, exponent)"
+        )
 
 
 @in_scene
@@ -68,7 +79,7 @@ class Contact(PartOfScene, ContactLaw):
         law = {name: getattr(self, name) for name in vars(plain)}
         shown = {"restitution": "", "friction": "", "impact_law": ""}
         values = ", ".join(
-            f"{name}={value!r}" if isinstance(value, str) else f"{name}={value:g}"
+            f"{name}={value!r}" if isinstance(value, (str, *ABSOLUTE)) else f"{name}={value:g}"
             for name, value in law.items()
             if name in shown or (value != getattr(plain, name) and name != "of_materials")
         )

@@ -14,11 +14,13 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from carom import arguments, checks
-from carom.fields import Number, Value, Word, keep, number, word
+from carom.fields import Number, NumberOrNone, Value, Word, keep, number, word
 from carom.scene.friction import anisotropy_of, check_anisotropy, combined_anisotropy
 from carom.scene.friction import friction as friction_or_law
 from carom.scene.restitution import restitution as number_or_law
 from carom.scene.speed_law import SpeedLaw
+from carom.scene.stiffness import ABSOLUTE, Hertz
+from carom.scene.stiffness import stiffness as absolute_or_relative
 
 IMPACT_LAWS = ("newton", "poisson", "stronge")
 MULTIPLE = ("simultaneous", "sequential")  # in the order of `carom.impact.multiple.layout`
@@ -57,9 +59,9 @@ class ContactLaw:
     impact_law : {"newton", "poisson", "stronge"}
         Definition of e: the ratio of normal speeds ("newton") or of normal impulses ("poisson"), or the square
         root of the ratio of works ("stronge").
-    stiffness : float
+    stiffness : float, Stiffness or Hertz
         Stiffness of the boundary layer of the contact relative to those of simultaneous contacts, above 0.
-        Default 1.
+        Default 1. Or that of the bodies, from which force and duration of an impact follow.
     rolling_friction, pivoting_friction : float
         Greatest moment against rolling, and about the normal, in persistent contact, divided by the normal
         force [m], at least 0. Default 0. Impacts do not use them.
@@ -80,7 +82,7 @@ class ContactLaw:
     friction: Value[Any, Any] = friction_or_law(0.0)
     friction_held: Value[Any, Any] = friction_or_law(None)
     impact_law: Word = word(IMPACT_LAWS, "newton")
-    stiffness: Number = number(1.0, above=0)
+    stiffness: Value[Any, Any] = Value(absolute_or_relative, 1.0)
     rolling_friction: Number = number(0.0, least=0)
     pivoting_friction: Number = number(0.0, least=0)
     tangential_restitution: Number = number(0.0, least=-1, most=1)
@@ -92,6 +94,11 @@ class ContactLaw:
         if self.friction_held is None:
             keep(self, friction_held=self.friction)
         check_anisotropy(self.friction, self.friction_held)
+
+    @property
+    def relative_stiffness(self) -> float:
+        """The stiffness relative to those of simultaneous contacts: 1 where one in newton is stated."""
+        return 1.0 if isinstance(self.stiffness, ABSOLUTE) else self.stiffness
 
 
 @arguments.known
@@ -108,6 +115,10 @@ class Material:
         mu in persistent contact, at least 0. Default: `friction`.
     stiffness
         Relative stiffness, above 0. Default 1. Two materials act in series: ``2 / (1 / s1 + 1 / s2)``.
+    young, poisson
+        Young's modulus [Pa] and Poisson's ratio. If both materials of a pair have a modulus, impacts of round
+        bodies (two balls, or a ball on a plane) have the force and the duration of Hertz's law
+        (`carom.Hertz`). Default None, and 0.3.
     rolling_friction, pivoting_friction
         Greatest moment divided by the normal force [m], at least 0. Default 0.
     tangential_restitution
@@ -121,6 +132,8 @@ class Material:
     rolling_friction: Number = number(0.0, least=0)
     pivoting_friction: Number = number(0.0, least=0)
     tangential_restitution: Number = number(0.0, least=-1, most=1)
+    young: NumberOrNone = number(None, above=0, unit="Pa")
+    poisson: Number = number(0.3, least=0, most=0.5)
 
 
 Rule = str | Mapping[str, str] | None
@@ -183,10 +196,18 @@ def _values(names: Iterable[str], first, second, rules: Mapping) -> dict[str, An
     found = {}
     for name in names:
         if name == "stiffness":
-            found[name] = 2.0 / (1.0 / first.material.stiffness + 1.0 / second.material.stiffness)
+            found[name] = _stiffness_of(first, second)
         else:
             found[name] = _combined(name, first, second, rules)
     return found
+
+
+def _stiffness_of(first, second) -> float | Hertz:
+    """Return Hertz's law where both materials are elastic, else two springs in series."""
+    one, two = first.material, second.material
+    if one.young is not None and two.young is not None:
+        return Hertz((one.young, two.young), (one.poisson, two.poisson))
+    return 2.0 / (1.0 / one.stiffness + 1.0 / two.stiffness)
 
 
 def _combined(name: str, first, second, rules: Mapping) -> Any:

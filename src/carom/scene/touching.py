@@ -8,11 +8,12 @@ from itertools import combinations
 from carom import arguments, checks
 from carom.scene.all_pairs import PairTable
 from carom.scene.bodies import FIXED, Body, Ground, HalfSpace, StaticBody
-from carom.scene.contacts import Contact, check_gap
+from carom.scene.contacts import Contact, check_gap, check_hertz
 from carom.scene.friction import FrictionLaw
 from carom.scene.materials import ContactLaw, Rule
 from carom.scene.pairs import Pairs
 from carom.scene.restitution import Restitution
+from carom.scene.stiffness import Hertz, Stiffness
 from carom.scene.values import MethodsOfScene
 
 One = Body | HalfSpace | StaticBody | str
@@ -34,7 +35,7 @@ class SceneContacts(MethodsOfScene):
         friction: float | FrictionLaw | None = None,
         friction_held: float | FrictionLaw | None = None,
         impact_law: str | None = None,
-        stiffness: float | None = None,
+        stiffness: float | Stiffness | Hertz | None = None,
         rolling_friction: float | None = None,
         pivoting_friction: float | None = None,
         tangential_restitution: float | None = None,
@@ -68,6 +69,8 @@ class SceneContacts(MethodsOfScene):
             (``"poisson"``), or the square root of the ratio of works (``"stronge"``).
         stiffness
             Stiffness of the boundary layer relative to those of simultaneous contacts, above 0. Default 1.
+            Or the stiffness of the bodies, `carom.Stiffness` or `carom.Hertz`: then `Solution.impacts` has the
+            greatest force and the duration of each impact, which do not change the motion.
         rolling_friction, pivoting_friction
             Greatest moment against rolling, and about the normal, in persistent contact, divided by the
             normal force [m]. Default 0. The moments act against relative rotation until it stops; each contact
@@ -117,6 +120,7 @@ class SceneContacts(MethodsOfScene):
             "pivoting_friction": pivoting_friction, "tangential_restitution": tangential_restitution,
             "multiple": multiple, "adhesion": adhesion,
         }  # fmt: skip
+        check_hertz(stiffness, body, other)
         law = self._pairs.law(body, other, given)
         contact = Contact(index=index, name=name, body=body, other=other, **vars(law))
         check_gap(contact)
@@ -134,7 +138,7 @@ class SceneContacts(MethodsOfScene):
         friction: float | FrictionLaw | None = None,
         friction_held: float | FrictionLaw | None = None,
         impact_law: str = "newton",
-        stiffness: float = 1.0,
+        stiffness: float | Stiffness | Hertz = 1.0,
         rolling_friction: float = 0.0,
         pivoting_friction: float = 0.0,
         tangential_restitution: float = 0.0,

@@ -42,7 +42,7 @@ IMPACT = {
     "impulse": (("contact_axis",), "N s", "impulse on the body"),
     "energy_change": ((), "J", "change of the energy of the whole system"),
     "penetration": ((), "m", "greatest penetration of the boundary layer"),
-    "duration": ((), "s", "duration in the boundary layer"),
+    "duration": ((), "s", "duration, NaN where no stiffness is stated"),
     "law": ((), None, "law of restitution"),
     "inverse_mass": (("contact_axis", "contact_axis_2"), "kg-1", "inverse mass W of the contact"),
     "restitution": ((), "1", "coefficient of restitution e"),
@@ -53,6 +53,8 @@ IMPACT = {
     "together": ((), "1", "points that were resolved together, each with a row of its own"),
     "wedged": ((), "1", "1 if friction wedges the pair, so that its law of restitution cannot hold"),
     "located": ((), "1", "1 if the time was located, 0 if it is the end of a time-stepping step"),
+    "peak_force": ((), "N", "greatest normal force, NaN where no stiffness is stated"),
+    "layer_duration": ((), "s", "duration in the boundary layer"),
 }  # fmt: skip
 
 EVENT = {

@@ -50,6 +50,8 @@ from carom.stepping.settings import checked_settings
 DERIVED = ("orientation", *ENERGIES)
 LENGTHS = {"axis": 3, "quaternion": 4, "contact_axis": 3, "contact_axis_2": 3}
 TYPES = ("<f8", "<i8", ">f8", ">i8")
+#: columns of the table of impacts that files of earlier versions do not have
+LATER_IMPACT = ("peak_force", "layer_duration")
 #: columns of tables that count something
 WHOLE = ("contact", "together", "wedged", "located", "feature", "impact", "joint")
 
@@ -172,7 +174,12 @@ def _count(name: str, n):
 
 def _impacts(arrays: _Arrays, scene, pairs) -> ImpactTable:
     """Return the table of impacts, with the names of the bodies that strike each other."""
-    columns = arrays.table("impact", IMPACT)
+    known = {name: kind for name, kind in IMPACT.items() if name not in LATER_IMPACT}
+    known |= {name: IMPACT[name] for name in LATER_IMPACT if f"impact_{name}" in arrays}
+    columns = arrays.table("impact", known)
+    if "layer_duration" not in columns:  # of an earlier version, where that was the duration
+        columns["layer_duration"] = columns["duration"]
+        columns["duration"] = columns["peak_force"] = np.full(len(columns["time"]), np.nan)
     return ImpactTable(**columns, **named(columns["contact"], scene, pairs))
 
 

@@ -44,6 +44,7 @@ from carom.scene.look import Look
 from carom.scene.materials import ContactLaw, Material
 from carom.scene.pieces import Piece
 from carom.scene.shapes import SHAPES
+from carom.scene.stiffness import ABSOLUTE
 from carom.scene.stops import Stop
 from carom.scene.surfaces import SURFACES
 from carom.scene.switch import Switch
@@ -63,6 +64,7 @@ TYPES: dict[str, type[Any]] = {
         *CONSTRAINTS,
         *CURVES,
         *LAWS,
+        *ABSOLUTE,
         Combination,
         Length,
         Strand,
@@ -85,6 +87,7 @@ LATER: dict[str, Any] = {
 #: the same of fields whose names mean something else in other classes
 LATER_OF: dict[str, dict[str, Any]] = {
     "JointFriction": {"mu": None, "radius": None, "length": None},
+    "Material": {"young": None, "poisson": 0.3},
 }
 ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 

@@ -1,0 +1,192 @@
+"""Force and duration of an impact: closed forms, a spring integrated in time, and what a run reports."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.special import beta
+
+import carom
+from carom import Hertz, Stiffness
+
+FRICTION = np.array([[2.5, -1.5, 0], [-1.5, 2.5, 0], [0, 0, 1.0]]), (-1.0, 2.0, 0.0), 0.2
+
+
+@pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("n", [1.0, 1.5, 3.0])
+def test_central_impact(n, e):
+    m, v, k = 0.03, 1.7, 1e7
+    impact = carom.resolve_impact(
+        np.diag([1 / m, 1, 1]), (-v, 0, 0), 0.0, e, stiffness=Stiffness(k, n)
+    )
+    # m v^2/2 = k d^(n+1)/(n+1); time to there d/v times B(1/(n+1), 1/2)/(n+1); unloading takes e times as long
+    d = ((n + 1) * m * v**2 / (2 * k)) ** (1 / (n + 1))
+    time = d / v * beta(1 / (n + 1), 0.5) / (n + 1)
+    force = impact.force()
+    assert impact.peak_force == pytest.approx(k * d**n, rel=1e-13)
+    assert impact.duration == pytest.approx(time * (1 + e), rel=1e-11)
+    assert force.compression_time == pytest.approx(time, rel=1e-11)
+    assert force.depth.max() == pytest.approx(d, rel=1e-12)
+    assert force.velocity[-1, 0] == pytest.approx(e * v, abs=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("n", "e", "compression", "duration", "peak"),
+    [
+        (1.0, 1.0, 9.387303545e-4, 1.8774607e-3, 597.6143047),
+        (1.0, 0.5, 9.387303545e-4, 1.4080955e-3, 597.6143047),
+        (1.5, 0.5, 4.2432797597e-3, 6.3649195e-3, 154.8286008),
+    ],
+)
+def test_numbers_of_a_spring_integrated_in_time(n, e, compression, duration, peak):
+    impact = carom.resolve_impact(*FRICTION, e, stiffness=Stiffness(1e6, n))
+    assert impact.force().compression_time == pytest.approx(compression, rel=3e-10)
+    assert impact.duration == pytest.approx(duration, rel=3e-8)
+    assert impact.peak_force == pytest.approx(peak, rel=1e-9)
+
+
+def random_impact(rng):
+    """Return the arguments of a random impact, and its exponent and stiffness."""
+    A = rng.normal(size=(3, 3))
+    W = A @ A.T + 10.0 ** rng.uniform(-3, 0) * np.eye(3)
+    u = np.array([-rng.uniform(0.05, 3), *(3.0 * rng.normal(size=2) * (rng.random() < 0.9))])
+    mu = rng.uniform(0, 2) * (rng.random() < 0.9)
+    e, law = (
+        rng.choice([0.0, 1.0, rng.uniform(0.05, 1)]),
+        str(rng.choice(["newton", "poisson", "stronge"])),
+    )
+    n, k = float(rng.choice([1.0, 1.5, 2.5])), 10.0 ** rng.uniform(2, 9)
+    return (W, u, mu, e, law), Stiffness(k, n)
+
+
+def test_random_impacts_that_slip_are_those_of_a_spring():
+    rng, tried = np.random.default_rng(7), 0
+    while tried < 30:
+        given, stiffness = random_impact(rng)
+        W, u, mu, *_ = given
+        try:
+            impact = carom.resolve_impact(*given, stiffness=stiffness)
+        except ValueError:
+            continue
+        if impact.phases != ("slip",) or mu == 0.0:
+            continue
+        tried += 1
+
+        def rates(t, y, W=W, mu=mu, stiffness=stiffness):
+            N = stiffness.k * max(y[0], 0.0) ** stiffness.exponent
+            slip = y[2:4] / np.hypot(y[2], y[3])
+            return np.concatenate([[-y[1]], W @ np.append(N, -mu * N * slip)])
+
+        def turns(t, y):
+            return y[1]
+
+        turns.terminal = True
+        start, force = np.append(0.0, u), impact.force()
+        spring = solve_ivp(
+            rates, (0, 1e4), start, events=turns, rtol=1e-12, atol=1e-16, method="DOP853"
+        )
+        assert force.compression_time == pytest.approx(spring.t[-1], rel=1e-8)
+        assert force.depth.max() == pytest.approx(spring.y[0, -1], rel=1e-8)
+
+
+def test_random_impacts_keep_the_cone_and_end_as_they_do():
+    rng, opened = np.random.default_rng(8), 0
+    for _ in range(300):
+        given, stiffness = random_impact(rng)
+        try:
+            impact = carom.resolve_impact(*given, stiffness=stiffness)
+        except ValueError:
+            continue
+        try:
+            force = impact.force()
+        except ValueError:  # it opens within the impact
+            opened += 1
+            continue
+        size = 1.0 + np.abs(impact.impulse).max()
+        np.testing.assert_allclose(force.impulse[-1], impact.impulse, atol=1e-9 * size)
+        np.testing.assert_allclose(force.velocity[-1], impact.velocity_after, atol=1e-8 * size)
+        friction = np.linalg.norm(force.friction_force, axis=1)
+        assert np.all(friction <= given[2] * force.normal_force + 1e-9 * force.peak_force)
+        assert force.normal_force.max() <= force.peak_force * (1 + 1e-9)
+        assert np.all(np.diff(force.t) >= 0.0)
+        total = np.trapezoid(force.normal_force, force.t)
+        assert total == pytest.approx(impact.impulse[0], rel=5e-2)
+    assert opened <= 3
+
+
+def ball(**stiffness):
+    scene = carom.Scene()
+    scene.add_half_space((0, 0, 0), (0, 0, 1), name="floor")
+    scene.add_body(
+        carom.Sphere(0.02), mass=0.03, position=(0, 0, 0.52), velocity=(0.3, 0, 0), name="ball"
+    )
+    scene.add_contact("ball", "floor", restitution=0.7, friction=0.2, **stiffness)
+    return scene
+
+
+def test_a_run_reports_what_it_was_told(tmp_path):
+    hertz = Hertz(2e9, 0.3)
+    solution, plain = carom.simulate(ball(stiffness=hertz), 1.0), carom.simulate(ball(), 1.0)
+    assert np.array_equal(solution.position, plain.position)
+    assert np.all(np.isnan(plain.impacts.peak_force))
+    assert np.all(np.isnan(plain.impacts.duration))
+    v, (k, n) = -solution.impacts.relative_velocity_before[:, 0], hertz.of(1 / 0.02)
+    assert k == pytest.approx(4 / 3 * 2e9 / (2 * 0.91) * np.sqrt(0.02))
+    assert n == 1.5
+    d = (1.25 * 0.03 * v**2 / k) ** 0.4
+    np.testing.assert_allclose(solution.impacts.peak_force, k * d**1.5, rtol=1e-12)
+    time = 0.4 * beta(0.4, 0.5) * d / v * 1.7
+    np.testing.assert_allclose(solution.impacts.duration, time, rtol=1e-9)
+    alone = plain.impacts[0].force(Hertz(2e9, 0.3, radius=0.02))
+    assert alone.duration == pytest.approx(time[0], rel=1e-9)
+    solution.save(tmp_path / "drop.nc")
+    loaded = carom.Solution.load(tmp_path / "drop.nc")
+    assert np.array_equal(loaded.impacts.peak_force, solution.impacts.peak_force)
+    assert np.array_equal(loaded.impacts.duration, solution.impacts.duration)
+    assert loaded.scene["ball-floor"].stiffness == hertz
+
+
+def test_materials_with_a_modulus_have_hertz_s_law():
+    scene = carom.Scene()
+    steel = carom.Material(0.6, 0.1, young=210e9)
+    scene.add_half_space((0, 0, 0), (0, 0, 1), material=steel, name="floor")
+    for k in range(2):
+        scene.add_body(
+            carom.Sphere(0.02),
+            mass=0.26,
+            position=(0.5 * k, 0, 0.1),
+            material=steel,
+            name=f"ball{k}",
+        )
+    scene.add_body(
+        carom.Box(0.1, 0.1, 0.1), mass=1.0, position=(1, 0, 0.2), material=steel, name="box"
+    )
+    scene.set_contact_default()
+    impacts = carom.simulate(scene, 0.25).impacts
+    (ball0,) = impacts[impacts.body == "ball0"].peak_force[:1]
+    v, (k, _) = np.sqrt(2 * 9.81 * 0.08), Hertz(210e9, 0.3, radius=0.02).of(None)
+    assert ball0 == pytest.approx(k**0.4 * (1.25 * 0.26 * v * v) ** 0.6, rel=1e-9)
+    assert np.all(np.isnan(impacts[impacts.body == "box"].peak_force))
+
+
+def test_many_impacts_have_many_forces():
+    speeds = np.array([[-1.0, 0.5], [-2.0, 0.1]])
+    many = carom.resolve_impact(np.diag([1.0, 3.5]), speeds, 0.1, 0.5, stiffness=Stiffness(1e6))
+    np.testing.assert_allclose(many.peak_force, [1e3, 2e3], rtol=1e-12)
+    assert np.isnan(carom.resolve_impact(*FRICTION, 0.5).peak_force)
+
+
+def test_what_has_no_force_is_refused():
+    scene = carom.Scene()
+    scene.add_half_space((0, 0, 0), (0, 0, 1), name="floor")
+    scene.add_body(carom.Box(1, 1, 1), mass=1.0, position=(0, 0, 1), name="box")
+    with pytest.raises(ValueError, match="must have a radius"):
+        scene.add_contact("box", "floor", stiffness=Hertz(1e9))
+    scene.add_contact(
+        "box", "floor", restitution=0.5, friction=0.1, stiffness=Hertz(1e9, radius=0.1)
+    )
+    flat = carom.simulate(scene, 0.5).impacts
+    assert flat.together[0] == 1 or np.isnan(flat.duration[0])
+    with pytest.raises(ValueError, match="radius"):
+        carom.resolve_impact(*FRICTION, 0.5, stiffness=Hertz(1e9))
+    with pytest.raises(TypeError, match="stiffness"):
+        carom.resolve_impact(*FRICTION, 0.5).force()
