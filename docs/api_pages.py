@@ -11,8 +11,8 @@ HEADING = re.compile(r"^(\w[\w ]*)\n-{3,}$", re.MULTILINE)
 
 #: classes that users call; of all others, which the library hands back, no signature is shown
 CALLED = {
-    "Scene", "Options", "Material", "Stiffness", "Hertz", "GeneralizedSystem", "UniformOrientation", "Grid", "Recording", "Parameter",
-    "State", "Run",
+    "Scene", "Options", "Material", "Stiffness", "Hertz", "GeneralizedSystem", "UniformOrientation", "Grid",
+    "Recording", "Parameter", "State", "Run",
     "Sphere", "Box", "Capsule", "Cylinder", "Disc", "Ellipsoid", "Convex", "Mesh", "Compound", "Part",
     "Revolute", "Spherical", "Prismatic", "Cylindrical", "Screw", "Universal", "Planar", "PointOnLine",
     "PointOnPlane", "Fixed", "Distance", "Tether", "Clearance", "Pulley", "KnifeEdge", "RollingSphere",

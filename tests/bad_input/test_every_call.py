@@ -50,7 +50,7 @@ HANDED_BACK = {
     "generalized.CoordinateContact", "generalized.GeneralizedSolution",
     "generalized.CoordinateImpactTable", "generalized.CoordinateImpact", "generalized.CoordinateState",
     "dynamics.mobility.Mobility", "results.ImpactTable", "results.ImpactRecord",
-    "results.EventTable", "results.SwitchTable", "results.ContactTable",
+    "results.EventTable", "results.SwitchTable", "impact.ImpactForce", "results.ContactTable",
     "results.ForceTable", "all_pairs.PairTable", "results.Ledger",
     "results.SystemState", "results.BodyState", "results.JointImpulse", "results.JointImpulseTable",
     "results.JointView", "results.ForceView", "results.ConstraintView", "results.ContactView",

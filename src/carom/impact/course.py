@@ -34,11 +34,11 @@ from carom.impact.slip_step import expand
 from carom.law import impact_laws
 
 #: columns of a piece: its state at the start (u_1, u_2, u_n, p, P_1, P_2, loss, work), its kind, the impulses of
-#: friction over the normal one, then the series of x, y (17 each), r and q (16 each) in tau, and p at its end
-STATE, KIND, SLOPE, SERIES = slice(0, 8), 8, slice(9, 11), 11
+#: friction over the normal one, the series of x, y (17 each), r and q (16 each) in tau, and p at its end
+KIND, SLOPE = 8, slice(9, 11)
 X, Y, R, Q = slice(11, 28), slice(28, 45), slice(45, 61), slice(61, 77)
-END, COLUMNS = 77, 78
-MOST_PIECES = 2000
+END, PIECE_COLUMNS = 77, 78
+MOST_PIECES_OF_PATH = 2000
 (MEASURED_BY_IMPULSE,) = impact_laws.BY_IMPULSE
 
 

@@ -13,17 +13,18 @@ continuous. Near both ends p = q^(n+1), because 1/F is singular there (mathemati
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
+from carom.impact.thresholds import NO_ENERGY
 from carom.scene.stiffness import ABSOLUTE
 
 NODES, KNOTS = (
     24,
     24,
 )  # of Gauss's rule between two times; times that are stated on a piece of the path
-SMALLEST = 1e-14  # of the greatest energy: less counts as none
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,12 +93,12 @@ class Course:
 
     def __init__(self, W: np.ndarray, u: np.ndarray, mu: float, end: float):
         from carom.impact.api import raise_for
-        from carom.impact.course import COLUMNS, MOST_PIECES, trace
+        from carom.impact.course import MOST_PIECES_OF_PATH, PIECE_COLUMNS, trace
 
-        units, rows = np.ones(2), np.zeros((64, COLUMNS))
+        units, rows = np.ones(2), np.zeros((64, PIECE_COLUMNS))
         count = trace(W, u, mu, end, rows, units)
         if count < 0:
-            rows = np.zeros((MOST_PIECES, COLUMNS))
+            rows = np.zeros((MOST_PIECES_OF_PATH, PIECE_COLUMNS))
             count = trace(W, u, mu, end, rows, units)
             raise_for(max(0, -count))
         self.rows, self.mu, (self.v, self.w) = rows[:count], mu, units
@@ -158,14 +159,14 @@ class Course:
         u1, u2, loss = x(tau), y(tau), self.mu * q.integ()(tau)
         u_n = row[2] + self.m[0, 0] * d + self.m[0, 1] * P1 + self.m[0, 2] * P2
         energy = 0.5 * (d * (row[2] + u_n) + P1 * (row[0] + u1) + P2 * (row[1] + u2))
-        size = np.maximum(np.hypot(u1, u2), SMALLEST * abs(row[2]))
+        size = np.maximum(np.hypot(u1, u2), NO_ENERGY * abs(row[2]))
         ratio = -self.mu * np.column_stack([u1, u2]) / size[:, None]
         impulse = np.column_stack([row[3] + d, row[4] + P1, row[5] + P2])
         return np.column_stack([u_n, u1, u2]), impulse, row[7] + energy + loss, ratio
 
 
 def force_in_time(
-    stated: dict[str, Any], impulse, works, k: float, n: float, knots: int = KNOTS
+    stated: dict[str, Any], impulse, works, k: float, n: float, knots: int = TIMES_A_PIECE
 ) -> ImpactForce:
     """Return the force of an impact.
 
@@ -182,7 +183,7 @@ def force_in_time(
     (p_c, end), (work_c, work_r) = impulse, works
     course, power = Course(W, u0, mu, end), 1.0 / (n + 1.0)
     ends = course.knots
-    gives_back = end > p_c * (1.0 + 1e-14) and work_r > SMALLEST * -work_c
+    gives_back = end > p_c * (1.0 + 1e-14) and work_r > NO_ENERGY * -work_c
     e_n = (work_r / -work_c) ** n if gives_back else 0.0  # e^(2n)
 
     # p = p_c q^(n+1) in compression, end - p = (end - p_c) q^(n+1) in restitution; close to both ends the works
@@ -215,11 +216,11 @@ def force_in_time(
         times.append(t[-1])
     if not np.all(np.isfinite(t)):
         raise ValueError(
-            "the contact opens within the impact and closes again (a jam by strong friction), so that no single "
-            "spring has its force"
+            "the contact opens within the impact and closes again (a jam by strong friction), so that no "
+            "single spring has its force"
         )
     made = np.array(p)
-    u, P, work, ratio = course.at(made)
+    u, P, _, ratio = course.at(made)
     forces, peak = np.array(F), float(peak_force(work_c, k, n))
     depth = (forces / k) ** (1.0 / n)
     if gives_back:
@@ -239,7 +240,7 @@ def force_in_time(
 
 def _fine(marks: np.ndarray, knots: int) -> np.ndarray:
     """Return the ends of pieces, each divided into parts."""
-    parts = [np.linspace(a, b, knots + 1)[1:] for a, b in zip(marks[:-1], marks[1:]) if a != b]
+    parts = [np.linspace(a, b, knots + 1)[1:] for a, b in pairwise(marks) if a != b]
     return np.concatenate([marks[:1], *parts])
 
 

@@ -67,3 +67,4 @@ NO_TURN = 1e-14  #: greatest entry of W, times mu: terms of the turn of slip tha
 UNIT_ROOT = 1e-6  #: 1: distance of a root from the unit circle, on which it then lies
 LEAST_TURN = 1e-6  #: greatest term of the turn: least slope by which Newton's method goes on
 SAME_SLIP = 1e-7  #: rad: directions of slip that differ by less are one
+NO_ENERGY = 1e-14  #: work of compression: less that restitution gives back counts as none

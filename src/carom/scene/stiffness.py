@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 from carom import arguments, checks
 from carom.fields import Number, NumberOrNone, Value, number
@@ -77,7 +77,7 @@ class Hertz:
         """Return k [N/m^1.5] and the exponent, for the sum of the curvatures of both bodies [1/m]."""
         if self.radius is None and not curvature:
             raise ValueError("radius of a Hertz must be given where no shapes have one, got None")
-        radius = 1.0 / curvature if self.radius is None else self.radius  # pyright: ignore
+        radius = self.radius if self.radius is not None else 1.0 / cast(float, curvature)
         return 4.0 / 3.0 * self.modulus * math.sqrt(radius), HERTZ
 
 
@@ -97,7 +97,7 @@ def curvature_of(first, second) -> float:
     """
     total = 0.0
     for part in (first, second):
-        shape = getattr(part, "shape", None)
+        shape: Any = getattr(part, "shape", None)
         if type(shape).__name__ == "Sphere":
             total += 1.0 / shape.radius
         elif not hasattr(part, "normal"):  # no half-space
