@@ -33,7 +33,7 @@ from carom.impact.resolve import (
 from carom.impact.slip_step import expand
 from carom.law import impact_laws
 
-#: columns of a piece: its state at the start (u_1, u_2, u_n, p, P_1, P_2, loss, work), its kind, the impulses of
+#: columns of a piece: its state at the start (u_1, u_2, u_n, p, P_1, P_2, loss, work), its kind, impulses of
 #: friction over the normal one, the series of x, y (17 each), r and q (16 each) in tau, and p at its end
 KIND, SLOPE = 8, slice(9, 11)
 X, Y, R, Q = slice(11, 28), slice(28, 45), slice(45, 61), slice(61, 77)

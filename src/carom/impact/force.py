@@ -21,10 +21,7 @@ import numpy as np
 from carom.impact.thresholds import NO_ENERGY
 from carom.scene.stiffness import ABSOLUTE
 
-NODES, KNOTS = (
-    24,
-    24,
-)  # of Gauss's rule between two times; times that are stated on a piece of the path
+NODES, TIMES_A_PIECE = 24, 24  # of Gauss's rule between two times; times that are stated on a piece
 
 
 @dataclass(frozen=True, eq=False)
@@ -301,7 +298,5 @@ def of_record(record, stiffness) -> ImpactForce:
         raise ValueError("the impact must be one of two bodies, got that of a stop of an angle")
     names = "inverse_mass", "relative_velocity_before", "friction", "restitution", "law"
     stated = {name: getattr(record, name) for name in names}
-    return of_stated(
-        {n: v.item() if np.ndim(v) == 0 and hasattr(v, "item") else v for n, v in stated.items()},
-        stiffness,
-    )
+    plain = {n: v.item() if isinstance(v, np.generic) else v for n, v in stated.items()}
+    return of_stated(plain, stiffness)
