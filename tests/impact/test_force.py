@@ -129,7 +129,7 @@ def test_a_run_reports_what_it_was_told(tmp_path):
     assert np.array_equal(solution.position, plain.position)
     assert np.all(np.isnan(plain.impacts.peak_force))
     assert np.all(np.isnan(plain.impacts.duration))
-    v, (k, n) = -solution.impacts.relative_velocity_before[:, 0], hertz.of(1 / 0.02)
+    v, (k, n) = -solution.impacts.relative_velocity_before[:, 0], hertz._of(1 / 0.02)
     assert k == pytest.approx(4 / 3 * 2e9 / (2 * 0.91) * np.sqrt(0.02))
     assert n == 1.5
     d = (1.25 * 0.03 * v**2 / k) ** 0.4
@@ -163,7 +163,7 @@ def test_materials_with_a_modulus_have_hertz_s_law():
     scene.set_contact_default()
     impacts = carom.simulate(scene, 0.25).impacts
     (ball0,) = impacts[impacts.body == "ball0"].peak_force[:1]
-    v, (k, _) = np.sqrt(2 * 9.81 * 0.08), Hertz(210e9, 0.3, radius=0.02).of(None)
+    v, (k, _) = np.sqrt(2 * 9.81 * 0.08), Hertz(210e9, 0.3, radius=0.02)._of(None)
     assert ball0 == pytest.approx(k**0.4 * (1.25 * 0.26 * v * v) ** 0.6, rel=1e-9)
     assert np.all(np.isnan(impacts[impacts.body == "box"].peak_force))
 

@@ -72,7 +72,9 @@ class Impact(Shown):
 
         stiffness = self._stated.get("stiffness")
         none = np.full(np.shape(self.compression_work), np.nan)
-        peak = none if stiffness is None else peak_force(self.compression_work, *stiffness.of(None))
+        peak = (
+            none if stiffness is None else peak_force(self.compression_work, *stiffness._of(None))
+        )
         return float(peak) if np.ndim(peak) == 0 else peak
 
     @property
@@ -189,7 +191,7 @@ def resolve_impact(
     given = inverse_mass, velocity, friction, restitution, law
     if stiffness is not None:
         checks.instance("stiffness", stiffness, ABSOLUTE)
-        stiffness.of(None)
+        stiffness._of(None)
     if _are_many(*given, tangential_restitution):
         from carom.impact.many import resolve_many
 

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from carom.geometry.thresholds import EPSILON
 from carom.impact.thresholds import NO_ENERGY
 from carom.scene.stiffness import ABSOLUTE
 
@@ -150,7 +151,7 @@ class Course:
         for _ in range(50):
             step = (way(tau) - d) / r(tau)
             tau = tau - step
-            if np.all(np.abs(step) <= 1e-15 * np.abs(tau)):
+            if np.all(np.abs(step) <= 4.0 * EPSILON * np.abs(tau)):
                 break
         P1, P2 = (-self.mu * polynomial(row[part][:16]).integ()(tau) for part in (X, Y))
         u1, u2, loss = x(tau), y(tau), self.mu * q.integ()(tau)
@@ -180,7 +181,7 @@ def force_in_time(
     (p_c, end), (work_c, work_r) = impulse, works
     course, power = Course(W, u0, mu, end), 1.0 / (n + 1.0)
     ends = course.knots
-    gives_back = end > p_c * (1.0 + 1e-14) and work_r > NO_ENERGY * -work_c
+    gives_back = end > p_c * (1.0 + NO_ENERGY) and work_r > NO_ENERGY * -work_c
     e_n = (work_r / -work_c) ** n if gives_back else 0.0  # e^(2n)
 
     # p = p_c q^(n+1) in compression, end - p = (end - p_c) q^(n+1) in restitution; close to both ends the works
@@ -285,7 +286,7 @@ def of_stated(stated: dict[str, Any], stiffness) -> ImpactForce:
     solved = resolve_impact(*given)
     impulses = float(solved.compression_impulse[0]), float(solved.impulse[0])
     works = solved.compression_work, solved.restitution_work
-    return force_in_time(stated, impulses, works, *stiffness.of(stated.get("curvature")))
+    return force_in_time(stated, impulses, works, *stiffness._of(stated.get("curvature")))
 
 
 def of_record(record, stiffness) -> ImpactForce:

@@ -26,7 +26,7 @@ def stiff_impacts(solution, rows, mu, e, law) -> tuple[np.ndarray, np.ndarray]:
         curvature = curvature_of(scene.bodies[pairs.body[number]], partner)
         if isinstance(stiffness, Hertz) and stiffness.radius is None and not curvature:
             continue  # of two materials, on shapes that have no radius
-        k, n = stiffness.of(curvature)
+        k, n = stiffness._of(curvature)
         own = np.flatnonzero(rows.contact == number)
         peak[own] = peak_force(rows.compression_work[own], k, n)
         for i in own[(rows.together[own] == 1) & np.isfinite(mu[own] + e[own])].tolist():

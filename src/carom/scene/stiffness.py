@@ -28,7 +28,7 @@ class Stiffness:
     k: Number = number(above=0)
     exponent: Number = number(1.0, above=0)
 
-    def of(self, curvature: float | None) -> tuple[float, float]:
+    def _of(self, curvature: float | None) -> tuple[float, float]:
         """Return k and the exponent; the curvature of the pair does not count."""
         return self.k, self.exponent
 
@@ -73,7 +73,7 @@ class Hertz:
         young, poisson = (v if isinstance(v, tuple) else (v, v) for v in (self.young, self.poisson))
         return 1.0 / sum((1.0 - nu * nu) / E for E, nu in zip(young, poisson))
 
-    def of(self, curvature: float | None) -> tuple[float, float]:
+    def _of(self, curvature: float | None) -> tuple[float, float]:
         """Return k [N/m^1.5] and the exponent, for the sum of the curvatures of both bodies [1/m]."""
         if self.radius is None and not curvature:
             raise ValueError("radius of a Hertz must be given where no shapes have one, got None")
