@@ -246,6 +246,11 @@ def stated():
             dict(anchor=three, axis=(0, 1, 0.0), radial=1e-3, axial=1e-3, length=0.1, radius=0.01, friction=0.1,
                  restitution=0.5, impact_law="poisson"),
         ),
+        "joints.Belt": lambda: (
+            joints.Belt,
+            dict(radius_parent=0.1, radius_child=0.2, crossed=False, tension=0.0, stiffness=None, damping=0.0,
+                 one_sided=True, slack=0.1, plane=three, restitution=0.5, impact_law="newton"),
+        ),
         "joints.Tether": lambda: (
             joints.Tether,
             dict(length=1.0, anchor_parent=three, anchor_child=three, restitution=0.5, impact_law="newton"),
@@ -305,6 +310,9 @@ def stated():
         ),
         "forces.Drive of a motion": with_part(
             forces.Drive, joint="@hinge", bound=1.0, coordinate=0, rate=None, motion=of_nothing
+        ),
+        "forces.BeltStrand": with_part(
+            forces.BeltStrand, joint="@hinge", tension=1.0, stiffness=10.0, damping=0.1, coordinate=0
         ),
         "forces.JointInertia": with_part(forces.JointInertia, joint="@hinge", inertia=1.0, coordinate=0),
         "forces.UserForce": lambda: (

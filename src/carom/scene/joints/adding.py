@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast, overload
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
+from carom.scene.belts import BeltDrive, add_belt
 from carom.scene.bodies import Body, Ground
 from carom.scene.coordinates import Axial, Bush, Length
-from carom.scene.joints import JOINTS, Clearance, Distance, Joint, JointDefinition, Tether
+from carom.scene.joints import JOINTS, Belt, Clearance, Distance, Joint, JointDefinition, Tether
 from carom.scene.stops import Stop
 from carom.scene.values import MethodsOfScene
 
@@ -45,6 +46,16 @@ class SceneJoints(MethodsOfScene):
     @overload
     def add_joint(
         self,
+        definition: Belt,
+        parent: Body | str | None = None,
+        child: Body | str | None = None,
+        *,
+        name: str | None = None,
+    ) -> BeltDrive: ...
+
+    @overload
+    def add_joint(
+        self,
         definition: Distance | Clearance,
         parent: Body | Ground | str | None = None,
         child: Body | str | None = None,
@@ -71,7 +82,7 @@ class SceneJoints(MethodsOfScene):
     @arguments.known
     def add_joint(
         self,
-        definition: JointDefinition | Tether | Clearance,
+        definition: JointDefinition | Tether | Clearance | Belt,
         parent: Body | Ground | str | None = None,
         child: Body | str | None = None,
         *,
@@ -86,8 +97,8 @@ class SceneJoints(MethodsOfScene):
         ----------
         definition
             A joint of `carom.joints`; of a `carom.joints.Tether`, and of a `carom.joints.Distance` with limits,
-            stops are made. Its points and axes are in the world at the start; with frames, they are in a frame
-            that is fixed in both bodies.
+            stops are made, of a `carom.joints.Belt` a constraint, stops or forces. Its points and axes are in
+            the world at the start; with frames, they are in a frame that is fixed in both bodies.
         parent
             A body or its name, or `carom.GROUND`.
         child
@@ -108,7 +119,8 @@ class SceneJoints(MethodsOfScene):
         -------
         Joint
             The joint; of a tether, or a distance with one limit, a `Stop`; of a distance with a lower and an
-            upper limit a pair of them, with the names ``"<name>.lower"`` and ``"<name>.upper"``.
+            upper limit a pair of them, with the names ``"<name>.lower"`` and ``"<name>.upper"``; of a belt its
+            parts, `relation`, `strands` and `pretension`.
 
         Examples
         --------
@@ -118,7 +130,7 @@ class SceneJoints(MethodsOfScene):
         >>> scene.add_joint(hinge, carom.GROUND, rod, name="hinge")
         Joint('hinge', Revolute, 'GROUND' -> 'rod')
         """
-        if isinstance(definition, (Tether, Clearance)) or (
+        if isinstance(definition, (Tether, Clearance, Belt)) or (
             isinstance(definition, Distance) and definition.limits_of_length
         ):
             placed = parent_frame is not None or child_frame is not None
@@ -138,9 +150,15 @@ class SceneJoints(MethodsOfScene):
         )  # fmt: skip
 
     def _add_length(
-        self, d: Tether | Distance | Clearance, parent, child, name, replace: bool, placed: bool
+        self,
+        d: Tether | Distance | Clearance | Belt,
+        parent,
+        child,
+        name,
+        replace: bool,
+        placed: bool,
     ) -> Any:
-        """Make the stops of a distance: one, or of a lower and an upper limit a pair."""
+        """Make the stops of a distance, one or a pair, those of a clearance, or the parts of a belt."""
         if placed:
             raise ValueError(
                 f"parent_frame and child_frame must be left out of a {type(d).__name__}, which has anchors"
@@ -150,6 +168,12 @@ class SceneJoints(MethodsOfScene):
                 f"parent and child must be given: add_joint({type(d).__name__}(...), parent, child)"
             )
         parent, child = self._parts.pair(parent, child)
+        if isinstance(d, Belt):
+            if replace:
+                raise ValueError(
+                    "replace must be left out of a Belt, which has several parts, got True"
+                )
+            return add_belt(self._parts, d, parent, child, name)
         if isinstance(d, Clearance):
             return self._add_clearance(d, parent, child, name, replace)
         if isinstance(parent, Ground) and d.anchor_parent is None:
