@@ -15,6 +15,7 @@ from campaigns import (
     drives,
     forced,
     frictions,
+    gears,
     grains,
     grounds,
     laws,
@@ -50,4 +51,5 @@ FAMILIES = {
     "rough": rough.case, "plays": plays.case, "tethers": tethers.case, "ropes": ropes.case,
     "coordinates": coordinates.case, "drives": drives.case, "clearances": clearances.case,
     "loads": loads.case, "magnets": magnets.case, "belt drives": belt_drives.case,
+    "gears": gears.case,
 }  # fmt: skip

@@ -102,6 +102,11 @@ def stated():
             carom.Restitution.fit, dict(function=lambda v: 0.5, speeds=(0.1, 1.0), accuracy=1e-8),
         ),
         "Friction.table": lambda: (carom.Friction.table, dict(speeds=(0.1, 1.0), values=(0.9, 0.5))),
+        "Profile.involute": lambda: (
+            carom.Profile.involute,
+            dict(teeth=20, module=0.002, thickness=0.01, pressure_angle=0.35, backlash=1e-4, shift=0.1,
+                 addendum=1.0, dedendum=1.25),
+        ),
         "Profile.points": lambda: (
             carom.Profile([(0, 0), (1, 0), (0, 1)], 0.1, "all").points, dict(count=12),
         ),

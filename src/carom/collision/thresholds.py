@@ -28,7 +28,7 @@ OPPOSED = 0.9
 #: turn of a row: by which a tangent in it leaves those between both its ends at most, where it bends both ways
 BOW = 0.5
 ROW_END = 1e-9  #: length of a row: by which a place may be beyond its end, in the next row
-NEARER = 1e-6  #: distance: of a curve, which is nearer than another place if it is less by more
+NEARER = 0.3  #: depth of a place in another profile: it is on a far side if the curve of this is nearer
 SAME_PLACE = 1e-8  #: size of the smaller profile: nearer points of two profiles are one
 #: size of the smaller profile: depth up to which places of two profiles are found, and gap above the least
 OVERLAP = 0.02

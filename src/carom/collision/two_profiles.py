@@ -155,7 +155,23 @@ def search_blocks(pair, turn, blocks, most, count):
             reach = most + limits.CHORD * (h + rows[l + 1].start - rows[l].start)
             if dx * dx + dy * dy <= reach * reach:
                 count = search_rows(pair, turn, k, l, count)
+                if chords_cross(rows, turn, k, l):
+                    pair.state.count[0], pair.state.count[1] = k, l
     return count
+
+
+@kernel
+def chords_cross(rows, turn, k, l):
+    """Return whether the chords of two rows cross: then the solids overlap."""
+    a, b, c, d = rows[k].c, rows[k + 1].c, rows[l].c, rows[l + 1].c
+    ax, ay = place_of_a(turn, a[0, 0], a[0, 1])
+    bx, by = place_of_a(turn, b[0, 0], b[0, 1])
+    ux, uy, vx, vy = bx - ax, by - ay, d[0, 0] - c[0, 0], d[0, 1] - c[0, 1]
+    first = ux * (c[0, 1] - ay) - uy * (c[0, 0] - ax)
+    second = ux * (d[0, 1] - ay) - uy * (d[0, 0] - ax)
+    third = vx * (ay - c[0, 1]) - vy * (ax - c[0, 0])
+    fourth = vx * (by - c[0, 1]) - vy * (bx - c[0, 0])
+    return first * second < 0.0 and third * fourth < 0.0
 
 
 @kernel
@@ -344,7 +360,7 @@ def add_corners(pair, turn, k, l, count):
 @kernel
 def has_nearer(solid, rows, x, y, d):
     """Return whether the curve of a solid has a place nearer to (x, y) than d."""
-    near = d * (1.0 - limits.NEARER)
+    near = d * limits.NEARER
     for start in range(solid.first, solid.last, ROWS_TOGETHER):
         end, at, arc = block_at(rows, start, solid.last)
         dx, dy = rows[at].c[0, 0] - x, rows[at].c[0, 1] - y
@@ -362,6 +378,19 @@ def has_nearer(solid, rows, x, y, d):
                 if (px - x) ** 2 + (py - y) ** 2 < near * near:
                     return True
     return False
+
+
+@kernel
+def is_shallowest(pair, at_b, ends, depth):
+    """Return whether two places in each other are nearest: from a corner of B to A, else from A to B.
+
+    From within a corner its sides are nearer than its tip.
+    """
+    rows, (k, _), (ax, ay, bx, by) = pair.hulls.outlines, at_b, ends
+    if rows[k + 1].start == rows[k].start:
+        x, y = place_in_a(turn_of_a(pair.state), bx, by)
+        return not has_nearer(pair.a, rows, x, y, depth)
+    return not has_nearer(pair.b, rows, ax, ay, depth)
 
 
 @kernel
@@ -388,7 +417,7 @@ def add_point(pair, places, ends, normal, flat, count):
         p, q = found[k].on_a, found[k].on_b
         if abs(p[0] - ax) + abs(p[1] - ay) + abs(q[0] - bx) + abs(q[1] - by) < room:
             return count
-    if gap < -room and has_nearer(b, pair.hulls.outlines, ax, ay, -gap):
+    if gap < -room and not is_shallowest(pair, at_b, ends, -gap):
         return count
     name = (name_of(a, pair.hulls, at_a, flat) << 30) | name_of(b, pair.hulls, at_b, flat)
     put(found[count], gap, (mx, my, 0.0), (ax, ay, 0.0), (bx, by, 0.0), (2 << 60) | name)
@@ -398,16 +427,16 @@ def add_point(pair, places, ends, normal, flat, count):
 
 
 @kernel
-def put_nearest(pair, turn):
-    """Write two places near each other as a point: curves that overlap deeply may have no others."""
-    rows = pair.hulls.outlines
-    l = nearest_block(pair.b, rows, turn[3], turn[4])
-    bx, by = rows[l].c[0, 0], rows[l].c[0, 1]
-    x, y = place_in_a(turn, bx, by)
-    k = nearest_block(pair.a, rows, x, y)
-    ax, ay = place_of_a(turn, rows[k].c[0, 0], rows[k].c[0, 1])
-    mx, my = rows[l].c[1, 1], -rows[l].c[1, 0]
-    gap = mx * (ax - bx) + my * (ay - by)
+def put_crossing(pair, turn, depth):
+    """Write a point of curves that cross, of which no place is known: they overlap more than by `depth`."""
+    rows, (k, l) = pair.hulls.outlines, (pair.state.count[0], pair.state.count[1])
+    if k < 0:  # any places
+        l = nearest_block(pair.b, rows, turn[3], turn[4])
+        x, y = place_in_a(turn, rows[l].c[0, 0], rows[l].c[0, 1])
+        k = nearest_block(pair.a, rows, x, y)
+    bx, by, mx, my = rows[l].c[0, 0], rows[l].c[0, 1], rows[l].c[1, 1], -rows[l].c[1, 0]
+    gap = -depth
+    ax, ay = bx + gap * mx, by + gap * my
     put(pair.found[0], gap, (mx, my, 0.0), (ax, ay, 0.0), (bx, by, 0.0), (2 << 60) | (1 << 28))
     of_a = part_of_place(pair.a, pair.hulls, k, 0.0)
     put_parts(pair.found[0], NOBODY, of_a, part_of_place(pair.b, pair.hulls, l, 0.0))
@@ -448,9 +477,13 @@ def two_profiles(pair, reach):
         return 1
     turn, size = turn_of_a(s), min(a.extent, b.extent)
     near, _ = each_block(pair, turn, far_bound(pair, turn), False)
+    s.count[0] = -1  # a row of A that crosses one of B
     _, count = each_block(pair, turn, near + limits.OVERLAP * size, True)
-    if count == 0:
-        count = put_nearest(pair, turn)
+    least = math.inf
+    for k in range(count):
+        least = min(least, found[k].gap)
+    if count == 0 or (s.count[0] >= 0 and least > -ROUND_OFF * size):
+        count = put_crossing(pair, turn, limits.OVERLAP * size)
     room = ROUND_OFF * size
     count = keep_least(found, count, min(reach, limits.OVERLAP * size) + room, MOST_POINTS // 2)
     for k in range(count):

@@ -141,7 +141,7 @@ class Profile(Shape):
         Parameters
         ----------
         teeth : int
-            Number of teeth, at least 4.
+            Number of teeth, 4 to 500.
         module : float
             Diameter of the pitch circle divided by the number of teeth [m].
         thickness : float
@@ -171,7 +171,7 @@ class Profile(Shape):
         """
         from carom.scene.involute import gear, outline_of
 
-        teeth = checks.integer("teeth", teeth, least=4)
+        teeth = checks.integer("teeth", teeth, least=4, most=500)
         module = checks.length("module", module)
         thickness = checks.length("thickness", thickness)
         angle = checks.number(
