@@ -160,18 +160,31 @@ def search_blocks(pair, turn, blocks, most, count):
     return count
 
 
+@inlined
+def bow_of(rows, k, h):
+    """Return a bound of the distance of a row from its chord: h^2/8 times its curvature, c2 is half of it."""
+    c, d = rows[k].c, rows[k + 1].c
+    return 0.25 * h * h * max(abs(c[2, 0]) + abs(c[2, 1]), abs(d[2, 0]) + abs(d[2, 1]))
+
+
 @kernel
 def chords_cross(rows, turn, k, l):
-    """Return whether the chords of two rows cross: then the solids overlap."""
+    """Return whether the chords of two rows cross by more than they bow: then the solids overlap."""
+    h, g = rows[k + 1].start - rows[k].start, rows[l + 1].start - rows[l].start
+    if h == 0.0 or g == 0.0:
+        return False
     a, b, c, d = rows[k].c, rows[k + 1].c, rows[l].c, rows[l + 1].c
     ax, ay = place_of_a(turn, a[0, 0], a[0, 1])
     bx, by = place_of_a(turn, b[0, 0], b[0, 1])
     ux, uy, vx, vy = bx - ax, by - ay, d[0, 0] - c[0, 0], d[0, 1] - c[0, 1]
+    bow = bow_of(rows, k, h) + bow_of(rows, l, g)
     first = ux * (c[0, 1] - ay) - uy * (c[0, 0] - ax)
     second = ux * (d[0, 1] - ay) - uy * (d[0, 0] - ax)
+    if not (first * second < 0.0 and min(abs(first), abs(second)) > bow * h):
+        return False
     third = vx * (ay - c[0, 1]) - vy * (ax - c[0, 0])
     fourth = vx * (by - c[0, 1]) - vy * (bx - c[0, 0])
-    return first * second < 0.0 and third * fourth < 0.0
+    return third * fourth < 0.0 and min(abs(third), abs(fourth)) > bow * g
 
 
 @kernel
