@@ -15,13 +15,13 @@ CALLED = {
     "Recording", "Parameter", "State", "Run",
     "Sphere", "Box", "Capsule", "Cylinder", "Disc", "Ellipsoid", "Convex", "Mesh", "Compound", "Part",
     "Revolute", "Spherical", "Prismatic", "Cylindrical", "Screw", "Universal", "Planar", "PointOnLine",
-    "PointOnPlane", "Fixed", "Distance", "Tether", "Clearance", "Pulley", "KnifeEdge", "RollingSphere",
-    "RollingDisc",
+    "PointOnPlane", "Fixed", "Distance", "Tether", "Clearance", "Belt", "Pulley", "KnifeEdge",
+    "RollingSphere", "RollingDisc",
     "InsideSphere", "InsideCylinder", "InsideCone", "InsideTorus", "HeightField", "Surface",
     "Gear", "Coupling", "Driver", "Rows",
     "Spring", "Force", "Torque", "Bushing", "JointSpring", "JointForce", "Actuator", "PositionServo",
     "VelocityServo", "JointFriction",
-    "Drive",    "JointInertia", "CurveSpring", "UserForce", "Drag", "Wind", "Magnus", "Buoyancy",
+    "Drive", "JointInertia", "BeltStrand", "CurveSpring", "UserForce", "Drag", "Wind", "Magnus", "Buoyancy",
 }  # fmt: skip
 
 #: of classes with many members: topics in the order of the page

@@ -6,6 +6,7 @@ them by the thousand; the tests run a few of each.
 
 from campaigns import (
     bearings,
+    belt_drives,
     belts,
     cams,
     clearances,
@@ -14,6 +15,7 @@ from campaigns import (
     drives,
     forced,
     frictions,
+    gears,
     grains,
     grounds,
     laws,
@@ -49,5 +51,6 @@ FAMILIES = {
     "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "grains by slip": grains.by_slip,
     "rough": rough.case, "plays": plays.case, "tethers": tethers.case, "ropes": ropes.case,
     "coordinates": coordinates.case, "drives": drives.case, "clearances": clearances.case,
-    "loads": loads.case, "magnets": magnets.case, "switches": switches.case,
+    "loads": loads.case, "magnets": magnets.case, "belt drives": belt_drives.case,
+    "gears": gears.case, "switches": switches.case,
 }  # fmt: skip

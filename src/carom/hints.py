@@ -179,8 +179,8 @@ _OF_SCENE = {
     "a turntable is a fixed part whose surface turns: add_half_space(..., surface_spin=), or add_static":
         "add_turntable",
     "stairs are made of static boxes by add_static": "add_stairs add_steps",
-    "a pulley or a belt between joints is add_constraint(carom.constraints.Coupling(...))":
-        "add_pulley add_tendon",
+    "a rope over wheels is add_rope, with carom.Pulley; a belt is add_joint(carom.joints.Belt(...))":
+        "add_pulley add_tendon add_belt_drive",
     "a bushing is add_force(carom.forces.Bushing(...))": "add_bushing add_mount",
     "gravity is an attribute: scene.gravity = (0, 0, -9.81)": "set_gravity",
     "it is stated by set_contact_default, or for one pair by add_contact":
@@ -278,7 +278,7 @@ MEMBERS = {
             "Rope Cable Tether SlideJoint",
         "a conveyor is a fixed part with a surface that moves: scene.add_half_space(..., surface_velocity=)":
             "Conveyor ConveyorBelt",
-        "a belt over wheels is carom.constraints.Coupling, one that carries is a surface that moves: "
+        "a belt over wheels is carom.joints.Belt, one that carries is a surface that moves: "
         "scene.add_half_space(..., surface_velocity=)": "Belt",
     },
     "carom.joints": {
@@ -288,7 +288,7 @@ MEMBERS = {
         "Fixed": "weld rigid FixedJoint",
         "Distance": "rod",
         "Tether": "rope cable cord string SlideJoint",
-        "a belt over wheels is carom.constraints.Coupling": "belt chain",
+        "Belt": "chain TimingBelt ToothedBelt BeltDrive",
         "a hinge is Revolute, and a rod is Distance": "PinJoint",
         "Universal": "cardan",
         "RollingSphere": "RollingJoint RollingBall",
@@ -325,7 +325,8 @@ MEMBERS = {
     },
     "carom.constraints": {
         "Driver": "Motor RotationMotor SpeedMotor PrescribedMotion Actuator",
-        "Coupling": "Rack RackAndPinion Differential Pulley Belt Mimic",
+        "Coupling": "Rack RackAndPinion Differential Mimic",
+        "a belt over wheels is carom.joints.Belt, a rope scene.add_rope": "Pulley Belt Chain",
         "Gear": "GearJoint GearRatio",
         "Rows": "Custom UserConstraint Nonholonomic",
         "a limit is made by scene.add_stop(joint, upper=...)": "Limit Stop RotaryLimit",

@@ -104,6 +104,11 @@ def stated():
             carom.Restitution.fit, dict(function=lambda v: 0.5, speeds=(0.1, 1.0), accuracy=1e-8),
         ),
         "Friction.table": lambda: (carom.Friction.table, dict(speeds=(0.1, 1.0), values=(0.9, 0.5))),
+        "Profile.involute": lambda: (
+            carom.Profile.involute,
+            dict(teeth=20, module=0.002, thickness=0.01, pressure_angle=0.35, backlash=1e-4, shift=0.1,
+                 addendum=1.0, dedendum=1.25),
+        ),
         "Profile.points": lambda: (
             carom.Profile([(0, 0), (1, 0), (0, 1)], 0.1, "all").points, dict(count=12),
         ),
@@ -249,6 +254,11 @@ def stated():
             dict(anchor=three, axis=(0, 1, 0.0), radial=1e-3, axial=1e-3, length=0.1, radius=0.01, friction=0.1,
                  restitution=0.5, impact_law="poisson"),
         ),
+        "joints.Belt": lambda: (
+            joints.Belt,
+            dict(radius_parent=0.1, radius_child=0.2, crossed=False, tension=0.0, stiffness=None, damping=0.0,
+                 one_sided=True, slack=0.1, plane=three, restitution=0.5, impact_law="newton"),
+        ),
         "joints.Tether": lambda: (
             joints.Tether,
             dict(length=1.0, anchor_parent=three, anchor_child=three, restitution=0.5, impact_law="newton"),
@@ -308,6 +318,9 @@ def stated():
         ),
         "forces.Drive of a motion": with_part(
             forces.Drive, joint="@hinge", bound=1.0, coordinate=0, rate=None, motion=of_nothing
+        ),
+        "forces.BeltStrand": with_part(
+            forces.BeltStrand, joint="@hinge", tension=1.0, stiffness=10.0, damping=0.1, coordinate=0
         ),
         "forces.JointInertia": with_part(forces.JointInertia, joint="@hinge", inertia=1.0, coordinate=0),
         "forces.UserForce": lambda: (

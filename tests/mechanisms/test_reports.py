@@ -60,6 +60,7 @@ ALONG = {
     "drive": lambda j, k: forces.Drive(j, 0.05, k, rate=0.4),
     "drive by a motion": lambda j, k: forces.Drive(j, 0.05, k, motion=lambda t: (t, 1.0 + t, 1.0)),
     "inertia": lambda j, k: forces.JointInertia(j, 0.02, k),
+    "strand": lambda j, k: forces.BeltStrand(j, 0.3, 4.0, 0.1, k),
 }
 
 

@@ -89,7 +89,6 @@ def test_curves_that_are_none(outline, corners, words):
     ("other", "words"),
     [
         (carom.Ellipsoid(0.1, 0.2, 0.3), "an Ellipsoid"),
-        (carom.Profile(star(), 0.01, corners="all"), "another Profile"),
         (carom.Convex([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]), "not parallel"),
     ],
 )

@@ -22,6 +22,16 @@ FOOT_STEP = 1e-9
 SIDE_REACH = 0.25  #: size of the smaller solid: gap up to which points on both sides of a hollow have names
 ENTERED = 0.8  #: radius of curvature of a hollow: greater circles do not reach its bottom
 PARALLEL = 0.9998  #: cosine of the angle: about 1 degree: greatest of the axes of a profile and its partner
+#: cosine of the angle: .45: of the tangents of two rows at their starts, which turn by .2 at most; those that
+#: have no two places that face each other have less
+OPPOSED = 0.9
+#: turn of a row: by which a tangent in it leaves those between both its ends at most, where it bends both ways
+BOW = 0.5
+ROW_END = 1e-9  #: length of a row: by which a place may be beyond its end, in the next row
+NEARER = 0.3  #: depth of a place in another profile: it is on a far side if the curve of this is nearer
+SAME_PLACE = 1e-8  #: size of the smaller profile: nearer points of two profiles are one
+#: size of the smaller profile: depth up to which places of two profiles are found, and gap above the least
+OVERLAP = 0.02
 NEARLY_FLAT = 0.05  #: sine of the angle: of a side of a corner to a face, which may rest on both its ends
 CHORD = 1.000001  #: arc of a curve: bound of its chord, with the error of the table by arc length
 EDGE_GAIN = 1e-13  #: sum of the sizes: a gap across an edge, not a face, is greater by more than round-off

@@ -32,6 +32,7 @@ from carom.collision.round import (
 from carom.collision.segments import are_parallel, ends_of_line
 from carom.collision.support import separation
 from carom.collision.thresholds import FACING, REFERENCE_GAIN
+from carom.collision.two_profiles import two_profiles
 from carom.geometry.thresholds import ROUND_OFF
 
 
@@ -78,7 +79,7 @@ def _ordered(pair, reach):
     a, b = pair.a, pair.b
     boxes = a.kind == BOX and b.kind == BOX
     if b.kind == PROFILE:
-        return profile_pair(pair, reach)
+        return two_profiles(pair, reach) if a.kind == PROFILE else profile_pair(pair, reach)
     if b.kind <= SEGMENT:
         if b.kind == POINT:
             point_point(pair)

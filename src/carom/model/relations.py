@@ -27,6 +27,7 @@ from carom.scene.coordinates import (
     Strand,
     coordinate_kind,
     counted,
+    kind_of,
 )
 from carom.scene.forces import Spring
 from carom.scene.joints import Joint
@@ -254,10 +255,10 @@ class Elements:
         given = d.terms if isinstance(d, Coupling) else ((d.joint, d.coordinate, 1.0),)
         terms = [(self.coordinates.number(joint, k), factor) for joint, k, factor in given]
         lengths = [
-            abs(factor) * (1.0 if coordinate_kind(joint, k) == "turn" else sizes[joint.child.index])
+            abs(factor) * (1.0 if kind_of(joint, k) == "turn" else sizes[joint.child.index])
             for joint, k, factor in given
         ]
-        made.scale = max(lengths)
+        made.scale, made.constant = max(lengths), getattr(d, "start", 0.0)
         if not isinstance(d, Coupling):
             self._motion(constraint, made, functions)
         bodies = sorted(set().union(*(self.coordinates.bodies(k) for k, _ in terms)))

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.model.contact_kinds import is_of_joint
+from carom.scene.belts import BeltRelation
 from carom.scene.constraints import Constraint, ConstraintDefinition, Coupling, Driver, Gear
 from carom.scene.coordinates import coordinate_kind
 from carom.scene.joints import Joint, JointDefinition, Screw
@@ -56,6 +57,8 @@ def row_units(definition: JointDefinition | ConstraintDefinition) -> list[str]:
     if isinstance(definition, Gear):  # the ratio gives the first term the unit of the second one
         joint, coordinate, _ = definition.terms[1]
         return [UNITS[coordinate_kind(joint, coordinate)]]
+    if isinstance(definition, BeltRelation):
+        return ["m"]
     if isinstance(definition, Coupling):
         kinds = {coordinate_kind(joint, k) for joint, k, _ in definition.terms}
         return [UNITS[kinds.pop()] if len(kinds) == 1 else ""]

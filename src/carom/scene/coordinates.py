@@ -310,7 +310,8 @@ T = TypeVar("T", bound=Combination)
 def with_joints(combination: T, member: Callable, name: str = "each joint of the definition") -> T:
     """Return a combination whose joints are parts of a scene; one that has them already as it is."""
     terms = tuple(
-        (member(name, joint, (Joint,)), k, factor) for joint, k, factor in combination.terms
+        (joint if isinstance(joint, Length) else member(name, joint, (Joint,)), k, factor)
+        for joint, k, factor in combination.terms
     )
     if len({term[:2] for term in terms}) != len(terms):
         raise ValueError(f"{name} must be given once, got {[t[0].name for t in terms]}")

@@ -35,6 +35,7 @@ from carom.scene.fluids import Magnus as Magnus
 from carom.scene.fluids import Buoyancy as Buoyancy
 from carom.scene.actuators import PositionServo as PositionServo
 from carom.scene.actuators import VelocityServo as VelocityServo
+from carom.scene.strand_force import BeltStrand as BeltStrand
 # isort: on
 
 FORCES = subclasses_in(globals(), ForceDefinition)

@@ -38,7 +38,7 @@ PUSH = ForceTable(
         ("rest", "f8"),
         ("force", "f8"),  # constant
         ("address", "i8"),  # of a function of the user's: t, (q, q') -> force; 0 for none
-        ("limited", "i8"),  # 1 if the sum is at most `high` and at least `low`
+        ("limited", "i8"),  # 1 if the sum is at most `high` and at least `low`, 2 if it pulls only
         ("low", "f8"),
         ("high", "f8"),
         ("no_load", "f8"),  # rate at which these have fallen to 0, 0 for constant ones

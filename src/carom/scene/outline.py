@@ -152,7 +152,7 @@ def around(function: Callable) -> Outline:
     right = _area(np.array([place(a)[:2] for a in angles.tolist()])) < 0.0
     whole = 2.0 * math.pi
     curve = Curve(lambda u: place(whole - u if right else u), 0.0, whole, closed=True)
-    made = _joined([_fine(curve)], corners=False)
+    made = joined([_fine(curve)], corners=False)
     _check_simple(made.polygon(DRAWN))
     return made
 
@@ -178,10 +178,10 @@ def through(given, corners) -> Outline:
     parts = [] if sharp else [_fine(Spline(solid, closed=True))]
     for a, b in pairwise([*sharp, *(k + n for k in sharp[:1])]):
         if b == a + 1:
-            parts.append(_straight(points[a], points[b % n], steps[a]))
+            parts.append(straight(points[a], points[b % n], steps[a]))
         else:
             parts.append(_fine(Spline(solid[np.arange(a, b + 1) % n])))
-    made = _joined(parts, corners=bool(sharp))
+    made = joined(parts, corners=bool(sharp))
     drawn = made.polygon(DRAWN)
     _check_simple(drawn)
     if not _area(drawn) > SAME * size**2:
@@ -215,14 +215,14 @@ def _fine(curve: Curve) -> PiecewiseCurve:
     return PiecewiseCurve(s, between(s, ends))
 
 
-def _straight(a: np.ndarray, b: np.ndarray, length: float) -> PiecewiseCurve:
+def straight(a: np.ndarray, b: np.ndarray, length: float) -> PiecewiseCurve:
     """Return a straight line between two points (2,)."""
     coefficients = np.zeros((6, 1, 2))
     coefficients[:2, 0] = a, (b - a) / np.linalg.norm(b - a)
     return PiecewiseCurve(np.array([0.0, length]), coefficients)
 
 
-def _joined(parts: list[PiecewiseCurve], corners: bool) -> Outline:
+def joined(parts: list[PiecewiseCurve], corners: bool) -> Outline:
     """Return the closed curve of parts that follow each other, between which there may be corners."""
     rows, at = [], 0.0
     for part in parts:

@@ -10,7 +10,7 @@ from carom.geometry import quaternion
 from carom.scene.bodies import HalfSpace
 
 #: kinds of pieces that no profile touches
-REFUSED = {"profile": "another Profile", "ellipsoid": "an Ellipsoid", "implicit": "curved ground"}
+REFUSED = {"ellipsoid": "an Ellipsoid", "implicit": "curved ground"}
 PARALLEL = 1e-6  # greatest sine of the angle between two axes that are parallel
 
 
@@ -25,9 +25,9 @@ def check_profiles(what: str, one: Any, two: Any) -> None:
                 why = _obstacle(other, axis)
                 if why:
                     raise ValueError(
-                        f"{what}: a Profile can touch half-spaces across its plane, spheres, cylinders, discs "
-                        "and capsules with parallel axes, boxes and prisms with edges along its axis, got "
-                        f"{other.name!r}, {why}. If the two need not touch: ignore_contact"
+                        f"{what}: a Profile can touch half-spaces across its plane, spheres, cylinders, discs, "
+                        "capsules and profiles with parallel axes, boxes and prisms with edges along its axis, "
+                        f"got {other.name!r}, {why}. If the two need not touch: ignore_contact"
                     )
 
 
@@ -54,7 +54,7 @@ def _slant(piece, axis: np.ndarray) -> float:
     """Return the sine of the greatest angle between an axis, in those of a piece, and its axis or edges."""
     if piece.kind == "point":
         return 0.0
-    if piece.kind in ("segment", "cylinder"):
+    if piece.kind in ("segment", "cylinder", "profile"):
         return float(np.hypot(axis[0], axis[1]))
     if piece.kind == "box":
         return float(np.hypot(*np.sort(np.abs(axis))[:2]))

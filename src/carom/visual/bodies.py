@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from carom.geometry import quaternion
+from carom.scene.belts import BeltRelation, BeltStretch
 from carom.scene.bodies import Body
 from carom.scene.coordinates import Axial, Bush, Length, Strand, terms_of
 from carom.scene.curves import Curve
@@ -311,6 +312,11 @@ def links_of(scene) -> list[Link]:
             start, end = (_in_body(part, a) for part, a in pair)
             kind = "rod" if isinstance(d, Distance) else "spring"
             out.append(Link(one.parent.index, one.child.index, start, end, kind))
+    out += [link for one in scene.constraints for link in _strands_of(one.definition)]
+    out += [
+        link for one in scene.forces for link in _strands_of(getattr(one.definition, "joint", None))
+    ]
+    out += [link for one in scene.stops for link in _strands_of(one.joint)]
     rods = {id(stop.joint) for stop in scene.stops if stop.upper is None}
     for stop in scene.stops:
         for of, _, _ in terms_of(stop.joint, stop.coordinate):
@@ -327,6 +333,19 @@ def links_of(scene) -> list[Link]:
                 else:
                     out.append(Link(*pair, *ends, "cord", stop.end))
     return out
+
+
+def _strands_of(of: Any) -> list[Link]:
+    """Return the strands of a belt, or the one of a stretch; none of anything else."""
+    if not isinstance(of, (BeltRelation, BeltStretch)):
+        return []
+    a, b = of.wheels
+    ends = (_in_body(body, center) for body, center in zip(of.wheels, of.centers))
+    sides = (-1.0, 1.0) if isinstance(of, BeltRelation) else (1.0,)
+    start, end = ends
+    return [
+        Link(a.index, b.index, start, end, "cord", 0.0, side * of.radii, of.axis) for side in sides
+    ]
 
 
 def ground_points(scene) -> list[np.ndarray]:

@@ -16,6 +16,10 @@ beyond the corner.
 Points of the curve that are farthest towards a face change faster the flatter the curve is, so there only
 d >= d(0) - V t - a t^2/2 is used; planes that separate the other solid from the convex hull of the profile
 (`parting`) are better.
+
+Two profiles: only points that are in the balls around both can meet, and their relative speed is at most that
+of the middle of this lens and the relative spin times its radius. Points at a distance d that meet approach
+each other at most as fast as that, and the spin times d more.
 """
 
 from __future__ import annotations
@@ -31,7 +35,8 @@ from carom.contact.kinds import parting
 from carom.contact.kinds.drift import motions_of
 from carom.contact.kinds.found_points import list_on_solid, nearest_touch, touch_rate
 from carom.contact.kinds.parting import bound_in_frame, plane_of, time_beside
-from carom.contact.kinds.profile_drift import drift_of_profile
+from carom.contact.kinds.partner import centre_of_other
+from carom.contact.kinds.profile_drift import drift_of_profile, drift_of_two_profiles
 from carom.geometry.vectors import cross, dot, minus, plus
 from carom.status import OUT_OF_PLANE
 
@@ -45,7 +50,9 @@ def time_apart(system, contact, state, bounds, h, work) -> tuple[float, float]:
     And the bound of the acceleration of their points. h < 0: in the past.
     """
     time = time_beside(system, contact, plane_of(nearest_touch(work)), state, bounds, h)
-    if time < abs(h):
+    if time < abs(h) and are_two(system, contact):
+        time = max(time, time_off_each_other(contact, state, nearest_touch(work).gap, bounds, h))
+    elif time < abs(h):
         time = max(time, time_off_profile(system, contact, state, bounds, h, work))
     return time, bounds[1]
 
@@ -53,7 +60,48 @@ def time_apart(system, contact, state, bounds, h, work) -> tuple[float, float]:
 @unit
 def drift(system, contact, feature, point, state, work) -> tuple[float, float, float]:
     """Return (d/dt G) v of a point of a profile and another solid."""
+    if are_two(system, contact):
+        return drift_of_two_profiles(system, contact, contact.other_solid, point, state)
     return drift_of_profile(system, contact, contact.other_solid, point, state)
+
+
+@kernel
+def are_two(system, contact):
+    """Return whether both solids are profiles."""
+    first, second = system.solids[contact.solid], system.solids[contact.other_solid]
+    return first.kind == PROFILE and second.kind == PROFILE
+
+
+@kernel
+def speed_in_lens(contact, state, way):
+    """Return the greatest relative speed of points of both that are at one place, or have a way to it."""
+    (va, wa), (vb, wb) = motions_of(contact, state)
+    x, y = state[contact.body].x, centre_of_other(contact, state)
+    d = (y[0] - x[0], y[1] - x[1], y[2] - x[2])
+    far, r, s = math.sqrt(dot(d, d)), contact.extent + way, contact.other_extent + way
+    part, most = 0.0, min(r, s)
+    if far > 0.0:
+        part = 0.5 * (far * far + r * r - s * s) / far
+        if 0.0 < part < far:
+            most = math.sqrt(max(r * r - part * part, 0.0))
+        else:  # one of the centres is in the lens
+            part = 0.0 if r < s else far
+        part /= far
+    w, arm = minus(wa, wb), (part * d[0], part * d[1], part * d[2])
+    u = plus(minus(va, vb), 1.0, cross(wa, arm))
+    u = minus(u, cross(wb, minus(arm, d)))
+    return math.sqrt(dot(u, u)) + most * math.sqrt(dot(w, w))
+
+
+@kernel
+def time_off_each_other(contact, state, gap, bounds, h):
+    """Return how long, up to |h|, two profiles stay apart, from the speed of points that can meet."""
+    (va, wa), (vb, wb) = motions_of(contact, state)
+    u, spin = minus(va, vb), math.sqrt(dot(wa, wa)) + math.sqrt(dot(wb, wb))
+    # two points that meet are at last nearer to each other than the gap; the centres move, too
+    moved = math.sqrt(dot(u, u)) * abs(h) + 0.5 * bounds[1] * h * h
+    speed = speed_in_lens(contact, state, max(gap, 0.0) + moved) + spin * max(gap, 0.0)
+    return min(abs(h), reach(gap, -speed, bounds[1]))
 
 
 @kernel

@@ -14,6 +14,14 @@ which is safe where kappa = 0. At a corner c rests: m' - w_P x m = (v - m m . v)
 q - c = D m is not in the plane of the curve, and m' - w_P x m = (v - t s' - m m . (v - t s'))/D.
 
 The rates of the rows follow from m' and the motion of the two points, as for other solids (`drift`).
+
+*Both are profiles*, A and B, with the normal n of B and tangents t of B and e t of A, e = +-1: the feet move
+along their curves, a' = v_A - alpha t, b' = v_B + beta t, and both normals stay opposite ones:
+
+    (w_A - w_B) x n . t = beta kappa_B - alpha kappa_A,   alpha + beta (1 + d kappa_B) = (v_A - v_B - d w_B x n)
+    . t
+
+A corner rests, alpha = 0 or beta = 0, and has any normal; two corners have n' along (v_A - v_B)/d.
 """
 
 from __future__ import annotations
@@ -91,6 +99,64 @@ def _below_point(foot, d, v):
         f = 1.0 / d if d > SMALLEST else 0.0
         step = (f * v[0], f * v[1], f * v[2])
     return plus(turn, 1.0, step), plus(foot.v, 1.0, moves)
+
+
+@kernel
+def _between_corners(n, d, u):
+    """Return the rate of the normal of two corners at the distance d, which move past each other with u."""
+    f = 1.0 / d if d > SMALLEST else 0.0
+    return plus((f * u[0], f * u[1], f * u[2]), -f * dot(n, u), n)
+
+
+@kernel
+def _two_feet(a, b, d):
+    """Return the rate of the normal of B, and the velocities of both feet."""
+    n, u = b.m, minus(a.v, b.v)
+    if a.part >= OF_FIXED and b.part >= OF_FIXED:
+        return _between_corners(n, d, u), a.v, b.v
+    t, bend_a, bend_b = n, 0.0, 0.0
+    if a.part < OF_FIXED:
+        t, bend_a = _tangent(a)
+    if b.part < OF_FIXED:
+        t, bend_b = _tangent(b)
+    turn_a, turn_b = dot(cross(a.w, n), t), dot(cross(b.w, n), t)
+    past = dot(u, t)
+    if a.part >= OF_FIXED:
+        alpha, beta = 0.0, (past - d * turn_b) / (1.0 + d * bend_b)
+        rate = plus(cross(b.w, n), beta * bend_b, t)
+    elif b.part >= OF_FIXED:
+        alpha, beta = (past - d * turn_a) / (1.0 + d * bend_a), 0.0
+        rate = plus(cross(a.w, n), alpha * bend_a, t)
+    else:
+        det = bend_a + bend_b + d * bend_a * bend_b
+        f, past = 1.0 / det if det != 0.0 else 0.0, past - d * turn_b
+        turn = turn_b - turn_a
+        alpha = f * (turn * (1.0 + d * bend_b) + bend_b * past)
+        beta = f * (bend_a * past - turn)
+        rate = plus(cross(b.w, n), beta * bend_b, t)
+    return rate, plus(a.v, -alpha, t), plus(b.v, beta, t)
+
+
+@kernel
+def drift_of_two_profiles(system, contact, other_solid, point, state):
+    """Return (d/dt G) v, in contact axes, of a point of two profiles."""
+    one, two = system.solids[contact.solid], system.solids[other_solid]
+    (va, wa), (vb, wb) = motions_of(contact, state)
+    n, ra, rb = point.axes[0], point.arm_a, point.arm_b
+    n = (n[0], n[1], n[2])
+    ua, ub = plus(va, 1.0, cross(wa, ra)), plus(vb, 1.0, cross(wb, rb))
+    p, o = state[contact.body].x, (0.0, 0.0, 0.0)
+    if contact.other >= 0:
+        y = state[contact.other].x
+        o = (y[0], y[1], y[2])
+    x, q = pose_of(one, contact.body, state)
+    c = rotate_back(q, minus((p[0] + ra[0], p[1] + ra[1], p[2] + ra[2]), x))
+    a = Foot(one, system.hulls, q, c, point.parts[0], ua, wa, (-n[0], -n[1], -n[2]))
+    x, q = pose_of(two, contact.other, state)
+    c = rotate_back(q, minus((o[0] + rb[0], o[1] + rb[1], o[2] + rb[2]), x))
+    b = Foot(two, system.hulls, q, c, point.parts[1], ub, wb, n)
+    rate, pa, pb = _two_feet(a, b, point.gap)
+    return rates_of_rows(contact, point, state, pa, pb, rate)
 
 
 @kernel

@@ -17,6 +17,7 @@ import numpy as np
 
 from carom import checks
 from carom.scene import bodies, contacts, forces, joints, stops
+from carom.scene.belts import BeltRelation, BeltStretch
 from carom.scene.constraints import CONSTRAINTS, Constraint, Coupling, Gear
 from carom.scene.coordinates import Combination, Length, kind_of
 from carom.scene.curves import Curve, Spline
@@ -95,6 +96,9 @@ def _made(parts, part: Any) -> Any:
     if isinstance(part, forces.AppliedForce):
         own = forces.force_on(part.definition) or ()
     for one in own:
+        if isinstance(one, Length):
+            parts.pair(one.parent, one.child)
+            continue
         checks.instance("definition", one, (joints.Joint, bodies.Body))  # no name
         parts.member("definition", one, (joints.Joint, bodies.Body))
     if isinstance(part, stops.Stop):
@@ -122,6 +126,22 @@ def _check_combination(record: Combination) -> None:
         kind_of(joint, coordinate)
         if checks.number("factor", factor) == 0.0:
             raise ValueError("factor must not be 0, got 0")
+
+
+def _check_belt(record: BeltStretch | BeltRelation) -> None:
+    """Raise for a strand or a belt whose fields do not fit each other."""
+    _check_combination(record)
+    if not isinstance(record.wheels, tuple) or len(record.wheels) != 2:
+        raise ValueError(f"wheels must be two bodies, got {record.wheels!r}")
+    for one in record.wheels:
+        checks.instance("wheels", one, (bodies.Body,))
+    checks.finite_array("centers", record.centers, (2, 3))
+    checks.unit_vector("axis", record.axis)
+    if not np.all(checks.finite_array("radii", record.radii, (2,)) != 0.0):
+        raise ValueError(f"radii must not be 0, got {record.radii!r}")
+    if isinstance(record, BeltRelation):
+        checks.number("tension", record.tension, least=0.0)
+        checks.number("start", record.start)
 
 
 @cache
@@ -295,4 +315,5 @@ _LOOKS = {
     Convex: _check_convex, Mesh: _check_mesh, Compound: _check_compound, Piece: _check_piece,
     Profile: _check_profile, Curve: _check_curve, Spline: _check_curve, Surface: _check_surface,
     **dict.fromkeys((Combination, Coupling, Gear), _check_combination),
+    **dict.fromkeys((BeltStretch, BeltRelation), _check_belt),
 }  # fmt: skip

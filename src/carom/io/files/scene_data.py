@@ -32,6 +32,7 @@ from carom.fields import keep
 from carom.io.files.scene_check import check_record
 from carom.results.robot import Ball, Coordinate, FreeBody, Keyframe, Motor, Robot
 from carom.results.sensors import Frame, Sensor
+from carom.scene.belts import BeltRelation, BeltStretch
 from carom.scene.bodies import FIXED, GROUND, Body, Ground
 from carom.scene.constraints import CONSTRAINTS, Constraint, Gear
 from carom.scene.contacts import Contact
@@ -70,6 +71,8 @@ TYPES: dict[str, type[Any]] = {
         Strand,
         Bush,
         Axial,
+        BeltStretch,
+        BeltRelation,
         Gear,
         ContactLaw,
         Material,

@@ -10,6 +10,7 @@ import numpy as np
 from carom import arguments
 from carom.results.names import UNITS
 from carom.scene.coordinates import kind_of, terms_of
+from carom.scene.joints import Joint
 
 if TYPE_CHECKING:
     from carom.results.named import Source
@@ -76,7 +77,11 @@ class AlongCoordinate(ABC):
             raise AttributeError(f"{self.name!r} acts along no coordinate of a joint")
         read = self._source.joint_coordinates
         terms = terms_of(self._along.joint, self._along.coordinate)
-        found = [factor * read(joint)[which][..., k] for joint, k, factor in terms]
+        found = [  # displacements of the centres of wheels are 0
+            factor * read(joint)[which][..., k]
+            for joint, k, factor in terms
+            if isinstance(joint, Joint)
+        ]
         return np.sum(found, axis=0)[()]
 
     @property

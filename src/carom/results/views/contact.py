@@ -9,8 +9,10 @@ import numpy as np
 
 from carom import arguments
 from carom.results.views.common import View
+from carom.scene.belts import BeltStretch
 from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.contacts import gap_between
+from carom.scene.coordinates import Length, Strand, terms_of
 from carom.scene.stops import RailContact, Stop
 
 if TYPE_CHECKING:
@@ -71,6 +73,13 @@ class ContactView(View):
         return self._sums[1]
 
     @property
+    def tension(self):
+        """Tension of a tether, a rope, or a strand of a belt [N], (T,): 0 while it is slack."""
+        if not _is_cord(self._part):
+            raise AttributeError(f"{self.name!r} has no tension: it is no tether, rope or belt")
+        return self.force[..., 0]
+
+    @property
     def vector(self) -> np.ndarray:
         """Force on the body (T, 3), world axes [N]."""
         return self._sums[2]
@@ -109,6 +118,16 @@ class ContactView(View):
     def intervals(self) -> ContactTable:
         """Its intervals of persistent contact: rows of `Solution.contacts`."""
         return self._table("contacts")
+
+
+def _is_cord(part) -> bool:
+    """Return whether a part is the upper limit of a length, which pulls."""
+    if not isinstance(part, Stop) or part.upper is None:
+        return False
+    own = terms_of(part.joint, part.coordinate)
+    return isinstance(part.joint, BeltStretch) or any(
+        type(one) in (Length, Strand) for one, _, _ in own
+    )
 
 
 class _Pair(NamedTuple):

@@ -8,9 +8,11 @@ import numpy as np
 
 from carom import arguments
 from carom.results.views.common import AlongCoordinate, View, alone
+from carom.scene.belts import BeltRelation
 from carom.scene.constraints import Driver
 from carom.scene.forces import CurveSpring, Spring
 from carom.scene.more_forces import AlongJoint, UserForce
+from carom.scene.strand_force import BeltStrand
 
 
 @arguments.attributes()
@@ -82,7 +84,9 @@ class ForceView(AlongCoordinate, View):
 
     @property
     def tension(self):
-        """Force with which a spring, and its damper, pull the ends together [N], (T,)."""
+        """Force with which a spring, and its damper, pull the ends together [N], (T,); tension of a strand."""
+        if isinstance(self._part.definition, BeltStrand):
+            return -self._value
         return self._line().value
 
 
@@ -120,6 +124,15 @@ class ConstraintView(AlongCoordinate, View):
         if self._along is None:
             raise AttributeError(f"{self.name!r} is no Driver: it has multipliers, and no force")
         return self._acts(kind)
+
+    @property
+    def tension(self):
+        """Tensions of both strands of a `carom.joints.Belt` [N], (T, 2): below 0 where one would push."""
+        d = self._part.definition
+        if not isinstance(d, BeltRelation):
+            raise AttributeError(f"{self.name!r} has no tension: it is no Belt")
+        half = 0.5 * np.asarray(self.multipliers)
+        return d.tension + np.stack([-half, half], axis=-1)
 
     @property
     def power(self):

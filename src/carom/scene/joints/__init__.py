@@ -30,6 +30,7 @@ from carom.scene.joints.on_curve import PointOnCurve as PointOnCurve
 from carom.scene.joints.on_curve import CurveOnPoint as CurveOnPoint
 # isort: on
 
+from carom.scene.joints.belt import Belt as Belt
 from carom.scene.joints.clearance import Clearance as Clearance
 from carom.scene.joints.definition import JointDefinition as JointDefinition
 from carom.scene.joints.joint import Joint as Joint
@@ -37,8 +38,11 @@ from carom.scene.joints.tether import Tether as Tether
 
 JOINTS = subclasses_in(globals(), JointDefinition)
 
-__getattr__ = members_of("carom.joints", [joint.__name__ for joint in (*JOINTS, Tether, Clearance)])
+#: what `Scene.add_joint` makes stops, forces or constraints of
+OF_PARTS = (Tether, Clearance, Belt)
+
+__getattr__ = members_of("carom.joints", [joint.__name__ for joint in (*JOINTS, *OF_PARTS)])
 
 
 def __dir__() -> list[str]:
-    return ["Joint", "JointDefinition", *(joint.__name__ for joint in (*JOINTS, Tether, Clearance))]
+    return ["Joint", "JointDefinition", *(joint.__name__ for joint in (*JOINTS, *OF_PARTS))]

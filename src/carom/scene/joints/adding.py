@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast, overload
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
+from carom.scene.belts import BeltDrive, add_belt
 from carom.scene.bodies import Body, Ground
 from carom.scene.coordinates import Axial, Bush, Length
-from carom.scene.joints import JOINTS, Clearance, Distance, Joint, JointDefinition, Tether
+from carom.scene.joints import JOINTS, Belt, Clearance, Distance, Joint, JointDefinition, Tether
 from carom.scene.stops import Stop
 from carom.scene.switches import SceneSwitches
 
@@ -47,6 +48,16 @@ class SceneJoints(SceneSwitches):
     @overload
     def add_joint(
         self,
+        definition: Belt,
+        parent: Body | str | None = None,
+        child: Body | str | None = None,
+        *,
+        name: str | None = None,
+    ) -> BeltDrive: ...
+
+    @overload
+    def add_joint(
+        self,
         definition: Distance | Clearance,
         parent: Body | Ground | str | None = None,
         child: Body | str | None = None,
@@ -75,7 +86,7 @@ class SceneJoints(SceneSwitches):
     @arguments.known
     def add_joint(
         self,
-        definition: JointDefinition | Tether | Clearance,
+        definition: JointDefinition | Tether | Clearance | Belt,
         parent: Body | Ground | str | None = None,
         child: Body | str | None = None,
         *,
@@ -91,8 +102,8 @@ class SceneJoints(SceneSwitches):
         ----------
         definition
             A joint of `carom.joints`; of a `carom.joints.Tether`, and of a `carom.joints.Distance` with limits,
-            stops are made. Its points and axes are in the world at the start; with frames, they are in a frame
-            that is fixed in both bodies.
+            stops are made, of a `carom.joints.Belt` a constraint, stops or forces. Its points and axes are in
+            the world at the start; with frames, they are in a frame that is fixed in both bodies.
         parent
             A body or its name, or `carom.GROUND`.
         child
@@ -117,7 +128,8 @@ class SceneJoints(SceneSwitches):
         -------
         Joint
             The joint; of a tether, or a distance with one limit, a `Stop`; of a distance with a lower and an
-            upper limit a pair of them, with the names ``"<name>.lower"`` and ``"<name>.upper"``.
+            upper limit a pair of them, with the names ``"<name>.lower"`` and ``"<name>.upper"``; of a belt its
+            parts, `relation`, `strands` and `pretension`.
 
         Examples
         --------
@@ -127,7 +139,7 @@ class SceneJoints(SceneSwitches):
         >>> scene.add_joint(hinge, carom.GROUND, rod, name="hinge")
         Joint('hinge', Revolute, 'GROUND' -> 'rod')
         """
-        if isinstance(definition, (Tether, Clearance)) or (
+        if isinstance(definition, (Tether, Clearance, Belt)) or (
             isinstance(definition, Distance) and definition.limits_of_length
         ):
             placed = parent_frame is not None or child_frame is not None
@@ -149,9 +161,15 @@ class SceneJoints(SceneSwitches):
         return self._breaks(made, breaks_at)
 
     def _add_length(
-        self, d: Tether | Distance | Clearance, parent, child, name, replace: bool, placed: bool
+        self,
+        d: Tether | Distance | Clearance | Belt,
+        parent,
+        child,
+        name,
+        replace: bool,
+        placed: bool,
     ) -> Any:
-        """Make the stops of a distance: one, or of a lower and an upper limit a pair."""
+        """Make the stops of a distance, one or a pair, those of a clearance, or the parts of a belt."""
         if placed:
             raise ValueError(
                 f"parent_frame and child_frame must be left out of a {type(d).__name__}, which has anchors"
@@ -161,6 +179,12 @@ class SceneJoints(SceneSwitches):
                 f"parent and child must be given: add_joint({type(d).__name__}(...), parent, child)"
             )
         parent, child = self._parts.pair(parent, child)
+        if isinstance(d, Belt):
+            if replace:
+                raise ValueError(
+                    "replace must be left out of a Belt, which has several parts, got True"
+                )
+            return add_belt(self._parts, d, parent, child, name)
         if isinstance(d, Clearance):
             return self._add_clearance(d, parent, child, name, replace)
         if isinstance(parent, Ground) and d.anchor_parent is None:

@@ -28,9 +28,9 @@ class Profile(Shape):
     shape is moved so that its centroid becomes the origin of the body: a point with the coordinates ``p`` here
     is at ``p - centroid`` in body axes.
 
-    It touches half-spaces, boxes and convex prisms with faces across its plane, and cylinders, discs and
-    capsules with parallel axes, along its thickness; and spheres anywhere. The flat sides of the prism touch
-    spheres only. Other pairs are refused.
+    It touches half-spaces, boxes and convex prisms with faces across its plane, and cylinders, discs, capsules
+    and other profiles with parallel axes, along its thickness; and spheres anywhere. The flat sides of the
+    prism touch spheres only. Other pairs are refused.
 
     Parameters
     ----------
@@ -104,6 +104,10 @@ class Profile(Shape):
             curve = around(outline)
         else:
             curve = through(outline, corners)
+        self._keep(curve, thickness)
+
+    def _keep(self, curve: Outline, thickness: float) -> None:
+        """Keep a curve, moved to its centroid, and its moments."""
         area, middle, second = curve.moments()
         rows, half = curve.rows, 0.5 * thickness
         rows[:, 1:3] -= middle
@@ -113,6 +117,75 @@ class Profile(Shape):
         spread[:2, :2] = second
         keep(self, thickness=thickness, rows=rows, centroid=np.array([*middle, 0.0]))
         keep(self, volume=area * thickness, size=math.hypot(far, half), _spread=spread)
+
+    @classmethod
+    def involute(
+        cls,
+        teeth: int,
+        module: float,
+        thickness: float,
+        *,
+        pressure_angle: float = math.radians(20.0),
+        backlash: float = 0.0,
+        shift: float = 0.0,
+        addendum: float = 1.0,
+        dedendum: float = 1.25,
+    ) -> Profile:
+        """Return a spur gear with involute teeth, the middle of one of them on the axis x.
+
+        Two gears of one module and pressure angle mesh at the distance ``module (teeth_1 + teeth_2)/2``, and
+        have the ratio of their teeth exactly, also at a distance that is somewhat larger. Below the base circle
+        flanks are radial, and there is no undercut, so gears of few teeth (below 17 for 20 degrees) may touch
+        the feet of each other.
+
+        Parameters
+        ----------
+        teeth : int
+            Number of teeth, 4 to 500.
+        module : float
+            Diameter of the pitch circle divided by the number of teeth [m].
+        thickness : float
+            Thickness along z [m].
+        pressure_angle : float
+            Angle between the line of action and the common tangent of the pitch circles [rad], below pi/4.
+            Default 20 degrees.
+        backlash : float
+            Play of two such gears on the pitch circle [m], half of which is taken from the teeth of each.
+            Default 0: both flanks of a tooth touch.
+        shift : float
+            Profile shift by the module. Default 0.
+        addendum, dedendum : float
+            Heights of a tooth above, and depth of a gap below the pitch circle by the module. Default 1 and
+            1.25.
+
+        Raises
+        ------
+        ValueError
+            If a value is invalid, or teeth are pointed or leave no gaps.
+
+        Examples
+        --------
+        >>> wheel = carom.Profile.involute(20, module=0.002, thickness=0.01, backlash=1e-4)
+        >>> round(wheel.size, 4), len(wheel.rows) > 400
+        (0.0226, True)
+        """
+        from carom.scene.involute import gear, outline_of
+
+        teeth = checks.integer("teeth", teeth, least=4, most=500)
+        module = checks.length("module", module)
+        thickness = checks.length("thickness", thickness)
+        angle = checks.number(
+            "pressure_angle", pressure_angle, above=0.0, below=0.25 * math.pi, unit="rad"
+        )
+        backlash = checks.number("backlash", backlash, least=0.0, below=module, unit="m")
+        shift = checks.number("shift", shift, least=-1.0, most=1.0)
+        heights = tuple(
+            checks.number(name, value, above=0.0, most=2.0)
+            for name, value in (("addendum", addendum), ("dedendum", dedendum))
+        )
+        made = object.__new__(cls)
+        made._keep(outline_of(gear(teeth, module, angle, backlash, shift, heights)), thickness)
+        return made
 
     def __repr__(self) -> str:
         count = int(np.sum(np.diff(self.rows[:, 0]) == 0.0))
