@@ -27,7 +27,7 @@ from carom.kinematics.contact_point import in_axes, power_of_surface
 from carom.model.actions import MODE_STICK
 from carom.model.workspace import CONSTANT, MOTION_POINT
 from carom.persistent.joint_rows import is_driven
-from carom.persistent.settle import greatest, settle
+from carom.persistent.settle import add_product, greatest, settle
 from carom.persistent.springs import list_given, response
 from carom.persistent.thresholds import EQUATION_ERROR, PROXIMAL_SPRING
 
@@ -159,8 +159,11 @@ def onto_sticking(system, data, k, count, after):
     for i in range(k):
         for row in range(3 * i, 3 * i + 3):
             x[row] = after * (x[row] - group.p[row])
-            if row > 3 * i and group.problem.kind[i] == SLIDING:
-                rubbed += x[row] * u[row]
+    for i in range(k):  # an impulse does its work at the mean of the velocities before and after it
+        for row in range(3 * i + 1, 3 * i + 3):
+            if x[row] != 0.0:
+                left = add_product(u[row], 3 * k, group.problem.W[row], x)
+                rubbed += 0.5 * x[row] * (u[row] + left)
     give(system, k, count, state, group, work)
     driven = 0.0
     for i in range(k):
