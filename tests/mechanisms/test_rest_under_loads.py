@@ -44,8 +44,8 @@ def test_random_trees(seed):
 def test_a_search_whose_trials_have_another_order(rtol, most):
     """Friction in a joint at its stop: a stage of the step to the next stop was solved, those before it not.
 
-    The closing steps in their place were not judged: they went twice as far, so that the stop was struck 7e-7 rad
-    late, and the return to it gave 1.2e-6 of the energy, 3.4e-6 at 1e-6.
+    The closing steps in their place were not judged: they went twice as far, so that the stop was struck
+    7e-7 rad late, and the return to it gave 1.2e-6 of the energy, 3.4e-6 at 1e-6.
     """
     case = rests.case(980027)
     s = carom.simulate(case.scene, 2.0, rtol=rtol)

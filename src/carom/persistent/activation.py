@@ -18,7 +18,7 @@ from carom.contact.operations import apart, least_gap
 from carom.dynamics.delassus import inverse_masses
 from carom.dynamics.energy import energies
 from carom.friction.layout import CONE, SLIDING
-from carom.geometry.thresholds import RESOLUTION
+from carom.geometry.thresholds import REMAINDER, RESOLUTION
 from carom.impact.thresholds import VELOCITY_LEFT
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_OPEN, MODE_STICK, PUSHED_IN
@@ -89,7 +89,8 @@ def activate_group(model, data, k, label, horizon):
     for row in range(3 * rows):  # a first guess: those of another group, or of other points
         group.p[row] = 0.0
     decide_active(model, data, k, rows, horizon)
-    if leave_unreachable(system, state, k, group):
+    written = stay_with_others(system, state, k, group)
+    if leave_unreachable(system, state, k, group) or written:
         solve_among(system, k, rows, group)
     new, stay, first = -1, False, clock.event
     for i in range(k):
@@ -170,6 +171,28 @@ def solve_among(system, k, rows, group):
         if group.closed[i].stays == 0:
             group.closed[i].weight = 0.0
     solve_forces(rows, group)
+
+
+@kernel
+def stay_with_others(system, state, k, group):
+    """Let points stay, too, that the others leave no velocity; return whether forces were written over.
+
+    Where the bounces of three corners of a face are left out, the fourth cannot bounce alone: it carries, too.
+    """
+    leaves, bounces = False, False
+    for i in range(k):
+        moves = group.u[3 * i] > slow(system.contacts[group.closed[i].contact], state)
+        stays = group.closed[i].stays == 1
+        leaves, bounces = leaves or (moves and not stays), bounces or (moves and stays)
+    if not (leaves and bounces):
+        return False
+    find_pull(k, 0, 0.0, group)
+    for i in range(k):
+        contact, u = system.contacts[group.closed[i].contact], group.u[3 * i]
+        left = velocity_after(3 * i, k, group)
+        if u > 0.0 and abs(left) <= max(slow(contact, state), REMAINDER * u):
+            group.closed[i].stays = 1
+    return True
 
 
 @kernel

@@ -13,6 +13,7 @@ from carom.contact.continuous_detection import (
     cubic_clears,
     cubic_root,
     reach,
+    time_of_hop,
 )
 from carom.contact.gap import round_off, slow
 from carom.contact.kinds import half_space
@@ -151,6 +152,7 @@ def passage(model, data, c):
         if not (z1 >= -tiny):
             # a touching point may be leaving, or other bodies may push it in by no more than may be missed
             pushed = not flies and z1 >= -RESOLUTION * contact.extent
+            pushed = pushed and time_of_hop(z0, rate0, z1, rate1, h, tiny) == 0.0
             if not (z0 <= tiny and (pushed or (z0 < -tiny and z1 >= z0))):
                 verdict = BELOW
         elif (
