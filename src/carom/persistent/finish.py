@@ -82,7 +82,7 @@ def write_end(model, data, label, k) -> tuple[bool, float]:
     place_closed(system, k, end, group, group.points[0], work)
     place_drives(system, k, work.moment[0].time, group)
     note_passed(system, data.active, k, group, data.state, end)
-    onto_surfaces(system, data, k, count, end)
+    onto_surfaces(system, data, k, count, True, end)
     if loaded:
         project_velocity(system, end, False, work)
     copy_to_stage(count, end, group, work)

@@ -33,10 +33,10 @@ from carom.persistent.thresholds import EQUATION_ERROR, PROXIMAL_SPRING
 
 
 @kernel
-def mark_rows(system, active, k, group):
+def mark_rows(system, active, k, anchored, group):
     """Write how many `rows` each point gives: 0, 1 (its gap), 3 (gap and position); return whether any.
 
-    A point without load gives its gap if that is negative.
+    A point without load gives its gap if that is negative. Positions count if points are `anchored`.
     """
     some = False
     for i in range(k):
@@ -56,7 +56,7 @@ def mark_rows(system, active, k, group):
             sticks = active_point.mode == MODE_STICK and inside
             # where it sticks to a surface that moves, its velocity alone is returned
             moves = group.points[0][i].moves == 1
-            group.closed[i].rows = 3 if core and sticks and not moves else 1
+            group.closed[i].rows = 3 if anchored and core and sticks and not moves else 1
     return some
 
 
@@ -96,10 +96,10 @@ def solve_rows(k, n, tiny, group, x):
 
 
 @kernel
-def onto_surfaces(system, data, k, count, state):
+def onto_surfaces(system, data, k, count, anchored, state):
     """Move the bodies of the group back to the surfaces at the loaded points, which are placed in `state`."""
     group, work, points = data.group, data.work, data.group.points[0]
-    if not mark_rows(system, data.active, k, group):
+    if not mark_rows(system, data.active, k, anchored, group):
         return
     n, x = -1, group.back
     for _ in range(11):

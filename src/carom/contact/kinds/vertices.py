@@ -80,8 +80,14 @@ def least_gap(system, contact, state, work):
 
 @kernel
 def event_gap(system, data, c, state):
-    """Return the least gap of all vertices, and its rate."""
-    return lowest(system.contacts[c], system.vertices, state)
+    """Return the least gap of the vertices that carry no persistent contact, and its rate."""
+    contact, least, its_rate = system.contacts[c], math.inf, 0.0
+    plane = plane_in_body(contact, state)
+    for i in range(contact.first, contact.last):
+        z, rate = gap_and_rate(plane, system.vertices[i])
+        if z < least and data.active.carries[i] == 0:
+            least, its_rate = z, rate
+    return least, its_rate
 
 
 @kernel
