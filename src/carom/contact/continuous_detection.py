@@ -42,6 +42,31 @@ def cubic_clears(z0, rate0, z1, rate1, h, tiny):
 
 
 @kernel
+def safe_time(z0, rate0, z1, rate1, h, tiny):
+    """Return a time at which the cubic has left the surface and has not yet come back; 0 if it has not."""
+    s = 0.5
+    for _ in range(40):
+        a, b = 1.0 - s, s
+        z = a * a * (1.0 + 2.0 * s) * z0 + b * b * (3.0 - 2.0 * s) * z1
+        z += h * (s * a * a * rate0 - b * b * a * rate1)
+        if z > tiny:
+            return s * h
+        s *= 0.5
+    return 0.0
+
+
+@kernel
+def time_of_hop(z0, rate0, z1, rate1, h, tiny):
+    """Return a time at which a point that touched is off the surface, if it is inside later; else 0.
+
+    It has been thrown up, and falls back within the step: an impact, however little it is inside. If only what
+    is deeper than a body may be pushed were one, it would come with the speed of a fall that deep, and throw
+    the next point up by as much, without end.
+    """
+    return safe_time(z0, rate0, z1, rate1, h, tiny) if rate0 > 0.0 else 0.0
+
+
+@kernel
 def cubic_root(a, f, r, b, f_last, r_last):
     """Return a root of the cubic with values f and rates r at a and b, by Newton's method from b."""
     h = b - a

@@ -14,7 +14,14 @@ from typing import NamedTuple
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact import thresholds as limits
-from carom.contact.continuous_detection import BELOW, CLEAR, FLAT_RIM, UNSURE, cubic_clears
+from carom.contact.continuous_detection import (
+    BELOW,
+    CLEAR,
+    FLAT_RIM,
+    UNSURE,
+    cubic_clears,
+    time_of_hop,
+)
 from carom.contact.gap import slow
 from carom.contact.kinds import by_kind
 from carom.contact.kinds.found_points import nearest_touch, touch_rate
@@ -76,11 +83,11 @@ def passage_of_found(model, data, c) -> tuple[int, float]:
         return (CLEAR, h) if touching else passage_hidden(system, data, contact, bounds)
     least, rate = lowest_open(system, data, c, end)
     if touching:
-        return passage_of_touching(model, data, c, step, least)
+        return passage_of_touching(model, data, c, step, (least, rate))
     if rides_on(system, data.active, c, nearest_touch(work)) and least >= -step.part:
         return CLEAR, h
     if not least >= -step.tiny:
-        return passage_below(system, data, c, step, least)
+        return passage_below(system, data, c, step, (least, rate))
     feature = nearest_touch(work).feature
     last, most = time_apart(system, contact, end, bounds, -h, work)
     if last >= h:
@@ -117,7 +124,7 @@ def is_smooth(model, contact, step, most):
 
 
 @kernel
-def passage_of_touching(model, data, c, step, least):
+def passage_of_touching(model, data, c, step, at_end):
     """Return the verdict for bodies in contact: the lowest point of a wobbling rim must not go too far.
 
     Only steps up to `longest` may follow it along a large arc.
@@ -131,20 +138,24 @@ def passage_of_touching(model, data, c, step, least):
             return FLAT_RIM, 0.0
         if moved > limits.RIM_DISTANCE and step.h > 0.1 * longest:
             return UNSURE, 0.0
-    if not least >= -step.part:
-        return passage_below(system, data, c, step, least)
+    if not at_end[0] >= -step.part:
+        return passage_below(system, data, c, step, at_end)
     return CLEAR, step.h
 
 
 @kernel
-def passage_below(system, data, c, step, least):
+def passage_below(system, data, c, step, at_end):
     """Return the verdict for points inside at the end: clear if they touched and separate or are pushed."""
-    before, _ = lowest_found(system, data, c, data.state)
+    (before, rate), (least, its_rate) = lowest_found(system, data, c, data.state), at_end
+    off = 0.0
     if before <= step.tiny:
         comes_out = before < -step.tiny and least >= before
-        if comes_out or (not step.flies and least >= -step.part):
+        pushed = not step.flies and least >= -step.part
+        if pushed and not comes_out:
+            off = time_of_hop(before, rate, least, its_rate, step.h, step.tiny)
+        if comes_out or (pushed and off == 0.0):
             return CLEAR, step.h
-    return BELOW, 0.0
+    return BELOW, 2.0 * off
 
 
 @kernel

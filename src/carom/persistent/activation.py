@@ -14,11 +14,11 @@ from carom.contact.closed_points import concerns, gather_closed
 from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.contact.kinds.partner import smaller
-from carom.contact.operations import apart, least_gap
+from carom.contact.operations import apart, is_fixed, least_gap, located_within
 from carom.dynamics.delassus import inverse_masses
 from carom.dynamics.energy import energies
 from carom.friction.layout import CONE, SLIDING
-from carom.geometry.thresholds import RESOLUTION
+from carom.geometry.thresholds import REMAINDER, RESOLUTION
 from carom.impact.thresholds import VELOCITY_LEFT
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.actions import MODE_OPEN, MODE_STICK, PUSHED_IN
@@ -89,7 +89,8 @@ def activate_group(model, data, k, label, horizon):
     for row in range(3 * rows):  # a first guess: those of another group, or of other points
         group.p[row] = 0.0
     decide_active(model, data, k, rows, horizon)
-    if leave_unreachable(system, state, k, group):
+    written = stay_with_others(system, state, k, group)
+    if leave_unreachable(system, state, k, group) or written:
         solve_among(system, k, rows, group)
     new, stay, first = -1, False, clock.event
     for i in range(k):
@@ -150,7 +151,7 @@ def decide_active(model, data, k, rows, horizon):
             contact, u = system.contacts[group.closed[i].contact], group.u[3 * i]
             a = group.a[3 * i]
             if group.closed[i].stays == 0:
-                end = horizon_of(system, contact, model.controls, -a, horizon)
+                end = horizon_of(system, contact, model.controls, -a, horizon, state)
                 if bounces_end(system, contact, u, -a, slow(contact, state), end):
                     group.closed[i].stays, more = 1, True
                     group.closed[i].bounces = time_without_torque(system, contact, u, -a, state)
@@ -170,6 +171,28 @@ def solve_among(system, k, rows, group):
         if group.closed[i].stays == 0:
             group.closed[i].weight = 0.0
     solve_forces(rows, group)
+
+
+@kernel
+def stay_with_others(system, state, k, group):
+    """Let points stay, too, that the others leave no velocity; return whether forces were written over.
+
+    Where the bounces of three corners of a face are left out, the fourth cannot bounce alone: it carries, too.
+    """
+    leaves, bounces = False, False
+    for i in range(k):
+        moves = group.u[3 * i] > slow(system.contacts[group.closed[i].contact], state)
+        stays = group.closed[i].stays == 1
+        leaves, bounces = leaves or (moves and not stays), bounces or (moves and stays)
+    if not (leaves and bounces):
+        return False
+    find_pull(k, 0, 0.0, group)
+    for i in range(k):
+        contact, u = system.contacts[group.closed[i].contact], group.u[3 * i]
+        left = velocity_after(3 * i, k, group)
+        if u > 0.0 and abs(left) <= max(slow(contact, state), REMAINDER * u):
+            group.closed[i].stays = 1
+    return True
 
 
 @kernel
@@ -272,13 +295,17 @@ def lay_down(model, data, k, label):
     """Bring the points that press back to the surfaces if they are not on them; name the energy of that.
 
     A rim that is nearly flat strikes as a flat one (`contact.kinds.rim`), with points above the surface, and so
-    may be points of a crowd. A contact that this pushes inside is judged next, whether it approaches or not.
+    may be points of a crowd. A contact that this pushes inside is judged next, whether it approaches or not. A
+    vertex that sticks to two planes cannot return later to one and stay where it was on the other.
     """
     system, state, group, clock, off = model.system, data.state, data.group, data.clocks[0], False
     for i in range(k):
         if group.closed[i].motion == MOTION_POINT and group.p[3 * i] > 0.0:
-            size = system.contacts[group.closed[i].contact].extent
-            off = off or abs(group.points[0][i].gap) > RESOLUTION * size
+            contact = system.contacts[group.closed[i].contact]
+            most = RESOLUTION * contact.extent
+            if is_fixed(contact):
+                most = min(most, 2.0 * located_within(model.controls, contact, state))
+            off = off or abs(group.points[0][i].gap) > most
     if not off:
         return
     kinetic, potential, _ = energies(system, state, clock.now)
@@ -287,10 +314,14 @@ def lay_down(model, data, k, label):
     for c in range(system.contacts.shape[0]):
         outside = concerns(system.contacts[c], label, work) and not inside(system, c, state, work)
         active.contact_states[c].visited = 1 if outside else 0
-    onto_surfaces(system, data, k, count, state)
+    onto_surfaces(system, data, k, count, False, state)
     for c in range(system.contacts.shape[0]):
         if active.contact_states[c].visited == 1 and inside(system, c, state, work):
             active.contact_states[c].near = PUSHED_IN
+    for i in range(active.count[0]):
+        one = active.points[i]
+        if one.mode == MODE_STICK and work.body[one.body].label == label:
+            set_anchor(system, one, state, work)
     after, at_end, _ = energies(system, state, clock.now)
     clock.bounces += after + at_end - kinetic - potential
 

@@ -23,6 +23,7 @@ from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.contact.kinds.partner import smaller
+from carom.contact.operations import located_within
 from carom.dynamics.delassus import on_drive
 from carom.dynamics.element_operations import driven_power
 from carom.friction.layout import CONE, SLIDING
@@ -40,13 +41,16 @@ from carom.persistent.thresholds import MOST_BOUNCES, PLASTIC_SPEED, REST_SHARE
 
 
 @kernel
-def horizon_of(system, contact, controls, g, horizon):
-    """Return the time within which bounces must end to be left out: `horizon`, or by the tolerance."""
+def horizon_of(system, contact, controls, g, horizon, state):
+    """Return the time within which bounces must end to be left out: `horizon`, or by the tolerance.
+
+    What goes no higher than a gap is known has no time at which it falls back.
+    """
     if controls.order == 0:
         return horizon
     tolerance = controls.atol + controls.rtol * smaller(contact)
     if system.laws.table[contact.law[STRIKES]].restitution == 0.0:
-        tolerance *= PLASTIC_SPEED
+        tolerance = max(PLASTIC_SPEED * tolerance, 2.0 * located_within(controls, contact, state))
     return math.sqrt(8.0 * tolerance / g) if g > 0.0 else 0.0
 
 
@@ -120,7 +124,7 @@ def end_bounces(model, data, k, label, horizon):
     still = min(still, REST_SHARE * speed)
     for i in range(k):
         contact = system.contacts[group.closed[i].contact]
-        end = horizon_of(system, contact, controls, -group.problem.c[3 * i], horizon)
+        end = horizon_of(system, contact, controls, -group.problem.c[3 * i], horizon, state)
         if not time_to_stop(i, group) > end:  # friction ends with the slip
             group.problem.heading[i, 0], group.problem.heading[i, 1] = 0.0, 0.0
     find_pull(k, 1, SUM_ERROR * speed, group)

@@ -82,7 +82,7 @@ def write_end(model, data, label, k) -> tuple[bool, float]:
     place_closed(system, k, end, group, group.points[0], work)
     place_drives(system, k, work.moment[0].time, group)
     note_passed(system, data.active, k, group, data.state, end)
-    onto_surfaces(system, data, k, count, end)
+    onto_surfaces(system, data, k, count, True, end)
     if loaded:
         project_velocity(system, end, False, work)
     copy_to_stage(count, end, group, work)
@@ -184,6 +184,7 @@ def check_end(model, data, label, s, h, given) -> tuple[bool, float, float]:
         if work.body[active.points[i].body].label == label:
             clear(active.points[i])  # it has a force only if it is among the points found
     at_rest = not on_drive(k, group.points[0]) and come_to_rest(system, data, tolerance, count)
+    at_rest = at_rest and not accelerates_unseen(k, h, push, model.controls, group)
     for i in range(k):
         closed_point = group.closed[i]
         if closed_point.listed == 0:
@@ -326,6 +327,24 @@ def gains(i, push, group):
     """Return whether a point accelerates along its surface."""
     a = group.a
     return math.hypot(a[3 * i + 1], a[3 * i + 2]) > NO_MARGIN * (push + pulled(i, group))
+
+
+@kernel
+def accelerates_unseen(k, h, push, controls, group):
+    """Return whether a point accelerates, but by less than is a speed of slip in a step of length h.
+
+    What has no speed at both ends of a short step, as where a slip turns round, does not rest for that.
+    """
+    seen, p = 2.0 * controls.rest * push * controls.step / h, group.p
+    for i in range(k):
+        q, a, least = 3 * i, 0.0, NO_MARGIN * (push + pulled(i, group))
+        if math.hypot(p[q + 1], p[q + 2]) >= FRICTION_LIMIT * radius_of(group, i):
+            a = math.hypot(group.a[q + 1], group.a[q + 2])
+        if group.closed[i].motion == MOTION_POINT and p[q] <= 0.0:
+            a = max(a, group.a[q])
+        if least < a <= seen:
+            return True
+    return False
 
 
 @kernel

@@ -27,16 +27,16 @@ from carom.kinematics.contact_point import in_axes, power_of_surface
 from carom.model.actions import MODE_STICK
 from carom.model.workspace import CONSTANT, MOTION_POINT
 from carom.persistent.joint_rows import is_driven
-from carom.persistent.settle import greatest, settle
+from carom.persistent.settle import add_product, greatest, settle
 from carom.persistent.springs import list_given, response
 from carom.persistent.thresholds import EQUATION_ERROR, PROXIMAL_SPRING
 
 
 @kernel
-def mark_rows(system, active, k, group):
+def mark_rows(system, active, k, anchored, group):
     """Write how many `rows` each point gives: 0, 1 (its gap), 3 (gap and position); return whether any.
 
-    A point without load gives its gap if that is negative.
+    A point without load gives its gap if that is negative. Positions count if points are `anchored`.
     """
     some = False
     for i in range(k):
@@ -56,7 +56,7 @@ def mark_rows(system, active, k, group):
             sticks = active_point.mode == MODE_STICK and inside
             # where it sticks to a surface that moves, its velocity alone is returned
             moves = group.points[0][i].moves == 1
-            group.closed[i].rows = 3 if core and sticks and not moves else 1
+            group.closed[i].rows = 3 if anchored and core and sticks and not moves else 1
     return some
 
 
@@ -96,10 +96,10 @@ def solve_rows(k, n, tiny, group, x):
 
 
 @kernel
-def onto_surfaces(system, data, k, count, state):
+def onto_surfaces(system, data, k, count, anchored, state):
     """Move the bodies of the group back to the surfaces at the loaded points, which are placed in `state`."""
     group, work, points = data.group, data.work, data.group.points[0]
-    if not mark_rows(system, data.active, k, group):
+    if not mark_rows(system, data.active, k, anchored, group):
         return
     n, x = -1, group.back
     for _ in range(11):
@@ -159,8 +159,11 @@ def onto_sticking(system, data, k, count, after):
     for i in range(k):
         for row in range(3 * i, 3 * i + 3):
             x[row] = after * (x[row] - group.p[row])
-            if row > 3 * i and group.problem.kind[i] == SLIDING:
-                rubbed += x[row] * u[row]
+    for i in range(k):  # an impulse does its work at the mean of the velocities before and after it
+        for row in range(3 * i + 1, 3 * i + 3):
+            if x[row] != 0.0:
+                left = add_product(u[row], 3 * k, group.problem.W[row], x)
+                rubbed += 0.5 * x[row] * (u[row] + left)
     give(system, k, count, state, group, work)
     driven = 0.0
     for i in range(k):

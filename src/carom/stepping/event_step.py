@@ -281,7 +281,7 @@ def may_end(contact, system, controls, state, horizon, work):
         return True
     work.body[contact.body].status = FREE
     _, most = greatest_acceleration(system, contact, state, work)
-    horizon = horizon_of(system, contact, controls, most, horizon)
+    horizon = horizon_of(system, contact, controls, most, horizon, state)
     law = contact.law[STRIKES]
     if depends_on_approach(system.laws, law):
         return time_of_bounces(system, contact, rate, most) < horizon

@@ -176,10 +176,12 @@ def fits(model, data):
     system, controls, work = model.system, model.controls, data.work
     clock, search, code = data.clocks[0], work.search[0], work.search[0].code
     dt = search.dt
+    error = math.inf
+    if code == 0 and controls.order > 0 and (search.active == 0 or may_close(model, data)):
+        error = step_error(system, controls.rtol, controls.atol, work)
+        if search.active == 1 and not error <= 1.0:  # so it does not go as far as its event
+            search.active, search.part = 0, 0
     if controls.order > 0 and search.active == 0:
-        error = math.inf
-        if code == 0:
-            error = step_error(system, controls.rtol, controls.atol, work)
         if error <= 1.0:
             if may_err(system, data.active):
                 plan_next(dt, error, search.again == 1, controls, work)
@@ -198,6 +200,17 @@ def fits(model, data):
         search.pace = search.dt
         return ONCE_MORE
     return code
+
+
+@inlined
+def may_close(model, data):
+    """Return whether a trial of a search may be of a lower order than the first, whose error was judged.
+
+    A stage without a solution has a closing step in its place, which is one of contacts and dry friction alone.
+    """
+    if data.active.count[0] == 0 and not rubs(model.system):
+        return False
+    return data.work.search[0].dt > LEAST_STEP * model.controls.duration
 
 
 @inlined

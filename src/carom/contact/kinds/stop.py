@@ -12,7 +12,14 @@ import math
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact import gap as gaps
-from carom.contact.continuous_detection import BELOW, CLEAR, UNSURE, cubic_clears
+from carom.contact.continuous_detection import (
+    BELOW,
+    CLEAR,
+    UNSURE,
+    cubic_clears,
+    safe_time,
+    time_of_hop,
+)
 from carom.contact.gap import round_off, slow
 from carom.contact.point_axes import tangents
 from carom.contact.point_lists import is_active, write_closed
@@ -171,6 +178,7 @@ def passage(model, data, c):
     tiny = max(model.controls.gap * contact.extent, round_off(contact, work.trial))
     if not (z1 >= -tiny):
         slightly = z1 >= -RESOLUTION * contact.extent
+        slightly = slightly and time_of_hop(z0, rate0, z1, rate1, h, tiny) == 0.0
         if z0 <= tiny and (slightly or (z0 < -tiny and z1 >= z0)):
             return CLEAR, 0.0
         return BELOW, 2.0 * safe_time(z0, rate0, z1, rate1, h, tiny)
@@ -178,17 +186,3 @@ def passage(model, data, c):
     if leaving == 0 and not cubic_clears(z0, rate0, z1, rate1, h, tiny):
         return UNSURE, 0.0
     return CLEAR, h
-
-
-@kernel
-def safe_time(z0, rate0, z1, rate1, h, tiny):
-    """Return a time at which the cubic has left the stop and has not yet come back."""
-    s = 0.5
-    for _ in range(40):
-        a, b = 1.0 - s, s
-        z = a * a * (1.0 + 2.0 * s) * z0 + b * b * (3.0 - 2.0 * s) * z1
-        z += h * (s * a * a * rate0 - b * b * a * rate1)
-        if z > tiny:
-            return s * h
-        s *= 0.5
-    return 0.0

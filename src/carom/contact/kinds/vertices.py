@@ -13,6 +13,7 @@ from carom.contact.continuous_detection import (
     cubic_clears,
     cubic_root,
     reach,
+    time_of_hop,
 )
 from carom.contact.gap import round_off, slow
 from carom.contact.kinds import half_space
@@ -79,8 +80,14 @@ def least_gap(system, contact, state, work):
 
 @kernel
 def event_gap(system, data, c, state):
-    """Return the least gap of all vertices, and its rate."""
-    return lowest(system.contacts[c], system.vertices, state)
+    """Return the least gap of the vertices that carry no persistent contact, and its rate."""
+    contact, least, its_rate = system.contacts[c], math.inf, 0.0
+    plane = plane_in_body(contact, state)
+    for i in range(contact.first, contact.last):
+        z, rate = gap_and_rate(plane, system.vertices[i])
+        if z < least and data.active.carries[i] == 0:
+            least, its_rate = z, rate
+    return least, its_rate
 
 
 @kernel
@@ -151,6 +158,7 @@ def passage(model, data, c):
         if not (z1 >= -tiny):
             # a touching point may be leaving, or other bodies may push it in by no more than may be missed
             pushed = not flies and z1 >= -RESOLUTION * contact.extent
+            pushed = pushed and time_of_hop(z0, rate0, z1, rate1, h, tiny) == 0.0
             if not (z0 <= tiny and (pushed or (z0 < -tiny and z1 >= z0))):
                 verdict = BELOW
         elif (
